@@ -20,9 +20,7 @@ $(STAMP): pyproject.toml constraints.txt
 # Compiled before a user waits for it; what was compiled from another text is compiled anew by itself.
 KERNELS := $(shell grep -rl --include='*.py' '@kernel' advisor sim) advisor/compiled.py
 .venv/.compiled: $(STAMP) $(KERNELS)
-	$(BIN)/python -m advisor.mavlink.warm
-	$(BIN)/python -m advisor.oem.warm
-	$(BIN)/python -m advisor.gap.warm
+	$(BIN)/python -m advisor.first_run
 	touch $@
 
 # What tests, checks and benchmarks need beyond running: installed only for them.
@@ -38,7 +36,7 @@ run: setup ## the bundled aircraft flies, the advisor advises (HEADLESS=1: as te
 test: .venv/.developed ## run all tests (long studies have their own targets)
 	$(BIN)/python -m pytest -n 2 --dist loadgroup
 
-check: .venv/.developed format-check lint types imports sizes test ## format, lint, types, import contracts, sizes, tests
+check: .venv/.developed format-check lint types imports sizes english words site test ## format, lint, types, import contracts, sizes, English, documentation, tests
 
 format: .venv/.developed ## format the code
 	$(BIN)/ruff format .
@@ -61,6 +59,10 @@ imports: .venv/.developed ## the walls of the house
 sizes: .venv/.developed ## lines, constants and names of the gap diagnosis, which may only fall
 	$(BIN)/python -m benchmarks.gap_size
 
+.PHONY: english
+english: .venv/.developed ## docstrings, messages and pages against docs/developer/style.md
+	$(BIN)/python -m benchmarks.english
+
 bench: .venv/.developed ## every ratio of speed, each against its goal (about twenty minutes)
 	$(BIN)/python -m benchmarks.estimate
 	$(BIN)/python -m benchmarks.campaign
@@ -71,7 +73,7 @@ bench: .venv/.developed ## every ratio of speed, each against its goal (about tw
 	$(BIN)/python -m benchmarks.tui
 
 study: .venv/.developed ## the paper's campaign, 2,000 times a noise level, with Figure 5
-	$(BIN)/advisor study --campaigns 2000 --readings --figure docs/figure-5.svg
+	$(BIN)/advisor study --campaigns 2000 --readings --figure docs/validation/figure-5.svg
 
 study-advice: .venv/.developed ## what following the advice saves
 	$(BIN)/advisor study --advice --campaigns 100
@@ -101,10 +103,10 @@ corpus: .venv/.developed ## 160 flights whose keys are open: at most 2 % of the 
 
 FLIGHTS ?= ../shared/flights
 real: .venv/.developed ## records of real aircraft against what is known of them (FLIGHTS=folder)
-	$(BIN)/python -m benchmarks.real $(FLIGHTS) --write docs/validation.md
+	$(BIN)/python -m benchmarks.real $(FLIGHTS) --write docs/data/real.json
 
 accuracy: .venv/.developed ## the estimator against the Cramér-Rao bound, intervals against the truth
-	$(BIN)/python -m benchmarks.accuracy --write docs/accuracy.md
+	$(BIN)/python -m benchmarks.accuracy --write docs/data/accuracy.md
 
 robustness: .venv/.developed ## the estimator's own start on 2,000 random aircraft
 	$(BIN)/python -m benchmarks.robustness
@@ -122,15 +124,35 @@ DAMAGE_CASES ?= 3400
 damage: .venv/.developed ## 10,000 damaged logs and more, read and analysed (DAMAGE_CASES of each of three kinds)
 	DAMAGE_CASES=$(DAMAGE_CASES) $(BIN)/python -m pytest --timeout 0 tests/test_damaged_logs.py
 
-.PHONY: pages examples
-pages: .venv/.developed ## the pages that are made from the code and from scored runs
+.PHONY: site words pages examples
+site: .venv/.developed ## the documentation site, built strictly into build/site
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict
+
+words: .venv/.developed ## words of the documentation written by hand, and their limit
+	$(BIN)/python -m benchmarks.pages.words
+
+pages: .venv/.developed ## the blocks of README.md that come from docs/data
 	$(BIN)/python -m benchmarks.pages
 
-examples: .venv/.developed ## the same, with the worked examples and their figure
+examples: .venv/.developed ## run the worked examples of the documentation, and draw the figures
 	$(BIN)/python -m benchmarks.pages --examples
 
 pictures: .venv/.developed ## the screens in the README, drawn by the running program
-	$(BIN)/python -m advisor.tui.picture logs/bundled-demo.tlog --after 3 --out docs
+	$(BIN)/python -m advisor.tui.picture logs/bundled-demo.tlog --after 3 --out docs/assets
+
+.PHONY: wheel install-check container coverage
+wheel: .venv/.developed ## the wheel and the source archive, in dist
+	$(BIN)/python -m build
+
+install-check: ## the wheel in empty environments, by pip, pipx and uv (ten minutes)
+	.ci/install-check
+
+container: ## the container image (docker or podman)
+	docker build -f Containerfile -t inflight-advisor .
+
+COVERED ?= tests
+coverage: .venv/.developed ## how much of advisor and sim the tests run (COVERED=tests/oem for a part)
+	$(BIN)/python -m pytest -n 2 --dist loadgroup --cov advisor --cov sim --cov-report term --cov-report html:build/coverage $(COVERED)
 
 clean: ## remove .venv and caches
-	rm -rf .venv build *.egg-info .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis
+	rm -rf .venv build dist *.egg-info .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis

@@ -1,4 +1,4 @@
-"""Effects that an aircraft file may add to the simulator's model, with their parameters."""
+"""Names and parameters of the effects that an aircraft file may add to the simulator's model."""
 
 from collections.abc import Iterator, Mapping
 
@@ -43,7 +43,7 @@ LEAST: Mapping[str, Mapping[str, float]] = {
     "ground_effect": {"Z_h": _ANY, "lift_h": _ANY, "M_h": _ANY, "scale_m": 0.0},
     "turbulence": {"sigma_w_m_s": 0.0, "length_m": 0.0},
     "gust": {"amplitude_m_s": _ANY, "length_m": 0.0, "at_s": _ANY},
-    # A channel may be ahead of the others where their filters are the slower ones.
+    # A channel may be ahead of the others where the others are filtered more slowly.
     "alpha_lag": {"lag_s": _ANY},
     "alpha_scale": {"scale": _ANY},
     "alpha_bias": {"bias_rad": _ANY},
@@ -63,11 +63,11 @@ LEAST: Mapping[str, Mapping[str, float]] = {
     "accelerometer_skew": {"skew_s": _ANY},
     "attitude_skew": {"skew_s": _ANY, "with_pitch_rate": 0.0},
 }
-"""Effect to its parameters, each with the least value that it can have."""
+"""Effect name to its parameters, each with its least allowed value."""
 
 
 def mistakes_in(effects: Mapping[str, Mapping[str, float]]) -> Iterator[str]:
-    """Yield what cannot be flown in an aircraft file's ``effects``, as ``path: what is wrong``."""
+    """Yield every mistake in an aircraft file's ``effects``, as ``path: description``."""
     for effect, sizes in effects.items():
         if effect not in LEAST:
             yield f"effects.{effect}: unknown effect, the effects are {' '.join(LEAST)}"

@@ -1,4 +1,4 @@
-"""Output that any terminal can show: characters that an encoding lacks are spelled in ASCII."""
+"""Output for any terminal: characters that the terminal's encoding lacks are spelled in ASCII."""
 
 import codecs
 import io
@@ -16,20 +16,21 @@ _SPELLED = {
     "▉": "#", "▊": "#", "▋": "#", "▌": "=", "▍": "=", "▎": "-", "▏": "|",
     "■": "#", "▶": ">", "►": ">", "◀": "<", "●": "*", "✓": "+", "✗": "x", "❚": "|",
 }  # fmt: skip
-"""Stand-ins of the characters that the advisor writes. Greek letters and lines follow from their names; a
-delta stands before the e of the elevator, as in M_delta_e."""
+"""ASCII spellings of the characters that the advisor writes. Greek letters and lines follow from their
+Unicode names. A delta stands before the e of the elevator, as in M_delta_e."""
 
 
 def plain(text: str) -> str:
-    """Return the text in ASCII: stand-ins, letters without accents, a question mark for anything else."""
+    """Return the text in ASCII: stand-ins, letters without accents, a question mark for any other
+    character."""
     return "".join(map(_spelled, text))
 
 
 def speak_plainly() -> None:
-    """Let standard output and error spell what their encoding lacks, instead of failing.
+    """Let standard output and standard error spell characters that their encoding lacks, instead of failing.
 
-    A stream in ASCII gets the same encoding by another name: click takes ASCII for a mistake in the user's
-    settings and writes UTF-8 there. A stream that is closed takes everything and shows nothing.
+    A stream in ASCII is given ASCII under another name, because click takes ASCII for a mistake in the user's
+    settings and writes UTF-8 there. A closed stream accepts every text and shows nothing.
     """
     codecs.register_error(_ERRORS, _stand_in)
     codecs.unregister(_ascii_by_another_name)  # a second call registers nothing twice

@@ -1,16 +1,16 @@
-"""Files that are old or new and whole, whenever power fails or the disk is full."""
+"""Files that are always whole, old or new, even where power fails or the disk is full."""
 
 import os
 from pathlib import Path
 
 
 def write_atomically(path: Path, content: str | bytes) -> None:
-    """Write a file under a name of its own, then give the file its name; text in UTF-8.
+    """Write a file under a temporary name, then give the file its name; a text in UTF-8.
 
     Raises
     ------
     OSError
-        The file cannot be written; what stood there before is still there.
+        The file cannot be written. The earlier file is unchanged.
     """
     beside = path.with_name(f".{path.name}.{os.getpid()}")
     try:

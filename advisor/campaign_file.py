@@ -1,4 +1,4 @@
-"""The file beside a recording that keeps how the flight test is advised: ``flight.campaign.yaml``.
+"""The file of a flight test's options next to its recording: ``flight.campaign.yaml``.
 
 ``advisor live --resume`` reads the file, so that nobody has to remember the options of the first start.
 """
@@ -17,28 +17,28 @@ from advisor.yaml_file import read_yaml
 
 SUFFIX = ".campaign.yaml"
 _KEYS = ("master", "rule", "target_system", "aircraft")
-_HEADING = "# How this flight test is advised; `advisor live --resume` reads this file with its recording.\n"
+_HEADING = "# Options of this flight test; `advisor live --resume` reads this file with its recording.\n"
 
 
 @dataclass(frozen=True, slots=True)
 class CampaignFile:
-    """The options of a flight test that a resumed one keeps."""
+    """Options of a flight test that a resumed flight test keeps."""
 
     master: str
     """Connection, as in pymavlink."""
     rule: Rule | None = None
-    """Rule of the command line; None: the aircraft file's."""
+    """Rule given on the command line. None: the aircraft file's rule."""
     target_system: int | None = None
     aircraft: Any = None
-    """Content of the aircraft file; None: no file."""
+    """Content of the aircraft file. None: no file."""
 
     def parsed_aircraft(self, origin: str) -> Aircraft:
-        """The aircraft of the flight test, by the rule of the command line where there is one.
+        """Return the aircraft of the flight test, with the rule of the command line where one was given.
 
         Parameters
         ----------
         origin
-            File that mistakes are said of.
+            Path of the file, for messages about mistakes.
 
         Raises
         ------
@@ -52,12 +52,12 @@ class CampaignFile:
 
 
 def path_beside(recording: Path) -> Path:
-    """Where the options of a flight test are kept."""
+    """Return the path of the file of options."""
     return recording.with_suffix(SUFFIX)
 
 
 def write_campaign(recording: Path, campaign: CampaignFile) -> None:
-    """Keep the options beside a recording.
+    """Write the options next to a recording.
 
     Raises
     ------
@@ -71,7 +71,7 @@ def write_campaign(recording: Path, campaign: CampaignFile) -> None:
 
 
 def read_campaign(recording: Path) -> CampaignFile | None:
-    """Read the options of a flight test; None where none are kept.
+    """Read the options of a flight test; None without a file.
 
     Raises
     ------

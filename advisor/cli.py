@@ -5,50 +5,67 @@ import os
 import sys
 from collections.abc import Callable
 from contextlib import suppress
+from functools import cache, partial, wraps
 from importlib import import_module
 from signal import SIGINT
-from typing import TextIO
+from typing import Any, TextIO
 
 import click
+from click.shell_completion import CompletionItem, shell_complete
 
-from advisor import __version__
 from advisor.ascii_output import speak_plainly
 from advisor.commands.options import INTERNAL, UNUSABLE, USAGE
+from advisor.first_run import compile_once
 from advisor.interrupt import STOPPED, Interrupted
 from advisor.printable import printable
 from advisor.problems import ConfigurationError, UnusableInputError
 from advisor.running.threads import pin_linear_algebra
 
 COMMANDS = {
-    "demo": "The bundled aircraft flies the paper's campaign over a real link, the advisor advises.",
+    "demo": "Fly the bundled aircraft through the paper's campaign over a real link, with advice.",
     "live": "Advise on a live link.",
-    "replay": "The same screens on a log, with pause, speed and jump.",
-    "analyze": "No screen: every manoeuvre's verdict, the estimates, stop or continue.",
+    "replay": "Play a log on the screens of a live flight, with pause, speed and jump.",
+    "serve": "Show the screens of live and replay in a browser, for several viewers.",
+    "analyze": "Print every manoeuvre's verdict, the estimates, and stop or continue.",
     "gap": "Diagnose why the real aircraft does not fly like the simulator.",
-    "export": "Channels, manoeuvres, estimates and residuals for other tools.",
-    "batch": "Many flights: every log analyzed once, tables and changes over all of them.",
-    "report": "One self-contained page of a flight, for people who were not there.",
-    "doctor": "Is this telemetry good enough, before flying; what to change if not.",
-    "study": "The paper's simulated campaign: Table 1, Figure 5, Monte-Carlo.",
-    "locate": "Where settings and recordings are kept.",
+    "export": "Write channels, manoeuvres, estimates and residuals for other tools.",
+    "batch": "Analyze many logs: one table of flights, one of manoeuvres, changes over time.",
+    "report": "Write one self-contained page about a flight, for people who were not there.",
+    "doctor": "Check before a flight whether the telemetry is good enough; say what to change.",
+    "study": "Repeat the paper's simulated campaign: Table 1, Figure 5, Monte-Carlo.",
+    "aircraft": "Write an aircraft file, or say what one lacks and what that costs.",
+    "sample": "Put a sample flight and its aircraft file into this folder.",
+    "locate": "Print where settings and recordings are kept.",
+    "completion": "Print what makes a shell complete the advisor's commands.",
 }
-"""Name to the line in ``advisor --help``; kept here so that help imports no command."""
+"""Command name to its line in ``advisor --help``. The lines stand here so that the help imports no
+command."""
+
+
+COMPLETION_VARIABLE = "_ADVISOR_COMPLETE"
+"""Environment variable by which a shell asks for completions."""
+WITHOUT_KERNELS = frozenset({"locate", "sample", "aircraft", "completion"})
+"""Commands that need no compiled code, or only sometimes: the first run does not compile for them."""
 
 
 class LazyCommands(click.Group):
     """A group whose commands live in ``advisor.commands`` and are imported on demand."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        """Names in the order of a flight test: fly, look back, compare, prepare."""
+        """Return names in the order of a flight test: fly, look back, compare, prepare."""
         return list(COMMANDS)
 
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
-        """Import one command, or None when there is no such name."""
-        if name not in COMMANDS:
-            return None
-        command = import_module(f"advisor.commands.{name}").command
-        assert isinstance(command, click.Command)
-        return command
+        """Import one command; None for an unknown name."""
+        return _command(name) if name in COMMANDS else None
+
+    def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
+        """Complete the name of a command, or an option, without importing any command."""
+        if incomplete and not incomplete[0].isalnum():
+            return super().shell_complete(ctx, incomplete)
+        return [
+            CompletionItem(name, help=line) for name, line in COMMANDS.items() if name.startswith(incomplete)
+        ]
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """List the commands without importing any."""
@@ -56,8 +73,45 @@ class LazyCommands(click.Group):
             formatter.write_dl(list(COMMANDS.items()))
 
 
+@cache
+def _command(name: str) -> click.Command:
+    """Import a command. One that calls compiled code compiles it first, on the first run."""
+    command = import_module(f"advisor.commands.{name}").command
+    assert isinstance(command, click.Command)
+    if name not in WITHOUT_KERNELS:
+        parts = command.commands.values() if isinstance(command, click.Group) else (command,)
+        for part in parts:
+            part.callback = part.callback and _compiled_first(part.callback)
+    return command
+
+
+def _compiled_first(run: Callable[..., Any]) -> Callable[..., Any]:
+    @wraps(run)
+    def compile_and_run(*arguments: Any, **options: Any) -> Any:
+        compile_once(partial(click.echo, err=True))
+        return run(*arguments, **options)
+
+    return compile_and_run
+
+
+def _say_version(context: click.Context, _: click.Parameter, wanted: bool) -> None:
+    if not wanted or context.resilient_parsing:
+        return
+    from advisor import __version__
+
+    click.echo(f"advisor, version {__version__}")
+    context.exit()
+
+
 @click.group(cls=LazyCommands, context_settings={"help_option_names": ["-h", "--help"]})
-@click.version_option(__version__, prog_name="advisor")
+@click.option(
+    "--version",
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=_say_version,
+    help="Show the version.",
+)
 def advisor() -> None:
     """Inflight advisor: was that manoeuvre good, may we stop testing.
 
@@ -69,7 +123,7 @@ def advisor() -> None:
 
 
 def main() -> None:
-    """Run the command line; every error a user may meet becomes one sentence and an exit code."""
+    """Run the command line. Every error that a user may meet becomes one sentence and an exit code."""
     pin_linear_algebra()
     speak_plainly()
     code = _ended_by(_run)
@@ -79,7 +133,9 @@ def main() -> None:
 
 
 def _run() -> int:
-    """Call the command that the user names; what click would print or exit for is raised instead."""
+    """Call the command that the user names. Raise every message or exit that click would handle itself."""
+    if asked := os.environ.get(COMPLETION_VARIABLE):
+        return shell_complete(advisor, {}, "advisor", COMPLETION_VARIABLE, asked)
     with advisor.make_context("advisor", sys.argv[1:]) as context:
         code = advisor.invoke(context)
     sys.stdout.flush()
@@ -87,7 +143,7 @@ def _run() -> int:
 
 
 def _ended_by(run: Callable[[], int]) -> int:
-    """Exit code of the run, or of the error that has ended the run, which is told."""
+    """Return the exit code of ``run``. Print the error that ended it, if any."""
     try:
         return run()
     except click.exceptions.Exit as end:
@@ -107,7 +163,7 @@ def _ended_by(run: Callable[[], int]) -> int:
         _tell(str(error))
         return UNUSABLE
     except (BrokenPipeError, SystemExit):
-        # The reader of our output (head, less) went away, which rich answers with SystemExit.
+        # The reader of the output (head, less) went away, which rich answers with SystemExit.
         return 0
     except OSError as error:
         where = f" ({printable(os.fsdecode(error.filename))})" if error.filename else ""
@@ -127,13 +183,14 @@ def _ended_by(run: Callable[[], int]) -> int:
 
 
 def _tell(sentence: str) -> None:
-    """Write to standard error, where somebody may listen."""
+    """Write to standard error, unless standard error is closed."""
     with suppress(OSError):
         click.echo(sentence, err=True)
 
 
 def _let_go(stream: TextIO) -> None:
-    """Flush a stream; what nobody can take is thrown away, before the interpreter's end stumbles over it."""
+    """Flush a stream. Drop text that nobody can take, so that the interpreter's shutdown does not fail on
+    it."""
     try:
         stream.flush()
     except OSError:

@@ -1,16 +1,18 @@
-"""Compiled functions, kept on disk for as long as all that they were compiled from is the same.
+"""Compiled functions on disk, recompiled after any change of the text that they were compiled from.
 
 Numba freezes into a kernel's machine code the functions that the kernel calls and the constants that it
-reads. The key of numba's cache is the text of the kernel's own file, so that machine code outlives a change
-of what was frozen. The key here is the text of that file and of every module of the same package that the
-file imports, directly or through other modules.
+reads. Numba's own cache depends only on the text of the kernel's file, so that stale machine code would
+survive a change elsewhere. The key here is the text of the kernel's file and of every module of the package
+that it imports, directly or through others.
 """
 
 import ast
 import hashlib
 import sys
 from collections.abc import Callable
+from contextlib import suppress
 from functools import cache
+from importlib.util import resolve_name
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
@@ -20,12 +22,15 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def kernel(**options: Any) -> Callable[[Function], Function]:
-    """Compile a function when it is first called, and keep the machine code on disk.
+    """Compile a function at its first call, and keep the machine code on disk where a folder allows.
+
+    Numba keeps machine code in ``NUMBA_CACHE_DIR``, next to the module, or in the user's own cache:
+    the first that can be written to. Without such a folder each process compiles for itself.
 
     Parameters
     ----------
     options
-        Of ``numba.njit``, such as ``error_model`` and ``fastmath``.
+        Options of ``numba.njit``, such as ``error_model`` and ``fastmath``.
 
     Returns
     -------
@@ -33,9 +38,11 @@ def kernel(**options: Any) -> Callable[[Function], Function]:
     """
 
     def compiled(function: Function) -> Function:
-        found: Any = numba.njit(cache=True, **options)(function)
+        found: Any = numba.njit(**options)(function)
         if found is not function:  # NUMBA_DISABLE_JIT leaves functions as they are.
-            found._cache._cache_file._source_stamp = key_of(function.__module__)
+            with suppress(RuntimeError):  # numba finds no folder to write to
+                found.enable_caching()
+                found._cache._cache_file._source_stamp = key_of(function.__module__)
         return cast("Function", found)
 
     return compiled
@@ -43,7 +50,7 @@ def kernel(**options: Any) -> Callable[[Function], Function]:
 
 @cache
 def key_of(module: str) -> str:
-    """Hash of the text of an imported module and of all modules of its package that it is made of.
+    """Return the hash of the texts of an imported module and of all modules of its package that it imports.
 
     Parameters
     ----------
@@ -68,13 +75,14 @@ def key_of(module: str) -> str:
 
 @cache
 def _imports_of(module: str) -> tuple[str, ...]:
-    """Modules of the same package that the top level of a module's text imports."""
+    """Return the modules of the package that the top level of a module's text imports."""
     named = []
     for node in ast.parse(_text_of(module)).body:
         if isinstance(node, ast.Import):
             named += [alias.name for alias in node.names]
-        elif isinstance(node, ast.ImportFrom) and node.module is not None:
-            named += [node.module, *(f"{node.module}.{alias.name}" for alias in node.names)]
+        elif isinstance(node, ast.ImportFrom):
+            origin = resolve_name("." * node.level + (node.module or ""), sys.modules[module].__package__)
+            named += [origin, *(f"{origin}.{alias.name}" for alias in node.names)]
     package = module.partition(".")[0]
     return tuple(name for name in named if name.partition(".")[0] == package and name in sys.modules)
 

@@ -1,14 +1,17 @@
-"""The aircraft file: YAML to :class:`advisor.aircraft.Aircraft`, every mistake listed at once."""
+"""Reader of the aircraft file: YAML to :class:`advisor.aircraft.Aircraft`, with every mistake listed at
+once."""
 
 from collections.abc import Iterator, Sequence
 from copy import deepcopy
 from dataclasses import fields, replace
+from difflib import get_close_matches
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError, with_config
 
+import advisor.aircraft as parts
 from advisor.aircraft import PARAMETERS, Aircraft, Elevator, FmuVariables, Markers, Pairs
 from advisor.aircraft_effects import mistakes_in
 from advisor.printable import printable
@@ -17,7 +20,7 @@ from advisor.yaml_file import read_yaml
 
 
 def load_aircraft(path: Path | None) -> Aircraft:
-    """Read an aircraft file; without one, the defaults.
+    """Read an aircraft file. Without a path, return the defaults.
 
     Raises
     ------
@@ -26,12 +29,21 @@ def load_aircraft(path: Path | None) -> Aircraft:
     """
     if path is None:
         return Aircraft()
-    content = read_yaml(path)
-    return parse_aircraft({} if content is None else content, str(path))
+    content = read_yaml(path, _EXAMPLE)
+    return parse_aircraft({} if content is None else content, str(path), _EXAMPLE)
 
 
-def parse_aircraft(content: Any, origin: str = "aircraft file") -> Aircraft:
+def parse_aircraft(content: Any, origin: str = "aircraft file", mend: str = "") -> Aircraft:
     """Turn the parsed YAML into an aircraft.
+
+    Parameters
+    ----------
+    content
+        Sections and keys.
+    origin
+        Name of the file, or of whatever the content comes from, for the sentence about mistakes.
+    mend
+        Sentence on what to do about them.
 
     Raises
     ------
@@ -43,25 +55,26 @@ def parse_aircraft(content: Any, origin: str = "aircraft file") -> Aircraft:
     mistakes: list[str] = []
     while True:
         try:
-            aircraft = reader.validate_python(content)
+            found = reader.validate_python(content)
         except ValidationError as error:
             mistakes += dict.fromkeys(_sentence(item) for item in error.errors())
-            # What remains is read again, so that one wrong key does not hide another's mistake.
+            # The rest is read again, so that one wrong key does not hide another's mistake.
             remainder = _without(content, [item["loc"] for item in error.errors()])
             if remainder == content:
                 break
             content = remainder
         else:
-            mistakes += _beyond_types(aircraft)
+            mistakes += _beyond_types(found)
             if not mistakes:
-                return replace(aircraft, name=printable(aircraft.name))
+                return replace(found, name=printable(found.name))
             break
     more = [f"and {len(mistakes) - _MOST_LISTED} more"] if len(mistakes) > _MOST_LISTED else []
-    raise ConfigurationError(f"{origin}: " + "; ".join([*mistakes[:_MOST_LISTED], *more]) + ".")
+    listed = "; ".join([*mistakes[:_MOST_LISTED], *more])
+    raise ConfigurationError(f"{origin}: {listed}. {mend}".rstrip())
 
 
 def _without_empty(content: Any) -> Any:
-    # "elevator:" with nothing under it is how people leave a section for later.
+    # "elevator:" with nothing under it is a section that the user leaves for later.
     return {k: v for k, v in content.items() if v is not None} if isinstance(content, dict) else content
 
 
@@ -74,7 +87,7 @@ def _without(content: Any, locations: list[tuple[int | str, ...]]) -> Any:
 
 
 def _take_out(section: dict[Any, Any], location: Sequence[int | str]) -> None:
-    """Take out the innermost key that a location names, and no other: its neighbours may be wrong, too."""
+    """Remove the innermost key that a location names. Its neighbours stay, for they may be wrong, too."""
     key, *inside = location
     within = section.get(key)
     if isinstance(within, dict) and inside and inside[0] in within:
@@ -84,31 +97,16 @@ def _take_out(section: dict[Any, Any], location: Sequence[int | str]) -> None:
 
 
 def _reader() -> TypeAdapter[Aircraft]:
-    # The core's dataclasses stay free of pydantic; the rule "unknown keys are refused"
-    # is attached here, where a file is read.
-    from advisor import aircraft
-
+    # The core's dataclasses stay free of pydantic. The rule that unknown keys are refused is attached here.
     strict = with_config(ConfigDict(extra="forbid", allow_inf_nan=False))
-    for part in (
-        aircraft.ElevatorOutput,
-        aircraft.Elevator,
-        aircraft.Alpha,
-        aircraft.Accelerometer,
-        aircraft.Reference,
-        aircraft.FmuTrim,
-        aircraft.FmuVariables,
-        aircraft.CampaignPlan,
-        aircraft.Limits,
-        aircraft.Markers,
-        aircraft.Aircraft,
-    ):
+    for part in _PARTS:
         strict(part)
     return TypeAdapter(Aircraft)
 
 
 def _sentence(item: Any) -> str:
     path = ""
-    # Union members add the member's type to the location; a user's file has no such key.
+    # Union members add the member's type to the location. A user's file has no such key.
     for step in item["loc"]:
         if isinstance(step, int):
             path += f"[{step}]"
@@ -118,29 +116,53 @@ def _sentence(item: Any) -> str:
         ):
             path += f".{step}" if path else str(step)
     if item["type"] in ("unexpected_keyword_argument", "extra_forbidden"):
-        return f"{path or 'file'}: unknown key"
+        return f"{path or 'file'}: unknown key{_meant(str(item['loc'][-1]))}"
     if item["type"] == "dataclass_type":
         return f"{path or 'file'}: must hold keys with values"
     return f"{path or 'file'}: {item['msg'][0].lower()}{item['msg'][1:]}"
 
 
+def _meant(key: str) -> str:
+    """Name the known key that an unknown one resembles, as a question; empty where none does."""
+    known = sorted({one.name for part in _PARTS for one in fields(part)})
+    near = get_close_matches(key, known, 1)
+    return f" (did you mean {near[0]}?)" if near else ""
+
+
+_PARTS = (
+    parts.ElevatorOutput,
+    parts.Elevator,
+    parts.Alpha,
+    parts.Accelerometer,
+    parts.Reference,
+    parts.FmuTrim,
+    parts.FmuVariables,
+    parts.CampaignPlan,
+    parts.Limits,
+    parts.Markers,
+    parts.Aircraft,
+)
+"""The sections of the file, innermost first."""
+_EXAMPLE = "To see every key with its meaning, type: advisor aircraft new --blank -o example.yaml."
+"""Next step after a file was refused."""
 _MOST_LISTED = 20
-"""Mistakes that are listed; whoever makes more has made one, many times."""
+"""Most mistakes that are listed. A user with more has repeated one mistake."""
 _MOST_POINTS = 500
-"""Points of a calibration: one for every second microsecond of a servo's travel."""
+"""Most points of a calibration: one for every second microsecond of a servo's travel."""
 _LONGEST_WINDOW = 50
-"""Manoeuvres in Eq. (12): more than any flight has."""
+"""Largest window of Eq. (12), in manoeuvres: more than any flight has."""
 _FARTHEST_CG_PERCENT = 200.0
-"""Centre of gravity from the leading edge: canards fly ahead of the wing, none flies two chords away."""
+"""Largest distance of the centre of gravity from the leading edge, % of the chord. Canards fly ahead of the
+wing, and no aircraft flies two chords away."""
 _OUTPUTS = 32
-"""Servo outputs that SERVO_OUTPUT_RAW and ACTUATOR_OUTPUT_STATUS can carry."""
+"""Number of servo outputs that SERVO_OUTPUT_RAW and ACTUATOR_OUTPUT_STATUS can carry."""
 _LONGEST_STEP_S = 0.1
-"""Communication step of an FMU: a short period of a second still has ten of these."""
+"""Longest communication step of an FMU, s. A short period of one second still has ten such steps."""
 _UNION_TAGS = frozenset({"int", "str", "float", "none"})
 
 
 def _beyond_types(aircraft: Aircraft) -> Iterator[str]:
-    """Yield mistakes that types do not show, as ``path: what is wrong``."""
+    """Yield mistakes that types do not show, as ``path: description``."""
     yield from _elevator_mistakes(aircraft.elevator)
     source = aircraft.alpha.source
     if source not in ("auto", "aoa_ssa", "derived", "none") and not (

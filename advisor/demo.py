@@ -1,26 +1,28 @@
 """The demonstration: the bundled aircraft flies as a process of its own, over a real MAVLink link.
 
-Together with the study, this is the only place where the advisor meets the simulator, and it
-meets it as it meets any aircraft: as packets on a socket.
+The advisor meets the simulator only here and in the study. Here the simulator is heard like any aircraft, by
+packets on a socket.
 """
 
 import subprocess
 import sys
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from types import TracebackType
 from typing import TYPE_CHECKING
 
+from advisor.bundled import SIMULATOR
 from advisor.problems import UnusableInputError
 
 if TYPE_CHECKING:
     from advisor.mavlink.link import Link
 
 LANDING_S = 2.0
-"""How long the link may be silent after the aircraft's process has ended, before the flight is over."""
+"""Silence of the link after the end of the aircraft's process, s, that ends the flight."""
 
 
 class Demonstration:
-    """A flight of the bundled aircraft and the link to it.
+    """A flight of the bundled aircraft, and the link to it.
 
     Parameters
     ----------
@@ -41,11 +43,11 @@ class Demonstration:
         self._process: subprocess.Popen[bytes] | None = None
 
     def __enter__(self) -> "Link":
-        # The decoders behind a link take longer to load than the first screen to paint.
+        # The decoders of a link take longer to load than the first screen takes to paint.
         from advisor.mavlink.link import Link
 
         self._link = Link("udpin:127.0.0.1:0", record_to=self._record_to).start()
-        command = [sys.executable, "-m", "sim", "fly", "--master", f"udpout:127.0.0.1:{self._link.port}"]
+        command = [sys.executable, "-m", SIMULATOR, "fly", "--master", f"udpout:127.0.0.1:{self._link.port}"]
         self._process = subprocess.Popen(
             [*command, *self._options],
             stdin=subprocess.DEVNULL,
@@ -63,13 +65,25 @@ class Demonstration:
             self._process.terminate()
             self._process.communicate()
 
+    @staticmethod
+    def fly_once() -> None:
+        """Fly one manoeuvre into a file that is thrown away: this compiles all that the aircraft needs."""
+        with TemporaryDirectory() as folder:
+            scenario = Path(folder) / "one.yaml"
+            scenario.write_text('aircraft: linear\nmaneuvers: ["3211"]\n')
+            out = Path(folder) / "one.tlog"
+            command = [sys.executable, "-m", SIMULATOR, "record", "--scenario", str(scenario)]
+            subprocess.run(
+                [*command, "--out", str(out)], stdin=subprocess.DEVNULL, capture_output=True, check=False
+            )
+
     def over(self) -> bool:
-        """Whether the aircraft has landed and its last packets have arrived.
+        """Return whether the aircraft has landed and its last packets have arrived.
 
         Raises
         ------
         UnusableInputError
-            When the aircraft could not fly.
+            The aircraft could not fly.
         """
         if self._link is None or self._process is None:
             return False
@@ -79,6 +93,6 @@ class Demonstration:
             raise UnusableInputError(
                 "no_flight",
                 f"The bundled aircraft ended with exit code {code}: {said.strip()}",
-                "Try: python -m sim fly --master udpout:127.0.0.1:14550",
+                f"Try: python -m {SIMULATOR} fly --master udpout:127.0.0.1:14550",
             )
         return code == 0 and self._link.statistics.silent_s > LANDING_S

@@ -1,4 +1,4 @@
-"""From logs to a diagnosis: every manoeuvre once, then ``advisor.gap``."""
+"""From logs to a diagnosis: every manoeuvre counts once, then ``advisor.gap`` diagnoses."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -10,12 +10,12 @@ from advisor.flight.events import ManeuverFlown, Notice
 from advisor.flight.identity import READER_NOTICE
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.one_aircraft import OneAircraft
-from advisor.flight.same import are_one, is_fuller
+from advisor.flight.repeated_maneuver import are_one, is_fuller
 from advisor.flight.stream import FlightStream
 from advisor.flight.surfaces import Surface
 from advisor.gap.diagnose import diagnose
 from advisor.gap.result import Diagnosis
-from advisor.gap.search.baseline import believed_derivatives
+from advisor.gap.search.baseline import prior_derivatives
 from advisor.gap.without_simulator import without_simulator
 from advisor.mavlink.logs import open_log
 from advisor.printable import printable
@@ -25,19 +25,20 @@ from advisor.simulators.protocol import Simulator
 from advisor.simulators.specification import simulator_of
 
 _PAUSE_S = 60.0
-"""Between the last manoeuvre of one log and the first of the next, which no clock has measured."""
+"""Time between the last manoeuvre of one log and the first of the next, s. No clock has measured this
+time."""
 
 
 @dataclass(frozen=True)
 class Flown:
-    """What logs hold for a diagnosis."""
+    """Manoeuvres of logs, ready for a diagnosis."""
 
     maneuvers: list[Maneuver]
     """Every manoeuvre once, numbered through and on one clock."""
     again: int
-    """How many came a second time."""
+    """Number of repeated manoeuvres that were left out."""
     notes: tuple[str, ...]
-    """What was assumed of the elevator, and which manoeuvres are left out by hand."""
+    """Assumptions about the elevator, and the manoeuvres excluded by hand, as sentences."""
 
 
 def maneuvers_of(
@@ -46,9 +47,9 @@ def maneuvers_of(
     target_system: int | None = None,
     by_hand: Sequence[ByHand] = (),
 ) -> Flown:
-    """Read the manoeuvres of all logs, with what was decided on each log by hand.
+    """Read the manoeuvres of all logs, with the decisions by hand on each log.
 
-    The clock begins as the first log's, and runs on where another log or the vehicle begins anew.
+    The clock begins as the first log's, and runs on where another log or the vehicle restarts.
 
     Raises
     ------
@@ -63,7 +64,7 @@ def maneuvers_of(
 def _recorded(
     logs: Sequence[Path], aircraft: Aircraft, target_system: int | None, by_hand: Sequence[ByHand]
 ) -> tuple[list[Maneuver], tuple[str, ...]]:
-    """What the logs hold, log by log, and what was assumed to read it."""
+    """Return the manoeuvres of the logs, log by log, and the assumptions made in reading them."""
     found: list[Maneuver] = []
     notes: list[str] = []
     wrong: list[Problem] = []
@@ -88,14 +89,15 @@ def _recorded(
             if because is None:
                 found.append(replace(maneuver, flight=flight))
             else:
-                notes.append(f"{name}: manoeuvre {maneuver.number} is left out by hand: {because}.")
+                notes.append(f"{name}: manoeuvre {maneuver.number} is excluded by hand: {because}.")
     if wrong:
         raise UnusableInputError.of(wrong)
     return found, tuple(dict.fromkeys(filter(None, notes)))
 
 
 def _each_once(recorded: Sequence[Maneuver]) -> list[Maneuver]:
-    """Without what comes again, as from a copy of a log: it would confirm itself. The fuller record stays."""
+    """Return the manoeuvres without repetitions, as from a copy of a log, which would confirm itself. The
+    fuller record stays."""
     found: list[Maneuver] = []
     for maneuver in recorded:
         known = next((m for m in found if m.power_on != maneuver.power_on and are_one(maneuver, m)), None)
@@ -107,9 +109,9 @@ def _each_once(recorded: Sequence[Maneuver]) -> list[Maneuver]:
 
 
 def _on_one_clock(maneuvers: Sequence[Maneuver]) -> list[Maneuver]:
-    """The same with times that go on where those of the vehicle go back.
+    """Return the manoeuvres with times that go on where the vehicle's clock goes back.
 
-    What drifts or steps from one manoeuvre to the next does so in the order of flying.
+    A quantity that drifts or steps between manoeuvres does so in the order of flying.
     """
     found: list[Maneuver] = []
     ahead = 0.0
@@ -141,7 +143,7 @@ def compare_logs(
     progress: Callable[[str, float], None] = lambda *_: None,
     by_hand: Sequence[ByHand] = (),
 ) -> Compared:
-    """Read logs and diagnose their gap to a simulator; None: to the aircraft file's model.
+    """Read logs and diagnose their gap to a simulator, or to the aircraft file's model where there is none.
 
     Raises
     ------
@@ -154,7 +156,7 @@ def compare_logs(
         compared = compare(flown.maneuvers, simulator, aircraft, holdout, progress)
     else:
         found = diagnose(flown.maneuvers, aircraft, holdout, progress)
-        told = found if believed_derivatives(aircraft) is not None else without_simulator(found)
+        told = found if prior_derivatives(aircraft) is not None else without_simulator(found)
         compared = Compared(told, aircraft)
     notes = list(flown.notes)
     if flown.again:
@@ -167,7 +169,7 @@ def compare_logs(
 
 
 def named_simulator(aircraft: Aircraft, target_system: int | None = None) -> Simulator | None:
-    """Open the simulator that the aircraft names; None where it names none.
+    """Open the simulator that the aircraft file names; None where the file names none.
 
     Raises
     ------
@@ -186,6 +188,6 @@ def named_simulator(aircraft: Aircraft, target_system: int | None = None) -> Sim
 
 
 def _height_of(maneuvers: Sequence[Maneuver]) -> float | None:
-    """Mean height of all manoeuvres that have one, m."""
+    """Return the mean height of all manoeuvres that have one, m."""
     heights = [m.channels["height"].y.mean() for m in maneuvers if "height" in m.channels]
     return float(sum(heights) / len(heights)) if heights else None

@@ -1,8 +1,8 @@
 """Ctrl-C and other signals: the program ends with one sentence, at once or in order.
 
-An exception that a signal raises is printed and lost where a library calls back from C, and leaves a
-traceback where no code of the advisor runs. So Ctrl-C ends the process itself. Only while something is
-recorded or a screen is shown, a signal raises :class:`Interrupted`, which closes files and screen.
+An exception that a signal raises is printed and lost where a library calls back from C. Outside the advisor's
+own code the exception leaves a traceback. So Ctrl-C ends the process itself. While a recording or a screen is
+open, a signal raises :class:`Interrupted` instead, which closes both.
 """
 
 import os
@@ -13,31 +13,32 @@ from contextlib import contextmanager, suppress
 from types import FrameType
 
 _PATIENCE_S = 5.0
-"""Time that an orderly end may take, s. A recording is closed within 0.5 s; an exception may be lost."""
+"""Longest time for an orderly end, s. A recording is closed within 0.5 s. The limit is needed because an
+exception may be lost."""
 STOPPED = "Stopped."
-"""What the user is told where there is nothing else to say."""
+"""Sentence for the user where nothing else is to be said."""
 _KINDS = tuple(
     getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
 )  # Windows has no SIGHUP
 
 
 class Interrupted(KeyboardInterrupt):
-    """A signal has ended the work in order; ``str`` of it is the sentence for the user."""
+    """A signal has ended the work in order; ``str`` gives the sentence for the user."""
 
     def __init__(self, sentence: str, code: int) -> None:
         super().__init__(sentence)
         self.code = code
-        """Exit code: 128 and the signal's number, as of a program that the signal ends."""
+        """Exit code: 128 plus the signal's number, which is the shell's convention."""
 
 
 def hung_up(error: BaseException | None) -> bool:
-    """Whether the terminal went away: its window was closed, or its network connection lost."""
+    """Return whether the terminal went away: its window was closed, or its network connection was lost."""
     hang_up = getattr(signal, "SIGHUP", None)
     return isinstance(error, Interrupted) and hang_up is not None and error.code == 128 + hang_up
 
 
 def end_at_once() -> None:
-    """Let Ctrl-C end the process from here on, whatever it is doing, with one sentence and exit code 130."""
+    """Let Ctrl-C end the process with one sentence and exit code 130, at any later moment."""
     if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
         signal.signal(signal.SIGINT, _end_process)
 
@@ -46,12 +47,12 @@ def end_at_once() -> None:
 def in_order(sentence: Callable[[], str] = lambda: STOPPED) -> Iterator[None]:
     """Let Ctrl-C, SIGTERM and SIGHUP raise :class:`Interrupted` within the block, once.
 
-    A signal that is ignored, as under ``nohup``, stays so.
+    An ignored signal, as under ``nohup``, stays ignored.
 
     Parameters
     ----------
     sentence
-        Gives what the user is told when a signal comes.
+        Gives the sentence for the user when a signal comes.
     """
 
     def interrupt(number: int, frame: FrameType | None) -> None:
@@ -79,7 +80,7 @@ def in_order(sentence: Callable[[], str] = lambda: STOPPED) -> Iterator[None]:
 
 
 def ignore() -> None:
-    """Leave every signal to another process, which ends this one in order."""
+    """Ignore every signal; another process receives the signal and ends this process in order."""
     for kind in _KINDS:
         signal.signal(kind, signal.SIG_IGN)
 
@@ -99,7 +100,7 @@ def _say_and_exit(sentence: str, code: int) -> None:
     from advisor.ascii_output import plain
 
     with suppress(OSError):
-        # On a terminal a bar of progress may stand in this line, and have hidden the cursor.
+        # On a terminal a progress bar may stand in this line and may have hidden the cursor.
         begin = "\n\033[?25h" if os.isatty(2) else ""
         os.write(2, f"{begin}{plain(sentence)}\n".encode())
     os._exit(code)

@@ -1,6 +1,6 @@
 """The advisor in a notebook: read a log, find manoeuvres, estimate, judge, diagnose.
 
-Every function does what a command does: ``advisor analyze`` and ``advisor gap`` give the same numbers.
+The functions give the numbers of the commands ``advisor analyze`` and ``advisor gap``.
 """
 
 from collections.abc import Sequence
@@ -29,22 +29,22 @@ from advisor.whole_flights import read_whole
 
 @dataclass(frozen=True, slots=True)
 class Flight:
-    """What one log holds of one vehicle; :func:`read` makes it."""
+    """One vehicle's flight, read from one log by :func:`read`."""
 
     log: Path
     aircraft: Aircraft
-    """As the crew describes it."""
+    """Aircraft as described by its crew."""
     vehicle: Vehicle | None
-    """None where no heartbeat was heard."""
+    """Vehicle of the log. None where no heartbeat was heard."""
     power_ons: tuple[PowerOn, ...] = field(repr=False)
-    """Every power-on of the vehicle: ``power_ons[0].channels["q"]`` has stamps ``t`` (s since boot) and
+    """Every power-on of the vehicle. ``power_ons[0].channels["q"]`` has stamps ``t`` (s since boot) and
     values ``y`` (SI), shape (n,) each."""
     maneuvers: tuple[Maneuver, ...] = field(repr=False)
     """Manoeuvres in the order of flying, numbered from 1."""
     problems: tuple[Problem, ...]
-    """Why the log cannot be used, with mends; empty when it can."""
+    """Reasons for which the log cannot be used, with their remedies; empty for a usable log."""
     notes: tuple[str, ...]
-    """What was assumed of the elevator, in sentences."""
+    """Assumptions about the elevator, as sentences."""
 
 
 def read(log: str | PathLike[str], aircraft: Aircraft | str | PathLike[str] | None = None) -> Flight:
@@ -54,7 +54,7 @@ def read(log: str | PathLike[str], aircraft: Aircraft | str | PathLike[str] | No
     ----------
     log : str or path
         A ``.tlog``, an ArduPilot ``.bin`` or a PX4 ``.ulg``, packed or not. Marks in ``LOG.maneuvers.yaml``
-        beside the log count.
+        next to the log count.
     aircraft : Aircraft, str or path, optional
         The aircraft, or its YAML file; by default nothing is known of it.
 
@@ -86,7 +86,7 @@ def read(log: str | PathLike[str], aircraft: Aircraft | str | PathLike[str] | No
 
 
 def find(flight: Flight) -> tuple[Maneuver, ...]:
-    """Manoeuvres of a flight, in the order of flying.
+    """Return the manoeuvres of a flight, in the order of flying.
 
     Returns
     -------
@@ -107,7 +107,7 @@ def find(flight: Flight) -> tuple[Maneuver, ...]:
 def estimate(
     maneuvers: Maneuver | Sequence[Maneuver], aircraft: Aircraft | None = None
 ) -> Estimate | NoEstimate:
-    """The eight parameters of the short period, from one manoeuvre or from several together.
+    """Return the eight parameters of the short period, from one manoeuvre or from several together.
 
     Parameters
     ----------
@@ -130,7 +130,8 @@ def estimate(
 
 
 def judge(flights: Flight | Sequence[Flight]) -> CampaignState:
-    """Verdicts on all manoeuvres, the joint estimate and the stop criterion, as ``advisor analyze`` has them.
+    """Return verdicts on all manoeuvres, the joint estimate and the stop criterion, as in ``advisor
+    analyze``.
 
     Parameters
     ----------
@@ -156,7 +157,7 @@ def judge(flights: Flight | Sequence[Flight]) -> CampaignState:
 
 
 def diagnose(flights: Flight | Sequence[Flight], holdout: int | None = None) -> Diagnosis:
-    """Why the aircraft does not fly like its simulator, as ``advisor gap`` says.
+    """Return the diagnosis of ``advisor gap``: why the aircraft does not fly like its simulator.
 
     Parameters
     ----------

@@ -1,6 +1,7 @@
-"""Several logs as one campaign: in the order of their true times, each message with the number of its flight.
+"""Several logs as one campaign, in the order of their true times. Each message carries the number of its
+flight.
 
-The columns of a series go to ``Campaign.feed`` as they are. A link that follows them is the next flight.
+``Campaign.feed`` takes the columns of a series unchanged. A link that follows the logs is the next flight.
 """
 
 from collections.abc import Iterator, Sequence
@@ -15,11 +16,12 @@ from advisor.marks_file import read_by_hand
 from advisor.problems import Problem, UnusableInputError
 
 SINCE_1970_S = 1e9
-"""Times of arrival from 2001 on are dates; what a log without a date counts from its boot is smaller."""
+"""Least time of arrival that is a date, s since 1970 (a day in 2001). A log without a date counts from its
+boot and stays below."""
 
 
 class LogSeries:
-    """The logs of one campaign, oldest first where all of them tell when they began, else as given.
+    """The logs of one campaign. Oldest first where every log has a date, else in the order given.
 
     Parameters
     ----------
@@ -29,26 +31,28 @@ class LogSeries:
 
     def __init__(self, logs: Sequence[Path]) -> None:
         self.logs = _oldest_first(logs) if len(logs) > 1 else list(logs)
-        """Flight by flight."""
+        """Paths of the logs in the order of flights."""
         self.reordered = self.logs != list(logs)
-        """Whether the order is not the one given."""
+        """Whether the order differs from the order given."""
         self.unreadable: dict[int, Problem] = {}
-        """Why a log could not be read to its end, by flight; known when its turn has come."""
+        """Flight number to the reason for which its log could not be read to the end. Filled while
+        reading."""
 
     @property
     def names(self) -> list[str]:
-        """What each log is called: its file's name, or its path where two have one name."""
+        """Name of each log: the file's name, or the path where two files have one name."""
         names = [log.name for log in self.logs]
         return [str(log) if names.count(log.name) > 1 else log.name for log in self.logs]
 
     @property
     def order_said(self) -> str:
-        """A sentence on the order, where it is not the one given; else nothing."""
+        """Sentence on the order where the order differs from the one given; else empty."""
         listed = ", ".join(self.names)
         return f"The logs are taken in the order of their times: {listed}." if self.reordered else ""
 
     def batches(self) -> Iterator[list[Columns]]:
-        """The messages of all logs; a log that cannot be read is left out, see ``unreadable``."""
+        """Yield the messages of all logs. A log that cannot be read is left out and listed in
+        ``unreadable``."""
         # The log reader takes longer to load than the first screen to paint.
         from advisor.mavlink.logs import open_log
 
@@ -60,7 +64,7 @@ class LogSeries:
                 self.unreadable[flight] = error.problem
 
     def load(self) -> list[Columns]:
-        """The messages of all logs that can be read, at once.
+        """Return the messages of all logs that can be read.
 
         Raises
         ------
@@ -73,12 +77,12 @@ class LogSeries:
         return columns
 
     def said(self) -> list[str]:
-        """Sentences on the order of the logs, and on those that could not be read."""
+        """Return sentences on the order of the logs, and on those that could not be read."""
         wrong = [problem.about(self.names[flight]) for flight, problem in self.unreadable.items()]
         return [*([self.order_said] if self.reordered else []), *wrong]
 
     def read_by_hand(self) -> ByHand:
-        """What was decided by hand on every log.
+        """Return the decisions by hand on every log.
 
         Raises
         ------
@@ -89,7 +93,7 @@ class LogSeries:
 
 
 def of_flight(columns: Sequence[Columns], flight: int) -> list[Columns]:
-    """The columns as those of one flight of a campaign."""
+    """Return the columns with the number of one flight of a campaign."""
     return [replace(c, flight=flight) for c in columns] if flight else list(columns)
 
 
@@ -101,7 +105,8 @@ def _oldest_first(logs: Sequence[Path]) -> list[Path]:
 
 
 def began_s(log: Path) -> float:
-    """When a log began, s since 1970: smaller for one without dates, infinite for one that cannot be read."""
+    """Return the time at which a log began, s since 1970. A log without dates gives a smaller number, and an
+    unreadable log gives infinity."""
     from advisor.mavlink.logs import open_log
 
     try:
@@ -109,5 +114,5 @@ def began_s(log: Path) -> float:
     except UnusableInputError:
         return np.inf
     times = [c.arrival_s for c in first if len(c)]
-    # Nearly the earliest, for single stamps may be wrong.
+    # A low quantile instead of the earliest, because single stamps may be wrong.
     return float(np.quantile(np.concatenate(times), 0.01)) if times else np.inf

@@ -1,6 +1,6 @@
-"""The file beside a log that keeps what was decided by hand: ``flight.maneuvers.yaml`` for ``flight.tlog``.
+"""The file of decisions by hand: ``flight.maneuvers.yaml`` next to ``flight.tlog``.
 
-Times are seconds since boot. Every command that reads the log reads the file, too.
+Times are seconds since boot. Every command that reads the log also reads this file.
 """
 
 import os
@@ -20,19 +20,19 @@ from advisor.yaml_file import read_yaml
 
 SUFFIX = ".maneuvers.yaml"
 _TEXT_KEYS = {"excluded": "because", "notes": "text", "remarks": "text"}
-"""Sections of sentences, named as the fields of ``ByHand``, and the key that holds the sentence."""
+"""Section of sentences, named as the field of ``ByHand``, to the key that holds each sentence."""
 _SECTIONS = ("maneuvers", *_TEXT_KEYS)
 _MEND = "Mend the file, move it away, or give --no-marks."
 _HEADING = "# Decided by hand; times in vehicle seconds since boot. `advisor` reads this file with its log.\n"
 
 
 def path_beside(log: Path) -> Path:
-    """Where the decisions on a log are kept."""
+    """Return the path of the file of decisions on a log."""
     return log.parent / f"{log.stem}{SUFFIX}"
 
 
 def read_by_hand(log: Path) -> ByHand:
-    """Read what was decided by hand on a log; nothing where there is no file.
+    """Read the decisions by hand on a log. Without a file there are none.
 
     Raises
     ------
@@ -64,7 +64,7 @@ def read_by_hand(log: Path) -> ByHand:
 
 
 def write_by_hand(log: Path, by_hand: ByHand) -> None:
-    """Keep the decisions beside a log: the file is old or new and whole, whenever power fails.
+    """Write the decisions next to a log. The file is whole, old or new, even where power fails.
 
     Raises
     ------
@@ -86,7 +86,8 @@ def write_by_hand(log: Path, by_hand: ByHand) -> None:
 
 
 def keep_by_hand(log: Path, by_hand: ByHand) -> str:
-    """Keep the decisions beside a log; a sentence says where, or why that is not possible."""
+    """Write the decisions next to a log; return a sentence with the file's path, or with the reason of a
+    failure."""
     path = printable(str(path_beside(log)))
     try:
         write_by_hand(log, by_hand)
@@ -98,7 +99,7 @@ def keep_by_hand(log: Path, by_hand: ByHand) -> str:
 
 
 def keep_on_all(logs: Sequence[Path], before: ByHand, by_hand: ByHand) -> str:
-    """Keep the decisions on a campaign, each beside its log, where they are not what they were before."""
+    """Write the decisions on a campaign, each next to its log, where they differ from ``before``."""
     flights = [n for n in range(len(logs)) if by_hand.on_flight(n) != before.on_flight(n)]
     return "; ".join(keep_by_hand(logs[n], by_hand.on_flight(n)) for n in flights)
 
@@ -120,7 +121,7 @@ def _mark(path: Path, where: str, entry: dict[str, Any]) -> Mark:
     if not 0.0 < end_s - start_s <= LONGEST_S:
         raise _mistake(path, f"{where}: end_s must lie after start_s, by at most {LONGEST_S:.0f} s")
     name = f"{path.name}: the mark from {start_s:g} to {end_s:g} s"
-    # A hand that writes the file need not know of power-ons: the first that holds the stretch is meant.
+    # Whoever edits the file need not know of power-ons: the first power-on that holds the stretch is meant.
     return Mark(start_s, end_s, _power_on(path, where, entry) if "boot" in entry else None, name=name)
 
 

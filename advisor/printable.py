@@ -1,11 +1,11 @@
-"""Text from outside that a terminal shows and never obeys."""
+"""Text from outside, made safe for a terminal."""
 
 
 def printable(text: str) -> str:
     """Return the text on one line, without control characters and escape sequences.
 
-    Letters of every script stay. A break of line and a tab become a space. Half of a surrogate pair, as in
-    the name of a file in another encoding, becomes U+FFFD. Every other character without a shape is left out.
+    Letters of every script stay. A line break and a tab become a space. Half of a surrogate pair, as in the
+    name of a file in another encoding, becomes U+FFFD. Every other character without a shape is dropped.
 
     Parameters
     ----------

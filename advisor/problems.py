@@ -1,4 +1,4 @@
-"""What goes wrong and how to mend it: the two errors a user may meet."""
+"""Errors that a user may meet: what is wrong, and the remedy."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,17 +8,18 @@ from advisor.printable import printable
 
 @dataclass(frozen=True)
 class Problem:
-    """One obstacle, as the JSON documents list it."""
+    """One obstacle, as listed in the JSON documents."""
 
     code: str
-    """Short and stable: ``no_vehicle``, ``no_elevator``, ``rate``, ``not_a_tlog``, ``empty``, ..."""
+    """Short and stable identifier: ``no_vehicle``, ``no_elevator``, ``rate``, ``not_a_tlog``, ``empty``,
+    ..."""
     text: str
-    """What is wrong, one sentence with the numbers."""
+    """One sentence that says what is wrong, with the numbers."""
     fix: str
-    """How to mend it, one sentence."""
+    """One sentence that says how to remedy the problem."""
 
     def __post_init__(self) -> None:
-        # Names of files and what vehicles say stand in these sentences.
+        # These sentences hold names of files and texts from vehicles.
         object.__setattr__(self, "text", printable(self.text))
         object.__setattr__(self, "fix", printable(self.fix))
 
@@ -26,7 +27,7 @@ class Problem:
         return f"{self.text} {self.fix}".strip()
 
     def about(self, name: str) -> str:
-        """The sentence with what it is about before it, where it does not say so itself."""
+        """Return the problem with ``name`` before its text, unless the text names ``name`` already."""
         name = printable(name)
         return str(self) if name in self.text else f"{name}: {self}"
 
@@ -37,12 +38,12 @@ class UnusableInputError(Exception):
     def __init__(self, code: str, text: str, fix: str = "", further: Sequence[Problem] = ()) -> None:
         self.problem = Problem(code, text, fix)
         self.problems = (self.problem, *further)
-        """All that is wrong with it."""
+        """Every problem of the input."""
         super().__init__("\n".join(map(str, self.problems)))
 
     @classmethod
     def of(cls, problems: Sequence[Problem]) -> "UnusableInputError":
-        """The error that lists all of these, at least one."""
+        """Return the error that lists at least one problem."""
         first, *further = problems
         return cls(first.code, first.text, first.fix, further)
 

@@ -1,4 +1,4 @@
-"""Where the ``advisor`` program begins: what holds for the whole process, before large imports."""
+"""Entry point of the ``advisor`` program: settings of the whole process, before large imports."""
 
 import signal
 import sys
@@ -8,8 +8,8 @@ import warnings
 def main() -> None:
     """Run the command line as a process of its own.
 
-    Ctrl-C ends it with one sentence from here on. Warnings are for those who develop: a user sees none,
-    unless ``python -W`` asks for them.
+    Ctrl-C ends the process with one sentence. Warnings are for developers: a user sees none without ``python
+    -W``.
     """
     try:
         from advisor.interrupt import end_at_once
@@ -25,5 +25,5 @@ def main() -> None:
     try:
         run()
     finally:
-        # All is said: the interpreter's own end would otherwise die of a signal without a word.
+        # All output is written. The interpreter's own shutdown would die of a signal without a word.
         signal.signal(signal.SIGINT, signal.SIG_IGN)

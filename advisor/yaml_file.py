@@ -1,4 +1,4 @@
-"""YAML as people write it for the advisor: plain text, flat, each key once; anything else is one sentence."""
+"""YAML for settings: plain text, flat, each key once. Any other form is refused with one sentence."""
 
 from collections.abc import Hashable
 from pathlib import Path
@@ -10,25 +10,26 @@ from advisor.printable import printable
 from advisor.problems import ConfigurationError
 
 _MOST_BYTES = 256 * 1024
-"""A settings file of a program holds a few kB; the limit keeps the time of reading below a second."""
+"""Largest file, bytes. A settings file holds a few kB, and the limit keeps the time of reading below a
+second."""
 _MOST_VALUES = 20_000
-"""Values, lists and sections together: a thousand decisions by hand on one log have 8,000. Ten times as many
-would take seconds to check."""
+"""Most values, lists and sections together. A thousand decisions by hand on one log have 8,000. Ten times as
+many would take seconds to check."""
 _DEEPEST = 32
-"""Sections within sections; the advisor's own files need six."""
+"""Deepest nesting of sections. The advisor's own files need six."""
 
 _Parser: type[Any] = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 
 def read_yaml(path: Path, mend: str = "See the example in the README.") -> Any:
-    """Content of a YAML file; None for an empty one.
+    """Return the content of a YAML file; None for an empty one.
 
     Parameters
     ----------
     path
         File to read.
     mend
-        Sentence that tells the user what to do about a file that is not taken.
+        Sentence with the remedy for a file that is refused.
 
     Raises
     ------
@@ -56,18 +57,18 @@ def read_yaml(path: Path, mend: str = "See the example in the README.") -> Any:
         where = f", line {mark.line + 1}" if (mark := getattr(error, "problem_mark", None)) else ""
         mistake = f"not a YAML file{where}"
     except ValueError as error:
-        # PyYAML builds dates: "2026-02-31" has the form of one and is none.
+        # PyYAML builds dates: "2026-02-31" has the form of a date and is none.
         why, _, _ = str(error).partition(";")  # what follows is for programmers
         mistake = f"holds a value that is none ({why})"
     raise ConfigurationError(f"{path}: {mistake}. {mend}")
 
 
 class _Refused(Exception):  # noqa: N818 (a reason, told by the caller)
-    """Why well-formed YAML is not taken."""
+    """Reason for which well-formed YAML is refused."""
 
 
 def _look_over(text: str) -> None:
-    """Refuse, before anything is built, the forms that a reader by recursion does not survive."""
+    """Refuse the forms that overflow a recursive reader, before anything is built."""
     depth = values = 0
     for event in yaml.parse(text, Loader=_Parser):
         values += isinstance(event, yaml.ScalarEvent | yaml.CollectionStartEvent)
@@ -85,7 +86,7 @@ def _look_over(text: str) -> None:
 
 
 class _Loader(_Parser):  # type: ignore[misc]
-    """Safe loader that takes each key of a section once."""
+    """Safe loader that refuses a key that a section repeats."""
 
     def construct_mapping(self, node: Any, deep: bool = False) -> dict[Any, Any]:
         """Build one section.
@@ -93,7 +94,7 @@ class _Loader(_Parser):  # type: ignore[misc]
         Raises
         ------
         _Refused
-            A key stands there twice.
+            The section repeats a key.
         """
         said: set[Hashable] = set()
         for key_node, _ in node.value:
@@ -106,7 +107,7 @@ class _Loader(_Parser):  # type: ignore[misc]
         return section
 
     def construct_text(self, node: Any) -> str:
-        """Build a text that can be shown: an escape in quotes may stand for any control character."""
+        """Build a text that can be shown. An escape in quotes may stand for any control character."""
         return "\n".join(map(printable, self.construct_scalar(node).split("\n")))
 
 

@@ -1,6 +1,6 @@
 """Is the estimator as accurate as theory allows, and are its error bars true?
 
-    python -m benchmarks.accuracy [--manoeuvres 2000] [--write docs/accuracy.md]
+    python -m benchmarks.accuracy [--manoeuvres 2000] [--write docs/data/accuracy.md]
 
 Simulated manoeuvres follow the model exactly (a general matrix exponential, not the advisor's
 own discretisation); the noise is white, or coloured by a first-order autoregression. They go the whole way a
@@ -190,7 +190,7 @@ def table(rows: list[Row]) -> str:
 def main() -> None:
     parser = argparse.ArgumentParser(description="Accuracy of the estimator against the Cramér-Rao bound.")
     parser.add_argument("--manoeuvres", type=int, default=2000)
-    parser.add_argument("--write", type=Path, help="rewrite the tables of this document")
+    parser.add_argument("--write", type=Path, help="write the tables to this file")
     arguments = parser.parse_args()
     begin = time.process_time()
     rows = []
@@ -208,10 +208,7 @@ def main() -> None:
     text += f" {time.process_time() - begin:.0f} s of CPU time."
     print(text)
     if arguments.write:
-        document = arguments.write.read_text(encoding="utf-8")
-        start, end = "<!-- accuracy: begin -->", "<!-- accuracy: end -->"
-        before, after = document.split(start)[0], document.split(end)[1]
-        arguments.write.write_text(f"{before}{start}\n{text}\n{end}{after}", encoding="utf-8")
+        arguments.write.write_text(f"{text}\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

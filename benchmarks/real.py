@@ -1,6 +1,6 @@
 """What the product says of records of real aircraft, against what is known of them.
 
-    python -m benchmarks.real FOLDER [--write docs/validation.md]
+    python -m benchmarks.real FOLDER [--write docs/data/real.json]
 
 ``real_records.yaml`` holds what was flown and what is published; the records themselves stay where they
 are. Each record runs through ``advisor analyze --json`` with the aircraft file of the same name, as a user
@@ -14,7 +14,7 @@ import platform
 import subprocess
 import sys
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from datetime import date
 from pathlib import Path
 from typing import Any
@@ -22,7 +22,6 @@ from typing import Any
 import yaml
 
 RECORDS = Path(__file__).with_name("real_records.yaml")
-START, END = "<!-- real: begin -->", "<!-- real: end -->"
 NEAR_S = 1.5
 """A found input is the one that was flown when it begins this close to it, s."""
 NORMAL_95 = 1.96
@@ -43,19 +42,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Print the table; 0 also where the records are not here, 1 where something does not hold."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path)
-    parser.add_argument("--write", type=Path, help="rewrite the table of this document")
+    parser.add_argument("--write", type=Path, help="keep the rows in this JSON file")
     given = parser.parse_args(arguments)
     if not given.folder.is_dir():
         print(f"No flight records at {given.folder}: nothing was measured. Say where: make real FLIGHTS=DIR")
         return 0
     records = yaml.safe_load(RECORDS.read_text(encoding="utf-8"))
     rows = [row for record in records for row in judged(record, given.folder)]
-    table = in_markdown(rows)
-    print(table)
+    measured = f"{date.today().isoformat()}, {platform.machine()}, Python {platform.python_version()}"
+    print(in_markdown(rows, measured))
     if given.write:
-        document = given.write.read_text(encoding="utf-8")
-        before, rest = document.split(START)
-        given.write.write_text(f"{before}{START}\n{table}\n{END}{rest.split(END)[1]}", encoding="utf-8")
+        write(given.write, rows, measured)
     return 0 if all(row.holds for row in rows) else 1
 
 
@@ -81,18 +78,28 @@ def analyzed(log: Path) -> dict[str, Any]:
     return found
 
 
-def in_markdown(rows: Sequence[Row]) -> str:
+def write(path: Path, rows: Sequence[Row], measured: str) -> None:
+    """Keep the rows, one a line, so that a change shows as one."""
+    lines = ",\n".join(f"  {json.dumps(asdict(row), ensure_ascii=False)}" for row in rows)
+    path.write_text(
+        f'{{\n "measured": {json.dumps(measured)},\n "records": [\n{lines}\n ]\n}}\n', encoding="utf-8"
+    )
+
+
+def read(path: Path) -> tuple[list[Row], str]:
+    """The rows of a file that ``write`` has made, and when and where they were measured."""
+    kept = json.loads(path.read_text(encoding="utf-8"))
+    return [Row(**row) for row in kept["records"]], kept["measured"]
+
+
+def in_markdown(rows: Sequence[Row], measured: str) -> str:
     """The table, with its date and machine."""
     lines = ["| record | flown | asked | got | holds |", "|---|---|---|---|---|"]
     lines += [
         f"| `{r.log}` | {r.what} | {r.asked} | {r.got} | {'yes' if r.holds else '**no**'} |" for r in rows
     ]
     held = sum(row.holds for row in rows)
-    lines.append(
-        f"\n{held} of {len(rows)} hold. Measured {date.today().isoformat()}, {platform.machine()}, "
-        f"Python {platform.python_version()}."
-    )
-    return "\n".join(lines)
+    return "\n".join([*lines, "", f"{held} of {len(rows)} hold. Measured {measured}."])
 
 
 Claim = tuple[str, str, bool]

@@ -1,1 +1,1 @@
-"""The bundled aircraft: flight dynamics, instruments and a MAVLink voice of its own."""
+"""The bundled aircraft: flight dynamics, instruments, and its own MAVLink messages."""

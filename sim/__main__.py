@@ -9,13 +9,13 @@ from typing import Any
 
 import click
 
-from sim.blind.seal import SealError
-from sim.effects.fitting import flight_of
-from sim.flight import Flight
-from sim.loading import ScenarioError
-from sim.modelled import modelled_flight
-from sim.scenario import Scenario, read_scenario
-from sim.trim import TrimError
+from .blind.seal import SealError
+from .effects.fitting import flight_of
+from .flight import Flight
+from .loading import ScenarioError
+from .modelled import modelled_flight
+from .scenario import Scenario, read_scenario
+from .trim import TrimError
 
 
 def _speed(text: str) -> float | None:
@@ -46,14 +46,20 @@ def _flown(options: dict[str, Any]) -> Flight:
 def _flight_options(command: Callable[..., None]) -> Callable[..., None]:
     for option in (
         click.option(
-            "--scenario", type=click.Path(path_type=Path), help="YAML file; default: the paper's campaign."
+            "--scenario",
+            type=click.Path(path_type=Path),
+            help="Scenario file (YAML). Default: the paper's campaign.",
         ),
-        click.option("--aircraft", help="uav, light, linear, an aircraft file; with JSBSim e.g. c172p."),
+        click.option("--aircraft", help="uav, light, linear, or an aircraft file. With JSBSim, e.g. c172p."),
         click.option("--engine", type=click.Choice(["bundled", "jsbsim"]), help="Flight dynamics engine."),
         click.option(
-            "--replay-inputs", type=click.Path(path_type=Path), help="Log whose elevator is flown again."
+            "--replay-inputs",
+            type=click.Path(path_type=Path),
+            help="Log whose elevator commands are flown again.",
         ),
-        click.option("--seed", type=click.IntRange(0), help="Same seed, same bytes."),
+        click.option(
+            "--seed", type=click.IntRange(0), help="Seed of the noise. Equal seeds give equal bytes."
+        ),
     ):
         command = option(command)
     return command
@@ -61,21 +67,21 @@ def _flight_options(command: Callable[..., None]) -> Callable[..., None]:
 
 @click.group()
 def main() -> None:
-    """The bundled aircraft: speaks MAVLink on a link, or writes a telemetry log."""
+    """Fly the bundled aircraft: over a MAVLink link, or into a telemetry log."""
 
 
 @main.command()
 @click.option(
     "--master", default="udpout:127.0.0.1:14550", show_default=True, help="Connection, as in pymavlink."
 )
-@click.option("--speed", default="1", show_default=True, help="Times real time, or max.")
+@click.option("--speed", default="1", show_default=True, help="Multiple of real time, or max.")
 @_flight_options
 def fly(master: str, speed: str, **options: Any) -> None:
     """Fly over a MAVLink link.
 
     Example: python -m sim fly --master udpout:127.0.0.1:14550 --speed 10
     """
-    from sim.fly import serve
+    from .fly import serve
 
     factor = _speed(speed)
     sent = serve(_flown(options), master, factor, tell=lambda text: click.echo(text, err=True))
@@ -83,14 +89,14 @@ def fly(master: str, speed: str, **options: Any) -> None:
 
 
 @main.command()
-@click.option("--out", type=click.Path(path_type=Path), required=True, help="Log to write.")
+@click.option("--out", type=click.Path(path_type=Path), required=True, help="File for the log.")
 @_flight_options
 def record(out: Path, **options: Any) -> None:
     """Write a flight as a .tlog.
 
     Example: python -m sim record --out flight.tlog --seed 7
     """
-    from sim.record import record as write
+    from .record import record as write
 
     flight = _flown(options)
     count = write(flight, out)
@@ -101,14 +107,14 @@ def record(out: Path, **options: Any) -> None:
 @click.argument("flight", type=click.Path(path_type=Path, exists=True))
 @click.argument("replays", type=click.Path(path_type=Path, exists=True), nargs=-1, required=True)
 def compare(flight: Path, replays: tuple[Path, ...]) -> None:
-    """Tell how far replays of a flight's inputs are from the flight.
+    """Print the differences between a flight and replays of its inputs.
 
     \b
     Example: python -m sim record --aircraft now.yaml      --replay-inputs flight.tlog --out now.tlog
              python -m sim record --aircraft improved.yaml --replay-inputs flight.tlog --out improved.tlog
              python -m sim compare flight.tlog now.tlog improved.tlog
     """
-    from sim.compare import distances
+    from .compare import distances
 
     for replay in replays:
         for apart in distances(flight, replay):
@@ -120,19 +126,22 @@ def compare(flight: Path, replays: tuple[Path, ...]) -> None:
 
 
 @main.command()
-@click.option("--cases", default=100, show_default=True, help="How many.")
+@click.option("--cases", default=100, show_default=True, help="Number of cases.")
 @click.option(
-    "--seed", required=True, type=click.IntRange(0), help="Draws everything; keep it from whoever answers."
+    "--seed",
+    required=True,
+    type=click.IntRange(0),
+    help="Seed of all draws. Keep it secret from whoever answers.",
 )
 @click.option("--out", type=click.Path(path_type=Path), required=True, help="Folder for the logs.")
 @click.option("--only", multiple=True, help="Groups to draw from: clean, hard, jsbsim, none, ...")
 def blind(cases: int, seed: int, out: Path, only: tuple[str, ...]) -> None:
-    """Write flights whose effect is withheld, and seal the key beside the folder.
+    """Write flights whose effect is withheld, and seal the key next to the folder.
 
     Example: python -m sim blind --cases 200 --seed 11 --out cases
     """
-    from sim.blind.draw import GROUPS
-    from sim.blind.generate import generate, key_beside
+    from .blind.draw import GROUPS
+    from .blind.generate import generate, key_beside
 
     unknown = [name for name in only if name not in GROUPS]
     if unknown:
@@ -154,7 +163,7 @@ def commit(folder: Path, answers: Path) -> None:
 
     ANSWERS holds one JSON object a line: {"case": NAME, "answer": document of advisor gap --json}.
     """
-    from sim.blind.seal import commit as commit_answers
+    from .blind.seal import commit as commit_answers
 
     click.echo(commit_answers(folder, answers))
 
@@ -162,13 +171,17 @@ def commit(folder: Path, answers: Path) -> None:
 @main.command()
 @click.argument("folder", type=click.Path(path_type=Path, exists=True))
 @click.argument("answers", type=click.Path(path_type=Path, exists=True))
-@click.option("--key", type=click.Path(path_type=Path, exists=True), help="Default: beside the folder.")
-@click.option("--details", is_flag=True, help="Also effect by effect, and every wrong answer.")
-@click.option("--json", "as_json", is_flag=True, help="The figures as one JSON document.")
+@click.option(
+    "--key",
+    type=click.Path(path_type=Path, exists=True),
+    help="File of the key. Default: next to the folder.",
+)
+@click.option("--details", is_flag=True, help="Print each effect and every wrong answer as well.")
+@click.option("--json", "as_json", is_flag=True, help="Print the figures as one JSON document.")
 def reveal(folder: Path, answers: Path, key: Path | None, details: bool, as_json: bool) -> None:
     """Open the key and score committed answers, with 95 % intervals."""
-    from sim.blind.generate import key_beside
-    from sim.blind.reveal import report, score_document
+    from .blind.generate import key_beside
+    from .blind.reveal import report, score_document
 
     opened = key or key_beside(folder)
     if as_json:
@@ -179,9 +192,12 @@ def reveal(folder: Path, answers: Path, key: Path | None, details: bool, as_json
 
 
 def run(arguments: Sequence[str] | None = None) -> None:
-    """Run the command; mistakes of the user's end with exit code 2 and a sentence each."""
+    """Run the command. A user's mistake ends with exit code 2 and one sentence."""
+    name = f"python -m {__package__}"  # a wheel installs this package under another name
+    for each in main.commands.values():
+        each.help = (each.help or "").replace("python -m sim", name)
     try:
-        main(arguments, prog_name="python -m sim")
+        main(arguments, prog_name=name)
     except ScenarioError as error:
         for problem in error.problems:
             click.echo(f"error: {problem}", err=True)

@@ -1,4 +1,4 @@
-"""Aircraft files as the simulator reads them: the linear aircraft that a file's ``model`` describes."""
+"""Aircraft files as read by the simulator: the linear aircraft of a file's ``model``."""
 
 import math
 from collections.abc import Mapping
@@ -8,15 +8,15 @@ from typing import Any
 
 import yaml
 
-from sim.effects.terms import problems_with
-from sim.linear import ShortPeriod
-from sim.loading import ScenarioError
-from sim.servo import Calibration
+from .effects.terms import problems_with
+from .linear import ShortPeriod
+from .loading import ScenarioError
+from .servo import Calibration
 
 
 @dataclass(frozen=True)
 class AircraftFile:
-    """What of an aircraft file a flight needs; the rest of the file is the advisor's."""
+    """The part of an aircraft file that a flight needs."""
 
     model: ShortPeriod
     calibration: Calibration | None = None

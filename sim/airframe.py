@@ -1,4 +1,4 @@
-"""What an aircraft is made of: mass, geometry and aerodynamic coefficients."""
+"""Description of an aircraft: mass, geometry and aerodynamic coefficients."""
 
 from dataclasses import astuple, dataclass, fields
 
@@ -6,31 +6,31 @@ import numpy as np
 from numpy.typing import NDArray
 
 GRAVITY_M_S2 = 9.80665
-"""Standard gravity."""
+"""Standard gravity, m/s²."""
 
 AIR_DENSITY_KG_M3 = 1.225
-"""Density of the standard atmosphere at sea level; heights flown here are low."""
+"""Density of the standard atmosphere at sea level, kg/m³. The heights flown here are low."""
 
 
 @dataclass(frozen=True)
 class Airframe:
     """A rigid aircraft in longitudinal flight with a bank angle.
 
-    Coefficients are non-dimensional, referred to wing area and mean chord, rates made dimensionless
-    by chord/(2V). Terms beyond the first order are measured from ``alpha_ref`` and
-    ``delta_e_ref``, the trimmed values, and are zero for the plain aircraft.
+    Coefficients are non-dimensional, referred to wing area and mean chord. Rates are made dimensionless by
+    chord/(2V). Terms beyond the first order count from ``alpha_ref`` and ``delta_e_ref``, the trimmed values,
+    and are zero for the plain aircraft.
     """
 
     mass: float
-    """kg"""
+    """Mass, kg."""
     iyy: float
-    """kg m²"""
+    """Pitching moment of inertia, kg m²."""
     wing_area: float
-    """m²"""
+    """Wing area, m²."""
     chord: float
-    """m"""
+    """Mean chord, m."""
     span: float
-    """m"""
+    """Wing span, m."""
     cl_0: float
     cl_alpha: float
     cl_q: float
@@ -43,40 +43,41 @@ class Airframe:
     cm_q: float
     cm_delta_e: float
     thrust_max: float
-    """N, at full throttle and standstill."""
+    """Thrust at full throttle and standstill, N."""
     thrust_zero_speed: float
-    """m/s, at which the propeller gives nothing any more."""
+    """Speed at which the propeller gives no thrust, m/s."""
     roll_rate_max: float
-    """rad/s at full aileron."""
+    """Roll rate at full aileron, rad/s."""
     roll_lag: float
-    """s, time constant of the roll mode."""
+    """Time constant of the roll mode, s."""
     alpha_ref: float = 0.0
     delta_e_ref: float = 0.0
     cl_alpha2: float = 0.0
     cl_alpha3: float = 0.0
     stall_alpha: float = 0.0
-    """rad, where half the flow has separated (Kirchhoff); 0: the flow always stays attached."""
+    """Angle of attack at which half the flow has separated (Kirchhoff), rad. 0: the flow always stays
+    attached."""
     stall_sharpness: float = 0.0
-    """1/rad"""
+    """Sharpness of the separation over the angle of attack, 1/rad."""
     unsteady_share: float = 0.0
     """Share of lift that builds up late (Wagner's function with one lag)."""
     unsteady_lag: float = 1.0
-    """s"""
+    """Lag of the late share of lift, s."""
     cm_alpha2: float = 0.0
     cm_alpha3: float = 0.0
     cm_alpha_dot: float = 0.0
     cm_delta_e2: float = 0.0
     cm_delta_e3: float = 0.0
     thrust_arm: float = 0.0
-    """m, of the thrust line below the centre of gravity: thrust raises the nose."""
+    """Distance of the thrust line below the centre of gravity, m. A positive distance raises the nose."""
     cg_aft: float = 0.0
-    """m, shift of the centre of gravity backwards from where the coefficients hold."""
+    """Backward shift of the centre of gravity from the reference of the coefficients, m."""
     ground_lift: float = 0.0
     """Relative gain of lift at the ground, decaying as e^(−h/span)."""
     ground_moment: float = 0.0
-    """Added Cm at the ground, decaying likewise."""
+    """Added Cm at the ground, decaying as e^(−h/span)."""
     speed_held: float = 0.0
-    """1: airspeed is held by an ideal engine, 0: it moves as forces have it."""
+    """1: an ideal engine holds the airspeed. 0: the airspeed follows from the forces."""
 
 
 AIRFRAME_RECORD = np.dtype([(field.name, np.float64) for field in fields(Airframe)])
@@ -126,9 +127,9 @@ LIGHT_AIRCRAFT = Airframe(
     roll_rate_max=1.2,
     roll_lag=0.25,
 )
-"""A four-seat aircraft of 1,200 kg, flown at 55 m/s: a short period about half as fast."""
+"""A four-seat aircraft of 1,200 kg, flown at 55 m/s, with a short period about half as fast."""
 
 
 def as_record(airframe: Airframe) -> NDArray[np.void]:
-    """Return the airframe as a structured array of shape (1,), the form compiled code reads."""
+    """Return the airframe as a structured array of shape (1,), for compiled code."""
     return np.array([astuple(airframe)], dtype=AIRFRAME_RECORD)

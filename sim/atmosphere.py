@@ -49,7 +49,8 @@ class DrydenTurbulence:
 
 
 def gust_1_minus_cos(distance_m: float, length_m: float, amplitude_m_s: float) -> float:
-    """Vertical speed (m/s, up) of a 1 − cos gust at a distance flown into it, MIL-F-8785C 3.7.1.3."""
+    """Return the vertical speed (m/s, up) of a 1 − cos gust at a distance into the gust, MIL-F-8785C
+    3.7.1.3."""
     if not 0.0 < distance_m < length_m:
         return 0.0
     return 0.5 * amplitude_m_s * (1.0 - math.cos(2.0 * math.pi * distance_m / length_m))

@@ -1,41 +1,41 @@
-"""Who moves the controls: attitude hold between manoeuvres, the test input during them."""
+"""Control of the aircraft: attitude hold between manoeuvres, the test input during them."""
 
 import math
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
-from sim.hand import by_hand
-from sim.linear import ShortPeriod
-from sim.maneuvers import Input, elevator_input
-from sim.motion import Controls, Motion
-from sim.scenario import Augmentation, Maneuver, Scenario
+from .hand import by_hand
+from .linear import ShortPeriod
+from .maneuvers import Input, elevator_input
+from .motion import Controls, Motion
+from .scenario import Augmentation, Maneuver, Scenario
 
 MANUAL, FBWA, CRUISE = 0, 5, 7
-"""ArduPlane's mode numbers, as HEARTBEAT.custom_mode gives them."""
+"""ArduPlane's mode numbers, as in HEARTBEAT.custom_mode."""
 
 
 class Demand(NamedTuple):
-    """What is asked of the aircraft for the next tick of the loop."""
+    """Demand on the aircraft for the next tick of the loop."""
 
     elevator: float
-    """rad, before it becomes a pulse width."""
+    """Elevator before its conversion to a pulse width, rad."""
     throttle: float
     aileron: float
     rudder: float
     mode: int
     turbulence: float
-    """Standard deviation of turbulence that the scenario wants now, m/s, beside the background's."""
+    """Standard deviation of the scenario's present turbulence, m/s, in addition to the background's."""
 
 
 BANDWIDTH_RAD_S = 0.8
-"""Of the attitude hold."""
+"""Bandwidth of the attitude hold, rad/s."""
 _PITCH_PER_STICK = 3.0
-"""Pitch angle that the stick asks for in FBWA, as a multiple of the deflection that it gives in MANUAL."""
+"""Pitch angle demanded by the stick in FBWA, as a multiple of the deflection in MANUAL."""
 
 
 @dataclass(frozen=True)
 class Planned:
-    """A manoeuvre with its place in time (seconds since the log began)."""
+    """A manoeuvre with its time in seconds since the log began."""
 
     maneuver: Maneuver
     input: Input
@@ -45,7 +45,7 @@ class Planned:
 
 
 def plan(scenario: Scenario, amplitude_deg: float, unit_s: float) -> tuple[Planned, ...]:
-    """Lay the scenario's manoeuvres out in time; amplitude and unit are the aircraft's usual ones."""
+    """Place the scenario's manoeuvres in time. Amplitude and unit are the aircraft's usual ones."""
     planned = []
     now = scenario.lead_in_s
     for number, maneuver in enumerate(scenario.maneuvers):
@@ -60,23 +60,23 @@ def plan(scenario: Scenario, amplitude_deg: float, unit_s: float) -> tuple[Plann
 
 
 class Pilot(Protocol):
-    """Whoever moves the controls."""
+    """Interface of a pilot or autopilot that moves the controls."""
 
     def demand(self, time_s: float, motion: Motion, period_s: float) -> Demand:
-        """Return what the controls shall be at ``time_s``, decided with ``motion`` as it is a tick before."""
+        """Return the controls at ``time_s``, decided from ``motion`` one tick earlier."""
         ...
 
     def current(self, time_s: float) -> Planned | None:
-        """The manoeuvre being flown at ``time_s``, from the change to MANUAL to that back."""
+        """Return the manoeuvre flown at ``time_s``, counted from the change to MANUAL to the change back."""
         ...
 
     def mode(self, time_s: float) -> int:
-        """Flight mode at ``time_s``."""
+        """Return the flight mode at ``time_s``."""
         ...
 
 
 class Autopilot:
-    """Attitude, height, speed and bank loops, and a pilot who flies the plan."""
+    """Attitude, height, speed and bank loops, with a pilot who flies the plan."""
 
     def __init__(
         self,
@@ -90,8 +90,8 @@ class Autopilot:
         self._planned = planned
         self._trim = trim
         self._start = start
-        # Gains relative to the aircraft's own stiffness, lift slope and control power hold any aircraft
-        # steady; small ones, so that servo lags and delays do not upset the loop.
+        # Gains scaled by the aircraft's own stiffness, lift slope and control power hold any aircraft steady.
+        # They are small, so that servo lags and delays do not upset the loop.
         power, squared = abs(model.M_delta_e), model.frequency() ** 2
         self._stiffness = min(0.4, BANDWIDTH_RAD_S / max(abs(model.Z_alpha), 1e-3)) * squared / power
         self._damping = 0.2 * model.frequency() / power
@@ -100,28 +100,28 @@ class Autopilot:
         self._integral = self._power = 0.0
 
     def current(self, time_s: float) -> Planned | None:
-        """The manoeuvre being flown at ``time_s``, from the change to MANUAL to that back."""
+        """Return the manoeuvre flown at ``time_s``, counted from the change to MANUAL to the change back."""
         for planned in self._planned:
             if planned.manual_from_s <= time_s < planned.end_s:
                 return planned
         return None
 
     def mode(self, time_s: float) -> int:
-        """Flight mode at ``time_s``."""
+        """Return the flight mode at ``time_s``."""
         planned = self.current(time_s)
         if planned is None:
             return CRUISE
         return FBWA if planned.maneuver.mode == "FBWA" else MANUAL
 
     def _next(self, time_s: float) -> Maneuver | None:
-        """The manoeuvre whose speed, height and bank are to be reached."""
+        """Return the manoeuvre whose speed, height and bank are to be reached."""
         for planned in self._planned:
             if time_s < planned.end_s:
                 return planned.maneuver
         return None
 
     def demand(self, time_s: float, motion: Motion, period_s: float) -> Demand:
-        """Return what the controls shall be at ``time_s``, decided with ``motion`` as it is a tick before."""
+        """Return the controls at ``time_s``, decided from ``motion`` one tick earlier."""
         planned = self.current(time_s)
         upcoming = self._next(time_s)
         lead = planned is not None or any(
@@ -135,7 +135,7 @@ class Autopilot:
         if maneuver.mode == "FBWA":
             asked = _PITCH_PER_STICK * planned.input.pull(since)
             return self._hold(motion, upcoming, aileron, period_s, asked)._replace(mode=FBWA)
-        # Aileron and rudder doublets last as long as one unit and begin with the elevator.
+        # Aileron and rudder doublets last one unit and begin with the elevator.
         swing = elevator_input("doublet", 1.0, planned.input.duration_s / 7.0).pull(since)
         throttle = self._settled_throttle + (maneuver.throttle_change if since >= -1e-9 else 0.0)
         return Demand(
@@ -151,7 +151,7 @@ class Autopilot:
         )
 
     def _augmented(self, motion: Motion) -> float:
-        """Elevator that the stability augmentation adds to the pilot's."""
+        """Return the elevator that the stability augmentation adds to the pilot's."""
         off = motion.alpha - self._start.alpha
         return self._augmentation.alpha * off + self._augmentation.pitch_rate * motion.q
 

@@ -1,4 +1,4 @@
-"""Lay a replayed flight over the flight it came from: how far apart are aircraft and simulator?"""
+"""Comparison of a flight with a replay of its inputs."""
 
 import math
 from collections import defaultdict
@@ -8,35 +8,35 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.airframe import GRAVITY_M_S2
-from sim.autopilot import MANUAL
-from sim.loading import ScenarioError
-from sim.tlog import read_tlog
+from .airframe import GRAVITY_M_S2
+from .autopilot import MANUAL
+from .loading import ScenarioError
+from .tlog import read_tlog
 
 FloatArray = NDArray[np.float64]
 Stream = tuple[FloatArray, FloatArray]
 """Stamps in s since boot, and values."""
 
 SETTLING_S = 1.5
-"""Left out after the change to MANUAL: the two flights enter it from different holds."""
+"""Time left out after the change to MANUAL, s, because the two flights come from different holds."""
 
 SHORTEST_S = 1.0
 
 
 @dataclass(frozen=True)
 class Distance:
-    """One channel's difference between flight and replay while manoeuvres were flown."""
+    """Difference of one channel between flight and replay during manoeuvres."""
 
     channel: str
     unit: str
     difference: float
-    """Root mean square of the difference; each manoeuvre's own offset is taken out."""
+    """Root mean square of the difference, without each manoeuvre's own offset."""
     signal: float
     """Root mean square of the flight's signal about each manoeuvre's mean."""
 
 
 def distances(flight: Path, replay: Path) -> list[Distance]:
-    """Compare channel by channel, at the flight's own stamps.
+    """Return the distance of each channel, at the flight's own stamps.
 
     Raises
     ------
@@ -66,7 +66,7 @@ def distances(flight: Path, replay: Path) -> list[Distance]:
 
 
 def _maneuvers(mode: Stream) -> list[tuple[float, float]]:
-    """Stretches of MANUAL, without their first moments."""
+    """Return stretches of MANUAL, without their first moments."""
     stamps, modes = mode
     manual = np.concatenate([[False], modes == MANUAL, [False]])
     edges = np.flatnonzero(np.diff(manual.astype(int)))
@@ -78,7 +78,7 @@ def _maneuvers(mode: Stream) -> list[tuple[float, float]]:
 
 
 def _streams(path: Path) -> dict[str, Stream]:
-    """Channels of a log on vehicle time; heartbeats take the latest attitude's stamp."""
+    """Return the channels of a log on vehicle time. Heartbeats take the latest attitude's stamp."""
     rows: dict[str, list[tuple[float, float]]] = defaultdict(list)
     now = 0.0
     try:

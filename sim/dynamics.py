@@ -1,14 +1,14 @@
 """Equations of motion of the bundled nonlinear aircraft and their integration.
 
-Longitudinal motion along the flight path with a bank angle flown in coordinated turns
-(Stevens & Lewis, *Aircraft Control and Simulation*, wind-axes force equations with β = 0):
+The motion is longitudinal along the flight path, with a bank angle in coordinated turns. The equations are
+the wind-axes force equations with β = 0 (Stevens & Lewis, *Aircraft Control and Simulation*):
 
     V̇ = (T cos α − D)/m − g sin γ
     α̇ = q − (L + T sin α)/(m V) + (g/V) cos γ cos μ
     q̇ = M / I_yy
 
-The state's V and α belong to the motion through the steadily moving air mass; a gust adds
-its vertical speed w (up) as w/V to the α that wing and vane see, and its head wind u to the speed.
+The state's V and α belong to the motion through the steadily moving air mass. A gust's vertical speed w (up)
+adds w/V to the α of wing and vane. Its head wind u adds to the speed.
 """
 
 import math
@@ -18,18 +18,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from advisor.compiled import kernel
-from sim.airframe import AIR_DENSITY_KG_M3, GRAVITY_M_S2
+
+from .airframe import AIR_DENSITY_KG_M3, GRAVITY_M_S2
 
 FloatArray = NDArray[np.float64]
 
 STATES = ("airspeed", "alpha", "q", "theta", "height", "phi", "p", "alpha_late")
-"""State vector: m/s, rad, rad/s, rad, m, rad, rad/s, rad (the share of α that lift follows late)."""
+"""State vector, in m/s, rad, rad/s, rad, m, rad, rad/s, rad (the last is the late share of α in lift)."""
 
 INPUTS = ("elevator", "throttle", "aileron", "gust_up", "gust_head", "extra_cl", "extra_cm")
-"""Inputs: rad, 0..1, −1..1, m/s, m/s, and lift and moment coefficients added from outside."""
+"""Inputs, in rad, 0..1, −1..1, m/s, m/s; then lift and moment coefficients added from outside."""
 
 DERIVATIVES = (*(f"{name}_dot" for name in STATES), "a_x", "a_z")
-"""What :func:`derivatives` fills: the states' rates, then specific force along body x and z, m/s²."""
+"""Entries of :func:`derivatives`' result: rates of the states, then specific force along body x and z,
+m/s²."""
 
 
 @kernel()
@@ -66,7 +68,7 @@ def derivatives(
     sin_t, cos_t = math.sin(theta), math.cos(theta)
     cos_phi = math.cos(phi)
     sin_gamma = sin_t * cos_a - cos_t * cos_phi * sin_a
-    # Lift and drag stand on the air the wing meets; turn them into the axes of the state.
+    # Lift and drag refer to the air that the wing meets; they are turned into the axes of the state.
     slip = air_alpha - alpha
     lift_path = lift * math.cos(slip) + drag * math.sin(slip)
     drag_path = drag * math.cos(slip) - lift * math.sin(slip)
@@ -94,7 +96,7 @@ def derivatives(
         + (cl * math.cos(air_alpha) + cd * math.sin(air_alpha)) * a.cg_aft / a.chord
         + u[6]
     )
-    # What holds the speed ideally pushes through the centre of gravity, the throttle's thrust does not.
+    # An ideal speed hold acts at the centre of gravity, the throttle's thrust does not.
     moment = force * a.chord * cm + pushing * a.thrust_arm
 
     dx[0] = speed_dot

@@ -1,4 +1,4 @@
-"""What is fitted to an aircraft beside its flight dynamics: servo, instruments, air, and their effects."""
+"""Fittings of an aircraft in addition to its flight dynamics: servo, instruments, air, and their effects."""
 
 import math
 from dataclasses import dataclass, field
@@ -6,14 +6,14 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from sim.atmosphere import DrydenTurbulence
-from sim.motion import Motion
-from sim.scenario import Scenario
-from sim.sensors import DerivedAlpha, SensorEffect
-from sim.servo import FirstOrderServo, Mechanism, SecondOrderServo, TransportDelay
+from .atmosphere import DrydenTurbulence
+from .motion import Motion
+from .scenario import Scenario
+from .sensors import DerivedAlpha, SensorEffect
+from .servo import FirstOrderServo, Mechanism, SecondOrderServo, TransportDelay
 
 SERVO_HZ, SERVO_DAMPING = 20.0, 0.8
-"""A servo that is only rate-limited is otherwise this fast."""
+"""Frequency, Hz, and damping of a servo that is only rate-limited."""
 
 
 class AirMass(Protocol):
@@ -28,12 +28,12 @@ class ForceEffect(Protocol):
     """Forces and moments from outside the equations of motion, stepped with the simulation."""
 
     def step(self, time_s: float, motion: Motion, dt: float) -> tuple[float, float]:
-        """Return added (CL, Cm); the linear aircraft takes them as (α̇, q̇)."""
+        """Return the added (CL, Cm). The linear aircraft takes them as (α̇, q̇)."""
         ...
 
 
 class PlantEffect(Protocol):
-    """Something about the aircraft itself that changes in flight, asked once a tick."""
+    """A change of the aircraft itself in flight, applied once a tick."""
 
     def apply(self, time_s: float, motion: Motion, engine: Any) -> None:
         """Change fields of ``engine.record``."""
@@ -42,10 +42,10 @@ class PlantEffect(Protocol):
 
 @dataclass
 class Fittings:
-    """Everything between the loop and the flight dynamics, in the order of the signal's way."""
+    """Everything between the loop and the flight dynamics, in the order of the signal."""
 
     mechanisms: list[Mechanism] = field(default_factory=list)
-    """Command to surface."""
+    """Stages between command and surface."""
     air: list[AirMass] = field(default_factory=list)
     forces: list[ForceEffect] = field(default_factory=list)
     plant: list[PlantEffect] = field(default_factory=list)
@@ -53,7 +53,7 @@ class Fittings:
     skews: dict[str, float] = field(default_factory=dict)
     """Channel name of :class:`sim.sensors.Reading` to the seconds by which its data are late."""
     accelerometer_arm_m: float = 0.0
-    """Of the accelerometer ahead of the centre of gravity."""
+    """Distance of the accelerometer ahead of the centre of gravity, m."""
 
 
 class Turbulent:

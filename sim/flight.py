@@ -8,31 +8,31 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim import hangar
-from sim.atmosphere import DrydenTurbulence
-from sim.autopilot import Autopilot, Demand, Pilot, Planned, plan
-from sim.fittings import Fittings, complete
-from sim.loading import DepartureError
-from sim.motion import Controls, Motion
-from sim.scenario import Maneuver, Noise, Scenario
-from sim.sensors import NOISY, ChannelNoise, Reading, ideal
-from sim.servo import Servo
+from . import hangar
+from .atmosphere import DrydenTurbulence
+from .autopilot import Autopilot, Demand, Pilot, Planned, plan
+from .fittings import Fittings, complete
+from .loading import DepartureError
+from .motion import Controls, Motion
+from .scenario import Maneuver, Noise, Scenario
+from .sensors import NOISY, ChannelNoise, Reading, ideal
+from .servo import Servo
 
 _DEPARTED_RAD_S = 50.0
-"""Pitch rate that no aircraft flies with: the motion grows without bound."""
+"""Pitch rate above which the motion counts as unbounded, rad/s. No aircraft flies so."""
 
 
 @dataclass(frozen=True)
 class Sample:
-    """One tick of the loop: what telemetry tells of."""
+    """One tick of the loop, with the data for telemetry."""
 
     time_s: float
-    """Since the log began."""
+    """Time since the log began, s."""
     reading: Reading
     motion: Motion
-    """The truth; telemetry never shows it."""
+    """True motion, which telemetry never shows."""
     pulse_us: int
-    """Elevator command."""
+    """Elevator command, us."""
     throttle: float
     aileron: float
     rudder: float
@@ -40,26 +40,26 @@ class Sample:
     north_m: float
     east_m: float
     flying: Planned | None
-    """The manoeuvre being flown."""
+    """Manoeuvre being flown."""
 
 
 class Flight:
-    """A scenario being flown.
+    """A scenario in flight.
 
     Parameters
     ----------
     scenario
-        What to fly.
+        Scenario to fly.
     fittings
-        Effects to fit; None: only what the scenario's own sections say.
+        Effects to fit. None: only those of the scenario's own sections.
     engine
-        The aircraft; None: the scenario's from the hangar.
+        Aircraft to fly. None: the scenario's aircraft from the hangar.
     pilot
-        Who flies; None: an autopilot with the scenario's plan.
+        Pilot of the aircraft. None: an autopilot with the scenario's plan.
     duration_s
-        How long; None: until the plan is flown.
+        Duration, s. None: to the end of the plan.
     fresh
-        Builds the plain aircraft again, for the flight that shows how large the signals are.
+        Builds the plain aircraft again, for a flight that gives the size of the signals.
 
     Notes
     -----
@@ -182,7 +182,7 @@ class Flight:
         return reading
 
     def _skew(self, sample: Sample, past: deque[tuple[float, Reading]]) -> None:
-        """Replace each skewed channel by what it was ``skew`` seconds before the sample."""
+        """Replace each skewed channel by its value ``skew`` seconds before the sample."""
         if not self._fittings.skews:
             return
         while len(past) > 1 and past[1][0] <= sample.time_s - self._deepest_s - 0.05:
@@ -199,10 +199,10 @@ class Flight:
 def noise_sigma(
     scenario: Scenario, fresh: Callable[[Scenario], hangar.Aircraft] = hangar.build
 ) -> dict[str, float]:
-    """Standard deviation of each channel's noise, SI units.
+    """Return the standard deviation of each channel's noise, SI units.
 
-    Percentages refer to the channel's deviation from trim while the scenario's first manoeuvre is
-    flown without noise, effects and turbulence: its largest value or its standard deviation.
+    Percentages refer to the channel's deviation from trim (its largest value or its standard deviation). The
+    deviation is taken from the scenario's first manoeuvre, flown without noise, effects and turbulence.
     """
     noise = scenario.noise
     sigma = {

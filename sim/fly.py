@@ -11,9 +11,9 @@ os.environ.setdefault("MAVLINK_DIALECT", "ardupilotmega")
 
 from pymavlink import mavutil
 
-from sim.flight import Flight
-from sim.mavlink import COMPONENT, SYSTEM
-from sim.telemetry import Telemetry
+from .flight import Flight
+from .mavlink import COMPONENT, SYSTEM
+from .telemetry import Telemetry
 
 
 def serve(
@@ -27,13 +27,13 @@ def serve(
     Parameters
     ----------
     flight
-        What to fly.
+        Flight to fly.
     connection
-        As pymavlink has it, e.g. ``udpout:127.0.0.1:14550``.
+        Connection string of pymavlink, e.g. ``udpout:127.0.0.1:14550``.
     speed
-        Times real time; None: as fast as it goes.
+        Multiple of real time. None: as fast as possible.
     tell
-        Called with a sentence as each manoeuvre begins.
+        Called with a sentence at the begin of each manoeuvre.
 
     Notes
     -----

@@ -1,4 +1,4 @@
-"""How a hand flies a test input: slewed edges, uneven steps, corrections, a stick that never rests."""
+"""Model of a hand-flown test input: slewed edges, uneven steps, corrections, a stick that never rests."""
 
 import math
 from collections.abc import Callable
@@ -6,30 +6,30 @@ from itertools import pairwise
 
 import numpy as np
 
-from sim.maneuvers import STEPS, Input, elevator_input, stepped
-from sim.scenario import Maneuver
+from .maneuvers import STEPS, Input, elevator_input, stepped
+from .scenario import Maneuver
 
 STICK_HZ = 0.3
-"""Bandwidth of the stick's own motion: a hand corrects a few times in ten seconds."""
+"""Bandwidth of the stick's own motion, Hz. A hand corrects a few times in ten seconds."""
 _TICK_S = 0.02
-"""Grid of that motion; straight lines between."""
+"""Grid of that motion, s, with straight lines between."""
 _CORRECTED_S = (-0.7, -0.3)
-"""A correction is flown between these, before the first step: the elevator is quiet for 0.3 s."""
+"""Begin and end of a correction before the first step, s. The elevator is then quiet for 0.3 s."""
 
 Steps = tuple[tuple[float, float], ...]
 
 
 def by_hand(maneuver: Maneuver, amplitude_rad: float, unit_s: float, seed: list[int]) -> Input:
-    """Return the input as the hand of a manoeuvre flies it.
+    """Return the input of a manoeuvre as a hand flies it.
 
     Parameters
     ----------
     maneuver
-        What is flown, and how well.
+        Manoeuvre, with the pilot's imperfections.
     amplitude_rad, unit_s
         Size of the input, and duration of one of its units.
     seed
-        Of everything that differs from one hand to the next.
+        Seed of all differences between hands.
     """
     if maneuver.input in STEPS:
         steps = _uneven(STEPS[maneuver.input], maneuver.uneven, [*seed, 11])
@@ -54,12 +54,12 @@ def _uneven(steps: Steps, share: float, seed: list[int]) -> Steps:
 
 
 def _slewed(stick: Input, slew_s: float, trim_after: float = 0.0) -> Input:
-    """Return the input with each step drawn out into a slope.
+    """Return the input with each step stretched into a slope.
 
     Parameters
     ----------
     stick
-        The input made of steps.
+        Input made of steps.
     slew_s
         Duration of each slope, s. The slope begins where the step was.
     trim_after
@@ -75,7 +75,7 @@ def _slewed(stick: Input, slew_s: float, trim_after: float = 0.0) -> Input:
     def pull(time_s: float) -> float:
         value = 0.0
         for corner, old, new in zip(corners, levels, levels[1:], strict=False):
-            # A hair of tolerance keeps a step on its tick whatever rounding made of the tick's time.
+            # A small tolerance keeps a step on its tick in spite of rounding.
             since = time_s - corner + 1e-9
             done = min(max(since / slew_s, 0.0), 1.0) if slew_s > 0.0 else float(since >= 0.0)
             value += (new - old) * done
@@ -85,7 +85,7 @@ def _slewed(stick: Input, slew_s: float, trim_after: float = 0.0) -> Input:
 
 
 def _corrected(stick: Input, size: float) -> Input:
-    """Return the input with a correction of ``size`` (rad) shortly before."""
+    """Return the input with a correction of ``size`` (rad) shortly before the first step."""
     begin, end = _CORRECTED_S
 
     def pull(time_s: float) -> float:
@@ -96,7 +96,7 @@ def _corrected(stick: Input, size: float) -> Input:
 
 
 def _restless(stick: Input, size: float, seed: list[int]) -> Input:
-    """Return the input on a stick that moves by ``size`` (rad, standard deviation) all the time."""
+    """Return the input with a random motion of the stick by ``size`` (rad, standard deviation)."""
     motion = _wandering(size, seed)
     return Input(stick.duration_s, lambda time_s: stick.pull(time_s) + motion(time_s), stick.corners_s)
 

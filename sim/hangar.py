@@ -1,21 +1,21 @@
-"""The aircraft that can be flown by name, each with the test inputs that suit it."""
+"""Aircraft by name, each with suitable test inputs."""
 
 from dataclasses import dataclass, replace
 
-from sim.airframe import LIGHT_AIRCRAFT, UAV, Airframe
-from sim.jsbsim_aircraft import JsbsimAircraft
-from sim.linear import RESEARCH_JET
-from sim.linear_aircraft import LinearAircraft
-from sim.loading import ScenarioError
-from sim.nonlinear_aircraft import NonlinearAircraft
-from sim.scenario import Scenario
+from .airframe import LIGHT_AIRCRAFT, UAV, Airframe
+from .jsbsim_aircraft import JsbsimAircraft
+from .linear import RESEARCH_JET
+from .linear_aircraft import LinearAircraft
+from .loading import ScenarioError
+from .nonlinear_aircraft import NonlinearAircraft
+from .scenario import Scenario
 
 Aircraft = LinearAircraft | NonlinearAircraft | JsbsimAircraft
 
 
 @dataclass(frozen=True)
 class Habits:
-    """How an aircraft is usually flown in a flight test."""
+    """Usual flight-test inputs of an aircraft."""
 
     airspeed_m_s: float
     amplitude_deg: float
@@ -30,14 +30,15 @@ AIRFRAMES: dict[str, tuple[Airframe, Habits]] = {
 
 JSBSIM_HABITS = {"c172p": Habits(53.0, 2.5, 0.4)}
 OTHER_HABITS = Habits(55.0, 2.0, 0.5)
-"""Of a JSBSim aircraft nobody has flown here yet."""
+"""Usual inputs of a JSBSim aircraft without an entry."""
 
 LINEAR_HABITS = Habits(100.0, 2.0, 0.8)
 NAMES = (*AIRFRAMES, "linear")
 
 
 def unit_for(frequency_rad_s: float) -> float:
-    """Time unit of a 3-2-1-1 whose spectrum is centred on a short period, in s, rounded to 0.1 s."""
+    """Return the time unit of a 3-2-1-1 whose spectrum is centred on a short period, in s, rounded to 0.1
+    s."""
     return max(0.1, round(2.4 / max(frequency_rad_s, 0.5), 1))
 
 
@@ -51,7 +52,7 @@ def habits(scenario: Scenario) -> Habits:
 
 
 def build(scenario: Scenario, **changes: float) -> Aircraft:
-    """Return the scenario's aircraft, trimmed; ``changes`` replace fields of a nonlinear airframe."""
+    """Return the scenario's aircraft, trimmed. ``changes`` replace fields of a nonlinear airframe."""
     airspeed = scenario.airspeed_m_s or habits(scenario).airspeed_m_s
     if scenario.engine == "jsbsim":
         return JsbsimAircraft(scenario.aircraft, airspeed, scenario.height_m, scenario.step_s)

@@ -1,4 +1,4 @@
-"""A real six-degree-of-freedom engine, JSBSim, flown through the same controls and instruments."""
+"""JSBSim, a six-degree-of-freedom engine, with the controls and instruments of the bundled aircraft."""
 
 import math
 import os
@@ -6,18 +6,18 @@ from typing import Any
 
 import numpy as np
 
-from sim.linear import ShortPeriod
-from sim.loading import ScenarioError
-from sim.maneuvers import elevator_input
-from sim.motion import Controls, Motion
-from sim.servo import Calibration
+from .linear import ShortPeriod
+from .loading import ScenarioError
+from .maneuvers import elevator_input
+from .motion import Controls, Motion
+from .servo import Calibration
 
 FOOT_M = 0.3048
 FULL_TRIM = 1
 """JSBSim's number for trimming all axes in straight flight."""
 
 LATITUDE_DEG = 45.0
-"""Where gravity is the standard's."""
+"""Latitude at which gravity is standard, deg."""
 
 PROBE_S, PROBE_UNIT_S, PROBE_RAD = 4.0, 0.4, math.radians(0.4)
 
@@ -76,9 +76,11 @@ class JsbsimAircraft:
 
     @property
     def truth(self) -> ShortPeriod:
-        """Short-period parameters: the engine's own α̇ and q̇ in a small 3-2-1-1, regressed on its states.
+        """Short-period parameters from a regression of the engine's own α̇ and q̇ in a small 3-2-1-1 on its
+        states.
 
-        Airspeed and attitude are regressors too, so that their small changes do not spoil the eight.
+        Airspeed and attitude are regressors as well, so that their small changes do not spoil the eight
+        parameters.
         """
         if self._truth is None:
             probe = JsbsimAircraft(self._name, self._airspeed, self._height, self._dt)
@@ -86,7 +88,7 @@ class JsbsimAircraft:
         return self._truth
 
     def regress(self) -> ShortPeriod:
-        """Fly the small manoeuvre and return what it tells; this aircraft is not at trim afterwards."""
+        """Fly the small manoeuvre and return its parameters. Afterwards this aircraft is not at trim."""
         stick = elevator_input("3211", PROBE_RAD, PROBE_UNIT_S)
         start = self.motion()
         rows = []
@@ -112,7 +114,7 @@ class JsbsimAircraft:
         return ShortPeriod(*(float(value) for value in values))
 
     def motion(self) -> Motion:
-        """Return the motion now; specific forces are those at the centre of gravity."""
+        """Return the present motion, with specific forces at the centre of gravity."""
         fdm = self._fdm
         # Without steady wind the body velocities over ground are those through the still air mass.
         u, w = FOOT_M * fdm["velocities/u-fps"], FOOT_M * fdm["velocities/w-fps"]
@@ -140,7 +142,7 @@ class JsbsimAircraft:
         )
 
     def step(self, controls: Controls, dt: float) -> Motion:
-        """Fly for ``dt`` seconds, which must be the step the aircraft was built with."""
+        """Fly for ``dt`` seconds, which must be the step given at construction."""
         fdm = self._fdm
         self._command(controls.elevator)
         fdm["fcs/throttle-cmd-norm"] = controls.throttle
@@ -155,7 +157,7 @@ class JsbsimAircraft:
 
 
 def _load(name: str, dt: float) -> Any:
-    # JSBSim greets on stdout unless told not to.
+    # JSBSim greets on stdout unless configured not to.
     os.environ["JSBSIM_DEBUG"] = "0"
     try:
         import jsbsim

@@ -1,12 +1,12 @@
-"""The short-period model: as a linearisation of the nonlinear aircraft, and as an aircraft of its own."""
+"""The short-period model, as a linearisation of the nonlinear aircraft and as an aircraft itself."""
 
 from dataclasses import asdict, dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.dynamics import DERIVATIVES, derivatives
-from sim.trim import Trim
+from .dynamics import DERIVATIVES, derivatives
+from .trim import Trim
 
 FloatArray = NDArray[np.float64]
 
@@ -15,7 +15,8 @@ FloatArray = NDArray[np.float64]
 class ShortPeriod:
     """The paper's eight parameters, Eqs. (1)–(2), in rad and s:
 
-    α̇ = Z_0 + Z_α α + (1 + Z_q) q + Z_δe δe,   q̇ = M_0 + M_α α + M_q q + M_δe δe
+    α̇ = Z_0 + Z_α α + (1 + Z_q) q + Z_δe δe
+    q̇ = M_0 + M_α α + M_q q + M_δe δe
     """
 
     Z_0: float
@@ -28,18 +29,18 @@ class ShortPeriod:
     M_delta_e: float
 
     def trim(self) -> tuple[float, float]:
-        """Angle of attack and elevator (rad) at which nothing moves."""
+        """Return the angle of attack and elevator (rad) of the equilibrium."""
         matrix = np.array([[self.Z_alpha, self.Z_delta_e], [self.M_alpha, self.M_delta_e]])
         alpha, elevator = np.linalg.solve(matrix, [-self.Z_0, -self.M_0])
         return float(alpha), float(elevator)
 
     def frequency(self) -> float:
-        """Undamped natural frequency in rad/s; 0 for an aircraft without one."""
+        """Return the undamped natural frequency in rad/s; 0 for an aircraft without one."""
         squared = self.Z_alpha * self.M_q - (1 + self.Z_q) * self.M_alpha
         return float(np.sqrt(max(squared, 0.0)))
 
     def as_dict(self) -> dict[str, float]:
-        """Name to value, in the paper's order."""
+        """Return name to value, in the paper's order."""
         return asdict(self)
 
 
@@ -48,10 +49,10 @@ RESEARCH_JET = ShortPeriod(-0.009, -0.483, 0.104, 0.676, 0.475, -4.93, -2.01, -7
 
 
 def linearise(record: NDArray[np.void], trim: Trim, width: float = 1e-5) -> ShortPeriod:
-    """Short-period parameters of the nonlinear aircraft about a trim, by central differences.
+    """Return the short-period parameters of the nonlinear aircraft about a trim, by central differences.
 
-    Speed, attitude and height stay at their trimmed values, as the model has it; Z_0 and M_0 are
-    what makes the linear model trim at the same angle of attack and elevator.
+    Speed, attitude and height stay at their trimmed values, as in the model. Z_0 and M_0 let the linear model
+    trim at the nonlinear aircraft's angle of attack and elevator.
     """
 
     def rates(index: int | None, by: float, elevator: float) -> FloatArray:

@@ -1,6 +1,6 @@
-"""The paper's linear model as an aircraft: eight parameters, optionally with effects beside them.
+"""The paper's linear model as an aircraft: eight parameters, optionally with further effects.
 
-Motion with V constant: γ = θ − α, and specific forces follow from kinematics alone,
+The motion has constant V. So γ = θ − α, and the specific forces follow from kinematics alone,
 
     a_z = V cos α (α̇ − q) + V̇ sin α − g cos θ,   a_x = −V sin α (α̇ − q) + V̇ cos α + g sin θ.
 """
@@ -13,10 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from advisor.compiled import kernel
-from sim.airframe import GRAVITY_M_S2
-from sim.linear import ShortPeriod
-from sim.motion import Controls, Motion
-from sim.servo import Calibration
+
+from .airframe import GRAVITY_M_S2
+from .linear import ShortPeriod
+from .motion import Controls, Motion
+from .servo import Calibration
 
 ROLL_RATE_MAX = 2.0
 ROLL_LAG_S = 0.15
@@ -24,7 +25,7 @@ ROLL_LAG_S = 0.15
 
 @dataclass(frozen=True)
 class LinearTerms:
-    """Terms beside the eight parameters; all zero for the paper's model. Rad, s and m."""
+    """Terms in addition to the eight parameters; all zero for the paper's model. Rad, s and m."""
 
     Z_alpha2: float = 0.0
     Z_alpha3: float = 0.0
@@ -34,35 +35,36 @@ class LinearTerms:
     M_delta3: float = 0.0
     M_alpha_dot: float = 0.0
     M_throttle: float = 0.0
-    """rad/s² per unit of throttle away from trim."""
+    """Pitch acceleration per unit of throttle away from trim, rad/s²."""
     throttle_lag: float = 0.0
-    """s, of the engine behind its throttle; 0: it follows at once."""
+    """Lag of the engine behind its throttle, s. 0: no lag."""
     M_thrust: float = 0.0
-    """rad/s²: the thrust's part of the trimmed moment, which does not grow with dynamic pressure."""
+    """Contribution of the thrust to the trimmed moment, rad/s², which does not grow with dynamic pressure."""
     washed_share: float = 0.0
-    """Of the elevator's power: what does not grow with dynamic pressure, the propeller blowing on it."""
+    """Share of the elevator's effectiveness in the propeller's slipstream, which does not grow with dynamic
+    pressure."""
     blown_share: float = 0.0
-    """Of the elevator's power: what grows with the excess of thrust over drag, per unit of weight."""
+    """Growth of the elevator's effectiveness with the excess of thrust over drag, per unit of weight."""
     unsteady_share: float = 0.0
     unsteady_lag: float = 1.0
     unsteady_moment: float = 0.0
-    """1: the moment builds up with the lift; 0: it knows the angle of attack at once."""
+    """1: the moment builds up with the lift. 0: the moment follows the angle of attack at once."""
     stall_alpha: float = 0.0
-    """rad, where half the flow has separated (Kirchhoff)."""
+    """Angle of attack at which half the flow has separated (Kirchhoff), rad."""
     stall_sharpness: float = 0.0
-    """1/rad; 0: the flow always stays attached."""
+    """Sharpness of the separation, 1/rad. 0: the flow always stays attached."""
     Z_h: float = 0.0
-    """1/s at the ground, decaying as e^(−h / ground_scale)."""
+    """Z_0 added at the ground, 1/s, decaying as e^(−h / ground_scale)."""
     lift_h: float = 0.0
-    """Relative gain of all lift at the ground, decaying likewise."""
+    """Relative gain of all lift at the ground, decaying as e^(−h / ground_scale)."""
     M_h: float = 0.0
     ground_scale: float = 1.0
     speed_scaled: float = 0.0
-    """1: derivatives move with airspeed and gravity turns with the flight path; 0: constant."""
+    """1: derivatives change with airspeed, and gravity turns with the flight path. 0: constant."""
     speed_power: float = 0.0
-    """Beyond dynamic pressure: lift and moments that hang on angles go with V to the power of 2 and this."""
+    """Power of V beyond that of dynamic pressure, for lift and moments due to angles."""
     moment_power: float = 0.0
-    """The same of the moments beyond the lift."""
+    """Power of V of the moments beyond that of the lift."""
     gravity: float = 0.0
     """1: gravity turns with the flight path, (g/V)(cos γ − 1) in α̇."""
 
@@ -73,7 +75,7 @@ MODEL_RECORD = np.dtype(
     + [
         ("alpha_ref", np.float64),
         ("delta_ref", np.float64),
-        # Angles from which those in the squares and cubes of lift, moment and elevator count.
+        # Angles about which the squares and cubes of lift, moment and elevator are taken.
         ("Z_about", np.float64),
         ("M_about", np.float64),
         ("delta_about", np.float64),
@@ -85,7 +87,8 @@ MODEL_RECORD = np.dtype(
 
 @kernel()
 def _bent(angle: float, trimmed: float, about: float, square: float, cube: float) -> float:
-    """Square and cube of an angle about another, less those at the trim, which are in Z_0 and M_0."""
+    """Return the square and cube of an angle about another, less their values at the trim, which Z_0 and M_0
+    contain."""
     off, usual = angle - about, trimmed - about
     return square * (off**2 - usual**2) + cube * (off**3 - usual**3)
 
@@ -94,7 +97,7 @@ def _bent(angle: float, trimmed: float, about: float, square: float, cube: float
 def rates(x: NDArray[np.float64], u: NDArray[np.float64], model: Any, dx: NDArray[np.float64]) -> None:
     """Fill ``dx`` from x = [α, q, θ, h, φ, p, α_late, P_late] and u = [δe, P, aileron, w, V, ΔZ, ΔM, V̇].
 
-    P is the throttle, and P_late what the engine makes of it.
+    P is the throttle, and P_late its value after the engine's lag.
     """
     m = model[0]
     alpha, q, theta, height, phi, p, late = x[0], x[1], x[2], x[3], x[4], x[5], x[6]
@@ -202,11 +205,11 @@ class LinearAircraft:
             ],
             dtype=MODEL_RECORD,
         )  # fmt: skip
-        """The model being flown; effects may change its fields in flight."""
+        """Model being flown. Effects may change its fields in flight."""
         self.calibration = Calibration()
         self.trim = Controls(elevator, throttle, 0.0)
         self.airspeed = airspeed_m_s
-        """m/s; constant unless an effect or a replayed record moves it."""
+        """Airspeed, m/s. Constant unless an effect or a replayed record changes it."""
         self.airspeed_dot = 0.0
         self._state = np.array([alpha, 0.0, alpha, height_m, 0.0, 0.0, alpha, throttle])
         self._inputs = np.array([elevator, throttle, 0.0, 0.0, airspeed_m_s, 0.0, 0.0, 0.0])
@@ -243,9 +246,9 @@ class LinearAircraft:
         )
 
     def step(self, controls: Controls, dt: float) -> Motion:
-        """Fly for ``dt`` seconds and return the motion then.
+        """Fly for ``dt`` seconds and return the resulting motion.
 
-        ``extra_cl`` and ``extra_cm`` are taken as they are: added α̇ in rad/s and q̇ in rad/s².
+        ``extra_cl`` and ``extra_cm`` are added α̇ in rad/s and q̇ in rad/s².
         """
         self._before, self._inputs = self._inputs, self._before
         elevator, throttle, aileron, gust_up, _, extra_z, extra_m = controls

@@ -9,7 +9,7 @@ T = TypeVar("T")
 
 
 class ScenarioError(ValueError):
-    """A file of the user's holds mistakes; ``problems`` lists all of them."""
+    """A user's file has mistakes; ``problems`` lists all of them."""
 
     def __init__(self, problems: Sequence[str]) -> None:
         super().__init__("; ".join(problems))
@@ -17,7 +17,7 @@ class ScenarioError(ValueError):
 
 
 class DepartureError(ScenarioError):
-    """The aircraft departs from all flight: its motion grows without bound."""
+    """The aircraft departs from flight: its motion grows without bound."""
 
 
 def load(kind: type[T], data: Mapping[str, Any]) -> T:

@@ -1,4 +1,4 @@
-"""Test inputs of the elevator: what a pilot, or a programmed input, does to the stick."""
+"""Test inputs of the elevator, flown by a pilot or by a program."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -14,14 +14,14 @@ STEPS: Mapping[str, tuple[tuple[float, float], ...]] = {
     "multistep": ((2.0, 0.7), (1.0, -1.0), (1.0, 0.5), (2.0, -0.6), (1.0, 1.0), (1.5, -0.4), (1.5, 0.2)),
     "long": ((16.0, 1.0),),
 }
-"""Inputs made of steps. Positive pulls: the first step of ``3211`` raises the nose."""
+"""Inputs made of steps. Positive pulls, so that the first step of ``3211`` raises the nose."""
 
 MULTISINE_UNITS = 14.0
 MULTISINE_HARMONICS = (1, 2, 3, 4, 5, 6, 7)
 NONE_UNITS = 7.0
 
 INPUTS = (*STEPS, "multisine", "none")
-"""Names a scenario may use; ``none`` leaves the elevator at trim."""
+"""Names of inputs for a scenario; ``none`` leaves the elevator at trim."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class Input:
 
 
 def elevator_input(name: str, amplitude_rad: float, unit_s: float) -> Input:
-    """Return the input called ``name`` (one of :data:`INPUTS`) with one unit of time lasting ``unit_s``."""
+    """Return the input called ``name`` (one of :data:`INPUTS`), with a unit of time of ``unit_s``."""
     if name == "none":
         return Input(NONE_UNITS * unit_s, lambda _: 0.0)
     if name == "multisine":
@@ -48,7 +48,7 @@ def stepped(steps: tuple[tuple[float, float], ...], amplitude_rad: float, unit_s
     """Return the input made of steps (duration in units, share of the amplitude)."""
 
     def pull(time_s: float) -> float:
-        # A hair of tolerance keeps a step on its tick whatever rounding made of the tick's time.
+        # A small tolerance keeps a step on its tick in spite of rounding.
         left = time_s + 1e-9
         for units, share in steps:
             if 0.0 <= left < units * unit_s:
@@ -61,7 +61,7 @@ def stepped(steps: tuple[tuple[float, float], ...], amplitude_rad: float, unit_s
 
 
 def _multisine(amplitude_rad: float, unit_s: float) -> Input:
-    """Harmonics with Schroeder's phases (Klein & Morelli 9.3): much power, small peaks."""
+    """Return harmonics with Schroeder's phases (Klein & Morelli 9.3): much power, small peaks."""
     duration = MULTISINE_UNITS * unit_s
     count = len(MULTISINE_HARMONICS)
     phases = [-math.pi * k * k / count for k in range(count)]
@@ -71,7 +71,7 @@ def _multisine(amplitude_rad: float, unit_s: float) -> Input:
             return 0.0
         base = 2.0 * math.pi * time_s / duration
         total = sum(math.sin(n * base + phase) for n, phase in zip(MULTISINE_HARMONICS, phases, strict=True))
-        # Eased in and out over half a unit, so that the surface does not jump.
+        # Faded in and out over half a unit, so that the surface does not jump.
         ease = min(1.0, time_s / (0.5 * unit_s), (duration - time_s) / (0.5 * unit_s))
         return amplitude_rad * ease * total / math.sqrt(count)
 

@@ -1,4 +1,4 @@
-"""The bundled aircraft's voice: MAVLink 2 as an ArduPlane speaks it."""
+"""MAVLink 2 messages of the bundled aircraft, in the manner of ArduPlane."""
 
 import math
 from collections.abc import Iterator
@@ -6,19 +6,19 @@ from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from sim.airframe import GRAVITY_M_S2
-from sim.autopilot import MANUAL
-from sim.flight import Sample
-from sim.parameters import STREAM_GROUPS, STREAM_OF_ID, parameter_table, parameter_type
-from sim.scenario import Clock
-from sim.servo import Calibration
+from .airframe import GRAVITY_M_S2
+from .autopilot import MANUAL
+from .flight import Sample
+from .parameters import STREAM_GROUPS, STREAM_OF_ID, parameter_table, parameter_type
+from .scenario import Clock
+from .servo import Calibration
 
 SYSTEM, COMPONENT = 1, 1
 HOME_LATITUDE, HOME_LONGITUDE, HOME_HEIGHT_M = 47.0, 11.0, 600.0
 METRES_PER_DEGREE = 111_319.5
 
 VERSION = (4, 5, 6)
-"""ArduPlane version whose habits these are."""
+"""ArduPlane version that is imitated."""
 
 ARMED_MANUAL = int(
     mavlink.MAV_MODE_FLAG_SAFETY_ARMED
@@ -30,7 +30,7 @@ ARMED_CRUISE = int(ARMED_MANUAL | mavlink.MAV_MODE_FLAG_STABILIZE_ENABLED)
 PARAMETERS_PER_TICK = 10
 
 SWITCH_ON_US, SWITCH_OFF_US = 1900, 1100
-"""Pulses of the pilot's switch, which is on from the change to MANUAL to that back."""
+"""Pulses of the pilot's switch, us. The switch is on in MANUAL."""
 
 Message = Any
 """A pymavlink message; the package carries no types."""
@@ -39,7 +39,7 @@ Message = Any
 class Voice:
     """Turns samples into due messages, and answers requests.
 
-    Rates asked for beyond the loop's are what the loop can do, as on the real autopilot. Servo outputs are
+    Requested rates beyond the loop's rate are limited to it, as on the real autopilot. Servo outputs are
     written ``output_late_s`` after the tick, and stamped so.
     """
 
@@ -77,13 +77,13 @@ class Voice:
             if now < due - 1e-6:
                 continue
             interval = self._interval[name]
-            # A stream that fell behind starts anew instead of catching up in a burst.
+            # A stream that fell behind restarts, instead of catching up in a burst.
             self._due[name] = due + interval if now < due + interval - 1e-6 else now + interval
             if interval != math.inf:
                 yield getattr(self, f"_{name.lower()}")(sample, boot_s)
 
     def hear(self, message: Message) -> list[Message]:
-        """Act on a message from outside and return the replies."""
+        """Act on a message from outside, and return the replies."""
         kind = message.get_type()
         if getattr(message, "target_system", SYSTEM) not in (0, SYSTEM):
             return []
@@ -200,7 +200,8 @@ class Voice:
         return mavlink.MAVLink_servo_output_raw_message(stamp, 0, *outputs, *([0] * 12))
 
     def _rc_channels(self, sample: Sample, boot_s: float) -> Message:
-        """The receiver's channels: sticks at rest, and on channel 9 a switch that is on in a manoeuvre."""
+        """Return the receiver's channels: sticks at rest, and on channel 9 a switch that is on in a
+        manoeuvre."""
         pulses = [1500] * 8 + [SWITCH_ON_US if sample.flying else SWITCH_OFF_US] + [0] * 9
         return mavlink.MAVLink_rc_channels_message(_milliseconds(boot_s), 9, *pulses, 255)
 

@@ -1,27 +1,28 @@
-"""Flights of the aircraft that an aircraft file describes, with test inputs or recorded ones."""
+"""Flights of the aircraft in an aircraft file, with test inputs or recorded ones."""
 
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
-from sim.aircraft_file import AircraftFile, read_aircraft
-from sim.autopilot import Autopilot, plan
-from sim.effects.kit import Kit
-from sim.effects.terms import fit_terms
-from sim.fittings import Fittings
-from sim.flight import Flight
-from sim.hangar import LINEAR_HABITS, unit_for
-from sim.linear_aircraft import LinearAircraft
-from sim.replay import RecordedAirspeed, RecordedPilot, Recording, read_recording
-from sim.scenario import Clock, Instruments, Scenario, Servo
+from .aircraft_file import AircraftFile, read_aircraft
+from .autopilot import Autopilot, plan
+from .effects.kit import Kit
+from .effects.terms import fit_terms
+from .fittings import Fittings
+from .flight import Flight
+from .hangar import LINEAR_HABITS, unit_for
+from .linear_aircraft import LinearAircraft
+from .replay import RecordedAirspeed, RecordedPilot, Recording, read_recording
+from .scenario import Clock, Instruments, Scenario, Servo
 
 
 def modelled_flight(scenario: Scenario, path: Path, replayed: Path | None = None) -> Flight:
-    """Build a flight of the aircraft in ``path``; ``replayed`` is a log whose elevator is flown again.
+    """Build a flight of the aircraft in ``path``. ``replayed`` is a log whose elevator commands are flown
+    again.
 
-    The replay keeps the log's clocks, so that both logs can be laid over each other, and its airspeed,
-    when it holds one. Noise in percent has no meaning then and is left out.
+    The replay keeps the log's clocks, so that both logs can be compared, and its airspeed where the log has
+    one. Noise in percent has no meaning then and is left out.
 
     Raises
     ------

@@ -1,36 +1,36 @@
-"""What every aircraft here answers with: its motion, whichever engine computed it."""
+"""Interface of every aircraft here: its motion, whichever engine computes it."""
 
 from typing import NamedTuple, Protocol
 
 
 class Motion(NamedTuple):
-    """The true motion at one instant, SI units, and the air the aircraft flies through."""
+    """True motion at one instant, SI units, and the air around the aircraft."""
 
     airspeed: float
-    """m/s, of the motion through the air mass, without gusts."""
+    """Speed through the air mass without gusts, m/s."""
     alpha: float
     q: float
     theta: float
     height: float
-    """m above ground"""
+    """Height above ground, m."""
     phi: float
     p: float
     climb: float
-    """m/s, up positive."""
+    """Climb rate, m/s, up positive."""
     airspeed_dot: float
     alpha_dot: float
     q_dot: float
     a_x: float
-    """m/s², specific force along body x, at the centre of gravity."""
+    """Specific force along body x at the centre of gravity, m/s²."""
     a_z: float
-    """m/s², specific force along body z (down), at the centre of gravity."""
+    """Specific force along body z (down) at the centre of gravity, m/s²."""
     elevator: float
-    """rad, the surface itself, trailing edge down positive."""
+    """Deflection of the surface itself, rad, trailing edge down positive."""
     throttle: float
     gust_up: float
-    """m/s, what gusts add: α of the air is α + gust_up / V."""
+    """Vertical gust, m/s: α of the air is α + gust_up / V."""
     gust_head: float
-    """m/s, added to the airspeed."""
+    """Head-on gust, m/s, added to the airspeed."""
 
     @property
     def air_alpha(self) -> float:
@@ -44,20 +44,20 @@ class Motion(NamedTuple):
 
 
 class Controls(NamedTuple):
-    """What moves the aircraft at one instant."""
+    """Positions of the controls at one instant."""
 
     elevator: float
-    """rad, the surface."""
+    """Deflection of the surface, rad."""
     throttle: float
-    """0..1"""
+    """Throttle, 0..1."""
     aileron: float
-    """−1..1"""
+    """Aileron, −1..1."""
     gust_up: float = 0.0
     gust_head: float = 0.0
     extra_cl: float = 0.0
     """Lift coefficient added by an effect from outside the equations of motion."""
     extra_cm: float = 0.0
-    """Pitching moment coefficient added likewise."""
+    """Pitching moment coefficient added by an effect from outside the equations of motion."""
 
 
 class Engine(Protocol):
@@ -69,9 +69,9 @@ class Engine(Protocol):
         ...
 
     def motion(self) -> Motion:
-        """Return the motion now."""
+        """Return the present motion."""
         ...
 
     def step(self, controls: Controls, dt: float) -> Motion:
-        """Fly for ``dt`` seconds, controls moving linearly to ``controls``; return the motion then."""
+        """Fly for ``dt`` seconds, while the controls move linearly to ``controls``; return the motion."""
         ...

@@ -3,12 +3,12 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.airframe import Airframe, as_record
-from sim.dynamics import DERIVATIVES, derivatives, step
-from sim.linear import ShortPeriod, linearise
-from sim.motion import Controls, Motion
-from sim.servo import Calibration
-from sim.trim import trim_level
+from .airframe import Airframe, as_record
+from .dynamics import DERIVATIVES, derivatives, step
+from .linear import ShortPeriod, linearise
+from .motion import Controls, Motion
+from .servo import Calibration
+from .trim import trim_level
 
 
 class NonlinearAircraft:
@@ -16,7 +16,7 @@ class NonlinearAircraft:
 
     def __init__(self, airframe: Airframe, airspeed_m_s: float, height_m: float) -> None:
         self.record: NDArray[np.void] = as_record(airframe)
-        """The airframe being flown; effects may change its fields in flight."""
+        """Airframe being flown. Effects may change its fields in flight."""
         level = trim_level(self.record, airspeed_m_s, height_m)
         self.record["alpha_ref"] = level.alpha
         self.record["delta_e_ref"] = level.elevator
@@ -39,7 +39,7 @@ class NonlinearAircraft:
         return linearise(self.record, self.level)
 
     def motion(self) -> Motion:
-        """Return the motion now."""
+        """Return the present motion."""
         speed, alpha, q, theta, height, phi, p, _ = self._state.tolist()
         rates = self._rates.tolist()
         elevator, throttle, _, gust_up, gust_head, _, _ = self._inputs.tolist()
@@ -64,7 +64,7 @@ class NonlinearAircraft:
         )
 
     def step(self, controls: Controls, dt: float) -> Motion:
-        """Fly for ``dt`` seconds and return the motion then."""
+        """Fly for ``dt`` seconds and return the resulting motion."""
         self._before, self._inputs = self._inputs, self._before
         self._inputs[:] = controls
         step(self._state, self._before, self._inputs, self.record, dt, self._rates)

@@ -1,10 +1,10 @@
-"""The parameters the bundled vehicle knows, with ArduPilot's names."""
+"""Parameters of the bundled vehicle, with ArduPilot's names."""
 
 from collections.abc import Mapping
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from sim.servo import Calibration
+from .servo import Calibration
 
 ELEVATOR_OUTPUT = 2
 
@@ -19,7 +19,7 @@ STREAM_GROUPS: Mapping[str, tuple[str, ...]] = {
     "EXTRA3": ("SYSTEM_TIME",),
     "PARAMS": (),
 }
-"""SRn_* parameter suffix to the messages ArduPlane sends at its rate (of those known here)."""
+"""Suffix of SRn_* to the messages that ArduPlane sends at its rate (of those known here)."""
 
 STREAM_OF_ID = {
     1: "RAW_SENS",
@@ -31,7 +31,7 @@ STREAM_OF_ID = {
     11: "EXTRA2",
     12: "EXTRA3",
 }
-"""MAV_DATA_STREAM numbers of REQUEST_DATA_STREAM."""
+"""Number of a MAV_DATA_STREAM in REQUEST_DATA_STREAM to its group."""
 
 FUNCTIONS = {1: 4, 2: 19, 3: 70, 4: 21}
 """Servo output to SERVOn_FUNCTION: aileron, elevator, throttle, rudder."""
@@ -48,7 +48,7 @@ def parameter_table(rates: Mapping[str, float], system: int, calibration: Calibr
         table[f"SERVO{output}_MIN"] = low
         table[f"SERVO{output}_TRIM"] = trim
         table[f"SERVO{output}_MAX"] = high
-        # ArduPilot's elevator pulls with more pulse width unless reversed; here more pushes.
+        # ArduPilot's elevator pulls with more pulse width unless reversed; here more pulse width pushes.
         table[f"SERVO{output}_REVERSED"] = 1 if output == ELEVATOR_OUTPUT else 0
     for group, names in STREAM_GROUPS.items():
         table[f"SR0_{group}"] = round(max((rates.get(name, 0.0) for name in names), default=0.0))
@@ -58,7 +58,7 @@ def parameter_table(rates: Mapping[str, float], system: int, calibration: Calibr
 
 
 def parameter_type(name: str) -> int:
-    """MAV_PARAM_TYPE that ArduPilot gives the parameter."""
+    """Return the MAV_PARAM_TYPE that ArduPilot gives the parameter."""
     if name.endswith("_REVERSED"):
         return int(mavlink.MAV_PARAM_TYPE_INT8)
     return int(mavlink.MAV_PARAM_TYPE_INT16)

@@ -5,17 +5,17 @@ from typing import BinaryIO
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from sim.flight import Flight
-from sim.mavlink import COMPONENT, SYSTEM
-from sim.telemetry import Telemetry
+from .flight import Flight
+from .mavlink import COMPONENT, SYSTEM
+from .telemetry import Telemetry
 
 
 def write_tlog(flight: Flight, out: BinaryIO) -> int:
     """Fly and write; return the number of messages.
 
-    Each record is eight bytes of microseconds since 1970, big-endian, then the frame. The stamps come
-    from simulated time, so that the same scenario and seed give the same bytes. Their low two bits number
-    the link and stay 0.
+    Each record is eight bytes of microseconds since 1970, big-endian, then the frame. The stamps come from
+    simulated time, so that equal scenarios and seeds give equal bytes. Their low two bits number the link and
+    stay 0.
     """
     packer = mavlink.MAVLink(None, srcSystem=SYSTEM, srcComponent=COMPONENT)
     telemetry = Telemetry(flight)

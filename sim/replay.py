@@ -1,4 +1,4 @@
-"""Fly again what was flown: recorded elevator commands through another aircraft."""
+"""Replay of recorded elevator commands through another aircraft."""
 
 from collections import defaultdict
 from dataclasses import dataclass
@@ -8,45 +8,46 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.autopilot import CRUISE, MANUAL, Autopilot, Demand, Planned
-from sim.loading import ScenarioError
-from sim.motion import Motion
-from sim.servo import Calibration
-from sim.tlog import read_tlog
+from .autopilot import CRUISE, MANUAL, Autopilot, Demand, Planned
+from .loading import ScenarioError
+from .motion import Motion
+from .servo import Calibration
+from .tlog import read_tlog
 
 ELEVATOR_FUNCTION = 19
 THROTTLE_FUNCTION = 70
 AUTOPILOT_INVALID = 8
-"""What ground stations say of themselves in HEARTBEAT."""
+"""Value of HEARTBEAT.autopilot that ground stations send."""
 
 FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class Recording:
-    """Elevator command, mode and airspeed of a log; times are vehicle time, seconds since boot."""
+    """Elevator command, mode and airspeed of a log. Times are vehicle time, seconds since boot."""
 
     time_s: FloatArray
     pulse_us: FloatArray
     throttle: FloatArray
-    """0..1 at ``time_s``."""
+    """Throttle at ``time_s``, 0..1."""
     mode_time_s: FloatArray
     mode: NDArray[np.int64]
     airspeed_time_s: FloatArray
     airspeed_m_s: FloatArray
     calibration: Calibration
-    """As the log's own SERVOn_* parameters say, ±25 deg at the ends."""
+    """Calibration by the log's own SERVOn_* parameters, with ±25 deg at the ends."""
     unix_s: float
     """Host time of the first command."""
 
     @property
     def begins_s(self) -> float:
-        """When it is first in MANUAL, from its first command on, in s."""
+        """Time of the first MANUAL at or after the first command, s."""
         flown = self.mode_time_s[self.mode == MANUAL]
         return max(float(flown[0] - self.time_s[0]), 0.0) if len(flown) else 0.0
 
     def manual(self, time_s: float) -> bool:
-        """Tell whether ``time_s`` (since boot) lies in MANUAL; a log without MANUAL counts as all manual."""
+        """Return whether ``time_s`` (since boot) lies in MANUAL. A log without MANUAL counts as all
+        manual."""
         if not (self.mode == MANUAL).any():
             return True
         index = int(np.searchsorted(self.mode_time_s, time_s, side="right")) - 1
@@ -54,7 +55,7 @@ class Recording:
 
 
 def read_recording(path: Path, output: int | None = None) -> Recording:
-    """Read a tlog; ``output`` is the elevator's servo output, None: the one with function 19.
+    """Read a tlog. ``output`` is the elevator's servo output. None: the output with function 19.
 
     Raises
     ------
@@ -119,10 +120,10 @@ def _calibration(parameters: dict[str, float], output: int) -> Calibration:
 
 
 class RecordedPilot:
-    """Plays a recording while it was in MANUAL; in between the autopilot holds the attitude.
+    """Plays a recording in its MANUAL stretches. Between them the autopilot holds the attitude.
 
-    Attitude and height are only integrated, so an aircraft that differs a little would drift away
-    if it were never held.
+    Attitude and height are only integrated, so that an aircraft with small differences would drift away
+    without the hold.
     """
 
     def __init__(self, recording: Recording, calibration: Calibration, autopilot: Autopilot) -> None:
@@ -143,16 +144,16 @@ class RecordedPilot:
         return Demand(elevator, throttle, held.aileron, 0.0, MANUAL, 0.0)
 
     def current(self, time_s: float) -> Planned | None:
-        """No plan is known."""
+        """Return None, because a recording has no plan."""
         return None
 
     def mode(self, time_s: float) -> int:
-        """Flight mode at ``time_s``."""
+        """Return the flight mode at ``time_s``."""
         return MANUAL if self._recording.manual(self._begin_s + time_s) else CRUISE
 
 
 class RecordedAirspeed:
-    """The linear aircraft's speed as it was recorded, smoothed over half a second."""
+    """Recorded speed for the linear aircraft, smoothed over half a second."""
 
     def __init__(self, recording: Recording) -> None:
         self._time = recording.airspeed_time_s

@@ -1,4 +1,4 @@
-"""Scenario files: what is flown, by which aircraft, in which air, measured how."""
+"""Scenario files: manoeuvres, aircraft, air and instruments of a flight."""
 
 import math
 from dataclasses import dataclass, field, fields
@@ -7,64 +7,65 @@ from typing import Any, Literal
 
 import yaml
 
-from sim.airframe import Airframe
-from sim.loading import ScenarioError, load
-from sim.maneuvers import INPUTS
+from .airframe import Airframe
+from .loading import ScenarioError, load
+from .maneuvers import INPUTS
 
 
 @dataclass(frozen=True)
 class Maneuver:
-    """One manoeuvre and what goes wrong with it."""
+    """One manoeuvre with its imperfections."""
 
     input: str = "3211"
     mode: Literal["MANUAL", "FBWA"] = "MANUAL"
-    """FBWA: the pilot's input asks for a pitch angle, and the attitude hold moves the elevator."""
+    """Mode of the manoeuvre. In FBWA the pilot's input demands a pitch angle, and the attitude hold moves the
+    elevator."""
     amplitude_deg: float | None = None
-    """Elevator amplitude; None: the scenario's ``amplitude_deg``."""
+    """Elevator amplitude, deg. None: the scenario's ``amplitude_deg``."""
     unit_s: float | None = None
-    """One unit of time; None: the scenario's ``unit_s``."""
+    """One unit of time, s. None: the scenario's ``unit_s``."""
     free_s: float | None = None
-    """Free response after the last step; None: the scenario's."""
+    """Free response after the last step, s. None: the scenario's."""
     gap_s: float | None = None
-    """Attitude hold before the next manoeuvre; None: the scenario's."""
+    """Attitude hold before the next manoeuvre, s. None: the scenario's."""
     settling_s: float | None = None
-    """Between the change of the mode and the first step; None: the scenario's."""
+    """Time between the change of the mode and the first step, s. None: the scenario's."""
     slew_s: float = 0.0
-    """Each step is drawn out into a slope of so long, as a hand does."""
+    """Duration of the slope that replaces each step, s, as flown by hand."""
     uneven: float = 0.0
-    """Durations and amplitudes of the steps differ by up to this share."""
+    """Largest relative difference of the steps' durations and amplitudes."""
     corrected: float = 0.0
-    """The pilot corrects with this share of the amplitude half a second before the first step."""
+    """Correction half a second before the first step, as a share of the amplitude."""
     stick: float = 0.0
-    """The stick moves meanwhile: standard deviation as a share of the amplitude."""
+    """Random motion of the stick: standard deviation as a share of the amplitude."""
     trim_after: float = 0.0
-    """The elevator comes to rest off its trim by this share of the amplitude."""
+    """Offset of the elevator's final rest from its trim, as a share of the amplitude."""
     bank_deg: float = 0.0
-    """Flown in a turn with this bank."""
+    """Bank angle of the turn in which the manoeuvre is flown, deg."""
     airspeed_m_s: float | None = None
-    """Flown at this airspeed instead of the scenario's."""
+    """Airspeed of the manoeuvre, m/s. None: the scenario's."""
     height_m: float | None = None
-    """Flown at this height above ground instead of the scenario's."""
+    """Height above ground of the manoeuvre, m. None: the scenario's."""
     throttle_change: float = 0.0
-    """Throttle moved by this share with the first step."""
+    """Change of the throttle with the first step, as a share."""
     trim_off_deg: float = 0.0
-    """Elevator pulled off its trim by so much while in MANUAL: the airspeed runs away."""
+    """Offset of the elevator from its trim in MANUAL, deg, pulled. The airspeed then runs away."""
     aileron: float = 0.0
-    """Amplitude (0..1) of an aileron doublet flown with it."""
+    """Amplitude (0..1) of a simultaneous aileron doublet."""
     rudder: float = 0.0
-    """Amplitude (0..1) of a rudder doublet flown with it."""
+    """Amplitude (0..1) of a simultaneous rudder doublet."""
     turbulence_m_s: float = 0.0
-    """Standard deviation of turbulence during this manoeuvre only."""
+    """Standard deviation of turbulence during this manoeuvre only, m/s."""
     outage_s: float = 0.0
-    """The link is silent for so long, from the first step on."""
+    """Silence of the link, s, beginning at the first step."""
 
 
 @dataclass(frozen=True)
 class Noise:
-    """White or coloured measurement noise; either percent of each output's signal, or SI values.
+    """White or coloured measurement noise, in percent of each output's signal or in SI values.
 
-    Percent means: standard deviation as a percentage of the output's ``of`` (largest deviation from
-    trim, or its standard deviation) during the first manoeuvre flown without noise.
+    A percentage gives the standard deviation relative to the output's ``of``: its largest deviation from
+    trim, or its standard deviation. Both are taken from the first manoeuvre, flown without noise.
     """
 
     percent: float = 0.0
@@ -76,16 +77,16 @@ class Noise:
     airspeed_m_s: float = 0.0
     climb_m_s: float = 0.0
     colour: float = 0.0
-    """Correlation from one sample to the next (AR(1)), 0 is white."""
+    """Correlation between neighbouring samples (AR(1)); 0 is white."""
 
 
 @dataclass(frozen=True)
 class AlphaSensor:
-    """Where AOA_SSA comes from."""
+    """Source of AOA_SSA."""
 
     source: Literal["vane", "derived"] = "vane"
-    """A vane sees gusts and is read at every message; derived is what ArduPilot estimates from inertial
-    speed: blind to gusts, late, off by ``bias_deg``, renewed at ``renewed_hz``."""
+    """A vane sees gusts and is read at every message. ``derived`` is ArduPilot's estimate from inertial
+    speed. It is blind to gusts, late, off by ``bias_deg``, and renewed at ``renewed_hz``."""
     lag_s: float = 0.03
     bias_deg: float = 0.3
     renewed_hz: float = 20.0
@@ -93,7 +94,7 @@ class AlphaSensor:
 
 @dataclass(frozen=True)
 class Servo:
-    """The elevator servo; all zero is an ideal one."""
+    """Elevator servo; all zero is an ideal one."""
 
     lag_s: float = 0.0
     delay_s: float = 0.0
@@ -112,40 +113,40 @@ class Air:
 
 @dataclass(frozen=True)
 class Clock:
-    """Where the clocks stand when the log begins, and how unsteady stamps are."""
+    """Clocks at the beginning of the log, and errors of the stamps."""
 
     boot_s: float = 20.0
     unix_s: float = 1_790_000_000.0
     jitter_s: float = 0.0
-    """Stamps are off by up to so much, uniformly."""
+    """Largest error of a stamp, s, uniformly distributed."""
 
 
 @dataclass(frozen=True)
 class Link:
-    """What the radio does to the telemetry."""
+    """Effects of the radio link on the telemetry."""
 
     drop: float = 0.0
     """Share of messages lost."""
     jitter_s: float = 0.0
-    """Arrival is late by up to so much, in bursts as radios do."""
+    """Largest delay of arrival, s, in bursts as with radios."""
 
 
 @dataclass(frozen=True)
 class Augmentation:
-    """Feedback to the elevator while the pilot flies in MANUAL: an unstable aircraft is flown with it."""
+    """Feedback to the elevator while the pilot flies in MANUAL, for an unstable aircraft."""
 
     alpha: float = 0.0
-    """Elevator, rad, for each rad of angle of attack off trim."""
+    """Elevator per angle of attack off trim, rad/rad."""
     pitch_rate: float = 0.0
-    """Elevator, rad, for each rad/s of pitch rate."""
+    """Elevator per pitch rate, rad per rad/s."""
 
 
 @dataclass(frozen=True)
 class Instruments:
-    """Where and how the accelerometer sits."""
+    """Mounting of the accelerometer."""
 
     accelerometer_arm_m: float = 0.0
-    """Ahead of the centre of gravity."""
+    """Distance of the accelerometer ahead of the centre of gravity, m."""
 
 
 def _paper_campaign() -> tuple[Maneuver, ...]:
@@ -175,29 +176,29 @@ class Scenario:
     engine: Literal["bundled", "jsbsim"] = "bundled"
     seed: int = 1
     step_s: float = 0.002
-    """Integration step."""
+    """Integration step, s."""
     loop_hz: float = 50.0
-    """Rate of the autopilot's loop: commands move and telemetry leaves at it."""
+    """Rate of the autopilot's loop, at which commands move and telemetry is sent, Hz."""
     airspeed_m_s: float | None = None
-    """None: the aircraft's usual airspeed."""
+    """Airspeed, m/s. None: the aircraft's usual airspeed."""
     height_m: float = 150.0
     lead_in_s: float = 8.0
-    """Attitude hold before the first manoeuvre."""
+    """Attitude hold before the first manoeuvre, s."""
     amplitude_deg: float | None = None
-    """Elevator amplitude; None: what suits the aircraft."""
+    """Elevator amplitude, deg. None: the aircraft's usual amplitude."""
     unit_s: float | None = None
-    """One unit of the inputs' time; None: what suits the aircraft's short period."""
+    """One unit of the inputs' time, s. None: a unit that suits the aircraft's short period."""
     settling_s: float = 2.0
-    """The mode changes to that of the manoeuvre so long before the first step."""
+    """Time between the change of the mode and the first step, s."""
     free_s: float = 4.0
     gap_s: float = 8.0
     closing_s: float = 5.0
-    """Attitude hold after the last manoeuvre."""
+    """Attitude hold after the last manoeuvre, s."""
     maneuvers: tuple[Maneuver, ...] = field(default_factory=_paper_campaign)
     input: Literal["linear", "held"] = "linear"
-    """How the command moves between two ticks of the loop: in a straight line, or held and then jumping."""
+    """Motion of the command between two ticks of the loop: in a straight line, or held and then jumping."""
     speed: Literal["free", "held"] = "free"
-    """Airspeed moves as forces have it, or an ideal engine holds it."""
+    """``free``: the airspeed follows from the forces. ``held``: an ideal engine holds the airspeed."""
     servo: Servo = field(default_factory=Servo)
     augmentation: Augmentation = field(default_factory=Augmentation)
     noise: Noise = field(default_factory=lambda: Noise(percent=1.0))
@@ -207,9 +208,9 @@ class Scenario:
     clock: Clock = field(default_factory=Clock)
     link: Link = field(default_factory=Link)
     said: tuple[str, ...] = ()
-    """Two texts that the vehicle says (STATUSTEXT) where it goes to MANUAL for a manoeuvre, and back."""
+    """Two texts that the vehicle sends (STATUSTEXT) where it goes to MANUAL for a manoeuvre, and back."""
     rates: dict[str, float] = field(default_factory=_rates)
-    """Message name to Hz."""
+    """Message name to its rate, Hz."""
     airframe: dict[str, float] = field(default_factory=dict)
     """Fields of the nonlinear airframe (``sim.airframe.Airframe``) that differ from the named aircraft's."""
     effects: dict[str, dict[str, float]] = field(default_factory=dict)
@@ -222,7 +223,7 @@ def read_scenario(path: Path) -> Scenario:
     Raises
     ------
     ScenarioError
-        Listing every mistake with its path.
+        The file has mistakes. The message lists each with its path.
     """
     try:
         data = yaml.safe_load(path.read_text(encoding="utf-8"))
@@ -232,14 +233,14 @@ def read_scenario(path: Path) -> Scenario:
 
 
 def scenario_from(data: dict[str, Any]) -> Scenario:
-    """Build a scenario from a mapping; a manoeuvre may be just its input's name.
+    """Build a scenario from a mapping. A manoeuvre may be just its input's name.
 
-    ``rates`` given are changes to the usual ones.
+    Given ``rates`` change the usual ones.
 
     Raises
     ------
     ScenarioError
-        Listing every mistake with its path.
+        The file has mistakes. The message lists each with its path.
     """
     if not isinstance(data, dict):
         raise ScenarioError(["a scenario is a mapping of keys to values"])

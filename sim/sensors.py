@@ -1,4 +1,4 @@
-"""Instruments: what of the motion is measured, with which noise."""
+"""Instruments: the measured part of the motion, with noise."""
 
 import math
 from dataclasses import dataclass
@@ -6,15 +6,15 @@ from typing import Protocol
 
 import numpy as np
 
-from sim.airframe import GRAVITY_M_S2
-from sim.motion import Motion
-from sim.scenario import AlphaSensor
-from sim.servo import FirstOrderServo
+from .airframe import GRAVITY_M_S2
+from .motion import Motion
+from .scenario import AlphaSensor
+from .servo import FirstOrderServo
 
 
 @dataclass(slots=True)
 class Reading:
-    """What the instruments show at one instant, SI units; effects and noise change it in place."""
+    """Readings of the instruments at one instant, SI units. Effects and noise change them in place."""
 
     alpha: float
     q: float
@@ -35,7 +35,7 @@ NOISY = ("alpha", "q", "theta", "a_x", "a_z", "airspeed", "climb")
 
 
 class SensorEffect(Protocol):
-    """Something about an instrument that is not ideal, stepped with the simulation."""
+    """An instrument's defect, stepped with the simulation."""
 
     def apply(self, motion: Motion, reading: Reading, dt: float) -> None:
         """Change ``reading`` in place after ``dt`` seconds of motion."""
@@ -43,7 +43,8 @@ class SensorEffect(Protocol):
 
 
 def ideal(motion: Motion, accelerometer_arm_m: float = 0.0) -> Reading:
-    """Readings of perfect instruments; the accelerometer feels a_z − x·q̇ and a_x − x·q² at x ahead."""
+    """Return readings of perfect instruments. At x ahead of the centre of gravity, the accelerometer feels
+    a_z − x·q̇ and a_x − x·q²."""
     turn = GRAVITY_M_S2 / motion.airspeed * math.sin(motion.phi) * math.cos(motion.theta)
     return Reading(
         motion.air_alpha,
@@ -73,7 +74,7 @@ class DerivedAlpha:
         self._time_s = 0.0
 
     def apply(self, motion: Motion, reading: Reading, dt: float) -> None:
-        """Replace the vane's reading; the motion's own α knows nothing of gusts."""
+        """Replace the vane's reading. The motion's own α has no gusts."""
         if not self._awake or dt == 0.0:
             self._filter.reset(motion.alpha)
             self._awake = True

@@ -1,4 +1,4 @@
-"""The elevator's way from command to surface: pulse width, servo dynamics, stops."""
+"""Path of the elevator from command to surface: pulse width, servo dynamics, stops."""
 
 import math
 from collections.abc import Sequence
@@ -21,7 +21,7 @@ class Mechanism(Protocol):
 
 @dataclass(frozen=True)
 class Calibration:
-    """Pulse width against deflection: straight lines between points, none beyond the ends."""
+    """Pulse width against deflection, with straight lines between points and no extrapolation."""
 
     points: tuple[tuple[float, float], ...] = ((1100.0, -25.0), (1500.0, 0.0), (1900.0, 25.0))
     """Pairs (µs, deg trailing edge down), pulse widths rising."""
@@ -42,17 +42,17 @@ class Calibration:
         return self.pulse(0.0)
 
     def pulse(self, deflection: float) -> int:
-        """Nearest whole pulse width in µs for a deflection in rad, within the stops."""
+        """Return the nearest whole pulse width in µs for a deflection in rad, within the stops."""
         pairs = sorted((math.radians(angle), pulse) for pulse, angle in self.points)
         return round(_between(pairs, deflection))
 
     def deflection(self, pulse_us: int) -> float:
-        """Deflection in rad that a pulse width commands."""
+        """Return the deflection in rad that a pulse width commands."""
         return math.radians(_between(self.points, pulse_us))
 
 
 def _between(pairs: Sequence[tuple[float, float]], at: float) -> float:
-    """Interpolate linearly in rising pairs (x, y); the end values hold beyond them."""
+    """Interpolate linearly in rising pairs (x, y). Beyond them the end values hold."""
     if at <= pairs[0][0]:
         return pairs[0][1]
     for (x0, y0), (x1, y1) in pairwise(pairs):
@@ -75,7 +75,7 @@ class FirstOrderServo:
     def step(self, value: float, dt: float) -> float:
         """Return the deflection after ``dt``."""
         slope = (value - self._input) / dt
-        # Response to a ramp: the steady state trails the input by τ times its slope.
+        # Response to a ramp: the steady state lags behind the input by τ times its slope.
         trailing = value - self.lag_s * slope
         error = self._output - (self._input - self.lag_s * slope)
         self._output = trailing + error * math.exp(-dt / self.lag_s)
@@ -120,7 +120,7 @@ class TransportDelay:
         self._resting = value
 
     def step(self, value: float, dt: float) -> float:
-        """Return the input of ``delay_s`` ago."""
+        """Return the input ``delay_s`` ago."""
         self._past.append(value)
         back = self.delay_s / dt
         whole = int(back)

@@ -1,15 +1,15 @@
-"""A flight's telemetry: messages in order, with what the radio does to them."""
+"""A flight's telemetry: messages in order, with the effects of the radio link."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
-from sim.flight import Flight
-from sim.mavlink import Message, Voice
+from .flight import Flight
+from .mavlink import Message, Voice
 
 GREETING = "Bundled aircraft, ArduPlane V4.5.6 manners"
-"""Said now and again, so that whoever listens knows a simulated aircraft by its own words."""
+"""Text that the vehicle repeats, by which listeners recognise a simulated aircraft."""
 
 GREETING_EVERY_S = 10.0
 
@@ -21,23 +21,23 @@ class Burst:
     time_s: float
     """Simulated time, seconds since the log began."""
     arrival_s: float
-    """When the far end of the link has them."""
+    """Time of arrival at the far end of the link, s."""
     messages: list[Message]
 
 
 class Telemetry:
-    """Flies a scenario and says what its vehicle would say."""
+    """Flies a scenario and sends its vehicle's messages."""
 
     def __init__(self, flight: Flight) -> None:
         self.flight = flight
         scenario = flight.scenario
-        # A held command jumps within one step of the integration: in the middle of it, on average.
+        # A held command jumps within one step of the integration; on average in its middle.
         late = 0.5 * scenario.step_s if scenario.input == "held" else 0.0
         self.voice = Voice(dict(scenario.rates), scenario.clock, flight.calibration, late)
         self._generator = np.random.default_rng([scenario.seed, 9])
 
     def bursts(self) -> Iterator[Burst]:
-        """Yield what leaves the vehicle tick by tick."""
+        """Yield the messages that leave the vehicle, tick by tick."""
         scenario = self.flight.scenario
         # A ground station on the same link has asked for the parameters.
         self.voice.send_parameters()

@@ -1,4 +1,4 @@
-"""Read back a telemetry log, as far as flying it again needs."""
+"""Reader of telemetry logs for flying them again."""
 
 from collections.abc import Collection, Iterator
 from pathlib import Path
@@ -12,7 +12,7 @@ HEADER_1, HEADER_2, CHECKSUM, SIGNATURE = 6, 10, 2, 13
 
 
 def read_tlog(path: Path, wanted: Collection[str]) -> Iterator[tuple[float, Any]]:
-    """Yield (host time in s, message) for the message names wanted; damaged stretches are skipped.
+    """Yield (host time in s, message) for the wanted message names. Damaged stretches are skipped.
 
     Raises
     ------
@@ -35,7 +35,8 @@ def read_tlog(path: Path, wanted: Collection[str]) -> Iterator[tuple[float, Any]
         try:
             message = parser.decode(bytearray(data[frame : frame + length]))
         except mavlink.MAVError:
-            # Not a frame after all: go on from the next byte, else a false start would hide true ones.
+            # Not a frame after all. The search continues at the next byte, else a false start would hide true
+            # frames.
             place += 1
             continue
         if message.get_type() in wanted:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.dynamics import DERIVATIVES, derivatives
+from .dynamics import DERIVATIVES, derivatives
 
 
 class TrimError(ValueError):
@@ -23,11 +23,11 @@ class Trim:
     height: float
 
     def state(self) -> NDArray[np.float64]:
-        """State vector of :data:`sim.dynamics.STATES`: level, so θ = α."""
+        """Return the state vector of :data:`sim.dynamics.STATES`: level, so θ = α."""
         return np.array([self.airspeed, self.alpha, 0.0, self.alpha, self.height, 0.0, 0.0, self.alpha])
 
     def inputs(self) -> NDArray[np.float64]:
-        """Input vector of :data:`sim.dynamics.INPUTS`."""
+        """Return the input vector of :data:`sim.dynamics.INPUTS`."""
         return np.array([self.elevator, self.throttle, 0.0, 0.0, 0.0, 0.0, 0.0])
 
 
@@ -37,7 +37,7 @@ def trim_level(record: NDArray[np.void], airspeed: float, height: float) -> Trim
     Parameters
     ----------
     record
-        Airframe as of :func:`sim.airframe.as_record`, with every effect already in it.
+        Airframe from :func:`sim.airframe.as_record`, with every effect already in it.
     airspeed, height
         m/s and m.
 

@@ -14,11 +14,12 @@ from advisor.aircraft import Aircraft
 from advisor.campaign.campaign import Campaign
 from advisor.campaign.hand_decisions import ByHand, Remark
 from advisor.cli import main
-from advisor.flight.same import are_one
+from advisor.flight.repeated_maneuver import are_one
 from advisor.log_series import LogSeries
 from advisor.marks_file import write_by_hand
 from tests.flights import TWO, recorded
 from tests.mavlink.paths import Way, heard_over, records
+from tests.schemas import breaches
 
 DAY_US = 86_400_000_000
 
@@ -196,6 +197,7 @@ def test_the_document_of_several_logs_says_what_is_of_which(
     result = run("analyze", first, second, "--json")
     document = result.document
     assert result.exit_code == 0
+    assert breaches("analyze", document) == []
     assert [entry["file"] for entry in document["logs"]] == [str(first), str(second)]
     assert [m["log"] for m in document["maneuvers"]] == [str(first)] * 2 + [str(second)] * 2
     assert document["problems"] == []
@@ -203,6 +205,7 @@ def test_the_document_of_several_logs_says_what_is_of_which(
 
 def test_the_document_of_one_log_has_no_list_of_logs(first: Path, run: Callable[..., Ended]) -> None:
     document = run("analyze", first, "--json").document
+    assert breaches("analyze", document) == []
     assert "logs" not in document
     assert "log" not in document["maneuvers"][0]
 

@@ -1,37 +1,137 @@
-"""Made pages are what the code and the scored runs make of them, and links lead somewhere."""
+"""Pages that the code makes hold what the code holds, and the README what the data hold."""
 
 import json
 import re
 import shutil
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from advisor.aircraft import Aircraft
 from advisor.aircraft_effects import LEAST
+from advisor.cli import COMMANDS
 from advisor.gap.candidates.traits import TRAITS
 from advisor.gap.result import Trace
-from benchmarks.pages import decisions, effects, results
-from benchmarks.pages.__main__ import DATA, DOCS, made, main
-from benchmarks.pages.example import excerpt, foresight, transcript
-from benchmarks.pages.figure import figure
+from benchmarks.pages import (
+    aircraft_file,
+    commands,
+    decision_records,
+    decisions,
+    documents,
+    effects,
+    fragments,
+    readme,
+    results,
+    words,
+)
+from benchmarks.pages.__main__ import DATA, ROOT, main
+from benchmarks.pages.example import EXAMPLES, FILES, Part, shown, transcripts
+from benchmarks.pages.figure import errors, svg
+from benchmarks.pages.hooks import on_page_content
 from tests.gap.test_report_screen import diagnosis
+from tests.schemas import SCHEMAS
 
-PAGES = sorted([DOCS.parent / "README.md", *DOCS.rglob("*.md")])
-
-
-@pytest.mark.parametrize("page", ["effects.md", "decisions-of-the-gap.md", "gap-results.md"])
-def test_a_made_page_is_as_the_code_makes_it(page):
-    path = DOCS / page
-    assert path.read_text(encoding="utf-8") == made()[path], "stale: run make pages"
+DOCS = ROOT / "docs"
+OUTSIDE = [ROOT / "README.md", ROOT / "CHANGELOG.md", ROOT / "logs" / "README.md", DOCS / "status.md"]
+"""Pages that are not part of the site, whose strict build checks its own links."""
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_the_blocks_of_the_readme_are_as_the_data_have_them():
+    page = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert readme.filled(page) == page, "stale: run make pages"
+
+
+@pytest.mark.parametrize("page", OUTSIDE, ids=lambda page: page.name)
 def test_every_link_of_a_page_leads_to_a_file(page):
     targets = re.findall(r"\]\(([^)#\s]+)(?:#[^)]*)?\)", page.read_text(encoding="utf-8"))
     local = [target for target in targets if "://" not in target]
     assert [target for target in local if not (page.parent / target).exists()] == []
+
+
+def test_every_fragment_that_a_page_asks_for_is_there():
+    pages = [page.read_text(encoding="utf-8") for page in words.pages(ROOT)]
+    asked = {name for page in pages for name in re.findall(r"<!-- made: ([a-z-]+) -->", page)}
+    assert asked == fragments.FRAGMENTS.keys()
+
+
+def test_a_fragment_takes_the_place_of_the_line_that_asks_for_it():
+    page = fragments.filled("before\n\n<!-- made: real -->\n\nafter")
+    assert page.startswith("before\n\n| record | flown | asked | got | holds |")
+    assert page.endswith("\n\nafter")
+
+
+def test_the_page_of_commands_has_the_help_of_every_command_and_of_the_simulator():
+    page = commands.page()
+    assert [name for name in COMMANDS if f"### advisor {name}\n" not in page] == []
+    assert "### python -m sim record\n" in page
+    assert "--request-rates" in page
+
+
+def test_the_page_of_the_aircraft_file_has_every_key_and_its_default():
+    page = aircraft_file.page()
+    assert [f.name for f in fields(Aircraft) if f"`{f.name}`" not in page] == []
+    assert "| `tolerance_percent` | number, % | `5.0` |" in page
+    assert "## `elevator.outputs[]`" in page
+    assert "lag_found_s" not in page
+
+
+def test_every_key_of_the_aircraft_file_has_a_meaning():
+    rows = [row.split(" | ") for row in aircraft_file.page().splitlines() if row.startswith("| `")]
+    assert [row[0] for row in rows if len(row[-1].strip(" |")) == 0] == []
+
+
+def test_the_page_of_documents_has_the_keys_of_lists_and_mappings():
+    page = documents.page(SCHEMAS)
+    assert "<code>maneuvers[].<wbr>estimates.<wbr>*.<wbr>std_cr</code>" in page
+    assert "(schemas/gap.json)" in page
+
+
+def test_the_list_of_decision_records_has_their_titles(tmp_path):
+    (tmp_path / "0001-one.md").write_text("# 1. One path\n\ntext", encoding="utf-8")
+    assert decision_records.page(tmp_path).endswith("\n- [1. One path](0001-one.md)\n")
+
+
+def test_an_equation_becomes_mathml_with_its_number_at_the_right():
+    page = (
+        r'<p><div class="arithmatex">\[x &lt; 2 \tag{10}\]</div><span class="arithmatex">\(b_i\)</span></p>'
+    )
+    shown = on_page_content(page, None, None, None)
+    assert shown.count("<math") == 2
+    assert '<span class="number">(10)</span>' in shown
+    assert "tag" not in shown
+
+
+def test_words_of_made_blocks_and_marks_of_tables_are_no_words_written_by_hand():
+    page = "one two\n<!-- a-b: begin -->\nmany words here\n<!-- a-b: end -->\n| three |\n|---|"
+    assert words.words_in(page) == 3
+
+
+def test_the_documentation_is_within_its_limits():
+    assert words.main() == 0
+
+
+def test_an_example_shows_the_parts_of_the_output_and_says_where_something_is_left_out():
+    lines = ["VERDICT", "╭─ where ─╮", "x", "cause  prob.", "● lag", "● part of it"]
+    told = shown("gap a.tlog", lines, [Part(until="╭─ where"), Part("cause", "● part")])
+    assert told == "$ advisor gap a.tlog\nVERDICT\n[...]\ncause  prob.\n● lag\n[...]\n"
+
+
+def test_a_part_that_the_output_does_not_have_is_refused():
+    with pytest.raises(ValueError, match="no line begins with 'cause'"):
+        shown("gap a.tlog", ["VERDICT"], [Part("cause")])
+
+
+def test_every_example_is_a_file_and_every_file_an_example():
+    names = {f"{name}.txt" for example in EXAMPLES for name in example.parts} | FILES.keys()
+    assert {path.name for path in (DOCS / "data" / "examples").iterdir()} == names
+
+
+@pytest.mark.study
+def test_the_worked_examples_are_what_the_commands_say_today():
+    kept = {path.name: path.read_text(encoding="utf-8") for path in (DOCS / "data" / "examples").iterdir()}
+    assert dict(transcripts()) == kept, "stale: run make examples"
 
 
 @pytest.fixture(scope="module")
@@ -93,7 +193,7 @@ def test_the_page_of_decisions_has_every_number_of_the_diagnosis_with_its_value(
             assert f"`{value}`" in page, path
 
 
-RUNS = results.read(DOCS / DATA)
+RUNS = results.read(fragments.GAP_RESULTS)
 
 
 @pytest.mark.parametrize("run", RUNS, ids=lambda run: f"{run.set} {run.seed or ''}".strip())
@@ -110,21 +210,21 @@ def test_runs_of_one_set_are_added_up_and_outside_ones_come_first():
         for seed, hits in ((1, 4), (2, 6))
     ]
     outside = results.Run("B", "h", False, 5, 3, "d", "2026-01-02", "", {"two": share(5, 5)})
-    rows = results.table([*own, outside]).splitlines()
+    figures = results.figures_table([*own, outside]).splitlines()
     assert any(
-        row.startswith("| two effects: both named | 5/5, 100.0 %") and "10/20, 50.0 %" in row for row in rows
+        row.startswith("| two effects: both named | 5/5, 100.0 %") and "10/20, 50.0 %" in row
+        for row in figures
     )
-    assert [row.split(" | ")[0] for row in rows[-2:]] == ["| B", "| A"]
+    sets = results.sets_table([*own, outside]).splitlines()
+    assert [row.split(" | ")[0] for row in sets[-2:]] == ["| B", "| A"]
 
 
 @pytest.fixture
-def docs(tmp_path):
+def root(tmp_path):
     """A copy of what the command rewrites."""
-    place = tmp_path / "docs"
-    (place / DATA.parent).mkdir(parents=True)
-    shutil.copy(DOCS / DATA, place / DATA)
-    shutil.copy(DOCS / "gap-results.md", place / "gap-results.md")
-    return place
+    (tmp_path / DATA).mkdir(parents=True)
+    shutil.copy(fragments.GAP_RESULTS, tmp_path / DATA)
+    return tmp_path
 
 
 def scored(place: Path, **changes):
@@ -153,16 +253,17 @@ def scored(place: Path, **changes):
     ]
 
 
-def test_a_scored_run_is_added_and_stands_in_the_table(docs):
-    assert main(scored(docs), docs) == 0
-    assert "| of a test | 100 | abc, " in (docs / "gap-results.md").read_text(encoding="utf-8")
-    newest = results.read(docs / DATA)[0]
+def test_a_scored_run_is_added_and_stands_in_the_table(root):
+    assert main(scored(root), root) == 0
+    runs = results.read(root / DATA / "gap-results.json")
+    assert "| of a test | 100 | abc, " in results.sets_table(runs)
+    newest = runs[0]
     assert (newest.hash, newest.figures["cause_clean"]) == ("01234567", results.Figure(40, 39))
 
 
-def test_a_run_that_stands_there_is_refused_in_a_sentence(docs, capsys):
-    assert main(scored(docs), docs) == 0
-    assert main(scored(docs), docs) == 2
+def test_a_run_that_stands_there_is_refused_in_a_sentence(root, capsys):
+    assert main(scored(root), root) == 0
+    assert main(scored(root), root) == 2
     assert (
         capsys.readouterr().err
         == "error: set of a test, seed 1, commit abc stands in the data file already\n"
@@ -173,43 +274,30 @@ def test_a_run_that_stands_there_is_refused_in_a_sentence(docs, capsys):
     ("changes", "sentence"),
     [({"schema": "x"}, "no score"), ({"figures": []}, "no figure that the page knows")],
 )
-def test_what_is_no_score_is_refused_and_changes_nothing(docs, capsys, changes, sentence):
-    before = (docs / DATA).read_bytes()
-    assert main(scored(docs, **changes), docs) == 2
+def test_what_is_no_score_is_refused_and_changes_nothing(root, capsys, changes, sentence):
+    before = (root / DATA / "gap-results.json").read_bytes()
+    assert main(scored(root, **changes), root) == 2
     assert sentence in capsys.readouterr().err
-    assert (docs / DATA).read_bytes() == before
+    assert (root / DATA / "gap-results.json").read_bytes() == before
 
 
-def test_a_file_that_is_no_json_or_is_not_there_is_refused_in_a_sentence(docs, capsys):
-    arguments = scored(docs)
+def test_a_file_that_is_no_json_or_is_not_there_is_refused_in_a_sentence(root, capsys):
+    arguments = scored(root)
     Path(arguments[1]).write_text("{", encoding="utf-8")
-    assert main(arguments, docs) == 2
+    assert main(arguments, root) == 2
     Path(arguments[1]).unlink()
-    assert main(arguments, docs) == 2
+    assert main(arguments, root) == 2
     first, second = capsys.readouterr().err.splitlines()
     assert first.endswith("no score; write it with `score --json` or `reveal --json`")
     assert second.endswith("No such file or directory; give a file that is there")
 
 
 def test_every_row_of_the_two_scores_that_the_page_wants_exists_there():
-    root = DOCS.parent
-    sources = [root / "sim" / "blind" / "score.py", root / "benchmarks" / "second_generator" / "score.py"]
+    sources = [ROOT / "sim" / "blind" / "score.py", ROOT / "benchmarks" / "second_generator" / "score.py"]
     text = "\n".join(path.read_text(encoding="utf-8") for path in sources)
     rows = [row for kind in results.FIGURES.values() for row in kind.rows]
     made_of_two = {"CPU seconds at most 5", *(r for r in rows if r.startswith("one named effect, "))}
     assert [row for row in rows if row not in text and row not in made_of_two] == []
-
-
-def test_the_example_shows_the_verdict_the_place_and_the_causes():
-    head, causes = "CAUSE FOUND\n╭─ where: here ─╮\n", "cause  prob.\n● lag  100 %\n"
-    output = f"{head}╭─ where in the flight ─╮\nx\n{causes}● part of it\n"
-    assert excerpt(output) == "CAUSE FOUND\n╭─ where: here ─╮\n[...]\ncause  prob.\n● lag  100 %"
-
-
-@pytest.mark.study
-@pytest.mark.parametrize(("page", "told"), [("gap.md", transcript), ("foresee.md", foresight)])
-def test_a_worked_example_is_what_the_command_says_today(page, told):
-    assert told() in (DOCS / page).read_text(encoding="utf-8"), "stale: run make examples"
 
 
 def test_the_figure_has_both_errors_of_every_channel():
@@ -217,6 +305,6 @@ def test_the_figure_has_both_errors_of_every_channel():
     number = max(flown.gap.by_maneuver, key=lambda row: row[1])[0]
     t = np.linspace(0.0, 5.0, 20)
     traces = tuple(Trace(number, channel, t, np.sin(t), 0.5 * t, 0.1 * t) for channel in ("alpha", "q"))
-    drawn = figure(replace(flown, traces=traces))
+    drawn = svg(errors(replace(flown, traces=traces)))
     assert drawn.count("<polyline") == 4
     assert f"manoeuvre {number}" in drawn

@@ -5,7 +5,8 @@ import sys
 
 import pytest
 
-HEAVY = ("scipy", "matplotlib", "numba", "textual", "pymavlink", "jsbsim", "sim")
+HEAVY = {"scipy", "matplotlib", "numba", "textual", "pymavlink", "jsbsim", "sim"}
+HEAVY |= {"aiohttp", "jinja2", "textual_serve"}
 
 
 def modules_after(statement: str) -> set[str]:
@@ -18,7 +19,8 @@ def modules_after(statement: str) -> set[str]:
 
 
 @pytest.mark.parametrize(
-    "arguments", [["--help"], ["analyze", "--help"], ["live", "--help"], ["demo", "--help"]]
+    "arguments",
+    [["--help"], ["analyze", "--help"], ["live", "--help"], ["demo", "--help"], ["serve", "live", "--help"]],
 )
 def test_help_imports_no_heavy_library(arguments: list[str]) -> None:
     imported = modules_after(f"sys.argv = ['advisor', *{arguments}]; import advisor.cli; advisor.cli.main()")

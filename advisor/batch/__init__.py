@@ -1,1 +1,2 @@
-"""Many flights: every log analyzed once, in processes, resumable; tables and changes over all of them."""
+"""Many flights: every log analyzed once, in processes, resumable; with tables and changes over all
+flights."""

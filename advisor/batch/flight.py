@@ -1,4 +1,4 @@
-"""One log of a batch: its key, its analysis, and the form in which results are kept."""
+"""One log of a batch: its key, its analysis, and the stored form of its result."""
 
 import hashlib
 import json
@@ -30,11 +30,11 @@ class Task:
     aircraft_file: str
     """Name of the aircraft file; empty without one."""
     sha256: str
-    """Of the log."""
+    """SHA-256 of the log."""
 
     @property
     def key(self) -> str:
-        """Names the result: the same log, configuration, decisions by hand and advisor give the same."""
+        """Key of the result. Equal logs, configurations, decisions by hand and advisors have one key."""
         beside = path_beside(self.log)
         by_hand = beside.read_text(encoding="utf-8", errors="replace") if beside.is_file() else ""
         parts = [__version__, self.sha256, json.dumps(asdict(self.aircraft), sort_keys=True), by_hand]
@@ -43,17 +43,17 @@ class Task:
 
 @dataclass(frozen=True, slots=True)
 class Analyzed:
-    """What came of a log."""
+    """Result of one log."""
 
     log: str
     aircraft_file: str
     sha256: str
     began_s: float
-    """When the log began, s since 1970; NaN where it has no dates."""
+    """Begin of the log, s since 1970. NaN for a log without dates."""
     document: dict[str, Any]
-    """As ``advisor analyze --json`` prints."""
+    """Document of ``advisor analyze --json``."""
     joint: dict[str, Any] = field(default_factory=dict)
-    """The joint estimate with its covariances, to be compared over flights; empty without one."""
+    """Joint estimate with its covariances, for comparison over flights; empty without one."""
 
     @property
     def usable(self) -> bool:
@@ -62,12 +62,12 @@ class Analyzed:
 
     @property
     def reasons(self) -> list[str]:
-        """Why the log does not count, in sentences."""
+        """Reasons for which the log does not count, as sentences."""
         return [f"{problem['text']} {problem['fix']}".strip() for problem in self.document["problems"]]
 
     @property
     def estimate(self) -> Estimate | None:
-        """The joint estimate, as far as flights are compared by it."""
+        """Joint estimate, with the parts that the comparison of flights needs."""
         if not self.joint:
             return None
         theta, covariance_cr, covariance = (np.array(self.joint[name], dtype=np.float64) for name in _KEPT)
@@ -89,7 +89,7 @@ _KEPT = ("theta", "covariance_cr", "covariance")
 
 
 def analyze(task: Task) -> Analyzed:
-    """Analyze a log as ``advisor analyze`` does; a log that cannot be used is a result, too."""
+    """Analyze a log like ``advisor analyze``. An unusable log has a result as well."""
     from advisor.campaign.campaign import Campaign
     from advisor.log_series import LogSeries
 
@@ -112,12 +112,12 @@ def analyze(task: Task) -> Analyzed:
 
 
 def analyze_shared(task: Task) -> Analyzed:
-    """Analyze a log on another computer, which must see the log under the path of this one.
+    """Analyze a log on another computer, which must see the log under one path.
 
     Raises
     ------
     ConfigurationError
-        The worker sees no such log, or another one there.
+        The worker sees no log, or another log, under the path.
     """
     try:
         seen = sha256_of(task.log)
@@ -131,20 +131,20 @@ def analyze_shared(task: Task) -> Analyzed:
 
 
 def failed(task: Task, problems: Sequence[Problem]) -> Analyzed:
-    """The result of a log that could not be analyzed."""
+    """Return the result of a log that could not be analyzed."""
     document = analysis_document(None, [str(task.log)], task.aircraft, {0: problems})
     return Analyzed(str(task.log), task.aircraft_file, task.sha256, nan, document)
 
 
 def _finite(values: np.ndarray[Any, Any]) -> list[Any]:
-    """Nested lists of numbers that JSON can hold: None for what is not finite."""
+    """Return nested lists of numbers for JSON, with None for a number that is not finite."""
     if values.ndim > 1:
         return [_finite(row) for row in values]
     return [number(value) for value in values.tolist()]
 
 
 def keep(result: Analyzed, path: Path) -> None:
-    """Write a result: the file is old or new and whole.
+    """Write a result. The file is always whole, old or new.
 
     Raises
     ------
@@ -156,7 +156,7 @@ def keep(result: Analyzed, path: Path) -> None:
 
 
 def kept(path: Path) -> Analyzed | None:
-    """A result that was kept before; None without a file, or with one that holds no result."""
+    """Return a stored result; None without a file, or for a file without a result."""
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
         return Analyzed(**{**content, "began_s": nan if content["began_s"] is None else content["began_s"]})
@@ -165,7 +165,7 @@ def kept(path: Path) -> Analyzed | None:
 
 
 def sha256_of(log: Path) -> str:
-    """SHA-256 of a file.
+    """Return SHA-256 of a file.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""The page of a batch: one row a flight, and the course of each derivative over the flights."""
+"""The page of a batch: one row for each flight, and each derivative over the flights."""
 
 from collections.abc import Sequence
 from datetime import UTC, datetime
@@ -12,26 +12,26 @@ from advisor.batch.flight import Analyzed
 from advisor.batch.picture import Point, trend_svg
 from advisor.batch.tables import aircraft_of, changes_of, estimates_of
 from advisor.batch.trend import ChangeOverFlights
-from advisor.decision.pooling import DERIVATIVES, beliefs_at_one_speed, common_airspeed
+from advisor.decision.pooling import DERIVATIVES, common_airspeed, posteriors_at_one_speed
 from advisor.exporting.found import PARAMETER_UNITS
 from advisor.log_series import SINCE_1970_S
 from advisor.oem.estimate import Estimate
 from advisor.printable import printable
 from advisor.report.document import NORMAL_95
 
-_COLUMNS = ("Flight", "Log", "Begun, UTC", "Aircraft", "Accepted", "What came of it")
+_COLUMNS = ("Flight", "Log", "Begun, UTC", "Aircraft", "Accepted", "Result")
 
 _STYLE = "td:nth-child(3) { white-space: nowrap; }\n"
-"""A date stands on one line."""
+"""Style that keeps a date on one line."""
 
 
 def index_page(flights: Sequence[Analyzed]) -> str:
-    """Write the page: self-contained HTML without script, the same for the same flights.
+    """Write the page: self-contained HTML without script, reproducible from equal flights.
 
     Parameters
     ----------
     flights
-        In the order of flying; flights are numbered from 1.
+        Results in the order of flying, numbered from 1.
     """
     failures = sum(not flight.usable for flight in flights)
     changes = changes_of(flights)
@@ -53,16 +53,16 @@ def index_page(flights: Sequence[Analyzed]) -> str:
 
 
 def _trends(name: str, flights: Sequence[tuple[int, Estimate]], change: ChangeOverFlights | None) -> str:
-    """The sentence of the change test for one aircraft, and a picture a derivative."""
+    """Return the sentence of the change test for one aircraft, and a picture for each derivative."""
     estimates = [estimate for _, estimate in flights]
-    beliefs = beliefs_at_one_speed(estimates)
+    posteriors = posteriors_at_one_speed(estimates)
     speed = common_airspeed(estimates)
     moved = {one.parameter for one in change.change.moved} if change else set()
     pictures = []
     for k in DERIVATIVES:
         points = [
-            Point(number, float(belief.theta[k]), NORMAL_95 * float(belief.std[k]))
-            for (number, _), belief in zip(flights, beliefs, strict=True)
+            Point(number, float(posterior.theta[k]), NORMAL_95 * float(posterior.std[k]))
+            for (number, _), posterior in zip(flights, posteriors, strict=True)
         ]
         since = change.since if change and PARAMETERS[k] in moved else None
         picture = trend_svg(PARAMETERS[k], PARAMETER_UNITS[PARAMETERS[k]], points, since)
@@ -109,5 +109,5 @@ def _row(number: int, flight: Analyzed) -> str:
 
 
 def _shown(text: str) -> str:
-    """Text from outside, as a page shows it and never obeys it."""
+    """Return a text from outside, escaped for a page."""
     return escape(printable(text))

@@ -1,4 +1,4 @@
-"""Which logs a batch is made of, and which aircraft file belongs to each."""
+"""Logs of a batch, and the aircraft file of each."""
 
 import os
 from collections.abc import Sequence
@@ -14,14 +14,14 @@ PACKED = (".gz", ".zip")
 
 
 def find_logs(places: Sequence[Path], without: Path) -> list[Path]:
-    """Logs in the order given, those of a folder in the order of their names, each once.
+    """Return logs in the given order, those of a folder sorted by name, each once.
 
     Parameters
     ----------
     places
-        Logs, and folders that are searched with all folders in them for names that end as logs do.
+        Logs and folders. A folder is searched with its subfolders for names with the endings of logs.
     without
-        Folder that is not searched: the results.
+        Folder of the results, which is not searched.
 
     Raises
     ------
@@ -59,18 +59,18 @@ def _is_log(name: str) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class AircraftMap:
-    """Patterns of logs, and the aircraft file of the logs that match; the first that matches counts."""
+    """Patterns of logs with their aircraft files. The first matching pattern counts."""
 
     entries: tuple[tuple[str, Path], ...]
 
     def file_of(self, log: Path) -> Path | None:
-        """The aircraft file of a log; None where no pattern matches its path or its name."""
+        """Return the aircraft file of a log; None where no pattern matches its path or its name."""
         names = (log.as_posix(), log.name)
         return next((file for pattern, file in self.entries if any(fnmatch(n, pattern) for n in names)), None)
 
 
 def read_map(path: Path) -> AircraftMap:
-    """Read a YAML file of ``pattern: aircraft file``; files are relative to the map.
+    """Read a YAML file of ``pattern: aircraft file``. The files are relative to the map.
 
     Raises
     ------

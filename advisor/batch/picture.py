@@ -1,4 +1,4 @@
-"""The course of one derivative over flights as a picture: SVG without script, written by hand."""
+"""Picture of one derivative over flights: SVG without script, written by hand."""
 
 from collections.abc import Sequence
 from html import escape
@@ -18,7 +18,7 @@ class Point(NamedTuple):
     flight: int
     value: float
     half: float
-    """Half the 95 % interval; not finite where the flight did not show the derivative."""
+    """Half of the 95 % interval. Not finite where the flight did not show the derivative."""
 
 
 def trend_svg(name: str, unit: str, points: Sequence[Point], since: int | None) -> str:
@@ -27,11 +27,11 @@ def trend_svg(name: str, unit: str, points: Sequence[Point], since: int | None) 
     Parameters
     ----------
     name, unit
-        Of the derivative.
+        Name and unit of the derivative.
     points
-        Flights in the order of flying; one without a finite interval is left out.
+        Flights in the order of flying. A flight without a finite interval is left out.
     since
-        First flight after a change of this derivative, marked by a dashed line; None without one.
+        First flight after a change of this derivative, marked by a dashed line. None without a change.
     """
     shown = [point for point in points if isfinite(point.value) and isfinite(point.half)]
     title = f"{name}, {unit}" if unit != "1" else name
@@ -66,7 +66,7 @@ def trend_svg(name: str, unit: str, points: Sequence[Point], since: int | None) 
 
 
 def _ticks(low: float, high: float) -> tuple[list[float], int]:
-    """Two to six round numbers that enclose an interval, and their decimals."""
+    """Return two to six round numbers that enclose an interval, and their decimals."""
     span = max(high - low, 1e-6 * max(abs(low), abs(high)), 1e-12)
     power = floor(log10(span))
     size = span / 10.0**power

@@ -17,14 +17,14 @@ from advisor.oem.estimate import Estimate
 
 
 def in_order(results: Sequence[Analyzed]) -> list[Analyzed]:
-    """Flights oldest first where all usable ones tell when they began, else as given."""
+    """Return flights oldest first where all usable ones tell when they began, else as given."""
     if not all(SINCE_1970_S <= one.began_s < inf for one in results if one.usable):
         return list(results)
     return sorted(results, key=lambda one: one.began_s if one.usable else inf)
 
 
 def estimates_of(flights: Sequence[Analyzed]) -> dict[str, list[tuple[int, Estimate]]]:
-    """Number and joint estimate of each flight that has one, by the name of its aircraft."""
+    """Return the number and joint estimate of each flight that has one, by the name of its aircraft."""
     by_aircraft: dict[str, list[tuple[int, Estimate]]] = {}
     for number, flight in enumerate(flights, start=1):
         if (estimate := flight.estimate) is not None:
@@ -33,7 +33,7 @@ def estimates_of(flights: Sequence[Analyzed]) -> dict[str, list[tuple[int, Estim
 
 
 def changes_of(flights: Sequence[Analyzed]) -> dict[str, ChangeOverFlights]:
-    """The change over the flights of each aircraft, by the name of its aircraft."""
+    """Return the change over the flights of each aircraft, by the name of its aircraft."""
     found = {name: change_over_flights(several) for name, several in estimates_of(flights).items()}
     return {name: change for name, change in found.items() if change is not None}
 
@@ -61,7 +61,7 @@ def mixed_up(flights: Sequence[Analyzed]) -> list[str]:
 
 
 def tables_of(flights: Sequence[Analyzed]) -> Dataset:
-    """One row a flight, one a manoeuvre, one a parameter of each change.
+    """Return one row a flight, one a manoeuvre, one a parameter of each change.
 
     Parameters
     ----------
@@ -146,7 +146,7 @@ def _changes(changes: dict[str, ChangeOverFlights]) -> Table:
 
 
 def _parameters(estimates: Sequence[dict[str, Any] | None], of: str) -> list[Column]:
-    """Value and standard deviation of each parameter; NaN where there is none."""
+    """Return the value and standard deviation of each parameter; NaN where there is none."""
     columns = []
     for name in PARAMETERS:
         for key, suffix in (("value", ""), ("std", "_std")):

@@ -1,4 +1,4 @@
-"""The change test over flights: each flight's joint estimate held against those before and after."""
+"""The change test over flights: each flight's joint estimate against the earlier and the later ones."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -15,12 +15,13 @@ class ChangeOverFlights:
     since: int
     """Number of the first flight after the change."""
     change: Change
-    """What moved; its numbers count the compared flights."""
+    """Change, whose numbers count the compared flights."""
     sentence: str
 
 
 def change_over_flights(flights: Sequence[tuple[int, Estimate]]) -> ChangeOverFlights | None:
-    """The most telling change over the flights of one aircraft; None when noise explains everything.
+    """Return the most significant change over the flights of one aircraft; None when noise explains all
+    differences.
 
     Parameters
     ----------
@@ -36,5 +37,5 @@ def change_over_flights(flights: Sequence[tuple[int, Estimate]]) -> ChangeOverFl
         for one in change.moved
     )
     cause = f"; it looks like {change.looks_like}" if change.looks_like else ""
-    doubt = "" if change.confirmed else "; one flight alone says so"
+    doubt = "" if change.confirmed else "; only one flight shows the change"
     return ChangeOverFlights(since, change, f"Since flight {since} {moved}{cause}{doubt}.")

@@ -1,1 +1,1 @@
-"""A flight-test campaign: its manoeuvres, estimates and decisions, and what a crew adds by hand."""
+"""A flight-test campaign: its manoeuvres, estimates and decisions, with the crew's own decisions."""

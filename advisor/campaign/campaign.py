@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from advisor.aircraft import Aircraft
 from advisor.campaign.hand_decisions import NOTHING, ByHand, Remark
 from advisor.campaign.joint_estimate import NEWEST, Together
+from advisor.campaign.journal import Journal
 from advisor.campaign.running_estimate import Settling
 from advisor.campaign.servo_lag import learnt as learnt_from
 from advisor.campaign.servo_lag import may_learn, reserved
@@ -17,20 +18,7 @@ from advisor.decision.history import Flown
 from advisor.decision.judge import judge_campaign
 from advisor.decision.stopping import flight_test
 from advisor.decision.verdict import FlightTestVerdict
-from advisor.event_log import EventLog
-from advisor.flight.events import (
-    Activity,
-    DataAgain,
-    FlightBegan,
-    FlightEvent,
-    ManeuverAgain,
-    ManeuverFlown,
-    ModeChanged,
-    NoData,
-    Notice,
-    Rebooted,
-    VehicleFound,
-)
+from advisor.flight.events import Activity, FlightEvent, ManeuverAgain, ManeuverFlown, Notice
 from advisor.flight.flights import Flights
 from advisor.flight.identity import READER_NOTICE
 from advisor.flight.maneuver import Maneuver
@@ -40,14 +28,12 @@ from advisor.flight.stream import FlightStream
 from advisor.oem.estimator import lag_is_unknown
 from advisor.oem.solution import Method
 from advisor.problems import Problem
-
-NOTICES = 1000
-"""Sentences kept for the event log, 0.1 kB each: some hundred manoeuvres with all that is said of them."""
+from advisor.vehicle_time import clock
 
 
 @dataclass(frozen=True, slots=True)
 class ManeuverJudged:
-    """A manoeuvre was estimated and judged; the flight test decided anew."""
+    """A manoeuvre was estimated and judged, and the flight test was decided anew."""
 
     judged: JudgedManeuver
     flight_test: FlightTestVerdict
@@ -57,27 +43,28 @@ CampaignEvent = FlightEvent | ManeuverJudged
 
 
 class Campaign:
-    """Listens, estimates, judges. No input or output, no clock: a log and a live link give the same.
+    """Finds, estimates and judges the manoeuvres of a flight test. The class does no input or output and has
+    no clock, so that a log and a live link give equal results.
 
     Parameters
     ----------
     aircraft
-        What the crew says of its aircraft.
+        The crew's aircraft file.
     target_system
         System id of the vehicle; None: the first one heard.
     settle
         Estimate while a manoeuvre is still being flown, for live faces.
         Verdicts do not depend on it.
     tell
-        Called with every event, for whoever announces verdicts.
+        Called with every event, for example to announce verdicts.
     method
-        How each manoeuvre's optimum is sought: Gauss-Newton, or the paper's simplex.
+        Search for each manoeuvre's optimum: Gauss-Newton, or the paper's simplex.
     by_hand
-        What was decided by hand on this flight before.
+        Earlier decisions by hand on this flight.
     marks
-        Further marks, which win over those of ``by_hand`` and are not kept with them.
+        Further marks, which replace overlapping marks of ``by_hand`` and are not kept in a file.
     names
-        What the logs of the campaign are called, in their order; empty for a single one.
+        Names of the campaign's logs, in their order; empty for a single log.
     """
 
     def __init__(
@@ -97,11 +84,11 @@ class Campaign:
         self._tell = tell
         self._flights = Flights(aircraft, target_system, (*marks, *by_hand.marks), names)
         self.by_hand = by_hand
-        """Everything that has been decided by hand."""
+        """All decisions by hand so far."""
         self._to_remark = list(by_hand.remarks)
         self._maneuvers: list[Maneuver] = []
         self._history: list[Flown] = []
-        self._notices = EventLog(NOTICES)
+        self._journal = Journal()
         self._mark_notes: tuple[str, ...] = ()
         self._reader_notes: tuple[str, ...] = ()
         self._activity: tuple[Activity, ...] = ()
@@ -113,13 +100,14 @@ class Campaign:
         self._settling = Settling(aircraft) if settle else None
 
     def feed(self, columns: Sequence[Columns]) -> list[CampaignEvent]:
-        """Take the next messages, in order of arrival; how they are cut into batches does not matter."""
+        """Take the next messages, in order of arrival. The result does not depend on how they are cut into
+        batches."""
         told = self._take(self._flights.feed(columns))
         self._repeat_remarks()
         return told
 
     def finish(self) -> list[CampaignEvent]:
-        """The stream has ended: a manoeuvre that is complete but for its quiet end still counts."""
+        """Take the end of the stream: a manoeuvre that lacks only its quiet end still counts."""
         if self._stream.marks.by_hand_since_s is not None:
             self.end_maneuver()
         told = self._take(self._flights.finish())
@@ -127,12 +115,12 @@ class Campaign:
         self._decide()
         self._learn()
         for problem in self._stream.marks.problems():
-            self._log(str(problem))
+            self._journal.write(str(problem))
         return told
 
     @property
     def state(self) -> CampaignState:
-        """Everything a face may show, as of the newest message."""
+        """State after the newest message, as shown on screens."""
         stream, flights = self._stream, self._flights
         flying, channels = flights.so_far(), stream.channels
         settled = self._settling.follow(flying) if self._settling else None
@@ -160,8 +148,7 @@ class Campaign:
             other_vehicles=tuple(sorted(stream.other_systems)),
             no_data=stream.no_data,
             mark_notes=self._mark_notes,
-            notices=self._notices.lines,
-            notices_before=self._notices.before,
+            notices=self._journal.lines,
             flight=flights.flight,
             boot=stream.boot,
             flights=flights.heard(channels, self._ended),
@@ -170,20 +157,20 @@ class Campaign:
 
     @property
     def power_on(self) -> tuple[int, int]:
-        """Flight and power-on being heard, each 0 for the first."""
+        """Flight and power-on of the newest message, each counted from 0."""
         return self._flights.flight, self._stream.boot
 
     @property
     def problems(self) -> list[Problem]:
-        """Why this stream cannot be used, as far as it has been heard; empty when it can."""
+        """Reasons for which the stream so far cannot be used; empty for a usable stream."""
         return self._flights.problems()
 
     def exclude(self, number: int, because: str) -> None:
-        """Take a manoeuvre out of every decision; all that followed is decided again."""
+        """Exclude a manoeuvre from every decision, and decide anew on all later manoeuvres."""
         self._decide_by_hand(number, because)
 
     def include(self, number: int) -> None:
-        """Take an excluded manoeuvre in again."""
+        """Include an excluded manoeuvre again."""
         self._decide_by_hand(number, None)
 
     def mark(self, text: str) -> None:
@@ -191,86 +178,89 @@ class Campaign:
         if math.isfinite(self._now_s):
             here = Remark(self._now_s, text, self._stream.boot, self._flights.flight)
             self.by_hand = self.by_hand.remarking(here)
-        self._log(f"mark: {text}", self._stream.now_s)
+        self._journal.write(f"mark: {text}", self._stream.now_s)
 
     def begin_maneuver(self) -> None:
-        """Mark a manoeuvre from the newest vehicle time on; a mark that is open already is dropped."""
+        """Begin a manoeuvre's mark at the newest vehicle time. A mark that is already open is dropped."""
         if not math.isfinite(self._now_s):
-            self._log("nothing can be marked before the vehicle's clock is heard")
+            self._journal.write("nothing can be marked before the vehicle's clock is heard")
             return
         self._stream.marks.begin_by_hand(self._now_s)
-        self._log("a manoeuvre is marked from here", self._stream.now_s)
+        self._journal.write("a manoeuvre is marked from here", self._stream.now_s)
 
     def end_maneuver(self) -> None:
-        """End the mark at the newest vehicle time; its manoeuvre is judged when all of it has arrived."""
+        """End the mark at the newest vehicle time. The manoeuvre is judged when all of it has arrived."""
         ended = self._stream.marks.end_by_hand(self._now_s)
         if isinstance(ended, Notice):
-            self._log(ended.text, self._stream.now_s)
+            self._journal.write(ended.text, self._stream.now_s)
             return
         self.by_hand = self.by_hand.marking(replace(ended, flight=self._flights.flight))
-        self._log(f"a manoeuvre is marked from {ended.start_s:.1f} s to here", self._stream.now_s)
+        self._journal.write(f"a manoeuvre is marked from {clock(ended.start_s)} to here", self._stream.now_s)
+
+    def log(self, sentence: str) -> None:
+        """Write a sentence from outside, such as what a link reports, into the event log."""
+        self._journal.write(sentence, self._stream.now_s)
 
     def note(self, number: int, text: str) -> None:
-        """Write a note beside a manoeuvre."""
+        """Write a note on a manoeuvre."""
         self.by_hand = self.by_hand.noting(self._maneuvers[self._index(number)], text)
-        self._log(f"note on manoeuvre {number}: {text}", self._stream.now_s)
+        self._journal.write(f"note on manoeuvre {number}: {text}", self._stream.now_s)
         self._decide()
 
     def _take(self, events: Sequence[FlightEvent]) -> list[CampaignEvent]:
         told: list[CampaignEvent] = []
         for event in events:
             told.append(event)
+            self._journal.take(event)
             match event:
                 case ManeuverFlown(maneuver):
-                    self._maneuvers.append(maneuver)
-                    flown = assess(maneuver, self._learnt, self._method)
-                    because = self.by_hand.excluded_because(maneuver)
-                    self._history.append(replace(flown, excluded_because=because))
-                    self._decide()
-                    self._learn()
-                    told.append(ManeuverJudged(self._judged[-1], self._flight_test))
-                    ended_s = maneuver.span.end_s
-                    self._log(f"manoeuvre {maneuver.number}: {self._judged[-1].verdict.sentence}", ended_s)
-                    self._log(self._flight_test.sentence, ended_s)
+                    told.append(self._judge(maneuver))
                 case Activity():
                     joined = event.joined(self._activity[-1]) if self._activity else None
                     self._activity = (*self._activity[:-1], joined) if joined else (*self._activity, event)
-                case ModeChanged(mode, at_s):
-                    self._log(f"mode {mode}", at_s)
-                case Notice(code, text):
-                    self._log(text)
-                    if code in MARK_NOTICES:
-                        self._mark_notes += (text,)
-                    if code == READER_NOTICE:
-                        self._reader_notes += (text,)
-                case NoData(problems):
-                    for problem in problems:
-                        self._log(f"NO DATA: {problem}", self._stream.now_s)
-                case DataAgain():
-                    self._log("the data serve again", self._stream.now_s)
-                case VehicleFound(vehicle):
-                    self._log(f"following {vehicle}")
+                case Notice():
+                    self._note_down(event)
                 case ManeuverAgain():
                     told += self._heard_again(event)
-                case FlightBegan(flight, name):
-                    self._log(f"{name}: flight {flight + 1} begins")
-                case Rebooted(boot):
-                    self._log(f"the vehicle's clock went back, as after a reboot: power-on {boot + 1}")
         if self._tell is not None:
             for happened in told:
                 self._tell(happened)
         return told
 
+    def _judge(self, maneuver: Maneuver) -> ManeuverJudged:
+        """Estimate and judge a manoeuvre that has just been flown, and decide anew whether to stop."""
+        self._maneuvers.append(maneuver)
+        flown = assess(maneuver, self._learnt, self._method)
+        because = self.by_hand.excluded_because(maneuver)
+        self._history.append(replace(flown, excluded_because=because))
+        self._decide()
+        self._learn()
+        span = maneuver.span
+        verdict = f"manoeuvre {maneuver.number} ({clock(span.start_s)}): {self._judged[-1].verdict.sentence}"
+        self._journal.write_of_past(verdict, span.end_s)
+        self._journal.write_of_past(self._flight_test.sentence, span.end_s)
+        return ManeuverJudged(self._judged[-1], self._flight_test)
+
+    def _note_down(self, notice: Notice) -> None:
+        """Keep the notices about marks and about the reader for the report."""
+        if notice.code in MARK_NOTICES:
+            self._mark_notes += (notice.text,)
+        if notice.code == READER_NOTICE:
+            self._reader_notes += (notice.text,)
+
     def _heard_again(self, event: ManeuverAgain) -> list[CampaignEvent]:
-        """A manoeuvre came a second time: the better record counts, and stays out if one of them does."""
+        """Take a manoeuvre that came a second time: the better record counts, and an exclusion of either
+        holds."""
         maneuver = event.maneuver
         i = self._index(maneuver.number)
         known = self._history[i].excluded_because
         because = known if known is not None else self.by_hand.excluded_because(maneuver)
         where = f" in {self._flights.name}" if self._flights.name else ""
         better = "; this record holds more and takes the place" if event.takes_place else ""
-        self._log(
-            f"manoeuvre {maneuver.number} comes again{where}: it counts once{better}", maneuver.span.end_s
+        self._journal.write_of_past(
+            f"manoeuvre {maneuver.number} ({clock(maneuver.span.start_s)}) comes again{where}: "
+            f"it counts once{better}",
+            maneuver.span.end_s,
         )
         if not event.takes_place and because == known:
             return []
@@ -284,20 +274,20 @@ class Campaign:
 
     @property
     def _stream(self) -> FlightStream:
-        """The flight being heard."""
+        """Stream of the current flight."""
         return self._flights.stream
 
     @property
     def _now_s(self) -> float:
-        """Newest vehicle time to the millisecond, as the vehicle's clock counts and a file keeps."""
+        """Newest vehicle time, s, rounded to the millisecond as the file of decisions keeps it."""
         return round(self._stream.now_s, 3)
 
     def _repeat_remarks(self) -> None:
-        """Write the moments marked before into the event log, each at its time."""
+        """Write earlier remarks into the event log, each at its time."""
         now = (self._flights.flight, self._stream.boot, self._stream.now_s)
         for remark in [r for r in self._to_remark if (r.flight, r.boot, r.at_s) <= now]:
             self._to_remark.remove(remark)
-            self._log(f"mark: {remark.text}", remark.at_s)
+            self._journal.write(f"mark: {remark.text}", remark.at_s)
 
     def _decide(self) -> None:
         plan = self._aircraft.campaign
@@ -323,7 +313,8 @@ class Campaign:
 
     @property
     def _joined(self) -> Sequence[JudgedManeuver]:
-        """The manoeuvres that are estimated together: the newest accepted ones, at the end all."""
+        """Manoeuvres of the joint estimate: the newest accepted ones in flight, all accepted ones at the
+        end."""
         accepted = [judged for judged in self._judged if judged.verdict.accepted]
         return accepted if self._ended else accepted[-NEWEST:]
 
@@ -344,7 +335,7 @@ class Campaign:
             for flown, before in zip(again, self._history, strict=True)
         ]
         lag = learnt.elevator.lag_found_s
-        self._log(
+        self._journal.write(
             f"the servo's lag is {lag:.3f} s by all manoeuvres together; every estimate uses it now;"
             f" for the aircraft file: elevator: {{lag_s: {lag:.3f}}}"
         )
@@ -355,12 +346,9 @@ class Campaign:
         self._history[i] = replace(self._history[i], excluded_because=because)
         self.by_hand = self.by_hand.excluding(self._maneuvers[i], because)
         what = "included again" if because is None else f"excluded: {because}"
-        self._log(f"manoeuvre {number} {what}", self._stream.now_s)
+        self._journal.write(f"manoeuvre {number} {what}", self._stream.now_s)
         self._decide()
         self._learn()
-
-    def _log(self, text: str, at_s: float = math.nan) -> None:
-        self._notices.add([f"{at_s:.1f} s: {text}" if math.isfinite(at_s) else text])
 
     def _index(self, number: int) -> int:
         return [maneuver.number for maneuver in self._maneuvers].index(number)

@@ -1,6 +1,7 @@
-"""What an engineer decides by hand on the flights of a campaign: marks, exclusions, notes, remarks.
+"""Decisions by hand on the flights of a campaign: marks, exclusions, notes, remarks.
 
-Each decision is bound to vehicle time and not to a manoeuvre's number: numbers move when a mark is added.
+Each decision is bound to vehicle time and not to a manoeuvre's number, because numbers move when a mark is
+added.
 """
 
 from collections.abc import Callable, Sequence
@@ -20,12 +21,12 @@ class Remark:
     """Vehicle time, s since boot."""
     text: str
     boot: int = 0
-    """Which power-on, 0 for the first in the log."""
+    """Number of the power-on, 0 for the first in the log."""
     flight: int = 0
-    """Which log or link of the campaign, 0 for the first."""
+    """Number of the campaign's log or link, 0 for the first."""
 
     def concerns(self, maneuver: Maneuver) -> bool:
-        """Whether the moment lies in a manoeuvre, its lead-in included."""
+        """Return whether the moment lies in a manoeuvre, including its lead-in."""
         span = maneuver.span
         here = (self.flight, self.boot) == maneuver.power_on
         return here and span.start_s - LEAD_IN_S <= self.at_s < span.end_s
@@ -36,60 +37,61 @@ class ByHand:
     """All decisions by hand, in the order in which they were made."""
 
     marks: tuple[Mark, ...] = ()
-    """Stretches that the engineer calls manoeuvres."""
+    """Stretches that the engineer marked as manoeuvres."""
     excluded: tuple[Remark, ...] = ()
-    """Manoeuvres taken out of every decision, each with the reason."""
+    """Manoeuvres excluded from every decision, each with the reason."""
     notes: tuple[Remark, ...] = ()
-    """What was written beside manoeuvres."""
+    """Notes on manoeuvres."""
     remarks: tuple[Remark, ...] = ()
     """Moments marked in the event log."""
 
     def excluded_because(self, maneuver: Maneuver) -> str | None:
-        """The reason for which a manoeuvre is taken out; None for one that counts."""
+        """Return the reason for which a manoeuvre is excluded; None for a manoeuvre that counts."""
         return next((r.text for r in self.excluded if r.concerns(maneuver)), None)
 
     def notes_on(self, maneuver: Maneuver) -> tuple[str, ...]:
-        """What was written beside a manoeuvre."""
+        """Return the notes on a manoeuvre."""
         return tuple(r.text for r in self.notes if r.concerns(maneuver))
 
     def excluding(self, maneuver: Maneuver, because: str | None) -> "ByHand":
-        """The decisions with a manoeuvre taken out for a reason, or with None taken in again."""
+        """Return the decisions with a manoeuvre excluded for a reason, or included again where the reason is
+        None."""
         others = tuple(r for r in self.excluded if not r.concerns(maneuver))
         added = () if because is None else (_on(maneuver, because),)
         return replace(self, excluded=(*others, *added))
 
     def noting(self, maneuver: Maneuver, text: str) -> "ByHand":
-        """The decisions with a further note on a manoeuvre."""
+        """Return the decisions with a further note on a manoeuvre."""
         return replace(self, notes=(*self.notes, _on(maneuver, text)))
 
     def remarking(self, remark: Remark) -> "ByHand":
-        """The decisions with a further moment marked in the event log."""
+        """Return the decisions with a further moment marked in the event log."""
         return replace(self, remarks=(*self.remarks, remark))
 
     def marking(self, mark: Mark) -> "ByHand":
-        """The decisions with a further mark."""
+        """Return the decisions with a further mark."""
         return replace(self, marks=(*self.marks, mark))
 
     def on_flight(self, flight: int) -> "ByHand":
-        """The decisions on one log or link, as if it were the only one."""
+        """Return the decisions on one log or link, as if it were the only one."""
         return self._each(lambda one: [replace(one, flight=0)] if one.flight == flight else [])
 
     def as_flight(self, flight: int) -> "ByHand":
-        """The decisions on a log or link that is read alone, as those on a flight of a campaign."""
+        """Return the decisions on a log or link that is read alone, as those on a flight of a campaign."""
         return self._each(lambda one: [replace(one, flight=flight)])
 
     def _each(self, changed: Callable[[Any], list[Any]]) -> "ByHand":
-        """The decisions, each of them as ``changed`` gives it."""
+        """Return the decisions with ``changed`` applied to each of them."""
         sections = (self.marks, self.excluded, self.notes, self.remarks)
         return ByHand(*(tuple(new for one in section for new in changed(one)) for section in sections))
 
 
 NOTHING = ByHand()
-"""No decision by hand."""
+"""Decisions by hand where there are none."""
 
 
 def on_all(decided: Sequence[ByHand]) -> ByHand:
-    """What was decided on each log of a campaign, together."""
+    """Return the decisions on all logs of a campaign, from those on each log."""
     flights = [one.as_flight(flight) for flight, one in enumerate(decided)]
     return ByHand(
         tuple(mark for one in flights for mark in one.marks),

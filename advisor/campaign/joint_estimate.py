@@ -1,8 +1,9 @@
-"""The joint estimate over the accepted manoeuvres, sought when somebody asks for it.
+"""The joint estimate over the accepted manoeuvres, computed on request.
 
-The work of a joint estimate grows with its manoeuvres. No decision waits for it but the servo's lag. During
-the flight the newest manoeuvres are estimated together, so that the two-hundredth verdict comes as soon as
-the seventh. At the end all are, from the data alone, whatever was estimated on the way.
+The work of a joint estimate grows with the number of manoeuvres. Of all decisions, only the servo's lag needs
+the joint estimate. During the flight only the newest manoeuvres are estimated together, so that the
+two-hundredth verdict comes as soon as the seventh. At the end all accepted manoeuvres are estimated together,
+from the data alone.
 """
 
 from collections.abc import Sequence
@@ -14,18 +15,18 @@ from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import estimate_jointly
 
 NEWEST = 7
-"""Accepted manoeuvres that are estimated together during the flight: a whole campaign of the paper. The seven
-of ``logs/arduplane-calm.tlog`` tell the servo's lag to 5 %. Each further one takes some 0.1 s more of
-processor time at every verdict."""
+"""Number of newest accepted manoeuvres that are estimated together during the flight: a whole campaign of the
+paper. The seven manoeuvres of ``logs/arduplane-calm.tlog`` give the servo's lag to 5 %. Each further
+manoeuvre takes some 0.1 s more of processor time at every verdict."""
 
 
 class Together:
-    """Estimates manoeuvres jointly; the newest answer is kept.
+    """Estimates manoeuvres jointly and keeps the newest result.
 
     Parameters
     ----------
     aircraft
-        As the crew gives it: what was learnt on the way does not enter.
+        The crew's aircraft, without quantities identified during the flight.
     """
 
     def __init__(self, aircraft: Aircraft) -> None:
@@ -34,7 +35,7 @@ class Together:
         self._found: Estimate | None = None
 
     def estimate(self, maneuvers: Sequence[Maneuver]) -> Estimate | None:
-        """The joint estimate over manoeuvres; None where there is none."""
+        """Return the joint estimate over manoeuvres; None without manoeuvres."""
         if len(maneuvers) != len(self._maneuvers) or not all(map(is_, maneuvers, self._maneuvers)):
             found = estimate_jointly(maneuvers, self._aircraft)
             self._maneuvers = tuple(maneuvers)

@@ -1,4 +1,5 @@
-"""The estimate of the manoeuvre being flown, as it settles, and when more of it adds nothing."""
+"""The running estimate of the manoeuvre being flown, and the moment at which further response adds
+nothing."""
 
 from collections import deque
 from dataclasses import dataclass
@@ -11,23 +12,23 @@ from advisor.oem.estimate import Estimate
 from advisor.oem.following import Follower
 
 REFRESH_S = 0.2
-"""Vehicle time between two estimates: eyes follow no faster."""
+"""Vehicle time between two estimates, s. Eyes follow no faster."""
 SPAN_S = 0.5
-"""The standard deviations are compared over this much further response."""
+"""Further response over which the standard deviations are compared, s."""
 GAIN = 0.01
-"""Less relative improvement of every standard deviation than this is none worth waiting for."""
+"""Least relative improvement of any standard deviation over ``SPAN_S`` that is worth waiting for."""
 
 
 @dataclass(frozen=True, slots=True)
 class Settled:
-    """Where the estimate of the running manoeuvre stands."""
+    """State of the running manoeuvre's estimate."""
 
     estimate: Estimate
     enough: str | None
 
 
 class Settling:
-    """Estimates again as the manoeuvre being flown grows."""
+    """Estimates again while the manoeuvre being flown grows."""
 
     def __init__(self, aircraft: Aircraft) -> None:
         self._follower = Follower(aircraft)
@@ -37,7 +38,7 @@ class Settling:
         self._settled: Settled | None = None
 
     def follow(self, flying: Maneuver | None) -> Settled | None:
-        """Where the estimate stands with the data so far; None while there is none."""
+        """Return the estimate from the data so far; None without one."""
         if flying is None:
             self._number, self._settled = None, None
             return None
@@ -61,4 +62,4 @@ class Settling:
         if newest_s - since_s < 0.9 * SPAN_S:
             return None
         gain = float(np.max(1.0 - self._stds[-1][1] / before))
-        return "enough: recover, more free response adds nothing" if gain < GAIN else None
+        return "enough: recover; more free response adds nothing" if gain < GAIN else None

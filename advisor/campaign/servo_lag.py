@@ -1,7 +1,7 @@
-"""What a campaign learns of the instruments on the way, and uses from then on.
+"""The servo's lag, identified during a campaign and used in every later estimate.
 
-A servo's lag that the crew does not give is estimated from all accepted manoeuvres together. As soon as the
-lag is known to a tenth, single estimates, verdicts and criteria are those with the lag.
+A lag that the crew does not give is estimated from all accepted manoeuvres together. As soon as its standard
+deviation is at most a tenth of the lag, single estimates, verdicts and criteria use the lag.
 """
 
 from dataclasses import replace
@@ -15,35 +15,36 @@ from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.instruments import KNOWN_TO
 
 CONTRADICTS = 3.0
-"""Standard deviations between two estimates of one derivative that chance does not make."""
+"""Difference between two estimates of one derivative, in standard deviations, that counts as a
+contradiction."""
 
 
 def may_learn(aircraft: Aircraft, all_of_them: bool) -> bool:
-    """Whether a joint estimate may tell more of the servo than is known.
+    """Return whether a joint estimate may improve the knowledge of the servo's lag.
 
     Parameters
     ----------
     aircraft
-        As the crew gives it, with what was learnt before.
+        The crew's aircraft, with a lag that was identified before.
     all_of_them
-        Whether the joint estimate is made from all accepted manoeuvres. The newest alone tell a lag that is
-        known already no better.
+        Whether the joint estimate is made from all accepted manoeuvres. The newest alone do not improve a lag
+        that is known already.
     """
     elevator = aircraft.elevator
     return elevator.lag_s is None and (elevator.lag_found_s is None or all_of_them)
 
 
 def learnt(aircraft: Aircraft, model: Estimate | None, *, exactly: bool = False) -> Aircraft:
-    """The aircraft with the servo's lag as the joint estimate tells it; the same one when nothing is new.
+    """Return the aircraft with the servo's lag from the joint estimate; unchanged without news.
 
     Parameters
     ----------
     aircraft
-        As the crew gives it, with what was learnt before.
+        The crew's aircraft, with a lag that was identified before.
     model
         Joint estimate over the accepted manoeuvres, made with the lag unknown.
     exactly
-        Take the newest value even when it lies within its own error of the one used, as at the end of a log.
+        Take the newest value even within its standard deviation of the value in use, as at the end of a log.
     """
     elevator = aircraft.elevator
     lag = model.instrument("servo_lag_s") if model is not None else None
@@ -57,10 +58,10 @@ def learnt(aircraft: Aircraft, model: Estimate | None, *, exactly: bool = False)
 def reserved(
     verdict: ManeuverVerdict, estimate: Estimate | NoEstimate, model: Estimate | None
 ) -> ManeuverVerdict:
-    """The verdict, without praise where the joint estimate contradicts the control derivative.
+    """Return the verdict, with a caution where the joint estimate contradicts the control derivative.
 
-    A record that does not tell the servo's lag by itself has M_δe wrong by up to a factor of two, at a fit
-    as good as any, and with a small stated error.
+    A record that does not determine the servo's lag alone has M_δe wrong by up to a factor of two. The fit of
+    such a record is as good as any, and the stated error is small.
     """
     if model is None or isinstance(estimate, NoEstimate) or not verdict.accepted:
         return verdict

@@ -1,4 +1,4 @@
-"""One manoeuvre on its own: its estimate, what speaks against it, what belongs on its verdict."""
+"""One manoeuvre on its own: its estimate, objections to it, and cautions for its verdict."""
 
 import math
 
@@ -16,7 +16,7 @@ from advisor.oem.surface import Servo
 
 
 def assess(maneuver: Maneuver, aircraft: Aircraft, method: Method = "gauss-newton") -> Flown:
-    """Estimate a manoeuvre and examine it, before any rule compares it with others."""
+    """Estimate a manoeuvre and examine it, before any rule compares it with other manoeuvres."""
     estimated = estimate(maneuver, aircraft, method=method)
     return Flown(
         estimated,
@@ -29,7 +29,7 @@ def assess(maneuver: Maneuver, aircraft: Aircraft, method: Method = "gauss-newto
 
 
 def _servo(estimated: Estimate | NoEstimate, aircraft: Aircraft) -> Servo:
-    """The servo as the estimate has it: given, or told by the record."""
+    """Return the servo of the estimate: given by the crew, or identified from the record."""
     lag_s = aircraft.elevator.lag_s or 0.0
     if isinstance(estimated, Estimate):
         lag_s = estimated.servo_lag_s
@@ -37,14 +37,14 @@ def _servo(estimated: Estimate | NoEstimate, aircraft: Aircraft) -> Servo:
 
 
 def cautions_of(maneuver: Maneuver, estimated: Estimate | NoEstimate, aircraft: Aircraft) -> list[str]:
-    """What a reader of the estimate should know, without any effect on the verdict."""
+    """Return cautions for the reader of an estimate. They have no effect on the verdict."""
     cautions = []
     if maneuver.span.closed_by in MARKED.values():
         cautions.append(maneuver.span.closed_by)
     if closes_pitch_loop(maneuver.mode):
         cautions.append(
             f"flown in {maneuver.mode} with the pitch loop closed: elevator, angle of attack and pitch rate "
-            "move together and are hard to tell apart"
+            "move together and are hard to distinguish"
         )
     if not isinstance(estimated, Estimate):
         return cautions
@@ -58,13 +58,13 @@ def cautions_of(maneuver: Maneuver, estimated: Estimate | NoEstimate, aircraft: 
 
 
 def _shows(estimated: Estimate, gust_rad: float) -> bool:
-    """Whether gusts are more than nothing in the digits that people read."""
+    """Return whether gusts differ from zero in the digits that people read."""
     size = math.degrees(gust_rad) if estimated.airspeed_m_s is None else gust_rad * estimated.airspeed_m_s
     return round(size, 1) > 0.0
 
 
 def _uncertain_alpha(maneuver: Maneuver, estimated: Estimate, aircraft: Aircraft) -> list[str]:
-    """What the kinematics say against alpha and the fit does not allow for."""
+    """Return doubts of the kinematics about the angle of attack that the fit does not allow for."""
     if estimated.instrument("vane_arm_m") or estimated.instrument("alpha_delay_s"):
         return []
     check = check_alpha(

@@ -1,4 +1,4 @@
-"""What a campaign knows at one moment: everything a face may show, frozen."""
+"""State of a campaign at one moment, frozen, for screens, texts and documents."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -22,17 +22,17 @@ class JudgedManeuver:
     estimate: Estimate | NoEstimate
     verdict: ManeuverVerdict
     excluded_because: str | None = None
-    """Set when an engineer took it out by hand."""
+    """Reason for which an engineer excluded the manoeuvre; None: the manoeuvre counts."""
     notes: tuple[str, ...] = ()
-    """What the engineer wrote beside it."""
+    """Notes of the engineer on the manoeuvre."""
 
 
 @dataclass(frozen=True, slots=True)
 class CampaignState:
-    """Everything a face may show, as of the newest sample."""
+    """State of a campaign after its newest sample."""
 
     vehicle: Vehicle | None
-    """None before the first heartbeat."""
+    """Vehicle that is heard. None before the first heartbeat."""
     now_s: float
     """Vehicle time of the newest sample, seconds since boot."""
     duration_s: float
@@ -42,38 +42,36 @@ class CampaignState:
     maneuvers: tuple[JudgedManeuver, ...]
     flight_test: FlightTestVerdict
     model: Estimate | None
-    """Joint estimate over the newest accepted manoeuvres; over all of them once the flight has ended."""
+    """Joint estimate: over the newest accepted manoeuvres in flight, over all of them after the end."""
     flying: Maneuver | None = None
-    """The manoeuvre being flown now, cut so far."""
+    """Manoeuvre being flown, up to the newest sample. None between manoeuvres."""
     marking_since_s: float | None = None
-    """When the mark began that a hand has still to end, s since boot."""
+    """Begin of an open mark by hand, s since boot. None without an open mark."""
     settling: Estimate | None = None
-    """Estimate from the manoeuvre being flown, refreshed as it goes."""
+    """Estimate from the manoeuvre being flown, refreshed as the manoeuvre grows."""
     enough: str | None = None
-    """Set when further free response would add nothing: the pilot may recover."""
+    """Advice to recover, set when further free response would add nothing."""
     estimate_from: tuple[int, ...] = ()
     """Numbers of the manoeuvres that ``model`` is made from."""
     elevator_notes: tuple[str, ...] = ()
-    """What is assumed of the elevator's scale and sense, in sentences."""
+    """Assumptions about the elevator's scale and sign, as sentences."""
     reader_notes: tuple[str, ...] = ()
-    """What the reader of the log had to choose or to leave out, in sentences."""
+    """Choices and omissions of the log's reader, as sentences."""
     elevator_guess: Guess | None = None
-    """Which output may be the elevator, while nothing says it."""
+    """Guess of the elevator's output, while no parameter states the output."""
     other_vehicles: tuple[int, ...] = ()
-    """System ids of further vehicles heard, rising."""
+    """System ids of the other vehicles on the link, rising."""
     no_data: tuple[Problem, ...] = ()
-    """Why what arrives at present cannot serve; empty when it can."""
+    """Reasons for which the present data cannot serve; empty while they can."""
     mark_notes: tuple[str, ...] = ()
     """Marks that could not be used, each with its reason."""
     notices: tuple[str, ...] = ()
-    """Sentences for the event log, the newest of them, oldest first."""
-    notices_before: int = 0
-    """How many sentences came before ``notices`` and are kept no longer."""
+    """Newest sentences for the event log with the vehicle's time, oldest first."""
     flight: int = 0
-    """Which log or link is being heard, 0 for the first."""
+    """Number of the log or link being heard, 0 for the first."""
     boot: int = 0
-    """Which power-on of the vehicle in this log or link, 0 for the first."""
+    """Number of the vehicle's power-on in this log or link, 0 for the first."""
     flights: tuple[FlightHeard, ...] = ()
-    """Every log and link so far, the one being heard last."""
+    """Every log and link so far. The one being heard is the last."""
     activity: tuple[Activity, ...] = ()
-    """Movements of the elevator that were no test inputs, oldest first; alike neighbours are one."""
+    """Movements of the elevator that were no test inputs, oldest first. Similar neighbours are one entry."""

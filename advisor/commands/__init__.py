@@ -1,1 +1,1 @@
-"""One module a command; the command line imports only the one that is called."""
+"""One module for each command; the command line imports only the module that it calls."""

@@ -1,4 +1,4 @@
-"""``advisor analyze``: logs judged without a screen."""
+"""``advisor analyze``: verdicts on the manoeuvres of a log, as text or JSON."""
 
 import json
 from pathlib import Path
@@ -41,10 +41,10 @@ if TYPE_CHECKING:
     type=click.Choice(["gauss-newton", "nelder-mead"]),
     default="gauss-newton",
     show_default=True,
-    help="Search for each manoeuvre's optimum; nelder-mead is the paper's, slower by far.",
+    help="Search for each manoeuvre's optimum. nelder-mead is the paper's method, and far slower.",
 )
 @click.option(
-    "--all", "every_movement", is_flag=True, help="List also what moved the elevator and was no test input."
+    "--all", "every_movement", is_flag=True, help="List also the elevator movements that were no test inputs."
 )
 @json_option
 def command(
@@ -58,10 +58,10 @@ def command(
     every_movement: bool,
     as_json: bool,
 ) -> int:
-    """Every manoeuvre's verdict, the estimates, stop or continue: as text, or as one JSON document.
+    """Print every manoeuvre's verdict, the estimates, and stop or continue.
 
-    Several logs are one campaign of several flights: manoeuvres are numbered through, and one that two logs
-    hold counts once.
+    Several logs are one campaign of several flights. Manoeuvres are numbered through all logs, and a
+    manoeuvre that two logs hold counts once.
 
     \b
     Example:
@@ -111,7 +111,8 @@ def command(
 def _analyze(
     series: "LogSeries", campaign: "Campaign"
 ) -> "tuple[CampaignState | None, dict[int, tuple[Problem, ...]]]":
-    """The campaign at the end of its logs, None when none is readable; why logs do not count, by flight."""
+    """Return the campaign at the end of its logs and, by flight, the reasons for which logs do not count. The
+    campaign is None without a readable log."""
     for columns in series.batches():
         campaign.feed(columns)
     unreadable: dict[int, tuple[Problem, ...]] = {

@@ -26,23 +26,30 @@ if TYPE_CHECKING:
     Run = Callable[[Sequence[Task]], Iterator[tuple[Task, Analyzed | Exception]]]
 
 INDEX = "index.html"
-"""Page of all flights."""
+"""Name of the page of all flights."""
 KEPT = "flights"
-"""Folder of what came of each log, by its key."""
+"""Folder of each log's result, by the key of the log."""
 
 
 @click.command
 @click.argument(
     "places", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="LOGS-OR-FOLDERS..."
 )
-@click.option("-o", "--out", required=True, type=click.Path(path_type=Path), metavar="DIR", help="Results.")
+@click.option(
+    "-o",
+    "--out",
+    required=True,
+    type=click.Path(path_type=Path),
+    metavar="DIR",
+    help="Folder of the results.",
+)
 @aircraft_option
 @click.option(
     "--aircraft-map",
     "map_file",
     type=click.Path(path_type=Path),
     metavar="MAP.yaml",
-    help="Several aircraft: patterns of logs and their aircraft files, one a line.",
+    help="For several aircraft: one line for each pattern of logs, with its aircraft file.",
 )
 @running_options
 def command(
@@ -53,10 +60,11 @@ def command(
     workers: int | None,
     scheduler: str | None,
 ) -> int:
-    """Analyze every log once; write one row a flight, one a manoeuvre, and what changed over the flights.
+    """Analyze every log once. Write a table of flights, a table of manoeuvres, and the changes over the
+    flights.
 
-    What came of each log is kept in DIR/flights: the next run with the same logs, configuration and advisor
-    analyzes what is new.
+    Each log's result is kept in DIR/flights. The next run with equal logs, configuration and advisor analyzes
+    only new logs.
 
     \b
     Example:
@@ -82,7 +90,7 @@ def command(
 def _tasks(
     logs: Sequence[Path], aircraft_file: Path | None, map_file: Path | None
 ) -> "tuple[list[Task], dict[Path, Analyzed]]":
-    """What is to be analyzed, each log once; and the results of logs that cannot be."""
+    """Return the logs to analyze, each once, and the results of logs that cannot be analyzed."""
     from advisor.batch.flight import Task, failed, sha256_of
     from advisor.batch.logs import read_map
 
@@ -112,7 +120,7 @@ def _tasks(
 
 
 def _analyzed(tasks: "Sequence[Task]", out: Path, run: "Run") -> "dict[Path, Analyzed]":
-    """The result of every task: kept before, or made now and kept."""
+    """Return the result of every task: kept from an earlier run, or made now and kept."""
     from advisor.batch.flight import failed, keep, kept
 
     places = {task.log: out / KEPT / f"{task.key}.json" for task in tasks}
@@ -132,7 +140,7 @@ def _analyzed(tasks: "Sequence[Task]", out: Path, run: "Run") -> "dict[Path, Ana
 
 
 def _fault(task: "Task", error: Exception) -> Problem:
-    """A log whose analysis ended with an error, in a sentence."""
+    """Return the problem of a log whose analysis ended with an error."""
     from concurrent.futures import BrokenExecutor
 
     if isinstance(error, ConfigurationError):
@@ -151,7 +159,7 @@ def _fault(task: "Task", error: Exception) -> Problem:
 
 
 def _told(results: "Sequence[Analyzed]", out: Path) -> int:
-    """Write the tables, and say what failed and what changed."""
+    """Write the tables, and print failures and changes."""
     from advisor.batch.index import index_page
     from advisor.batch.tables import changes_of, in_order, mixed_up, tables_of
     from advisor.exporting.formats import write_formats

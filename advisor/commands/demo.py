@@ -1,4 +1,4 @@
-"""``advisor demo``: the bundled aircraft flies, the advisor advises."""
+"""``advisor demo``: the bundled aircraft flies, and the advisor advises."""
 
 from functools import partial
 from pathlib import Path
@@ -8,15 +8,16 @@ import click
 from advisor.aircraft import Rule
 from advisor.commands.options import RULES, aircraft_option, read_aircraft
 from advisor.commands.screen import advise, headless
+from advisor.first_run import compile_once
 from advisor.interrupt import in_order
 
 HEADLESS_SPEED = 10.0
 MEANING = {
     "continuous": "the paper's rule of continuous improvement, Eqs. (10) and (12)",
     "separate": "the paper's rule of separate computation, Eqs. (11) and (12)",
-    "information": "the rule of real flights, by what the model predicts",
+    "information": "the rule for real flights, which judges the model's prediction",
 }
-"""What each rule is, for the first line and the title."""
+"""Rule to its meaning, for the first line and the title."""
 
 
 @click.command
@@ -31,19 +32,19 @@ MEANING = {
 @click.option(
     "--speed",
     type=click.FloatRange(min=0.1, max=50.0),
-    help="Multiple of real time; 1 by default, 10 without a screen.",
+    help="Multiple of real time. Default: 1, or 10 without a screen.",
 )
 @click.option(
     "--seed", type=click.IntRange(0), default=1, show_default=True, help="Seed of the instruments' noise."
 )
-@click.option("--record", "record_to", type=click.Path(path_type=Path), help="Keep the link's tlog here.")
+@click.option("--record", "record_to", type=click.Path(path_type=Path), help="File for a tlog of the link.")
 @aircraft_option
 @click.option(
     "--rule",
     type=click.Choice(RULES),
     default="continuous",
     show_default=True,
-    help="Rule that decides (all are shown); continuous and separate are the paper's.",
+    help="Rule that decides; the others are shown. continuous and separate are the paper's.",
 )
 def command(
     flown: str,
@@ -53,10 +54,10 @@ def command(
     aircraft_file: Path | None,
     rule: Rule,
 ) -> None:
-    """The bundled aircraft flies the paper's seven manoeuvres over a real MAVLink link on loopback.
+    """Fly the bundled aircraft through the paper's seven manoeuvres, over a real MAVLink link on loopback.
 
-    The paper's own rule decides, unless --rule names another; on real flights that is information.
-    Without a terminal, or with HEADLESS=1, the same verdicts come as text.
+    The paper's own rule decides, unless --rule names another. On real flights the default is information.
+    Without a terminal, or with HEADLESS=1, the verdicts come as text.
 
     \b
     Example:
@@ -69,6 +70,7 @@ def command(
 
     if speed is None:
         speed = HEADLESS_SPEED if headless() else 1.0
+    compile_once(partial(click.echo, err=True), {"bundled aircraft": Demonstration.fly_once})
     flight = Demonstration(flown, speed, seed, record_to)
     if headless():
         click.echo(f"rule {rule} decides: {MEANING[rule]}; --rule chooses another")

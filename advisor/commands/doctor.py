@@ -1,4 +1,4 @@
-"""``advisor doctor``: is this telemetry good enough, before flying."""
+"""``advisor doctor``: whether the telemetry is good enough, before a flight."""
 
 import json
 import time
@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
+from click.shell_completion import CompletionItem
 
 from advisor.aircraft import Aircraft
 from advisor.commands.options import (
@@ -25,12 +26,18 @@ _LOG_ENDINGS = (".tlog", ".bin", ".ulg")
 
 
 @click.command
-@click.argument("target", metavar="LOG|CONN")
-@click.option(
-    "--seconds", type=click.FloatRange(min=1.0), default=15.0, show_default=True, help="Time to listen."
+@click.argument(
+    "target",
+    metavar="LOG|CONN",
+    shell_complete=lambda ctx, parameter, text: [CompletionItem(text, type="file")],
 )
 @click.option(
-    "--request-rates", is_flag=True, help="Ask the vehicle for 50 Hz streams and its servo set-up first."
+    "--seconds", type=click.FloatRange(min=1.0), default=15.0, show_default=True, help="Time to listen, s."
+)
+@click.option(
+    "--request-rates",
+    is_flag=True,
+    help="First ask the vehicle for streams of 50 Hz and for its servo parameters.",
 )
 @aircraft_option
 @target_system_option
@@ -43,9 +50,9 @@ def command(
     target_system: int | None,
     as_json: bool,
 ) -> int:
-    """Is this telemetry good enough to identify the aircraft, and what to change if not.
+    """Check whether the telemetry is good enough to identify the aircraft, and say what to change.
 
-    Reads a log, or listens to a live link. Nothing is sent unless --request-rates asks for it.
+    The command reads a log, or listens to a live link. Nothing is sent unless --request-rates asks for it.
 
     \b
     Example:
@@ -61,15 +68,22 @@ def command(
             findings = _examine_link(target, aircraft, target_system, seconds, request_rates)
     except UnusableInputError as error:
         problem = error.problem
+    commands: tuple[str, ...] = ()
+    if findings is not None:
+        from advisor.doctor.next_steps import Examined, next_commands
+
+        file = str(aircraft_file) if aircraft_file else None
+        has_model = bool(aircraft.model) or aircraft.simulator is not None
+        commands = next_commands(findings, Examined(target, _is_log(target), file, target_system, has_model))
     if as_json:
         from advisor.doctor.document import doctor_document
 
-        click.echo(json.dumps(doctor_document(findings, problem), allow_nan=False, indent=1))
+        click.echo(json.dumps(doctor_document(findings, problem, commands), allow_nan=False, indent=1))
     elif findings is not None:
         from advisor.doctor.text import ExaminationText
         from advisor.report.console import PlainConsole
 
-        PlainConsole(soft_wrap=True).print(ExaminationText(findings))
+        PlainConsole(soft_wrap=True).print(ExaminationText(findings, commands))
     sentence = problem or _first_obstacle(findings)
     if sentence is None:
         return 0
@@ -78,7 +92,8 @@ def command(
 
 
 def _is_log(target: str) -> bool:
-    """A file, or what can only be meant as one: neither a network address nor a device."""
+    """Return whether the target is a file, or can only be meant as a file: neither a network address nor a
+    device."""
     if Path(target).is_file() or target.lower().endswith(_LOG_ENDINGS):
         return True
     return ":" not in target and "," not in target and not target.startswith("/dev/")

@@ -1,4 +1,4 @@
-"""``advisor export``: the flight's data for other tools."""
+"""``advisor export``: a flight's data for other tools."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -36,19 +36,19 @@ if TYPE_CHECKING:
     required=True,
     type=click.Path(path_type=Path),
     metavar="DIR|FILE",
-    help="Folder of the export; with --cut the log to write.",
+    help="Folder to write to; with --cut, the log to write.",
 )
 @click.option(
     "--format",
     "formats",
     metavar="NAMES",
-    help=f"Formats, parted by commas: {', '.join(WRITERS)}. Default: csv.",
+    help=f"Formats, separated by commas: {', '.join(WRITERS)}. Default: csv.",
 )
 @click.option(
     "--cut",
     type=click.IntRange(1),
     metavar="N",
-    help="Write the packets of manoeuvre N as a tlog of its own instead.",
+    help="Write only the packets of manoeuvre N, as a tlog.",
 )
 @aircraft_option
 @rule_option
@@ -66,9 +66,9 @@ def command(
     marks: "tuple[Mark, ...]",
     no_marks: bool,
 ) -> int:
-    """Channels, manoeuvres, estimates and residuals for other tools, with names and units.
+    """Write channels, manoeuvres, estimates and residuals for other tools, with names and units.
 
-    Numbers are those of `advisor analyze` on the logs. docs/export.md lists files, units and the grid.
+    The numbers are those of `advisor analyze`. The page of exports lists files, units and grid.
 
     \b
     Example:

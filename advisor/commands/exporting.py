@@ -19,7 +19,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 
 def export_option(command: F) -> F:
-    """``--export FORMAT:FILE``, repeatable, given to the command as ``exports``."""
+    """Add the option ``--export FORMAT:FILE``, repeatable, which the command receives as ``exports``."""
     return click.option(
         "--export",
         "exports",
@@ -35,12 +35,12 @@ def orders_of(exports: Sequence[str], aircraft: Aircraft, inputs: Sequence[Path 
     Parameters
     ----------
     inputs
-        Files that are read, or written by another option: no order may name one of them.
+        Files that the command reads, or that another option writes. No order may name one of them.
 
     Raises
     ------
     ConfigurationError
-        An order cannot be carried out; one sentence says why.
+        An order cannot be carried out.
     """
     if not exports:
         return []
@@ -62,7 +62,7 @@ def orders_of(exports: Sequence[str], aircraft: Aircraft, inputs: Sequence[Path 
 
 
 def write_exports(orders: "list[Order]", found: "Diagnosis", aircraft: Aircraft) -> "list[Outcome]":
-    """Carry out the orders, and say on stderr what became of each."""
+    """Carry out the orders, and print the result of each on standard error."""
     if not orders:
         return []
     from advisor.report.exports.write import carry_out
@@ -78,7 +78,7 @@ def write_exports(orders: "list[Order]", found: "Diagnosis", aircraft: Aircraft)
 
 
 def listed(outcomes: "Sequence[Outcome]") -> list[dict[str, Any]]:
-    """``exports`` of the JSON document: the files written."""
+    """Return the value of ``exports`` in the JSON document: the files written."""
     return [
         {"format": one.order.format, "file": str(one.order.file), "left_out": list(one.left_out)}
         for one in outcomes

@@ -1,4 +1,4 @@
-"""``advisor gap``: why does the real aircraft not fly like our simulator."""
+"""``advisor gap``: why the real aircraft does not fly like the simulator."""
 
 import json
 import os
@@ -49,7 +49,7 @@ _OF_A_PLAN = {
 @click.option(
     "--holdout",
     type=click.IntRange(1),
-    help="Measure on so many manoeuvres, the last ones, with numbers fitted without them.",
+    help="Number of last manoeuvres to hold out: the gap is measured there, and the fit uses the others.",
 )
 @click.option(
     "--simulator",
@@ -57,16 +57,27 @@ _OF_A_PLAN = {
     metavar="SPEC",
     help="Your own simulator: linear, jsbsim:MODEL, fmu:FILE, python:module:factory or log:FILE.",
 )
-@click.option("--out", type=click.Path(path_type=Path), help="Where to write the improved simulator.")
+@click.option("--out", type=click.Path(path_type=Path), help="File for the improved simulator.")
 @export_option
-@click.option("--why", is_flag=True, help="Say every decision on the way: a number, its limit, the margin.")
-@click.option("--foresee", is_flag=True, help="No flight: what would this plan show? Needs an aircraft file.")
 @click.option(
-    "--plan", default="3211,rev,rev,3211,rev,3211,rev", show_default=True, help="Manoeuvres to fly."
+    "--why", is_flag=True, help="Print every decision on the way: its number, its limit, the margin."
 )
-@click.option("--rate", "rate_hz", type=float, default=50.0, show_default=True, help="Stream rate in Hz.")
-@click.option("--amplitude-deg", type=float, default=2.0, show_default=True, help="Elevator step.")
-@click.option("--without", default="", help="Channels the plan will not have, e.g. a_z,theta.")
+@click.option(
+    "--foresee", is_flag=True, help="Read no log; say what a planned flight would show. Needs --aircraft."
+)
+@click.option(
+    "--plan",
+    default="3211,rev,rev,3211,rev,3211,rev",
+    show_default=True,
+    help="With --foresee: manoeuvres to fly.",
+)
+@click.option(
+    "--rate", "rate_hz", type=float, default=50.0, show_default=True, help="With --foresee: stream rate, Hz."
+)
+@click.option(
+    "--amplitude-deg", type=float, default=2.0, show_default=True, help="With --foresee: elevator step, deg."
+)
+@click.option("--without", default="", help="With --foresee: missing channels, e.g. a_z,theta.")
 @json_option
 def command(
     logs: tuple[Path, ...],
@@ -102,7 +113,7 @@ def command(
     if foresee:
         if logs:
             raise ConfigurationError(
-                f"advisor gap --foresee makes its flight up and reads no log: leave out {logs[0]}, "
+                f"advisor gap --foresee plans a flight and reads no log: leave out {logs[0]}, "
                 "or leave out --foresee to diagnose it."
             )
         from advisor.report.gap_plan import print_foresight
@@ -152,7 +163,7 @@ def command(
         click.echo(
             f"{printable(str(out))} was not written: no cause was named and no number found wrong.", err=True
         )
-    # The servo that the simulator has itself is no part of what is added to it.
+    # The simulator's own servo is no part of the improvement.
     as_given = replace(compared.aircraft, simulator=aircraft.simulator, elevator=aircraft.elevator)
     outcomes = write_exports(orders, found, as_given)
     if as_json:
@@ -167,7 +178,7 @@ def command(
 
 
 def _refuse_foreign(foresee: bool) -> None:
-    """Refuse what only the other half of the command listens to: it would be ignored without a word."""
+    """Refuse options of the other mode of the command, which would be ignored without a word."""
     foreign = _OF_A_FLIGHT if foresee else _OF_A_PLAN
     given = click.get_current_context().get_parameter_source
     for name, option in foreign.items():

@@ -1,4 +1,4 @@
-"""``advisor live``: advise on a live link."""
+"""``advisor live``: advice on a live link."""
 
 from collections.abc import Sequence
 from functools import partial
@@ -15,7 +15,7 @@ from advisor.commands.options import (
     rule_option,
     target_system_option,
 )
-from advisor.commands.screen import advise
+from advisor.commands.screen import Show, advise
 from advisor.interrupt import STOPPED, in_order
 from advisor.printable import printable
 from advisor.problems import ConfigurationError
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     "--record",
     "record_to",
     metavar="FILE|DIR",
-    help="Recording's file, or its folder.",
+    help="File or folder for the recording.",
 )
 @click.option("--no-record", is_flag=True, help="Keep no recording of the link.")
 @click.option(
@@ -45,25 +45,31 @@ if TYPE_CHECKING:
     is_flag=False,
     flag_value=NEWEST,
     metavar="[REC]",
-    help="Take up the flight test of a recording, the newest by default; its options hold unless given anew.",
+    help="Continue the flight test of a recording (default: the newest), with its options unless given anew.",
 )
-@click.option("--request-rates", is_flag=True, help="Ask the vehicle for 50 Hz streams and its servo set-up.")
+@click.option(
+    "--request-rates", is_flag=True, help="Ask the vehicle for streams of 50 Hz and its servo parameters."
+)
 @click.option(
     "--announce", is_flag=True, help="Send each verdict and STOP to the ground stations (STATUSTEXT)."
 )
 @click.option(
     "--announce-to",
     metavar="CONN",
-    help="Send them to this connection instead, e.g. to a --master of MAVProxy.",
+    help="Send the announcements to this connection instead, e.g. to a --master of MAVProxy.",
 )
 @click.option(
     "--signing-key",
     type=click.Path(path_type=Path),
     metavar="FILE",
-    help="Sign what is sent, refuse what is not signed with this key.",
+    help="File with a key: sign sent packets, and refuse packets without its signature.",
 )
 @click.option(
-    "--source-system", type=click.IntRange(1, 255), default=254, show_default=True, help="Own system id."
+    "--source-system",
+    type=click.IntRange(1, 255),
+    default=254,
+    show_default=True,
+    help="System id of the advisor.",
 )
 @aircraft_option
 @rule_option
@@ -84,12 +90,13 @@ def command(
     rule: Rule | None,
     target_system: int | None,
     no_marks: bool,
+    show: Show | None = None,
 ) -> None:
-    """Advise while flying. Nothing is sent to the vehicle unless an option here asks for it.
+    """Advise during a flight. Nothing is sent to the vehicle unless an option here asks for it.
 
-    The link and its recording live in a process of their own. When this program ends without being
-    asked to, that process goes on recording, and --resume takes the flight test up.
-    Without a terminal, or with HEADLESS=1, the verdicts come as text.
+    The link and its recording run in a separate process. If this program ends unasked, that process goes on
+    recording, and --resume continues the flight test. Without a terminal, or with HEADLESS=1, the verdicts
+    come as text.
 
     \b
     Example:
@@ -101,7 +108,7 @@ def command(
         other = "--record" if record_to is not None else "--resume"
         raise ConfigurationError(f"{other} and --no-record contradict each other; give one of them.")
     if logs and resume is None:
-        raise ConfigurationError("LOG needs --resume: the flight test of these logs is taken up.")
+        raise ConfigurationError("LOG needs --resume, which continues the flight test of these logs.")
     from advisor.campaign.hand_decisions import NOTHING
     from advisor.campaign_file import CampaignFile
     from advisor.commands.resuming import Speaking, start_of, started
@@ -115,7 +122,7 @@ def command(
     for connection in filter(None, (start.campaign.master, announce_to)):
         parse_connection(connection)
     aircraft = start.campaign.parsed_aircraft(str(aircraft_file or start.recording))
-    # A recording that exists, and is not taken up, is another flight's, and so is what was decided on it.
+    # A recording that exists and is not taken up is another flight's, and so are the decisions on it.
     mine = start.goes_on or not (start.recording and start.recording.exists())
     by_hand = NOTHING if no_marks else _decided((*start.earlier, start.recording if mine else None))
     speaking = Speaking(
@@ -135,6 +142,8 @@ def command(
             by_hand=by_hand,
             kept=partial(_decided, (*start.earlier, process.recording)),
             names=[*(printable(log.name) for log in start.earlier), start.campaign.master],
+            logs=[*start.earlier, *recordings],
+            show=show,
         )
 
 
@@ -143,12 +152,12 @@ def _recorded(recordings: Sequence[Path]) -> str:
 
 
 def _ended(recordings: Sequence[Path]) -> str:
-    """What the crew is told when a signal ends the command."""
+    """Return the sentence for the crew when a signal ends the command."""
     return f"Stopped; the recording is {printable(str(recordings[0]))}." if recordings else STOPPED
 
 
 def _decided(flights: Sequence[Path | None]) -> "ByHand":
-    """What was decided by hand on these flights; on one that is not recorded, nothing is kept."""
+    """Return the decisions by hand on these flights. Without a recording, nothing is kept."""
     from advisor.campaign.hand_decisions import NOTHING, on_all
     from advisor.marks_file import read_by_hand
 

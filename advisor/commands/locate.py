@@ -1,4 +1,4 @@
-"""``advisor locate``: where the user's files are kept."""
+"""``advisor locate``: the places of the user's files."""
 
 import click
 
@@ -8,9 +8,9 @@ PLACES = ("config", "recordings")
 @click.command
 @click.argument("what", type=click.Choice(PLACES), default="config")
 def command(what: str) -> None:
-    """Print where settings (config) or the recordings of live links (recordings) are kept.
+    """Print the path of the settings (config) or of the recordings of live links (recordings).
 
-    The settings file need not exist; every key in it is optional: theme, screen, keys.
+    The settings file need not exist. Every key in the file is optional: theme, screen, keys.
 
     \b
     Example:

@@ -1,9 +1,9 @@
-"""A campaign without a screen, estimated in a process of its own and said line by line.
+"""A campaign without a screen: estimated in a separate process, and printed line by line.
 
-python -m advisor.commands.narrator
+    python -m advisor.commands.narrator
 
-When the process dies, the next one reads the source from its beginning and comes to the same lines;
-what was said before is not said again.
+When the estimating process dies, the next one reads the source from its beginning and comes to equal lines.
+Lines that were printed before are not printed again.
 """
 
 import os
@@ -36,7 +36,7 @@ READ_S = 0.2
 
 
 def narrate(task: Task, say: Callable[[str], object], warn: Callable[[str], object]) -> None:
-    """Have a campaign conducted in another process, to the end of its source.
+    """Conduct a campaign in another process, to the end of its source.
 
     Parameters
     ----------
@@ -116,13 +116,13 @@ def _send(pipe: IO[bytes], message: object) -> None:
 
 
 def _end_with(requests: IO[bytes]) -> None:
-    """Nothing more is asked: when the other side is gone, there is nobody to estimate for."""
+    """End the work when the other process is gone, for then nobody reads the estimates."""
     requests.read()
     os._exit(0)
 
 
 def main() -> None:
-    """Conduct one campaign from its task to its end; what breaks it off is the last message."""
+    """Conduct one campaign from its task to its end. An error that ends the campaign is the last message."""
     from advisor.campaign.campaign import Campaign
 
     interrupt.ignore()  # a signal is for the parent, which then closes the requests

@@ -1,4 +1,4 @@
-"""Options that commands share, so that they read and behave the same everywhere."""
+"""Options that commands share, so that they read and behave alike in every command."""
 
 import os
 from collections.abc import Callable, Iterator, Sequence
@@ -21,14 +21,14 @@ if TYPE_CHECKING:
 F = TypeVar("F", bound=Callable[..., Any])
 
 USAGE, UNUSABLE, INTERNAL = 2, 3, 70
-"""Exit codes: wrong usage or configuration, input that cannot serve, a fault of the advisor itself."""
+"""Exit codes: wrong usage or configuration; unusable input; a fault of the advisor itself."""
 NEWEST = "the newest"
 """Value of ``--resume`` without a recording."""
 RULES = ("continuous", "separate", "information")
 
 
 def aircraft_option(command: F) -> F:
-    """``--aircraft FILE``, given to the command as ``aircraft_file``."""
+    """Add the option ``--aircraft FILE``, which the command receives as ``aircraft_file``."""
     return click.option(
         "--aircraft",
         "aircraft_file",
@@ -39,51 +39,51 @@ def aircraft_option(command: F) -> F:
 
 
 def json_option(command: F) -> F:
-    """``--json``, given to the command as ``as_json``."""
+    """Add the option ``--json``, which the command receives as ``as_json``."""
     return click.option(
-        "--json", "as_json", is_flag=True, help="One JSON document on stdout, and nothing else there."
+        "--json", "as_json", is_flag=True, help="Print one JSON document on stdout, and nothing else there."
     )(command)
 
 
 def rule_option(command: F) -> F:
-    """``--rule``, overriding the aircraft file's."""
-    return click.option("--rule", type=click.Choice(RULES), help="Rule that decides (all are shown).")(
+    """Add the option ``--rule``, which overrides the aircraft file's rule."""
+    return click.option("--rule", type=click.Choice(RULES), help="Rule that decides; the others are shown.")(
         command
     )
 
 
 def target_system_option(command: F) -> F:
-    """``--target-system N``, MAVProxy's name."""
+    """Add the option ``--target-system N``, named as in MAVProxy."""
     return click.option(
         "--target-system",
         type=click.IntRange(1, 255),
         metavar="N",
-        help="System id of the vehicle when several are heard.",
+        help="System id of the vehicle, where several are on the link.",
     )(command)
 
 
 def maneuver_option(command: F) -> F:
-    """``--maneuver START:END``, given to the command as ``marks``."""
+    """Add the option ``--maneuver START:END``, which the command receives as ``marks``."""
     return click.option(
         "--maneuver",
         "marks",
         multiple=True,
         metavar="START:END",
         callback=lambda ctx, parameter, texts: parse_marks(texts),
-        help="Call this stretch a manoeuvre: seconds since boot, or with + since the log's first ATTITUDE "
-        "(+12:+24). Repeatable.",
+        help="Mark this stretch as a manoeuvre: seconds since boot, or with + since the log's first ATTITUDE "
+        "(+12:+24). Minutes and seconds are understood too (1:20.4:1:33). Repeatable.",
     )(command)
 
 
 def no_marks_option(command: F) -> F:
-    """``--no-marks``, given to the command as ``no_marks``."""
+    """Add the option ``--no-marks``, which the command receives as ``no_marks``."""
     return click.option(
-        "--no-marks", is_flag=True, help="Leave out what was decided by hand before (LOG.maneuvers.yaml)."
+        "--no-marks", is_flag=True, help="Ignore earlier decisions by hand (LOG.maneuvers.yaml)."
     )(command)
 
 
 def parse_marks(texts: Sequence[str]) -> "tuple[Mark, ...]":
-    """Read several ``START:END`` that do not overlap.
+    """Read several stretches ``START:END`` that do not overlap.
 
     Raises
     ------
@@ -93,7 +93,7 @@ def parse_marks(texts: Sequence[str]) -> "tuple[Mark, ...]":
     marks = tuple(map(parse_mark, texts))
     for a, b in combinations(marks, 2):
         if a.from_log_start == b.from_log_start and a.overlaps(b.start_s, b.end_s):
-            raise ConfigurationError(f"{b.name} overlaps {a.name}: make one mark of both, or part them.")
+            raise ConfigurationError(f"{b.name} overlaps {a.name}: make one mark of both, or separate them.")
     return marks
 
 
@@ -107,24 +107,33 @@ def parse_mark(text: str) -> "Mark":
     """
     from advisor.flight.marks import LONGEST_S, Mark
 
-    start, _, end = text.partition(":")
-    relative = [time.strip().startswith("+") for time in (start, end)]
-    try:
-        start_s, end_s = float(start), float(end)
-    except ValueError:
-        start_s = end_s = nan
+    parts = text.split(":")
+    half = len(parts) // 2 if len(parts) in (2, 4) else len(parts)
+    relative = [part.strip().startswith("+") for part in (parts[0], parts[-half])]
+    start_s, end_s = _seconds(parts[:half]), _seconds(parts[half:])
     if not (isfinite(start_s) and isfinite(end_s) and start_s >= 0.0 and relative[0] == relative[1]):
         raise ConfigurationError(
             f"--maneuver {text}: give START:END in seconds since boot, or both with + from the start of the "
-            "log, e.g. --maneuver +12:+24."
+            "log, e.g. --maneuver +12:+24; minutes:seconds are understood too, e.g. --maneuver 1:20.4:1:33."
         )
     if end_s <= start_s:
-        raise ConfigurationError(f"--maneuver {text}: END must lie after START; exchange or mend them.")
+        raise ConfigurationError(f"--maneuver {text}: END must lie after START; exchange or correct them.")
     if end_s - start_s > LONGEST_S:
         raise ConfigurationError(
-            f"--maneuver {text}: a manoeuvre lasts {LONGEST_S:.0f} s at most; mark each input by itself."
+            f"--maneuver {text}: a manoeuvre lasts {LONGEST_S:.0f} s at most; mark each input separately."
         )
     return Mark(start_s, end_s, from_log_start=relative[0], name=f"--maneuver {text}")
+
+
+def _seconds(parts: Sequence[str]) -> float:
+    """Read seconds, ``["80.4"]``, or minutes and seconds, ``["1", "20.4"]``; NaN where it is no time."""
+    try:
+        *minutes, seconds = map(float, parts)
+    except ValueError:
+        return nan
+    if len(minutes) > 1 or (minutes and not 0.0 <= seconds < 60.0):
+        return nan
+    return 60.0 * sum(minutes) + seconds
 
 
 def refuse_marks_on_several(marks: "Sequence[Mark]", logs: Sequence[Path]) -> None:
@@ -138,12 +147,12 @@ def refuse_marks_on_several(marks: "Sequence[Mark]", logs: Sequence[Path]) -> No
     if marks and len(logs) > 1:
         raise ConfigurationError(
             "--maneuver does not say in which of several logs: write the marks into LOG.maneuvers.yaml "
-            "beside each."
+            "next to each log."
         )
 
 
 def decided_on(log: Path, no_marks: bool) -> "ByHand":
-    """What was decided by hand on a log before, as the file beside the log keeps it.
+    """Return the decisions by hand on a log, from the file next to the log.
 
     Raises
     ------
@@ -157,7 +166,7 @@ def decided_on(log: Path, no_marks: bool) -> "ByHand":
 
 
 def read_aircraft(aircraft_file: Path | None, rule: Rule | None = None) -> Aircraft:
-    """Read the aircraft file and put the command line's rule over its own.
+    """Read the aircraft file, and let the rule of the command line override the file's.
 
     Raises
     ------
@@ -175,7 +184,7 @@ def read_aircraft(aircraft_file: Path | None, rule: Rule | None = None) -> Aircr
 
 
 def refuse_unwritable(option: str, path: Path) -> None:
-    """Refuse before the work what could not be written after it.
+    """Refuse, before any work, a path that could not be written after it.
 
     Raises
     ------

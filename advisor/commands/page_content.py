@@ -1,4 +1,5 @@
-"""What ``advisor report`` shows, gathered: logs heard as one campaign, telemetry examined, gap diagnosed."""
+"""Content of the page of ``advisor report``: logs heard as one campaign, telemetry examined, gap
+diagnosed."""
 
 import hashlib
 import platform
@@ -21,7 +22,7 @@ from advisor.report.page.content import Content, Document, Origin
 from advisor.whole_flights import WholeFlights, read_whole
 
 _COUNTED = ("numpy", "scipy", "matplotlib", "jinja2", "pymavlink")
-"""Libraries that numbers and pictures depend on."""
+"""Libraries that numbers and pictures depend on; the page lists their versions."""
 
 
 def gather(
@@ -32,7 +33,7 @@ def gather(
     no_marks: bool,
     with_gap: bool,
 ) -> tuple[Content, list[str]]:
-    """Everything the page shows, and sentences on logs that do not count.
+    """Return the content of the page, and sentences on logs that do not count.
 
     Raises
     ------
@@ -86,7 +87,7 @@ def _gap(flights: WholeFlights, aircraft: Aircraft, target_system: int | None) -
 
 
 def _hashes(flights: WholeFlights, aircraft_file: Path | None) -> Mapping[str, str]:
-    """SHA-256 of every input that is a file, by its name."""
+    """Return the SHA-256 of every input file, by the file's name."""
     named = [*zip(flights.names, flights.logs, strict=True)]
     named += [(aircraft_file.name, aircraft_file)] if aircraft_file else []
     return {printable(name): _sha256(path) for name, path in named if path.is_file()}

@@ -17,7 +17,7 @@ from advisor.commands.options import (
     rule_option,
     target_system_option,
 )
-from advisor.commands.screen import advise
+from advisor.commands.screen import Show, advise
 from advisor.printable import printable
 
 if TYPE_CHECKING:
@@ -54,8 +54,9 @@ def command(
     target_system: int | None,
     marks: "tuple[Mark, ...]",
     no_marks: bool,
+    show: Show | None = None,
 ) -> None:
-    """The same screens on logs: pause, step, speed, jump to a manoeuvre.
+    """Play logs on the screens of a live flight: pause, step, speed, jump to a manoeuvre.
 
     Several logs are one campaign of several flights, played one after the other. Without a terminal, or with
     HEADLESS=1, the verdicts come as text.
@@ -81,11 +82,21 @@ def command(
         title,
         series.load,
         speed,
-        keep_beside=() if no_marks else series.logs,
+        # Several pages that replay one log would overwrite each other's decisions.
+        keep_beside=() if no_marks or show is not None else series.logs,
         before=by_hand,
         said=series.said,
     )
     tempo = Tempo(speed=speed)
     advise(
-        player, title, aircraft, target_system, tempo=tempo, by_hand=by_hand, marks=marks, names=series.names
+        player,
+        title,
+        aircraft,
+        target_system,
+        tempo=tempo,
+        by_hand=by_hand,
+        marks=marks,
+        names=series.names,
+        logs=series.logs,
+        show=show,
     )

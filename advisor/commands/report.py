@@ -1,4 +1,4 @@
-"""``advisor report``: one self-contained page of a flight, for people who were not there."""
+"""``advisor report``: one self-contained page about a flight, for people who were not there."""
 
 from collections.abc import Sequence
 from importlib.util import find_spec
@@ -23,14 +23,14 @@ _NEEDED = ("jinja2", "matplotlib")
 
 @click.command
 @click.argument("logs", nargs=-1, required=True, type=click.Path(path_type=Path))
-@click.option("-o", "--out", required=True, type=click.Path(path_type=Path), help="Where to write the page.")
+@click.option("-o", "--out", required=True, type=click.Path(path_type=Path), help="File for the page.")
 @click.option(
     "--format",
     "form",
     type=click.Choice(["html", "md"]),
-    help="Default: md where OUT ends in .md, else html.",
+    help="Format of the page. Default: md where the file ends in .md, else html.",
 )
-@click.option("--gap", "with_gap", is_flag=True, help="Diagnose the sim-to-real gap, too.")
+@click.option("--gap", "with_gap", is_flag=True, help="Diagnose the sim-to-real gap as well.")
 @aircraft_option
 @rule_option
 @target_system_option
@@ -45,7 +45,7 @@ def command(
     target_system: int | None,
     no_marks: bool,
 ) -> int:
-    """One self-contained page of a flight: verdicts, fits, estimates, flying qualities, telemetry.
+    """Write one self-contained page about a flight: verdicts, fits, estimates, flying qualities, telemetry.
 
     The page needs no network and no script, and prints on A4. Several logs are one campaign.
 
@@ -71,7 +71,7 @@ def command(
 
 
 def _refuse(logs: Sequence[Path], aircraft_file: Path | None, out: Path) -> None:
-    """Refuse before the work what would spoil it after.
+    """Refuse, before any work, orders that would fail after it.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""How a flight test on a live link starts: anew, from a recording, or on a link that still runs."""
+"""Start of a flight test on a live link: anew, from a recording, or on a link that still runs."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -12,33 +12,33 @@ from advisor.commands.options import NEWEST
 from advisor.mavlink.keeping import Keeping, new_door
 from advisor.mavlink.link_process import LinkProcess, end
 from advisor.mavlink.recording_file import default_recording, recordings_folder
-from advisor.mavlink.running import RunningLink, running_alone
+from advisor.mavlink.running_links import RunningLink, running_alone
 from advisor.problems import ConfigurationError
 
 
 @dataclass(frozen=True, slots=True)
 class Start:
-    """What a flight test begins with."""
+    """Connection, recording and earlier flights with which a flight test begins."""
 
     campaign: CampaignFile
     recording: Path | None
-    """File that is written; None: nothing is recorded."""
+    """File of the recording. None: nothing is recorded."""
     goes_on: bool = False
-    """The recording exists and is appended to."""
+    """Whether the recording exists and is appended to."""
     earlier: tuple[Path, ...] = ()
-    """Logs of earlier flights of the campaign, which are only read."""
+    """Logs of earlier flights of the campaign, only read."""
 
 
 @dataclass(frozen=True, slots=True)
 class Speaking:
-    """What the advisor says on the link, and how."""
+    """Messages that the advisor sends on the link: requests, announcements, signature."""
 
     source_system: int
     signing_key: bytes | None = None
     request_rates: bool = False
     announce: bool = False
     announce_to: str | None = None
-    """Connection to a ground station for announcements; None: they go over the link."""
+    """Connection to a ground station for announcements. None: announcements go over the link."""
 
 
 def start_of(
@@ -48,18 +48,18 @@ def start_of(
     record_to: str | None,
     recorded: bool = True,
 ) -> Start:
-    """Turn the options of ``advisor live`` into a start.
+    """Return the start of a flight test from the options of ``advisor live``.
 
     Parameters
     ----------
     asked
-        Options of the command line; an empty ``master`` and None are those not given.
+        Options of the command line. An empty ``master`` and None stand for options not given.
     resume
-        Recording of which the flight test is taken up, or ``NEWEST``; None: a new flight test.
+        Recording whose flight test continues, or ``NEWEST``. None: a new flight test.
     further
-        Recordings of the same flight test that follow on ``resume``.
+        Later recordings of the flight test of ``resume``.
     record_to
-        File or folder of the recording; None: the user's own folder, or the last recording taken up.
+        File or folder of the recording. None: the user's own folder, or the flight test's last recording.
 
     Raises
     ------
@@ -82,7 +82,7 @@ def start_of(
     campaign = _over(asked, before)
     if not campaign.master:
         raise ConfigurationError(
-            f"--resume: nothing beside {logs[-1]} says where the vehicle is heard; give --master."
+            f"--resume: nothing next to {logs[-1]} says where the vehicle is heard; give --master."
         )
     if place is not None:
         return Start(campaign, place, earlier=tuple(_in_order(logs)))
@@ -91,7 +91,7 @@ def start_of(
 
 @contextmanager
 def started(start: Start, speaking: Speaking) -> Iterator[LinkProcess]:
-    """Run the process of the link, or take over the one that runs; the process ends with the context.
+    """Start the process of the link, or take over the running one. The process ends with the context.
 
     Raises
     ------
@@ -120,7 +120,8 @@ def started(start: Start, speaking: Speaking) -> Iterator[LinkProcess]:
 
 
 def _left_alone(start: Start) -> RunningLink | None:
-    """The link that still records for this flight test; one on the same connection for another is ended."""
+    """Return the link that still records for this flight test. End a link for another flight test on this
+    connection."""
     mine = None
     for running in running_alone():
         if start.goes_on and running.recording and _same(running.recording, start.recording):
@@ -146,7 +147,7 @@ def _same(a: Path, b: Path | None) -> bool:
 
 
 def _over(asked: CampaignFile, before: CampaignFile | None) -> CampaignFile:
-    """The options asked for, and those of before where none are."""
+    """Return the options asked for, completed by the earlier ones."""
     if before is None:
         return asked
     return CampaignFile(
@@ -158,7 +159,7 @@ def _over(asked: CampaignFile, before: CampaignFile | None) -> CampaignFile:
 
 
 def _in_folder(place: str | None) -> Path | None:
-    """The file of the recording; a folder gets one named by the time."""
+    """Return the file of the recording. In a folder, the file is named by the time."""
     if place is None:
         return None
     is_folder = Path(place).is_dir() or place.endswith(("/", "\\"))

@@ -1,4 +1,4 @@
-"""Running a campaign with a screen where there is one, as lines of text where there is none."""
+"""Run of a campaign on screens, or as lines of text where there is no screen."""
 
 import os
 import sys
@@ -14,16 +14,21 @@ from advisor.problems import UnusableInputError
 from advisor.tui.source import Source, Tempo
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from advisor.campaign.campaign import Campaign
     from advisor.campaign.hand_decisions import ByHand
     from advisor.flight.marks import Mark
     from advisor.tui.remote import Task
 
 Listener = Callable[[object], object]
+Show = Callable[["Task", Aircraft, str, Tempo | None], object]
+"""Shows the campaign of a task until it is left: aircraft, title, and how a replay starts."""
 
 
 def headless() -> bool:
-    """Whether to print instead of painting: no terminal on stdout, or ``HEADLESS=1``."""
+    """Return whether the campaign is printed as lines: without a terminal on stdout, or with
+    ``HEADLESS=1``."""
     return os.environ.get("HEADLESS", "") not in ("", "0") or not sys.stdout.isatty()
 
 
@@ -38,33 +43,39 @@ def advise(
     marks: "Sequence[Mark]" = (),
     kept: "Callable[[], ByHand] | None" = None,
     names: Sequence[str] = (),
+    logs: "Sequence[Path]" = (),
+    show: "Show | None" = None,
 ) -> None:
-    """Run a campaign on a source: in the terminal application, or as lines of text.
+    """Run a campaign on a source: on screens, as lines of text, or as ``show`` does.
 
     Parameters
     ----------
     open_source
-        Makes the source, in the process that estimates: it must be picklable, as must ``tell``.
+        Makes the source in the estimating process. Both ``open_source`` and ``tell`` must be picklable.
     title
-        What the source is called on the screens.
+        Name of the source on the screens.
     tell
-        Called with every event of the campaign, where it is estimated.
+        Called with every event of the campaign, in the estimating process.
     tempo
-        How a replay starts; None: the source is no replay.
+        Start settings of a replay. None: the source is no replay.
     by_hand
-        What was decided by hand on this flight before.
+        Earlier decisions by hand on this flight.
     marks
         Marks of the command line.
     kept
-        Reads what was decided by hand since the start, for a source that can be read from its
-        beginning again: the death of the estimating process then ends nothing.
+        Reads the decisions by hand since the start, for a source that can be read again from its
+        beginning. Such a source survives the death of the estimating process.
     names
-        What the logs of the campaign are called, in their order.
+        Names of the campaign's logs, in their order.
+    logs
+        Logs and recordings, flight by flight; panes are saved into the folder of theirs.
+    show
+        Shows the campaign elsewhere; None: the terminal does, or lines of text come without a terminal.
 
     Raises
     ------
     UnusableInputError
-        When the source can never serve, or has ended without anything to judge.
+        The source can never serve, or has ended without anything to judge.
     """
     from advisor.campaign.hand_decisions import NOTHING
     from advisor.commands.narrator import narrate, narrate_here
@@ -72,9 +83,9 @@ def advise(
 
     before = by_hand or NOTHING
     make_campaign = partial(_campaign, aircraft, target_system, tell, tuple(marks), tuple(names))
-    if not headless():
+    if show is not None or not headless():
         task = Task(open_source, partial(make_campaign, True), before, kept)
-        _show(task, aircraft, title, tempo)
+        (show or partial(_show, tuple(logs)))(task, aircraft, title, tempo)
     elif kept is not None:
         task = Task(open_source, partial(make_campaign, False), before, kept)
         narrate(task, click.echo, partial(click.echo, err=True))
@@ -96,12 +107,12 @@ def _campaign(
     return Campaign(aircraft, target_system, settle, tell, by_hand=by_hand, marks=marks, names=names)
 
 
-def _show(task: "Task", aircraft: Aircraft, title: str, tempo: Tempo | None) -> None:
+def _show(logs: "Sequence[Path]", task: "Task", aircraft: Aircraft, title: str, tempo: Tempo | None) -> None:
     from advisor.tui.app import AdvisorApp
     from advisor.tui.remote import RemoteConductor
     from advisor.tui.settings import load_settings
 
-    app = AdvisorApp(RemoteConductor(task), aircraft, title, tempo, load_settings())
+    app = AdvisorApp(RemoteConductor(task), aircraft, title, tempo, load_settings(), logs)
     with in_order():
         app.run()
     if app.failure is not None:

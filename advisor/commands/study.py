@@ -19,21 +19,31 @@ if TYPE_CHECKING:
 
 @click.command
 @click.option(
-    "--campaigns", type=click.IntRange(10, 20000), default=500, show_default=True, help="Repetitions."
+    "--campaigns",
+    type=click.IntRange(10, 20000),
+    default=500,
+    show_default=True,
+    help="Number of simulated campaigns.",
 )
-@click.option("--seed", type=click.IntRange(0), default=1, show_default=True, help="Of the noise.")
+@click.option("--seed", type=click.IntRange(0), default=1, show_default=True, help="Seed of the noise.")
 @click.option(
     "--noise-reading",
     type=click.Choice(["std", "peak", "rms", "sample"]),
     default="std",
     show_default=True,
-    help="What the noise is a percentage of: the response's standard deviation, its peak, ...",
+    help="Reference of the noise's percentage: the response's standard deviation, its peak, ...",
 )
-@click.option("--figure", type=click.Path(path_type=Path), metavar="FILE", help="Figure 5 as .png or .svg.")
-@click.option("--readings", is_flag=True, help="Compare other readings of the paper's rules, too.")
-@click.option("--advice", is_flag=True, help="Instead: what following the advice saves, on two aircraft.")
-@click.option("--change", is_flag=True, help="Instead: how soon a changed aircraft is noticed.")
-@click.option("--stops", is_flag=True, help="Instead: how often the rule information stops too early.")
+@click.option(
+    "--figure", type=click.Path(path_type=Path), metavar="FILE", help="File for Figure 5, .png or .svg."
+)
+@click.option("--readings", is_flag=True, help="Compare other readings of the paper's rules as well.")
+@click.option(
+    "--advice", is_flag=True, help="Instead: measure the manoeuvres that the advice saves, on two aircraft."
+)
+@click.option("--change", is_flag=True, help="Instead: measure how soon a change of the aircraft is noticed.")
+@click.option(
+    "--stops", is_flag=True, help="Instead: measure how often the rule information stops too early."
+)
 @running_options
 @json_option
 def command(
@@ -49,7 +59,7 @@ def command(
     scheduler: str | None,
     as_json: bool,
 ) -> int:
-    """Table 1 and Figure 5 of the paper, as medians and spread over many simulated campaigns.
+    """Print Table 1 and Figure 5 of the paper, as medians and spread over many simulated campaigns.
 
     The same seed gives the same study, whatever --workers and --scheduler are.
 

@@ -1,1 +1,1 @@
-"""Was that manoeuvre good, may we stop, what to fly next."""
+"""Decisions: whether a manoeuvre is good, whether the test may stop, and which input to fly next."""

@@ -1,8 +1,8 @@
-"""Manoeuvre validation: which costs are good enough, Eqs. (10) and (11) of the paper.
+"""Manoeuvre validation: which costs are low enough, Eqs. (10) and (11) of the paper.
 
-The costs handed in are those of usable manoeuvres: a quiet or spoilt record was refused for its own
-reasons before it came here, so it neither passes a rule nor sets the limit for the next one. None
-stands for such a manoeuvre. The readings chosen, and those tried, are in ``docs/rules.md``.
+The costs are those of usable manoeuvres. A quiet or spoilt record was refused earlier for its own reasons,
+and has None in place of a cost. Such a record neither passes a rule nor sets the limit for the next one. The
+reading chosen for each equation, and the others tried, are in ``docs/explanation/rules.md``.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -12,18 +12,19 @@ from advisor.aircraft import Rule
 from advisor.decision.verdict import RuleResult
 
 ALLOWED_INCREASE = 2.0
-"""The factor of Eq. (10)."""
+"""Factor of Eq. (10) by which the cost may rise from one accepted manoeuvre to the next."""
 LEAST_COST = 1e-24
-"""det R of residuals of 1 µrad and 1 µrad/s: below every instrument's resolution a cost says nothing."""
+"""Least cost det R that is compared, from residuals of 1 µrad and 1 µrad/s. Smaller residuals are below every
+instrument's resolution."""
 
 Costs = Sequence[float | None]
 
 
 def continuous_improvement(costs: Costs) -> tuple[RuleResult, ...]:
-    """Eq. (10): J(θ̂ᵢ) < 2·J(θ̂ᵢ₋₁), with i − 1 the last manoeuvre this rule *accepted*.
+    """Apply Eq. (10): J(θ̂ᵢ) < 2·J(θ̂ᵢ₋₁), with i − 1 the last manoeuvre that this rule *accepted*.
 
-    The first usable manoeuvre has nothing to be compared with and is accepted. Costs below
-    `LEAST_COST`, of data without noise, count as equal.
+    The first usable manoeuvre has no predecessor and is accepted. Costs below `LEAST_COST`, of data without
+    noise, count as equal.
 
     Parameters
     ----------
@@ -41,9 +42,9 @@ def continuous_improvement(costs: Costs) -> tuple[RuleResult, ...]:
 
 
 def separate_computation(costs: Costs) -> tuple[RuleResult, ...]:
-    """Eq. (11): J(θ̂ᵢ) < median(J(θ̂₁) … J(θ̂ᵢ₋₁)), over all usable manoeuvres, also those it rejected.
+    """Apply Eq. (11): J(θ̂ᵢ) < median(J(θ̂₁) … J(θ̂ᵢ₋₁)), over all usable manoeuvres, also the rejected ones.
 
-    The first usable manoeuvre has nothing to be compared with and is accepted.
+    The first usable manoeuvre has no predecessor and is accepted.
 
     Parameters
     ----------
@@ -61,7 +62,8 @@ def separate_computation(costs: Costs) -> tuple[RuleResult, ...]:
 
 
 def every_usable(costs: Costs) -> tuple[RuleResult, ...]:
-    """Every usable manoeuvre, whatever its cost: the rule `information` weighs instead of choosing."""
+    """Accept every usable manoeuvre, whatever its cost: the rule `information` weights manoeuvres instead of
+    selecting."""
     return tuple(RuleResult(cost is not None, None) for cost in costs)
 
 
@@ -70,4 +72,4 @@ MANEUVER_RULES: Mapping[Rule, Callable[[Costs], tuple[RuleResult, ...]]] = {
     "separate": separate_computation,
     "information": every_usable,
 }
-"""Manoeuvre validation by the name of the rule; all of them always run side by side."""
+"""Rule name to its manoeuvre validation. All rules always run side by side."""

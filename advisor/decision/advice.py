@@ -1,4 +1,4 @@
-"""What next: how many more manoeuvres, which parameter holds the stop back, which input helps most."""
+"""Advice on the next manoeuvre: how many more, which parameter delays the stop, which input helps most."""
 
 from collections.abc import Sequence
 
@@ -19,27 +19,30 @@ from advisor.flight.messages import FloatArray
 from advisor.model.short_period import ShortPeriod
 
 PASSING = {"separate": 0.5}
-"""Share of equally good manoeuvres that pass the rule: Eq. (11) rejects half, Eq. (10) hardly any."""
+"""Share of equally good manoeuvres that pass the rule. Eq. (11) rejects half, Eq. (10) hardly any."""
 
 
 def next_input(
     history: Sequence[Flown], aircraft: Aircraft, stopped: bool, course: Course | None = None
 ) -> NextInput:
-    """What to fly next, as of the last manoeuvre of ``history``; ``course`` as in ``flight_test``."""
+    """Return the input to fly after the last manoeuvre of ``history``. ``course`` is explained in
+    ``flight_test``.
+
+    The number of further manoeuvres is foretold once a manoeuvre was usable; before, nothing tells it.
+    """
     plan = aircraft.campaign
     if stopped:
         return NextInput("no further manoeuvre needed", Remaining(0, 0))
     course = course or Course(plan)
     conditions = find_conditions(history, aircraft, course)
-    if history and (mend := _mend(history[-1])):
-        return NextInput(f"next: {mend}", _without_a_model(history, plan))
+    mend = _mend(history[-1]) if history else ""
     if conditions is None:
-        spoken = _same_but_better(history[-1]) if history else _first_input(aircraft)
-        return NextInput(f"next: {spoken}", _without_a_model(history, plan))
+        spoken = mend or (_same_but_better(history[-1]) if history else _first_input(aircraft))
+        return NextInput(f"next: {spoken}", None)
     known = course.known(usable_ones(history))
-    choice = _choose(conditions, known, plan)
+    choice = None if mend else _choose(conditions, known, plan)
     if choice is None:
-        spoken, errors = "the same again", conditions.last_covariance
+        spoken, errors = mend or "the same again", conditions.last_covariance
     else:
         spoken, errors = choice[0].spoken(conditions.travel_rad), choice[1]
     remaining = _remaining(history, plan, known, errors)
@@ -47,7 +50,7 @@ def next_input(
 
 
 def recommended(history: Sequence[Flown], aircraft: Aircraft) -> StepInput | None:
-    """The input that helps most now; None before the first usable manoeuvre."""
+    """Return the input that helps most now; None before the first usable manoeuvre."""
     course = Course(aircraft.campaign)
     conditions = find_conditions(history, aircraft, course)
     if conditions is None:
@@ -59,15 +62,16 @@ def recommended(history: Sequence[Flown], aircraft: Aircraft) -> StepInput | Non
 
 def _choose(conditions: Conditions, known: Knowledge, plan: CampaignPlan) -> Choice | None:
     std = np.sqrt(known.widening * np.diag(conditions.last_covariance))
-    return best_input(conditions, std, lambda expected: _unrest(expected, plan, known))
+    return best_input(conditions, std, lambda expected: _distance_to_stop(expected, plan, known))
 
 
-def _unrest(covariance: FloatArray, plan: CampaignPlan, known: Knowledge) -> float:
-    """What remains in the way of the stop after one more manoeuvre with these errors; smaller is better."""
+def _distance_to_stop(covariance: FloatArray, plan: CampaignPlan, known: Knowledge) -> float:
+    """Return a measure of the distance to the stop after one more manoeuvre with these errors; smaller is
+    better."""
     if plan.rule == "information":
         return share_after(known, covariance, 1)
     std = np.sqrt(np.diag(covariance))
-    size = np.maximum(np.abs(known.belief.theta), known.belief.std)
+    size = np.maximum(np.abs(known.posterior.theta), known.posterior.std)
     return float(np.linalg.norm(std / size))
 
 
@@ -79,7 +83,7 @@ def _remaining(
         return by_information(known, next_covariance, share)
     members = np.array([e.theta for e in accepted_estimates(history, plan.rule)]).reshape(-1, len(PARAMETERS))
     next_std = np.sqrt(np.diag(next_covariance))
-    return by_scatter(members, known.belief, next_std, plan, share * PASSING.get(plan.rule, 1.0))
+    return by_scatter(members, known.posterior, next_std, plan, share * PASSING.get(plan.rule, 1.0))
 
 
 def _held_by(history: Sequence[Flown], plan: CampaignPlan, known: Knowledge) -> str:
@@ -91,7 +95,8 @@ def _held_by(history: Sequence[Flown], plan: CampaignPlan, known: Knowledge) -> 
 
 
 def _first_input(aircraft: Aircraft) -> str:
-    """Before anything is known: the textbook's 3-2-1-1, small, timed by the prior model if there is one."""
+    """Return the advice before any estimate: the textbook's 3-2-1-1, small, timed by the prior model if there
+    is one."""
     unit = 0.5
     if set(PARAMETERS) <= set(aircraft.model):
         frequency = ShortPeriod.from_mapping(aircraft.model).natural_frequency
@@ -101,13 +106,15 @@ def _first_input(aircraft: Aircraft) -> str:
 
 
 def _same_but_better(flown: Flown) -> str:
-    """While none was usable: the same input, with what the newest one's first reason says to do."""
+    """Return the advice while no manoeuvre was usable: repeat the input, with the remedy of the newest one's
+    first reason."""
     remedy = _remedy(flown)
     return f"the same again, {remedy}" if remedy else "the same again"
 
 
 def _mend(flown: Flown) -> str:
-    """What to do about a channel before any other input: nothing where all channels can be right."""
+    """Return the remedy for a faulty channel, which comes before any other input; empty where all channels
+    are sound."""
     if flown.reasons and flown.reasons[0].code in NO_CURE_BY_INPUT:
         return _remedy(flown)
     wrong = flown.maneuver.distrusts if flown.maneuver else ()
@@ -115,11 +122,5 @@ def _mend(flown: Flown) -> str:
 
 
 def _remedy(flown: Flown) -> str:
-    """What the first reason says to do; nothing without a reason."""
+    """Return the remedy that the first reason names; empty without a reason."""
     return flown.reasons[0].text.partition("; ")[2] if flown.reasons else ""
-
-
-def _without_a_model(history: Sequence[Flown], plan: CampaignPlan) -> Remaining:
-    """At least as many as the rule needs at best."""
-    least = 2 if plan.rule == "information" else plan.window
-    return Remaining(least, int(np.ceil(least / usable_share(history))) + 1)

@@ -1,9 +1,9 @@
-"""Something changed: the aircraft or an instrument is not what it was a few manoeuvres ago.
+"""Detection of a change: the aircraft or an instrument differs from its state some manoeuvres ago.
 
-Noise moves every estimate by as much as its interval says; a poor manoeuvre moves one estimate; a
-change moves all that follow, and all by the same. So the manoeuvres before and after every possible
-moment are pooled and compared: a likelihood-ratio test for one change point, in the six derivatives
-(Z_0 and M_0 move with the trim anyway).
+Noise moves every estimate by as much as its interval says. A poor manoeuvre moves one estimate. A change
+moves all later estimates equally. So the manoeuvres before and after every possible moment are pooled and
+compared, in a likelihood-ratio test for one change point. The test covers the six derivatives, because Z_0
+and M_0 move with the trim anyway.
 """
 
 from collections.abc import Sequence
@@ -13,72 +13,75 @@ import numpy as np
 from scipy.special import chdtri
 
 from advisor.aircraft import PARAMETERS
-from advisor.decision.consistency import odd_ones
+from advisor.decision.consistency import outliers
 from advisor.decision.history import Flown
 from advisor.decision.inverses import information_of
 from advisor.decision.pooling import (
     DERIVATIVES,
-    Belief,
     Pooled,
+    Posterior,
     Shared,
-    beliefs_at_one_speed,
     disagreement,
     pooled,
     pooled_on_both_sides,
+    posteriors_at_one_speed,
 )
 from advisor.flight.messages import FloatArray
 
 FALSE_ALARM = 1e-5
-"""Chance level of one comparison. A campaign makes a few dozen of them, not independent."""
+"""Probability of a false alarm in one comparison. A campaign makes a few dozen comparisons, which are not
+independent."""
 CONSISTENCY = 1e-3
-"""Chance level below which manoeuvres of one side contradict each other."""
+"""Probability below which manoeuvres of one side contradict each other."""
 LEAST_SIGMA = 3.0
-"""A derivative is named as moved from this many standard deviations on."""
+"""Least difference, in standard deviations, at which a derivative is named as moved."""
 LEAST_SHARE = 0.08
-"""... and from this share of its value on: an aircraft is never twice the same to a few per cent."""
+"""Least difference, as a share of the derivative's value, at which a derivative is named as moved. Repeated
+estimates of one aircraft always differ by a few per cent."""
 UNEVEN = 0.03
-"""Share of its value by which a derivative may differ and still count as explained by a cause."""
+"""Largest deviation from a cause, as a share of the derivative's value, at which the cause still explains the
+derivative."""
 
 
 @dataclass(frozen=True, slots=True)
 class Moved:
-    """One derivative before and after."""
+    """One derivative before and after the change."""
 
     parameter: str
     percent: float
     sigma: float
-    """The difference over its standard deviation."""
+    """The difference divided by its standard deviation."""
 
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """What changed, and when."""
+    """A change between two manoeuvres: its moment, its derivatives and its likely cause."""
 
     after: int
     """Number of the last manoeuvre before the change, counting from 1 in the order flown."""
     confirmed: bool
-    """Two or more manoeuvres agree on it; with one alone it may as well be a poor manoeuvre."""
+    """Whether at least two manoeuvres show the change. A single one may be a poor manoeuvre instead."""
     moved: tuple[Moved, ...]
-    """The most significant first."""
+    """Derivatives that moved, the most significant first."""
     looks_like: str
-    """The simplest cause that explains all derivatives together, in words; empty when none does."""
+    """The simplest cause that explains all derivatives together, in words; empty when no cause does."""
     sentence: str
 
 
 def find_change(history: Sequence[Flown]) -> Change | None:
-    """The most telling change between manoeuvres of a campaign, None when noise explains everything.
+    """Return the most significant change between manoeuvres of a campaign; None when noise explains all
+    differences.
 
-    At least two manoeuvres must stand before the change: with one alone nobody knows which of the two
-    is the odd one.
+    At least two manoeuvres must stand before the change. With only one, either side may be the outlier.
     """
     flown = [(i, e) for i, m in enumerate(history, start=1) if (e := m.usable)]
-    beliefs = beliefs_at_one_speed([e for _, e in flown])
-    odd = [k for k in odd_ones(beliefs) if k < len(beliefs) - 1]
-    numbers = [i for k, (i, _) in enumerate(flown) if k not in odd]
-    beliefs = [belief for k, belief in enumerate(beliefs) if k not in odd]
-    if len(beliefs) < 3:
+    posteriors = posteriors_at_one_speed([e for _, e in flown])
+    excluded = [k for k in outliers(posteriors) if k < len(posteriors) - 1]
+    numbers = [i for k, (i, _) in enumerate(flown) if k not in excluded]
+    posteriors = [posterior for k, posterior in enumerate(posteriors) if k not in excluded]
+    if len(posteriors) < 3:
         return None
-    splits = pooled_on_both_sides(beliefs)[1:]
+    splits = pooled_on_both_sides(posteriors)[1:]
     apart = [_compare(before, after) for before, after in splits]
     k = int(np.argmax(apart))
     if apart[k] <= 1.0:
@@ -87,14 +90,15 @@ def find_change(history: Sequence[Flown]) -> Change | None:
     k += 2
     widening = _widening(first, second)
     moved = _moved(first.shared, second.shared, widening)
-    if not moved or _back_to_normal(first, beliefs[k:]):
+    if not moved or _back_to_normal(first, posteriors[k:]):
         return None
     looks_like = _simplest_cause(first.shared, second.shared, widening)
-    return _told(numbers[k - 1], numbers[k], len(beliefs) > k + 1, moved, looks_like)
+    return _told(numbers[k - 1], numbers[k], len(posteriors) > k + 1, moved, looks_like)
 
 
 def _compare(before: Pooled, after: Pooled) -> float:
-    """Distance between both sides over its limit; above 1 noise does not explain it."""
+    """Return the distance between both sides, divided by its limit. Noise does not explain a value above
+    1."""
     distance, dof = disagreement(before.shared, after.shared)
     if dof == 0:
         return 0.0
@@ -102,13 +106,14 @@ def _compare(before: Pooled, after: Pooled) -> float:
 
 
 def _widening(before: Pooled, after: Pooled) -> float:
-    """Variance ratio of the scatter within both sides to what their intervals say, at least 1."""
+    """Return the variance ratio of the scatter within both sides to their stated errors, at least 1."""
     dof = before.dof + after.dof
     return max(1.0, (before.inconsistency + after.inconsistency) / dof) if dof > 0 else 1.0
 
 
-def _back_to_normal(before: Pooled, after: Sequence[Belief]) -> bool:
-    """Whether the newest manoeuvre is again like those before: then the odd ones were merely poor."""
+def _back_to_normal(before: Pooled, after: Sequence[Posterior]) -> bool:
+    """Return whether the newest manoeuvre agrees with those before the change. Then the others were merely
+    poor."""
     if len(after) < 2:
         return False
     with_old, dof = disagreement(before.shared, after[-1].shared)
@@ -129,9 +134,9 @@ def _moved(before: Shared, after: Shared, widening: float) -> tuple[Moved, ...]:
     return tuple(sorted(found, key=lambda m: -abs(m.sigma)))
 
 
-# Each cause multiplies the coefficients Z_α, 1 + Z_q, Z_δe, M_α, M_q, M_δe by powers of one factor:
-# shifts of the aircraft first, then of elevator and air, last of an instrument that reads (1 + k)
-# times the truth (substitute the reading in Eqs. (1) and (2)).
+# Each cause multiplies the coefficients Z_α, 1 + Z_q, Z_δe, M_α, M_q, M_δe by powers of one factor. Shifts of
+# the aircraft come first, then elevator and air, last an instrument that reads (1 + k) times the truth
+# (substitute the reading in Eqs. (1) and (2)).
 _CAUSES = {
     "a shift of the centre of gravity": (0, 0, 0, 1, 0, 0),
     "a loss or gain of lift, as from ice on the wing": (1, 0, 0, 0, 0, 0),
@@ -146,14 +151,15 @@ _CAUSES = {
 
 
 def _simplest_cause(before: Shared, after: Shared, widening: float) -> str:
-    """The cause that alone explains the differences of all six derivatives, if one does."""
+    """Return the simplest cause that explains the differences of all six derivatives; empty when no cause
+    does."""
     misfits = {name: _misfit(before, after, np.array(powers, float)) for name, powers in _CAUSES.items()}
     best = min(misfits, key=lambda name: misfits[name])
     return best if misfits[best] < widening * float(chdtri(len(DERIVATIVES) - 1, CONSISTENCY)) else ""
 
 
 def _misfit(before: Shared, after: Shared, powers: FloatArray) -> float:
-    """χ² left when ``before`` is multiplied by the best factor to these powers."""
+    """Return the χ² that remains when ``before`` is multiplied by the best factor to these powers."""
     one = np.array([1.0 if PARAMETERS[k] == "Z_q" else 0.0 for k in DERIVATIVES])
     start, target = before.theta + one, after.theta + one
     uneven = np.diag((UNEVEN * target) ** 2)

@@ -1,4 +1,4 @@
-"""Which input to fly: every one worth trying, as large as the limits allow, by what it would teach."""
+"""Choice of the next input: candidates as large as the limits allow, compared by their information."""
 
 from collections.abc import Callable, Iterator
 
@@ -11,21 +11,21 @@ from advisor.flight.messages import FloatArray
 from advisor.model.short_period import ShortPeriod
 
 Choice = tuple[StepInput, FloatArray]
-"""An input and the (8, 8) covariance of the errors to expect from it."""
+"""An input, and the (8, 8) covariance of the errors expected from flying the input."""
 
 
 def best_input(
-    conditions: Conditions, measured_std: FloatArray, unrest: Callable[[FloatArray], float]
+    conditions: Conditions, measured_std: FloatArray, distance_to_stop: Callable[[FloatArray], float]
 ) -> Choice | None:
-    """The input with the least ``unrest`` of its expected errors; None when the model allows no prediction.
+    """Return the input whose expected errors leave the least ``distance_to_stop``; None without a prediction.
 
     Parameters
     ----------
     measured_std
-        (8,) errors of the last manoeuvre as estimated. Whatever made them (colour of the residuals,
-        further outputs) holds for the next one too; the prediction supplies the ratio between inputs.
-    unrest
-        What errors of the next manoeuvre, given as their covariance, leave in the way of the stop.
+        (8,) standard deviations of the last manoeuvre's estimate. Their causes (coloured residuals,
+        further outputs) persist in the next manoeuvre. The prediction supplies the ratio between inputs.
+    distance_to_stop
+        Covariance of the next manoeuvre's errors to a measure of the distance to the stop.
     """
     repeated = expect(conditions.theta, conditions.flown, conditions.instruments)
     if repeated is None:
@@ -33,11 +33,11 @@ def best_input(
     ratio = measured_std / repeated.std
     scale = np.outer(ratio, ratio)
     expected = [(option, covariance * scale) for option, covariance in _options(conditions)]
-    return min(expected, key=lambda choice: unrest(choice[1])) if expected else None
+    return min(expected, key=lambda choice: distance_to_stop(choice[1])) if expected else None
 
 
 def _options(conditions: Conditions) -> Iterator[Choice]:
-    """Inputs in the direction not flown last."""
+    """Yield inputs in the direction that was not flown last, with their expected errors."""
     frequency = ShortPeriod(conditions.theta).natural_frequency
     if not np.isfinite(frequency) or frequency <= 0.0:
         return
@@ -50,7 +50,7 @@ def _options(conditions: Conditions) -> Iterator[Choice]:
 
 
 def _as_large_as_allowed(option: StepInput, conditions: Conditions) -> Choice | None:
-    """The input scaled so that α stays within its limit; the model is linear, so scaling is exact."""
+    """Return the input scaled so that α stays within its limit; the model is linear, so scaling is exact."""
     length = conditions.lead_s + option.duration_s + conditions.free_s
     elevator = option.elevator(conditions.trim_rad, conditions.lead_s, length)
     full = expect(conditions.theta, elevator, conditions.instruments)

@@ -1,4 +1,4 @@
-"""What the next input starts from and must respect: trim, instruments, limits."""
+"""Conditions of the next input: trim, instruments, limits."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -18,18 +18,21 @@ from advisor.oem.problem import Signal
 from advisor.oem.surface import Servo
 
 FULL_TRAVEL_RAD = float(np.radians(25.0))
-"""Elevator travel either side of trim where no calibration says otherwise."""
+"""Elevator travel either side of trim where no calibration states one, rad."""
 BOLDER = 1.5
-"""The next input, and its response, may be this much larger than any flown so far: build up step by step."""
+"""Largest ratio of the next input, and of its response, to the largest flown so far. A build-up goes step by
+step."""
 LINEAR_RAD = float(np.radians(5.0))
-"""Excursion of α up to which the short-period model is taken as linear, where no limit is given."""
+"""Largest deviation of α from trim at which the short-period model is taken as linear, rad, where no limit is
+given."""
 ALPHA_MARGIN = 0.9
-"""Of an angle-of-attack limit; the response is only as sure as the model."""
+"""Share of an angle-of-attack limit that the next input may use. The margin allows for errors of the
+model."""
 
 
 @dataclass(frozen=True, slots=True)
 class Conditions:
-    """As of the last manoeuvre."""
+    """Conditions of the next input, after the last manoeuvre."""
 
     theta: FloatArray
     trim_rad: float
@@ -37,34 +40,34 @@ class Conditions:
     free_s: float
     instruments: Instruments
     flown: Signal
-    """The elevator of the last manoeuvre."""
+    """Elevator of the last manoeuvre."""
     largest_rad: float
-    """Largest amplitude allowed."""
+    """Largest amplitude that the limits allow."""
     alpha_rad: float
-    """Largest excursion of α allowed."""
+    """Largest deviation of α that the limits allow."""
     travel_rad: float
-    """Elevator travel from trim to the nearer stop: what 100 % stick means."""
+    """Elevator travel from trim to the nearer stop, which is 100 % stick."""
     nose_up_first: bool
-    """Direction of the last manoeuvre's first step."""
+    """Whether the last manoeuvre's first step was nose up."""
     last_covariance: FloatArray
-    """(8, 8) of the errors of the last manoeuvre's estimate."""
+    """(8, 8) covariance of the last manoeuvre's estimate."""
 
 
 def find_conditions(history: Sequence[Flown], aircraft: Aircraft, course: Course) -> Conditions | None:
-    """What the usable manoeuvres say of trim, instruments and limits; None before the first."""
+    """Return trim, instruments and limits from the usable manoeuvres; None before the first."""
     flown = [(m, e, m.maneuver) for m in history if (e := m.usable) and m.maneuver is not None]
     if not flown:
         return None
     _, estimate, last = flown[-1]
     fits = estimate.fits[0]
     span, elevator = last.span, last.channels["elevator"]
-    theta = course.known(usable_ones(history)).belief.theta
+    theta = course.known(usable_ones(history)).posterior.theta
     trim = trim_of(last)
     travel = _travel(aircraft, trim)
     largest_seen = max(_excursion(m, e) for m, e, _ in flown)
     alpha = max(largest_seen, min(BOLDER * largest_seen, LINEAR_RAD))
     if aircraft.limits.alpha_deg is not None:
-        # Where no angle of attack is measured the limit can be held about trim only.
+        # Where no angle of attack is measured, the limit can be kept about trim only.
         start = float(np.median(fits["alpha"].fitted[:5])) if "alpha" in fits else 0.0
         alpha = max(ALPHA_MARGIN * (np.radians(aircraft.limits.alpha_deg) - start), 0.25 * largest_seen)
     largest = max(float(np.max(np.abs(_about_trim(m)))) for *_, m in flown)
@@ -90,7 +93,7 @@ def _about_trim(maneuver: Maneuver) -> FloatArray:
 
 
 def _nose_up_first(maneuver: Maneuver) -> bool:
-    """Whether the first large movement is trailing edge up."""
+    """Return whether the first large movement is trailing edge up."""
     moved = _about_trim(maneuver)
     return bool(moved[np.argmax(np.abs(moved) >= 0.5 * np.max(np.abs(moved)))] < 0.0)
 
@@ -107,7 +110,8 @@ def _instruments(estimate: Estimate, servo: Servo) -> Instruments:
 
 
 def _excursion(flown: Flown, estimate: Estimate) -> float:
-    """Largest deviation of α from where it began, rad: as fitted, or as predicted where none is measured."""
+    """Return the largest deviation of α from its initial value, rad: fitted, or predicted where α is not
+    measured."""
     if "alpha" not in estimate.fits[0]:
         response = response_to(flown, estimate.theta[list(DERIVATIVES)], None)
         return LINEAR_RAD if response is None else float(response.peak[0])

@@ -1,4 +1,4 @@
-"""Do the manoeuvres agree as well as their errors say: which one is the odd one, and how much wider to be."""
+"""Consistency of manoeuvres: outliers among them, and the factor by which scatter widens the intervals."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -7,7 +7,7 @@ import numpy as np
 from scipy.special import chdtri
 
 from advisor.decision.pooling import (
-    Belief,
+    Posterior,
     Shared,
     disagreement,
     pool,
@@ -16,77 +16,79 @@ from advisor.decision.pooling import (
 )
 
 WIDEN_BELOW = 0.05
-"""Chance level below which scatter between manoeuvres widens the intervals."""
-ODD_BELOW = 1e-3
-"""Chance level below which an odd manoeuvre is looked for."""
-ODD_IMPROVEMENT = 3.0
-"""Leaving out an odd manoeuvre must lower χ² per degree of freedom by this factor."""
+"""Probability below which scatter between manoeuvres widens the intervals."""
+OUTLIER_BELOW = 1e-3
+"""Probability below which an outlier is looked for."""
+OUTLIER_IMPROVEMENT = 3.0
+"""Least factor by which leaving out an outlier must lower χ² per degree of freedom."""
 FEWEST = 4
-"""With fewer manoeuvres nobody knows which one is odd."""
+"""Fewest manoeuvres among which an outlier can be identified."""
 
 
 @dataclass(frozen=True, slots=True)
-class Odd:
-    """How far a manoeuvre is from what all the others say."""
+class Outlier:
+    """Distance of an outlying manoeuvre from all others."""
 
     sigma: float
-    """Mahalanobis distance of its derivatives."""
+    """Mahalanobis distance of the manoeuvre's derivatives."""
     limit: float
-    """What chance exceeds once in a thousand."""
+    """Distance that chance exceeds once in a thousand cases."""
 
 
-def odd_ones(beliefs: Sequence[Belief]) -> Mapping[int, Odd]:
-    """Manoeuvres that contradict all the others, which agree among themselves, by their index.
+def outliers(posteriors: Sequence[Posterior]) -> Mapping[int, Outlier]:
+    """Return manoeuvres that contradict all the others, which agree with each other, by their index.
 
-    A search may end in a wrong minimum, or a gust may look like a response: such an estimate has a
-    small stated error and would spoil every mean. At most a third of the manoeuvres is odd; more is
-    not oddness but a change, or errors that are stated too small.
+    A search may end in a wrong minimum, or a gust may look like a response. Such an estimate has a small
+    stated error and would spoil every mean. At most a third of the manoeuvres are outliers. More
+    contradictions mean a change of the aircraft, or stated errors that are too small.
     """
-    inside = list(range(len(beliefs)))
-    odd: list[int] = []
-    while len(inside) >= FEWEST and len(odd) + 1 <= (len(beliefs) - 1) // 3:
-        together = [beliefs[i] for i in inside]
+    inside = list(range(len(posteriors)))
+    found: list[int] = []
+    while len(inside) >= FEWEST and len(found) + 1 <= (len(posteriors) - 1) // 3:
+        together = [posteriors[i] for i in inside]
         _, total, dof = pooled(together)
-        if dof < 1 or total < float(chdtri(dof, ODD_BELOW)):
+        if dof < 1 or total < float(chdtri(dof, OUTLIER_BELOW)):
             break
         remaining = dict(zip(inside, pooled_without_each(together), strict=True))
         candidate = min(remaining, key=lambda i: remaining[i].inconsistency)
         _, rest, rest_dof = remaining[candidate]
-        if rest_dof < 1 or rest / rest_dof * ODD_IMPROVEMENT > total / dof:
+        if rest_dof < 1 or rest / rest_dof * OUTLIER_IMPROVEMENT > total / dof:
             break
         inside.remove(candidate)
-        odd.append(candidate)
-    if not odd:
+        found.append(candidate)
+    if not found:
         return {}
-    others = pooled([beliefs[i] for i in inside]).shared
-    return {i: _distance(beliefs[i], others) for i in sorted(odd)}
+    others = pooled([posteriors[i] for i in inside]).shared
+    return {i: _distance(posteriors[i], others) for i in sorted(found)}
 
 
-def _distance(odd: Belief, others: Shared) -> Odd:
-    distance, dof = disagreement(others, odd.shared)
-    return Odd(float(np.sqrt(distance)), float(np.sqrt(chdtri(max(dof, 1), ODD_BELOW))))
+def _distance(outlier: Posterior, others: Shared) -> Outlier:
+    distance, dof = disagreement(others, outlier.shared)
+    return Outlier(float(np.sqrt(distance)), float(np.sqrt(chdtri(max(dof, 1), OUTLIER_BELOW))))
 
 
-def excess(beliefs: Sequence[Belief]) -> float:
-    """Variance ratio of the scatter between manoeuvres to their stated errors, 1 unless significant.
+def excess(posteriors: Sequence[Posterior]) -> float:
+    """Return the variance ratio of the scatter between manoeuvres to their stated errors, 1 unless
+    significant.
 
-    The Birge ratio of metrology: χ² of the derivatives about their pooled value over its degrees of
+    The Birge ratio of metrology: χ² of the derivatives about their pooled value, divided by its degrees of
     freedom.
     """
-    if len(beliefs) < 2:
+    if len(posteriors) < 2:
         return 1.0
-    _, total, dof = pooled(beliefs)
+    _, total, dof = pooled(posteriors)
     return 1.0 if dof < 1 or total < float(chdtri(dof, WIDEN_BELOW)) else total / dof
 
 
-def widened(belief: Belief, factor: float) -> Belief:
-    """The same value with ``factor`` times its variance."""
-    return Belief(belief.theta, factor * belief.covariance)
+def widened(posterior: Posterior, factor: float) -> Posterior:
+    """Return the estimate with ``factor`` times its variance."""
+    return Posterior(posterior.theta, factor * posterior.covariance)
 
 
-def consensus(beliefs: Sequence[Belief]) -> tuple[Belief, float, tuple[int, ...]]:
-    """Pooled belief without the odd manoeuvres, the widening in it, and who was left out."""
-    odd = tuple(odd_ones(beliefs))
-    agreeing = [belief for i, belief in enumerate(beliefs) if i not in odd]
+def consensus(posteriors: Sequence[Posterior]) -> tuple[Posterior, float, tuple[int, ...]]:
+    """Return the pooled estimate without outliers, the factor that widened its variance, and the indices of
+    the outliers."""
+    left_out = tuple(outliers(posteriors))
+    agreeing = [posterior for i, posterior in enumerate(posteriors) if i not in left_out]
     factor = excess(agreeing)
-    return widened(pool(agreeing), factor), factor, odd
+    return widened(pool(agreeing), factor), factor, left_out

@@ -1,7 +1,7 @@
-"""How far the rule ``information`` was after each manoeuvre, kept from one decision to the next.
+"""The criterion of the rule ``information`` after each manoeuvre, kept from one decision to the next.
 
-What is known after k manoeuvres depends on those k alone. A decision after one more manoeuvre adds one entry.
-A manoeuvre that is excluded, included or assessed again voids its own entry and all later ones.
+Knowledge after k manoeuvres depends on those k alone. A decision after one more manoeuvre adds one entry. A
+manoeuvre that is excluded, included or assessed again voids its own entry and all later ones.
 """
 
 from collections.abc import Sequence
@@ -15,41 +15,41 @@ from advisor.decision.information import Knowledge, knowledge
 
 @dataclass(frozen=True, slots=True)
 class Standing:
-    """How the rule ``information`` stood after a number of usable manoeuvres."""
+    """Result of the rule ``information`` after a number of usable manoeuvres."""
 
     percent: float
-    """The criterion, as ``Knowledge.percent``."""
+    """Criterion, as ``Knowledge.percent``."""
     sufficient: bool
     """Whether the rule said stop."""
     predicted: bool
-    """Whether the manoeuvres before predicted the newest."""
+    """Whether the earlier manoeuvres predicted the newest."""
 
 
 class Course:
-    """The course of one campaign under one plan: every decision is the one that no course would change.
+    """Cache of one campaign's criterion under one plan. No decision depends on the cache.
 
     Parameters
     ----------
     plan
-        What the campaign asks for.
+        Stop criterion of the campaign.
     """
 
     def __init__(self, plan: CampaignPlan) -> None:
         self.plan = plan
-        """What the campaign asks for."""
+        """Stop criterion of the campaign."""
         self._flown: list[Flown] = []
         self._standings: list[Standing] = []
         self._known: tuple[list[Flown], Knowledge] | None = None
 
     def standing(self, usable: Sequence[Flown]) -> Standing:
-        """How the rule stands after usable manoeuvres (at least one), in the order flown."""
+        """Return the rule's result after at least one usable manoeuvre, in the order flown."""
         n = len(usable)
         if n > len(self._standings) or not _same(self._flown[:n], usable):
             self._follow(usable)
         return self._standings[n - 1]
 
     def known(self, usable: Sequence[Flown]) -> Knowledge:
-        """What is known after usable manoeuvres (at least one); the newest answer is kept."""
+        """Return the knowledge after at least one usable manoeuvre. The newest result is kept."""
         if self._known is None or not _same(self._known[0], usable):
             self._known = list(usable), knowledge(usable, self.plan)
         return self._known[1]

@@ -1,7 +1,7 @@
-"""Was the manoeuvre flown whole and within what the model covers? Looks at the data only.
+"""Completeness of a manoeuvre, and its agreement with the model's assumptions, from the data alone.
 
-The model knows one input, a constant speed and wings level; each check here is one of its
-assumptions, with the number beside the limit.
+The model knows one input, a constant speed and wings level. Each check here is one of these assumptions, with
+the measured number and its limit.
 """
 
 from collections.abc import Collection
@@ -18,37 +18,39 @@ from advisor.rounding import distinct_texts
 
 NEEDED = ("elevator", "q")
 SAMPLES_PER_PERIOD = 8.0
-"""Fewest samples of elevator and pitch rate to one natural period: an aircraft of 2 rad/s needs 2.6 Hz, one
-of 9 rad/s 11 Hz. Between slower samples nobody knows the input, and no interval tells what that costs."""
+"""Fewest samples of elevator and pitch rate in one natural period. An aircraft of 2 rad/s needs 2.6 Hz, one
+of 9 rad/s needs 11 Hz. Between slower samples the input is unknown, and no interval shows the resulting
+error."""
 _LONGEST_GAP = (0.3, 0.2, 1.0)
-"""Longest gap: this share of the natural period, but within these, s."""
+"""Longest gap: a share of the natural period, then its least and greatest value, s."""
 _SHORTEST_FREE = 0.75
-"""Least free response, in natural periods: most of a swing, from which damping is read."""
+"""Least free response, in natural periods. Most of one swing is needed to determine the damping."""
 _SHORTEST_STEP = 0.15
-"""Least length of the shortest step, in natural periods; shorter ones the servo smears."""
+"""Least length of the shortest step, in natural periods. The servo smears shorter steps."""
 _OTHER_CONTROLS_DEG = 5.0
 _THROTTLE_PERCENT = 15.0
 _CUT_SHORT_BY = {
-    "gap": "the telemetry breaks off there; check the link",
-    "end of log": "the recording ends there; let it run on for some seconds",
-    "mode change": "the mode changes there; stay in the mode until the motion has died down",
+    "gap": ("the telemetry breaks off", "check the link"),
+    "end of log": ("the recording ends", "let the recording run on for some seconds"),
+    "mode change": ("the mode changes", "stay in the mode until the motion has died down"),
 }
-"""What ended a free response other than the pilot's hand, and the mend."""
+"""Cause of a record that was cut short, other than the pilot's hand, and its remedy."""
 _ASSUMED_STROKE_DEG = 25.0
-"""Full travel where the aircraft file has no calibration."""
+"""Full travel of the elevator where the aircraft file has no calibration, deg."""
 
 
 def incomplete(maneuver: Maneuver, period_s: float, counted: Collection[str]) -> list[Reason]:
-    """Missing channels and such as cannot be right, slow ones, gaps, a free response cut short.
+    """Return reasons for an incomplete record: missing or faulty channels, slow ones, gaps, a short free
+    response.
 
     Parameters
     ----------
     maneuver
-        As cut from the stream.
+        Manoeuvre as cut from the stream.
     period_s
-        Natural period of the short period, as far as it is known.
+        Natural period of the short-period motion, estimated or assumed, s.
     counted
-        Outputs that counted in the estimate; gaps in other channels do no harm.
+        Outputs that the estimate used. Gaps in other channels do no harm.
     """
     missing = [name for name in NEEDED if name not in maneuver.channels]
     if missing:
@@ -67,7 +69,8 @@ def incomplete(maneuver: Maneuver, period_s: float, counted: Collection[str]) ->
 
 
 def outside(maneuver: Maneuver, aircraft: Aircraft) -> list[Reason]:
-    """Bank, saturation, angle of attack, throttle, other controls."""
+    """Return reasons for a manoeuvre outside the limits: bank, saturation, angle of attack, throttle, other
+    controls."""
     return [
         *_bank(maneuver, aircraft.limits.bank_deg),
         *_saturation(maneuver, aircraft),
@@ -78,7 +81,7 @@ def outside(maneuver: Maneuver, aircraft: Aircraft) -> list[Reason]:
 
 
 def too_quick(maneuver: Maneuver, period_s: float) -> list[Reason]:
-    """Steps so short that neither servo nor aircraft follows them."""
+    """Return a reason where steps are so short that neither servo nor aircraft follows them."""
     onsets = [onset for onset, _ in maneuver.span.steps]
     if len(onsets) < 2 or maneuver.span.kind == "multisine":
         return []
@@ -91,7 +94,7 @@ def too_quick(maneuver: Maneuver, period_s: float) -> list[Reason]:
 
 
 def flown(maneuver: Maneuver, name: str) -> FloatArray:
-    """Values of a channel from the first step to the end; empty when it is not there."""
+    """Return the values of a channel from the first step to the end; empty for a missing channel."""
     channel = maneuver.channels.get(name)
     if channel is None:
         return np.empty(0)
@@ -129,25 +132,20 @@ def _gap(channels: list[Channel], maneuver: Maneuver, period_s: float) -> list[R
 
 def _free_response(maneuver: Maneuver, period_s: float) -> list[Reason]:
     if _is_broken_off(maneuver.span):
-        return [
-            Reason(
-                "aborted",
-                "the input was broken off before the elevator came to rest; fly all of it",
-                0.0,
-                1.0,
-            )
-        ]
+        what, mend = _CUT_SHORT_BY[maneuver.span.closed_by]
+        return [Reason("aborted", f"{what} before the elevator came to rest; {mend}", 0.0, 1.0)]
     free, least = maneuver.span.end_s - maneuver.span.last_step_s, _SHORTEST_FREE * period_s
     if free >= least:
         return []
     shown, limit = distinct_texts(free, least, 1)
-    mend = _CUT_SHORT_BY.get(maneuver.span.closed_by, "hands still after the last step")
+    ended = _CUT_SHORT_BY.get(maneuver.span.closed_by)
+    mend = "hands still after the last step" if ended is None else f"{ended[0]} there; {ended[1]}"
     text = f"free response too short, {shown} s (at least {limit}); {mend}"
     return [Reason("free_response", text, free, least)]
 
 
 def _is_broken_off(span: Span) -> bool:
-    """Whether something ended the record while the elevator was still away from trim."""
+    """Return whether something ended the record while the elevator was still away from trim."""
     return span.closed_by in _CUT_SHORT_BY and bool(span.steps) and span.steps[-1][1] != 0.0
 
 
@@ -160,14 +158,15 @@ def _bank(maneuver: Maneuver, limit: float) -> list[Reason]:
 
 
 def changed_speed(maneuver: Maneuver, aircraft: Aircraft) -> list[Reason]:
-    """Air speed away from where it was before the first step; often it follows from something else."""
+    """Return a reason where the air speed left its value before the first step. Often another reason causes
+    the change."""
     limit = aircraft.limits.airspeed_change_percent
     channel, speed = maneuver.channels.get("airspeed"), flown(maneuver, "airspeed")
     if channel is None or len(speed) < 2 or not np.median(channel.y) > 0.0:
         return []
     before = channel.cut(maneuver.span.record_from_s, maneuver.span.start_s).y
     trim = float(np.median(before if len(before) else channel.y[:1]))
-    # The second largest: one wild reading of the air speed is no change of speed.
+    # The second largest deviation: one wild reading of the air speed is no change of speed.
     change = 100.0 * float(np.sort(np.abs(speed / trim - 1.0))[-2:][0])
     if change <= limit:
         return []

@@ -1,4 +1,4 @@
-"""The rule ``information`` in words: its sentence for pilots, and the numbers behind it."""
+"""The rule ``information`` in words: its sentence for pilots, and the numbers of its evidence."""
 
 import numpy as np
 
@@ -9,11 +9,11 @@ from advisor.decision.prediction import Z95
 from advisor.rounding import distinct_texts
 
 SPOKEN = {"alpha": "angle of attack", "q": "pitch rate", "a_z": "normal acceleration"}
-"""Predicted outputs as people call them."""
+"""Predicted output to its name for people."""
 
 
 def sentence(known: Knowledge | None, stop: bool) -> str:
-    """Stop or continue, and what decided."""
+    """Return the sentence on stop or continue, with its reason."""
     if known is None:
         return "CONTINUE: no usable manoeuvre yet."
     if stop:
@@ -52,12 +52,13 @@ def _held_back(known: Knowledge) -> str:
 
 
 def evidence(known: Knowledge) -> tuple[str, ...]:
-    """The numbers behind the decision, a line each: bands, named parameters, and what holds nobody up."""
+    """Return the numbers of the decision, one line each: bands, named parameters, and parameters without a
+    tolerance."""
     share = known.share
     bands = ", ".join(f"{SPOKEN[name]} {band:.1f} %" for name, band in known.prediction_percent.items())
     named = ", ".join(f"{name} {100.0 * share[name]:.0f} %" for name in known.named)
     weak = ", ".join(
-        f"{PARAMETERS[k]} {known.belief.theta[k]:.3g} ± {Z95 * known.belief.std[k]:.2g}"
+        f"{PARAMETERS[k]} {known.posterior.theta[k]:.3g} ± {Z95 * known.posterior.std[k]:.2g}"
         for k in DERIVATIVES
         if PARAMETERS[k] not in known.named
     )

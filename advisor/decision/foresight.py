@@ -1,4 +1,4 @@
-"""What an input would teach, before it is flown: expected errors and excursions of the short-period model."""
+"""Information of an input before its flight: expected errors and excursions of the short-period model."""
 
 from dataclasses import dataclass
 
@@ -13,51 +13,53 @@ from advisor.oem.problem import Problem, Record, Signal, assemble
 from advisor.oem.surface import Servo
 
 UNMEASURED = 1e3
-"""Noise in rad of an angle of attack that nobody measures: no information beside any other output's."""
+"""Noise of an angle of attack that is not measured, rad. The number is so large that α adds no
+information."""
 
 
 @dataclass(frozen=True, slots=True)
 class Instruments:
-    """How the outputs are measured, and what lies between stick and surface."""
+    """Measurement of the outputs, and the servo between stick and surface."""
 
     step_s: tuple[float, float]
-    """Between samples of α and of q."""
+    """Time between samples of α and of q, s."""
     noise: tuple[float, float]
     """Standard deviation of α in rad and of q in rad/s."""
     servo: Servo
     specific_force: tuple[float, float] | None = None
-    """Between samples of a_z in s, and its noise over the air speed in 1/s; None: a_z is not used."""
+    """Time between samples of a_z in s, and the noise of a_z divided by the air speed in 1/s. None: a_z is
+    not used."""
 
 
 @dataclass(frozen=True, slots=True)
 class Expectation:
-    """What a manoeuvre would give."""
+    """Expected errors and excursion of a manoeuvre."""
 
     covariance: FloatArray
-    """(8, 8) Cramér-Rao bound, order of ``PARAMETERS``."""
+    """(8, 8) Cramér-Rao bound, in the order of ``PARAMETERS``."""
     alpha_excursion: float
-    """Largest deviation of α from where it began, rad."""
+    """Largest deviation of α from its initial value, rad."""
 
     @property
     def std(self) -> FloatArray:
-        """(8,) expected errors."""
+        """(8,) expected standard deviations."""
         return np.sqrt(np.diag(self.covariance))
 
 
 def expect(theta: FloatArray, elevator: Signal, instruments: Instruments) -> Expectation | None:
-    """Expected errors of the eight parameters from one manoeuvre with this elevator.
+    """Return the expected errors of the eight parameters from one manoeuvre with this elevator.
 
     Parameters
     ----------
     theta
-        (8,) the aircraft as believed now.
+        (8,) present estimate of the aircraft.
     elevator
         The command, trim included; the record begins in the model's equilibrium at its first value.
 
     Returns
     -------
     Expectation or None
-        None when the input cannot tell the parameters apart, or the model runs away.
+        None when the input cannot separate the parameters, or the model diverges.
     """
     end = elevator.t[-1]
     outputs = {

@@ -1,7 +1,7 @@
-"""What the rules look at: the manoeuvres of a campaign in the order flown, nothing else.
+"""Input of the rules: the manoeuvres of a campaign in the order flown, and nothing else.
 
-Every rule is a function of the whole history, so that excluding a manoeuvre by hand decides anew all that
-followed it. What is kept from one decision to the next (``course``) changes no decision.
+Every rule is a function of the whole history, so that excluding a manoeuvre by hand decides anew on all later
+ones. The cache between decisions (``course``) changes no decision.
 """
 
 from collections.abc import Sequence
@@ -19,31 +19,31 @@ class Flown:
 
     estimate: Estimate | NoEstimate
     reasons: tuple[Reason, ...] = ()
-    """What speaks against the manoeuvre itself (too gentle, banked, ...), the most telling first."""
+    """Objections to the manoeuvre itself (too gentle, banked, ...), the most important first."""
     cautions: tuple[str, ...] = ()
-    """What does not speak against it but belongs on its verdict."""
+    """Remarks for the verdict that do not reject the manoeuvre."""
     excluded_because: str | None = None
-    """Set when an engineer took it out by hand."""
+    """Reason for which an engineer excluded the manoeuvre; None: the manoeuvre counts."""
     maneuver: Maneuver | None = None
-    """What was flown, for advice on what to fly next."""
+    """Flown data, for advice on the next input."""
     air_moved: bool = False
-    """Whether its residuals bear the mark of moving air."""
+    """Whether the manoeuvre's residuals show moving air."""
     servo: Servo = field(default_factory=Servo)
-    """What lies between command and surface, as the estimate takes it."""
+    """Servo between command and surface, as the estimate uses it."""
 
     @property
     def usable(self) -> Estimate | None:
-        """Its estimate, if the manoeuvre may be held against any rule at all."""
+        """Estimate of a manoeuvre that a rule may judge. None: excluded, rejected or not estimated."""
         if isinstance(self.estimate, Estimate) and not self.reasons and self.excluded_because is None:
             return self.estimate
         return None
 
 
 def usable_ones(history: Sequence[Flown]) -> list[Flown]:
-    """All usable manoeuvres, in the order flown."""
+    """Return all usable manoeuvres, in the order flown."""
     return [flown for flown in history if flown.usable]
 
 
 def estimates_of(usable: Sequence[Flown]) -> list[Estimate]:
-    """The estimates of manoeuvres, in the order flown; those that are not usable have none."""
+    """Return the estimates of the usable manoeuvres, in the order flown."""
     return [estimate for flown in usable if (estimate := flown.usable)]

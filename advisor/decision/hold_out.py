@@ -7,7 +7,7 @@ import numpy as np
 
 from advisor.decision.consistency import consensus
 from advisor.decision.history import Flown
-from advisor.decision.pooling import DERIVATIVES, Shared, beliefs_at_one_speed, common_airspeed
+from advisor.decision.pooling import DERIVATIVES, Shared, posteriors_at_one_speed, common_airspeed
 from advisor.decision.prediction import PREDICTED, Z95, Response, measured, response_to
 from advisor.flight.messages import FloatArray
 from advisor.flight.record import Channel
@@ -54,7 +54,7 @@ def predict_last(usable: Sequence[Flown]) -> Mapping[str, PredictedOutput]:
     if last is None or last.maneuver is None or not isinstance(last.estimate, Estimate):
         return {}
     estimates = [flown.estimate for flown in usable if isinstance(flown.estimate, Estimate)]
-    *before, own = beliefs_at_one_speed(estimates)
+    *before, own = posteriors_at_one_speed(estimates)
     airspeed_m_s = common_airspeed(estimates)
     known = consensus(before)[0].shared
     predicted = response_to(last, known.theta, airspeed_m_s)

@@ -1,10 +1,10 @@
-"""The rule ``information``: stop when flying more changes nothing that matters.
+"""The rule ``information``: stop when further manoeuvres change nothing that matters.
 
-The paper's criterion asks whether the last estimates scatter little beside their mean. That has no
-scale where a parameter is near zero, and it forgets every manoeuvre outside its window. This rule asks
-what the model is for. Is the 95 % band of the predicted response within the tolerance? Was the newest
-manoeuvre predicted before the estimate had used it? Is each derivative that the crew named within its
-own tolerance? A parameter that moves no prediction and is not named holds nobody up.
+The paper's criterion asks whether the last estimates scatter little relative to their mean. That ratio has no
+scale where a parameter is near zero, and it ignores every manoeuvre outside its window. This rule asks three
+questions about the use of the model. Is the 95 % band of the predicted response within the tolerance? Was the
+newest manoeuvre predicted before the estimate had used it? Is each derivative that the crew named within its
+own tolerance? A parameter that moves no prediction and is not named delays no stop.
 """
 
 from collections.abc import Mapping, Sequence
@@ -16,82 +16,89 @@ from scipy.special import chdtri
 from advisor.aircraft import PARAMETERS, CampaignPlan
 from advisor.decision.consistency import consensus, widened
 from advisor.decision.history import Flown, estimates_of
-from advisor.decision.pooling import Belief, Shared, beliefs_at_one_speed, common_airspeed, disagreement
+from advisor.decision.pooling import Posterior, Shared, common_airspeed, disagreement, posteriors_at_one_speed
 from advisor.decision.prediction import Z95, Prediction, missed_percent, predict
 from advisor.decision.tolerance import tolerances
 from advisor.flight.messages import FloatArray
 
 SURPRISING = 0.01
-"""Chance level below which a manoeuvre contradicts its prediction."""
+"""Probability below which a manoeuvre contradicts its prediction."""
 
 
 @dataclass(frozen=True, slots=True)
 class Knowledge:
-    """How well the aircraft is known after some manoeuvres."""
+    """Knowledge of the aircraft after some manoeuvres."""
 
-    belief: Belief
-    """From all manoeuvres that agree; wider when they scatter more than their intervals say."""
+    posterior: Posterior
+    """Pooled estimate of all consistent manoeuvres, wider where they scatter more than their stated
+    errors."""
     prediction: Prediction
-    """The response to what was flown."""
+    """Predicted response to the flown inputs."""
     tolerance_percent: float
-    """What the half-width of the band must stay below, in percent of the response's peak."""
+    """Tolerance for the half-width of the prediction's 95 % band, % of the response's peak."""
     named: tuple[str, ...]
     """Parameters that have a tolerance of their own."""
     tolerance: FloatArray
-    """Shape (8,). What the 95 % half-width of a named parameter must stay below."""
+    """Shape (8,). Tolerance for the 95 % half-width of each named parameter."""
     surprise: float
-    """Distance of the newest from its prediction, as a share of the 99 % limit; NaN without one."""
+    """Distance of the newest manoeuvre from its prediction, as a share of the 99 % limit. NaN without a
+    prediction."""
     missed_percent: float
-    """Largest error of the newest's predicted response, in percent of its peak; NaN without one."""
+    """Largest error of the newest manoeuvre's predicted response, % of the response's peak. NaN without a
+    prediction."""
     foretold_percent: float
-    """The 95 % band of that prediction, in percent of its peak; NaN without one."""
+    """Half-width of the 95 % band of the newest manoeuvre's prediction, % of its peak. NaN without a
+    prediction."""
     widening: float
-    """Variance ratio by which contradictions between manoeuvres have widened ``belief``, at least 1."""
+    """Variance ratio by which contradictions between manoeuvres have widened ``posterior``, at least 1."""
     left_out: tuple[int, ...]
     """Indices of manoeuvres that contradict all the others."""
     not_identifiable: Mapping[str, str]
-    """Parameter to the reason, where no manoeuvre could tell it: a small error is then no knowledge."""
+    """Parameter to the reason for which no manoeuvre identifies it. Its small stated error is then no
+    knowledge."""
 
     @property
     def predicted(self) -> bool:
-        """Whether the manoeuvres before predicted the newest.
+        """Whether the earlier manoeuvres predicted the newest.
 
-        The predicted response came true within the tolerance: a small error of the model, which no interval
-        of a long campaign contains, does not withhold the stop. Or chance explains the difference, and the
-        prediction was surer than the tolerance: an unsure one agrees with anything.
+        Either the error of the predicted response is within the tolerance. Such a small error of the model,
+        which no interval of a long campaign contains, does not delay the stop. Or chance explains the error,
+        and the prediction was more precise than the tolerance. An imprecise prediction would agree with any
+        response.
         """
         unsure = self.foretold_percent >= self.tolerance_percent
         return self.missed_percent < self.tolerance_percent or (self.surprise < 1.0 and not unsure)
 
     @property
     def prediction_percent(self) -> Mapping[str, float]:
-        """Output to the half-width of its 95 % band at the widest, in percent of its peak."""
-        return self.prediction.percent(self.belief.shared.covariance)
+        """Output to the largest half-width of its 95 % band, % of its peak."""
+        return self.prediction.percent(self.posterior.shared.covariance)
 
     @property
     def share(self) -> Mapping[str, float]:
-        """What must be known to its uncertainty as a share of its tolerance; infinite when unknown.
+        """Criterion's quantity to its uncertainty as a share of its tolerance. Infinite for an unknown
+        quantity.
 
-        Outputs by their name, then the named parameters.
+        The quantities are the outputs by their names, then the named parameters.
         """
-        known = np.isfinite(self.belief.std) & np.isfinite(self.belief.theta)
+        known = np.isfinite(self.posterior.std) & np.isfinite(self.posterior.theta)
         known &= [name not in self.not_identifiable for name in PARAMETERS]
-        half = np.where(known, Z95 * np.where(known, self.belief.std, 0.0) / self.tolerance, np.inf)
+        half = np.where(known, Z95 * np.where(known, self.posterior.std, 0.0) / self.tolerance, np.inf)
         return self.shares_with(self.prediction_percent, half)
 
     def shares_with(self, band_percent: Mapping[str, float], half: FloatArray) -> Mapping[str, float]:
-        """As ``share``, for other bands and other (8,) half-widths over tolerance."""
+        """Return ``share`` for given bands of the outputs, and given (8,) half-widths over tolerance."""
         bands = {name: percent / self.tolerance_percent for name, percent in band_percent.items()}
         return bands | {name: float(half[PARAMETERS.index(name)]) for name in self.named}
 
     @property
     def percent(self) -> float:
-        """The criterion: the largest `share`, in percent; stop below 100."""
+        """Criterion of the rule: the largest `share`, in percent. Below 100 the rule says stop."""
         return 100.0 * max(self.share.values(), default=float("inf"))
 
     @property
     def holding_back(self) -> str:
-        """The output or parameter with the largest `share`."""
+        """Output or parameter with the largest `share`, which delays the stop."""
         share = self.share
         return max(share, key=lambda name: share[name], default="")
 
@@ -102,20 +109,20 @@ class Knowledge:
 
 
 def knowledge(usable: Sequence[Flown], plan: CampaignPlan) -> Knowledge:
-    """What is known after usable manoeuvres (at least one), in the order flown."""
+    """Return the knowledge after at least one usable manoeuvre, in the order flown."""
     estimates = estimates_of(usable)
-    beliefs, airspeed = beliefs_at_one_speed(estimates), common_airspeed(estimates)
-    belief, widening, left_out = consensus(beliefs)
+    posteriors, airspeed = posteriors_at_one_speed(estimates), common_airspeed(estimates)
+    posterior, widening, left_out = consensus(posteriors)
     agreeing = [flown for i, flown in enumerate(usable) if i not in left_out]
-    surprise, missed, foretold = _compared(usable[-1], beliefs, airspeed)
+    surprise, missed, foretold = _compared(usable[-1], posteriors, airspeed)
     used = estimates_of(agreeing)
-    prediction = predict(agreeing, belief.shared.theta, airspeed)
+    prediction = predict(agreeing, posterior.shared.theta, airspeed)
     return Knowledge(
-        belief=belief,
+        posterior=posterior,
         prediction=prediction,
         tolerance_percent=plan.tolerance_percent,
         named=plan.parameters,
-        tolerance=tolerances(belief.theta, prediction, plan),
+        tolerance=tolerances(posterior.theta, prediction, plan),
         surprise=surprise,
         missed_percent=missed,
         foretold_percent=foretold,
@@ -130,13 +137,14 @@ def knowledge(usable: Sequence[Flown], plan: CampaignPlan) -> Knowledge:
 
 
 def _compared(
-    newest: Flown, beliefs: Sequence[Belief], airspeed_m_s: float | None
+    newest: Flown, posteriors: Sequence[Posterior], airspeed_m_s: float | None
 ) -> tuple[float, float, float]:
-    """The newest manoeuvre against those before: ``surprise``, ``missed_percent``, ``foretold_percent``."""
-    if len(beliefs) < 2:
+    """Return the comparison of the newest manoeuvre with its prediction: ``surprise``, ``missed_percent``,
+    ``foretold_percent``."""
+    if len(posteriors) < 2:
         return float("nan"), float("nan"), float("nan")
-    before, excess, _ = consensus(beliefs[:-1])
-    own: Shared = widened(beliefs[-1], excess).shared
+    before, excess, _ = consensus(posteriors[:-1])
+    own: Shared = widened(posteriors[-1], excess).shared
     distance, dof = disagreement(before.shared, own)
     surprise = distance / float(chdtri(dof, SURPRISING)) if dof else float("nan")
     bands = predict([newest], before.shared.theta, airspeed_m_s).percent(before.shared.covariance)

@@ -1,4 +1,4 @@
-"""Inputs a pilot can fly: order of the steps, unit of time, amplitude, direction, and how to say it."""
+"""Inputs that a pilot can fly: order of steps, unit of time, amplitude, direction, and their spoken form."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -16,17 +16,17 @@ ORDERS: Mapping[str, tuple[int, ...]] = {
     "2-1-1": (2, 1, 1),
     "doublet": (1, 1),
 }
-"""Durations of the steps in units of time; the sides alternate.
+"""Input name to the durations of its steps, in units of time. Steps alternate between both sides of trim.
 
-None is longer than the textbook's 3-2-1-1. A long first step shows the stiffness, the run of equal steps
-behind it stays at the short period; half a step first (1-2-2-...) swings the aircraft evenly about trim,
-which leaves room for more stick within the same angle of attack.
+No order is longer than the textbook's 3-2-1-1. A long first step shows the stiffness, and a run of equal
+steps excites the short period. Half a step first (1-2-2-...) swings the aircraft evenly about trim, which
+allows more stick within an angle-of-attack limit.
 """
 
 SHORTEST_UNIT_S = 0.2
-"""Shorter steps cannot be flown by hand, and a servo does not follow them."""
+"""Shortest unit of time, s. Shorter steps cannot be flown by hand, and a servo does not follow them."""
 EDGE_S = 0.02
-"""A step takes this long."""
+"""Time that the elevator takes from one step to the next, s."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,17 +37,17 @@ class StepInput:
     """A key of ``ORDERS``."""
     unit_s: float
     amplitude_rad: float
-    """Every step's distance from trim."""
+    """Distance of every step from trim."""
     nose_up_first: bool
-    """The first step's direction; for the others the input is called reverse."""
+    """Direction of the first step. An input that begins nose down is called reverse."""
 
     @property
     def duration_s(self) -> float:
-        """From the first step to the return to trim."""
+        """Time from the first step to the return to trim."""
         return self.unit_s * sum(ORDERS[self.order])
 
     def elevator(self, trim_rad: float, lead_s: float, length_s: float) -> Signal:
-        """Elevator in rad, trailing edge down positive; the input begins after ``lead_s``."""
+        """Return the elevator in rad, trailing edge down positive; the input begins after ``lead_s``."""
         side = -1.0 if self.nose_up_first else 1.0
         corners, levels = [0.0], [0.0]
         onset, level = lead_s, 0.0
@@ -59,21 +59,21 @@ class StepInput:
         return Signal(t, trim_rad + self.amplitude_rad * np.array([*levels, 0.0]))
 
     def spoken(self, travel_rad: float) -> str:
-        """As a pilot hears it: ``reverse 3-2-1-1, 0.4 s steps, 60 % stick``."""
+        """Return the input as a pilot hears it: ``reverse 3-2-1-1, 0.4 s steps, 60 % stick``."""
         reverse = "" if self.nose_up_first else "reverse "
         return f"{reverse}{self.order}, {self.unit_s:.1f} s steps, {self._stick(travel_rad)} % stick"
 
     def rounded(self, travel_rad: float) -> "StepInput":
-        """The same with an amplitude that can be said, never a larger one unless it were nothing."""
+        """Return the input with an amplitude that can be spoken, rounded down unless that gave zero."""
         return replace(self, amplitude_rad=0.01 * self._stick(travel_rad) * travel_rad)
 
     def _stick(self, travel_rad: float) -> int:
-        """Amplitude in percent of the travel: in fives above 20 %."""
+        """Return the amplitude in percent of the travel, in steps of five above 20 %."""
         percent = 100.0 * self.amplitude_rad / travel_rad + 1e-9
         return 5 * int(percent / 5.0) if percent > 20.0 else max(1, int(percent))
 
 
 def units_to_try(natural_frequency: float) -> FloatArray:
-    """Units of time around the short period's, in tenths of a second as a pilot can count them."""
+    """Return units of time from 0.5/ω to 3.2/ω, rounded to tenths of a second as a pilot can count them."""
     wanted = np.array([0.5, 0.8, 1.2, 1.6, 2.0, 2.6, 3.2]) / natural_frequency
     return np.unique(np.maximum(np.round(wanted, 1), SHORTEST_UNIT_S))

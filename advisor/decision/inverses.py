@@ -9,21 +9,23 @@ from advisor.flight.messages import FloatArray
 
 
 def information_of(covariance: FloatArray) -> FloatArray:
-    """Inverse of covariances (..., n, n); zero rows and columns for what is unknown.
+    """Return the inverse of covariances (..., n, n), with zero rows and columns for unknown parameters.
 
-    Unknown is what has no finite, positive variance.
+    A parameter is unknown where its variance is not finite and positive.
     """
     variance = np.diagonal(covariance, axis1=-2, axis2=-1)
     return _inverse(covariance, np.isfinite(variance) & (variance > 0.0), 0.0)
 
 
 def covariance_of(information: FloatArray) -> FloatArray:
-    """Inverse of information matrices (..., n, n); infinite variance for what they say nothing about."""
+    """Return the inverse of information matrices (..., n, n), with infinite variance for parameters without
+    information."""
     return _inverse(information, np.diagonal(information, axis1=-2, axis2=-1) > 0.0, np.inf)
 
 
 def _inverse(matrix: FloatArray, known: np.ndarray, unknown: float) -> FloatArray:
-    """Inverse of symmetric positive semi-definite matrices (..., n, n), scaled so that units do not matter.
+    """Return the inverse of symmetric positive semi-definite matrices (..., n, n), scaled so that units do
+    not matter.
 
     Rows and columns that are not ``known`` (..., n) become zero, with ``unknown`` on the diagonal.
     """

@@ -1,72 +1,74 @@
-"""Was that manoeuvre good: what speaks against it itself, then the rule the crew chose."""
+"""Verdict on a manoeuvre: first objections to the manoeuvre itself, then the rule that the crew chose."""
 
 from collections.abc import Container, Mapping, Sequence
 from math import floor
 
 from advisor.aircraft import CampaignPlan, Rule
 from advisor.decision.acceptance import MANEUVER_RULES
-from advisor.decision.consistency import Odd, odd_ones
+from advisor.decision.consistency import Outlier, outliers
 from advisor.decision.course import Course
 from advisor.decision.history import Flown
 from advisor.decision.larger import Larger, larger_and_agreeing
-from advisor.decision.pooling import beliefs_at_one_speed
+from advisor.decision.pooling import posteriors_at_one_speed
 from advisor.decision.verdict import ManeuverVerdict, Reason, RuleResult
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.rounding import distinct_texts
 
 COLOURED = 0.5
-"""Lag-1 correlation of a residual below which nothing drives it."""
+"""Lag-1 correlation of a residual above which the residual counts as driven, by moving air or a model
+error."""
 
 
 def judge_campaign(
     history: Sequence[Flown], plan: CampaignPlan, course: Course | None = None
 ) -> tuple[ManeuverVerdict, ...]:
-    """Verdicts on all manoeuvres flown so far, in the same order, each with what every rule says.
+    """Return verdicts on all manoeuvres so far, in the order flown, each with the result of every rule.
 
-    A verdict depends only on the manoeuvres before it, unless one of them is excluded by hand; under the
-    rule ``information`` later ones may show that it contradicts all the others. A ``course`` keeps what
-    earlier decisions on this campaign found; the verdicts are those without one.
+    A verdict depends only on the earlier manoeuvres, with two exceptions. A manoeuvre may be excluded by
+    hand. Under the rule ``information`` later manoeuvres may show that it contradicts all the others. A
+    ``course`` keeps results of earlier decisions, and changes no verdict.
     """
     course = course or Course(plan)
-    odd = contradicting(history)
-    by_rule = {rule: _results(history, rule, odd) for rule in MANEUVER_RULES}
+    contradicted = contradicting(history)
+    by_rule = {rule: _results(history, rule, contradicted) for rule in MANEUVER_RULES}
     accepted = [result.accepted for result in by_rule[plan.rule]]
     verdicts = []
     for i, flown in enumerate(history):
         costly = flown.usable is not None and plan.rule != "information" and not accepted[i]
         larger = larger_and_agreeing(history[: i + 1], accepted, course) if costly else None
         rules = {name: results[i] for name, results in by_rule.items()}
-        verdicts.append(_verdict(flown, plan.rule, rules, odd.get(i), larger))
+        verdicts.append(_verdict(flown, plan.rule, rules, contradicted.get(i), larger))
     return tuple(verdicts)
 
 
 def judge(flown: Flown, history: Sequence[Flown], plan: CampaignPlan) -> ManeuverVerdict:
-    """Verdict on the newest manoeuvre, given those before it."""
+    """Return the verdict on the newest manoeuvre, given the earlier ones."""
     return judge_campaign([*history, flown], plan)[-1]
 
 
 def results_of(history: Sequence[Flown], rule: Rule) -> tuple[RuleResult, ...]:
-    """What one rule says of every manoeuvre."""
+    """Return the result of one rule for every manoeuvre."""
     return _results(history, rule, contradicting(history) if rule == "information" else ())
 
 
-def _results(history: Sequence[Flown], rule: Rule, odd: Container[int]) -> tuple[RuleResult, ...]:
+def _results(history: Sequence[Flown], rule: Rule, outliers: Container[int]) -> tuple[RuleResult, ...]:
     costs = [estimate.cost if (estimate := flown.usable) else None for flown in history]
     results = MANEUVER_RULES[rule](costs)
     if rule != "information":
         return results
-    return tuple(RuleResult(r.accepted and i not in odd, r.limit) for i, r in enumerate(results))
+    return tuple(RuleResult(r.accepted and i not in outliers, r.limit) for i, r in enumerate(results))
 
 
-def contradicting(history: Sequence[Flown]) -> Mapping[int, Odd]:
-    """Usable manoeuvres that contradict all the others, by their index: ``information`` leaves them out."""
+def contradicting(history: Sequence[Flown]) -> Mapping[int, Outlier]:
+    """Return usable manoeuvres that contradict all the others, by index. The rule ``information`` leaves them
+    out."""
     usable = [(i, estimate) for i, flown in enumerate(history) if (estimate := flown.usable)]
-    odd = odd_ones(beliefs_at_one_speed([estimate for _, estimate in usable]))
-    return {usable[k][0]: found for k, found in odd.items()}
+    found = outliers(posteriors_at_one_speed([estimate for _, estimate in usable]))
+    return {usable[k][0]: outlier for k, outlier in found.items()}
 
 
 def accepted_estimates(history: Sequence[Flown], rule: Rule) -> list[Estimate]:
-    """Estimates of the manoeuvres that ``rule`` accepts, in the order flown."""
+    """Return the estimates of the manoeuvres that ``rule`` accepts, in the order flown."""
     return [
         estimate
         for flown, result in zip(history, results_of(history, rule), strict=True)
@@ -75,9 +77,9 @@ def accepted_estimates(history: Sequence[Flown], rule: Rule) -> list[Estimate]:
 
 
 def _verdict(
-    flown: Flown, rule: Rule, rules: Mapping[Rule, RuleResult], odd: Odd | None, larger: Larger | None
+    flown: Flown, rule: Rule, rules: Mapping[Rule, RuleResult], outlier: Outlier | None, larger: Larger | None
 ) -> ManeuverVerdict:
-    reasons = _reasons(flown, rule, rules[rule], odd, larger)
+    reasons = _reasons(flown, rule, rules[rule], outlier, larger)
     notes = flown.estimate.notes if isinstance(flown.estimate, Estimate) else ()
     cautions = tuple(dict.fromkeys((*flown.cautions, *notes)))
     if flown.excluded_because is not None:
@@ -92,7 +94,7 @@ def _verdict(
 
 
 def _reasons(
-    flown: Flown, rule: Rule, result: RuleResult, odd: Odd | None, larger: Larger | None
+    flown: Flown, rule: Rule, result: RuleResult, outlier: Outlier | None, larger: Larger | None
 ) -> tuple[Reason, ...]:
     if flown.excluded_because is not None:
         text = f"excluded by hand: {flown.excluded_because}"
@@ -102,7 +104,7 @@ def _reasons(
     if flown.reasons or result.accepted:
         return flown.reasons
     if rule == "information":
-        return (_contradicts(odd),) if odd else ()
+        return (_contradicts(outlier),) if outlier else ()
     if larger is not None:
         return (_only_larger(flown.estimate, larger, result.limit or 0.0),)
     return (_too_costly(flown, flown.estimate, rule, result.limit or 0.0),)
@@ -121,24 +123,24 @@ def _why_accepted(flown: Flown, rule: Rule, result: RuleResult) -> str:
 
 
 def _explained(estimate: Estimate) -> str:
-    """How much of the motion the model explains; nothing of a record without any."""
+    """Return a clause on the share of the motion that the model explains; empty without a fit."""
     share = min(fit.r2 for name, fit in estimate.fits[0].items() if name in ("alpha", "q"))
-    # Cut, not rounded: 100 % is said of an exact fit only.
+    # Cut, not rounded: 100 % is printed for an exact fit only.
     return f"the model explains {floor(1000.0 * share) / 10.0:.1f} % of it; " if share > 0.0 else ""
 
 
 def _of_limit(cost: float, limit: float) -> str:
-    """A cost beside its limit: its unit tells nobody anything, the ratio does."""
+    """Return a cost as a multiple of its limit, for the unit of a cost means nothing to a reader."""
     if limit <= 0.0:
         return "cost above its limit, 0"
     ratio = distinct_texts(cost / limit, 1.0, 2)[0]
     return f"cost {ratio} of its limit" if cost < limit else f"cost {ratio} times its limit"
 
 
-def _contradicts(odd: Odd) -> Reason:
-    distance, limit = distinct_texts(odd.sigma, odd.limit, 1)
+def _contradicts(outlier: Outlier) -> Reason:
+    distance, limit = distinct_texts(outlier.sigma, outlier.limit, 1)
     text = f"contradicts all the others, {distance} sigma from them (limit {limit}); fly it again"
-    return Reason("odd", text, odd.sigma, odd.limit)
+    return Reason("odd", text, outlier.sigma, outlier.limit)
 
 
 def _too_costly(flown: Flown, estimate: Estimate, rule: Rule, limit: float) -> Reason:
@@ -162,7 +164,7 @@ _LESS_WELL = "less well than the last accepted one"
 
 
 def _another_try(flown: Flown, estimate: Estimate, rule: Rule) -> str:
-    """What to do better: calmer air only where the air moved."""
+    """Return the advice for another try. Calmer air is advised only where the air moved."""
     if flown.air_moved:
         return "fly it again in calmer air"
     if rule == "separate":

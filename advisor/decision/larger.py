@@ -1,8 +1,8 @@
-"""A manoeuvre refused for its cost alone, flown larger than those before and in agreement with them.
+"""A manoeuvre refused for its cost alone, although larger than the earlier ones and in agreement with them.
 
-The cost J = det R has no scale of the motion. What the model leaves unexplained grows with the motion: in
-two channels the cost doubles when each variance of the residual grows by 1.41, that is when the motion
-grows by 1.19. Eqs. (10) and (11) then refuse a manoeuvre that teaches more than those before.
+The cost J = det R has no scale of the motion. The unexplained part of a response grows with the motion. In
+two channels the cost doubles when each variance of the residual grows by 1.41, that is when the motion grows
+by 1.19. Eqs. (10) and (11) then refuse a manoeuvre with more information than the earlier ones.
 """
 
 from collections.abc import Sequence
@@ -18,28 +18,29 @@ from advisor.oem.estimate import Estimate
 
 @dataclass(frozen=True, slots=True)
 class Larger:
-    """How much larger a refused manoeuvre was flown than what set its limit."""
+    """Size of a refused manoeuvre relative to the manoeuvre that set its limit."""
 
     ratio: float
-    """Of the ranges of the pitch rate."""
+    """Ratio of the two ranges of the pitch rate."""
     setter: int | None
-    """Number of the manoeuvre that set the limit; None where it was a median."""
+    """Number of the manoeuvre that set the limit. None where a median set the limit."""
 
 
 def larger_and_agreeing(history: Sequence[Flown], accepted: Sequence[bool], course: Course) -> Larger | None:
-    """Whether the newest manoeuvre of ``history`` was larger than what set its limit, and predicted.
+    """Return the size of the newest manoeuvre where it was larger than the one that set its limit, and
+    predicted.
 
     Parameters
     ----------
     history
-        Up to and including the manoeuvre that the paper's rule ``course.plan.rule`` refused.
+        Manoeuvres up to and including the one that the paper's rule ``course.plan.rule`` refused.
     accepted
-        What that rule says of each.
+        Whether that rule accepts each manoeuvre.
 
     Returns
     -------
     Larger or None
-        None where it was no larger, to the digits that are said, or contradicts those before.
+        None where the manoeuvre was no larger to the printed digits, or contradicts the earlier ones.
     """
     before, newest = history[:-1], history[-1]
     setters = [i for i, flown in enumerate(before) if flown.usable]
@@ -55,6 +56,6 @@ def larger_and_agreeing(history: Sequence[Flown], accepted: Sequence[bool], cour
 
 
 def _range(flown: Flown) -> float:
-    """Range of the fitted pitch rate, rad/s."""
+    """Return the range of the fitted pitch rate, rad/s."""
     assert isinstance(flown.estimate, Estimate)
     return float(np.ptp(flown.estimate.fits[0]["q"].fitted))

@@ -1,8 +1,8 @@
-"""All manoeuvres together: single estimates combined by their information.
+"""Estimates of single manoeuvres, combined by their information.
 
-For the rules this stands in for the joint output error estimate: in the linear regime the two agree,
-because the sum of quadratic costs has its minimum where the information-weighted mean lies. It needs no
-data, only estimates and covariances, so that every decision of a campaign is recomputed in a blink.
+For the rules, the pooled estimate replaces the joint output-error estimate. In the linear regime the two
+agree, because the sum of quadratic costs has its minimum at the information-weighted mean. Pooling needs no
+data, only estimates and covariances, so that every decision of a campaign is quickly recomputed.
 """
 
 from collections.abc import Sequence
@@ -20,7 +20,7 @@ from advisor.oem.estimate import Estimate
 from advisor.standard_gravity import GRAVITY_M_S2
 
 INTERCEPTS = (PARAMETERS.index("Z_0"), PARAMETERS.index("M_0"))
-"""Trim and speed differ from one manoeuvre to the next, so each has its own Z_0 and M_0."""
+"""Indices of Z_0 and M_0 in θ. Trim and speed differ between manoeuvres, so each has its own Z_0 and M_0."""
 DERIVATIVES = tuple(k for k in range(len(PARAMETERS)) if k not in INTERCEPTS)
 
 _D, _C = list(DERIVATIVES), list(INTERCEPTS)
@@ -29,64 +29,65 @@ _SPEED_POWER = np.array([SPEED_EXPONENTS[name] for name in PARAMETERS], dtype=fl
 
 
 class Shared(NamedTuple):
-    """What is believed of the six derivatives, which manoeuvres share, in the order of ``DERIVATIVES``."""
+    """Mean and covariance of the six derivatives, which manoeuvres share, in the order of ``DERIVATIVES``."""
 
     theta: FloatArray
-    """Shape (6,)."""
+    """Mean, shape (6,)."""
     covariance: FloatArray
-    """Shape (6, 6); infinite on the diagonal where nothing is known."""
+    """Covariance, shape (6, 6). Infinite on the diagonal for an unknown derivative."""
 
 
 @dataclass(frozen=True)
-class Belief:
-    """What is believed of θ: mean and covariance."""
+class Posterior:
+    """Mean and covariance of θ."""
 
     theta: FloatArray
-    """Shape (8,), order of ``PARAMETERS``."""
+    """Mean, shape (8,), in the order of ``PARAMETERS``."""
     covariance: FloatArray
-    """Shape (8, 8); infinite on the diagonal where nothing is known."""
+    """Covariance, shape (8, 8). Infinite on the diagonal for an unknown parameter."""
 
     @property
     def std(self) -> FloatArray:
-        """Shape (8,)."""
+        """Standard deviations, shape (8,)."""
         return np.sqrt(np.diag(self.covariance))
 
     @cached_property
     def shared(self) -> Shared:
-        """The derivatives alone."""
+        """Mean and covariance of the derivatives alone."""
         return Shared(self.theta[_D], self.covariance[_DD])
 
     @cached_property
     def information(self) -> FloatArray:
-        """Shape (6, 6). Information about the derivatives, zero where nothing is known."""
+        """Information about the derivatives, shape (6, 6). Zero for an unknown derivative."""
         return information_of(self.shared.covariance)
 
 
-def beliefs_at_one_speed(estimates: Sequence[Estimate]) -> list[Belief]:
-    """The estimates brought to their mean air speed, where every one of them knows its own.
+def posteriors_at_one_speed(estimates: Sequence[Estimate]) -> list[Posterior]:
+    """Return the estimates converted to their mean air speed, where every estimate has its air speed.
 
-    Each parameter goes with its power of V (``SPEED_EXPONENTS``), gravity's part g/V of Z_0 apart.
-    Estimates that already stand at one speed, or do not know theirs, are left as they are. The colour
-    of the residuals is a matter of instruments and air, which the manoeuvres share: how much it widens
-    the Cramér-Rao bounds is the median over them, steadier than each manoeuvre's own.
+    Each parameter scales with its power of V (``SPEED_EXPONENTS``); gravity's part g/V of Z_0 is treated
+    separately. Estimates at one speed, or without a speed, are unchanged. The colour of the residuals comes
+    from instruments and air, which the manoeuvres share. So the factor on the Cramér-Rao bounds is the median
+    over the manoeuvres, which is steadier than each manoeuvre's own.
     """
     if not estimates:
         return []
     scale, values = _at_one_speed(estimates)
     factors = _widening_by_colour(estimates) * scale[:, :, None] * scale[:, None, :]
     return [
-        Belief(value, e.covariance_cr * factor)
+        Posterior(value, e.covariance_cr * factor)
         for e, value, factor in zip(estimates, values, factors, strict=True)
     ]
 
 
 def values_at_one_speed(estimates: Sequence[Estimate]) -> FloatArray:
-    """Shape (n, 8): the values of ``beliefs_at_one_speed``."""
+    """Return the means of ``posteriors_at_one_speed``, shape (n, 8)."""
     return _at_one_speed(estimates)[1]
 
 
 def _at_one_speed(estimates: Sequence[Estimate]) -> tuple[FloatArray, FloatArray]:
-    """(n, 8) factors on the parameters of each estimate, gravity's part apart, and (n, 8) the parameters."""
+    """Return (n, 8) factors on the parameters of each estimate, without gravity's part, and (n, 8) the
+    parameters."""
     theta = np.array([e.theta for e in estimates])
     reference = common_airspeed(estimates)
     if reference is None:
@@ -99,13 +100,14 @@ def _at_one_speed(estimates: Sequence[Estimate]) -> tuple[FloatArray, FloatArray
 
 
 def common_airspeed(estimates: Sequence[Estimate]) -> float | None:
-    """The mean of the speeds at which estimates are given; None where one of them does not know its own."""
+    """Return the mean of the air speeds of the estimates; None where an estimate has none."""
     known = [e.airspeed_m_s for e in estimates if e.airspeed_m_s is not None and e.airspeed_m_s > 0.0]
     return float(np.mean(known)) if known and len(known) == len(estimates) else None
 
 
 def _widening_by_colour(estimates: Sequence[Estimate]) -> FloatArray:
-    """(8, 8) factor on the Cramér-Rao bounds: median ratio of corrected to plain errors, squared."""
+    """Return an (8, 8) factor on the Cramér-Rao bounds: the squared median ratio of corrected to plain
+    errors."""
     plain = np.array([e.std_cr for e in estimates])
     corrected = np.array([e.std for e in estimates])
     usable = np.isfinite(plain) & np.isfinite(corrected) & (plain > 0.0)
@@ -114,25 +116,25 @@ def _widening_by_colour(estimates: Sequence[Estimate]) -> FloatArray:
     return np.outer(median, median)
 
 
-def pool_shared(beliefs: Sequence[Belief]) -> Shared:
-    """The information-weighted mean of the derivatives of at least one estimate."""
-    return _Summed.of(beliefs).pooled().shared
+def pool_shared(posteriors: Sequence[Posterior]) -> Shared:
+    """Return the information-weighted mean of the derivatives of at least one estimate."""
+    return _Summed.of(posteriors).pooled().shared
 
 
-def pool(beliefs: Sequence[Belief]) -> Belief:
-    """The information-weighted mean of several estimates, each with its own Z_0 and M_0.
+def pool(posteriors: Sequence[Posterior]) -> Posterior:
+    """Return the information-weighted mean of several estimates, each with its own Z_0 and M_0.
 
-    The six derivatives are shared; Z_0 and M_0 of the result are means over the manoeuvres, after
-    each manoeuvre's own have been corrected for what the others say of its derivatives.
+    The six derivatives are shared. Z_0 and M_0 of the result are means over the manoeuvres. Each manoeuvre's
+    own pair is first corrected for the others' information on its derivatives.
 
     Parameters
     ----------
-    beliefs
-        At least one.
+    posteriors
+        At least one estimate.
     """
-    shared = pool_shared(beliefs)
-    n, values = len(beliefs), np.array([belief.theta for belief in beliefs])
-    covariances = np.array([belief.covariance for belief in beliefs])
+    shared = pool_shared(posteriors)
+    n, values = len(posteriors), np.array([posterior.theta for posterior in posteriors])
+    covariances = np.array([posterior.covariance for posterior in posteriors])
     cross = _finite(covariances[:, _CD[0], _CD[1]])
     each = cross @ information_of(covariances[:, _DD[0], _DD[1]])
     apart = _finite(shared.theta - values[:, _D])
@@ -144,57 +146,57 @@ def pool(beliefs: Sequence[Belief]) -> Belief:
     covariance[_DD], covariance[_CC] = shared.covariance, own + gain @ known @ gain.T
     covariance[_CD] = gain @ known
     covariance[_DC] = covariance[_CD].T
-    return Belief(theta, covariance)
+    return Posterior(theta, covariance)
 
 
 def disagreement(one: Shared, other: Shared) -> tuple[float, int]:
-    """How far two independent estimates of the derivatives lie apart.
+    """Return the distance between two independent estimates of the derivatives.
 
     Returns
     -------
     tuple of float and int
-        Mahalanobis distance squared over the derivatives that both know, and their number: χ²
-        distributed with that many degrees of freedom when nothing but noise separates the two.
+        Squared Mahalanobis distance over the derivatives known to both, and their number. The distance has
+        a χ² distribution with that many degrees of freedom when only noise separates the two.
     """
     return _distance(one.theta - other.theta, information_of(one.covariance + other.covariance))
 
 
 class Pooled(NamedTuple):
-    """Several estimates of the derivatives as one, and how far they lie from that one."""
+    """Pooled estimate of the derivatives, and the scatter of the single estimates about it."""
 
     shared: Shared
     inconsistency: float
-    """χ² about the pooled value."""
+    """χ² of the single estimates about the pooled one."""
     dof: int
-    """Degrees of freedom of χ²: those the estimates have together, less those the pooled value took."""
+    """Degrees of freedom of χ²: those of the single estimates, less those of the pooled one."""
 
 
-def pooled(beliefs: Sequence[Belief]) -> Pooled:
-    """At least one estimate, pooled."""
-    return _Summed.of(beliefs).pooled()
+def pooled(posteriors: Sequence[Posterior]) -> Pooled:
+    """Return the pooled estimate of at least one estimate."""
+    return _Summed.of(posteriors).pooled()
 
 
-def pooled_without_each(beliefs: Sequence[Belief]) -> list[Pooled]:
-    """All the others, pooled, for each of at least two estimates left out in turn."""
-    return _Summed.of(beliefs).without_each()
+def pooled_without_each(posteriors: Sequence[Posterior]) -> list[Pooled]:
+    """Return, for each of at least two estimates, the pooled estimate of all others."""
+    return _Summed.of(posteriors).without_each()
 
 
-def pooled_on_both_sides(beliefs: Sequence[Belief]) -> list[tuple[Pooled, Pooled]]:
-    """The estimates before and from each but the first on, pooled."""
-    return _Summed.of(beliefs).both_sides()
+def pooled_on_both_sides(posteriors: Sequence[Posterior]) -> list[tuple[Pooled, Pooled]]:
+    """Return, for each estimate but the first, the pooled estimates of those before it and of the others."""
+    return _Summed.of(posteriors).both_sides()
 
 
 @dataclass(frozen=True, slots=True)
 class _Summed:
-    """Estimates as the sums from which any of them are pooled.
+    """Sums over estimates, from which the pooled estimate of any of them follows.
 
-    χ² about the pooled value is Σ dᵢᵀIᵢdᵢ - vᵀCv with v = Σ Iᵢdᵢ and C = (Σ Iᵢ)⁻¹, d counted from a value
-    near all of them. The sums of some estimates are all that is needed, so that pooling every part of a long
-    campaign costs little more than pooling all of it.
+    χ² about the pooled value is Σ dᵢᵀIᵢdᵢ - vᵀCv with v = Σ Iᵢdᵢ and C = (Σ Iᵢ)⁻¹. Here d is the difference
+    from a value near all estimates. Partial sums suffice, so that pooling every part of a long campaign costs
+    little more than pooling the whole.
     """
 
     centre: FloatArray
-    """(6,) what d counts from; 0 where nothing is known."""
+    """(6,) origin of d; 0 for an unknown derivative."""
     information: FloatArray
     """(n, 6, 6) Iᵢ."""
     pull: FloatArray
@@ -202,12 +204,14 @@ class _Summed:
     own: FloatArray
     """(n,) dᵢᵀIᵢdᵢ."""
     known: FloatArray
-    """(n,) how many derivatives each knows."""
+    """(n,) number of derivatives that each estimate knows."""
 
     @classmethod
-    def of(cls, beliefs: Sequence[Belief]) -> "_Summed":
-        information = information_of(np.array([belief.covariance for belief in beliefs])[:, _DD[0], _DD[1]])
-        theta = _finite(np.array([belief.theta for belief in beliefs])[:, _D])
+    def of(cls, posteriors: Sequence[Posterior]) -> "_Summed":
+        information = information_of(
+            np.array([posterior.covariance for posterior in posteriors])[:, _DD[0], _DD[1]]
+        )
+        theta = _finite(np.array([posterior.theta for posterior in posteriors])[:, _D])
         total, weighted = information.sum(axis=0), np.einsum("nij,nj->i", information, theta)
         centre = _finite(covariance_of(total)) @ weighted
         apart = theta - centre
@@ -219,7 +223,7 @@ class _Summed:
         return self._pooled(*(values.sum(axis=0, keepdims=True) for values in self._values()))[0]
 
     def without_each(self) -> list[Pooled]:
-        # Sums before and after each, instead of all less one, lose no digits.
+        # Sums before and after each entry lose no digits; the total less one entry would.
         return self._pooled(*(_before(values) + _after(values) for values in self._values()))
 
     def both_sides(self) -> list[tuple[Pooled, Pooled]]:
@@ -245,17 +249,17 @@ class _Summed:
 
 
 def _before(values: FloatArray) -> FloatArray:
-    """For each entry along the first axis the sum of those before."""
+    """Return, for each entry along the first axis, the sum of the earlier entries."""
     return np.concatenate([np.zeros_like(values[:1]), np.cumsum(values, axis=0)[:-1]])
 
 
 def _after(values: FloatArray) -> FloatArray:
-    """For each entry along the first axis the sum of those after."""
+    """Return, for each entry along the first axis, the sum of the later entries."""
     return _before(values[::-1])[::-1]
 
 
 def _finite(values: FloatArray) -> FloatArray:
-    """Zero for what is unknown."""
+    """Return the values with zero in place of infinite ones."""
     return np.where(np.isfinite(values), values, 0.0)
 
 

@@ -1,8 +1,8 @@
-"""What the model is for: the response to the campaign's own inputs, and how surely it predicts it.
+"""Predicted response to the campaign's own inputs, with its uncertainty.
 
-The response from trim, Eqs. (1)-(2), depends on the six derivatives, which manoeuvres share; trims and
-initial states are each manoeuvre's own and do not enter. The covariance of the derivatives goes through
-the exact sensitivities of the response (delta method) and gives its 95 % band.
+The response from trim, Eqs. (1)-(2), depends on the six derivatives, which manoeuvres share. Trims and
+initial states belong to each manoeuvre and do not enter. The covariance of the derivatives, multiplied by the
+exact sensitivities of the response (delta method), gives its 95 % band.
 """
 
 from collections.abc import Mapping, Sequence
@@ -24,50 +24,51 @@ from advisor.oem.problem import Problem, Record, Signal, assemble
 from advisor.oem.surface import Servo
 
 PREDICTED = ("alpha", "q", "a_z")
-"""Outputs of which the prediction is judged, as far as they are measured; the pitch angle follows from q."""
+"""Outputs whose prediction is judged, where measured. The pitch angle follows from q."""
 Z95 = 1.959963984540054
 """Half-width of a 95 % interval in standard deviations."""
 MOMENTS = 200
-"""Points of time at which a response is looked at: 50 ms apart in a record of 10 s."""
+"""Number of times at which a response is compared: 50 ms apart in a record of 10 s."""
 MOST_INPUTS = 12
-"""The newest so many manoeuvres stand for all: crews repeat a few inputs, and a long campaign stays fast."""
+"""Number of newest manoeuvres that stand for all. Crews repeat a few inputs, and a long campaign stays
+fast."""
 _REMEMBERED = 512
 """Responses kept for the next decision, 30 kB each."""
 _SPEED_POWER = np.array([SPEED_EXPONENTS[PARAMETERS[k]] for k in DERIVATIVES], dtype=float)
 
 
 class Response(NamedTuple):
-    """The response from trim to one input."""
+    """Response from trim to one input."""
 
     values: FloatArray
-    """(3, n) α in rad, q in rad/s, a_z over the air speed in 1/s, order of ``PREDICTED``."""
+    """(3, n) α in rad, q in rad/s, a_z over the air speed in 1/s, in the order of ``PREDICTED``."""
     slopes: FloatArray
-    """(3, n, 6) their change with each derivative, order of ``DERIVATIVES``."""
+    """(3, n, 6) derivative of each output with respect to each of ``DERIVATIVES``."""
     after_s: FloatArray
     """(n,) moments, s after the first stamp of the elevator."""
 
     @property
     def peak(self) -> FloatArray:
-        """(3,) largest deviation from trim of each output."""
+        """(3,) largest deviation of each output from trim."""
         return np.asarray(np.max(np.abs(self.values), axis=1))
 
 
 @dataclass(frozen=True)
 class Prediction:
-    """The response to several inputs as one model predicts it."""
+    """Predicted response of one model to several inputs."""
 
     slopes: Mapping[str, FloatArray]
-    """Output to (n, 6): its change with each derivative in percent of its peak, at all moments of all inputs;
-    NaN where the model runs away."""
+    """Output to (n, 6): its change with each derivative in percent of its peak, at all times of all inputs.
+    NaN where the model diverges."""
 
     def percent(self, covariance: FloatArray) -> Mapping[str, float]:
-        """Half-width of the 95 % band at its widest, in percent of the peak, for each output.
+        """Return the largest half-width of the 95 % band, in percent of the peak, for each output.
 
         Parameters
         ----------
         covariance
-            (6, 6) of the derivatives, order of ``DERIVATIVES``; infinite on the diagonal where one is
-            unknown: the band of an output that depends on it is infinite, too.
+            (6, 6) covariance of ``DERIVATIVES``, infinite on the diagonal for an unknown derivative. The
+            band of an output that depends on such a derivative is infinite as well.
         """
         known = np.isfinite(np.diag(covariance))
         inside = np.where(np.outer(known, known), covariance, 0.0)
@@ -77,7 +78,7 @@ class Prediction:
     def percent_by_derivative(self) -> FloatArray:
         """(6,) largest change of any output with each derivative alone, in percent of its peak per unit.
 
-        NaN where it is not known what was flown, or the model runs away.
+        NaN where the input is unknown, or where the model diverges.
         """
         if not self.slopes:
             return np.full(len(DERIVATIVES), np.nan)
@@ -92,14 +93,14 @@ def _widest(slope: FloatArray, covariance: FloatArray, known: np.ndarray) -> flo
 
 
 def predict(flown: Sequence[Flown], derivatives: FloatArray, airspeed_m_s: float | None) -> Prediction:
-    """The response to what was flown; of no output where it is not known what was flown.
+    """Return the response to the flown inputs; without any output where the inputs are unknown.
 
     Parameters
     ----------
     derivatives
         (6,), order of ``DERIVATIVES``.
     airspeed_m_s
-        The speed at which they are given; None: each manoeuvre's own.
+        Air speed of the derivatives. None: each manoeuvre's own.
     """
     slopes: dict[str, list[FloatArray]] = {}
     for one in flown[-MOST_INPUTS:]:
@@ -118,17 +119,18 @@ def _relative(response: Response | None, k: int) -> FloatArray:
 def missed_percent(
     flown: Flown, predicted: FloatArray, found: FloatArray, airspeed_m_s: float | None
 ) -> float:
-    """Largest distance of the predicted response to a manoeuvre from the one found, in percent of its peak.
+    """Return the largest distance between the predicted and the estimated response to a manoeuvre, in percent
+    of its peak.
 
     Parameters
     ----------
     predicted, found
-        (6,) derivatives from the manoeuvres before, and from the manoeuvre itself, at ``airspeed_m_s``.
+        (6,) derivatives from the earlier manoeuvres, and from the manoeuvre itself, at ``airspeed_m_s``.
 
     Returns
     -------
     float
-        The worst of the outputs; NaN where it is not known what was flown, or a model runs away.
+        Distance of the worst output. NaN where the input is unknown, or where a model diverges.
     """
     expected = response_to(flown, predicted, airspeed_m_s)
     actual = response_to(flown, found, airspeed_m_s)
@@ -141,16 +143,16 @@ def missed_percent(
 
 
 def measured(flown: Flown) -> tuple[str, ...]:
-    """Outputs of ``PREDICTED`` that a manoeuvre's estimate is made from."""
+    """Return the outputs of ``PREDICTED`` that a manoeuvre's estimate uses."""
     fits = flown.estimate.fits[0] if isinstance(flown.estimate, Estimate) else {}
     return tuple(name for name in PREDICTED if name in fits)
 
 
 def response_to(flown: Flown, derivatives: FloatArray, airspeed_m_s: float | None) -> Response | None:
-    """The response from trim to a manoeuvre's input at the manoeuvre's speed.
+    """Return the response from trim to a manoeuvre's input at the manoeuvre's speed.
 
-    The slopes are with respect to the derivatives as given, at ``airspeed_m_s``. None where it is not known
-    what was flown, a derivative is unknown, or the model runs away.
+    The slopes are with respect to the derivatives at ``airspeed_m_s``. None where the input or a derivative
+    is unknown, or where the model diverges.
     """
     if flown.maneuver is None or not np.all(np.isfinite(derivatives)):
         return None
@@ -171,7 +173,7 @@ def response_to(flown: Flown, derivatives: FloatArray, airspeed_m_s: float | Non
 
 
 def trim_of(maneuver: Maneuver) -> float:
-    """Elevator before the first step, rad."""
+    """Return the elevator before the first step, rad."""
     elevator, span = maneuver.channels["elevator"], maneuver.span
     lead = elevator.cut(span.record_from_s, span.start_s)
     return float(np.nanmedian(lead.y if len(lead) else elevator.y[:1]))
@@ -184,9 +186,10 @@ def _airspeed(maneuver: Maneuver) -> float | None:
 
 
 def _horizon(command: Signal, derivatives: tuple[float, ...]) -> float:
-    """Until when a response is looked at: of a diverging model until a deviation has doubled.
+    """Return the time to which a response is compared. For a diverging model, a deviation has doubled there.
 
-    Whoever flies an unstable aircraft corrects within that time; an open loop further ahead means nothing.
+    The pilot of an unstable aircraft corrects within that time. An open loop over a longer time means
+    nothing.
     """
     z_alpha, z_q, _, m_alpha, m_q, _ = derivatives
     trace, determinant = z_alpha + m_q, z_alpha * m_q - (1.0 + z_q) * m_alpha
@@ -200,7 +203,8 @@ def _horizon(command: Signal, derivatives: tuple[float, ...]) -> float:
 
 @lru_cache(maxsize=_REMEMBERED)
 def _respond(t: bytes, elevator: bytes, servo: Servo, derivatives: tuple[float, ...]) -> Response | None:
-    """The response to an elevator, given as bytes of its stamps and deflections so that it can be kept."""
+    """Return the response to an elevator, whose stamps and deflections are given as bytes so that results can
+    be cached."""
     command = Signal(np.frombuffer(t), np.frombuffer(elevator))
     moments = np.linspace(command.t[0], _horizon(command, derivatives), MOMENTS)
     still = Signal(moments, np.zeros(MOMENTS))

@@ -1,12 +1,12 @@
-"""Judging the manoeuvre itself, before any rule compares it with others.
+"""Objections to a manoeuvre itself, before any rule compares it with others.
 
-Whole, inside the model, rich enough, well explained, in this order: the first reason is the
-one the crew can act on, and what follows from it comes after it.
+The checks run in this order: complete, within the model, rich enough, well explained. The first reason is the
+one that the crew can act on. Its consequences come after it.
 
-Richness is information, not amplitude: how well the estimate from this manoeuvre alone predicts the pitch
-rate that its own input makes. Moving air, a slow channel, a missing vane or a gentle input all show in that
-one number. Where the input has a good shape, more stick is the cure, and the reason says how much more,
-since standard deviations fall with the amplitude.
+Richness is information, not amplitude: the precision with which the estimate from this manoeuvre alone
+predicts the pitch rate of its own input. Moving air, a slow channel, a missing vane or a gentle input all
+lower that precision. Where the input has a good shape, more stick is the remedy. Standard deviations fall
+with the amplitude, so that the reason states the factor.
 """
 
 import math
@@ -25,27 +25,27 @@ from advisor.oem.estimate import ChannelFit, Estimate, NoEstimate
 from advisor.rounding import distinct_texts
 
 WIDEST_PREDICTION_PERCENT = 25.0
-"""Widest half of the 95 % band of the predicted pitch rate, in percent of its peak. A standard deviation of
-12 % in M_δe alone makes 24. Real records that two halves of a campaign agree on have 9 to 21."""
+"""Largest half-width of the predicted pitch rate's 95 % band, % of its peak. A standard deviation of 12 % in
+M_δe alone gives 24. Real records that two halves of a campaign agree on have 9 to 21."""
 LEAST_SIGNAL: Mapping[str, float] = {"q": 12.0, "alpha": 8.0}
-"""Least peak of the response over the white part of its noise."""
+"""Channel to its least ratio of the response's peak to the white part of its noise."""
 LEAST_R2: Mapping[str, float] = {"q": 0.85, "alpha": 0.70}
-"""Least share of the response that the model must explain, white noise left out of account."""
+"""Channel to the least share of its response that the model must explain, without white noise."""
 
 
 def judge_quality(
     maneuver: Maneuver, estimate: Estimate | NoEstimate, aircraft: Aircraft
 ) -> tuple[Reason, ...]:
-    """What speaks against this manoeuvre, the most telling first; empty when the rules may have it.
+    """Return objections to the manoeuvre, the most important first; empty for one that the rules may judge.
 
     Parameters
     ----------
     maneuver
-        Data as cut from the stream.
+        Manoeuvre as cut from the stream.
     estimate
-        The estimate from this manoeuvre alone, or why there is none.
+        Estimate from this manoeuvre alone, or the reason for its absence.
     aircraft
-        Its limits and calibration.
+        Limits and calibration of the aircraft.
     """
     period_s = natural_period(maneuver, estimate)
     fits = estimate.fits[0] if isinstance(estimate, Estimate) else {}
@@ -55,7 +55,7 @@ def judge_quality(
         return tuple(reasons)
     follows = [*changed_speed(maneuver, aircraft), *too_quick(maneuver, period_s)]
     if codes & NO_CURE_BY_INPUT:
-        # A larger input mends no record: the reasons that ask for one would mislead.
+        # A larger input remedies no faulty record: reasons that ask for one would mislead.
         return (*reasons, *follows)
     gentle = _mended(maneuver, _too_gentle(maneuver, fits))
     if isinstance(estimate, NoEstimate):
@@ -67,10 +67,10 @@ def judge_quality(
 
 
 def natural_period(maneuver: Maneuver, estimate: Estimate | NoEstimate) -> float:
-    """Natural period of the short period in s, 2π/ω with ω² = Z_α M_q − (1 + Z_q) M_α.
+    """Return the natural period of the short-period motion in s, 2π/ω with ω² = Z_α M_q − (1 + Z_q) M_α.
 
-    Where no estimate of a stable aircraft predicts its own response, two and a half of the shortest step,
-    or two of a multisine's median lobes: the inputs of a test are matched to the aircraft.
+    Without an estimate that predicts its own response, the period follows from the input, which crews match
+    to the aircraft. It is 2.5 times the shortest step, or twice the median lobe of a multisine.
     """
     if isinstance(estimate, Estimate) and _knows_the_motion(estimate):
         square = estimate.value("Z_alpha") * estimate.value("M_q")
@@ -85,14 +85,14 @@ def natural_period(maneuver: Maneuver, estimate: Estimate | NoEstimate) -> float
 
 
 def _knows_the_motion(estimate: Estimate) -> bool:
-    """Whether an estimate predicts its own response and knows the stiffness better than not at all."""
+    """Return whether an estimate predicts its own response and has a significant stiffness."""
     stiffness = PARAMETERS.index("M_alpha")
     known = abs(float(estimate.theta[stiffness])) > float(estimate.std[stiffness])
     return known and estimate.prediction.get("q", 0.0) < 1.0
 
 
 def _too_gentle(maneuver: Maneuver, fits: Mapping[str, ChannelFit]) -> list[Reason]:
-    """The response hardly stands out of the noise."""
+    """Return a reason where the response hardly exceeds the noise."""
     wanting = []
     for name, least in LEAST_SIGNAL.items():
         if name not in (fits or ("q",)):
@@ -114,7 +114,7 @@ def _too_gentle(maneuver: Maneuver, fits: Mapping[str, ChannelFit]) -> list[Reas
 
 
 def _badly_explained(estimate: Estimate) -> list[Reason]:
-    """Residuals that are no noise: the model does not hold for what was flown.
+    """Return a reason where residuals are not noise, so that the model does not hold for the manoeuvre.
 
     In moving air the angle of attack of a vane shows the air, which no model of the aircraft explains.
     """
@@ -137,7 +137,7 @@ def _badly_explained(estimate: Estimate) -> list[Reason]:
 
 
 def _poor(maneuver: Maneuver, estimate: Estimate) -> list[Reason]:
-    """An estimate that predicts too little of the response it was made from."""
+    """Return a reason where an estimate predicts too little of its own response."""
     value = 100.0 * estimate.prediction.get("q", math.inf)
     if value <= WIDEST_PREDICTION_PERCENT:
         return []
@@ -153,7 +153,7 @@ def _poor(maneuver: Maneuver, estimate: Estimate) -> list[Reason]:
 
 
 def _mended(maneuver: Maneuver, reasons: list[Reason]) -> list[Reason]:
-    """The reasons with the mend of a channel that cannot be right in place of a larger input."""
+    """Return the reasons with the remedy of a faulty channel in place of a larger input."""
     if not maneuver.distrusts:
         return reasons
     wrong = maneuver.distrusts[0]
@@ -161,18 +161,19 @@ def _mended(maneuver: Maneuver, reasons: list[Reason]) -> list[Reason]:
 
 
 def _peak(maneuver: Maneuver, name: str) -> float:
-    """Half the range of a channel while the manoeuvre was flown."""
+    """Return half the range of a channel during the manoeuvre."""
     y = flown(maneuver, name)
     return float(np.ptp(y)) / 2.0 if len(y) else 0.0
 
 
 def _white(values: FloatArray) -> float:
-    """Standard deviation of the part that is new in every sample: from second differences."""
+    """Return the standard deviation of the white part of a signal, from second differences."""
     if len(values) < 3:
         return 0.0
     return float(np.std(np.diff(values, 2))) / math.sqrt(6.0)
 
 
 def _times(factor: float) -> str:
-    """Advice on amplitude: a tenth more than needed, in a size a hand can tell."""
+    """Return the advised factor on the amplitude: a tenth more than needed, rounded to a size that a hand can
+    fly."""
     return f"{min(5.0, max(1.2, 1.1 * factor)):.1f} times"

@@ -1,4 +1,4 @@
-"""How many more manoeuvres: what each rule needs when the next ones teach as expected."""
+"""Expected number of further manoeuvres, for each rule, if the next ones give the expected information."""
 
 from collections.abc import Sequence
 
@@ -9,28 +9,29 @@ from advisor.aircraft import CampaignPlan
 from advisor.decision.history import Flown
 from advisor.decision.information import Knowledge
 from advisor.decision.inverses import covariance_of, information_of
-from advisor.decision.pooling import DERIVATIVES, Belief
+from advisor.decision.pooling import DERIVATIVES, Posterior
 from advisor.decision.prediction import Z95
 from advisor.decision.scatter import SCATTER_FACTOR
 from advisor.decision.verdict import Remaining
 from advisor.flight.messages import FloatArray
 
 MOST = 50
-"""Beyond this many there is no end in sight."""
+"""Largest number that is predicted. Beyond it there is no end in sight."""
 _DRAWS = 400
 
 
 def by_information(known: Knowledge, next_covariance: FloatArray, usable_share: float) -> Remaining:
-    """More manoeuvres until all that must be known is within its tolerance and the newest is predicted.
+    """Return the number of further manoeuvres until every tolerance is met and the newest manoeuvre is
+    predicted.
 
     Parameters
     ----------
     known
-        What is known now.
+        Present knowledge.
     next_covariance
-        (8, 8) of the errors to expect from each further manoeuvre.
+        (8, 8) covariance of the errors expected from each further manoeuvre.
     usable_share
-        Share of manoeuvres that turn out usable.
+        Share of manoeuvres that are usable.
     """
     good = 1 if np.isnan(known.surprise) or not known.predicted else 0
     while good <= MOST and share_after(known, next_covariance, good) >= 1.0:
@@ -41,38 +42,40 @@ def by_information(known: Knowledge, next_covariance: FloatArray, usable_share: 
 
 
 def share_after(known: Knowledge, next_covariance: FloatArray, more: int) -> float:
-    """Largest uncertainty over its tolerance after ``more`` manoeuvres with errors as in ``next_covariance``.
+    """Return the largest uncertainty over its tolerance after ``more`` manoeuvres with ``next_covariance``
+    each.
 
-    Trims and the constants that hold them are each manoeuvre's own: only their variances add up.
+    Trims and the constants that hold them belong to each manoeuvre: only their variances add up.
     """
     inside = np.ix_(DERIVATIVES, DERIVATIVES)
-    information = known.belief.information + more * information_of(next_covariance[inside])
+    information = known.posterior.information + more * information_of(next_covariance[inside])
     covariance = covariance_of(information)
     with np.errstate(divide="ignore", invalid="ignore"):
-        variance = 1.0 / (1.0 / known.belief.std**2 + more / np.diag(next_covariance))
+        variance = 1.0 / (1.0 / known.posterior.std**2 + more / np.diag(next_covariance))
         variance[list(DERIVATIVES)] = np.diag(covariance)
         half = np.nan_to_num(Z95 * np.sqrt(variance) / known.tolerance, nan=np.inf)
     return max(known.shares_with(known.prediction.percent(covariance), half).values(), default=np.inf)
 
 
 def by_scatter(
-    window: FloatArray, belief: Belief, next_std: FloatArray, plan: CampaignPlan, accepted_share: float
+    window: FloatArray, posterior: Posterior, next_std: FloatArray, plan: CampaignPlan, accepted_share: float
 ) -> Remaining:
-    """More manoeuvres until the scatter of the last n accepted ones is below the limit, by simulation.
+    """Return the number of further manoeuvres until the scatter of the last n accepted ones is low enough, by
+    simulation.
 
     Parameters
     ----------
     window
-        (k, 8) the last accepted estimates, at most n - 1 of which stay in the next window.
-    belief
-        The values about which the next estimates scatter, with their errors.
+        (k, 8) last accepted estimates. At most n - 1 of them stay in the next window.
+    posterior
+        Values about which the next estimates scatter, with their errors.
     next_std
-        (8,) that scatter.
+        (8,) standard deviations of that scatter.
     accepted_share
         Share of manoeuvres that the rule accepts.
     """
     rng = np.random.default_rng(0)
-    centre = np.where(np.isfinite(belief.theta), belief.theta, 0.0)
+    centre = np.where(np.isfinite(posterior.theta), posterior.theta, 0.0)
     spread = np.where(np.isfinite(next_std), next_std, np.abs(centre))
     kept = window[len(window) - min(len(window), plan.window - 1) :]
     future = centre + spread * rng.standard_normal((_DRAWS, MOST, len(centre)))
@@ -90,13 +93,14 @@ def by_scatter(
 
 
 def usable_share(history: Sequence[Flown]) -> float:
-    """Share of manoeuvres that were usable, with the experience of nine good out of ten before the first."""
+    """Return the share of usable manoeuvres so far, with a prior of nine good manoeuvres out of ten."""
     good = sum(flown.usable is not None for flown in history)
     return (good + 9.0) / (len(history) + 10.0)
 
 
 def _flights_for(good: int, share: float, confidence: float) -> int:
-    """Flights within which ``good`` usable ones come about with this confidence (negative binomial)."""
+    """Return the number of flights that give ``good`` usable ones with this confidence (negative
+    binomial)."""
     spoilt = 0
     # To rounding: half of all chances may be reached exactly.
     while good and nbdtr(spoilt, good, share) < confidence - 1e-12:

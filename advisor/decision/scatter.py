@@ -1,4 +1,4 @@
-"""Flight-test validation by scatter: do the last estimates agree, Eqs. (12) and (13) of the paper."""
+"""Flight-test validation by the scatter of the last estimates, Eqs. (12) and (13) of the paper."""
 
 from collections.abc import Sequence
 
@@ -10,11 +10,11 @@ from advisor.flight.messages import FloatArray
 from advisor.oem.estimate import Estimate
 
 SCATTER_FACTOR = 5.0
-"""The factor before σ in Eq. (12). It belongs to this rule; a calibrated σ is never multiplied by it."""
+"""Factor of σ in Eq. (12). The factor belongs to this rule only; a calibrated σ is never multiplied by it."""
 
 
 def scatter_by_parameter(theta: FloatArray, criterion: Criterion = "eq12") -> FloatArray:
-    """Scatter of each parameter over a window of estimates, relative to its mean.
+    """Return the scatter of each parameter over a window of estimates, relative to its mean.
 
     Parameters
     ----------
@@ -22,7 +22,7 @@ def scatter_by_parameter(theta: FloatArray, criterion: Criterion = "eq12") -> Fl
         Shape (n, 8). The estimates of the last n accepted manoeuvres, one a row.
     criterion
         ``eq12``: 5·σ/|θ̄| with the sample standard deviation (n − 1 in its denominator).
-        ``eq13``: the form the paper writes out, 5·Σ(θ̂ − θ̄)²/(n·|θ̄|), which is not dimensionless
+        ``eq13``: 5·Σ(θ̂ − θ̄)²/(n·|θ̄|), the form that the paper prints. This form is not dimensionless
         and so depends on the units of the parameters (rad and s here).
 
     Returns
@@ -38,7 +38,8 @@ def scatter_by_parameter(theta: FloatArray, criterion: Criterion = "eq12") -> Fl
 
 
 def scatter_percent(theta: FloatArray, criterion: Criterion = "eq12") -> float:
-    """The stop criterion: Euclidean norm over the eight parameters of `scatter_by_parameter`, in percent.
+    """Return the stop criterion: Euclidean norm over the eight parameters of `scatter_by_parameter`, in
+    percent.
 
     The norm takes absolute values, so the sign of a parameter's mean does not matter.
     """
@@ -46,12 +47,13 @@ def scatter_percent(theta: FloatArray, criterion: Criterion = "eq12") -> float:
 
 
 def scattered_most(theta: FloatArray, criterion: Criterion = "eq12") -> str:
-    """The parameter that contributes most to `scatter_percent`; one without a value before all others."""
+    """Return the parameter that contributes most to `scatter_percent`. A parameter without a value comes
+    first."""
     return PARAMETERS[int(np.argmax(np.nan_to_num(scatter_by_parameter(theta, criterion), nan=np.inf)))]
 
 
 def window(accepted: Sequence[Estimate], plan: CampaignPlan) -> FloatArray | None:
-    """Shape (n, 8): the last n accepted estimates at one air speed; None while there are fewer."""
+    """Return the last n accepted estimates at one air speed, shape (n, 8); None for fewer than n."""
     if len(accepted) < plan.window:
         return None
     return values_at_one_speed(accepted[-plan.window :])

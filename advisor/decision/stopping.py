@@ -1,4 +1,4 @@
-"""May we stop testing: flight-test validation under every rule, and the verdict of the one chosen."""
+"""Flight-test validation under every rule, and the verdict of the chosen rule."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -28,12 +28,11 @@ def flight_test(
     aircraft: Aircraft | None = None,
     course: Course | None = None,
 ) -> FlightTestVerdict:
-    """May we stop testing and what to fly next, as of the last manoeuvre of ``history``.
+    """Return whether testing may stop, and the next input, after the last manoeuvre of ``history``.
 
-    The decision says whether the chosen rule's criterion holds *now*; ``stopped_at`` keeps when it
-    first held. They differ when a later manoeuvre contradicts the earlier ones. ``aircraft`` tells the
-    limits within which the next input is sought. A ``course`` keeps what earlier decisions on this campaign
-    found; the verdict is the one without it.
+    The decision says whether the chosen rule's criterion holds *now*; ``stopped_at`` keeps when it first
+    held. The two differ when a later manoeuvre contradicts the earlier ones. ``aircraft`` gives the limits of
+    the next input. A ``course`` keeps results of earlier decisions, and changes no verdict.
     """
     course = course or Course(plan)
     by_rule: dict[str, RuleProgress] = {
@@ -63,7 +62,8 @@ def flight_test(
 def progress(
     history: Sequence[Flown], rule: Rule, plan: CampaignPlan, course: Course | None = None
 ) -> RuleProgress:
-    """The stop criterion of one rule after each manoeuvre flown; ``course`` as in ``flight_test``."""
+    """Return the stop criterion of one rule after each manoeuvre. ``course`` is explained in
+    ``flight_test``."""
     course = course or Course(plan)
     limit = limit_percent(rule, plan)
     values: list[float | None] = []
@@ -96,10 +96,9 @@ def progress(
 
 
 def _weighed(history: Sequence[Flown], rule: Rule) -> list[bool]:
-    """Which manoeuvres a rule's criterion weighs.
+    """Return which manoeuvres enter a rule's criterion.
 
-    The rule ``information`` weighs all usable ones: at every moment the rule finds those that contradict the
-    others by itself.
+    The rule ``information`` uses all usable ones, because it detects contradictions itself.
     """
     if rule == "information":
         return [flown.usable is not None for flown in history]
@@ -129,7 +128,7 @@ def _scatter_sentence(
         return f"CONTINUE: {len(accepted)} of {plan.window} accepted manoeuvres."
     verb = "STOP TESTING" if stop else "CONTINUE"
     held = "" if stop else f"; {_scattered_most(accepted, plan)} scatters most"
-    # Of a parameter near zero the relative scatter has no scale; its digits would only pretend one.
+    # For a parameter near zero the relative scatter has no scale; its digits would pretend one.
     scatter, limit = distinct_texts(criterion, plan.limit_percent)
     agreement = f"agree within {scatter} %" if criterion < _NO_SCALE_PERCENT else "do not agree"
     return f"{verb}: the last {plan.window} accepted manoeuvres {agreement} (limit {limit} %){held}."

@@ -1,4 +1,4 @@
-"""How well a parameter must be known: the crew's percentage, and what stands in for it near zero."""
+"""Tolerance of each parameter: the crew's percentage, and its replacement near zero."""
 
 from collections.abc import Mapping
 
@@ -10,33 +10,34 @@ from advisor.decision.prediction import Prediction
 from advisor.flight.messages import FloatArray
 
 NEAR_ZERO = 3.0
-"""A derivative is near zero when its whole effect is less than this many times the prediction's tolerance."""
+"""Multiple of the prediction's tolerance below which a derivative's whole effect counts as near zero."""
 
 SHARE = 2.0
-"""The own tolerance of a derivative as a multiple of the prediction's.
+"""Tolerance of a derivative as a multiple of the prediction's tolerance.
 
-Changed alone, it takes 5 to 9 % of M_alpha and 7 to 13 % of Z_alpha to move the response by 5 % of its peak
-(three flights of a real autopilot, a research jet), and the frequency goes with the root of the stiffness.
-M_delta_e scales the whole response, so that the band of the prediction holds it closer.
+An error of 5 to 9 % in M_alpha alone moves the response by 5 % of its peak; in Z_alpha, 7 to 13 %. These
+figures are from three flights of a real autopilot and from a research jet. The frequency changes with the
+square root of the stiffness. M_delta_e scales the whole response, so that the prediction's band limits
+M_delta_e more closely.
 """
 LEAST = 1e-12
-"""No tolerance is smaller, in any unit: data without noise leave nothing to be tolerant of."""
+"""Least tolerance, in any unit. Data without noise would give zero."""
 
 
 def tolerances(theta: FloatArray, prediction: Prediction, plan: CampaignPlan) -> FloatArray:
-    """The half-width each parameter's 95 % interval must stay below.
+    """Return the tolerance of each parameter for the half-width of its 95 % interval.
 
-    ``SHARE`` times ``plan.tolerance_percent`` of the parameter, or what moves the frequency or the damping
-    of the short period by ``plan.tolerance_percent``, whichever is larger. For a derivative near zero, a
-    share of which is smaller than anything that matters: with δ the change that alone moves the predicted
-    response by its tolerance, δ itself at zero, falling to nothing extra at 3·δ. What ``plan.tolerance``
-    says of a parameter stands above all this. No noise enters: a poor manoeuvre must not widen what is
-    asked for.
+    The tolerance is the larger of two numbers. One is ``SHARE`` times ``plan.tolerance_percent`` of the
+    parameter. The other is the change that moves the frequency or the damping of the short period by
+    ``plan.tolerance_percent``. A share of a derivative near zero would be smaller than any change that
+    matters. So there the tolerance is δ, the change that alone moves the predicted response by its tolerance.
+    δ fades linearly until the derivative reaches 3·δ. An entry of ``plan.tolerance`` overrides all this.
+    Noise does not enter: a poor manoeuvre must not widen a tolerance.
 
     Returns
     -------
     FloatArray
-        Shape (8,), each in its parameter's unit; infinite for a derivative on which no response depends.
+        Shape (8,), in each parameter's unit. Infinite for a derivative on which no response depends.
     """
     size = np.abs(theta)
     tolerance: FloatArray = 0.01 * plan.tolerance_percent * SHARE * size
@@ -54,10 +55,10 @@ def tolerances(theta: FloatArray, prediction: Prediction, plan: CampaignPlan) ->
 
 
 def _moving_the_short_period(theta: FloatArray) -> Mapping[str, float]:
-    """Change of a derivative, per relative change of the frequency or of the damping that the change makes.
+    """Return the change of each derivative that makes a relative change of 1 in the frequency or the damping.
 
-    ω² = Z_α·M_q - (1 + Z_q)·M_α and 2·ζ·ω = -(Z_α + M_q): where M_q is a small part of the damping, much of
-    M_q makes little difference.
+    ω² = Z_α·M_q - (1 + Z_q)·M_α and 2·ζ·ω = -(Z_α + M_q). Where M_q is a small part of the damping, a large
+    change of M_q matters little.
     """
     z_alpha, z_q, m_alpha, m_q = (theta[PARAMETERS.index(n)] for n in ("Z_alpha", "Z_q", "M_alpha", "M_q"))
     damping = abs(z_alpha + m_q)

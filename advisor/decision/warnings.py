@@ -1,4 +1,4 @@
-"""What the crew must know beside the criterion: it no longer holds, cannot fall, or locks manoeuvres out."""
+"""Warnings in addition to the criterion: it no longer holds, cannot fall, or locks manoeuvres out."""
 
 from collections.abc import Sequence
 
@@ -16,7 +16,7 @@ from advisor.oem.estimate import Estimate
 
 
 def warnings(history: Sequence[Flown], chosen: RuleProgress, stop: bool, course: Course) -> tuple[str, ...]:
-    """Sentences on what the criterion alone does not show."""
+    """Return sentences on facts that the criterion alone does not show."""
     plan, found = course.plan, []
     if chosen.stopped_at is not None and not stop:
         found.append(
@@ -38,12 +38,13 @@ def _left_out(history: Sequence[Flown], course: Course) -> list[str]:
     numbers = [i for i, flown in enumerate(history, start=1) if flown.usable]
     if not numbers:
         return []
-    odd = [str(numbers[k]) for k in course.known(usable_ones(history)).left_out]
-    return [f"Manoeuvre {', '.join(odd)} contradicts all the others and is left out."] if odd else []
+    names = [str(numbers[k]) for k in course.known(usable_ones(history)).left_out]
+    return [f"Manoeuvre {', '.join(names)} contradicts all the others and is left out."] if names else []
 
 
 def _cannot_fall(accepted: Sequence[Estimate], plan: CampaignPlan) -> list[str]:
-    """A parameter so small beside the error of one manoeuvre that single estimates always scatter."""
+    """Return a warning where one manoeuvre's error is so large relative to a parameter that estimates always
+    scatter."""
     theta = window(accepted, plan)
     if theta is None or plan.criterion != "eq12":
         return []
@@ -58,12 +59,12 @@ def _cannot_fall(accepted: Sequence[Estimate], plan: CampaignPlan) -> list[str]:
         return []
     return [
         f"This criterion will hardly fall below {plan.limit_percent:.0f} %: one manoeuvre's error is too "
-        f"large beside {', '.join(blocking)}. The rule information weighs all manoeuvres together."
+        f"large relative to {', '.join(blocking)}. The rule information weighs all manoeuvres together."
     ]
 
 
 def _locked_out(history: Sequence[Flown], course: Course) -> list[str]:
-    """Manoeuvres that are good in themselves, refused one after another for their cost alone."""
+    """Return a warning where usable manoeuvres in a row are refused for their cost alone."""
     plan = course.plan
     accepted = [result.accepted for result in results_of(history, plan.rule)]
     refused = 0

@@ -1,1 +1,1 @@
-"""Is this telemetry good enough to identify a short period, and what to change if not."""
+"""Check of telemetry before a flight: whether it suffices to identify a short period, and what to change."""

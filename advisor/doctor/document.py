@@ -1,22 +1,28 @@
-"""The ``advisor.doctor/1`` document: what scripts read. SI units, None where there is nothing."""
+"""The ``advisor.doctor/1`` document for scripts, in SI units, with None for missing values."""
 
+from collections.abc import Sequence
 from typing import Any
 
 from advisor.doctor.examination import Examination, Limit
 from advisor.doctor.expectation import RESPONSE_ALPHA_DEG, frequency
 from advisor.problems import Problem
-from advisor.report.document import number
+from advisor.report.document import NORMAL_95, number
+from advisor.report.text import UNITS
 
 SCHEMA = "advisor.doctor/1"
 
 
-def doctor_document(findings: Examination | None, problem: Problem | None = None) -> dict[str, Any]:
+def doctor_document(
+    findings: Examination | None, problem: Problem | None = None, commands: Sequence[str] = ()
+) -> dict[str, Any]:
     """Build the document of ``advisor doctor --json``.
 
     Parameters
     ----------
     findings
-        None when nothing could be listened to; ``problem`` then says why.
+        Findings of the examination. None when nothing was heard; ``problem`` then gives the reason.
+    commands
+        Commands to type next.
     """
     if findings is None:
         assert problem is not None
@@ -32,6 +38,7 @@ def doctor_document(findings: Examination | None, problem: Problem | None = None
             "alpha": None,
             "limits": [told],
             "expected_std": None,
+            "expected_ci95": None,
         }
     vehicle, elevator, alpha, clocks = findings.vehicle, findings.elevator, findings.alpha, findings.clocks
     stopping = [limit for limit in findings.limits if limit.stops]
@@ -82,16 +89,22 @@ def doctor_document(findings: Examination | None, problem: Problem | None = None
         },
         "limits": [_limit(limit) for limit in findings.limits],
         "notes": list(findings.notes),
+        "next": list(commands),
         "expected_std": expectation and {name: number(std) for name, std in expectation.std.items()},
+        "expected_ci95": expectation
+        and {
+            name: {"half": number(NORMAL_95 * std), "unit": UNITS[name].replace("deg", "rad")}
+            for name, std in expectation.std.items()
+        },
         "expected_for": expectation
         and {
             "input": "3-2-1-1",
             "unit_s": number(expectation.unit_s),
             "amplitude_deg": number(expectation.amplitude_deg),
             "alpha_change_deg": RESPONSE_ALPHA_DEG,
-            "noise": {name: number(std) for name, std in findings.belief.noise.items()},
-            "model": findings.belief.source,
-            "natural_frequency_rad_s": number(frequency(findings.belief.model)),
+            "noise": {name: number(std) for name, std in findings.assumed.noise.items()},
+            "model": findings.assumed.source,
+            "natural_frequency_rad_s": number(frequency(findings.assumed.model)),
         },
     }
 

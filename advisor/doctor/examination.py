@@ -1,10 +1,10 @@
-"""What an examination finds: facts, limits, and the verdict."""
+"""Result of an examination: facts, limits, and the verdict."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
-from advisor.doctor.expectation import Belief, Expectation
+from advisor.doctor.expectation import Assumed, Expectation
 from advisor.doctor.survey import Arrival, Clocks
 from advisor.flight.vehicle import Vehicle
 
@@ -13,44 +13,46 @@ Verdict = Literal["ready", "usable with limits", "not usable"]
 
 @dataclass(frozen=True, slots=True)
 class Limit:
-    """Something that keeps the telemetry from being ready."""
+    """A defect that keeps the telemetry from being ready."""
 
     code: str
-    """Short and stable: ``rate``, ``alpha_derived``, ``calibration``, ..."""
+    """Short and stable identifier: ``rate``, ``alpha_derived``, ``calibration``, ..."""
     text: str
-    """What is so, with its number."""
+    """Sentence on the defect, with its number."""
     fix: str
-    """What to change."""
+    """Remedy."""
     stops: bool = False
-    """Nothing can be identified before it is mended."""
+    """Whether the defect prevents any identification."""
     std_ratio: Mapping[str, float] = field(default_factory=dict)
-    """What it costs by itself: parameter name to its expected error over the one without this limit."""
+    """Cost of the defect alone: parameter name to its expected error, divided by the error without the
+    defect."""
 
 
 @dataclass(frozen=True, slots=True)
 class ElevatorFound:
-    """The elevator as the telemetry shows it."""
+    """Elevator as found in the telemetry."""
 
     outputs: tuple[int, ...]
     resolution_deg: float
     """Deflection of the smallest step that an output can express: 1 us of one output."""
     calibrated: bool
-    """False: scaled by the limits in the parameters and assumed full strokes."""
+    """Whether the file has a calibration. Without one, the parameters' limits and assumed full strokes give
+    the scale."""
 
 
 @dataclass(frozen=True, slots=True)
 class AlphaFound:
-    """Where the angle of attack would come from."""
+    """Source of the angle of attack."""
 
     source: str
     provenance: str
     renewed_hz: float
-    """How often it really changes."""
+    """Rate at which the value changes, Hz."""
 
 
 @dataclass(frozen=True, slots=True)
 class Examination:
-    """The doctor's findings."""
+    """Findings of the examination."""
 
     vehicle: Vehicle | None
     messages: tuple[Arrival, ...]
@@ -58,13 +60,13 @@ class Examination:
     elevator: ElevatorFound | None
     alpha: AlphaFound | None
     limits: tuple[Limit, ...]
-    """Those that stop everything first."""
+    """Defects, those that prevent any identification first."""
     expectation: Expectation | None
-    """None when a needed channel is missing altogether."""
-    belief: Belief
-    """What the expected errors and the demands on rates rest on."""
+    """Expected errors. None when a needed channel is missing."""
+    assumed: Assumed
+    """Model and noise behind the expected errors and the demands on rates."""
     notes: tuple[str, ...] = ()
-    """What was chosen in reading the log, and where the autopilot wrote none, in sentences."""
+    """Choices made in reading the log, and pauses of the autopilot's own log, as sentences."""
 
     @property
     def verdict(self) -> Verdict:

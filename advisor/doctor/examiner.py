@@ -1,4 +1,4 @@
-"""The examination: messages in, findings out; no input or output of its own."""
+"""The examination itself: messages in, findings out, without input or output of its own."""
 
 from collections.abc import Sequence
 
@@ -6,7 +6,7 @@ import numpy as np
 
 from advisor.aircraft import PARAMETERS, Aircraft
 from advisor.doctor.examination import AlphaFound, ElevatorFound, Examination, Limit
-from advisor.doctor.expectation import NOISE, TYPICAL, Belief, expect, frequency
+from advisor.doctor.expectation import NOISE, TYPICAL, Assumed, expect, frequency
 from advisor.doctor.instruments import (
     alpha_limits,
     clock_limits,
@@ -41,7 +41,7 @@ _DERIVED_RENEWAL_HZ = 20.0  # ArduPilot refreshes AOA_SSA no faster; on the grou
 
 
 class Examiner:
-    """Listens to a log or link, then gives its findings.
+    """Collects the messages of a log or link, then gives its findings.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ class Examiner:
 
     @property
     def vehicle(self) -> Vehicle | None:
-        """Who is examined; None before its first heartbeat."""
+        """Vehicle under examination. None before its first heartbeat."""
         return self._stream.vehicle
 
     def findings(
@@ -80,18 +80,18 @@ class Examiner:
         repeated_percent: float = 0.0,
         repeated_after_s: float = np.nan,
     ) -> Examination:
-        """What was found; to be called once, at the end.
+        """Return the findings. The caller calls once, at the end.
 
         Parameters
         ----------
         lost_percent
             Share of packets lost, when a live link counted them.
         repeated_percent, repeated_after_s
-            Share of the vehicle's packets that came twice, and how much later they came again.
+            Share of the vehicle's packets that came twice, and the delay of the second copy.
         """
         self._keep(self._stream.finish())
         vehicle = self._stream.vehicle
-        belief = self._belief()
+        assumed = self._assumed()
         arrivals = {arrival.name: arrival for arrival in self._survey.arrivals} if self._survey else {}
         clocks = self._survey.clocks if self._survey else None
         paced = self._paced(arrivals)
@@ -115,17 +115,18 @@ class Examiner:
         complete = {"elevator", "q"} <= paced.keys() and (
             "alpha" in paced or ("a_z" in paced and speed is not None)
         )
-        # Against the aircraft's own pace where it can be told; else against what no aircraft gets by with.
+        # Rates are compared with the aircraft's own pace where it is known; else with the least for any
+        # aircraft.
         limits = [_stopping(problem, vehicle) for problem in found if problem.code != "rate" or not complete]
         limits += distrust_limits([*still, *(d for m in self._maneuvers for d in m.distrusts)])
         if vehicle is not None and complete:
-            limits += rate_limits(paced, belief, vehicle, speed)
-        period_s = 2.0 * np.pi / frequency(belief.model)
+            limits += rate_limits(paced, assumed, vehicle, speed)
+        period_s = 2.0 * np.pi / frequency(assumed.model)
         carrier = vehicle.carrier if vehicle else "telemetry"
         paced_by = {self._surveyed(p.message) for p in paced.values()}
         limits += steadiness_limits(arrivals, paced_by, period_s, carrier)
         if vehicle is not None and complete:
-            limits += self._speed_limits(paced, belief, vehicle, speed)
+            limits += self._speed_limits(paced, assumed, vehicle, speed)
             limits += alpha_limits(self._stream.channels["alpha"], vehicle) if "alpha" in paced else []
         elevator = self._elevator()
         limits += elevator_limits(elevator, self._aircraft.elevator) if elevator else []
@@ -142,8 +143,8 @@ class Examiner:
             elevator=elevator,
             alpha=self._alpha(paced),
             limits=tuple(sorted(limits, key=lambda limit: not limit.stops)),
-            expectation=expect(belief, rates, speed) if complete else None,
-            belief=belief,
+            expectation=expect(assumed, rates, speed) if complete else None,
+            assumed=assumed,
             notes=(*self._notes, *(self._survey.pauses if self._survey else ())),
         )
 
@@ -151,8 +152,9 @@ class Examiner:
         self._maneuvers += [event.maneuver for event in events if isinstance(event, ManeuverFlown)]
         self._notes += [e.text for e in events if isinstance(e, Notice) and e.code == READER_NOTICE]
 
-    def _belief(self) -> Belief:
-        """The aircraft and its noise as far as they are known: the file's model, else what was flown."""
+    def _assumed(self) -> Assumed:
+        """Return the aircraft and its noise: from the file's model, else from the flown manoeuvres, else
+        typical ones."""
         flown = estimate_jointly(self._maneuvers, self._aircraft) if self._maneuvers else None
         if not isinstance(flown, Estimate) or not _believable(flown):
             flown = None
@@ -162,15 +164,15 @@ class Examiner:
             colour = np.maximum(1.0, flown.std / flown.std_cr)
         if {"Z_alpha", "M_alpha", "M_q", "M_delta_e"} <= self._aircraft.model.keys():
             model = ShortPeriod.from_mapping(self._aircraft.model)
-            return Belief(model, noise, "the model in the aircraft file", colour)
+            return Assumed(model, noise, "the model in the aircraft file", colour)
         if flown is not None:
             number = len(self._maneuvers)
             source = f"an estimate from {number} manoeuvre{'s' if number > 1 else ''} flown"
-            return Belief(ShortPeriod(flown.theta), noise, source, colour)
-        return Belief(TYPICAL, noise, "a typical aircraft of 10 kg (yours: model in the aircraft file)")
+            return Assumed(ShortPeriod(flown.theta), noise, source, colour)
+        return Assumed(TYPICAL, noise, "a typical aircraft of 10 kg (yours: model in the aircraft file)")
 
     def _paced(self, arrivals: dict[str, Arrival]) -> dict[str, Paced]:
-        """The channels that identification lives on, with the messages that pace them."""
+        """Return the channels that identification needs, with the messages that set their pace."""
         paced = {}
         dead = {distrust.channel for distrust in self._stream.frozen} - {"alpha"}  # another may be derived
         for name in ("elevator", "q", "alpha", "a_z"):
@@ -188,14 +190,15 @@ class Examiner:
         return paced
 
     def _surveyed(self, message: str) -> str:
-        """Name of a message in the survey; of servos, the last bank, which makes a sample of the elevator."""
+        """Return the name of a message in the survey. For servos, the last bank completes a sample of the
+        elevator."""
         elevator = self._stream.elevator
         if message != "SERVO_OUTPUT_RAW" or not isinstance(elevator, Surface):
             return message
         return bank_name(elevator.ports[-1])
 
     def _airspeed(self, paced: dict[str, Paced]) -> float | None:
-        """A speed for the specific force; None when none is measured or given."""
+        """Return a speed for the specific force; None when no speed is measured or given."""
         if self._aircraft.airspeed_m_s is not None:
             return self._aircraft.airspeed_m_s
         recent = self._stream.recent("airspeed", 60.0)
@@ -221,26 +224,27 @@ class Examiner:
         return AlphaFound(source, status.provenance, paced["alpha"].renewed_hz)
 
     def _speed_limits(
-        self, paced: dict[str, Paced], belief: Belief, vehicle: Vehicle, speed: float | None
+        self, paced: dict[str, Paced], assumed: Assumed, vehicle: Vehicle, speed: float | None
     ) -> list[Limit]:
-        """Without air speed or specific force some errors are larger."""
+        """Return the limits from missing air speed or specific force, which enlarge some errors."""
         if speed is None:
             text = "No air speed arrives: derivatives cannot be referred to one speed, nor a_z be used"
             fix = _fast("VFR_HUD", vehicle) + "; or give airspeed_m_s in the aircraft file"
-            cost = cost_of_missing("a_z", paced, belief, None)
+            cost = cost_of_missing("a_z", paced, assumed, None)
             return [Limit("no_airspeed", text, fix, std_ratio=cost)]
         if "a_z" not in paced and "a_z" not in self._stream.channels:
             any_of = "RAW_IMU, SCALED_IMU, SCALED_IMU2, SCALED_IMU3 or HIGHRES_IMU"
             named = any_of if vehicle.carrier == "telemetry" else vehicle.mends.called("RAW_IMU")
             text = f"No specific force arrives ({named})"
             fix = _fast("RAW_IMU", vehicle)
-            cost = cost_of_missing("a_z", paced, belief, speed)
+            cost = cost_of_missing("a_z", paced, assumed, speed)
             return [Limit("no_accelerometer", text, fix, std_ratio=cost)]
         return []
 
 
 def _believable(flown: Estimate) -> bool:
-    """Whether an estimate may stand for the aircraft: it explains the motion, and knows pace and effect."""
+    """Return whether an estimate may represent the aircraft: it explains the motion, and its pace and
+    effectiveness are significant."""
     low, high = _PLAUSIBLE_RAD_S
     pace = frequency(ShortPeriod(flown.theta))
     moved = low < pace < high and abs(flown.value("M_delta_e")) > _LEAST_EFFECT * pace**2
@@ -251,7 +255,7 @@ def _believable(flown: Estimate) -> bool:
 
 
 def _fast(message: str, vehicle: Vehicle) -> str:
-    """How to have a message that never came, at a good rate."""
+    """Return the way to obtain a message that never came, at a good rate."""
     if vehicle.carrier == "telemetry":
         return vehicle.mends.faster(message)
     return vehicle.mends.present([message])
@@ -265,7 +269,7 @@ def _stopping(problem: Problem, vehicle: Vehicle | None) -> Limit:
 
 
 def _message(status: ChannelStatus) -> str:
-    """The message that sets the pace of a channel."""
+    """Return the message that sets the pace of a channel."""
     return "VFR_HUD" if status.source.startswith("theta") else status.source.partition(".")[0]
 
 

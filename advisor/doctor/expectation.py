@@ -1,8 +1,7 @@
-"""What a standard manoeuvre would teach at these rates: expected errors, from the model's sensitivities.
+"""Expected errors of a standard manoeuvre at given rates, from the model's sensitivities.
 
-Nothing is simulated with noise. The information a measurement carries follows from how it
-would change with each parameter (Cramér-Rao); to that comes what a sampled command leaves
-open: where between two samples the edges of the input lay.
+Nothing is simulated with noise. A measurement's information follows from its sensitivity to each parameter
+(Cramér-Rao). A sampled command adds an uncertainty: the edges of the input lie somewhere between two samples.
 """
 
 from collections.abc import Mapping
@@ -21,32 +20,34 @@ from advisor.oem.problem import Assembly, Problem, Record, Signal, assemble
 
 UNITS_OF_TIME = (3, 2, 1, 1)
 RESPONSE_ALPHA_DEG = 4.0
-"""The input is sized for this largest change of angle of attack: clear of noise, clear of the stall."""
+"""Largest change of the angle of attack for which the input is sized, deg: clear of the noise, clear of the
+stall."""
 NOISE = {"alpha": np.radians(0.2), "q": np.radians(0.2), "a_z": 0.3, "theta": np.radians(0.1)}
 """Noise assumed where none was measured, rad, rad/s, m/s², rad: small autopilots in calm air."""
 
 _LEAD_IN_S = 1.0
 _EDGES_S = (0.04, 0.05, 0.06, 0.07, 0.08)
-"""Time a hand takes for a step of the stick."""
+"""Times that a hand takes for a step of the stick, s."""
 _SHIFT_S = 2e-3
 
 TYPICAL = ShortPeriod.from_mapping(
     {"Z_alpha": -4.0, "Z_delta_e": -0.3, "M_alpha": -40.0, "M_q": -4.0, "M_delta_e": -45.0}
 )
-"""A fixed-wing aircraft of about 10 kg at 25 m/s, for want of a better guess: 7.5 rad/s, damping 0.5."""
+"""Model of a fixed-wing aircraft of about 10 kg at 25 m/s, assumed where no other model is known: 7.5 rad/s,
+damping 0.5."""
 
 
 @dataclass(frozen=True, slots=True)
-class Belief:
-    """What the expected errors rest on."""
+class Assumed:
+    """Assumed model and noise behind the expected errors."""
 
     model: ShortPeriod
     noise: Mapping[str, float]
     """Standard deviation of each output's measurement noise, SI, keys as in ``NOISE``."""
     source: str
-    """Where they come from, in words."""
+    """Origin of model and noise, in words."""
     colour: FloatArray = field(default_factory=lambda: np.ones(len(PARAMETERS)))
-    """Shape (8,). Corrected errors over Cramér-Rao bounds as found in flight: 1 for white residuals."""
+    """Ratio of corrected errors to Cramér-Rao bounds in flight, shape (8,); 1 for white residuals."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,32 +55,33 @@ class Expectation:
     """Expected errors of one standard 3-2-1-1."""
 
     std: Mapping[str, float]
-    """Parameter name to its expected standard deviation; NaN where these rates cannot tell it."""
+    """Parameter name to its expected standard deviation; NaN where these rates do not identify the
+    parameter."""
     unit_s: float
-    """Length of one unit of time of the manoeuvre."""
+    """One unit of time of the manoeuvre, s."""
     amplitude_deg: float
     """Elevator amplitude on either side of trim."""
 
 
 def frequency(model: ShortPeriod) -> float:
-    """How fast the aircraft answers, rad/s: natural frequency, or its fastest mode when it has none."""
+    """Return the natural frequency in rad/s; without one, the rate of the fastest mode."""
     natural = model.natural_frequency
     return natural if np.isfinite(natural) and natural > 0.0 else float(np.max(np.abs(model.eigenvalues)))
 
 
-def expect(belief: Belief, rates_hz: Mapping[str, float], airspeed_m_s: float | None) -> Expectation:
-    """Expected errors of a 3-2-1-1 matched to the aircraft.
+def expect(assumed: Assumed, rates_hz: Mapping[str, float], airspeed_m_s: float | None) -> Expectation:
+    """Return the expected errors of a 3-2-1-1 matched to the aircraft.
 
     Parameters
     ----------
-    belief
-        What the aircraft and its instruments are believed to be.
+    assumed
+        Assumed model of the aircraft, and noise of its instruments.
     rates_hz
-        Rates at which ``elevator``, ``q`` and, when they are there, ``alpha`` and ``a_z`` bring new values.
+        Rates of new values of ``elevator``, ``q`` and, where measured, ``alpha`` and ``a_z``.
     airspeed_m_s
-        Enters the specific force; None: not measured, so that a_z cannot be used.
+        Air speed for the specific force. None: not measured, so that a_z cannot be used.
     """
-    model = belief.model
+    model = assumed.model
     unit_s = float(np.clip(2.0 / frequency(model), 0.1, 3.0))
     edges = _LEAD_IN_S + unit_s * np.cumsum([0, *UNITS_OF_TIME])
     end_s = float(edges[-1]) + max(2.0, 10.0 * unit_s)
@@ -88,12 +90,12 @@ def expect(belief: Belief, rates_hz: Mapping[str, float], airspeed_m_s: float | 
     unit_response = _answer(shape, model)
     peak = float(np.max(np.abs(unit_response[shape.rows[0]["alpha"]])))
     amplitude = np.radians(RESPONSE_ALPHA_DEG) / peak
-    std = belief.colour * _errors(belief, edges, amplitude, end_s, rates_hz, outputs, airspeed_m_s)
+    std = assumed.colour * _errors(assumed, edges, amplitude, end_s, rates_hz, outputs, airspeed_m_s)
     return Expectation(dict(zip(PARAMETERS, std.tolist(), strict=True)), unit_s, float(np.degrees(amplitude)))
 
 
 def _errors(
-    belief: Belief,
+    assumed: Assumed,
     edges: FloatArray,
     amplitude: float,
     end_s: float,
@@ -104,11 +106,11 @@ def _errors(
     def assembly(at: FloatArray) -> Assembly:
         return _assembly(at, amplitude, end_s, rates_hz, outputs, airspeed_m_s)
 
-    model = belief.model
+    model = assumed.model
     manoeuvre = assembly(edges)
     sensitivities = np.empty((len(manoeuvre.z), N_SHARED + N_LOCAL))
     respond(manoeuvre.grid, *_parameters(model), np.empty(len(manoeuvre.z)), sensitivities)
-    noise = np.array([belief.noise.get(name, NOISE[name]) for name in OUTPUTS])
+    noise = np.array([assumed.noise.get(name, NOISE[name]) for name in OUTPUTS])
     prior = None if "alpha" in outputs else precision_without_alpha(_parameters(model)[0])
     effect = influence(manoeuvre, sensitivities, noise, prior=prior)
     if effect is None:
@@ -128,10 +130,11 @@ def _errors(
 
 
 def edge_error_s(rate_hz: float) -> float:
-    """Root mean square error in time of an edge of the command, sampled and joined by straight lines.
+    """Return the root mean square error in time of a command's edge that is sampled and joined by straight
+    lines.
 
-    Over edges of several lengths and all ways the samples may fall on them: the area between
-    the edge and the lines, over the edge's height.
+    The mean covers edges of several lengths and all positions of the samples. The error is the area between
+    the edge and the lines, divided by the edge's height.
     """
     interval_s = 1.0 / rate_hz
     errors = []
@@ -154,7 +157,7 @@ def _answer(assembly: Assembly, model: ShortPeriod) -> FloatArray:
 
 def _parameters(model: ShortPeriod) -> tuple[FloatArray, FloatArray]:
     values = dict(zip(PARAMETERS, model.theta.tolist(), strict=True))
-    # From trim: constants and initial states are zero.
+    # The response starts from trim, so that constants and initial states are zero.
     return np.array([values.get(name, 0.0) for name in SHARED]), np.zeros((1, len(LOCAL)))
 
 
@@ -166,7 +169,7 @@ def _assembly(
     outputs: list[str],
     airspeed_m_s: float | None,
 ) -> Assembly:
-    """The manoeuvre as the estimator would see it, every output at its own stamps."""
+    """Return the manoeuvre in the estimator's form, with every output at its own stamps."""
     levels = amplitude * np.array([0.0, -1.0, 1.0, -1.0, 1.0, 0.0])
     half = float(np.median(_EDGES_S)) / 2.0
     corners = np.repeat(edges, 2) + np.tile([-half, half], len(edges))

@@ -1,4 +1,4 @@
-"""What the instruments and clocks can and cannot do, whatever their rates."""
+"""Defects of instruments and clocks, whatever their rates."""
 
 from collections.abc import Collection, Iterable
 
@@ -13,20 +13,21 @@ from advisor.problems import Problem
 from advisor.rounding import distinct_texts
 
 COARSE_DEG = 0.5
-"""Resolution of the command beyond which small steps are no longer steps."""
+"""Resolution of the command, deg, above which small steps are not reproduced as steps."""
 LOSSY_PERCENT = 5.0
 REPEATED_PERCENT = 1.0
-"""A network repeats single packets; a second path repeats more, as a share of the packets, in percent."""
+"""Share of repeated packets, %, above which a second path is assumed. A network alone repeats only single
+packets."""
 DRIFTING_PERCENT = 1.0
 STRAYED_SHARE = 0.01
-"""Of a message's stamps; around a reboot a few always fit on neither clock."""
+"""Share of a message's stamps that may fit on neither clock. Around a reboot a few always do."""
 
 _A_VANE = "fit a vane that sends {} (alpha.source: named_value:NAME)"
 _RECORD_IT = " and record the telemetry, for ArduPilot's own log does not keep it"
 
 
 def alpha_limits(alpha: ChannelStatus, vehicle: Vehicle) -> list[Limit]:
-    """What it means that the angle of attack is no vane's."""
+    """Return the limits of an angle of attack that comes from no vane."""
     if alpha.provenance != "derived":
         return []
     vane = _A_VANE.format(vehicle.mends.called("NAMED_VALUE_FLOAT")) + (
@@ -46,7 +47,7 @@ def alpha_limits(alpha: ChannelStatus, vehicle: Vehicle) -> list[Limit]:
 
 
 def elevator_limits(found: ElevatorFound, elevator: Elevator) -> list[Limit]:
-    """Calibration, resolution and servo."""
+    """Return defects of the elevator's calibration, resolution and servo."""
     limits = []
     if not found.calibrated:
         listed = joined_numbers(found.outputs)
@@ -74,8 +75,8 @@ def elevator_limits(found: ElevatorFound, elevator: Elevator) -> list[Limit]:
         limits.append(
             Limit(
                 "servo_unknown",
-                "The servo's lag and delay are not given: the surface does not move as commanded, and "
-                "M_alpha and M_delta_e come out too small (by about half for a lag of 0.14 s)",
+                "The servo's lag and delay are not given: M_alpha and M_delta_e come out too small (by about "
+                "half for a lag of 0.14 s)",
                 "measure the servo on the ground and give elevator.lag_s and elevator.delay_s",
             )
         )
@@ -83,13 +84,14 @@ def elevator_limits(found: ElevatorFound, elevator: Elevator) -> list[Limit]:
 
 
 def distrust_limits(found: Iterable[Distrust]) -> list[Limit]:
-    """Channels that cannot be right, each once; a pitch rate that stands still is a problem already."""
+    """Return defects for channels that cannot be right, each once. A frozen pitch rate is already a problem
+    elsewhere."""
     told = {d.channel: d for d in found if not (d.stops and d.code == "frozen")}
     return [Limit(d.code, d.sentence, d.fix, stops=d.stops) for d in told.values()]
 
 
 def clock_limits(clocks: Clocks) -> list[Limit]:
-    """Reboots, stamps of another clock, drift."""
+    """Return defects of clocks: reboots, stamps of another clock, drift."""
     limits = []
     if clocks.boots > 1:
         limits.append(
@@ -121,14 +123,14 @@ def clock_limits(clocks: Clocks) -> list[Limit]:
 
 
 def sender_limits(two_senders: Problem | None) -> list[Limit]:
-    """Two senders under one system id, as the flight's own stream judges them."""
+    """Return a defect where two senders share one system id, by the rule of the flight's own stream."""
     if two_senders is None:
         return []
     return [Limit(two_senders.code, two_senders.text.rstrip("."), two_senders.fix.rstrip("."))]
 
 
 def company_limits(other_systems: Collection[int]) -> list[Limit]:
-    """Further vehicles on the same link, when nobody chose one."""
+    """Return a defect for further vehicles on the link, where nobody chose one."""
     if not other_systems:
         return []
     others = ", ".join(map(str, sorted(other_systems)))
@@ -142,7 +144,7 @@ def company_limits(other_systems: Collection[int]) -> list[Limit]:
 
 
 def loss_limits(lost_percent: float | None) -> list[Limit]:
-    """Packets a live link lost; None: not counted."""
+    """Return a defect for packets that a live link lost; nothing where they were not counted."""
     if lost_percent is None or lost_percent <= LOSSY_PERCENT:
         return []
     shown, most = distinct_texts(lost_percent, LOSSY_PERCENT, 1)
@@ -156,7 +158,7 @@ def loss_limits(lost_percent: float | None) -> list[Limit]:
 
 
 def path_limits(repeated_percent: float, after_s: float) -> list[Limit]:
-    """A second path that brings the packets again; a packet counts once all the same."""
+    """Return a defect for a second path that repeats packets. A repeated packet counts once all the same."""
     if repeated_percent <= REPEATED_PERCENT:
         return []
     return [

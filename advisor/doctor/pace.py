@@ -1,4 +1,4 @@
-"""Are the rates enough for this aircraft: held against its natural frequency, cost in expected errors."""
+"""Rates of channels relative to the aircraft's natural frequency, and the cost of slow ones."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.doctor.examination import Limit
-from advisor.doctor.expectation import Belief, Expectation, expect, frequency
+from advisor.doctor.expectation import Assumed, Expectation, expect, frequency
 from advisor.doctor.survey import Arrival
 from advisor.flight.suitability import SLOWEST_HZ
 from advisor.flight.vehicle import Vehicle
@@ -14,13 +14,13 @@ from advisor.mends import GOOD_HZ, Carrier
 from advisor.rounding import distinct_texts
 
 FEWEST_PER_PERIOD = 6.0
-"""Samples to one natural period below which the short period cannot be followed."""
+"""Samples in one natural period below which the short period cannot be followed."""
 ENOUGH_PER_PERIOD = 20.0
-"""Samples to one natural period above which faster telemetry hardly helps."""
+"""Samples in one natural period above which faster telemetry hardly helps."""
 GAP_INTERVALS = 3.0
-"""A gap is longer than this many intervals of its message."""
+"""Shortest gap, in intervals of the message."""
 FALLEN = 0.6
-"""Share of the usual rate below which a message counts as cut."""
+"""Share of the usual rate below which a message counts as interrupted."""
 
 _DROPPED = (
     "the autopilot could not write all records: log fewer or use a faster card; a manoeuvre with such a "
@@ -36,34 +36,34 @@ class Paced:
     channel: str
     message: str
     rate_hz: float
-    """Samples per second over the best ten seconds, as analyze counts them."""
+    """Samples per second over the best ten seconds, counted as in ``advisor analyze``."""
     renewed_hz: float
-    """New values per second, never more than ``rate_hz``."""
+    """New values per second, at most ``rate_hz``."""
 
 
 def rate_limits(
-    paced: Mapping[str, Paced], belief: Belief, vehicle: Vehicle, airspeed_m_s: float | None
+    paced: Mapping[str, Paced], assumed: Assumed, vehicle: Vehicle, airspeed_m_s: float | None
 ) -> list[Limit]:
-    """Limits for every channel that is slow for this aircraft.
+    """Return a defect for every channel that is too slow for this aircraft.
 
     Parameters
     ----------
     paced
-        Elevator and q, and alpha and a_z when they are there. With a_z and air speed a slow alpha stops
-        nothing.
+        Elevator and q, with alpha and a_z where measured. A slow alpha prevents nothing where a_z and air
+        speed are measured.
     """
-    period_s = 2.0 * np.pi / frequency(belief.model)
+    period_s = 2.0 * np.pi / frequency(assumed.model)
     fewest_hz = max(SLOWEST_HZ, FEWEST_PER_PERIOD / period_s)
     enough_hz = max(SLOWEST_HZ, ENOUGH_PER_PERIOD / period_s)
     good = {name: max(float(GOOD_HZ), channel.renewed_hz) for name, channel in paced.items()}
-    best = expect(belief, good, airspeed_m_s)
+    best = expect(assumed, good, airspeed_m_s)
     limits = []
     stands_in = "a_z" in paced and airspeed_m_s is not None
     for name in ("elevator", "q", "alpha"):
         channel = paced.get(name)
         if channel is None or channel.renewed_hz >= enough_hz:
             continue
-        alone = expect(belief, {**good, name: channel.renewed_hz}, airspeed_m_s)
+        alone = expect(assumed, {**good, name: channel.renewed_hz}, airspeed_m_s)
         repeats = channel.rate_hz >= enough_hz
         message = vehicle.mends.called(channel.message)
         arrives = f"{message} arrives at {channel.rate_hz:.1f} Hz"
@@ -82,7 +82,7 @@ def rate_limits(
 
 
 def _samples(hz: float, fewest_hz: float, enough_hz: float, plain: str, period_s: float) -> str:
-    """Samples in a natural period beside the limit that they fall short of."""
+    """Return the number of samples in a natural period, with the limits that it misses."""
     samples, fewest, enough = hz * period_s, fewest_hz * period_s, enough_hz * period_s
     if hz < fewest_hz:
         shown, least = distinct_texts(samples, fewest, 1)
@@ -96,7 +96,7 @@ def _samples(hz: float, fewest_hz: float, enough_hz: float, plain: str, period_s
 def steadiness_limits(
     arrivals: Mapping[str, Arrival], needed: set[str], period_s: float, carrier: Carrier
 ) -> list[Limit]:
-    """Messages that came, but not all the time."""
+    """Return a defect for each message that came with interruptions."""
     limits = []
     for name in sorted(needed & arrivals.keys()):
         arrival = arrivals[name]
@@ -126,12 +126,12 @@ def steadiness_limits(
 
 
 def cost_of_missing(
-    channel: str, paced: Mapping[str, Paced], belief: Belief, airspeed_m_s: float | None
+    channel: str, paced: Mapping[str, Paced], assumed: Assumed, airspeed_m_s: float | None
 ) -> Mapping[str, float]:
-    """What having no a_z, or no air speed to use it with, costs."""
+    """Return the cost of a missing a_z, or of a missing air speed that makes a_z useless."""
     rates = {name: p.renewed_hz for name, p in paced.items() if name != channel}
-    with_it = expect(belief, {**rates, channel: float(GOOD_HZ)}, airspeed_m_s or 25.0)
-    return _ratio(expect(belief, rates, airspeed_m_s), with_it)
+    with_it = expect(assumed, {**rates, channel: float(GOOD_HZ)}, airspeed_m_s or 25.0)
+    return _ratio(expect(assumed, rates, airspeed_m_s), with_it)
 
 
 def _staircase(message: str, vehicle: Vehicle) -> str:

@@ -1,4 +1,4 @@
-"""How every message of the vehicle arrives: counted on the vehicle's clock, message by message."""
+"""Arrival of every message of the vehicle, counted on the vehicle's clock."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -11,8 +11,9 @@ from advisor.flight.channels import stamps
 from advisor.flight.clocks import BootClock
 from advisor.flight.messages import Columns, FloatArray, cut
 from advisor.flight.vehicle import Vehicle
+from advisor.vehicle_time import between
 
-# The field whose change shows that a message brings news and not the last value again.
+# The field whose change shows that a message brings a new value.
 _TELLING = {
     "ATTITUDE": ("pitchspeed",),
     "ATTITUDE_QUATERNION": ("pitchspeed",),
@@ -29,50 +30,51 @@ _TELLING = {
     "NAMED_VALUE_FLOAT": ("value",),
 }
 _EVENTS = frozenset({"PARAM_VALUE", "STATUSTEXT", "COMMAND_ACK", "COMMAND_LONG", "AUTOPILOT_VERSION"})
-"""Messages that come when something happens: they have no rate."""
+"""Messages that come on events and so have no rate."""
 _SILENCE = 5.0
-"""Intervals this many times the median are gaps of a link, not the pace of a message."""
+"""Multiple of the median interval above which an interval is a gap of the link, not the pace of a message."""
 _LIVELY_S = 0.5
-"""A value that stands longer than this is at rest: that says nothing about its renewal."""
+"""Time, s, after which an unchanged value counts as at rest. A value at rest says nothing about its
+renewal."""
 _WINDOW_S = 5.0
-"""Stretch over which a rate must hold up."""
+"""Stretch, s, over which the lowest rate is counted."""
 
 
 @dataclass(frozen=True, slots=True)
 class Arrival:
-    """How one message arrived."""
+    """Statistics of one message's arrival."""
 
     name: str
     count: int
     rate_hz: float
-    """Messages per second while they came; NaN with fewer than three."""
+    """Messages per second while they came. NaN with fewer than three messages."""
     jitter_ms: float
-    """Standard deviation of the intervals between stamps, gaps left out."""
+    """Standard deviation of the intervals between stamps, without gaps."""
     largest_gap_s: float
-    """Longest time between two messages within one boot, pauses of the log left out."""
+    """Longest time between two messages within one boot, without pauses of the log."""
     renewed_hz: float
-    """How often the value changes while it changes at all; NaN where nothing tells."""
+    """Rate at which the value changes while it changes at all. NaN where no field shows changes."""
     lowest_hz: float
     """Rate of the slowest five seconds within the stretch in which the message came."""
 
 
 @dataclass(frozen=True, slots=True)
 class Clocks:
-    """Whether the stamps can be believed."""
+    """Consistency of the stamps."""
 
     boots: int
-    """How often the vehicle was switched on within the record."""
+    """Number of the vehicle's power-ons within the record."""
     drift_percent: float
-    """How much faster vehicle time passes than the host's; NaN when it cannot be told."""
+    """Excess of the vehicle clock's speed over the host clock's, in percent. NaN when unknown."""
     arrival_jitter_ms: float
-    """Standard deviation of arrival against the vehicle's clock: what the link adds."""
+    """Standard deviation of arrival relative to the vehicle's clock, which the link causes."""
     strayed: Mapping[str, float]
-    """Message name to the share of its stamps that fit nowhere on the vehicle's clock."""
+    """Message name to the share of its stamps that lie off the vehicle's clock."""
 
 
 @dataclass(slots=True)
 class _Sender:
-    """What is kept of the messages of one type from one system: stamps and whether they brought news."""
+    """Stamps of the messages of one type from one system, and whether each brought a new value."""
 
     t: list[FloatArray] = field(default_factory=list)
     boot: list[NDArray[np.int64]] = field(default_factory=list)
@@ -81,7 +83,7 @@ class _Sender:
     last: FloatArray | None = None
 
     def news_in(self, values: FloatArray) -> NDArray[np.bool_]:
-        """Which rows differ from the one before; shape (n,)."""
+        """Return whether each row differs from the row before, shape (n,)."""
         if len(values) == 0:
             return np.zeros(0, dtype=bool)
         before = values[:1] if self.last is None else self.last
@@ -92,7 +94,7 @@ class _Sender:
 
 @dataclass(frozen=True, slots=True)
 class _Pause:
-    """A stretch of one boot in which nothing was written."""
+    """A stretch of one boot in which the autopilot wrote nothing."""
 
     boot: int
     start_s: float
@@ -100,15 +102,15 @@ class _Pause:
 
 
 class Survey:
-    """Follows every message of one vehicle.
+    """Counts every message of one vehicle.
 
-    ATTITUDE is the clock, as everywhere in the advisor; a message without a stamp takes that
-    of the ATTITUDE before it. A stream without ATTITUDE is counted by its times of arrival.
+    ATTITUDE is the clock, as everywhere in the advisor. A message without a stamp takes the stamp of the
+    ATTITUDE before it. A stream without ATTITUDE is counted by its times of arrival.
 
     Parameters
     ----------
     vehicle
-        Whose messages count.
+        Vehicle whose messages count.
     """
 
     def __init__(self, vehicle: Vehicle) -> None:
@@ -134,7 +136,7 @@ class Survey:
         self._master_s = float(clock[-1])
 
     def _advance(self, attitude: Columns | None) -> tuple[NDArray[np.int64], FloatArray, NDArray[np.int64]]:
-        """The master clock after each ATTITUDE of this batch, and before the first."""
+        """Return the master clock after each ATTITUDE of this batch, and before the first."""
         order, clock, boots = [-1], [self._master_s], [self._clock.boot]
         if attitude is not None:
             ticks = self._clock.advance(np.asarray(attitude.fields["time_boot_ms"], dtype=np.int64))
@@ -148,7 +150,7 @@ class Survey:
 
     def _take(self, name: str, part: Columns, master_s: FloatArray, boot: NDArray[np.int64]) -> None:
         sender = self._senders.setdefault(name, _Sender())
-        # A heartbeat before the first ATTITUDE has no vehicle time; it is counted by arrival only.
+        # A heartbeat before the first ATTITUDE has no vehicle time, and is counted by arrival only.
         known = np.isfinite(master_s)
         t = np.where(known, stamps(part, master_s), np.nan)
         sender.strayed += int(np.count_nonzero(known & ~np.isfinite(t)))
@@ -161,7 +163,7 @@ class Survey:
 
     @property
     def clocks(self) -> Clocks:
-        """What the stamps say of each other."""
+        """Consistency of the stamps with each other."""
         pairs = np.concatenate(self._clock_pairs) if self._clock_pairs else np.empty((0, 3))
         strayed = {
             name: sender.strayed / sum(map(len, sender.t))
@@ -184,16 +186,17 @@ class Survey:
 
     @property
     def pauses(self) -> list[str]:
-        """When the autopilot wrote nothing into a log of its own, one sentence each."""
+        """Sentences on the stretches in which the autopilot wrote nothing into its own log."""
         because = " (LOG_DISARMED 0)" if self._carrier == "dataflash" else ""
         return [
-            f"The autopilot logged nothing from {p.start_s:.1f} to {p.end_s:.1f} s, as it may while "
+            f"The autopilot logged nothing from {between(p.start_s, p.end_s)}, as it may while "
             f"disarmed{because}: no link was lost."
             for p in self._pauses()
         ]
 
     def _pauses(self) -> list[_Pause]:
-        """Stretches in which no message of any kind came; none for a link, whose faults they are."""
+        """Return stretches in which no message of any kind came; none for a link, where such stretches are
+        faults."""
         if self._carrier == "telemetry" or not self._clock_pairs:
             return []
         _, t, boot = np.concatenate(self._clock_pairs).T
@@ -211,12 +214,13 @@ class Survey:
 
 
 def bank_name(port: int) -> str:
-    """Name under which the survey lists the SERVO_OUTPUT_RAW of one bank of outputs, 0 for the first."""
+    """Return the survey's name for the SERVO_OUTPUT_RAW of one bank of outputs, 0 for the first."""
     return "SERVO_OUTPUT_RAW" if port == 0 else f"SERVO_OUTPUT_RAW port {port}"
 
 
 def _banks(part: Columns) -> Iterator[tuple[str, NDArray[np.bool_]]]:
-    """Messages that are counted together: a vehicle with two banks of outputs sends two for each sample."""
+    """Yield groups of messages that are counted together. A vehicle with two banks of outputs sends two for
+    each sample."""
     if part.name != "SERVO_OUTPUT_RAW":
         yield part.name, np.ones(len(part), dtype=bool)
         return
@@ -226,7 +230,7 @@ def _banks(part: Columns) -> Iterator[tuple[str, NDArray[np.bool_]]]:
 
 
 def _telling(part: Columns) -> FloatArray:
-    """The fields that tell news from repetition, shape (n, fields)."""
+    """Return the fields whose change shows a new value, shape (n, fields)."""
     names = [name for name in _TELLING.get(part.name, ()) if name in part.fields]
     columns = [np.asarray(part.fields[name], dtype=np.float64).reshape(len(part), -1) for name in names]
     return np.column_stack(columns) if columns else np.empty((len(part), 0))
@@ -234,7 +238,7 @@ def _telling(part: Columns) -> FloatArray:
 
 def _arrival(name: str, sender: _Sender, pauses: Sequence[_Pause]) -> Arrival:
     t, boot, news = np.concatenate(sender.t), np.concatenate(sender.boot), np.concatenate(sender.news)
-    # After a pause messages begin anew, as after a boot.
+    # After a pause messages restart, as after a boot.
     boot = boot + sum(((boot > p.boot) | (boot == p.boot) & (t > p.start_s)).astype(np.int64) for p in pauses)
     order = np.lexsort((t, boot))
     t, boot, news = t[order], boot[order], news[order]
@@ -257,14 +261,15 @@ def _arrival(name: str, sender: _Sender, pauses: Sequence[_Pause]) -> Arrival:
 
 
 def _intervals(t: FloatArray, boot: NDArray[np.int64]) -> FloatArray:
-    """Times between neighbouring stamps of one boot."""
+    """Return times between neighbouring stamps of one boot."""
     same = np.diff(boot) == 0
     intervals: FloatArray = np.diff(t)[same]
     return intervals
 
 
 def _lowest_rate(t: FloatArray, boot: NDArray[np.int64]) -> float:
-    """Fewest messages in any stretch of ``_WINDOW_S`` that begins with one, per second."""
+    """Return the lowest rate over ``_WINDOW_S``, in messages per second, among stretches that begin with a
+    message."""
     rates = []
     for n in np.unique(boot):
         mine = t[boot == n]
@@ -275,7 +280,8 @@ def _lowest_rate(t: FloatArray, boot: NDArray[np.int64]) -> float:
 
 
 def _against_the_host(pairs: FloatArray) -> tuple[float, float]:
-    """Drift in percent and jitter in ms of arrival against vehicle time, over the longest boot."""
+    """Return the drift in percent and the jitter in ms of arrival against vehicle time, over the longest
+    boot."""
     if len(pairs) == 0:
         return np.nan, np.nan
     boots, counts = np.unique(pairs[:, 2], return_counts=True)

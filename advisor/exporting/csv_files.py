@@ -1,4 +1,4 @@
-"""CSV: one file a table, a header line of names; ``columns.json`` has the units."""
+"""CSV: one file for each table with a header line of names; ``columns.json`` has the units."""
 
 import csv
 import json
@@ -15,7 +15,7 @@ SIDECAR = "columns.json"
 def write_csv(data: Dataset, folder: Path) -> None:
     """Write a dataset as ``TABLE.csv``, ``record_N/grid.csv`` and ``record_N/CHANNEL.csv``.
 
-    Numbers have as many digits as bring back the same float64; nothing stands where nothing is known.
+    Numbers have enough digits to restore the float64. A missing value is an empty field.
     """
     files = {f"{table.name}.csv": table for table in data.tables}
     for recording in data.recordings:

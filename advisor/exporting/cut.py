@@ -1,4 +1,5 @@
-"""The log of one manoeuvre: the packets of a tlog around it, byte by byte, and what must come before."""
+"""The log of one manoeuvre: the packets of a tlog around the manoeuvre, byte by byte, with the necessary
+earlier ones."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -14,19 +15,20 @@ from advisor.mavlink.unpack import beginning_of, unpacked
 from advisor.problems import ConfigurationError
 
 BEFORE = {"HEARTBEAT": (), "AUTOPILOT_VERSION": (), "PARAM_VALUE": ("param_id",)}
-"""Messages of which the last before the stretch is needed: who the vehicle is, its mode, each parameter by
-name."""
+"""Message, of which the last one before the stretch is needed, to the fields that distinguish its values. The
+messages give identity, mode and parameters."""
 
 
 def cut_tlog(log: Path, first: int, last: int) -> bytes:
-    """The packets of a tlog from one to another, after the newest heartbeats and parameters before them.
+    """Return the packets of a tlog between two positions, after the newest heartbeats and parameters before
+    them.
 
     Parameters
     ----------
     log
         A tlog, packed or not.
     first, last
-        Where the frames of the first and of the last packet begin in the unpacked log, bytes.
+        Positions of the first and the last packet's frame in the unpacked log, bytes.
 
     Returns
     -------
@@ -53,7 +55,7 @@ def cut_tlog(log: Path, first: int, last: int) -> bytes:
 
 
 def _messages(log: Path) -> Iterator[Columns]:
-    """The messages of a tlog that may be needed before a stretch, all batches of one sender joined."""
+    """Yield the messages of a tlog that a stretch may need, with all batches of one sender joined."""
     heard: dict[tuple[str, int, int], list[Columns]] = {}
     for batch in read_tlog(log, BEFORE):
         for columns in batch:
@@ -66,7 +68,7 @@ def _messages(log: Path) -> Iterator[Columns]:
 
 
 def _newest(columns: Columns, first: int) -> IntArray:
-    """Where the newest of these messages before ``first`` begin, one for each value of the key fields."""
+    """Return the positions of the newest messages before ``first``, one for each value of the key fields."""
     before = columns.order < first
     order = columns.order[before]
     newest: dict[object, int] = {}
@@ -81,5 +83,5 @@ def _record(data: bytes, at: int) -> bytes:
 
 
 def _length(data: bytes, at: int) -> int:
-    """Bytes of the frame that begins at ``at``."""
+    """Return the length of the frame at ``at``, bytes."""
     return len(FrameCutter(CRC_EXTRA).feed(data[at : at + LONGEST_FRAME])[0].raw)

@@ -1,4 +1,4 @@
-"""The formats of an export by name, each imported only when it is asked for."""
+"""Formats of an export by name, each imported only on use."""
 
 from collections.abc import Sequence
 from importlib import import_module
@@ -22,7 +22,7 @@ _NEEDS = {"parquet": "pyarrow", "mcap": "mcap"}
 
 
 def parse_formats(text: str) -> tuple[str, ...]:
-    """Read names of formats, parted by commas, each once.
+    """Read names of formats, separated by commas, each once.
 
     Raises
     ------
@@ -43,7 +43,8 @@ def parse_formats(text: str) -> tuple[str, ...]:
 
 
 def write_formats(data: "Dataset", folder: Path, formats: Sequence[str]) -> None:
-    """Write a dataset in several formats into a folder, with a layout for PlotJuggler where it reads them."""
+    """Write a dataset in several formats into a folder, with a layout for PlotJuggler where it reads the
+    format."""
     from advisor.exporting.plotjuggler import write_layouts
 
     for name in formats:

@@ -1,4 +1,4 @@
-"""What was found in the flights, as tables: manoeuvres with verdicts, estimates, residuals."""
+"""Findings of the flights as tables: manoeuvres with verdicts, estimates, residuals."""
 
 from collections.abc import Mapping, Sequence
 
@@ -18,7 +18,7 @@ PARAMETER_UNITS = dict(
 )
 """SI units of θ, Eqs. (1)-(3)."""
 JOINT = 0
-"""Number that stands for the joint estimate over the accepted manoeuvres."""
+"""Number of the joint estimate over the accepted manoeuvres."""
 _BY_ROW = "the column unit"
 _MEASURES = {
     "rms": "root mean square of the residual",
@@ -28,12 +28,12 @@ _MEASURES = {
 
 
 def maneuvers(state: CampaignState, record_of: Mapping[tuple[int, int], int]) -> Table:
-    """One row a manoeuvre, with its verdict, reasons and fit.
+    """Return a table with a row for each manoeuvre: verdict, reasons and fit.
 
     Parameters
     ----------
     record_of
-        (Flight, power-on), each 0 for the first, to the number of its record.
+        (Flight, power-on), each counted from 0, to the number of the record.
     """
     judged = state.maneuvers
     spans = [one.maneuver.span for one in judged]
@@ -82,14 +82,14 @@ def maneuvers(state: CampaignState, record_of: Mapping[tuple[int, int], int]) ->
 
 
 def estimates(state: CampaignState) -> Table:
-    """One row a parameter of each manoeuvre and of the joint estimate, with its row of the covariance."""
+    """Return a table with a row for each parameter of each estimate, and its row of the covariance."""
     found = [(one.maneuver.number, e) for one in state.maneuvers if (e := _estimate(one))]
     if state.model is not None:
         found.append((JOINT, state.model))
     rows = [(number, e, name) for number, e in found for name in PARAMETERS]
 
     def told(values: str, *of: int) -> NDArray[np.float64]:
-        """(n,) an attribute of the estimates, by row; NaN where the parameter is not identifiable."""
+        """Return an attribute of the estimates by row, shape (n,); NaN for an unidentifiable parameter."""
         return numbers(
             [
                 None if name in e.not_identifiable else getattr(e, values)[(PARAMETERS.index(name), *of)]
@@ -118,7 +118,8 @@ def estimates(state: CampaignState) -> Table:
 
 
 def residuals(state: CampaignState, record_of: Mapping[tuple[int, int], int]) -> tuple[Table, ...]:
-    """A table an output: measured, fitted and residual of every accepted manoeuvre, at their own stamps."""
+    """Return a table for each output: measured, fitted and residual of every accepted manoeuvre, at their own
+    stamps."""
     accepted = [
         (one.maneuver, e) for one in state.maneuvers if one.verdict.accepted and (e := _estimate(one))
     ]
@@ -160,7 +161,7 @@ def _records(
 
 
 def _measures(output: str, fits: Sequence[ChannelFit | None]) -> list[Column]:
-    """The columns that say how well the model explains an output."""
+    """Return the columns with measures of an output's fit."""
     return [
         Column(
             f"{measure}_{output}",

@@ -1,4 +1,4 @@
-"""One grid of times for all channels: uniform, at the pace of the pitch rate."""
+"""One grid of times for all channels: uniform, at the rate of the pitch rate."""
 
 from collections.abc import Mapping
 
@@ -14,11 +14,11 @@ GRID = (
     " fastest channel); linear between a channel's stamps; nothing outside them and in gaps longer than"
     f" {GAP_S:g} s and {MANY_INTERVALS:g} median intervals"
 )
-"""Which grid, and how channels come to it, in words."""
+"""Description of the grid, and of the interpolation onto the grid."""
 
 
 def on_one_grid(channels: Mapping[str, Channel]) -> Table:
-    """All channels at the times of ``GRID``; a table without rows where no channel has two samples."""
+    """Return all channels at the times of ``GRID``; without rows where no channel has two samples."""
     t = grid_times(channels)
     columns = [
         Column(name, on_grid(c, t), ALL_UNITS[name], f"{name} from {c.source}")
@@ -29,7 +29,7 @@ def on_one_grid(channels: Mapping[str, Channel]) -> Table:
 
 
 def grid_times(channels: Mapping[str, Channel]) -> FloatArray:
-    """(n,) times of the grid, s since boot."""
+    """Return the times of the grid, shape (n,), s since boot."""
     paced = {name: c for name, c in channels.items() if len(c) > 1}
     if not paced:
         return np.empty(0)
@@ -40,7 +40,8 @@ def grid_times(channels: Mapping[str, Channel]) -> FloatArray:
 
 
 def on_grid(channel: Channel, t: FloatArray) -> FloatArray:
-    """(n,) a channel at the times ``t``: linear between its stamps, NaN outside them and in its gaps."""
+    """Return a channel at the times ``t``, shape (n,): linear between its stamps, NaN outside and in its
+    gaps."""
     if len(channel) == 0 or len(t) == 0:
         return np.full(len(t), np.nan)
     y = np.interp(t, channel.t, channel.y, left=np.nan, right=np.nan)

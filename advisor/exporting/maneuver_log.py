@@ -4,7 +4,7 @@ from advisor.aircraft import Aircraft
 from advisor.exporting.cut import cut_tlog
 from advisor.flight.events import ManeuverFlown
 from advisor.flight.maneuver import Maneuver
-from advisor.flight.same import are_one
+from advisor.flight.repeated_maneuver import are_one
 from advisor.flight.stream import FlightStream
 from advisor.mavlink.frames import FrameScanner
 from advisor.problems import ConfigurationError, UnusableInputError
@@ -19,7 +19,7 @@ AFTER_S = 5.0
 def log_of_maneuver(
     flights: WholeFlights, number: int, aircraft: Aircraft, target_system: int | None = None
 ) -> bytes:
-    """The bytes of a tlog in which ``advisor analyze`` finds one manoeuvre.
+    """Return the bytes of a tlog in which ``advisor analyze`` finds one manoeuvre.
 
     The stretch begins ``LEAD_S`` before the record and ends ``AFTER_S`` after it, or at the neighbours.
 
@@ -40,7 +40,9 @@ def log_of_maneuver(
     every = [judged.maneuver for judged in flights.state.maneuvers]
     maneuver = next((m for m in every if m.number == number), None)
     if maneuver is None:
-        raise ConfigurationError(f"--cut: there is no manoeuvre {number}; the logs hold {len(every)}.")
+        raise ConfigurationError(
+            f"--cut: there is no manoeuvre {number}; give a number from 1 to {len(every)}."
+        )
     log = flights.logs[maneuver.flight]
     start_s, end_s = _stretch(maneuver, every)
     power_on = next(p for flight, p in flights.power_ons if (flight, p.boot) == maneuver.power_on)
@@ -55,7 +57,7 @@ def log_of_maneuver(
 
 
 def _stretch(maneuver: Maneuver, every: list[Maneuver]) -> tuple[float, float]:
-    """Vehicle times between which the packets are taken, s since boot."""
+    """Return the vehicle times between which the packets are taken, s since boot."""
     span = maneuver.span
     others = [m.span for m in every if m.power_on == maneuver.power_on and m.number != maneuver.number]
     earlier = [s.end_s for s in others if s.end_s <= span.start_s]
@@ -64,7 +66,7 @@ def _stretch(maneuver: Maneuver, every: list[Maneuver]) -> tuple[float, float]:
 
 
 def _finds(data: bytes, maneuver: Maneuver, aircraft: Aircraft, target_system: int | None) -> bool:
-    """Whether the cut log holds the manoeuvre, sample by sample."""
+    """Return whether the cut log holds the manoeuvre, sample by sample."""
     scanner, stream = FrameScanner(), FlightStream(aircraft, target_system)
     events = stream.feed([*scanner.feed(data), *scanner.close()]) + stream.finish()
     return any(isinstance(event, ManeuverFlown) and are_one(event.maneuver, maneuver) for event in events)

@@ -13,10 +13,11 @@ FILE = "flight.mat"
 
 
 def write_mat(data: Dataset, folder: Path) -> None:
-    """Write a dataset as version 5 MAT: a struct a table, ``record_N.grid``, ``record_N.CHANNEL``, ``about``.
+    """Write a dataset as MAT of version 5: structs of tables, ``record_N.grid``, ``record_N.CHANNEL``,
+    ``about``.
 
-    A struct has a column vector a column, and ``units`` and ``meanings`` with the same field names. Texts
-    are cells. ``about`` is a JSON document on the logs.
+    A struct has a vector for each column, and ``units`` and ``meanings`` with equal field names. Texts are
+    cells. ``about`` is a JSON document on the logs.
     """
     content: dict[str, Any] = {table.name: _struct(table) for table in data.tables}
     for recording in data.recordings:

@@ -1,4 +1,4 @@
-"""MCAP: one file a power-on, JSON messages with JSON schemas, log times from the vehicle's clock."""
+"""MCAP: one file for each power-on, JSON messages with JSON schemas, log times from the vehicle's clock."""
 
 import json
 from collections.abc import Iterator
@@ -14,15 +14,14 @@ from advisor.exporting.table import Column, Dataset, Recording, Table
 
 _TYPES = {"f": "number", "i": "integer", "b": "boolean", "U": "string"}
 _TIMES = {"maneuvers": "end_boot_s"}
-"""Column that stamps the messages of a table, where it is not ``t_boot_s``."""
+"""Column with the stamps of a table's messages, for tables without ``t_boot_s``."""
 
 
 def write_mcap(data: Dataset, folder: Path) -> None:
-    """Write a dataset as ``record_N.mcap``: a topic a channel, ``/maneuvers``, ``/residuals_OUTPUT``.
+    """Write a dataset as ``record_N.mcap``: a topic for each channel, ``/maneuvers``, ``/residuals_OUTPUT``.
 
-    The time of a message is the vehicle's time since boot, in ns. The estimates follow at the end of the
-    last record, one message a parameter. The schemas hold units and meanings. Numbers that are not known
-    are null.
+    The time of a message is the vehicle's time since boot, in ns. The estimates follow at the end of the last
+    record, one message for each parameter. The schemas hold units and meanings. Unknown numbers are null.
     """
     for number, recording in enumerate(data.recordings, start=1):
         tables = [*recording.channels, *(_of_record(t, number) for t in data.tables if _is_of_record(t))]
@@ -82,7 +81,7 @@ def _is_of_record(table: Table) -> bool:
 
 
 def _of_record(table: Table, number: int) -> Table:
-    """The rows of one record, in the order of their times."""
+    """Return the rows of one record, in the order of their times."""
     rows = np.flatnonzero(table["record"] == number)
     rows = rows[np.argsort(table[_TIMES.get(table.name, "t_boot_s")][rows], kind="stable")]
     columns = tuple(Column(c.name, c.values[rows], c.unit, c.about) for c in table.columns)

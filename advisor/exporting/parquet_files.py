@@ -1,4 +1,4 @@
-"""Parquet: one file a table, units and meanings in the metadata of each field."""
+"""Parquet: one file for each table, with units and meanings in the metadata of each field."""
 
 import json
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""A layout for PlotJuggler beside a record's grid: which curves belong into one plot."""
+"""A layout for PlotJuggler next to a record's grid, which groups curves into plots."""
 
 from pathlib import Path
 from xml.etree import ElementTree as Xml
@@ -19,7 +19,8 @@ _LOADERS = {
     "csv": ("DataLoad CSV", {"default": _COMMA, "parameters": _COMMA}),
     "parquet": ("DataLoad Parquet", {"default": {"prevTimestamp": "t_boot_s", "radioIndexChecked": "0"}}),
 }
-"""PlotJuggler's reader of each ending, and where older and newer releases look for the column of times."""
+"""PlotJuggler's reader of each file ending, and where older and newer releases look for the column of
+times."""
 _COLORS = ("#1f77b4", "#d62728")
 
 
@@ -32,7 +33,7 @@ def write_layouts(data: Dataset, folder: Path, ending: str) -> None:
 
 
 def layout(recording: Recording, ending: str) -> Xml.Element:
-    """One tab of plots, one above the other, of those channels that the record has."""
+    """Return one tab of plots, one above the other, of the record's channels."""
     there = {column.name for column in recording.grid.columns}
     plots = [names for plot in _PLOTS if (names := [name for name in plot if name in there])]
     root = Xml.Element("root")

@@ -15,7 +15,7 @@ from advisor.whole_flights import WholeFlights
 
 
 def dataset(flights: WholeFlights) -> Dataset:
-    """Everything that an export holds, as tables."""
+    """Return everything that an export holds, as tables."""
     record_of = {
         (flight, one.boot): number for number, (flight, one) in enumerate(flights.power_ons, start=1)
     }

@@ -1,4 +1,4 @@
-"""A set of files that appears as a whole: written under a temporary name, given their names at the end."""
+"""A set of files that appears as a whole: written under temporary names, then renamed."""
 
 import os
 import shutil
@@ -12,14 +12,15 @@ from advisor.problems import ConfigurationError
 
 @contextmanager
 def staged(folder: Path, inputs: Sequence[Path] = ()) -> Iterator[Path]:
-    """Give a temporary folder whose files take their names below ``folder`` when the block ends well.
+    """Yield a temporary folder. Its files get their names below ``folder`` when the block ends without an
+    error.
 
-    Files of the same names are replaced. When anything fails, everything below ``folder`` is as before.
+    Files with equal names are replaced. After any failure, everything below ``folder`` is unchanged.
 
     Parameters
     ----------
     folder
-        Where the files belong; made where it is not there.
+        Folder for the files, made where missing.
     inputs
         Files that must not be replaced.
 
@@ -50,7 +51,7 @@ def staged(folder: Path, inputs: Sequence[Path] = ()) -> Iterator[Path]:
 
 
 def _publish(stage: Path, folder: Path, inputs: Sequence[Path]) -> None:
-    """Bring all files to the disk, then give each its name."""
+    """Write all files to the disk, then rename each."""
     files = sorted(path for path in stage.rglob("*") if path.is_file())
     targets = [folder / path.relative_to(stage) for path in files]
     refuse_inputs(targets, inputs)
@@ -63,7 +64,7 @@ def _publish(stage: Path, folder: Path, inputs: Sequence[Path]) -> None:
 
 
 def refuse_inputs(targets: Sequence[Path], inputs: Sequence[Path]) -> None:
-    """Refuse to write over what is read.
+    """Refuse to write over an input.
 
     Raises
     ------
@@ -77,7 +78,7 @@ def refuse_inputs(targets: Sequence[Path], inputs: Sequence[Path]) -> None:
 
 
 def _missing(folder: Path) -> list[Path]:
-    """Folders that must be made, the innermost first."""
+    """Return the folders that must be made, the innermost first."""
     return [path for path in (folder, *folder.parents) if not path.exists()]
 
 

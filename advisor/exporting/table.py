@@ -1,4 +1,4 @@
-"""Tables with names, units and meanings: what every format of an export is written from."""
+"""Tables with names, units and meanings, from which every format of an export is written."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -13,18 +13,18 @@ class Column:
     """One column of a table."""
 
     name: str
-    """Letters, digits and underscores; begins with a letter."""
+    """Name of letters, digits and underscores that begins with a letter."""
     values: NDArray[Any]
-    """Shape (n,): float64 with NaN where nothing is known, int64, bool, or text (NumPy kind ``U``)."""
+    """Shape (n,): float64 with NaN for unknown values, int64, bool, or text (NumPy kind ``U``)."""
     unit: str
-    """SI as ``rad/s``; ``1`` for a pure number; empty where there is no quantity."""
+    """SI unit, such as ``rad/s``; ``1`` for a pure number; empty without a quantity."""
     about: str
     """Meaning of the column, one sentence."""
 
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """Columns of one length."""
+    """Columns of equal length."""
 
     name: str
     """Name of the file or variable, without an ending."""
@@ -36,7 +36,7 @@ class Table:
         return len(self.columns[0].values)
 
     def __getitem__(self, name: str) -> NDArray[Any]:
-        """Values of a column by name, shape (n,)."""
+        """Return the values of a column by name, shape (n,)."""
         return next(column.values for column in self.columns if column.name == name)
 
 
@@ -47,31 +47,31 @@ class Recording:
     name: str
     """``record_1``, ``record_2``, ... in the order of flying."""
     channels: tuple[Table, ...]
-    """A table a channel, at the channel's own stamps: ``t_boot_s`` and a column named as the channel."""
+    """A table for each channel, at its own stamps: ``t_boot_s`` and a column with the channel's name."""
     grid: Table
-    """All channels on one grid of times: ``t_boot_s`` and a column a channel."""
+    """All channels on one grid of times: ``t_boot_s`` and a column for each channel."""
 
 
 @dataclass(frozen=True, slots=True)
 class Dataset:
-    """Everything an export holds."""
+    """All tables of an export."""
 
     recordings: tuple[Recording, ...]
     tables: tuple[Table, ...]
-    """What was found: ``channels``, ``maneuvers``, ``estimates``, ``residuals_OUTPUT``."""
+    """Findings: ``channels``, ``maneuvers``, ``estimates``, ``residuals_OUTPUT``."""
     about: Mapping[str, Any] = field(default_factory=dict)
-    """Where the numbers come from: version, logs with their SHA-256, grid, notes; JSON can hold it."""
+    """Origin of the numbers for JSON: version, logs with their SHA-256, grid, notes."""
 
     def table(self, name: str) -> Table:
-        """One of ``tables`` by name."""
+        """Return one of ``tables`` by name."""
         return next(table for table in self.tables if table.name == name)
 
 
 def texts(values: Sequence[str]) -> NDArray[np.str_]:
-    """Texts as the values of a column, shape (n,)."""
+    """Return texts as a column's values, shape (n,)."""
     return np.array(list(values), dtype=np.str_)
 
 
 def numbers(values: Sequence[float | None]) -> NDArray[np.float64]:
-    """Numbers as the values of a column, shape (n,); NaN for None."""
+    """Return numbers as a column's values, shape (n,), with NaN for None."""
     return np.array([np.nan if value is None else value for value in values], dtype=np.float64)

@@ -1,1 +1,1 @@
-"""What was flown: channels with units on the vehicle's clock, and the manoeuvres in them."""
+"""Flight data: channels with units on the vehicle's clock, and the manoeuvres in them."""

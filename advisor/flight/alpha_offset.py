@@ -1,4 +1,4 @@
-"""What an angle of attack is off on average, told by attitude and climb rate alone."""
+"""Mean offset of an angle of attack, from attitude and climb rate alone."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,23 +11,24 @@ from advisor.flight.motion import bank_at, gravity_in_plane
 from advisor.standard_gravity import GRAVITY_M_S2
 
 _BEGIN_S, _STAYS, _SCATTERS = 1.0, 0.5, 3.0
-"""The beginning of a record; share of itself that an offset may lack there, in the mean of all manoeuvres;
-and how many times their scatter that takes."""
+"""Length of a record's beginning, s. Largest difference between the offsets of beginning and whole, as a
+share of the offset, in the mean of all manoeuvres. Multiple of the manoeuvres' scatter that a larger
+difference must exceed."""
 
 
 @dataclass(frozen=True, slots=True)
 class AlphaOffset:
-    """Mean of α minus (θ − flight-path angle). NaN where it could not be told."""
+    """Mean of α minus (θ − flight-path angle), rad. NaN where unknown."""
 
     rad: float = float("nan")
     std_rad: float = float("nan")
     change_rad: float = float("nan")
-    """How much more it is over the record than in its first second; 0 within three times what manoeuvres
-    scatter by. An instrument's offset is there from the first; air that begins to sink is not."""
+    """Offset over the record minus the offset in its first second; 0 within three times the scatter of
+    manoeuvres. An instrument's offset is there from the first second, and air that begins to sink is not."""
 
     @property
     def stays(self) -> bool:
-        """Whether nothing says that it was not there from the beginning."""
+        """Whether the offset may have been there from the beginning."""
         return not abs(self.change_rad) >= _STAYS * abs(self.rad)
 
 
@@ -35,14 +36,15 @@ UNKNOWN = AlphaOffset()
 
 
 def offset_of(maneuver: Maneuver, airspeed_m_s: float | None) -> AlphaOffset:
-    """Mean of α − (θ − γ), its error, and its change, from the climb rate; NaN without one.
+    """Return the mean of α − (θ − γ), its error, and its change, from the climb rate. NaN without a climb
+    rate.
 
     Parameters
     ----------
     maneuver
-        With channels ``alpha`` and ``theta``; ``bank`` is heeded where it has one.
+        Manoeuvre with channels ``alpha`` and ``theta``. ``bank`` is used where present.
     airspeed_m_s
-        Speed to use when the log has none.
+        Air speed for a log without one.
     """
     found = maneuver.channels
     if "climb_rate" not in found or len(found["climb_rate"]) < 4:
@@ -57,14 +59,14 @@ def offset_of(maneuver: Maneuver, airspeed_m_s: float | None) -> AlphaOffset:
     speed = np.maximum(speed, 1.0)
     up, size = gravity_in_plane(at("theta"), bank_at(climb.t, found))
     apart = at("alpha") - (up - np.arcsin(np.clip(climb.y / speed * GRAVITY_M_S2 / size, -0.9, 0.9)))
-    # The climb rate is slow and smoothed: count one independent reading a second.
+    # The climb rate is slow and smoothed, so that one reading a second counts as independent.
     independent = max(2.0, climb.t[-1] - climb.t[0])
     change = float(np.mean(apart) - np.mean(apart[climb.t <= climb.t[0] + _BEGIN_S]))
     return AlphaOffset(float(np.mean(apart)), float(np.std(apart) / np.sqrt(independent)), change)
 
 
 def mean_offset(offsets: Sequence[AlphaOffset]) -> AlphaOffset:
-    """One offset for the aircraft from those of its manoeuvres; unknown ones do not count."""
+    """Return one offset for the aircraft from those of its manoeuvres. Unknown ones do not count."""
     told = [o for o in offsets if np.isfinite(o.rad)]
     if not told:
         return UNKNOWN
@@ -76,7 +78,7 @@ def mean_offset(offsets: Sequence[AlphaOffset]) -> AlphaOffset:
 
 
 def speed_at(t: FloatArray, maneuver: Maneuver, otherwise: float | None) -> FloatArray | None:
-    """Shape (n,): the logged air speed, else the one given; None without either."""
+    """Return the logged air speed, else the given one, shape (n,); None without either."""
     logged = maneuver.channels.get("airspeed")
     if logged is not None and len(logged) > 1:
         return np.interp(t, logged.t, logged.y)
@@ -84,7 +86,8 @@ def speed_at(t: FloatArray, maneuver: Maneuver, otherwise: float | None) -> Floa
 
 
 def weighted(values: Sequence[float], stds: Sequence[float]) -> tuple[float, float]:
-    """Mean of values by their errors, and its own: wider where they scatter more than each claims."""
+    """Return the mean of values weighted by their errors, and its error, widened where the values scatter
+    more."""
     y, s = np.array(values), np.maximum(np.array(stds), 1e-12)
     w = 1.0 / s**2
     mean = float(np.sum(w * y) / np.sum(w))

@@ -1,10 +1,10 @@
-"""The servo outputs as ArduPilot's parameters SERVOn_* describe them."""
+"""Roles and scales of servo outputs from ArduPilot's parameters SERVOn_*."""
 
 from advisor.flight.surfaces import Scale
 from advisor.flight.wiring import AILERON, ELEVATOR, RUDDER, Parameters, Role, Wiring, Words
 
 PREFIXES = ("SERVO",)
-"""How the names of these parameters begin."""
+"""Beginnings of these parameters' names."""
 _OUTPUTS = range(1, 33)
 _ROLES = {
     4: AILERON,
@@ -33,7 +33,8 @@ WORDS = Words(
 
 
 def ardupilot_wiring(parameters: Parameters) -> Wiring:
-    """The outputs by SERVOn_FUNCTION, MIN, TRIM, MAX and REVERSED; ArduPilot's defaults where unknown."""
+    """Return the outputs by SERVOn_FUNCTION, MIN, TRIM, MAX and REVERSED, with ArduPilot's defaults where
+    unknown."""
     functions = {n: parameters[f"SERVO{n}_FUNCTION"] for n in _OUTPUTS if f"SERVO{n}_FUNCTION" in parameters}
     default = Scale()
     return Wiring(

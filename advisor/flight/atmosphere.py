@@ -1,8 +1,8 @@
-"""The air that a manoeuvre was flown in: density, and what the air speed becomes by it.
+"""Air of a manoeuvre: density, and the true air speed from the logged one.
 
 An autopilot reports the air speed that its pressure sensor would have at sea level (MAVLink, VFR_HUD:
-calibrated or indicated). With the density ρ of the air flown in and ρ_0 = 1.225 kg/m³ the true air speed is
-V·√(ρ_0/ρ), while the dynamic pressure is ½·ρ_0·V² whatever the height.
+calibrated or indicated). With the density ρ of the air flown in and ρ_0 = 1.225 kg/m³, the true air speed is
+V·√(ρ_0/ρ). The dynamic pressure is ½·ρ_0·V² at any height.
 """
 
 from collections.abc import Sequence
@@ -16,15 +16,15 @@ from advisor.flight.channels import GIVEN_AIRSPEED
 from advisor.flight.maneuver import Maneuver
 
 SEA_LEVEL_DENSITY_KG_M3 = 1.225
-"""International Standard Atmosphere (ISO 2533)."""
+"""Air density at sea level, kg/m³ (International Standard Atmosphere, ISO 2533)."""
 _SEA_LEVEL_K = 288.15
 _SEA_LEVEL_PA = 101_325.0
 _CELSIUS_K = 273.15
 _LAPSE_K_M = 0.0065
 _EXPONENT = 4.255876
-"""g/(R·lapse) - 1 of the standard atmosphere below 11 km."""
+"""Exponent g/(R·lapse) - 1 of the standard atmosphere below 11 km."""
 _GAS_CONSTANT = 287.05287
-"""Of dry air, J/(kg·K)."""
+"""Gas constant of dry air, J/(kg·K)."""
 
 DensitySource = Literal[
     "pressure and temperature", "height and temperature", "pressure", "height", "sea level"
@@ -33,23 +33,23 @@ DensitySource = Literal[
 
 @dataclass(frozen=True, slots=True)
 class AirFlown:
-    """Density and air speed of the air in which manoeuvres were flown."""
+    """Mean density and air speed of the air of several manoeuvres."""
 
     density_kg_m3: float
     source: DensitySource
-    """What tells the density; without a temperature the standard atmosphere's is taken."""
+    """Source of the density. Without a temperature the standard atmosphere's is used."""
     speed_kind: Literal["indicated", "true"]
-    """What the log's air speed is; one from the aircraft file counts as true."""
+    """Kind of the log's air speed. An air speed from the aircraft file counts as true."""
 
     def true_speed(self, airspeed_m_s: float) -> float:
-        """True air speed in m/s for an air speed as the log gives it."""
+        """Return the true air speed in m/s for an air speed from the log."""
         if self.speed_kind == "true":
             return airspeed_m_s
         return airspeed_m_s * sqrt(SEA_LEVEL_DENSITY_KG_M3 / self.density_kg_m3)
 
     @property
     def sentence(self) -> str:
-        """Where density and air speed come from, for people."""
+        """Sentence on the sources of density and air speed."""
         told = {
             "pressure and temperature": "from static pressure and the aircraft file's temperature",
             "height and temperature": "from the height flown and the aircraft file's temperature",
@@ -65,25 +65,25 @@ class AirFlown:
 
 
 def standard_pressure(height_m: float) -> float:
-    """Pressure of the standard atmosphere in Pa at a height above mean sea level, below 11 km."""
+    """Return the pressure of the standard atmosphere in Pa at a height above mean sea level, below 11 km."""
     return float(_SEA_LEVEL_PA * (1.0 - _LAPSE_K_M * height_m / _SEA_LEVEL_K) ** (_EXPONENT + 1.0))
 
 
 def standard_density(pressure_pa: float) -> float:
-    """Density of the standard atmosphere in kg/m³ where the pressure is this, below 11 km."""
+    """Return the density of the standard atmosphere in kg/m³ at a pressure, below 11 km."""
     return float(SEA_LEVEL_DENSITY_KG_M3 * (pressure_pa / _SEA_LEVEL_PA) ** (_EXPONENT / (_EXPONENT + 1.0)))
 
 
 def air_flown(maneuvers: Sequence[Maneuver], temperature_c: float | None = None) -> AirFlown:
-    """Mean air of manoeuvres: from static pressure, else from height, else that at sea level.
+    """Return the mean air of manoeuvres: from static pressure, else from height, else at sea level.
 
     Parameters
     ----------
     maneuvers
-        Their channels ``static_pressure`` (Pa), ``altitude`` (m above mean sea level) and ``airspeed`` are
-        used, as far as the log has them.
+        Manoeuvres whose channels ``static_pressure`` (Pa), ``altitude`` (m above mean sea level) and
+        ``airspeed`` are used, where the log has them.
     temperature_c
-        Temperature of the air. The one that a barometer reports is not used: the board warms the sensor.
+        Temperature of the air. A barometer's temperature is not used, because the board warms the sensor.
     """
     measured, altitude = _mean(maneuvers, "static_pressure"), _mean(maneuvers, "altitude")
     given = any(
@@ -103,7 +103,8 @@ def air_flown(maneuvers: Sequence[Maneuver], temperature_c: float | None = None)
 
 
 def _mean(maneuvers: Sequence[Maneuver], name: str) -> float | None:
-    """Mean of a channel over the manoeuvres that have the channel with values of real air; None without."""
+    """Return the mean of a channel over the manoeuvres with plausible values; None without such a
+    manoeuvre."""
     low, high = _REAL[name]
     means = [float(np.mean(m.channels[name].y)) for m in maneuvers if name in m.channels]
     real = [mean for mean in means if low <= mean <= high]
@@ -111,4 +112,4 @@ def _mean(maneuvers: Sequence[Maneuver], name: str) -> float | None:
 
 
 _REAL = {"static_pressure": (2.2e4, 1.1e5), "altitude": (-500.0, 11_000.0)}
-"""What can be below the tropopause. Zero is a sensor that is not there."""
+"""Plausible range of a channel below the tropopause. Zero stands for a missing sensor."""

@@ -1,4 +1,4 @@
-"""ATTITUDE_QUATERNION read as the ATTITUDE that a vehicle does not send."""
+"""ATTITUDE made from ATTITUDE_QUATERNION, for vehicles that send no ATTITUDE."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -11,10 +11,10 @@ _QUATERNION = ("q1", "q2", "q3", "q4")
 
 
 class Attitudes:
-    """Sees to it that attitude and rates come as ATTITUDE, whichever message carries them.
+    """Converts quaternions to ATTITUDE for each component that sends no ATTITUDE.
 
-    Of a component that sends both messages the quaternions count until its first ATTITUDE:
-    the order of arrival decides, so batches of any size end alike.
+    For a component that sends both messages, the quaternions count until its first ATTITUDE. The order of
+    arrival decides, so that batches of any size give equal results.
     """
 
     def __init__(self) -> None:
@@ -22,7 +22,7 @@ class Attitudes:
         """Systems and components that have sent an ATTITUDE."""
 
     def of(self, columns: Sequence[Columns]) -> Sequence[Columns]:
-        """The columns, with ATTITUDE from every quaternion that arrived before any ATTITUDE."""
+        """Return the columns, with an ATTITUDE for every quaternion that arrived before any ATTITUDE."""
         sent = {_sender(c): c for c in columns if c.name == "ATTITUDE" and len(c)}
         stand_ins: dict[tuple[int, int], Columns] = {}
         for c in columns:
@@ -41,12 +41,12 @@ class Attitudes:
 
 
 def euler_angles(q: FloatArray) -> dict[str, FloatArray]:
-    """Roll, pitch and yaw of attitude quaternions, rad, each of shape (n,).
+    """Return the roll, pitch and yaw of attitude quaternions, rad, each of shape (n,).
 
     Parameters
     ----------
     q
-        Shape (4, n): w, x, y, z of the turn from north-east-down into body axes.
+        Shape (4, n): Shape (4, n): w, x, y, z of the rotation from north-east-down into body axes.
     """
     w, x, y, z = q
     return {
@@ -61,7 +61,7 @@ def _sender(c: Columns) -> tuple[int, int]:
 
 
 def _as_attitude(c: Columns, rows: int) -> Columns:
-    """The first rows as ATTITUDE; w, x, y, z of ``q1`` to ``q4`` turn north-east-down into body axes."""
+    """Return the given rows as ATTITUDE; ``q1`` to ``q4`` are w, x, y, z of the rotation into body axes."""
     fields = {name: values[:rows] for name, values in c.fields.items()}
     angles = euler_angles(np.array([fields[name] for name in _QUATERNION], dtype=np.float64))
     kept = {name: values for name, values in fields.items() if name not in (*_QUATERNION, "repr_offset_q")}
@@ -71,7 +71,7 @@ def _as_attitude(c: Columns, rows: int) -> Columns:
 
 
 def _joined(first: Columns, then: Columns) -> Columns:
-    """Two batches of one type, one after the other."""
+    """Return two batches of one type, one after the other."""
     return replace(
         then,
         order=np.concatenate([first.order, then.order]),

@@ -1,7 +1,7 @@
-"""Servo outputs of several banks brought together.
+"""Servo outputs from several banks, completed to one sample.
 
-SERVO_OUTPUT_RAW carries sixteen outputs, and its ``port`` says which sixteen. A surface whose outputs lie in
-two banks needs two messages for one sample.
+SERVO_OUTPUT_RAW carries sixteen outputs, and its ``port`` names the bank. A surface whose outputs lie in two
+banks needs two messages for one sample.
 """
 
 from collections.abc import Sequence
@@ -12,25 +12,26 @@ import numpy as np
 from advisor.flight.messages import Columns, FloatArray, IntArray
 
 _OUTPUTS = 16
-"""Outputs of one SERVO_OUTPUT_RAW, MAVLink's common.xml."""
+"""Number of outputs in one SERVO_OUTPUT_RAW (MAVLink's common.xml)."""
 
 
 @dataclass(frozen=True, slots=True)
 class Pulses:
-    """Pulses of the servo outputs by the messages that brought them."""
+    """Pulses of the servo outputs, grouped by the messages that brought them."""
 
     columns: Columns
     """The messages, n of them."""
     ports: IntArray
-    """Shape (m + n,), bank of each message; the first m came before ``columns``."""
+    """Shape (m + n,), bank of each message. The first m messages came before ``columns``."""
     raw: FloatArray
-    """Shape (m + n, outputs of a bank), us."""
+    """Shape (m + n, outputs of a bank), pulse widths, us."""
 
     def of(self, outputs: Sequence[int]) -> FloatArray:
-        """Pulses of these outputs, shape (n, number of outputs), us.
+        """Return the pulses of these outputs, shape (n, number of outputs), us.
 
-        A message of the last bank makes a sample, with the newest pulses of the other banks. NaN: the message
-        is of another bank, or an other bank has been silent since the last bank's message before.
+        A message of the last bank makes a sample, with the newest pulses of the other banks. NaN marks a
+        message of another bank. NaN also marks a sample for which another bank was silent since the previous
+        one.
         """
         size = self.raw.shape[1]
         banks = [(n - 1) // size for n in outputs]
@@ -45,7 +46,7 @@ class Pulses:
         return pulses[len(rows) - len(self.columns.order) :]
 
     def source(self, outputs: Sequence[int]) -> str:
-        """``MESSAGE.field+field`` of these outputs."""
+        """Return ``MESSAGE.field+field`` of these outputs."""
         if self.columns.name == "ACTUATOR_OUTPUT_STATUS":
             return f"{self.columns.name}.actuator" + "+".join(f"[{n - 1}]" for n in outputs)
         banks = {(n - 1) // _OUTPUTS for n in outputs}
@@ -59,7 +60,7 @@ class Pulses:
 
 
 def merged(part: Sequence[Columns]) -> list[Columns]:
-    """The columns with the SERVO_OUTPUT_RAW of one sender in one place, as some logs give them by bank."""
+    """Return the columns with the SERVO_OUTPUT_RAW of one sender merged, which some logs separate by bank."""
     senders: dict[int, list[Columns]] = {}
     for c in part:
         if c.name == "SERVO_OUTPUT_RAW":
@@ -81,14 +82,15 @@ def _in_order(banks: Sequence[Columns]) -> Columns:
 
 
 class Banks:
-    """Remembers the last message of every bank."""
+    """Keeps the last message of every bank."""
 
     def __init__(self) -> None:
         self._ports: IntArray = np.empty(0, dtype=np.int64)
         self._raw: FloatArray = np.empty((0, _OUTPUTS))
 
     def together(self, columns: Columns) -> Pulses:
-        """The pulses of SERVO_OUTPUT_RAW or ACTUATOR_OUTPUT_STATUS messages, completed by earlier ones."""
+        """Return the pulses of SERVO_OUTPUT_RAW or ACTUATOR_OUTPUT_STATUS messages, completed by earlier
+        messages."""
         if columns.name == "ACTUATOR_OUTPUT_STATUS":
             every = np.asarray(columns.fields["actuator"], dtype=np.float64)
             return Pulses(columns, np.zeros(len(every), dtype=np.int64), every)

@@ -1,4 +1,4 @@
-"""How fast a channel arrives at its best: one rate for a whole log, whatever was cut or switched later."""
+"""Rate of a channel at its best: one number for a whole log, independent of cuts and switches."""
 
 import numpy as np
 
@@ -7,14 +7,14 @@ from advisor.flight.messages import FloatArray
 _WINDOW_S = 10.0
 """Stretch of vehicle time over which samples are counted, s: longer than most manoeuvres."""
 _LEAST_S = 5.0
-"""Least time between the first and the last sample of a stretch that counts, s: half of it."""
+"""Least time between the first and the last sample of a stretch that counts, s: half of ``_WINDOW_S``."""
 
 
 class BestRate:
-    """Counts the samples of each ten seconds since boot and remembers the fastest.
+    """Counts the samples of each ten seconds since boot and keeps the fastest count.
 
-    A sample counts when its stamp is newer than all before. So a packet that comes twice counts once, and
-    batches make no difference.
+    A sample counts when its stamp is newer than all before. So a packet that comes twice counts once, and the
+    size of batches makes no difference.
     """
 
     def __init__(self) -> None:
@@ -37,7 +37,8 @@ class BestRate:
 
     @property
     def rate_hz(self) -> float:
-        """Samples per second; of what there is where no stretch is long enough, NaN with one sample."""
+        """Best rate in samples per second, from the whole time where no stretch is long enough. NaN with one
+        sample."""
         span_s = self._last_s - self._first_s
         if not (self._count > 1 and span_s > 0.0):
             return self._best_hz

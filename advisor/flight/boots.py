@@ -1,4 +1,4 @@
-"""What one vehicle sends, with the master clock of the boot in which it was sent."""
+"""Messages of one vehicle by boot, with the master clock of each boot."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -18,24 +18,24 @@ class Master:
     boot: int
     """Number of the boot, 0 for the first."""
     order: IntArray
-    """Shape (n,): when each believed stamp arrived among all messages."""
+    """Order of arrival, among all messages, of each accepted stamp, shape (n,)."""
     t: FloatArray
-    """Shape (n,), s since boot."""
+    """Accepted stamps, shape (n,), s since boot."""
 
 
 def by_boot(
     columns: Sequence[Columns], component: int, clock: BootClock, boot: int
 ) -> Iterator[tuple[list[Columns], Master]]:
-    """The columns of a vehicle, divided where it started anew (nearly always: not at all).
+    """Yield the columns of a vehicle, divided where the vehicle restarted (nearly always: nowhere).
 
     Parameters
     ----------
     component
-        The autopilot's, whose ``ATTITUDE`` is the master.
+        Component id of the autopilot, whose ``ATTITUDE`` is the master clock.
     clock
-        Moved on by the stamps in ``columns``.
+        Clock, which the stamps in ``columns`` advance.
     boot
-        Number of the boot so far: what arrived before the first stamp belongs to it.
+        Number of the present boot, to which messages before the first stamp belong.
     """
     attitude = next((c for c in columns if c.name == "ATTITUDE" and c.component == component), None)
     if attitude is None:

@@ -22,13 +22,13 @@ _USEC = ("time_usec", 1e-6)
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """One quantity in one message."""
+    """One physical quantity in one message."""
 
     channel: str
     message: str
     field: str
     value: Callable[[NDArray[Any]], FloatArray]
-    """From the field's raw values to SI."""
+    """Conversion of the field's raw values to SI."""
     provenance: str = "measured"
 
     @property
@@ -58,7 +58,7 @@ READINGS = (
     ),
     Reading("a_x", "HIGHRES_IMU", "xacc", _scaled(1.0)),
     Reading("a_z", "HIGHRES_IMU", "zacc", _scaled(1.0)),
-    # The second and third sensors of an autopilot, where the first is not sent.
+    # Second and third sensors of an autopilot, used where the first is not sent.
     *(
         Reading(channel, message, field, _scaled(_MILLI_G))
         for message in ("SCALED_IMU2", "SCALED_IMU3")
@@ -71,7 +71,7 @@ READINGS = (
     Reading("landed_state", "EXTENDED_SYS_STATE", "landed_state", _scaled(1.0)),
     Reading("armed", "HEARTBEAT", "base_mode", lambda raw: (np.asarray(raw) & _ARMED > 0).astype(np.float64)),
 )
-"""Best source of a channel first, where several messages carry it."""
+"""Sources of each channel, the best first where several messages carry the channel."""
 
 _STAMPS = {
     "ATTITUDE": _BOOT_MS,
@@ -90,7 +90,8 @@ _STAMPS = {
     "RC_CHANNELS": _BOOT_MS,
     "VFR_HUD": _USEC,
 }
-"""VFR_HUD of a link has no stamp: it takes that of the last ATTITUDE. Autopilots' own logs stamp it."""
+"""Message to its stamp's field. VFR_HUD of a link has no stamp and takes that of the last ATTITUDE.
+Autopilots' own logs stamp VFR_HUD."""
 
 GIVEN_AIRSPEED = "airspeed_m_s of the aircraft file"
 
@@ -108,14 +109,15 @@ class Decoded:
 
 
 def stamps(columns: Columns, master_s: FloatArray) -> FloatArray:
-    """Vehicle time of each message, shape (n,), s since boot; NaN where it has none to believe.
+    """Return the vehicle time of each message, shape (n,), s since boot; NaN for a stamp that is not
+    plausible.
 
     Parameters
     ----------
     columns
         Messages of one type.
     master_s
-        Shape (n,), master clock when each arrived.
+        Shape (n,), master clock at the arrival of each message.
     """
     field, tick_s = _STAMPS.get(columns.name, ("", 0.0))
     if field not in columns.fields:
@@ -124,7 +126,7 @@ def stamps(columns: Columns, master_s: FloatArray) -> FloatArray:
 
 
 def quantities(columns: Columns, t: FloatArray) -> Iterator[Decoded]:
-    """Every quantity of ``READINGS`` that these messages carry."""
+    """Yield every quantity of ``READINGS`` that these messages carry."""
     for reading in READINGS:
         if reading.message == columns.name and reading.field in columns.fields:
             y = reading.value(columns.fields[reading.field])
@@ -132,7 +134,7 @@ def quantities(columns: Columns, t: FloatArray) -> Iterator[Decoded]:
 
 
 def named_value(columns: Columns, t: FloatArray, name: str) -> Decoded:
-    """Angle of attack from NAMED_VALUE_FLOAT messages of this name, in the sender's unit."""
+    """Return the angle of attack from NAMED_VALUE_FLOAT messages with this name, in the sender's unit."""
     mine = np.array(
         [raw.rstrip(b"\0") == name.encode() for raw in columns.fields["name"].tolist()], dtype=bool
     )
@@ -141,7 +143,7 @@ def named_value(columns: Columns, t: FloatArray, name: str) -> Decoded:
 
 
 def given_airspeed(attitude: Columns, t: FloatArray, airspeed_m_s: float) -> Decoded:
-    """The air speed that the aircraft file gives, at the stamps of ATTITUDE, for a log that has none."""
+    """Return the aircraft file's air speed at the stamps of ATTITUDE, for a log without air speed."""
     return _decoded("airspeed", GIVEN_AIRSPEED, "given", t, np.full(len(t), airspeed_m_s), attitude)
 
 

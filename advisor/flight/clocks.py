@@ -1,11 +1,10 @@
 """The vehicle's clock: seconds since boot, unwrapped, from counters that wrap and restart.
 
-``ATTITUDE.time_boot_ms`` is the master. Every other stamp is placed on it: a 32-bit
-counter of microseconds (SERVO_OUTPUT_RAW, and AOA_SSA as ArduPilot fills it) is the true
-time less a whole number of its 71.6 minutes, and the master says how many. Nothing is
-remembered per message, so neither a silence, a duplicate nor a late packet can mislead it.
-A clock that goes back by less than `_OLD_MS` is no reboot: nobody tests in the first seconds
-after one.
+``ATTITUDE.time_boot_ms`` is the master clock. Every other stamp is placed on the master clock. A 32-bit
+counter of microseconds is the true time less a multiple of 71.6 minutes, and the master gives the multiple.
+SERVO_OUTPUT_RAW has such a counter, and AOA_SSA as ArduPilot fills it. No state is kept for a message, so
+that silences, duplicates and late packets do no harm. A clock that goes back by less than `_OLD_MS` is no
+reboot, because nobody tests in the first seconds after one.
 """
 
 from dataclasses import dataclass
@@ -17,25 +16,26 @@ from advisor.flight.messages import FloatArray, IntArray
 _MS = 1e-3
 _WRAP_MS = 2**32
 _LATE_MS = 2000
-"""A master stamp older than the newest by less than this is a late packet, put where it belongs."""
+"""Age relative to the newest master stamp, ms, below which a stamp is a late packet in its right place."""
 _OLD_MS = 20_000
-"""One older by less than this came by a second path and is left out: radios hold packets up to 15 s."""
+"""Age relative to the newest master stamp, ms, below which a stamp came by a second path and is dropped.
+Radios hold packets up to 15 s."""
 _SILENCE_MS = 10_000
-"""A master stamp newer than the last by more than this waits for confirmation."""
+"""Advance of a master stamp beyond the last one, ms, above which the stamp waits for confirmation."""
 _CONFIRM = 3
-"""Stamps in a row that make a jump believed: backwards it is a reboot, forwards a silence."""
+"""Number of consecutive stamps that confirm a jump: backwards a reboot, forwards a silence."""
 _TIME_OF_DAY_S = 1e9
-"""No counter since boot comes this far: it counts from 1970."""
+"""Least stamp, s, that counts from 1970. No counter since boot comes so far."""
 _NEAR_S = 5.0
-"""How far a stamp may lie from the master when its message arrives."""
+"""Largest distance of a stamp from the master clock at the arrival of its message, s."""
 
 
 @dataclass(frozen=True, slots=True)
 class MasterStamps:
-    """What the master clock makes of a row of ``time_boot_ms``."""
+    """Master clock from a row of ``time_boot_ms``."""
 
     t: FloatArray
-    """Shape (n,), seconds since boot; NaN for a stamp that is not believed (yet)."""
+    """Shape (n,), seconds since boot. NaN for a stamp that is not confirmed."""
     boot: IntArray
     """Shape (n,), number of the boot, rising."""
 
@@ -57,7 +57,7 @@ class BootClock:
 
     @property
     def newest_s(self) -> float:
-        """Newest believed stamp, s since boot; NaN before the first."""
+        """Newest confirmed stamp, s since boot. NaN before the first."""
         return float("nan") if self._newest_ms is None else self._newest_ms * _MS
 
     def advance(self, time_boot_ms: IntArray) -> MasterStamps:
@@ -71,7 +71,7 @@ class BootClock:
         newest_ms = time_boot_ms[:1] if self._newest_ms is None else self._newest_ms
         ahead_ms = np.diff(time_boot_ms, prepend=newest_ms)
         if len(ahead_ms) and np.all((ahead_ms >= 0) & (ahead_ms <= _SILENCE_MS)):
-            # In order and without a silence, as nearly always: all of them are believed.
+            # In order and without a silence, as nearly always: all stamps are confirmed.
             self._newest_ms = int(time_boot_ms[-1])
             self._doubt.clear()
             return MasterStamps(time_boot_ms.astype(np.float64) * _MS, np.full(len(time_boot_ms), self.boot))
@@ -85,7 +85,7 @@ class BootClock:
         return MasterStamps(t, boot)
 
     def _believe(self, raw: int) -> int | None:
-        """Unwrapped milliseconds of this stamp, None while it is in doubt."""
+        """Return the unwrapped milliseconds of this stamp; None while the stamp is unconfirmed."""
         if self._newest_ms is None:
             self._newest_ms = raw
             return raw
@@ -129,9 +129,9 @@ def place(ticks: IntArray, tick_s: float, master_s: FloatArray) -> FloatArray:
     Returns
     -------
     FloatArray
-        Shape (n,), s since boot; NaN where no number of wraps brings the stamp near the master
-        (another clock, or a message of an earlier boot). A stamp that says nothing of the boot,
-        zero or the time of day, gives way to the master.
+        Shape (n,), s since boot. NaN where no number of wraps brings the stamp near the master clock
+        (another clock, or a message of an earlier boot). The master clock replaces a stamp that is
+        zero or a time of day.
     """
     wrap_s = 2.0**32 * tick_s
     raw_s = ticks.astype(np.float64) * tick_s
@@ -141,5 +141,5 @@ def place(ticks: IntArray, tick_s: float, master_s: FloatArray) -> FloatArray:
 
 
 def _signed(difference_ms: int) -> int:
-    """Difference of two 32-bit stamps, the shorter way round."""
+    """Return the difference of two 32-bit stamps, the shorter way round."""
     return (difference_ms + _WRAP_MS // 2) % _WRAP_MS - _WRAP_MS // 2

@@ -1,4 +1,4 @@
-"""Errors of a least-squares fit whose residuals are coloured: neighbours err alike."""
+"""Errors of a least-squares fit with coloured residuals, whose neighbours are correlated."""
 
 import numpy as np
 
@@ -6,17 +6,17 @@ from advisor.flight.messages import FloatArray
 
 
 def coloured_covariance(jacobian: FloatArray, residual: FloatArray) -> FloatArray:
-    """Covariance of a least-squares fit whose residuals are coloured.
+    """Return the covariance of a least-squares fit with coloured residuals.
 
-    (JᵀJ)⁻¹ (Σ_ij R(i−j) J_iᵀ J_j) (JᵀJ)⁻¹ with the residuals' own autocovariance R, tapered to zero
-    at a fifth of the record (Klein & Morelli, Eq. 6.38 f.).
+    (JᵀJ)⁻¹ (Σ_ij R(i−j) J_iᵀ J_j) (JᵀJ)⁻¹ with the residuals' own autocovariance R (Klein & Morelli, Eq. 6.38
+    f.). R is tapered to zero at a fifth of the record.
 
     Parameters
     ----------
     jacobian
         Shape (n, p).
     residual
-        Shape (n,), evenly sampled enough for lags to mean time.
+        Shape (n,), sampled nearly evenly, so that lags mean times.
     """
     n = len(residual)
     inverse = np.linalg.pinv(jacobian.T @ jacobian)
@@ -27,6 +27,6 @@ def coloured_covariance(jacobian: FloatArray, residual: FloatArray) -> FloatArra
         cross = jacobian[k:].T @ jacobian[:-k]
         inner = inner + weight * (cross + cross.T)
     plain = float(residual @ residual) / max(n - jacobian.shape[1], 1) * inverse
-    # The tapered sum may come out below the white-noise value by chance: never trust it that far.
+    # The tapered sum may fall below the white-noise value by chance. Such a small value is not used.
     wider = np.sqrt(np.maximum(np.diag(inverse @ inner @ inverse) / np.maximum(np.diag(plain), 1e-300), 1.0))
     return np.asarray(plain * np.outer(wider, wider))

@@ -1,4 +1,4 @@
-"""What servo outputs command of a surface, output by output."""
+"""Deflections of a surface commanded by servo outputs, output by output."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -25,17 +25,17 @@ class Commanded:
     t: FloatArray
     """Shape (n,), s since boot."""
     angles: FloatArray
-    """Shape (n, number of outputs), rad: what each output commands."""
+    """Shape (n, number of outputs), rad: deflection that each output commands."""
     order: IntArray
     """Shape (n,), place in the order of arrival."""
 
     def combined(self, turned: Iterable[int] = ()) -> Decoded:
-        """The surface's own angle; outputs in ``turned`` count with the other sign."""
+        """Return the surface's own angle; outputs in ``turned`` count with the opposite sign."""
         y = self.surface.combined(self.angles, turned)
         return Decoded(self.channel, self.source, "commanded", self.t, y, self.order)
 
     def rows(self, which: slice | NDArray[Any]) -> "Commanded":
-        """Some of the samples."""
+        """Return some of the samples."""
         return Commanded(
             self.channel,
             self.message,
@@ -50,20 +50,21 @@ class Commanded:
 def commanded(
     surfaces: Mapping[str, Surface], pulses: Pulses, t: FloatArray, autopilot: str
 ) -> list[Commanded]:
-    """What each surface is commanded by these pulses, where all of its outputs carry one.
+    """Return the deflection that these pulses command for each surface, where all of its outputs carry a
+    pulse.
 
-    Pulses outside a calibration give the deflection at its end, as the last pair has it.
+    Pulses outside a calibration give the deflection at its end.
 
     Parameters
     ----------
     surfaces
-        By channel.
+        Surfaces by channel.
     pulses
-        Of n messages.
+        Pulses of n messages.
     t
-        Shape (n,), their vehicle time, s since boot.
+        Shape (n,), vehicle time of the messages, s since boot.
     autopilot
-        As the vehicle's identity names it.
+        Name of the autopilot in the vehicle's identity.
     """
     found = []
     for channel, surface in surfaces.items():
@@ -76,7 +77,7 @@ def commanded(
 
 
 def joined(pieces: Sequence[Commanded]) -> Commanded:
-    """Pieces of one surface, one after the other."""
+    """Return pieces of one surface, one after the other."""
     first = pieces[0]
     return Commanded(
         first.channel,

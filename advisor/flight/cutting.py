@@ -1,4 +1,4 @@
-"""From movements of the elevator to manoeuvres with their channels, or to activities with their reasons."""
+"""From elevator movements to manoeuvres with their channels, or to activities with their reasons."""
 
 from collections import Counter
 from dataclasses import replace
@@ -6,6 +6,7 @@ from functools import partial
 
 import numpy as np
 
+from advisor.flight.elevator_sign import ElevatorSign, turned
 from advisor.flight.events import Activity, FlightEvent, ManeuverFlown
 from advisor.flight.ground import why_on_ground
 from advisor.flight.identity import Identity
@@ -16,7 +17,6 @@ from advisor.flight.modes import closes_pitch_loop
 from advisor.flight.purpose import not_an_input
 from advisor.flight.record import AIR_UNITS, UNITS
 from advisor.flight.segmentation import LEAD_IN_S
-from advisor.flight.sense import Sense, turned
 from advisor.flight.tracks import Tracks
 from advisor.flight.trust import distrusted
 
@@ -27,41 +27,41 @@ class Cutting:
     Parameters
     ----------
     tracks, who
-        The vehicle's channels, and who it is.
+        Channels and identity of the vehicle.
     calibrated
-        Whether the aircraft file says which way the elevator moves.
+        Whether the aircraft file gives the elevator's sign.
     """
 
     def __init__(self, tracks: Tracks, who: Identity, calibrated: bool) -> None:
         self._tracks, self._who = tracks, who
-        self._sense = None if calibrated else Sense()
+        self._sign = None if calibrated else ElevatorSign()
         self._modes = [(-np.inf, who.mode)]
         self._released = (0, -np.inf)
         self.maneuvers = 0
-        """How many manoeuvres have been found."""
+        """Number of manoeuvres found."""
         self.activities: Counter[str] = Counter()
-        """Movements that were no test inputs, by what they were in words."""
+        """Movements that were no test inputs: their description to their number."""
 
     @property
     def is_backwards(self) -> bool:
-        """Whether the elevator was found to move the other way than its output suggests."""
-        return self._sense is not None and bool(self._sense.backwards)
+        """Whether the elevator was found to move opposite to its output's nominal sign."""
+        return self._sign is not None and bool(self._sign.backwards)
 
     def begin(self, mode: str) -> None:
-        """Nothing was flown before in this mode."""
+        """Begin a flight mode without earlier manoeuvres."""
         self._modes = [(-np.inf, mode)]
 
     def change(self, mode: str, since_s: float) -> None:
-        """The flight mode has changed."""
+        """Begin another flight mode."""
         self._modes.append((since_s, mode))
 
     def so_far(self, span: Span, boot: int) -> Maneuver:
-        """The manoeuvre that would be flown if it ended here."""
+        """Return the manoeuvre that would result if the movement ended here."""
         maneuver = self._cut(span, boot, None)
         return turned(maneuver) if self.is_backwards else maneuver
 
     def flown(self, span: Span, boot: int, up_to_order: int | None) -> list[FlightEvent]:
-        """What a movement that has ended was: a manoeuvre, or an activity with its reason."""
+        """Return the event of a movement that has ended: a manoeuvre, or an activity with its reason."""
         maneuver = self._cut(span, boot, up_to_order)
         because = not_an_input(maneuver, self.why_on_ground(span, up_to_order))
         if because is not None:
@@ -71,28 +71,28 @@ class Cutting:
         return self._counted(maneuver)
 
     def marked(self, mark: Mark, boot: int, up_to_order: int | None) -> list[FlightEvent]:
-        """A marked stretch is a manoeuvre, whatever the finder would make of it."""
+        """Return the manoeuvre of a marked stretch, which counts without the finder's criteria."""
         elevator = self._tracks.cut("elevator", mark.start_s - LEAD_IN_S, mark.end_s, up_to_order)
         return self._counted(self._cut(marked_span(mark, elevator), boot, up_to_order))
 
     def _counted(self, maneuver: Maneuver) -> list[FlightEvent]:
         self.maneuvers += 1
         self._released = (maneuver.boot, maneuver.span.end_s)
-        if self._sense is None or "elevator" not in maneuver.channels:
+        if self._sign is None or "elevator" not in maneuver.channels:
             return [ManeuverFlown(maneuver)]
-        maneuver, found = self._sense.right(maneuver)
+        maneuver, found = self._sign.right(maneuver)
         return [*found, ManeuverFlown(maneuver)]
 
     def why_on_ground(self, span: Span, up_to_order: int | None = None) -> str | None:
-        """What shows that the aircraft did not fly during a movement; None where nothing does."""
+        """Return evidence that the aircraft was on the ground during a movement; None without evidence."""
         return why_on_ground(span, partial(self._tracks.cut, up_to_order=up_to_order))
 
     def pilot_flies(self, at_s: float) -> bool:
-        """Whether the pilot moves the elevator at this time, as far as the flight mode tells."""
+        """Return whether the pilot moves the elevator at this time, by the flight mode."""
         return not closes_pitch_loop(self._stay(at_s)[1])
 
     def _stay(self, at_s: float) -> tuple[float, str]:
-        """Since when the vehicle was in the flight mode that it had at this time, and the mode."""
+        """Return the flight mode at this time, and the time since which the vehicle was in that mode."""
         return next(stay for stay in reversed(self._modes) if stay[0] <= at_s)
 
     def _cut(self, span: Span, boot: int, up_to_order: int | None) -> Maneuver:
@@ -110,7 +110,7 @@ class Cutting:
         distrusts = self._who.distrusts(distrusted(channels))
         for still in distrusts:
             if still.channel == "a_z":
-                # An estimate can do without a specific force, and is spoiled by one that stands still.
+                # An estimate can do without a specific force; a frozen one would spoil the estimate.
                 del channels["a_z"]
         for name in AIR_UNITS:
             if (air := self._tracks.cut(name, span.record_from_s, span.end_s, up_to_order)) is not None:
@@ -120,5 +120,5 @@ class Cutting:
 
 
 def _middle_s(span: Span) -> float:
-    """Middle of the movement: a heartbeat tells of a new flight mode only up to two seconds later."""
+    """Return the middle of the movement. A heartbeat reports a new flight mode up to two seconds late."""
     return 0.5 * (span.start_s + span.end_s)

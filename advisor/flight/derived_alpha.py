@@ -1,7 +1,7 @@
-"""The angle of attack in still air, made of attitude, climb rate and air speed at one and the same time.
+"""The angle of attack in still air, derived from attitude, climb rate and air speed at equal times.
 
-Each of the three arrives at its own stamps. The values at the stamps of the climb rate are interpolated
-from the two others, so that neither the order of messages nor their delay enters the angle.
+Each of the three arrives at its own stamps. Attitude and air speed are interpolated at the stamps of the
+climb rate. So neither the order of messages nor their delay enters the angle.
 """
 
 from collections.abc import Callable
@@ -17,20 +17,21 @@ from advisor.standard_gravity import GRAVITY_M_S2
 
 DERIVED_ALPHA = "theta - asin(VFR_HUD.climb / airspeed)"
 SLOWEST_FLIGHT_M_S = 4.0
-"""Below this air speed nothing flies, and no angle of attack can be derived."""
+"""Air speed, m/s, below which nothing flies, so that no angle of attack can be derived."""
 _AROUND_S = 2.0
-"""So far beyond a stretch lie its neighbours: air speed may come once a second (PX4's airspeed_validated)."""
+"""Margin around a stretch within which its neighbouring samples lie, s. Air speed may come once a second
+(PX4's airspeed_validated)."""
 
 
 class DerivedAlpha:
-    """The angle of attack as if it were a track of its own.
+    """Angle of attack in the form of a track.
 
     Parameters
     ----------
     track
-        Gives the track of a channel's best source, None where nothing of it has arrived.
+        Gives the track of a channel's best source; None for a channel without samples.
     airspeed_m_s
-        Air speed where none is measured, m/s; None: not known.
+        Air speed where none is measured, m/s. None: unknown.
     """
 
     def __init__(self, track: Callable[[str], Track | None], airspeed_m_s: float | None) -> None:
@@ -39,7 +40,7 @@ class DerivedAlpha:
 
     @property
     def exists(self) -> bool:
-        """Whether any angle of attack can be derived by now."""
+        """Whether an angle of attack can be derived so far."""
         if self._track("climb_rate") is None or self._track("theta") is None:
             return False
         airspeed = self._track("airspeed")
@@ -53,7 +54,7 @@ class DerivedAlpha:
 
     @property
     def status(self) -> ChannelStatus:
-        """How the angle arrives: as the climb rate does."""
+        """Arrival of the angle, which follows the climb rate."""
         climb = self._track("climb_rate")
         assert climb is not None
         return replace(
@@ -61,7 +62,7 @@ class DerivedAlpha:
         )
 
     def cut(self, start_s: float, end_s: float, up_to_order: int | None = None) -> Channel:
-        """The angle with ``start_s <= t <= end_s`` from what had arrived by ``up_to_order``."""
+        """Return the angle with ``start_s <= t <= end_s`` from messages up to ``up_to_order``."""
         climb = self._track("climb_rate")
         assert climb is not None
         at = climb.cut(start_s, end_s, up_to_order)
@@ -77,7 +78,8 @@ class DerivedAlpha:
 def derived_alpha(
     climb_m_s: FloatArray, airspeed_m_s: FloatArray, theta: FloatArray, bank: FloatArray
 ) -> FloatArray:
-    """θ − γ with sin γ = climb rate / air speed, in rad; in a bank, what makes that γ. NaN below flight.
+    """Return θ − γ with sin γ = climb rate / air speed, in rad; in a bank, the α that gives γ. NaN below
+    flying speed.
 
     Parameters
     ----------
@@ -92,14 +94,14 @@ def derived_alpha(
 
 
 def promised(hud: Columns, airspeed_m_s: float | None) -> IntArray:
-    """Orders of those VFR_HUD that bring an angle, or will once the aircraft flies.
+    """Return the orders of those VFR_HUD that give an angle, or will once the aircraft flies.
 
-    No angle of attack can be derived while the aircraft stands, which is no fault of the stream.
+    While the aircraft stands, no angle of attack can be derived, which is no fault of the stream.
 
     Parameters
     ----------
     hud
-        Messages VFR_HUD; those of an autopilot's own log may hold the climb rate alone.
+        Messages VFR_HUD. Those of an autopilot's own log may hold the climb rate alone.
     airspeed_m_s
         Air speed where none is measured, m/s; None: not known.
     """
@@ -115,7 +117,7 @@ def promised(hud: Columns, airspeed_m_s: float | None) -> IntArray:
 def _angles(
     climb: Channel, around: dict[str, Channel], airspeed_m_s: float | None
 ) -> tuple[FloatArray, FloatArray]:
-    """Stamps and angles where the attitude is known before and after."""
+    """Return stamps and angles where the attitude is known before and after."""
     theta, bank, speed = around.get("theta"), around.get("bank"), around.get("airspeed")
     if theta is None or len(theta) == 0:
         return np.empty(0), np.empty(0)

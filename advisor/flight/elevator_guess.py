@@ -1,4 +1,5 @@
-"""A guess of the elevator where nothing says which output it is: the one that the pitch rate answers to."""
+"""A guess of the elevator's output where no parameter states it: the output that the pitch rate answers
+to."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -14,30 +15,30 @@ KEEP_S = 60.0
 EVERY_S = 10.0
 """Vehicle time between two guesses, s."""
 LATE_S = 1.0
-"""A guess leaves out the newest stretch, s, whose packets may still be on the way."""
+"""Newest stretch that a guess leaves out, s, because its packets may still be on the way."""
 SHORTEST_S = 5.0
-"""Shortest stretch that a guess is made from, s."""
+"""Shortest stretch for a guess, s."""
 LEAST_TRAVEL_US = 10.0
-"""Least travel of an output that can be told from the resolution of a pulse, us."""
+"""Least travel of an output that exceeds the resolution of a pulse, us."""
 LEAST_SHARE = 0.05
-"""Least share of what the pitch rate does not foretell by itself that an output must explain. On the recorded
+"""Least share of the pitch rate's one-step prediction error that an output must explain. On the recorded
 flights of this project elevators explain 0.06 (turbulence) to 0.9, all other outputs at most 0.02."""
 LEAST_LEAD = 5.0
-"""How many times the share of the next output the best one must have. At 4 Hz a wrong output led by 2.7."""
+"""Least ratio of the best output's share to the next one's. At 4 Hz a wrong output led by 2.7."""
 _OUTPUTS = 16
 _MEMORY = 2
-"""Past samples of pitch rate and output in the prediction: a short period is of second order."""
+"""Past samples of pitch rate and output in the prediction, two because a short period is of second order."""
 
 
 @dataclass(frozen=True, slots=True)
 class Guess:
-    """An output that may be the elevator."""
+    """Output that may be the elevator."""
 
     output: int
     share: float
     """Share of the pitch rate's one-step prediction error that the output explains."""
     next_share: float
-    """The largest share of any other output."""
+    """Largest share of any other output."""
 
     def __str__(self) -> str:
         return (
@@ -47,7 +48,7 @@ class Guess:
 
 
 class ElevatorGuess:
-    """Remembers what the outputs did, and compares it with what the pitch rate did."""
+    """Keeps the outputs' movements and compares them with the pitch rate."""
 
     def __init__(self) -> None:
         self._t = np.empty(0)
@@ -67,7 +68,8 @@ class ElevatorGuess:
             self._t, self._pulses = self._t[kept], self._pulses[kept]
 
     def made(self, q: Channel | None) -> Guess | None:
-        """The guess from this stretch of the pitch rate, and the outputs in it; None: none is good enough."""
+        """Return the guess from this stretch of the pitch rate and its outputs; None where no output is good
+        enough."""
         if q is None or len(q) < 2:
             return None
         inside = (self._t >= q.t[0]) & (self._t <= q.t[-1])
@@ -88,15 +90,15 @@ class ElevatorGuess:
 
 
 class ElevatorGuesses:
-    """Guesses at fixed vehicle times, however messages were batched."""
+    """Makes guesses at fixed vehicle times, independent of batches."""
 
     def __init__(self) -> None:
         self.newest: Guess | None = None
-        """The newest guess; it outlives a power-on, for the wiring does."""
+        """Newest guess. The guess outlives a power-on, because the wiring does."""
         self.begin()
 
     def begin(self) -> None:
-        """Another power-on, or another vehicle."""
+        """Begin another power-on, or another vehicle."""
         self._outputs = ElevatorGuess()
         self._at_s = -np.inf
 
@@ -107,7 +109,7 @@ class ElevatorGuesses:
     def advance(
         self, first_s: float, now_s: float, cut: Callable[[str, float, float], Channel | None]
     ) -> list[FlightEvent]:
-        """Make every guess that is due; a new one is said.
+        """Make every guess that is due, and report a new one.
 
         Parameters
         ----------
@@ -128,7 +130,7 @@ class ElevatorGuesses:
 
 
 def _share(rate: FloatArray, moved: FloatArray) -> float:
-    """Share of the error of predicting each sample from the past ones that the past output takes away."""
+    """Return the share of the one-step prediction error of the pitch rate that the past output explains."""
     alone = _left(rate[_MEMORY:], _past(rate))
     both = _left(rate[_MEMORY:], [*_past(rate), *_past(moved)])
     return 1.0 - both / alone if alone > 0.0 else 0.0
@@ -140,7 +142,7 @@ def _past(y: FloatArray) -> list[FloatArray]:
 
 
 def _left(y: FloatArray, regressors: Sequence[FloatArray]) -> float:
-    """Sum of squares that a linear combination of the regressors and a constant leaves."""
+    """Return the residual sum of squares of a linear combination of the regressors and a constant."""
     columns = np.column_stack([*regressors, np.ones(len(y))])
     solution, *_ = np.linalg.lstsq(columns, y, rcond=None)
     left: float = float(np.sum((y - columns @ solution) ** 2))

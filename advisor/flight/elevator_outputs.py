@@ -1,8 +1,8 @@
-"""The elevator: which servo outputs make it, how they are mixed, and what the user is told of that.
+"""The elevator: its servo outputs, their mixing, and the sentences for the user on both.
 
-Elevons, the halves of a V-tail or A-tail and differential spoilers all follow the pitch demand upwards and
-the other demand in opposite directions (ArduPlane, ``servos.cpp``; PX4's control allocation). The mean of the
-left and the right side is therefore the elevator, and the other demand cancels.
+Elevons, the halves of a V-tail or A-tail and differential spoilers all follow the pitch demand upwards. They
+follow the other demand in opposite directions (ArduPlane, ``servos.cpp``; PX4's control allocation). The mean
+of the left and the right side is therefore the elevator, and the other demand cancels.
 """
 
 from collections.abc import Collection, Sequence
@@ -23,16 +23,16 @@ _CANCELS = {
 def find_elevator(
     elevator: Elevator, wiring: Wiring, why: str = "as the aircraft file says"
 ) -> Surface | Problem:
-    """Which outputs are the elevator, and their scales.
+    """Return the outputs of the elevator with their scales, or a problem.
 
     Parameters
     ----------
     elevator
-        As the aircraft file has it.
+        Elevator of the aircraft file.
     wiring
-        What the vehicle's parameters say of its outputs; may be nothing.
+        Roles and scales of outputs by the vehicle's parameters; may be empty.
     why
-        Why ``elevator.output`` is what it is, in words.
+        Reason for the value of ``elevator.output``, in words.
     """
     if elevator.outputs:
         return _as_listed(elevator.outputs, wiring)
@@ -49,7 +49,7 @@ def _as_listed(outputs: Sequence[ElevatorOutput], wiring: Wiring) -> Surface | P
             one.output,
             Calibration(one.calibration) if one.calibration else wiring.scale(one.output),
             one.weight,
-            one.calibration is not None or _is_told(one.output, wiring),
+            one.calibration is not None or _has_known_direction(one.output, wiring),
         )
         for one in outputs
     )
@@ -57,7 +57,7 @@ def _as_listed(outputs: Sequence[ElevatorOutput], wiring: Wiring) -> Surface | P
     halves = {wiring.roles[n] for n in _numbers(parts) if _is_half(n, wiring)}
     said = [_formed(parts, "as the aircraft file says", sorted({half.surface for half in halves}))]
     said += [
-        f"Only one side of the {kind} pair is among them: its other axis counts as elevator, too."
+        f"Only one side of the {kind} pair is among them: its other axis counts as elevator as well."
         for kind in _one_sided(halves)
     ]
     return Surface(parts, calibrated, " ".join(said if calibrated else [*said, _assumed(wiring)]))
@@ -76,7 +76,7 @@ def _as_given(output: int, calibration: Pairs | None, wiring: Wiring, why: str) 
         return _uncalibrated(Part(output, wiring.scale(output)), why, wiring)
     said = (
         f"Output {output} is one half of a mixed {mixed} pair, calibrated as an elevator in the aircraft "
-        "file: what it does for the other axis counts as elevator, too."
+        "file. Its part for the other axis counts as elevator as well."
     )
     return Surface((Part(output, Calibration(calibration)),), True, said if mixed else "")
 
@@ -92,7 +92,7 @@ def _as_found(calibration: Pairs | None, wiring: Wiring) -> Surface | Problem:
     if not whole:
         return _nothing_found(wiring)
     parts = in_shares(
-        Part(n, wiring.scale(n), 1.0 / (len(sides) * len(side)), _is_told(n, wiring))
+        Part(n, wiring.scale(n), 1.0 / (len(sides) * len(side)), _has_known_direction(n, wiring))
         for sides in whole
         for side in sides
         for n in side
@@ -108,16 +108,16 @@ def _as_found(calibration: Pairs | None, wiring: Wiring) -> Surface | Problem:
 def _carried_over(
     calibration: Pairs, parts: Sequence[Part], kinds: Sequence[str], wiring: Wiring
 ) -> Surface | Problem:
-    """One calibration for all that was found: that of the first output, carried over to the others."""
+    """Return the first output's calibration, carried over to the other outputs found."""
     first, *others = _numbers(parts)
     if not others:
         return Surface((Part(first, Calibration(calibration)),), True, "")
-    untold = [n for n in (first, *others) if n not in wiring.told]
-    if untold:
+    unknown = [n for n in (first, *others) if n not in wiring.known_directions]
+    if unknown:
         return Problem(
             "no_elevator",
             f"elevator.calibration describes one output, but outputs {joined_numbers((first, *others))} act "
-            f"together, and {wiring.words.sense.format(n=untold[0])} is not known.",
+            f"together, and {wiring.words.sense.format(n=unknown[0])} is not known.",
             "Give elevator.outputs in place of it, with a calibration for each output.",
         )
     measured = wiring.scale(first)
@@ -158,17 +158,17 @@ def _assumed(wiring: Wiring) -> str:
 
 
 def _is_half(n: int, wiring: Wiring) -> bool:
-    """Whether output ``n`` is known to be one half of a mixed pair."""
+    """Return whether output ``n`` is known to be one half of a mixed pair."""
     return n in wiring.roles and bool(wiring.roles[n].side)
 
 
-def _is_told(n: int, wiring: Wiring) -> bool:
-    """Whether the parameters say which way a pitch demand moves output ``n``."""
-    return (wiring.roles.get(n) == ELEVATOR or _is_half(n, wiring)) and n in wiring.told
+def _has_known_direction(n: int, wiring: Wiring) -> bool:
+    """Return whether the parameters give the direction in which a pitch demand moves output ``n``."""
+    return (wiring.roles.get(n) == ELEVATOR or _is_half(n, wiring)) and n in wiring.known_directions
 
 
 def _formed(parts: Sequence[Part], why: str, kinds: Sequence[str]) -> str:
-    """How the outputs make the elevator, in a sentence."""
+    """Return a sentence on the outputs that make the elevator."""
     shares = [part.share for part in parts]
     if max(shares) - min(shares) < 1e-9:
         made = f"the mean of outputs {joined_numbers(_numbers(parts))}"

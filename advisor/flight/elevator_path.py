@@ -1,4 +1,4 @@
-"""The way of the elevator's samples: from its outputs to the finder, and from what is found to events."""
+"""Path of the elevator's samples: from its outputs to the finder, and from movements to events."""
 
 from collections.abc import Sequence
 
@@ -15,18 +15,18 @@ from advisor.flight.tracks import Tracks
 
 
 class ElevatorPath:
-    """Forms the elevator out of its outputs, finds its movements, and has each cut.
+    """Forms the elevator from its outputs, finds its movements, and has each cut.
 
     Parameters
     ----------
     tracks
-        Where the elevator's samples are kept.
+        Tracks that keep the elevator's samples.
     mixing
-        Makes the elevator out of several outputs.
+        Forms the elevator from several outputs.
     marks
-        What is marked; a movement in a marked stretch is no find of its own.
+        Marked stretches. A movement in a marked stretch is not found separately.
     cutting
-        Makes manoeuvres and activities of movements.
+        Turns movements into manoeuvres and activities.
     """
 
     def __init__(self, tracks: Tracks, mixing: Mixing, marks: Marks, cutting: Cutting) -> None:
@@ -34,7 +34,7 @@ class ElevatorPath:
         self.begin(0)
 
     def begin(self, boot: int) -> None:
-        """Another power-on, or another vehicle."""
+        """Begin another power-on, or another vehicle."""
         self._boot = boot
         self._watch = ElevatorWatch()
         self._message: str | None = None
@@ -45,11 +45,12 @@ class ElevatorPath:
         return self._watch.newest_s
 
     def mode_changed(self, earliest_s: float, order: int) -> None:
-        """The flight mode changed with the message of this order, at this time at the earliest."""
+        """Take a change of the flight mode by the message of this order, at ``earliest_s`` at the
+        earliest."""
         self._watch.mode_changed(earliest_s, order)
 
     def so_far(self) -> Maneuver | None:
-        """The manoeuvre being flown, cut at the newest sample; None between manoeuvres."""
+        """Return the manoeuvre being flown, cut at the newest sample; None between manoeuvres."""
         now = self._watch.newest_s
         marked_s = self._marks.since_s(now)
         onset = self._watch.onset_s if marked_s is None else marked_s
@@ -63,19 +64,19 @@ class ElevatorPath:
         return self._cutting.so_far(span, self._boot)
 
     def feed(self, moved: Sequence[Commanded], closes_loop: bool) -> list[FlightEvent]:
-        """Form the elevator's samples out of its outputs, and follow them.
+        """Form the elevator's samples from its outputs, and follow them.
 
         Parameters
         ----------
         moved
             Samples of the outputs.
         closes_loop
-            Whether the autopilot moves the elevator by itself.
+            Whether the autopilot closes a loop over the elevator.
         """
         events: list[FlightEvent] = []
         arrived = [new for new in moved if len(new.t)]
         if self._message is None and arrived:
-            # Some vehicles report their outputs in two messages: the first to speak is listened to.
+            # Some vehicles report their outputs in two messages. The first message to arrive counts.
             self._message = min(arrived, key=lambda new: int(new.order[0])).message
         for new in arrived:
             if new.message == self._message:
@@ -84,7 +85,7 @@ class ElevatorPath:
         return events
 
     def finish(self, master_s: float) -> list[FlightEvent]:
-        """No more samples will come: whatever is open is closed.
+        """Take the end of the samples, and close every open movement.
 
         Parameters
         ----------
@@ -98,7 +99,7 @@ class ElevatorPath:
         return [*events, *self._marked(due, None)]
 
     def _follow(self, decoded: Sequence[Decoded]) -> list[FlightEvent]:
-        """Give the finder its samples in the order of their stamps, and cut what has ended."""
+        """Give the finder its samples in the order of their stamps, and cut movements that have ended."""
         events: list[FlightEvent] = []
         arrived: list[tuple[int, float, float]] = []
         for new in decoded:
@@ -115,7 +116,8 @@ class ElevatorPath:
         return events
 
     def _found(self, span: Span, up_to_order: int | None) -> list[FlightEvent]:
-        """What the finder has found, unless it lies in a marked stretch."""
+        """Return the events of a movement that the finder has found, unless the movement lies in a marked
+        stretch."""
         return [] if self._marks.hides(span, up_to_order) else self._flown(span, up_to_order)
 
     def _marked(self, due: Due, up_to_order: int | None) -> list[FlightEvent]:

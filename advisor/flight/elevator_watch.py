@@ -1,8 +1,8 @@
-"""Elevator samples put in the order of their stamps, watched for manoeuvres.
+"""Elevator samples in the order of their stamps, watched for manoeuvres.
 
-A link may deliver packets out of order. Samples wait a moment of vehicle time before the segmenter sees
-them, and a manoeuvre that has ended waits until the other channels have arrived, too. Both waits are
-measured in the elevator's own stamps, so that live and replay cut at the same sample.
+A link may deliver packets out of order. Samples wait a moment of vehicle time before the segmenter takes
+them. A manoeuvre that has ended waits until the other channels have arrived. Both waits are measured in the
+elevator's own stamps, so that live and replay cut at equal samples.
 """
 
 import heapq
@@ -16,13 +16,13 @@ from advisor.flight.maneuver import Span
 from advisor.flight.segmentation import Segmenter
 
 LATE_S = 0.3
-"""Samples wait this long for packets that a link delivered out of order."""
+"""Time that samples wait for packets out of order, s."""
 SETTLE_S = 1.1
-"""A manoeuvre is given out this long after its end: every channel has arrived, and a heartbeat."""
+"""Time from the end of a manoeuvre to its release, s, in which every channel and a heartbeat arrive."""
 
 
 class ElevatorWatch:
-    """The segmenter behind a queue, for one power-on of the vehicle."""
+    """Segmenter behind a queue, for one power-on of the vehicle."""
 
     def __init__(self) -> None:
         self._segmenter = Segmenter()
@@ -34,15 +34,15 @@ class ElevatorWatch:
 
     @property
     def onset_s(self) -> float | None:
-        """When the input being flown began; None between inputs."""
+        """Beginning of the input being flown, s. None between inputs."""
         return self._segmenter.onset_s
 
     def mode_changed(self, t: float, order: int) -> None:
-        """The autopilot took another flight mode, at vehicle time ``t`` at the earliest."""
+        """Take a change of the flight mode, at vehicle time ``t`` at the earliest."""
         heapq.heappush(self._waiting, (t, order, None))
 
     def push(self, t: float, order: int, elevator: float) -> Iterator[ManeuverStarted | Span]:
-        """Take a sample in order of arrival; what has been recognised and what is complete by now."""
+        """Take a sample in order of arrival; yield recognised inputs and complete movements."""
         heapq.heappush(self._waiting, (t, order, elevator))
         self.newest_s = max(self.newest_s, t)
         while self._waiting and self._waiting[0][0] <= self.newest_s - LATE_S:
@@ -55,7 +55,7 @@ class ElevatorWatch:
             yield self._ended.pop(0)
 
     def finish(self) -> list[Span]:
-        """No more samples will come: everything that is complete enough."""
+        """Return everything that is complete enough at the end of the samples."""
         while self._waiting:
             self._release()
         spans = [*self._ended, *self._segmenter.finish()]
@@ -73,7 +73,7 @@ class ElevatorWatch:
 
 
 def _cut(span: Span, t: float) -> Span:
-    """A movement that had ended before it became known that the mode changed at ``t``."""
+    """Return a movement that had ended before a change of the mode at ``t`` became known."""
     if span.end_s <= t or span.start_s >= t:
         return span
     return replace(span, end_s=max(t, span.last_step_s), closed_by="mode change")

@@ -1,6 +1,7 @@
-"""What the stream of messages tells the flight test, in the order in which it became known."""
+"""Events that the stream of messages gives to the flight test, in the order in which they became known."""
 
 from dataclasses import dataclass, replace
+from math import nan
 
 from advisor.flight.maneuver import InputKind, Maneuver
 from advisor.flight.vehicle import Vehicle
@@ -8,19 +9,20 @@ from advisor.printable import printable
 from advisor.problems import Problem
 
 _SOON_S = 30.0
-"""Alike movements at most this far apart, s, are listed as one: a list of single corrections is not read."""
+"""Largest time between similar movements that are listed as one, s. Nobody reads a list of single
+corrections."""
 
 
 @dataclass(frozen=True, slots=True)
 class VehicleFound:
-    """The first heartbeat of the vehicle to be followed."""
+    """The vehicle to be followed has sent its first heartbeat."""
 
     vehicle: Vehicle
 
 
 @dataclass(frozen=True, slots=True)
 class Rebooted:
-    """The vehicle's clock began anew: another flight."""
+    """The vehicle's clock has restarted, which begins another power-on."""
 
     boot: int
 
@@ -31,15 +33,15 @@ class ModeChanged:
 
     mode: str
     at_s: float
-    """Vehicle time; NaN before the first stamped message."""
+    """Vehicle time, s. NaN before the first stamped message."""
 
 
 @dataclass(frozen=True, slots=True)
 class ManeuverStarted:
-    """A test input has been recognised; its free response is being recorded."""
+    """A test input has been recognised, and its free response is being recorded."""
 
     at_s: float
-    """Onset of its first step, s since boot."""
+    """Onset of the input's first step, s since boot."""
     kind: InputKind
 
 
@@ -52,12 +54,12 @@ class ManeuverFlown:
 
 @dataclass(frozen=True, slots=True)
 class ManeuverAgain:
-    """A manoeuvre that is known already came in another log or power-on: it counts once."""
+    """A known manoeuvre came again, in another log or power-on. A manoeuvre counts once."""
 
     maneuver: Maneuver
-    """The record that came now, numbered as the one known."""
+    """New record, numbered as the known one."""
     takes_place: bool
-    """Whether it holds more samples than the record known, and counts in its place."""
+    """Whether the new record holds more samples than the known one, and replaces it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,30 +67,31 @@ class FlightBegan:
     """Another log or link of the campaign begins."""
 
     flight: int
-    """0 for the first."""
+    """Number of the log or link, 0 for the first."""
     name: str
 
 
 @dataclass(frozen=True, slots=True)
 class Activity:
-    """The elevator moved, and it was no test input."""
+    """A movement of the elevator that was no test input."""
 
     start_s: float
-    """s since boot."""
+    """Begin of the movement, s since boot."""
     end_s: float
     reason: str
     """``autopilot``, ``ground``, ``hover``, ``small``, ``no_information`` or ``unsettled``."""
     text: str
-    """A sentence for people."""
+    """Sentence for people."""
     stay_s: float
-    """Since when the vehicle had been in its flight mode, s since boot; it tells one stay from the next."""
+    """Begin of the vehicle's present flight mode, s since boot, which distinguishes one stay in a mode from
+    the next."""
     boot: int = 0
-    """Which power-on of the vehicle."""
+    """Number of the vehicle's power-on."""
     flight: int = 0
-    """Which log or link of the campaign, 0 for the first."""
+    """Number of the campaign's log or link, 0 for the first."""
 
     def joined(self, earlier: "Activity") -> "Activity | None":
-        """Return one activity for this and the one before; None where reason, boot or mode differ."""
+        """Return one activity for this and the earlier one; None where reason, boot or mode differ."""
         stay = (self.reason, self.flight, self.boot, self.stay_s)
         if stay != (earlier.reason, earlier.flight, earlier.boot, earlier.stay_s):
             return None
@@ -107,21 +110,40 @@ class Notice:
     text: str
 
     def __post_init__(self) -> None:
-        # What a vehicle says stands in some of these sentences.
+        # Some of these sentences hold texts from a vehicle.
         object.__setattr__(self, "text", printable(self.text))
 
 
 @dataclass(frozen=True, slots=True)
+class VehicleSaid:
+    """A vehicle, or another sender on the link, said something in words (STATUSTEXT)."""
+
+    text: str
+    """Printable, on one line, of bounded length."""
+    severity: str
+    """Name of MAV_SEVERITY; empty where a log does not keep the severity."""
+    system: int
+    component: int
+    at_s: float
+    """Vehicle time, s since boot; NaN before the first stamped message."""
+
+
+@dataclass(frozen=True, slots=True)
 class NoData:
-    """What arrives at present cannot serve."""
+    """The present data cannot serve."""
 
     problems: tuple[Problem, ...]
-    """Everything that is missing or too slow, the most fundamental first; at least one."""
+    """At least one problem: missing or slow messages, the most fundamental first."""
+    at_s: float = nan
+    """Vehicle time, s since boot; NaN before the first stamped message."""
 
 
 @dataclass(frozen=True, slots=True)
 class DataAgain:
-    """What arrives can serve again."""
+    """The present data can serve again."""
+
+    at_s: float = nan
+    """Vehicle time, s since boot."""
 
 
 FlightEvent = (
@@ -134,6 +156,7 @@ FlightEvent = (
     | ManeuverAgain
     | Activity
     | Notice
+    | VehicleSaid
     | NoData
     | DataAgain
 )

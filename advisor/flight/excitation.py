@@ -1,15 +1,15 @@
-"""What a movement of the elevator tells about the short period, from the pitch rate alone.
+"""Information of an elevator movement about the short period, from the pitch rate alone.
 
-A pilot or an autopilot that steadies the aircraft moves the elevator with its motion. Only the rest e of
-the elevator, which no linear feedback of pitch rate q, pitch angle θ and its integral explains, tells cause
-from effect: the external input of closed-loop identification (Ljung, System Identification, 1999, ch. 13).
-The short period makes a linear recursion of second order of q and e,
+A pilot or an autopilot that steadies the aircraft moves the elevator with its motion. Let e be the part of
+the elevator that no linear feedback of pitch rate q, pitch angle θ and its integral explains. Only e
+separates cause from effect: e is the external input of closed-loop identification (Ljung, System
+Identification, 1999, ch. 13). The short period makes a linear recursion of second order of q and e,
 
     q[k] = a1·q[k−1] + a2·q[k−2] + b0·e[k] + b1·e[k−1] + b2·e[k−2] + c + d·k + ε[k],
 
-on means over intervals of equal length. A servo's lag spreads over b0, b1, b2. The statistic F asks whether
-b0, b1 and b2 explain more than chance does (Draper & Smith, Applied Regression Analysis, 1998, ch. 6).
-Angle of attack and acceleration are not needed.
+on means over intervals of equal length. A servo's lag spreads over b0, b1, b2. The statistic F tests whether
+b0, b1 and b2 explain more than chance (Draper & Smith, Applied Regression Analysis, 1998, ch. 6). Angle of
+attack and acceleration are not needed.
 """
 
 from dataclasses import dataclass
@@ -23,42 +23,43 @@ from advisor.flight.messages import FloatArray
 from advisor.flight.motion import integrated
 
 _INPUTS = 3
-"""Terms of the elevator in the recursion."""
+"""Number of the elevator's terms in the recursion."""
 _FEWEST = 14
-"""Intervals below which the recursion with its seven terms says nothing: five are left to judge them by."""
+"""Fewest intervals for the recursion with its seven terms, which leaves five degrees of freedom."""
 _LONGEST_S = 0.3
-"""Longest interval: a fifth of the natural period of a slow aircraft at 0.5 Hz."""
+"""Longest interval, s: a fifth of the natural period of a slow aircraft at 0.5 Hz."""
 _PER_STEP = 4.0
-"""Intervals to the shortest step: a step is matched to the short period."""
+"""Number of intervals in the shortest step. A step is matched to the short period."""
 _MANY = 40.0
-"""Intervals to a record, where its sampling allows."""
+"""Number of intervals in a record, where its sampling allows so many."""
 
 
 @dataclass(frozen=True, slots=True)
 class Excitation:
-    """What the elevator did to the pitch rate."""
+    """Effect of the elevator on the pitch rate."""
 
     pitch_rate: float
     """Half of the range of the pitch rate, rad/s."""
     relative_error: float
-    """Relative standard error of the elevator's effect: one over the root of 3·F; infinite without any."""
+    """Relative standard error of the elevator's effect: one over the root of 3·F. Infinite without an
+    effect."""
     external_error: float
-    """The relative standard error where only the external input counts, as in a closed loop."""
+    """Relative standard error for the external input alone, as in a closed loop."""
 
 
 def excitation(maneuver: Maneuver) -> Excitation | None:
-    """Measure what a movement tells about the short period.
+    """Measure the information of a movement about the short period.
 
     Parameters
     ----------
     maneuver
-        The record with channels ``elevator`` and ``q``; without ``theta`` the integral of ``q`` serves.
+        Record with channels ``elevator`` and ``q``. Without ``theta`` the integral of ``q`` serves.
 
     Returns
     -------
     Excitation or None
-        None where the pitch rate is missing or never changes. The error is infinite where
-        there are too few samples to say.
+        None where the pitch rate is missing or never changes. The error is infinite for too
+        few samples.
     """
     elevator, q = maneuver.channels.get("elevator"), maneuver.channels.get("q")
     if elevator is None or q is None or len(elevator) < 3 or len(q) < 3 or np.ptp(q.y) == 0.0:
@@ -77,7 +78,8 @@ def excitation(maneuver: Maneuver) -> Excitation | None:
 
 
 def _external(maneuver: Maneuver) -> FloatArray:
-    """The part of the elevator that no linear feedback of the motion explains, at the elevator's stamps."""
+    """Return the part of the elevator that no linear feedback of the motion explains, at the elevator's
+    stamps."""
     elevator, q = maneuver.channels["elevator"], maneuver.channels["q"]
     rate = np.interp(elevator.t, q.t, q.y)
     theta = maneuver.channels.get("theta")
@@ -92,13 +94,13 @@ def _external(maneuver: Maneuver) -> FloatArray:
 
 
 def _means(edges: FloatArray, t: FloatArray, y: FloatArray) -> FloatArray:
-    """Means of a signal over the intervals between the edges."""
+    """Return the means of a signal over the intervals between the edges."""
     means: FloatArray = np.diff(np.interp(edges, t, integrated(t, y))) / np.diff(edges)
     return means
 
 
 def _relative_error(q: FloatArray, elevator: FloatArray) -> float:
-    """Relative standard error of the elevator's effect, from F of the elevator's three terms."""
+    """Return the relative standard error of the elevator's effect, from F of the elevator's three terms."""
     n = len(q) - 2
     own = np.column_stack([q[1:-1], q[:-2], np.ones(n), np.linspace(-1.0, 1.0, n)])
     full = np.column_stack([own, elevator[2:], elevator[1:-1], elevator[:-2]])
@@ -108,7 +110,7 @@ def _relative_error(q: FloatArray, elevator: FloatArray) -> float:
 
 
 def _left(terms: FloatArray, y: FloatArray) -> FloatArray:
-    """What least squares on these terms leaves of a signal."""
+    """Return the residual of a signal after least squares on these terms."""
     scaled = terms / np.maximum(np.abs(terms).max(axis=0), 1e-12)
     left: FloatArray = y - scaled @ np.linalg.lstsq(scaled, y, rcond=None)[0]
     return left

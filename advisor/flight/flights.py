@@ -1,4 +1,4 @@
-"""The flights of a campaign, one log or link after the other; each manoeuvre has a number and counts once."""
+"""The flights of a campaign, one log or link after the other. Each manoeuvre has a number and counts once."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -18,7 +18,7 @@ from advisor.flight.maneuver import Maneuver
 from advisor.flight.marks import Mark
 from advisor.flight.messages import Columns
 from advisor.flight.one_aircraft import OneAircraft
-from advisor.flight.same import are_one, is_fuller
+from advisor.flight.repeated_maneuver import are_one, is_fuller
 from advisor.flight.stream import FlightStream
 from advisor.flight.surfaces import Surface
 from advisor.flight.track import ChannelStatus
@@ -28,35 +28,35 @@ from advisor.problems import Problem
 
 @dataclass(frozen=True, slots=True)
 class FlightHeard:
-    """What one log or link of the campaign was."""
+    """Summary of one log or link of the campaign."""
 
     flight: int
-    """0 for the first."""
+    """Number of the flight, 0 for the first."""
     name: str
-    """As the user knows it."""
+    """Name of the log or link, as the user knows it."""
     vehicle: Vehicle | None
     duration_s: float
     """Vehicle time heard, over all power-ons, s."""
     channels: Mapping[str, ChannelStatus]
     again: int = 0
-    """How many of its manoeuvres another log or power-on holds, too."""
+    """Number of its manoeuvres that another log or power-on also holds."""
     problems: tuple[Problem, ...] = ()
-    """Why it does not count; known when it is over."""
+    """Reasons for which the flight does not count, known at its end."""
 
 
 class Flights:
-    """Follows the vehicle through several logs, and through a link at last.
+    """Follows the vehicle through several logs, and then through a link.
 
-    Each flight is heard as if it were alone, so a log's manoeuvres do not depend on its neighbours.
+    Each flight is heard as if it were alone, so that a log's manoeuvres do not depend on its neighbours.
 
     Parameters
     ----------
     aircraft, target_system
-        As `FlightStream` takes them.
+        Arguments of `FlightStream`.
     marks
-        Stretches that somebody has called manoeuvres, each on its flight.
+        Stretches marked as manoeuvres, each on its flight.
     names
-        What the logs are called, in their order; empty for a single one.
+        Names of the logs, in their order; empty for a single log.
     """
 
     def __init__(
@@ -79,13 +79,13 @@ class Flights:
         self.flight = flight
         marks = [mark for mark in self._marks if mark.flight == flight]
         self.stream = FlightStream(self._aircraft, self._target_system, marks)
-        """The flight being heard."""
+        """Stream of the present flight."""
         self._again = 0
         self._foreign: Problem | None = None
 
     @property
     def maneuvers(self) -> int:
-        """How many manoeuvres have been found, each once."""
+        """Number of manoeuvres found, each counted once."""
         return len(self._found)
 
     @property
@@ -95,20 +95,20 @@ class Flights:
 
     @property
     def elevator_notes(self) -> tuple[str, ...]:
-        """What the elevator is made of, what is assumed of it and of the aircraft, over all flights."""
+        """Composition of the elevator, and assumptions about elevator and aircraft, over all flights."""
         return tuple(dict.fromkeys((*self._notes, *self.stream.elevator_notes)))
 
     def heard(self, channels: Mapping[str, ChannelStatus], over: bool = False) -> tuple[FlightHeard, ...]:
-        """Every flight so far; ``channels`` are those of the one being heard."""
+        """Return the summary of every flight so far; ``channels`` are those of the present flight."""
         return (*self._past, self._so_far(channels, over))
 
     def so_far(self) -> Maneuver | None:
-        """The manoeuvre being flown, cut at the newest sample; None between manoeuvres."""
+        """Return the manoeuvre being flown, cut at the newest sample; None between manoeuvres."""
         flying = self.stream.so_far() if self._foreign is None else None
         return flying and replace(flying, number=len(self._found) + 1, flight=self.flight)
 
     def problems(self) -> list[Problem]:
-        """Why none of the flights can be used, as far as they have been heard; empty when one can."""
+        """Return the reasons for which none of the flights so far can be used; empty when one can."""
         now = self._problems()
         if not now or any(not past.problems for past in self._past):
             return []
@@ -118,7 +118,7 @@ class Flights:
         return [*before, *here]
 
     def feed(self, columns: Sequence[Columns]) -> list[FlightEvent]:
-        """Take messages that have arrived, of one flight after the other; what became known by them."""
+        """Take messages, of one flight after the other; return the events that they cause."""
         events: list[FlightEvent] = []
         filled = sorted((c for c in columns if len(c)), key=lambda c: c.flight)
         for flight, part in groupby(filled, key=lambda c: c.flight):
@@ -133,7 +133,7 @@ class Flights:
         return events
 
     def finish(self) -> list[FlightEvent]:
-        """No more messages will come: whatever is open is closed."""
+        """Take the end of the messages, and close every open movement."""
         if self._foreign is not None:
             return []
         events = [*self._through(self.stream.finish()), *self._compare_elevators()]
@@ -142,7 +142,7 @@ class Flights:
         return events
 
     def _end(self) -> list[FlightEvent]:
-        """Close a flight that another one follows."""
+        """End a flight before the next one begins."""
         events = self.finish()
         if self.flight == self._told_of:
             self._past.append(self._so_far(self.stream.channels, over=True))
@@ -168,11 +168,11 @@ class Flights:
 
     @property
     def name(self) -> str:
-        """What the log being heard is called; empty for a single one."""
+        """Name of the present log; empty for a single log."""
         return self._name(self.flight)
 
     def _through(self, events: Sequence[FlightEvent]) -> list[FlightEvent]:
-        """The events of one flight as those of the campaign."""
+        """Return the events of one flight, renumbered as those of the campaign."""
         through: list[FlightEvent] = []
         for event in events:
             match event:
@@ -189,7 +189,8 @@ class Flights:
         return through
 
     def _once(self, maneuver: Maneuver) -> FlightEvent:
-        """A manoeuvre with its number in the campaign, be it new or known."""
+        """Return the event of a manoeuvre with its number in the campaign: a new manoeuvre, or a known
+        one."""
         for i, known in enumerate(self._found):
             if known.power_on != maneuver.power_on and are_one(maneuver, known):
                 self._again += 1
@@ -202,7 +203,7 @@ class Flights:
         return ManeuverFlown(self._found[-1])
 
     def _compare_vehicles(self, vehicle: Vehicle) -> Iterator[FlightEvent]:
-        """What is told of a vehicle that is not the first flight's; another aircraft is refused."""
+        """Yield notices on a vehicle that differs from the first flight's. Another aircraft is refused."""
         self._foreign = self._one_aircraft.refuse(self.name, vehicle)
         if self._foreign is not None:
             yield Notice(self._foreign.code, f"{self.name}: {self._foreign}")
@@ -211,7 +212,7 @@ class Flights:
             yield Notice("other_system", said)
 
     def _compare_elevators(self) -> Iterator[FlightEvent]:
-        """What is told of an elevator that is not driven as in the first flight."""
+        """Yield notices on an elevator that is driven otherwise than in the first flight."""
         elevator = self.stream.elevator
         if isinstance(elevator, Surface) and (said := self._one_aircraft.doubt_elevator(self.name, elevator)):
             self._notes.append(said)

@@ -1,8 +1,9 @@
-"""Which of several vehicles is followed, decided from the stream alone, so that a log and a link agree.
+"""Choice among several vehicles, decided from the stream alone, so that a log and a link agree.
 
-The first vehicle heard is followed. One that falls silent, or that has no elevator, is left for the only
-other one that has an elevator and sends. One that has served for a while is kept, however long it is silent:
-its flight test shall not end in that of another aircraft. Where no choice is plain, the crew is asked.
+The first vehicle heard is followed. A vehicle that falls silent, or has no elevator, is left for the only
+other vehicle that sends and has an elevator. A vehicle that has served for a while is kept, however long it
+is silent. Its flight test must not end in that of another aircraft. Where several vehicles qualify, the crew
+is asked.
 """
 
 from collections.abc import Callable, Sequence
@@ -13,36 +14,38 @@ from advisor.flight.messages import Columns
 from advisor.flight.vehicle import Vehicle
 
 GIVEN_UP_AFTER_S = 15.0
-"""So long may a vehicle be silent, or its elevator unknown, before another is followed, s: as long as
-parameters and streams take to arrive after a vehicle is first heard."""
+"""Time for which a vehicle may be silent, or its elevator unknown, before another is followed, s. Parameters
+and streams take about so long to arrive."""
 LATELY_S = 5.0
-"""A vehicle sends when all that it needs came within this time, s."""
+"""Time within which all needed messages must have come from a vehicle that counts as sending, s."""
 SERVED_S = 60.0
-"""A vehicle that served so long in all is kept, s: two manoeuvres with their pauses."""
+"""Total time of service after which a vehicle is kept, s: two manoeuvres with their pauses."""
 
 FOLLOW = b"Advisor follows vehicle "
-"""How the advisor writes into its own stream that a hand chose another vehicle; a number ends the text."""
+"""Text that the advisor writes into its own stream when a hand chooses another vehicle; a number ends the
+text."""
 
 TAKE = b"Advisor takes for the elevator output "
-"""How the advisor writes into its own stream that a hand took a guess; the output's number ends the text."""
+"""Text that the advisor writes into its own stream when a hand accepts a guess; the output's number ends the
+text."""
 
 _OUTPUTS = frozenset({"SERVO_OUTPUT_RAW", "ACTUATOR_OUTPUT_STATUS"})
 _ATTITUDES = frozenset({"ATTITUDE", "ATTITUDE_QUATERNION"})
 
 
 def chosen(text: bytes, what: bytes) -> int | None:
-    """Number that a text of the advisor, ``FOLLOW`` or ``TAKE``, gives; None for any other text."""
+    """Return the number in one of the advisor's texts, ``FOLLOW`` or ``TAKE``; None for any other text."""
     number = text.removeprefix(what)
     return int(number) if text.startswith(what) and number.isdigit() else None
 
 
 class Following:
-    """Weighs the vehicles against each other once a second of arrival.
+    """Compares the vehicles once a second of arrival.
 
     Parameters
     ----------
     has_elevator
-        Whether the outputs of a vehicle that make its elevator are known.
+        Whether the elevator's outputs of a vehicle are known.
     """
 
     def __init__(self, has_elevator: Callable[[Vehicle], bool]) -> None:
@@ -55,14 +58,14 @@ class Following:
     def better(
         self, piece: Sequence[Columns], vehicle: Vehicle, all_heard: Sequence[Vehicle]
     ) -> Vehicle | None:
-        """The vehicle to be followed from this piece on in place of ``vehicle``; None: the same.
+        """Return the vehicle that replaces ``vehicle`` after this piece; None to keep ``vehicle``.
 
         Parameters
         ----------
         piece
-            Messages of one second of arrival, whoever sent them.
+            Messages of one second of arrival, from all senders.
         vehicle
-            Who is followed.
+            Vehicle that is followed so far.
         all_heard
             Every vehicle that has sent a heartbeat.
         """

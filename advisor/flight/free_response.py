@@ -1,4 +1,4 @@
-"""The free response after a movement of the elevator: how long it lasts, and what ends it."""
+"""The free response after a movement of the elevator: its length, and the event that ends it."""
 
 from dataclasses import dataclass
 from itertools import pairwise
@@ -9,46 +9,48 @@ from advisor.flight.rest import is_still
 from advisor.flight.samples import Samples
 
 _FREE_S = (3.0, 8.0)
-"""Free response: as long as the input, but within these."""
+"""Least and greatest length of the free response, s. Between them the free response is as long as the
+input."""
 _PARTING_S = (0.5, 0.6)
-"""A rest parts two movements if it lasts for three quarters of the longest step, but within these. The next
-input may come one second later."""
+"""Least and greatest length of a rest that separates two movements, s. Between them the length is three
+quarters of the longest step. The next input may come one second later."""
 _SURELY_S = 2.5
-"""A rest this long parts two movements however it wavers."""
+"""Length of a rest that separates two movements however much the elevator wavers, s."""
 _BACK = 0.2
-"""After a shorter rest within this share of the amplitude from the level before, the next input may come."""
+"""Largest distance of a shorter rest from the level before, as a share of the amplitude, after which the next
+input may come."""
 _WAVERING = 0.2
-"""A shorter rest after a movement without levels must be still against this share of its amplitude: a
+"""Largest wavering of a shorter rest after a movement without levels, as a share of its amplitude. A
 multisine has gentle parts of its own."""
 _LEAVES = (0.2, 0.35)
-"""A free response ends where the elevator moves by five standard deviations of its rest, but
-within these shares of the amplitude."""
+"""Least and greatest departure of the elevator that ends a free response, as shares of the amplitude. Between
+them the departure is five standard deviations of the rest."""
 _LEAVING_S = (1.0, 0.15)
-"""The part of a rest that is asked whether it is still, s before the elevator leaves: the last
-moment may be its setting out."""
+"""Part of a rest that is tested for stillness, s before the elevator leaves. The last moment may belong to
+the next movement."""
 
 
 @dataclass(frozen=True, slots=True)
 class Ended:
-    """What ended a free response."""
+    """The event that ended a free response."""
 
     why: Literal["quiet", "next input", "same input"]
-    """It has lasted long enough, another movement begins, or the movement before goes on."""
+    """The response has lasted long enough, another movement begins, or the earlier movement goes on."""
     at_s: float
-    """Stamp of its end, s."""
+    """Stamp of the end, s."""
 
 
 class FreeResponse:
-    """Awaits the end of the free response of one movement.
+    """Waits for the end of the free response of one movement.
 
     Parameters
     ----------
     movement
-        The movement that has come to rest.
+        Movement that has come to rest.
     before
         Level of the elevator before the movement, rad.
     samples
-        The elevator's samples, to which the newest is always added first.
+        Samples of the elevator. The caller adds the newest sample first.
     """
 
     def __init__(self, movement: Movement, before: float, samples: Samples) -> None:
@@ -60,7 +62,8 @@ class FreeResponse:
         self._end_s = movement.last_step_s + min(max(duration_s, _FREE_S[0]), _FREE_S[1])
 
     def take(self, t: float, u: float) -> Ended | None:
-        """Take the newest sample, stamp (s) and elevator (rad); None while the response goes on."""
+        """Take the stamp (s) and elevator (rad) of the newest sample; return None while the response goes
+        on."""
         least, most = (share * self.movement.amplitude for share in _LEAVES)
         if abs(u - self.movement.trim) <= min(max(5.0 * self.movement.quiet, least), most):
             self._away_s = []
@@ -72,7 +75,7 @@ class FreeResponse:
         return Ended("next input" if self._parts(left_s) else "same input", left_s)
 
     def _parts(self, left_s: float) -> bool:
-        """Whether the rest until ``left_s`` makes another movement of what follows."""
+        """Return whether the rest up to ``left_s`` separates the following movement from this one."""
         movement = self.movement
         rested_s = left_s - movement.over_s
         if rested_s < _parting_s(movement):
@@ -87,7 +90,7 @@ class FreeResponse:
 
 
 def _parting_s(movement: Movement) -> float:
-    """How long the elevator must rest for what follows to be another movement."""
+    """Return the length of a rest that separates the following movement from this one, s."""
     onsets = [onset for onset, _ in movement.steps]
     longest_s = max((b - a for a, b in pairwise(onsets)), default=0.0)
     return min(max(_PARTING_S[0], 0.75 * longest_s), _PARTING_S[1])

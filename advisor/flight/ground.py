@@ -1,9 +1,9 @@
-"""Whether the aircraft flew while the elevator moved, by everything the telemetry says of it.
+"""Whether the aircraft flew during an elevator movement, by all its telemetry.
 
-A wiggle of the elevator in the preflight check, in the take-off run or after a crash is no test input, and an
-estimate from it would demand nonsense. The autopilot's own word counts first (EXTENDED_SYS_STATE), then the
-armed flag with the speed over ground, then speed and height together, then an air speed that begins or ends
-near zero.
+An elevator movement in the preflight check, in the take-off run or after a crash is no test input. An
+estimate from such a movement would be nonsense. The autopilot's own statement counts first
+(EXTENDED_SYS_STATE). Then come the armed flag with the speed over ground, speed and height together, and an
+air speed that begins or ends near zero.
 """
 
 from collections.abc import Callable
@@ -18,29 +18,29 @@ from advisor.flight.record import Channel
 # MAV_LANDED_STATE, MAVLink common.xml.
 _ON_GROUND, _TAKING_OFF = 1, 3
 _FRESH_S = 5.0
-"""How long a word of the autopilot holds, s: it comes about once a second."""
+"""Time for which a statement of the autopilot holds, s. It comes about once a second."""
 STANDING_M_S = 3.0
-"""Least speed over ground of anything that moves, m/s: a receiver at rest shows below 1."""
+"""Least speed over ground of a moving aircraft, m/s. A receiver at rest shows less than 1."""
 WINDY_M_S = 12.0
-"""Air speed that wind alone may show to a parked aircraft, m/s; what shows more is believed to fly."""
+"""Largest air speed that wind alone may cause on a parked aircraft, m/s. A larger one counts as flight."""
 NEAR_GROUND_M = 3.0
 """Height over the place of take-off at which a standing aircraft counts as landed, m."""
 _STILL_RAD_S = radians(1.0)
-"""An aircraft whose elevator moves in flight pitches faster, rad/s."""
+"""Least pitch rate of an aircraft whose elevator moves in flight, rad/s."""
 
 Cut = Callable[[str, float, float], Channel | None]
-"""A stretch of a channel: name, start and end, s since boot."""
+"""Function that cuts a stretch of a channel by name, start and end, s since boot."""
 
 
 def why_on_ground(span: Span, cut: Cut) -> str | None:
-    """Say in words what shows that the aircraft did not fly; None where it flew, or nothing tells.
+    """Return in words the evidence that the aircraft did not fly; None where it flew, or without evidence.
 
     Parameters
     ----------
     span
         The movement of the elevator.
     cut
-        Gives ``landed_state``, ``armed``, ``groundspeed``, ``airspeed``, ``height`` and ``q``, if they came.
+        Gives ``landed_state``, ``armed``, ``groundspeed``, ``airspeed``, ``height`` and ``q`` where received.
     """
     said = _lately("landed_state", span, cut)
     if _ON_GROUND in said:
@@ -60,7 +60,7 @@ def why_on_ground(span: Span, cut: Cut) -> str | None:
 
 
 def _stands(span: Span, cut: Cut) -> bool:
-    """Whether neither speed shows motion; exactly zero over ground is also what no receiver shows."""
+    """Return whether neither speed shows motion. Exactly zero over ground also comes without any receiver."""
     over_ground = _median("groundspeed", span, cut)
     through_air = _median("airspeed", span, cut)
     if over_ground is None or over_ground >= STANDING_M_S or (through_air or 0.0) > WINDY_M_S:
@@ -71,7 +71,7 @@ def _stands(span: Span, cut: Cut) -> bool:
 
 
 def _lately(name: str, span: Span, cut: Cut) -> list[float]:
-    """What held when the movement began, and everything since."""
+    """Return the value at the beginning of the movement, and all later ones."""
     words = cut(name, span.start_s - _FRESH_S, span.end_s)
     if words is None:
         return []
@@ -81,7 +81,7 @@ def _lately(name: str, span: Span, cut: Cut) -> list[float]:
 
 
 def _median(name: str, span: Span, cut: Cut, at_s: float | None = None) -> float | None:
-    """Median over the movement, or over the second around a time."""
+    """Return the median over the movement, or over the second around a time."""
     start_s, end_s = (span.start_s, span.end_s) if at_s is None else (at_s - 0.5, at_s + 0.5)
     channel = cut(name, start_s, end_s)
     return float(np.median(channel.y)) if channel is not None and len(channel) else None

@@ -1,4 +1,4 @@
-"""What the vehicle says of itself: who it is, its firmware, its mode, what its outputs drive."""
+"""Identity of the vehicle by its own messages: autopilot, firmware, mode, and roles of its outputs."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -17,18 +17,20 @@ from advisor.flight.vehicle import Vehicle, VehicleFinder
 from advisor.flight.wiring import AILERON, RUDDER, Wiring
 from advisor.printable import printable
 from advisor.problems import Problem
+from advisor.vehicle_time import clock
 
 _BUNDLED = b"Bundled aircraft"
-"""How the simulator of this project introduces itself in a STATUSTEXT."""
+"""Beginning of the STATUSTEXT with which this project's simulator introduces itself."""
 
 _RELEASES = ((255, ""), (192, "-rc"), (128, "-beta"), (64, "-alpha"), (0, "-dev"))
-"""Least FIRMWARE_VERSION_TYPE (MAVLink common.xml), the lowest byte of a version, and how users write it."""
+"""Least FIRMWARE_VERSION_TYPE (MAVLink common.xml), the lowest byte of a version, with its suffix for
+users."""
 
 READER = b"Log reader: "
-"""How a reader of logs begins the sentences that its STATUSTEXTs carry to the user."""
+"""Beginning of a STATUSTEXT with which a reader of logs gives a sentence to the user."""
 
 READER_NOTICE = "log_reader"
-"""Code of the notice that carries such a sentence, or says how a change in flight was read."""
+"""Code of the notice with such a sentence, or with the treatment of a parameter's change in flight."""
 _ON_ROTORS = (1, 2, 3)
 """MAV_VTOL_STATE: transition to forward flight, transition to hover, hover; 4 is forward flight."""
 _GROUND_STATION = 190
@@ -36,12 +38,12 @@ _GROUND_STATION = 190
 
 
 class Identity:
-    """Collects the messages that say who and what the vehicle is.
+    """Collects the messages that identify the vehicle.
 
     Parameters
     ----------
     elevator
-        As the aircraft file has it.
+        Elevator of the aircraft file.
     target_system
         System id to follow; None: the first vehicle heard.
     """
@@ -58,15 +60,15 @@ class Identity:
         self._changes_said: set[tuple[str, float]] = set()
         self._following = Following(self._has_elevator)
         self.simulated = False
-        """The bundled aircraft has introduced itself: its vane is simulated."""
+        """Whether the bundled aircraft has introduced itself, whose vane is simulated."""
         self.elevator: Surface | Problem = find_elevator(elevator, self._wiring())
-        """The elevator's outputs and scale, or why there is none."""
+        """Outputs and scale of the elevator, or the reason for their absence."""
         self.surfaces: dict[str, Surface] = {}
-        """Elevator, aileron and rudder, as far as they are known."""
+        """Elevator, aileron and rudder, where known."""
 
     @property
     def vehicle(self) -> Vehicle | None:
-        """Who is followed; None before its first heartbeat."""
+        """Vehicle that is followed. None before its first heartbeat."""
         vehicle = self._finder.vehicle
         if vehicle is not None and vehicle.system in self._firmware:
             return vehicle.with_firmware(self._firmware[vehicle.system])
@@ -74,18 +76,19 @@ class Identity:
 
     @property
     def mode(self) -> str:
-        """Flight mode of the newest heartbeat, and whether rotors carry a VTOL aircraft."""
+        """Flight mode of the newest heartbeat, with a note where rotors carry a VTOL aircraft."""
         return in_hover(self._mode) if self._hovers and self._mode else self._mode
 
     @property
     def other_systems(self) -> frozenset[int]:
-        """System ids of further vehicles heard."""
+        """System ids of the other vehicles heard."""
         return frozenset(self._finder.others)
 
     def provenance(self, source: str, stated: str) -> str:
-        """Provenance of a channel, as far as the vehicle's identity tells.
+        """Return the provenance of a channel, by the vehicle's identity.
 
-        AOA_SSA is derived from inertial speed and estimated wind on ArduPilot; elsewhere nobody knows.
+        On ArduPilot, AOA_SSA is derived from inertial speed and estimated wind. Elsewhere its origin is
+        unknown.
         """
         if source != "AOA_SSA.AOA" or self.vehicle is None:
             return stated
@@ -94,7 +97,8 @@ class Identity:
         return "derived" if self.vehicle.autopilot == "ardupilot" else "unknown"
 
     def distrusts(self, found: Sequence[Distrust]) -> list[Distrust]:
-        """Of the channels that cannot be right, those that are wrong: the paper's model has one air speed."""
+        """Return the channels that are wrong, among those that cannot be right: the paper's model has one air
+        speed."""
         return [d for d in found if not (self.simulated and d.channel == "airspeed")]
 
     def learn(self, piece: Sequence[Columns], now_s: float = nan, flown: bool = False) -> list[FlightEvent]:
@@ -103,11 +107,11 @@ class Identity:
         Parameters
         ----------
         piece
-            Messages, in order of arrival.
+            Messages in order of arrival.
         now_s
             Vehicle time of the newest sample, s since boot.
         flown
-            A test input has been flown: the elevator's scale stays as it was then.
+            Whether a test input has been flown, after which the elevator's scale stays.
         """
         events = self._choose(piece)
         for columns in piece:
@@ -125,11 +129,11 @@ class Identity:
 
     @property
     def may_choose(self) -> bool:
-        """Whether another vehicle may come to be followed."""
+        """Whether another vehicle may be followed later."""
         return self._finder.may_choose
 
     def _choose(self, piece: Sequence[Columns]) -> list[FlightEvent]:
-        """Follow another vehicle where the one followed cannot serve and another plainly can."""
+        """Follow another vehicle where the present one cannot serve and another one clearly can."""
         before = self._finder.vehicle
         if before is None or not piece:
             return []
@@ -146,7 +150,7 @@ class Identity:
             VehicleFound(vehicle),
             Notice(
                 "vehicle_changed",
-                f"Vehicle {vehicle.system} is followed from here on in place of vehicle {before.system}; "
+                f"Vehicle {vehicle.system} is now followed in place of vehicle {before.system}; "
                 f"--target-system {before.system} keeps to that one.",
             ),
             *self._settle_surfaces(),
@@ -201,7 +205,7 @@ class Identity:
         return self._parameters.wiring(_speakers(vehicle), vehicle.autopilot)
 
     def _scales_elevator(self) -> bool:
-        """Whether the parameters have changed what the elevator's pulses mean."""
+        """Return whether parameters have changed the scale of the elevator's pulses."""
         return (
             isinstance(self.elevator, Surface)
             and find_elevator(self._elevator, self._wiring()) != self.elevator
@@ -210,15 +214,15 @@ class Identity:
     def _rescaled(
         self, name: str, before: float, value: float, now_s: float, flown: bool
     ) -> list[FlightEvent]:
-        """What a change of a known parameter does to the elevator: once for each value."""
+        """Return a notice on the change of a known parameter of the elevator, once for each value."""
         if (name, value) in self._changes_said:
             return []
         self._changes_said.add((name, value))
-        at = f" at {now_s:.1f} s" if isfinite(now_s) else ""
+        at = f" at {clock(now_s)}" if isfinite(now_s) else ""
         used = (
             f"the elevator is counted with {before:g} all the same, for its linkage has not changed"
             if flown
-            else f"the elevator is counted with {value:g} from then on"
+            else f"the elevator is counted with {value:g} after that"
         )
         return [Notice(READER_NOTICE, f"{name} changed from {before:g} to {value:g}{at}: {used}.")]
 
@@ -279,5 +283,6 @@ class Identity:
 
 
 def _speakers(vehicle: Vehicle) -> tuple[tuple[int, int], ...]:
-    """Senders (system, component) that state the vehicle's parameters; the vehicle comes last and wins."""
+    """Return the senders (system, component) that state the vehicle's parameters. The vehicle comes last and
+    overrides."""
     return (vehicle.system, _GROUND_STATION), (vehicle.system, vehicle.component)

@@ -1,11 +1,12 @@
-"""Angle of attack inferred from the motion alone, for aircraft without a vane.
+"""Angle of attack inferred from the motion, for aircraft without a vane.
 
 Pitch rate, specific force, attitude and air speed give the rate of the angle of attack,
 
     α̇ = q + (a_z·cos α − a_x·sin α + g·cos γ)/V
 
-(Klein & Morelli, *Aircraft System Identification*, chapter 10). Its integral has the shape of the angle of
-attack; biases of the instruments make it drift. The climb rate tells level and drift where there is one.
+(Klein & Morelli, *Aircraft System Identification*, chapter 10). The integral has the shape of the angle of
+attack, and biases of the instruments make it drift. A climb rate, where there is one, corrects level and
+drift.
 """
 
 from collections.abc import Mapping
@@ -20,18 +21,19 @@ from advisor.standard_gravity import GRAVITY_M_S2
 NEEDED = ("q", "theta", "a_z")
 _PASSES = 2
 _DRIFT = 2
-"""Degree of the polynomial that biases of rate and force, and their change with the attitude, make of α."""
+"""Degree of the polynomial in time with which biases of rate and force, and their change with attitude, enter
+α."""
 
 
 def alpha_rate(
     t: FloatArray, alpha: FloatArray, speed: FloatArray, channels: Mapping[str, Channel], arm_m: float = 0.0
 ) -> FloatArray:
-    """Rate of the angle of attack that the motion shows, rad/s, at times ``t`` of the pitch rate.
+    """Return the rate of the angle of attack by the motion, rad/s, at times ``t`` of the pitch rate.
 
     Parameters
     ----------
     t, alpha, speed
-        Shape (n,): the stamps of the channel ``q`` (s), angle of attack (rad) and air speed (m/s) there.
+        Shape (n,): stamps of the channel ``q`` (s), with angle of attack (rad) and air speed (m/s) there.
     channels
         ``q``, ``theta`` and ``a_z``; ``a_x`` and ``bank`` are used when present.
     arm_m
@@ -50,12 +52,12 @@ def alpha_rate(
 
 
 def inferred_alpha(channels: Mapping[str, Channel], speed: FloatArray) -> Channel | None:
-    """Angle of attack as the motion shows it; None where pitch rate, attitude or a_z is missing.
+    """Return the angle of attack by the motion; None where pitch rate, attitude or a_z is missing.
 
     Parameters
     ----------
     channels
-        A manoeuvre's channels. An ``alpha`` among them, such as one from climb rate, sets level and drift.
+        Channels of a manoeuvre. An ``alpha`` among them, as from climb rate, corrects level and drift.
     speed
         Shape (n,), air speed at the stamps of the channel ``q``, m/s.
     """

@@ -1,9 +1,9 @@
-"""Is the angle of attack what it claims to be? A check without any aerodynamics.
+"""Check of the angle of attack against the motion, without any aerodynamics.
 
-What the accelerometers, the pitch rate and the attitude say about the angle of attack is
-integrated and held against the α channel. No derivative enters, so whatever disagrees is
-an instrument, not the aircraft. (Klein & Morelli, *Aircraft System Identification*,
-chapter 10, "data compatibility"; here for the longitudinal motion.)
+The rate of the angle of attack by accelerometers, pitch rate and attitude is integrated and compared with the
+α channel. No aerodynamic derivative enters, so that any difference is an error of an instrument, not of the
+aircraft. (Klein & Morelli, *Aircraft System Identification*, chapter 10, "data compatibility"; here for the
+longitudinal motion.)
 """
 
 from collections.abc import Sequence
@@ -22,10 +22,10 @@ from advisor.flight.renewal import renewed
 
 NEEDED = ("alpha", "q", "theta", "a_z")
 _FOLLOW_S = np.array([0.08, 0.2, 0.5, 1.2])
-"""Lags that span the responses of aircraft, from the fastest short period to the slowest."""
+"""Lags, s, that span the responses of aircraft, from the fastest short period to the slowest."""
 CORRUPTED_BY_LAG = ("Z_delta_e", "Z_q", "Z_alpha", "M_q")
-"""What a late α spoils. M_alpha and M_delta_e keep their values: the lag only mixes α with
-its own rate, and the rate of α enters the moment equation as a change of M_q."""
+"""Parameters that a late α corrupts. M_alpha and M_delta_e keep their values, because the lag only mixes α
+with its own rate. The rate of α enters the moment equation as a change of M_q."""
 SMALLEST_LAG_S = 0.004
 SMALLEST_SCALE = 0.01
 
@@ -34,30 +34,30 @@ Finding = Literal["consistent", "late", "early", "scaled", "inconsistent", "not 
 
 @dataclass(frozen=True, slots=True)
 class KinematicCheck:
-    """What the kinematics say about the α channel. NaN where it could not be told."""
+    """Result of the check of the α channel. NaN where unknown."""
 
     finding: Finding
     sentence: str
     missing: tuple[str, ...] = ()
     """Channels whose absence prevents the check."""
     lag_s: float = float("nan")
-    """How late α arrives (negative: early)."""
+    """Lag of α, s (negative: early)."""
     lag_std_s: float = float("nan")
     scale: float = float("nan")
     """Scale error k: the channel reads (1 + k)·α."""
     scale_std: float = float("nan")
     offset: AlphaOffset = UNKNOWN
-    """What α is off on average."""
+    """Mean offset of α."""
     drift_rad_s: float = float("nan")
-    """Rate at which reconstruction and α part: bias of pitch rate and accelerometers together."""
+    """Rate at which reconstruction and α diverge, rad/s: bias of pitch rate and accelerometers together."""
     rms_rad: float = float("nan")
-    """What is left between the two when lag, scale and drift are allowed for."""
+    """Root mean square difference of reconstruction and α after correction of lag, scale and drift, rad."""
     explained: float = float("nan")
     """Share of the variance of α that the reconstruction explains."""
 
     @property
     def possible(self) -> bool:
-        """Whether the channels sufficed."""
+        """Whether the channels sufficed for the check."""
         return self.finding != "not possible"
 
 
@@ -67,18 +67,18 @@ def check_alpha(
     accelerometer_arm_m: float | None = None,
     vane_arm_m: float | None = None,
 ) -> KinematicCheck:
-    """Compare α with what α̇ = q + (a_z cos α − a_x sin α + g cos(θ − α))/V integrates to.
+    """Compare α with the integral of α̇ = q + (a_z cos α − a_x sin α + g cos(θ − α))/V.
 
     Parameters
     ----------
     maneuver
-        With channels ``alpha``, ``q``, ``theta``, ``a_z``, and ``airspeed`` unless one is given; ``a_x``
-        and ``climb_rate`` are used when present.
+        Manoeuvre with channels ``alpha``, ``q``, ``theta``, ``a_z``, and ``airspeed`` unless one is given.
+        ``a_x`` and ``climb_rate`` are used where present.
     airspeed_m_s
-        Speed to use when the log has none.
+        Air speed for a log without one.
     accelerometer_arm_m, vane_arm_m
         Distances of the accelerometer and the vane ahead of the centre of gravity, removed when known.
-        An accelerometer's arm that is there and not given reads as a small negative lag, a vane's as a lag.
+        An unknown arm of the accelerometer appears as a small negative lag, one of the vane as a lag.
     """
     found = maneuver.channels
     missing = [name for name in NEEDED if name not in found or len(found[name]) < 20]
@@ -87,7 +87,7 @@ def check_alpha(
     if missing:
         listed = ", ".join(missing)
         said = f"alpha cannot be checked against the motion: no {listed} in this log."
-        # What alpha is off on average takes the attitude and the climb rate only.
+        # The mean offset of alpha needs the attitude and the climb rate only.
         offset = offset_of(maneuver, airspeed_m_s) if missing == ["a_z"] else UNKNOWN
         return KinematicCheck("not possible", said, tuple(missing), offset=offset)
     t_alpha, alpha = renewed(found["alpha"].t, found["alpha"].y)
@@ -106,7 +106,8 @@ def check_alpha(
 
 
 def _followers(t: FloatArray, command: FloatArray) -> FloatArray:
-    """What follows the command through two equal lags, shape (n, k): together they span the response."""
+    """Return the command after two equal lags, for several lags, shape (n, k): together they span the
+    response."""
     moved = command - command[0]
     first = np.zeros(len(_FOLLOW_S))
     found = np.zeros((len(t), len(_FOLLOW_S)))
@@ -128,8 +129,9 @@ def _compare(
 ) -> KinematicCheck:
     """Fit α(t) = (1 + k)·α_k(t − τ) + b_0 + b_1 t + b_2 t² by Gauss-Newton in τ, k and the b.
 
-    A gust moves the vane at once and the aircraft after it, which reads as a lag and a scale. It knows
-    nothing of the command: what follows that is the instrument of the fit (two-stage least squares).
+    A gust moves the vane at once and the aircraft later, which looks like a lag and a scale. A gust is
+    independent of the command. So the lagged commands are the instrumental variables of the fit (two-stage
+    least squares).
     """
     inside = (t_alpha >= t[0] + 0.3) & (t_alpha <= t[-1] - 0.3)
     tm, y = t_alpha[inside], alpha[inside]
@@ -169,7 +171,7 @@ def _compare(
 
 
 def _orthogonal(columns: FloatArray) -> FloatArray:
-    """Orthonormal columns of the same span, without directions that are next to none."""
+    """Return orthonormal columns with an equal span, without nearly vanishing directions."""
     left, size, _ = np.linalg.svd(
         columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300), full_matrices=False
     )
@@ -177,14 +179,15 @@ def _orthogonal(columns: FloatArray) -> FloatArray:
 
 
 def _told_by(instruments: FloatArray | None, columns: FloatArray) -> FloatArray:
-    """The part of the columns that lies in the instruments' span; all of it without any."""
+    """Return the projection of the columns on the instruments' span; the columns themselves without
+    instruments."""
     return columns if instruments is None else np.asarray(instruments @ (instruments.T @ columns))
 
 
 def _judge(
     lag: float, lag_std: float, scale: float, scale_std: float, explained: float
 ) -> tuple[Finding, str]:
-    """The finding in a word and in a sentence."""
+    """Return the finding as a word and as a sentence."""
     if explained < 0.7:
         share = 100 * max(explained, 0.0)
         return "inconsistent", (
@@ -206,9 +209,9 @@ def _judge(
 
 
 def combine(checks: Sequence[KinematicCheck]) -> KinematicCheck:
-    """One check for the aircraft from those of its manoeuvres: means weighted by their errors.
+    """Return one check for the aircraft from those of its manoeuvres, by means weighted with their errors.
 
-    The scatter between manoeuvres widens the error where it exceeds what each claims.
+    Scatter between manoeuvres that exceeds their stated errors widens the error.
     """
     offset = mean_offset([c.offset for c in checks])
     usable = [c for c in checks if c.possible and np.isfinite(c.lag_std_s) and c.lag_std_s > 0.0]

@@ -1,4 +1,4 @@
-"""A manoeuvre: the stretch of flight that one estimate is made from."""
+"""A manoeuvre: the stretch of flight behind one estimate."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -12,39 +12,41 @@ InputKind = Literal["3-2-1-1", "reverse 3-2-1-1", "doublet", "pulse", "multisine
 
 @dataclass(frozen=True, slots=True)
 class Span:
-    """Where a manoeuvre lies in the stream of elevator samples, as the segmenter found it."""
+    """Extent of a manoeuvre in the stream of elevator samples, as the segmenter found it."""
 
     record_from_s: float
-    """First stamp of the record: the lead-in before the first step, used by the fit."""
+    """First stamp of the record, s. The record begins with a lead-in before the first step, which the fit
+    uses."""
     start_s: float
-    """Onset of the first elevator step."""
+    """Onset of the first elevator step, s."""
     last_step_s: float
-    """Onset of the last elevator step (the return to trim)."""
+    """Onset of the last elevator step (the return to trim), s."""
     end_s: float
-    """End of the free response; last stamp of the record."""
+    """End of the free response and last stamp of the record, s."""
     kind: InputKind
     steps: tuple[tuple[float, float], ...]
-    """The input as told apart: (onset s, level in rad from trim), one a step."""
+    """Steps of the input: (onset in s, level in rad from trim) for each."""
     closed_by: str
-    """Why it ended: ``quiet``, ``mode change``, ``next input``, ``gap``, ``end of log``, ``no rest``;
-    or who marked it: ``marked by hand``, ``marked by a switch``, ``marked by a text of the vehicle``."""
+    """Reason of the end: ``quiet``, ``mode change``, ``next input``, ``gap``, ``end of log`` or ``no rest``.
+    A marked stretch has ``marked by hand``, ``marked by a switch`` or ``marked by a text of the vehicle``."""
 
 
 @dataclass(frozen=True, slots=True)
 class Maneuver:
-    """A span with its data. ``channels`` holds at least ``elevator``; every channel at its own stamps."""
+    """A span with its data. ``channels`` holds at least ``elevator``, and every channel keeps its own
+    stamps."""
 
     number: int
     boot: int
-    """Which power-on of the vehicle, 0 for the first in the log or link."""
+    """Number of the vehicle's power-on, 0 for the first in the log or link."""
     span: Span
     channels: Mapping[str, Channel]
     mode: str = ""
-    """Flight mode in which it was flown, as the autopilot names or numbers it."""
+    """Flight mode of the manoeuvre, by the autopilot's name or number."""
     distrusts: tuple[Distrust, ...] = ()
-    """Channels that cannot be right. A specific force that stands still is not in ``channels``."""
+    """Channels that cannot be right. A frozen specific force is left out of ``channels``."""
     flight: int = 0
-    """Which log or link of the campaign the record is of, 0 for the first."""
+    """Number of the campaign's log or link, 0 for the first."""
 
     @property
     def power_on(self) -> tuple[int, int]:
@@ -52,7 +54,7 @@ class Maneuver:
         return self.flight, self.boot
 
     def later(self, by_s: float) -> "Maneuver":
-        """The same on a clock that shows ``by_s`` more."""
+        """Return the manoeuvre with all times ``by_s`` later."""
         span = replace(
             self.span,
             record_from_s=self.span.record_from_s + by_s,

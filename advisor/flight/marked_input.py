@@ -1,4 +1,4 @@
-"""The input within a marked stretch: its kind and its steps, as the finder describes them."""
+"""The input within a marked stretch: its kind and its steps, in the finder's form."""
 
 from advisor.flight.maneuver import Span
 from advisor.flight.marks import Mark
@@ -8,28 +8,28 @@ from advisor.flight.rest import SMALLEST_RAD, is_still, median, without_spikes
 from advisor.flight.segmentation import LEAD_IN_S
 
 MARKED = {"hand": "marked by hand", "switch": "marked by a switch", "text": "marked by a text of the vehicle"}
-"""Why the span of a marked stretch ended, by who or what marked it."""
+"""Kind of marker to the reason of the end of a marked stretch."""
 _RESTING_S = 0.5
-"""The end of a mark counts as rest over this time, s."""
+"""Time before the end of a mark that counts as rest, s."""
 _BEFORE_S = 0.3
-"""The level before the input is that of so much before the mark, s."""
+"""Time before a mark that gives the level before the input, s."""
 
 
 def marked_span(mark: Mark, elevator: Channel | None) -> Span:
-    """The span of a marked stretch.
+    """Return the span of a marked stretch.
 
     Parameters
     ----------
     mark
-        The stretch, in seconds since boot.
+        Marked stretch, in seconds since boot.
     elevator
-        The elevator from one lead-in before the mark until its end, rad; None where it was not heard.
+        Elevator from one lead-in before the mark to its end, rad. None where not received.
 
     Returns
     -------
     Span
-        Its record begins up to one lead-in before the mark, where the elevator was heard by then. An elevator
-        that keeps still has no step: what such a mark lacks is an input, not a free response.
+        Span whose record begins up to one lead-in before the mark. A still elevator has no step, so that
+        such a mark lacks an input and not a free response.
     """
     if elevator is None:
         return Span(mark.start_s, mark.start_s, mark.end_s, mark.end_s, "other", (), MARKED[mark.by])
@@ -49,7 +49,7 @@ def marked_span(mark: Mark, elevator: Channel | None) -> Span:
 
 
 def _input(mark: Mark, elevator: Channel) -> Movement | None:
-    """What the elevator does within the mark; None where it keeps still."""
+    """Return the movement of the elevator within the mark; None for a still elevator."""
     within = elevator.cut(mark.start_s, mark.end_s)
     if len(within) < 3:
         return None

@@ -1,4 +1,4 @@
-"""What a crew marks manoeuvres with in flight: a switch of the transmitter, or texts of the vehicle."""
+"""Markers of manoeuvres in flight: a switch of the transmitter, or texts of the vehicle."""
 
 from collections.abc import Iterator
 
@@ -11,13 +11,14 @@ from advisor.flight.messages import Columns, FloatArray
 HEARD = ("RC_CHANNELS", "STATUSTEXT")
 """Messages that may hold a mark."""
 _SYSTEM_ID = (b"SystemID Starting", b"SystemID stopped")
-"""What ArduPlane says when its system identification begins and ends (``AP_SystemID`` of ArduPlane)."""
+"""Texts that ArduPlane sends when its system identification begins and ends (``AP_SystemID`` of
+ArduPlane)."""
 _NO_PULSE_US = (0, 65535)
 """Values of a channel that the receiver does not have (RC_CHANNELS, MAVLink common.xml)."""
 
 
 class MarkerWatch:
-    """Finds where a switch or a text begins or ends a mark, message by message."""
+    """Finds the beginnings and ends of marks by a switch or by texts, message by message."""
 
     def __init__(self, markers: Markers) -> None:
         self._markers = markers
@@ -28,18 +29,18 @@ class MarkerWatch:
         self._is_on = False
 
     def start_boot(self) -> None:
-        """Another power-on begins; the switch counts as off until it is heard."""
+        """Begin another power-on. The switch counts as off until it is heard."""
         self._is_on = False
 
     def heard(self, columns: Columns, t: FloatArray) -> Iterator[Switched]:
-        """The beginnings and ends of marks in messages of one type.
+        """Yield the beginnings and ends of marks in messages of one type.
 
         Parameters
         ----------
         columns
             Messages of a type in ``HEARD``, in order of arrival.
         t
-            Shape (n,), vehicle time of each message, s since boot; NaN where it is not known.
+            Shape (n,), vehicle time of each message, s since boot. NaN where unknown.
         """
         if columns.name == "STATUSTEXT":
             yield from self._texts_heard(columns, t)
@@ -60,7 +61,8 @@ class MarkerWatch:
             if not np.isfinite(t[i]):
                 continue
             for begins, ends in self._texts:
-                # The end first: the text that begins a mark may be how the other one begins.
+                # The end comes first, because the text that begins a mark may have the other text as its
+                # beginning.
                 said = [on for on, text in ((False, ends), (True, begins)) if raw.startswith(text)]
                 if said:
                     yield Switched(int(columns.order[i]), float(t[i]), "text", said[0])

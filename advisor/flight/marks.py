@@ -1,7 +1,7 @@
-"""Stretches of flight that somebody marks as manoeuvres: by hand, by a switch, by a text of the vehicle.
+"""Stretches of flight marked as manoeuvres: by hand, by a switch, or by a text of the vehicle.
 
-A mark takes the place of every input that the finder finds in its stretch. A mark that an engineer makes
-while the stream runs gives the manoeuvre that the same mark gives when it is known before the stream begins.
+A mark replaces every input that the finder finds in its stretch. A mark set while the stream runs gives the
+manoeuvre that results when the mark is known before the stream begins.
 """
 
 from collections.abc import Iterable, Sequence
@@ -13,38 +13,40 @@ import numpy as np
 from advisor.flight.events import Notice
 from advisor.flight.maneuver import Span
 from advisor.problems import Problem
+from advisor.vehicle_time import between, clock
 
 Marker = Literal["hand", "switch", "text"]
 
 LONGEST_S = 100.0
-"""Longest mark, s: with its lead-in a mark must fit into the two minutes of channels that a stream keeps."""
+"""Longest mark, s. With its lead-in a mark must fit into the two minutes of channels that a stream keeps."""
 MARK_NOTICES = frozenset({"mark_length", "marked_already", "mark_dropped"})
-"""Codes of the notices that tell of a mark that cannot be used."""
+"""Codes of the notices on marks that cannot be used."""
 EDGE_S = 2.0
-"""A mark may reach so far beyond the log, s: a power cut robs a recording of its last second."""
+"""Largest distance by which a mark may exceed the log, s. A power cut loses the last second of a
+recording."""
 
 
 @dataclass(frozen=True, slots=True)
 class Mark:
-    """A stretch of flight that somebody calls a manoeuvre."""
+    """A stretch of flight marked as a manoeuvre."""
 
     start_s: float
-    """Where the stretch begins, s since boot."""
+    """Begin of the stretch, s since boot."""
     end_s: float
-    """Where the stretch ends, s since boot."""
+    """End of the stretch, s since boot."""
     boot: int | None = None
-    """Which power-on, 0 for the first in the log; None: the first that holds the stretch."""
+    """Number of the power-on, 0 for the first in the log. None: the first power-on that holds the stretch."""
     from_log_start: bool = False
-    """Whether the times count from the first sample of the log instead of from the boot."""
+    """Whether the times count from the first sample of the log, not from the boot."""
     by: Marker = "hand"
-    """Who or what set the mark."""
+    """Source of the mark."""
     name: str = "A mark"
-    """What a sentence about the mark begins with."""
+    """Beginning of a sentence about the mark."""
     flight: int = 0
-    """Which log or link of the campaign, 0 for the first."""
+    """Number of the campaign's log or link, 0 for the first."""
 
     def overlaps(self, start_s: float, end_s: float) -> bool:
-        """Whether the mark shares time with a stretch of the same power-on."""
+        """Return whether the mark shares time with a stretch of its power-on."""
         return self.start_s < end_s and start_s < self.end_s
 
 
@@ -58,23 +60,24 @@ class Switched:
     """Vehicle time, s since boot."""
     by: Marker
     on: bool
-    """Whether a mark begins; else it ends."""
+    """Whether a mark begins. False: a mark ends."""
 
 
 @dataclass(frozen=True, slots=True)
 class Due:
-    """What the marks of a stream have made known."""
+    """Marks, spans and notices that have become final."""
 
     marks: tuple[Mark, ...] = ()
     """Complete marks in seconds since boot, the one that ended first before the others."""
     spans: tuple[tuple[Span, int | None], ...] = ()
-    """Spans of the finder that an open mark held back and none has taken, each with its order of arrival."""
+    """Spans of the finder that an open mark held back and no mark has replaced, each with its order of
+    arrival."""
     notices: tuple[Notice, ...] = ()
     """Sentences on marks that cannot be used."""
 
 
 class Marks:
-    """The marks of one stream: which of them are complete, and which spans of the finder give way.
+    """The marks of one stream: the complete ones, and the spans of the finder that they replace.
 
     Parameters
     ----------
@@ -88,7 +91,7 @@ class Marks:
         self.start_boot(0, 0.0)
 
     def start_boot(self, boot: int, earlier_s: float) -> None:
-        """Another power-on begins, after ``earlier_s`` seconds of the log."""
+        """Begin another power-on, after ``earlier_s`` seconds of the log."""
         self._boot, self._earlier_s = boot, earlier_s
         self._first_s = np.nan
         self._switched: list[Switched] = []
@@ -99,7 +102,7 @@ class Marks:
         self._notices: list[Notice] = []
 
     def start_clock(self, first_s: float) -> None:
-        """The vehicle's clock showed ``first_s``, s since boot, when this power-on was first heard."""
+        """Take the first reading of this power-on's clock, ``first_s`` since boot."""
         self._first_s = first_s
         for mark in tuple(self._given):
             by_s = first_s - self._earlier_s if mark.from_log_start else 0.0
@@ -115,15 +118,15 @@ class Marks:
                 self._waiting[here] = mark
 
     def hear(self, switched: Iterable[Switched]) -> None:
-        """Take what a switch or the texts of the vehicle say, messages of one type in order of arrival."""
+        """Take switches or texts of one message type, in order of arrival."""
         self._switched = sorted([*self._switched, *switched], key=lambda one: one.order)
 
     def begin_by_hand(self, at_s: float) -> None:
-        """Begin a mark; a mark that is open already is dropped."""
+        """Begin a mark. A mark that is already open is dropped."""
         self._open["hand"] = at_s
 
     def end_by_hand(self, at_s: float) -> Mark | Notice:
-        """End the open mark; a notice says why that is not possible."""
+        """End the open mark, or return a notice with the reason why that is impossible."""
         if "hand" not in self._open:
             return Notice("no_mark", "No mark is open: begin one first.")
         mark = Mark(self._open.pop("hand"), at_s, self._boot)
@@ -134,16 +137,16 @@ class Marks:
 
     @property
     def by_hand_since_s(self) -> float | None:
-        """When the mark began that a hand has still to end, s since boot; None without one."""
+        """Begin of the open mark by hand, s since boot. None without one."""
         return self._open.get("hand")
 
     def since_s(self, now_s: float) -> float | None:
-        """When the mark that is being flown at ``now_s`` began, s since boot; None between marks."""
+        """Return the begin of the mark that is open at ``now_s``, s since boot; None between marks."""
         begun = [m.start_s for m in self._waiting if m.start_s <= now_s <= m.end_s]
         return min([*begun, *self._open.values()], default=None)
 
     def advance(self, order: int) -> None:
-        """Everything that arrived before ``order`` has been heard."""
+        """Note that everything that arrived before ``order`` has been heard."""
         while self._switched and self._switched[0].order <= order:
             switched = self._switched.pop(0)
             if switched.on:
@@ -152,9 +155,9 @@ class Marks:
                 self._close(switched.by, switched.at_s)
 
     def hides(self, span: Span, order: int | None) -> bool:
-        """Whether a span of the finder gives way to a mark, or waits for the end of an open one.
+        """Return whether a mark replaces a span of the finder, or an open mark may still do so.
 
-        A mark takes the place of the inputs that it touches, not of an input whose free response it ends.
+        A mark replaces the inputs that it touches, but not an input whose free response it ends.
         """
         if any(m.overlaps(span.start_s, span.last_step_s) for m in (*self._waiting, *self._closed)):
             return True
@@ -164,26 +167,29 @@ class Marks:
         return waits
 
     def before(self, span: Span) -> Span:
-        """The span of an input outside of all marks, its free response ended where a mark begins."""
+        """Return the span of an input outside of all marks, with its free response ended where a mark
+        begins."""
         begin_s = [m.start_s for m in (*self._waiting, *self._closed)]
         within = [at_s for at_s in begin_s if span.last_step_s <= at_s < span.end_s]
         return replace(span, end_s=min(within), closed_by="next input") if within else span
 
     def due(self, arrived_s: float) -> Due:
-        """What is complete when every channel has arrived up to ``arrived_s``, s since boot."""
+        """Return the final marks and spans when every channel has arrived up to ``arrived_s``, s since
+        boot."""
         ready = [m for m in self._waiting if m.end_s <= arrived_s]
         return self._due(ready) if ready or self._held or self._notices else Due()
 
     def finish(self, last_s: float) -> Due:
-        """The power-on ends at ``last_s``, s since boot: a switch that is on ends its mark there.
+        """Return the final marks and spans at the end of the power-on at ``last_s``, s since boot. A switch
+        that is on ends its mark there.
 
-        What a hand has begun and not ended is dropped.
+        A mark by hand that has not ended is dropped.
         """
         self.advance(self._switched[-1].order if self._switched else 0)
         begun_s = self._open.pop("hand", None)
         if begun_s is not None:
             said = "is dropped: the vehicle's clock began anew before its end."
-            self._notices.append(Notice("mark_dropped", f"The mark begun at {begun_s:.1f} s {said}"))
+            self._notices.append(Notice("mark_dropped", f"The mark begun at {clock(begun_s)} {said}"))
         for by in tuple(self._open):
             self._close(by, last_s)
         self._heard.append((self._first_s, last_s))
@@ -211,9 +217,9 @@ class Marks:
             self._notices.append(refused)
 
     def _refused(self, mark: Mark) -> Notice | None:
-        """Why a mark that has just ended cannot be used; None when it can."""
+        """Return the reason for which a mark that has just ended cannot be used; None for a usable mark."""
         length_s = mark.end_s - mark.start_s
-        where = f"The mark from {mark.start_s:.1f} to {mark.end_s:.1f} s"
+        where = f"The mark from {between(mark.start_s, mark.end_s)}"
         if not 0.0 < length_s <= LONGEST_S:
             most = f"is {length_s:.1f} s long: a mark lasts more than 0 and at most {LONGEST_S:.0f} s."
             return Notice("mark_length", f"{where} {most}")
@@ -222,12 +228,12 @@ class Marks:
         if hand_s < mark.end_s:
             others.append(hand_s)
         if others:
-            said = f"another mark begins at {min(others):.1f} s and shares time with it."
+            said = f"another mark begins at {clock(min(others))} and shares time with it."
             return Notice("marked_already", f"{where} is left out: {said}")
         return None
 
     def problems(self) -> list[Problem]:
-        """Marks that no power-on of the whole stream holds."""
+        """Return a problem for each mark that no power-on of the whole stream holds."""
         heard = " and ".join(f"{a:.1f} to {b:.1f} s" for a, b in self._heard if np.isfinite(a))
         return [
             Problem(

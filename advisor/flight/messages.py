@@ -1,4 +1,4 @@
-"""Decoded MAVLink messages as columns: what the core is fed with."""
+"""Decoded MAVLink messages as columns, the input of the core."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -17,8 +17,7 @@ IntArray = NDArray[np.int64]
 class Columns:
     """Messages of one type from one system, in their order of arrival.
 
-    A log and a live link both end here, so whatever consumes columns cannot
-    tell replay from live.
+    A log and a live link both end in columns, so that no consumer can distinguish replay from live.
     """
 
     name: str
@@ -30,27 +29,27 @@ class Columns:
     order: IntArray
     """Shape (n,). Arrival index in the whole stream: strictly increasing over all types."""
     arrival_s: FloatArray
-    """Shape (n,). Host time of arrival, seconds since 1970; orders things, never enters dynamics."""
+    """Shape (n,). Host time of arrival, seconds since 1970. It gives an order and never enters dynamics."""
     fields: Mapping[str, NDArray[Any]]
     """Field name to raw values, shape (n,) or (n, k), in the units of the message definition.
     Text fields are arrays of ``bytes`` (NumPy kind ``S``)."""
     carrier: Carrier = "telemetry"
-    """What brings the messages. Only the words about the vehicle depend on this, as its heartbeat has it."""
+    """Source of the messages. Only the sentences about the vehicle depend on the source."""
     flight: int = 0
-    """Which log or link of a campaign the messages are of, 0 for the first; ``order`` rises within it."""
+    """Number of the campaign's log or link, 0 for the first. ``order`` rises within it."""
 
     def __len__(self) -> int:
         return len(self.order)
 
 
 def arrivals(columns: Columns, order: IntArray) -> FloatArray:
-    """Host time at which the messages with these arrival indices came, shape of ``order``."""
+    """Return the host times of arrival for these arrival indices, in the shape of ``order``."""
     times: FloatArray = columns.arrival_s[np.searchsorted(columns.order, order)]
     return times
 
 
 def cut(columns: Columns, rows: NDArray[np.bool_] | slice) -> Columns:
-    """Some of the messages of one type, in their order of arrival."""
+    """Return the given rows of a column set, in their order of arrival."""
     return replace(
         columns,
         order=columns.order[rows],

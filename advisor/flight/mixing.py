@@ -1,28 +1,28 @@
-"""Elevator samples out of several outputs, each counted the way in which the aircraft answers to it.
+"""Elevator samples from several outputs, each with the sign of the aircraft's answer.
 
-Where neither a calibration nor a parameter tells the sense of an output, adding outputs could cancel
-them. Their samples then wait until the pitch rate has told, at most a minute of the vehicle's clock.
-All is decided in the order of arrival, so that live and replay decide at the same sample.
+Where neither a calibration nor a parameter gives the sign of an output, adding outputs could cancel them.
+Their samples then wait, at most a minute of the vehicle's clock, until the pitch rate has shown the signs.
+All decisions follow the order of arrival, so that live and replay decide at one sample.
 """
 
 from collections.abc import Iterator
 
 import numpy as np
 
-from advisor.flight.answer import answers
 from advisor.flight.channels import Decoded
 from advisor.flight.commanded import Commanded, joined
 from advisor.flight.events import Notice
+from advisor.flight.output_signs import pitch_signs
 from advisor.flight.surfaces import Surface, joined_numbers
 from advisor.flight.tracks import Tracks
 from advisor.problems import Problem
 
 _WINDOW_S = 15.0
-"""The answer is looked for in so much of the newest flight: a test input of a slow aircraft."""
+"""Length of the newest flight in which the answer is sought, s: a test input of a slow aircraft."""
 _EVERY_S = 1.0
-"""... once in this time."""
+"""Time between two searches for the answer, s."""
 _WAIT_S = 60.0
-"""Longest time that samples wait for the answer: half of what the channels keep."""
+"""Longest time that samples wait for the answer, s: half of the time that the channels keep."""
 _CHECK_SIGNS = (
     "Check the signs of the calibrations in elevator.outputs: a deflection that lowers the nose is positive."
 )
@@ -34,7 +34,7 @@ class Mixing:
     Parameters
     ----------
     tracks
-        The vehicle's channels.
+        Channels of the vehicle.
     """
 
     def __init__(self, tracks: Tracks) -> None:
@@ -42,18 +42,18 @@ class Mixing:
         self._lifts: dict[int, bool] = {}
         self._answered = ""
         self.contradiction: Problem | None = None
-        """What is wrong where the signs of the aircraft file make the outputs cancel; else None."""
+        """Problem where the signs of the aircraft file make the outputs cancel; else None."""
         self.begin()
 
     def begin(self) -> None:
-        """Another power-on of the vehicle."""
+        """Begin another power-on of the vehicle."""
         self._recent: list[Commanded] = []
         self._waiting: list[Commanded] = []
         self._next_s = -np.inf
         self._open_since_s = -np.inf
 
     def said(self, surface: Surface) -> str:
-        """What is known of the sense of several outputs, in a sentence; empty where nothing is in doubt."""
+        """Return a sentence on the known signs of several outputs; empty where nothing is in doubt."""
         if self._answered or not surface.unsure:
             return self._answered
         listed = joined_numbers(surface.unsure)
@@ -61,14 +61,14 @@ class Mixing:
         return f"Nothing says which way {moves} the nose; the aircraft's answer in MANUAL decides."
 
     def take(self, new: Commanded, loop_is_closed: bool) -> Iterator[Decoded | Notice]:
-        """The elevator's samples that are known by now, and what was found out on the way.
+        """Yield the elevator's samples with known signs, and notices on the signs.
 
         Parameters
         ----------
         new
             Newest samples of the outputs.
         loop_is_closed
-            Whether an autopilot moves the elevator by itself, so that its movements answer the pitch rate.
+            Whether an autopilot closes a loop, so that the elevator answers the pitch rate.
         """
         surface = new.surface
         if self._waiting and self._waiting[0].surface != surface:
@@ -87,23 +87,23 @@ class Mixing:
                 yield from self._given_up(float(piece.t[-1]) - _WAIT_S)
 
     def finish(self) -> list[Decoded]:
-        """All that wait, each output with the sign that is known by now."""
+        """Return all waiting samples, each output with its present sign."""
         if not self._waiting:
             return []
         waiting, self._waiting = joined(self._waiting), []
         return [waiting.combined(self._turned(waiting.surface))]
 
     def _is_settled(self, surface: Surface) -> bool:
-        """Whether an answer could neither decide nor contradict any more."""
+        """Return whether an answer could neither decide nor contradict the signs any more."""
         is_asked = len(surface.parts) > 1 and (surface.calibrated or surface.unsure)
         return not is_asked or all(n in self._lifts for n in surface.outputs)
 
     def _turned(self, surface: Surface) -> list[int]:
-        """Outputs that count with the other sign: only where nothing else tells the sense of all."""
+        """Return outputs whose sign is reversed, only where no other source gives the signs of all."""
         return [n for n in surface.outputs if self._lifts.get(n, False)] if surface.unsure else []
 
     def _pieces(self, new: Commanded) -> Iterator[tuple[Commanded, bool]]:
-        """The samples up to each time at which the answer is looked for, and whether it is due."""
+        """Yield the samples up to each time at which the answer is sought, and whether a search is due."""
         start = 0
         while start < len(new.t):
             late = np.flatnonzero(new.t[start:] >= self._next_s)
@@ -114,7 +114,7 @@ class Mixing:
             start = stop
 
     def _given_up(self, before_s: float) -> list[Decoded]:
-        """What has waited too long."""
+        """Return the samples that have waited too long."""
         waiting = joined(self._waiting)
         old = waiting.t < before_s
         self._waiting = [waiting.rows(~old)]
@@ -132,7 +132,7 @@ class Mixing:
         q, alpha = (self._tracks.cut(name, t[0], t[-1], int(window.order[-1])) for name in ("q", "alpha"))
         if q is not None:
             shares = [part.share for part in surface.parts]
-            told = answers(t, window.angles[first], shares, q, alpha, singly=bool(surface.unsure))
+            told = pitch_signs(t, window.angles[first], shares, q, alpha, singly=bool(surface.unsure))
             for n, lifts in zip(surface.outputs, told, strict=True):
                 if lifts is not None:
                     self._lifts.setdefault(n, lifts)

@@ -1,4 +1,4 @@
-"""Flight modes: the names that the autopilot's users know, and who moves the elevator in them."""
+"""Flight modes: their names for the autopilot's users, and who moves the elevator in them."""
 
 _PLANE = {
     0: "MANUAL", 1: "CIRCLE", 2: "STABILIZE", 3: "TRAINING", 4: "ACRO", 5: "FBWA", 6: "FBWB", 7: "CRUISE",
@@ -6,32 +6,32 @@ _PLANE = {
     16: "INITIALISING", 17: "QSTABILIZE", 18: "QHOVER", 19: "QLOITER", 20: "QLAND", 21: "QRTL",
     22: "QAUTOTUNE", 23: "QACRO", 24: "THERMAL", 25: "LOITER_ALT_QLAND", 26: "AUTOLAND",
 }  # fmt: skip
-"""ArduPlane's ``mode.h``."""
+"""Custom mode to its name (ArduPlane's ``mode.h``)."""
 _COPTER = {
     0: "STABILIZE", 1: "ACRO", 2: "ALT_HOLD", 3: "AUTO", 4: "GUIDED", 5: "LOITER", 6: "RTL", 7: "CIRCLE",
     9: "LAND", 11: "DRIFT", 13: "SPORT", 14: "FLIP", 15: "AUTOTUNE", 16: "POSHOLD", 17: "BRAKE", 18: "THROW",
     19: "AVOID_ADSB", 20: "GUIDED_NOGPS", 21: "SMART_RTL", 22: "FLOWHOLD", 23: "FOLLOW", 24: "ZIGZAG",
     25: "SYSTEMID", 26: "AUTOROTATE", 27: "AUTO_RTL",
 }  # fmt: skip
-"""ArduCopter's ``mode.h``."""
+"""Custom mode to its name (ArduCopter's ``mode.h``)."""
 _PX4 = {
     1: "Manual", 2: "Altitude", 3: "Position", 4: "Auto", 5: "Acro", 6: "Offboard", 7: "Stabilized",
     8: "Rattitude", 10: "Termination", 11: "Altitude Cruise",
 }  # fmt: skip
-"""Main modes of PX4's ``px4_custom_mode.h``."""
+"""Main mode to its name (PX4's ``px4_custom_mode.h``)."""
 _PX4_SUB = {
     (3, 1): "Orbit", (3, 2): "Position Slow", (4, 1): "Ready", (4, 2): "Takeoff", (4, 3): "Hold",
     (4, 4): "Mission", (4, 5): "Return", (4, 6): "Land", (4, 8): "Follow Me", (4, 9): "Precision Land",
     (4, 10): "VTOL Takeoff",
 }  # fmt: skip
-"""Sub modes of Position and Auto by main and sub mode."""
+"""Main and sub mode to the name, for Position and Auto."""
 _MANUAL = frozenset({_PLANE[0], _PX4[1]})
 _KNOWN = frozenset({*_PLANE.values(), *_COPTER.values(), *_PX4.values(), *_PX4_SUB.values()})
 _ERRANDS = frozenset({
     "TAKEOFF", "RTL", "CIRCLE", "THERMAL", "AVOID_ADSB", "AUTOLAND",
     "Takeoff", "VTOL Takeoff", "Return", "Land", "Precision Land", "Orbit", "Follow Me", "Termination",
 })  # fmt: skip
-"""Modes in which the autopilot has an errand of its own: nobody flies or injects a test input there."""
+"""Modes in which the autopilot has a task of its own, so that nobody flies or injects a test input."""
 _HOVER = ", hovering"
 _HOVERING = frozenset(name for name in _PLANE.values() if name.startswith("Q") or name.endswith("QLAND"))
 _COPTERS = frozenset({2, 3, 4, 13, 14, 15, 29, 35})
@@ -39,7 +39,7 @@ _COPTERS = frozenset({2, 3, 4, 13, 14, 15, 29, 35})
 
 
 def mode_name(autopilot: str, kind: int, custom: int) -> str:
-    """Flight mode as the autopilot's users know it; an unknown number is shown as it is.
+    """Return the flight mode's name for the autopilot's users, or its number where unknown.
 
     Parameters
     ----------
@@ -48,8 +48,8 @@ def mode_name(autopilot: str, kind: int, custom: int) -> str:
     kind
         MAV_TYPE.
     custom
-        HEARTBEAT.custom_mode: ArduPilot's number of the mode; PX4 has the main mode in bits 16 to 23 and the
-        sub mode in bits 24 to 31.
+        HEARTBEAT.custom_mode. ArduPilot sends the number of the mode. PX4 sends the main mode in bits 16 to
+        23 and the sub mode in bits 24 to 31.
     """
     names: dict[int, str] = {}
     if autopilot == "ardupilot":
@@ -61,28 +61,28 @@ def mode_name(autopilot: str, kind: int, custom: int) -> str:
 
 
 def in_hover(mode: str) -> str:
-    """The mode of a VTOL aircraft whose rotors carry it."""
+    """Return the mode's name with the addition that rotors carry the VTOL aircraft."""
     return mode + _HOVER
 
 
 def hovers(mode: str) -> bool:
-    """Whether rotors carry the aircraft in this mode, as far as the mode is known."""
+    """Return whether rotors carry the aircraft in this mode; False for an unknown mode."""
     return mode in _HOVERING or mode.endswith(_HOVER)
 
 
 def is_manual(mode: str) -> bool:
-    """Whether the pilot moves the elevator directly in this mode."""
+    """Return whether the pilot moves the elevator directly in this mode."""
     return mode in _MANUAL
 
 
 def closes_pitch_loop(mode: str) -> bool:
-    """Whether the autopilot moves the elevator by itself in this mode, as far as the mode is known.
+    """Return whether the autopilot closes a pitch loop in this mode; False for an unknown mode.
 
-    Elevator, angle of attack and pitch rate are then correlated by the loop.
+    The loop correlates elevator, angle of attack and pitch rate.
     """
     return hovers(mode) or (mode in _KNOWN - {"INITIALISING"} and not is_manual(mode))
 
 
 def has_an_errand(mode: str) -> bool:
-    """Whether the autopilot takes off, lands, returns, circles or hovers by itself in this mode."""
+    """Return whether the autopilot takes off, lands, returns, circles or hovers in this mode."""
     return mode in _ERRANDS or hovers(mode)

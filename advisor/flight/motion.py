@@ -1,4 +1,4 @@
-"""What holds for any aircraft, whatever its aerodynamics: gravity, and how the speed changes."""
+"""Motion of any aircraft, whatever its aerodynamics: gravity, and the rate of the speed."""
 
 from collections.abc import Mapping
 
@@ -10,16 +10,16 @@ from advisor.standard_gravity import GRAVITY_M_S2
 
 
 def bank_at(t: FloatArray, channels: Mapping[str, Channel]) -> FloatArray:
-    """Bank angle at times ``t`` in s, shape (n,), rad; level where it was not logged."""
+    """Return the bank angle at times ``t`` in s, shape (n,), rad; zero where the log has none."""
     bank = channels.get("bank")
     return np.zeros(len(t)) if bank is None or len(bank) == 0 else np.interp(t, bank.t, bank.y)
 
 
 def gravity_in_plane(theta: FloatArray, bank: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Gravity in the aircraft's plane of symmetry: where up is in it, and how large it is.
+    """Return gravity in the aircraft's plane of symmetry: the direction of up, and the size.
 
-    In a bank the rest pulls sideways. Along the path it is −size · sin(up − α), across it size · cos(up − α);
-    with level wings ``up`` is the pitch angle.
+    In a bank the other component pulls sideways. Along the path gravity is −size · sin(up − α), across it
+    size · cos(up − α). With level wings ``up`` is the pitch angle.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def gravity_in_plane(theta: FloatArray, bank: FloatArray) -> tuple[FloatArray, F
 def path_turning(
     a_x: FloatArray, a_z: FloatArray, theta: FloatArray, alpha: FloatArray, bank: FloatArray
 ) -> FloatArray:
-    """Specific force and gravity across the path, down, m/s²: over the speed, what α̇ has beyond q.
+    """Return specific force and gravity across the path, down, m/s². Divided by the speed, the sum is α̇ − q.
 
     a_z cos α − a_x sin α + g cos γ; specific force in m/s², angles in rad, all of shape (n,).
     """
@@ -51,7 +51,7 @@ def path_turning(
 def speed_rate(
     a_x: FloatArray, a_z: FloatArray, theta: FloatArray, alpha: FloatArray, bank: FloatArray
 ) -> FloatArray:
-    """Rate of the speed, m/s², that the accelerometers know of: in air that moves steadily.
+    """Return the rate of the speed by the accelerometers, m/s², valid in steadily moving air.
 
     V̇ = a_x cos α + a_z sin α − g sin γ; specific force in m/s², angles in rad, all of shape (n,).
     """
@@ -60,14 +60,14 @@ def speed_rate(
 
 
 def speed_rate_at(t: FloatArray, channels: Mapping[str, Channel]) -> FloatArray:
-    """Rate of the speed, m/s², as the channels a_x, a_z, theta, alpha and bank show it.
+    """Return the rate of the speed, m/s², from the channels a_x, a_z, theta, alpha and bank.
 
     Parameters
     ----------
     t
         Shape (n,), s.
     channels
-        All but the bank are needed.
+        Channels by name. All but the bank are needed.
     """
     a_x, a_z, theta, alpha = (
         np.interp(t, channels[name].t, channels[name].y) for name in ("a_x", "a_z", "theta", "alpha")
@@ -76,6 +76,6 @@ def speed_rate_at(t: FloatArray, channels: Mapping[str, Channel]) -> FloatArray:
 
 
 def integrated(t: FloatArray, rate: FloatArray) -> FloatArray:
-    """Running integral by trapezoids over stamps ``t`` in s, shape (n,), 0 at the first."""
+    """Return the running integral by trapezoids over stamps ``t`` in s, shape (n,), 0 at the first."""
     total: FloatArray = np.concatenate(([0.0], np.cumsum(np.diff(t) * (rate[1:] + rate[:-1]) / 2.0)))
     return total

@@ -1,6 +1,6 @@
-"""A movement of the elevator described: where it begins and ends, its levels, and a name for it.
+"""Description of an elevator movement: its begin and end, its levels, and a name for the input.
 
-The name is a label. Whether a movement counts as a test input does not depend on it.
+The name is a label. A movement's acceptance as a test input does not depend on the name.
 """
 
 from dataclasses import dataclass
@@ -13,45 +13,46 @@ from advisor.flight.messages import FloatArray
 from advisor.flight.rest import median, without_spikes
 
 BAND = 0.3
-"""Within this share of its amplitude a movement counts as at trim."""
+"""Distance from trim, as a share of the amplitude, within which a movement counts as at trim."""
 _RETURNED = 0.45
-"""A rest this near to the level before is a trim that differs a little; a rest farther away is a step."""
+"""Largest distance between the rest after and the rest before, as a share of the amplitude, that counts as a
+return to trim. A farther rest is a step."""
 _LEAVING = 0.1
-"""A movement begins where the elevator leaves trim by this share of the amplitude for good."""
+"""Departure from trim, as a share of the amplitude, with which a movement begins."""
 _EDGE_S = 0.6
-"""A step is over after so long, s: hand-flown edges take 0.2 to 0.4."""
+"""Longest edge of a step, s. Hand-flown edges take 0.2 to 0.4."""
 _LEAST_LEVEL = 0.4
-"""A pattern of steps has no lobe smaller than this share of its largest."""
+"""Least lobe of a pattern of steps, as a share of its largest lobe."""
 _TIMING = 0.45
-"""Tolerance of the durations of a 3-2-1-1, in units of time: hand-flown ones differ by a third."""
+"""Tolerance of the durations of a 3-2-1-1, in units of time. Hand-flown ones differ by a third."""
 _ON_LEVEL = 0.4
-"""Least share of its time that an input of steps spends on its levels. Steps whose edges take half of
-their time spend half of it there, multisines a third."""
+"""Least share of its time that an input of steps spends on its levels. Steps whose edges take half of their
+time spend half on levels, multisines a third."""
 _SWEPT_LOBES = 5
-"""From so many lobes on, a movement without levels is called a multisine."""
+"""Fewest lobes of a movement without levels that is called a multisine."""
 
 
 @dataclass(frozen=True, slots=True)
 class Movement:
-    """What the elevator did between two rests."""
+    """Movement of the elevator between two rests."""
 
     kind: InputKind
     start_s: float
-    """The elevator leaves trim."""
+    """Time at which the elevator leaves trim, s."""
     last_step_s: float
-    """Onset of the last step: back to trim, or to the level that it then keeps."""
+    """Onset of the last step, s: back to trim, or to the level of the following rest."""
     over_s: float
-    """The elevator has arrived there."""
+    """Time at which the elevator reaches that rest, s."""
     trim: float
-    """Level afterwards, rad."""
+    """Level of that rest, rad."""
     amplitude: float
     """Largest deviation from the levels before and after, rad."""
     quiet: float
-    """Standard deviation in the rest after it, rad; 0 where none followed."""
+    """Standard deviation in the rest after the movement, rad; 0 where no rest followed."""
     steps: tuple[tuple[float, float], ...]
-    """(onset s, level in rad from trim), the last one back at trim."""
+    """Steps as (onset in s, level in rad from trim). The last one is back at trim."""
     is_stepped: bool
-    """The elevator spends a good part of the movement on levels."""
+    """Whether the elevator spends a good part of the movement on levels."""
 
 
 def describe(t: FloatArray, u: FloatArray, before: float, rest: FloatArray | None) -> Movement | None:
@@ -60,11 +61,11 @@ def describe(t: FloatArray, u: FloatArray, before: float, rest: FloatArray | Non
     Parameters
     ----------
     t, u
-        Shape (n,): stamps (s) and elevator (rad), from the rest before until now.
+        Shape (n,): stamps (s) and elevator (rad), from the earlier rest to the newest sample.
     before
-        Level of the rest before, rad.
+        Level of the earlier rest, rad.
     rest
-        Newest samples of ``u`` that are at rest; None where the movement was cut off.
+        Newest samples of ``u`` that are at rest. None where the movement was cut off.
 
     Returns
     -------
@@ -97,7 +98,8 @@ def describe(t: FloatArray, u: FloatArray, before: float, rest: FloatArray | Non
 def _steps(
     t: FloatArray, d: FloatArray, extent: tuple[int, int], amplitude: float, level: float, arrival_s: float
 ) -> tuple[tuple[float, float], ...]:
-    """The lobes on either side of trim as steps: onset where half of the way is done, level by the median.
+    """Return the lobes on either side of trim as steps, with onset at half of the way, and the median as
+    level.
 
     Parameters
     ----------
@@ -108,9 +110,9 @@ def _steps(
     amplitude
         Largest deviation, rad.
     level
-        Where the elevator rests at the end, rad from trim; 0 where it has returned.
+        Level of the rest at the end, rad from trim; 0 after a return.
     arrival_s
-        When it has come there, s.
+        Time at which the elevator reaches that rest, s.
     """
     first, last = extent
     out = np.flatnonzero(np.abs(d[first : last + 1]) > BAND * amplitude) + first
@@ -136,7 +138,7 @@ def _steps(
 
 
 def _name(t: FloatArray, steps: tuple[tuple[float, float], ...], is_stepped: bool) -> InputKind:
-    """What pilots call such an input."""
+    """Return the pilots' name of the input."""
     levels = np.array([level for _, level in steps[:-1]])
     lasting = np.diff([onset for onset, _ in steps])
     share = np.abs(levels) / max(float(np.max(np.abs(levels))), 1e-12)
@@ -156,7 +158,7 @@ def _name(t: FloatArray, steps: tuple[tuple[float, float], ...], is_stepped: boo
 
 
 def _is_stepped(t: FloatArray, d: FloatArray, steps: tuple[tuple[float, float], ...]) -> bool:
-    """Whether the elevator keeps to the levels between the steps, or passes through them."""
+    """Return whether the elevator stays on levels between the steps, or passes through them."""
     edges = np.searchsorted(t, [onset for onset, _ in steps])
     on = sum(
         int(np.count_nonzero(np.abs(d[i:j] - level) <= 0.12 * abs(level)))

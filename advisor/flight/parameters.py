@@ -1,4 +1,4 @@
-"""The parameters that vehicles and ground stations have stated, each decoded as its autopilot encodes it."""
+"""Parameters stated by vehicles and ground stations, each decoded as its autopilot encodes it."""
 
 from collections.abc import Iterator, Sequence
 from math import isfinite
@@ -14,38 +14,38 @@ _INTEGERS = frozenset(range(1, 7))
 _PREFIXES = (*ardupilot_wiring.PREFIXES, *px4_wiring.PREFIXES)
 
 Sender = tuple[int, int]
-"""System and component."""
+"""System id and component id of a sender."""
 Stated = tuple[float, float]
-"""A value as it reads where integers are converted to floating point, and where their bytes are put there."""
+"""A value in both readings: integers converted to floating point, and integers put there byte by byte."""
 
 
 def tells_of_outputs(name: str) -> bool:
-    """Whether a parameter is one of those that say what the servo outputs are."""
+    """Return whether a parameter describes the servo outputs."""
     return name.startswith(_PREFIXES)
 
 
 def names_in(columns: Columns) -> list[str]:
-    """Names of the parameters in PARAM_VALUE messages."""
+    """Return the names of the parameters in PARAM_VALUE messages."""
     return [raw.rstrip(b"\0").decode("ascii", "replace") for raw in columns.fields["param_id"].tolist()]
 
 
 def read_by(autopilot: str, stated: Stated) -> float:
-    """The value as this autopilot means it."""
+    """Return the value by this autopilot's encoding."""
     return stated[autopilot == "px4"]
 
 
 class Parameters:
-    """Keeps those parameters that say what the servo outputs are.
+    """Keeps the parameters that describe the servo outputs.
 
-    PARAM_VALUE carries every value in a field of floating point. ArduPilot converts integers to it; PX4 puts
-    their bytes there (MAVLink's parameter protocol, "C cast" and "bytewise").
+    PARAM_VALUE carries every value in a field of floating point. ArduPilot converts integers to floating
+    point; PX4 puts their bytes there (MAVLink's parameter protocol, "C cast" and "bytewise").
     """
 
     def __init__(self) -> None:
         self._known: dict[Sender, dict[str, Stated]] = {}
 
     def news(self, columns: Columns) -> Iterator[tuple[str, Stated | None, Stated]]:
-        """Name, value before and new value of the parameters that change what is known."""
+        """Yield name, earlier value and new value of each parameter that changes the known values."""
         cast = np.asarray(columns.fields["param_value"])
         kinds = np.broadcast_to(columns.fields.get("param_type", np.zeros(len(cast))), cast.shape)
         bytewise = cast.astype(np.float32).view(np.int32)
@@ -56,18 +56,18 @@ class Parameters:
                 yield name, before, stated
 
     def keep(self, sender: Sender, name: str, stated: Stated) -> None:
-        """From now on the sender's parameter has this value."""
+        """Keep a value as the sender's present one."""
         self._known.setdefault(sender, {})[name] = stated
 
     def wiring(self, senders: Sequence[Sender], autopilot: str) -> Wiring:
-        """What the parameters of these senders say of the outputs; the last sender wins.
+        """Return the roles and scales of the outputs by these senders' parameters. The last sender overrides.
 
         Parameters
         ----------
         senders
-            Systems and components that speak for the vehicle.
+            Systems and components that state the vehicle's parameters.
         autopilot
-            As the vehicle's identity names it.
+            Name of the autopilot in the vehicle's identity.
         """
         stated = {
             name: value

@@ -1,4 +1,4 @@
-"""Cutting a batch of columns where something changes that all later messages depend on."""
+"""Cuts of a batch of columns at changes that affect all later messages."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -10,21 +10,21 @@ from advisor.flight.messages import Columns
 from advisor.flight.parameters import names_in, tells_of_outputs
 
 _EVERY = 100_000
-"""Longest piece in arrival orders (bytes of a log), so that memory stays bounded whatever the batch."""
+"""Longest piece in arrival orders (bytes of a log), so that memory stays bounded for any batch."""
 
 _STATES = {"HEARTBEAT": "custom_mode", "EXTENDED_SYS_STATE": "vtol_state"}
-"""Messages that repeat a state, and the field of the state."""
+"""Message that repeats a state, to the field of the state."""
 
 
 def pieces(columns: Sequence[Columns], by_second: bool = False) -> Iterator[list[Columns]]:
-    """The batch in order of arrival, cut before every change of vehicle, mode or parameter.
+    """Yield the batch in order of arrival, cut before every change of vehicle, mode or parameter.
 
     Parameters
     ----------
     columns
         Messages of all senders.
     by_second
-        Whether to cut where a second of arrival begins, too: several vehicles are then weighed.
+        Whether to cut at each second of arrival as well, at which several vehicles are compared.
     """
     filled = [c for c in columns if len(c)]
     if not filled:
@@ -42,7 +42,7 @@ def pieces(columns: Sequence[Columns], by_second: bool = False) -> Iterator[list
 
 
 def _seconds(columns: Sequence[Columns]) -> list[int]:
-    """Orders of the messages with which a second of arrival begins."""
+    """Return the orders of the messages with which a second of arrival begins."""
     order = np.concatenate([c.order for c in columns])
     rows = np.argsort(order)
     second = np.floor(np.concatenate([c.arrival_s for c in columns])[rows])
@@ -51,7 +51,7 @@ def _seconds(columns: Sequence[Columns]) -> list[int]:
 
 
 def between(columns: Sequence[Columns], first: int, past: int) -> list[Columns]:
-    """Rows with ``first <= order < past``; types without any are left out."""
+    """Return the rows with ``first <= order < past``, without types that have no such row."""
     found = []
     for c in columns:
         i, j = np.searchsorted(c.order, [first, past])

@@ -11,9 +11,9 @@ from advisor.flight.record import Channel
 
 @dataclass(frozen=True, slots=True)
 class PowerOn:
-    """What one vehicle sent from one power-on to the next.
+    """All channels that one vehicle sent from one power-on to the next.
 
-    A stream keeps power-ons on request only: their memory grows with the length of the flight.
+    A stream keeps power-ons on request only, because their memory grows with the length of the flight.
     """
 
     boot: int
@@ -26,7 +26,8 @@ class PowerOn:
     """Shape (n,), never falling: the vehicle's clock at each of these arrivals, s since boot."""
 
     def arrivals(self, start_s: float, end_s: float) -> tuple[int, int]:
-        """Arrival indices of the first and the last stamp of the clock with ``start_s <= t <= end_s``.
+        """Return the arrival indices of the first and the last stamp of the clock with ``start_s <= t <=
+        end_s``.
 
         Raises
         ------

@@ -1,7 +1,7 @@
-"""What a movement of the elevator was: an input that can be identified, or an activity with a reason.
+"""Classification of an elevator movement: an identifiable input, or an activity with a reason.
 
-The shape does not matter. What counts is whether the aircraft flew, who moved the elevator, and
-how well the pitch rate shows what the elevator did.
+The shape does not matter. The criteria are whether the aircraft flew, who moved the elevator, and how well
+the pitch rate shows the elevator's effect.
 """
 
 from dataclasses import dataclass
@@ -18,55 +18,55 @@ from advisor.flight.rest import SMALLEST_RAD
 from advisor.rounding import distinct_texts
 
 LEAST_PITCH_RATE_DEG_S = 1.0
-"""Least answer of the pitch rate to a test input, deg/s: smaller ones drown in light turbulence. The gentlest
-test input on record has 1.3 (a jet), a correction between inputs of another jet has 0.7."""
+"""Least answer of the pitch rate to a test input, deg/s. Smaller ones drown in light turbulence. The gentlest
+test input on record has 1.3 (a jet); a correction between inputs of another jet has 0.7."""
 LARGEST_ERROR = 0.3
-"""Largest relative standard error of the elevator's effect on the pitch rate; 0.3 is significant at 2 %.
-Test inputs on record have 0.01 to 0.12 in calm air and 0.16 in gusts of 0.5 m/s. Where only the external
-input counts they have up to 0.21, and an attitude hold in such gusts 0.3 to 2."""
+"""Largest relative standard error of the elevator's effect on the pitch rate; 0.3 is significant at 2 %. Test
+inputs on record have 0.01 to 0.12 in calm air and 0.16 in gusts of 0.5 m/s. Where only the external input
+counts they have up to 0.21, and an attitude hold in such gusts has 0.3 to 2."""
 _SHARP_S = 0.06
 """Half of the time within which a step of an external input happens, s. Feedback of the aircraft's motion
 takes longer."""
 _SLOWEST_S = 0.15
-"""Elevator samples farther apart hide how sharp a step is, s."""
+"""Largest interval of elevator samples, s, at which the sharpness of a step is still visible."""
 _SHARP = 0.5
-"""Least share of such a step that happens within that time."""
+"""Least share of a sharp step that happens within twice ``_SHARP_S``."""
 _FEWEST_SHARP = 3
-"""Least number of such steps. The loop itself makes one where it is switched on, and one where its
-demand jumps."""
+"""Least number of sharp steps. The loop itself makes one where it is switched on, and one where its demand
+jumps."""
 
 _WHAT = {
     "ground": "movements without flight",
     "small": "corrections",
-    "no_information": "movements whose effect cannot be told",
+    "no_information": "movements without a visible effect",
     "unsettled": "movements that never came to rest",
 }
 
 
 @dataclass(frozen=True, slots=True)
 class Because:
-    """Why a movement is no test input."""
+    """Reason for which a movement is no test input."""
 
     reason: str
     """``autopilot``, ``ground``, ``hover``, ``small``, ``no_information`` or ``unsettled``."""
     text: str
-    """The reason in a sentence, with its number and limit."""
+    """Sentence on the reason, with its number and limit."""
 
     @property
     def what(self) -> str:
-        """The kind of movement in words, without numbers."""
+        """Kind of movement in words, without numbers."""
         return _WHAT.get(self.reason, self.text)
 
 
 def not_an_input(maneuver: Maneuver, on_ground: str | None = None) -> Because | None:
-    """Say why a movement of the elevator is no test input; None where it may be one.
+    """Return the reason for which an elevator movement is no test input; None where it may be one.
 
     Parameters
     ----------
     maneuver
-        The record of the movement. Channels ``q`` and ``airspeed`` are used where they exist.
+        Record of the movement. Channels ``q`` and ``airspeed`` are used where present.
     on_ground
-        What else shows that the aircraft did not fly, in words; None: nothing does.
+        Other evidence in words that the aircraft did not fly. None: no such evidence.
     """
     if on_ground is not None:
         return Because("ground", f"the elevator moved on the ground: {on_ground}")
@@ -82,7 +82,8 @@ def not_an_input(maneuver: Maneuver, on_ground: str | None = None) -> Because | 
 
 
 def _tells_nothing(maneuver: Maneuver) -> Because | None:
-    """Why the pitch rate cannot show what the elevator does; None where it can, or is not there."""
+    """Return the reason for which the pitch rate cannot show the elevator's effect; None where it can, or is
+    missing."""
     if maneuver.span.closed_by == "no rest":
         return Because("unsettled", "the elevator never came to rest; not a test input")
     found = excitation(maneuver)
@@ -94,7 +95,7 @@ def _tells_nothing(maneuver: Maneuver) -> Because | None:
         return Because(
             "small", f"a correction: the pitch rate moved by {shown} deg/s only (at least {least})"
         )
-    # An elevator that is known to be moved from outside needs nothing else to tell cause from effect.
+    # For an elevator moved from outside, no other evidence is needed to separate cause from effect.
     outside = is_manual(maneuver.mode) or _is_external(maneuver)
     error = found.relative_error if outside else found.external_error
     if error > LARGEST_ERROR:
@@ -113,15 +114,15 @@ def _is_on_ground(maneuver: Maneuver) -> bool:
     typical = float(np.median(airspeed.y))
     if typical != 0.0:
         return typical < SLOWEST_FLIGHT_M_S
-    # Exactly zero is also what an aircraft without an air speed sensor sends.
+    # An aircraft without an air speed sensor also sends exactly zero.
     q = maneuver.channels.get("q")
     return q is not None and len(q) > 0 and 0.5 * float(np.ptp(q.y)) < radians(LEAST_PITCH_RATE_DEG_S)
 
 
 def _is_external(maneuver: Maneuver) -> bool:
-    """Whether the elevator moves in sharp steps, which no feedback of the aircraft's motion makes.
+    """Return whether the elevator moves in sharp steps, which no feedback of the aircraft's motion makes.
 
-    A step of less than two of the smallest movements is sharp by the resolution of the output.
+    A step of less than two of the smallest movements is sharp only by the resolution of the output.
     """
     elevator = maneuver.channels["elevator"]
     interval_s = float(np.median(np.diff(elevator.t))) if len(elevator) > 1 else np.inf

@@ -1,8 +1,8 @@
-"""The servo outputs as PX4's parameters describe them: CA_SV_CSn_* the surfaces, PWM_MAIN_* the outputs.
+"""Roles and scales of servo outputs from PX4's parameters: CA_SV_CSn_* for surfaces, PWM_MAIN_* for outputs.
 
-Surface ``n`` is servo ``n``, counted from 0, and an output whose function is 201 + n carries it. A positive
-command of an elevator lifts the nose where its torque effectiveness CA_SV_CSn_TRQ_P is positive.
-(PX4 from 1.13: ActuatorEffectivenessControlSurfaces.hpp, mixer_module.cpp.)
+Surface ``n`` is servo ``n``, counted from 0. An output whose function is 201 + n drives that servo. A
+positive command of an elevator lifts the nose where its torque effectiveness CA_SV_CSn_TRQ_P is positive.
+(PX4 since 1.13: ActuatorEffectivenessControlSurfaces.hpp, mixer_module.cpp.)
 """
 
 from collections.abc import Iterator
@@ -18,19 +18,19 @@ GROUPS = {
     "SIM_GZ_SV": Scale(0.0, 500.0, 1000.0),
     "HIL_ACT": Scale(1000.0, 1500.0, 2000.0),
 }
-"""Groups of outputs by the beginning of their parameters' names, and the limits that are their default."""
+"""Group of outputs, by the beginning of its parameters' names, to its default limits."""
 FOLLOWS_PITCH = "READER_PITCH"
-"""``READER_PITCHn`` 1 or -1: a reader of logs has found that output n follows the pitch command or its
-opposite. PX4 before 1.13 mixes its outputs by files, which no log holds."""
+"""``READER_PITCHn`` is 1 or -1 where a reader of logs has found that output n follows the pitch command or
+its opposite. PX4 before 1.13 mixes its outputs by files, which no log holds."""
 STANDS_FOR_ELEVATOR = 2.0
-"""Value of such a parameter where the pulses are the pitch command itself, 500 us to full command."""
+"""Value of such a parameter where the pulses are the pitch command itself, with 500 us for full command."""
 PREFIXES = ("CA_SV_CS", *GROUPS, FOLLOWS_PITCH)
-"""How the names of these parameters begin."""
+"""Beginnings of these parameters' names."""
 OUTPUTS = range(1, 17)
 """Numbers of the outputs of one group."""
 _SURFACES = range(8)
 _SERVO_1 = 201
-"""Output function of servo 0; 101 to 112 are motors."""
+"""Output function of servo 0. Functions 101 to 112 are motors."""
 _SERVOS = range(16)
 _ROLES = {
     1: AILERON,
@@ -45,10 +45,10 @@ _ROLES = {
     14: Role("A-tail", "right"),
     15: AILERON,
 }
-"""Values of CA_SV_CSn_TYPE."""
+"""Value of CA_SV_CSn_TYPE to the role of the surface."""
 _CUSTOM = 12
 _AXES = {AILERON: "R", RUDDER: "Y"}
-"""Axes of surfaces that do not pitch."""
+"""Axis about which a surface acts that does not pitch."""
 
 WORDS = Words(
     function="CA_SV_CSn_TYPE",
@@ -64,23 +64,25 @@ WORDS = Words(
 
 @dataclass(frozen=True, slots=True)
 class ServoOutput:
-    """The output that carries a servo."""
+    """Output that drives a servo."""
 
     number: int
-    """1.. over all groups that drive anything, 16 to a group."""
+    """Number from 1 over all groups that drive anything, with 16 outputs to a group."""
     servo: int
-    """0.."""
+    """Number of the servo, from 0."""
     scale: Scale
-    """Limits, and whether the output is reversed, whatever the servo moves."""
+    """Limits and direction of the output, whatever surface the servo moves."""
 
 
 def banks(parameters: Parameters) -> list[str]:
-    """Groups with an output that has a function: outputs 1 to 16 are of the first, 17 to 32 of the next."""
+    """Return the groups with an output that has a function. Outputs 1 to 16 are of the first group, 17 to 32
+    of the next."""
     return [group for group in GROUPS if any(parameters.get(f"{group}_FUNC{k}", 0.0) for k in OUTPUTS)]
 
 
 def servo_outputs(parameters: Parameters) -> list[ServoOutput]:
-    """The first output of each servo; servo n on output n + 1 where no function of any output is known."""
+    """Return the first output of each servo. Servo n is on output n + 1 where no output's function is
+    known."""
     found: dict[int, ServoOutput] = {}
     for bank, group in enumerate(banks(parameters)):
         for k in OUTPUTS:
@@ -94,7 +96,7 @@ def servo_outputs(parameters: Parameters) -> list[ServoOutput]:
 
 
 def px4_wiring(parameters: Parameters) -> Wiring:
-    """The outputs by the surfaces that they carry, else by what a reader of logs has found."""
+    """Return the outputs by the surfaces that they drive, else by the findings of a reader of logs."""
     surfaces = dict(_surfaces(parameters))
     if not surfaces:
         return _followers(parameters)
@@ -108,7 +110,7 @@ def px4_wiring(parameters: Parameters) -> Wiring:
 
 
 def _surfaces(parameters: Parameters) -> Iterator[tuple[int, Role]]:
-    """Servo and role of each surface that is in use."""
+    """Yield the servo and the role of each surface that is in use."""
     count = int(parameters.get("CA_SV_CS_COUNT", len(_SURFACES)))
     for n in _SURFACES:
         kind = int(parameters.get(f"CA_SV_CS{n}_TYPE", 0.0))
@@ -120,12 +122,12 @@ def _surfaces(parameters: Parameters) -> Iterator[tuple[int, Role]]:
 
 
 def _effect(n: int, axis: str, parameters: Parameters) -> float:
-    """Torque of surface ``n`` in roll, pitch or yaw (R, P, Y); 0 where it is unknown."""
+    """Return the torque of surface ``n`` in roll, pitch or yaw (R, P, Y); 0 where unknown."""
     return parameters.get(f"CA_SV_CS{n}_TRQ_{axis}", 0.0)
 
 
 def _turned(output: ServoOutput, role: Role, parameters: Parameters) -> Scale:
-    """Scale of an output by what its surface does about the axis that it is for."""
+    """Return the scale of an output, reversed where its surface acts in reverse about its main axis."""
     lowers = _effect(output.servo, _AXES.get(role, "P"), parameters) < 0.0
     return replace(output.scale, reversed=output.scale.reversed != lowers)
 

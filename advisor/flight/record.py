@@ -6,8 +6,8 @@ import numpy as np
 
 from advisor.flight.messages import FloatArray
 
-# The channels the advisor knows, and their SI units. Signs: alpha, pitch rate and
-# pitch positive nose up; elevator positive trailing edge down; body z points down.
+# Channels that the advisor knows, with SI units. Alpha, pitch rate and pitch are positive nose up; elevator
+# is positive trailing edge down; body z points down.
 UNITS = {
     "elevator": "rad",
     "aileron": "rad",
@@ -26,14 +26,14 @@ UNITS = {
     "height": "m",
 }
 AIR_UNITS = {"altitude": "m", "static_pressure": "Pa"}
-"""Channels that only tell the density of the air; the altitude is above mean sea level."""
+"""Channels that give only the density of the air. The altitude is above mean sea level."""
 ALL_UNITS = UNITS | AIR_UNITS
 """Every channel that a manoeuvre or a whole flight may hold."""
 
 
 @dataclass(frozen=True, slots=True)
 class Channel:
-    """One quantity over time. Gaps are simply missing stamps; nothing is resampled."""
+    """One quantity over time. A gap is a longer interval between stamps, because nothing is resampled."""
 
     name: str
     t: FloatArray
@@ -41,7 +41,7 @@ class Channel:
     y: FloatArray
     """Shape (n,), SI."""
     source: str = ""
-    """Message and field it came from, e.g. ``AOA_SSA.AOA``."""
+    """Message and field of the channel, e.g. ``AOA_SSA.AOA``."""
     provenance: str = "unknown"
     """``vane``, ``derived``, ``simulated``, ``measured``, ``commanded`` or ``unknown``."""
 
@@ -49,7 +49,7 @@ class Channel:
         return len(self.t)
 
     def cut(self, start_s: float, end_s: float) -> "Channel":
-        """The stretch with ``start_s <= t <= end_s``."""
+        """Return the stretch with ``start_s <= t <= end_s``."""
         i, j = np.searchsorted(self.t, [start_s, np.nextafter(end_s, np.inf)])
         return Channel(self.name, self.t[i:j], self.y[i:j], self.source, self.provenance)
 

@@ -1,21 +1,21 @@
-"""New values, or old ones sent again under fresh stamps."""
+"""Detection of new values among old ones that are sent again under new stamps."""
 
 import numpy as np
 
 from advisor.flight.messages import FloatArray
 
 _MOSTLY_NEW = 0.7
-"""Share of new values from which on nothing is sent twice."""
+"""Least share of new values at which no value counts as repeated."""
 _FEW_LEVELS = 16
-"""Different values up to which a channel that comes back to them reads in coarse steps: an estimate that is
-sent again takes another value each time that it is renewed."""
+"""Most different values of a channel that counts as coarse. A repeated estimate takes another value at each
+renewal."""
 
 
 def renewed(t: FloatArray, y: FloatArray, fewest: int = 1) -> tuple[FloatArray, FloatArray]:
-    """Only samples that bring a new value, when a channel repeats old ones; ``t`` and ``y`` of shape (n,).
+    """Return only samples with a new value where a channel repeats values; ``t`` and ``y`` of shape (n,).
 
-    Where fewer than ``fewest`` would be left, the sensor is stuck, and was read all the same; where it takes
-    few values, it reads in coarse steps.
+    A channel with fewer than ``fewest`` new samples is stuck, and stays as it is. A channel with few
+    different values is coarse, and stays as it is.
     """
     new = np.concatenate(([True], np.diff(y) != 0.0))
     if np.mean(new) >= _MOSTLY_NEW or np.count_nonzero(new) < fewest:

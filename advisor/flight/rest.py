@@ -1,7 +1,7 @@
-"""Rest of the elevator, measured against the movement that it ends.
+"""Rest of the elevator, relative to the movement that the rest ends.
 
-A stick is never still in itself. Whether the elevator rests is a question of scale: a hand that
-shakes by a tenth of an input has come to rest after that input, and is flying a smaller one before it.
+A stick is never perfectly still, so that rest is a question of scale. A hand that shakes by a tenth of a
+large input is at rest after that input. The shaking would be no rest after a smaller input.
 """
 
 import numpy as np
@@ -9,22 +9,23 @@ import numpy as np
 from advisor.flight.messages import FloatArray
 
 SMALLEST_RAD = float(np.radians(0.15))
-"""Least amplitude of a movement, rad: two steps of an output of 1 us at 0.06 deg a microsecond, and a bit."""
+"""Least amplitude of a movement, rad: somewhat more than two steps of an output of 1 us at 0.06 deg a
+microsecond."""
 STILL_SPREAD = 0.15
-"""Largest standard deviation of a rest, as a share of the movement's amplitude. A shaking stick has 0.1;
-a sine of that amplitude has 0.7."""
+"""Largest standard deviation of a rest, as a share of the movement's amplitude. A shaking stick has 0.1; a
+sine with that amplitude has 0.7."""
 _STILL_SHIFT = 0.12
 """Largest difference between the means over the thirds of a rest, as a share of the amplitude."""
 
 
 def median(x: FloatArray) -> float:
-    """As numpy's, which on so few numbers spends its time on asking whether they are numbers."""
+    """Return the median, faster than NumPy's on few numbers, without a test for NaN."""
     middle = np.sort(x)[(len(x) - 1) // 2 : len(x) // 2 + 1]
     return float(middle.sum() / len(middle))
 
 
 def is_still(u: FloatArray, amplitude: float) -> bool:
-    """Whether the elevator rests over a window, against a movement of this amplitude.
+    """Return whether the elevator rests over a window, relative to a movement of this amplitude.
 
     Parameters
     ----------
@@ -36,21 +37,21 @@ def is_still(u: FloatArray, amplitude: float) -> bool:
     Returns
     -------
     bool
-        True where neither the spread nor the drift of the window counts. White noise may
-        have a spread of ``STILL_SPREAD``; what moves in one direction is told by its thirds.
+        True where both the spread and the drift of the window are small. White noise may have a
+        spread of ``STILL_SPREAD``. The means over thirds show a drift in one direction.
     """
     if len(u) < 3 or float(u.std()) > STILL_SPREAD * amplitude:
         return False
     third = len(u) // 3
     means = (float(u[:third].mean()), float(u[third:-third].mean()), float(u[-third:].mean()))
-    # Second differences know white noise from a level that moves.
+    # Second differences separate white noise from a moving level.
     bent = u[2:] - 2.0 * u[1:-1] + u[:-2]
     noise = 2.0 * float(np.sqrt((bent * bent).mean() / (6.0 * third)))
     return max(means) - min(means) <= _STILL_SHIFT * amplitude + min(noise, STILL_SPREAD * amplitude)
 
 
 def without_spikes(u: FloatArray) -> FloatArray:
-    """Median of three: one sample alone is no movement."""
+    """Return the median of three neighbours, because a single sample is no movement."""
     if len(u) < 3:
         return u
     low, high = np.minimum(u[:-2], u[1:-1]), np.maximum(u[:-2], u[1:-1])

@@ -1,15 +1,16 @@
-"""The spread of noise among outliers."""
+"""Standard deviation of noise in the presence of outliers."""
 
 import numpy as np
 
 from advisor.flight.messages import FloatArray
 
 _MEDIAN = 0.6745
-"""Median of the size of a normal variable of unit variance."""
+"""Median absolute value of a normal variable with unit variance."""
 
 
 def robust_std(departures: FloatArray) -> float:
-    """Standard deviation of normal noise from the median size of its departures, which few outliers move.
+    """Return the standard deviation of normal noise from the median absolute departure, which few outliers
+    change.
 
     Parameters
     ----------

@@ -6,19 +6,19 @@ from advisor.flight.messages import FloatArray
 
 
 class Samples:
-    """Samples in the order of their stamps; the oldest are forgotten.
+    """Samples in the order of their stamps. The oldest are dropped.
 
     Parameters
     ----------
     keep_s
-        Time for which samples are kept at the least, s.
+        Least time for which samples are kept, s.
     """
 
     def __init__(self, keep_s: float) -> None:
         self._keep_s = keep_s
         self._t, self._y = np.empty(4096), np.empty(4096)
         self.size = 0
-        """How many there are."""
+        """Number of samples."""
 
     @property
     def t(self) -> FloatArray:
@@ -32,31 +32,31 @@ class Samples:
 
     @property
     def capacity(self) -> int:
-        """How many samples the memory holds."""
+        """Number of samples that the memory can hold."""
         return len(self._t)
 
     def append(self, t: float, y: float) -> None:
-        """Take a sample; its index is ``size − 1`` afterwards."""
+        """Take a sample. Afterwards its index is ``size − 1``."""
         if self.size == len(self._t):
             self._make_room(t - self._keep_s)
         self._t[self.size], self._y[self.size] = t, y
         self.size += 1
 
     def index(self, t: float) -> int:
-        """Index of the first sample at or after ``t``."""
+        """Return the index of the first sample at or after ``t``."""
         return int(np.searchsorted(self.t, t))
 
     def since(self, t: float, until: int | None = None) -> FloatArray:
-        """Values at or after ``t``, up to but without the index ``until``."""
+        """Return the values at or after ``t``, before the index ``until``."""
         return self.y[self.index(t) : until]
 
     def interval_s(self) -> float:
-        """Median interval of the newest twenty samples; infinite with fewer than three."""
+        """Return the median interval of the newest twenty samples; infinite with fewer than three."""
         recent = self.t[-20:]
         return float(np.median(np.diff(recent))) if len(recent) > 2 else np.inf
 
     def clear(self) -> None:
-        """Forget all."""
+        """Drop all samples."""
         self.size = 0
 
     def _make_room(self, from_s: float) -> None:

@@ -1,11 +1,11 @@
-"""The segmenter: finds every movement of the elevator in the stream of its samples, as it ends.
+"""The segmenter: finds every movement of the elevator in the stream of its samples, as the movement ends.
 
-A movement begins where the elevator leaves its rest and ends where it rests again: at the level before, or
-elsewhere for long. What counts as rest is measured against the movement itself (`rest`). So one rule serves
-steps, slewed edges, pulses and multisines, of fast aircraft and slow ones. The free response follows until it
-has lasted long enough or something ends it. What a movement was is decided where the other channels are at
-hand (`purpose`). The work per sample is bounded. A result depends on the samples alone, not on how they
-were delivered.
+A movement begins where the elevator leaves its rest. It ends where the elevator rests again: at the earlier
+level, or for long at another one. Rest is measured relative to the movement itself (`rest`). So one rule
+serves steps, slewed edges, pulses and multisines, of fast aircraft and slow ones. The free response follows
+until it has lasted long enough or an event ends it. The movement is classified where the other channels are
+at hand (`purpose`). The work per sample is bounded. A result depends on the samples alone, not on their
+delivery.
 """
 
 import numpy as np
@@ -18,41 +18,43 @@ from advisor.flight.rest import SMALLEST_RAD, is_still, median, without_spikes
 from advisor.flight.samples import Samples
 
 LEAD_IN_S = 1.0
-"""How much of the flight before the first step belongs to the record."""
+"""Length of flight before the first step that belongs to the record, s."""
 _REACH_S = 60.0
-"""Longest movement. One that goes on for longer is told piece by piece."""
+"""Longest movement, s. A longer one is reported in pieces."""
 _OVERLAP_S = 10.0
-"""Such a piece ends so long ago: an input that has begun since is whole in the next."""
+"""Age of a piece's end at its report, s. An input that has begun since is whole in the next piece."""
 _CHECK_S = 0.1
-"""How often rest is looked for."""
+"""Time between two tests for rest, s."""
 _RESTING_S = 0.5
-"""How long the elevator rests before a movement counts as over."""
+"""Time for which the elevator must rest at the end of a movement, s."""
 _FIRST_LEVEL_S = 0.1
-"""A stream that has just begun counts as at rest over this time."""
+"""Time over which a stream that has just begun counts as at rest, s."""
 _NEAR = 0.4
-"""The elevator has returned if it rests within this share of the amplitude from the level before."""
+"""Largest distance of a rest from the earlier level, as a share of the amplitude, that counts as a return."""
 _HOLD_S = (8.0, 20.0)
-"""A rest at another level ends a movement after the first time. It ends a single step after the second, so
-that a long pulse is one input."""
+"""Length of a rest at another level that ends a movement, s. The second value is for a single step, so that a
+long pulse is one input."""
 _LONGER = 1.2
-"""... or after the longest earlier rest at another level and so much more: a slow input has long steps."""
+"""Factor on the longest earlier rest at another level, beyond which a rest ends a movement. A slow input has
+long steps."""
 _FAR = 0.3
-"""The movement has begun where the elevator is so far from the level before, as a share of the amplitude. The
-first step of a 3-2-1-1 with balanced areas has half of it."""
+"""Distance from the earlier level, as a share of the amplitude, at which a movement has begun. The first step
+of a 3-2-1-1 with balanced areas has half of the amplitude."""
 _LEAST_REST_S = 0.3
-"""A rest before the movement is at least so long, if anything else moved before."""
+"""Least length of a rest before the movement, s, where an earlier movement exists."""
 _KEEP_S = _REACH_S + 30.0
-"""Samples are kept for so long: a movement and its free response."""
+"""Time for which samples are kept, s: a movement and its free response."""
 GAP_S = 1.0
-"""A longer gap ends a free response, ..."""
+"""Least gap, s, that ends a free response, where ``MANY_INTERVALS`` samples are missing."""
 MANY_INTERVALS = 5.0
-"""... if so many samples are missing."""
+"""Least gap, in intervals of the samples, that ends a free response."""
 _LONGEST_GAP_S = 3.0
-"""A longer one ends everything; over a shorter one an input is recognised, to be refused for the gap."""
+"""Longest gap, s, within a movement. After a shorter gap the input is recognised and refused for the gap; a
+longer gap drops the movement."""
 
 
 class Segmenter:
-    """Takes elevator samples in the order of their stamps; gives spans as they end."""
+    """Takes elevator samples in the order of their stamps, and gives spans as they end."""
 
     def __init__(self) -> None:
         self._samples = Samples(_KEEP_S)
@@ -60,7 +62,7 @@ class Segmenter:
         self._begin_anew(-np.inf)
 
     def _begin_anew(self, from_s: float) -> None:
-        """Nothing is known of the elevator's rest since ``from_s``."""
+        """Forget the elevator's rest before ``from_s``."""
         self._new_from_s = from_s
         self._base: float | None = None
         self._leaving = 0.5 * SMALLEST_RAD
@@ -69,7 +71,7 @@ class Segmenter:
         self._next_check_s = -np.inf
 
     def _set_out(self, from_s: float | None, amplitude: float) -> None:
-        """The elevator rests, or moves since the sample at ``from_s``."""
+        """Set the state: at rest, or moving since the sample at ``from_s``."""
         self._moved_from_s, self._amplitude = from_s, amplitude
         self._held_since_s: float | None = None
         self._held_rad = 0.0
@@ -77,18 +79,18 @@ class Segmenter:
 
     @property
     def onset_s(self) -> float | None:
-        """Since when the elevator has been moving, or the manoeuvre's start in its free response."""
+        """Begin of the movement, or of the manoeuvre in its free response, s. None at rest."""
         if self._pending:
             return self._pending.movement.start_s
         return self._moved_from_s if self._amplitude >= SMALLEST_RAD else None
 
     @property
     def recognised(self) -> Movement | None:
-        """The movement whose free response is being awaited."""
+        """Movement whose free response is awaited."""
         return self._pending.movement if self._pending else None
 
     def push(self, t: float, u: float) -> list[Span]:
-        """Take one sample, stamp (s, rising) and elevator (rad); the spans that have ended by it."""
+        """Take one sample, stamp (s, rising) and elevator (rad); return the spans that end with it."""
         if self._samples.size:
             last = float(self._samples.t[-1])
             if t <= last:
@@ -100,7 +102,7 @@ class Segmenter:
         return self._drain()
 
     def mode_changed(self, t: float) -> list[Span]:
-        """The flight mode changed, at ``t`` at the earliest: what moved before ends there."""
+        """Take a change of the flight mode, at ``t`` at the earliest; return the spans that end there."""
         if self._pending is not None:
             pending = self._pending.movement
             if pending.start_s >= t:
@@ -113,7 +115,7 @@ class Segmenter:
         return self._drain()
 
     def finish(self) -> list[Span]:
-        """No more samples will come."""
+        """Return the spans that end with the samples."""
         if self._samples.size:
             last = float(self._samples.t[-1])
             if self._pending is not None:
@@ -134,7 +136,7 @@ class Segmenter:
             self._advance(i)
 
     def _interrupt(self, last_s: float, whole: bool) -> None:
-        """The link was silent after ``last_s``, for long or, ``whole``, for very long."""
+        """Take a silence of the link after ``last_s``: long, or very long where ``whole`` is set."""
         if self._pending is not None:
             self._end(self._pending.movement, "gap", last_s)
             self._begin_anew(last_s)
@@ -155,7 +157,7 @@ class Segmenter:
         if self._pending is not None:
             self._follow(self._pending, t, u)
             return
-        # One sample alone is no movement.
+        # A single sample is no movement.
         deviation = min(abs(u - self._base), abs(float(samples.y[i - 1]) - self._base))
         if self._moved_from_s is not None:
             self._amplitude = max(self._amplitude, deviation)
@@ -170,14 +172,15 @@ class Segmenter:
                 self._look(i, t, self._moved_from_s, self._base)
 
     def _watch_rest(self, i: int, t: float) -> None:
-        """The level of the rest moves slowly, and tells how far the elevator moves at rest."""
+        """Follow the slow motion of the rest's level and the elevator's movements at rest."""
         recent = self._samples.since(max(t - LEAD_IN_S, self._new_from_s), i + 1)
         if len(recent) > 2:
             self._base = median(recent)
             self._leaving = min(max(4.0 * float(recent.std()), 0.5 * SMALLEST_RAD), 2.0 * SMALLEST_RAD)
 
     def _look(self, i: int, t: float, from_s: float, base: float) -> None:
-        """The elevator moves: has it come to rest, at the level before or elsewhere for long?"""
+        """Test whether the moving elevator has come to rest, at the earlier level or for long at another
+        one."""
         if t - from_s > _REACH_S:
             self._cut_off("no rest", t - _OVERLAP_S)
             self._restart(t - _OVERLAP_S)
@@ -205,13 +208,13 @@ class Segmenter:
             self._set_out(None, 0.0)
 
     def _let_go(self, t: float) -> None:
-        """The level at which the elevator rested, away from trim, has been left."""
+        """Note that the elevator has left a rest away from trim."""
         if self._held_since_s is not None:
             self._longest_hold_s = max(self._longest_hold_s, t - self._held_since_s)
             self._held_since_s = None
 
     def _longest_hold(self, from_s: float, base: float) -> float:
-        """How long the elevator may rest away from trim within a movement, s."""
+        """Return the longest rest away from trim within a movement, s."""
         u = without_spikes(self._samples.since(from_s))
         low, high = min(base, self._held_rad), max(base, self._held_rad)
         beyond = max(low - float(u.min()), float(u.max()) - high)
@@ -236,7 +239,7 @@ class Segmenter:
             self._set_out(float(self._samples.t[before]), abs(u - movement.trim))
 
     def _cut_off(self, why: str, at_s: float) -> None:
-        """Something ends a movement before the elevator has come to rest."""
+        """End a movement before the elevator has come to rest, for a given reason."""
         if self._moved_from_s is None or self._base is None:
             return
         until = self._samples.index(float(np.nextafter(at_s, np.inf)))
@@ -246,7 +249,7 @@ class Segmenter:
             self._end(movement, why, max(at_s, movement.last_step_s))
 
     def _described(self, until: int, rest: FloatArray | None) -> Movement | None:
-        """The movement up to the sample ``until``; None where it is smaller than any input."""
+        """Return the movement up to the sample ``until``; None where it is smaller than any input."""
         begin, base = self._rest_before(until)
         if until - begin < 3:
             return None
@@ -255,7 +258,7 @@ class Segmenter:
         return movement if movement is not None and movement.amplitude >= SMALLEST_RAD else None
 
     def _rest_before(self, until: int) -> tuple[int, float]:
-        """Where the elevator last rested before it went far, and its level there."""
+        """Return the position of the elevator's last rest before it went far, and the level of that rest."""
         samples, base = self._samples, self._base or 0.0
         begin = samples.index(self._moved_from_s or 0.0)
         far = np.flatnonzero(np.abs(samples.y[begin:until] - base) > _FAR * self._amplitude)

@@ -1,4 +1,4 @@
-"""Two senders under one system id: the vehicle's clock seems to jump to and fro."""
+"""Two senders under one system id, between whose clocks the vehicle's clock seems to jump."""
 
 from collections.abc import Sequence
 
@@ -10,13 +10,14 @@ from advisor.problems import Problem
 WINDOW_S = 5.0
 """Stretch of arrival over which jumps are counted, s."""
 LEAST_JUMP_S = 0.5
-"""Least step back of the clock that counts, s: packets that a radio delivers late lie closer."""
+"""Least step back of the clock that counts, s. Packets that a radio delivers late lie closer."""
 FEWEST_JUMPS = 3
-"""Fewest steps back within the window. A reboot is a single one."""
+"""Fewest steps back within the window. A reboot makes a single step."""
 NO_PACKET_S = 5.0
-"""No packet comes so late, s: steps back beyond this are another clock, however few."""
+"""Largest delay of a packet, s. A larger step back shows another clock, even once."""
 LARGEST_SPREAD_S, LEAST_SHARE = 0.5, 0.25
-"""Nearer clocks keep their distance to so many seconds, and speak in turns; late packets do neither."""
+"""Two near clocks keep their distance and alternate. The values are the largest spread of the steps back, s,
+and the least share of steps. Late packets meet neither."""
 
 
 class SenderWatch:
@@ -26,10 +27,10 @@ class SenderWatch:
         self._arrival_s = np.empty(0)
         self._stamp_s = np.empty(0)
         self.seen: Problem | None = None
-        """Two senders, as soon as they were seen once."""
+        """Problem of two senders, once they were detected."""
 
     def hear(self, columns: Sequence[Columns], component: int) -> None:
-        """Take the vehicle's messages, in order of arrival."""
+        """Take the vehicle's messages in order of arrival."""
         for c in columns:
             if c.name == "ATTITUDE" and c.component == component:
                 stamps = np.asarray(c.fields["time_boot_ms"], dtype=np.float64) / 1000.0
@@ -37,7 +38,7 @@ class SenderWatch:
                 self._stamp_s = np.concatenate((self._stamp_s, stamps))
 
     def problem(self, system: int, now_s: float) -> Problem | None:
-        """Two senders at this time of arrival; None where the clock is that of one."""
+        """Return the problem of two senders at this time of arrival; None for a single clock."""
         lately = (self._arrival_s > now_s - WINDOW_S) & (self._arrival_s <= now_s)
         steps = np.diff(self._stamp_s[lately])
         kept = self._arrival_s > now_s - WINDOW_S

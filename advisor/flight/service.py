@@ -1,16 +1,16 @@
-"""Whether the stream can serve at this moment: its newest stretch, judged by the times of arrival.
+"""Usability of the stream at this moment: its newest stretch, judged by the times of arrival.
 
-A stream that served at the first manoeuvre may become too slow, or lose its elevator, at any time. The
-times of arrival tell, for the vehicle's clock stands still when ATTITUDE stops. Moments of judgement lie at
-fixed steps of arrival, so that a log and a live link tell the same, however their messages are batched.
-A link that is silent altogether tells nothing of what it carries; the link itself reports a silence.
+A stream that served at the first manoeuvre may become too slow, or lose its elevator, at any time. Times of
+arrival decide, because the vehicle's clock stands still when ATTITUDE stops. Judgements happen at fixed steps
+of arrival, so that a log and a live link agree for any batches. A link that is wholly silent says nothing
+about its channels; the link itself reports a silence.
 """
 
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from advisor.flight.events import DataAgain, FlightEvent, NoData
+from advisor.flight.events import DataAgain, NoData
 from advisor.flight.messages import Columns, FloatArray
 from advisor.flight.track import ChannelStatus
 from advisor.problems import Problem
@@ -20,23 +20,24 @@ WINDOW_S = 3.0
 STEP_S = 0.5
 """Time between two judgements, s."""
 LAPSED_AFTER_S = 1.0
-"""A problem must stand so long before it is told, s. With ``WINDOW_S`` it is told within 5 s."""
+"""Time for which a problem must persist before its report, s. With ``WINDOW_S`` the report comes within 5
+s."""
 SERVED_AFTER_S = 5.0
-"""Every problem must be away so long before that is told, s: a rate about its limit is not told in turns."""
+"""Time without any problem before its end is reported, s, so that a rate near its limit causes no alternating
+reports."""
 PAUSE_S = 2.5
-"""Silence of the vehicle after which counting begins anew, s: two heartbeats, one of them lost."""
+"""Silence of the vehicle after which counting restarts, s: two heartbeats, one of them lost."""
 
 Judge = Callable[[Mapping[str, ChannelStatus], float], Sequence[Problem]]
 
 
 class Service:
-    """Watches what arrives, and tells when it cannot serve and when it can again.
+    """Watches the arriving messages, and reports when they cannot serve and when they can again.
 
     Parameters
     ----------
     judge
-        What keeps a stream with these channels, as they arrived lately, from being used at this time of
-        arrival, s.
+        Gives the problems of a stream with these channels, as they arrived lately, at a time of arrival, s.
     """
 
     def __init__(self, judge: Judge) -> None:
@@ -47,23 +48,23 @@ class Service:
         self._since_s: float | None = None
         self._standing: frozenset[str] = frozenset()
         self.problems: tuple[Problem, ...] = ()
-        """Why the stream cannot serve now; empty when it can, or is not yet known."""
+        """Reasons for which the stream cannot serve now; empty when it can, or is not yet known."""
 
     def begin(self) -> None:
-        """Another vehicle or another power-on: what arrived before says nothing of it."""
+        """Begin another vehicle or another power-on, and forget the earlier messages."""
         self._arrivals.clear()
         self._newest_s = -np.inf
 
     def end(self) -> None:
-        """Nothing more will come, and nothing is wanted any more."""
+        """End the watch: no further message comes or is wanted."""
         self.problems = ()
 
     def take(self, channel: str, source: str, arrival_s: FloatArray) -> None:
-        """Samples of a channel from one source arrived at these times, shape (n,)."""
+        """Take the times at which samples of a channel arrived from one source, shape (n,)."""
         self._arrivals.setdefault((channel, source), []).extend(arrival_s.tolist())
 
-    def advance(self, columns: Sequence[Columns]) -> list[FlightEvent]:
-        """Judge every moment that these messages, whatever they carry, have passed."""
+    def advance(self, columns: Sequence[Columns]) -> list[NoData | DataAgain]:
+        """Judge the stream at every moment that these messages have passed."""
         if not columns:
             return []
         newest_s = max(float(c.arrival_s[-1]) for c in columns)
@@ -71,7 +72,7 @@ class Service:
             # As nearly always: no moment of judgement has passed.
             self._newest_s = max(self._newest_s, newest_s)
             return []
-        told: list[FlightEvent] = []
+        told: list[NoData | DataAgain] = []
         for now_s in np.unique(np.concatenate([c.arrival_s for c in columns])).tolist():
             if now_s > self._newest_s + PAUSE_S:
                 self._due_s = now_s + WINDOW_S
@@ -84,12 +85,12 @@ class Service:
         return told
 
     def _forget(self) -> None:
-        """Let go of what no later moment of judgement reaches back to."""
+        """Drop times of arrival that no later judgement needs."""
         oldest_s = self._newest_s - WINDOW_S - STEP_S
         for times in self._arrivals.values():
             del times[: next((i for i, t in enumerate(times) if t > oldest_s), len(times))]
 
-    def _look(self, now_s: float) -> list[FlightEvent]:
+    def _look(self, now_s: float) -> list[NoData | DataAgain]:
         found = tuple(self._judge(self._lately(now_s), now_s))
         standing = frozenset(problem.code for problem in found)
         if standing != self._standing or self._since_s is None:
@@ -105,7 +106,7 @@ class Service:
         return [] if standing < told else [NoData(found)]
 
     def _lately(self, now_s: float) -> dict[str, ChannelStatus]:
-        """How every channel arrived within the window, from its fastest source."""
+        """Return the arrival of every channel within the window, from its fastest source."""
         found: dict[str, ChannelStatus] = {}
         for (channel, source), times in self._arrivals.items():
             newest = [t for t in times if now_s - WINDOW_S < t <= now_s]

@@ -1,8 +1,7 @@
 """The stream of one vehicle: columns of messages in, channels and manoeuvres out.
 
-Whatever is decided is decided by the order of arrival and the vehicle's clock, never by how
-messages were batched: a live link, message by message, and a log, whole, end in the same
-events. Memory is bounded by two minutes of channels.
+Every decision follows the order of arrival and the vehicle's clock, never the batches. So a live link,
+message by message, and a whole log end in equal events. Memory is bounded by two minutes of channels.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -21,6 +20,7 @@ from advisor.flight.cutting import Cutting
 from advisor.flight.derived_alpha import DERIVED_ALPHA, promised
 from advisor.flight.elevator_guess import ElevatorGuesses, Guess
 from advisor.flight.elevator_path import ElevatorPath
+from advisor.flight.elevator_sign import SAID
 from advisor.flight.events import FlightEvent, ModeChanged, Rebooted
 from advisor.flight.identity import Identity
 from advisor.flight.maneuver import Maneuver
@@ -33,7 +33,6 @@ from advisor.flight.pieces import pieces
 from advisor.flight.power_on import PowerOn
 from advisor.flight.record import ALL_UNITS, Channel
 from advisor.flight.senders import SenderWatch
-from advisor.flight.sense import SAID
 from advisor.flight.service import Service
 from advisor.flight.suitability import problems, with_guess
 from advisor.flight.surfaces import Surface
@@ -41,13 +40,14 @@ from advisor.flight.track import ChannelStatus
 from advisor.flight.tracks import Tracks
 from advisor.flight.trust import Distrust, frozen
 from advisor.flight.vehicle import Vehicle
+from advisor.flight.vehicle_texts import VehicleTexts
 from advisor.problems import Problem
 
 KEEP_S = 120.0
-"""How far back channels reach: longer than any manoeuvre with its lead-in."""
+"""Time for which channels are kept, s: longer than any manoeuvre with its lead-in."""
 _OUTPUTS = ("SERVO_OUTPUT_RAW", "ACTUATOR_OUTPUT_STATUS")
 _HEARTBEAT_S = 2.2
-"""The mode changed since the heartbeat before, at most so long ago: one of them may be lost."""
+"""Longest time since the last heartbeat within which a mode has changed, s. One heartbeat may be lost."""
 
 
 class FlightStream:
@@ -60,9 +60,9 @@ class FlightStream:
     target_system
         System id to follow; None: the first vehicle heard.
     marks
-        Stretches that somebody has called manoeuvres, known before the stream begins.
+        Stretches marked as manoeuvres before the stream begins.
     keep_all
-        Keep every sample, for ``power_ons``; memory then grows with the length of the flight.
+        Whether to keep every sample, for ``power_ons``. Memory then grows with the length of the flight.
     """
 
     def __init__(
@@ -77,15 +77,16 @@ class FlightStream:
         self._keep_s = np.inf if keep_all else KEEP_S
         self._clock_heard: list[Master] = []
         self.power_ons: list[PowerOn] = []
-        """Every power-on that is over, whole; empty unless everything is kept."""
+        """Every power-on that is over, whole; empty without ``keep_all``."""
         self._who = Identity(aircraft.elevator, target_system)
+        self._texts = VehicleTexts()
         self._attitudes = Attitudes()
         self._clock = BootClock()
         self._tracks = Tracks(aircraft.alpha.source, aircraft.airspeed_m_s)
         self._cutting = Cutting(self._tracks, self._who, aircraft.elevator.is_calibrated)
         self._mixing = Mixing(self._tracks)
         self.marks = Marks(marks)
-        """What is marked by hand, by a switch and by texts."""
+        """Marks by hand, by a switch and by texts."""
         self._markers = MarkerWatch(aircraft.markers)
         self._path = ElevatorPath(self._tracks, self._mixing, self.marks, self._cutting)
         self._over = False
@@ -94,7 +95,7 @@ class FlightStream:
         self._guesses = ElevatorGuesses()
         self._start_boot()
         self.seen: set[str] = set()
-        """Names of the messages the vehicle has sent."""
+        """Names of the messages that the vehicle has sent."""
         self._past: dict[str, ChannelStatus] = {}
         self._service = Service(self._wanting)
         self._senders = SenderWatch()
@@ -116,17 +117,17 @@ class FlightStream:
 
     @property
     def vehicle(self) -> Vehicle | None:
-        """Who is followed; None before its first heartbeat."""
+        """Vehicle that is followed. None before its first heartbeat."""
         return self._who.vehicle
 
     @property
     def other_systems(self) -> frozenset[int]:
-        """System ids of further vehicles heard."""
+        """System ids of the other vehicles heard."""
         return self._who.other_systems
 
     @property
     def maneuvers(self) -> int:
-        """How many manoeuvres have been found."""
+        """Number of manoeuvres found."""
         return self._cutting.maneuvers
 
     @property
@@ -136,12 +137,12 @@ class FlightStream:
 
     @property
     def elevator(self) -> Surface | Problem:
-        """The elevator's outputs and scale, or why there is none."""
+        """Outputs and scale of the elevator, or the reason for their absence."""
         return self._who.elevator
 
     @property
     def elevator_notes(self) -> tuple[str, ...]:
-        """What the elevator is made of, what is assumed of its scale and sense, in sentences."""
+        """Composition of the elevator and assumptions about its scale and sign, as sentences."""
         backwards = SAID if self._cutting.is_backwards else ""
         if not isinstance(self.elevator, Surface):
             return (backwards,) if backwards else ()
@@ -160,7 +161,7 @@ class FlightStream:
 
     @property
     def channels(self) -> Mapping[str, ChannelStatus]:
-        """How every channel arrives, from the source that would be used now; at the end, as at its best."""
+        """Arrival of every channel from its present source; at the end of the stream, its best arrival."""
         arriving = self._past if self._over else {**self._past, **self._tracks.statuses()}
         return {
             name: replace(status, provenance=self._who.provenance(status.source, status.provenance))
@@ -168,7 +169,7 @@ class FlightStream:
         }
 
     def problems(self) -> list[Problem]:
-        """Why this stream cannot be used, as far as it has been heard; empty when it can."""
+        """Return the reasons for which the stream so far cannot be used; empty for a usable stream."""
         flown = self._cutting
         found = problems(
             self.vehicle,
@@ -192,26 +193,26 @@ class FlightStream:
 
     @property
     def guess(self) -> Guess | None:
-        """Which output may be the elevator, while nothing says it."""
+        """Guess of the elevator's output, while no parameter states the output."""
         return self._guesses.newest
 
     @property
     def no_data(self) -> tuple[Problem, ...]:
-        """Why what arrives at present cannot serve; empty when it can."""
+        """Reasons for which the present data cannot serve; empty while they can."""
         return self._service.problems
 
     def _wanting(self, channels: Mapping[str, ChannelStatus], now_s: float) -> list[Problem]:
-        """What keeps a stream with these channels from being used, whatever was flown on it."""
+        """Return the problems of a stream with these channels, whatever was flown on it."""
         wrong = self._mixing.contradiction if not self._cutting.maneuvers else None
         two = self._senders.problem(self._system, now_s) if self._system is not None else None
-        # What is wrong with the vehicle followed comes first; the faces offer the others by themselves.
+        # Problems of the vehicle followed come first. The screens offer the other vehicles themselves.
         others = self.other_systems if self.vehicle is None else ()
         found = problems(self.vehicle, others, self.elevator, channels, 1, {}, (), self.seen)
         return [*(problem for problem in (two, wrong) if problem), *found]
 
     @property
     def two_senders(self) -> Problem | None:
-        """Two senders under the vehicle's id, where they were seen once."""
+        """Problem of two senders under the vehicle's id, once they were detected."""
         return self._senders.seen
 
     @property
@@ -221,15 +222,15 @@ class FlightStream:
         return self._who.distrusts(frozen(ranges))
 
     def recent(self, name: str, seconds: float) -> Channel | None:
-        """The newest stretch of a channel; None when nothing of it has arrived."""
+        """Return the newest stretch of a channel; None without samples."""
         return self._tracks.recent(name, seconds)
 
     def so_far(self) -> Maneuver | None:
-        """The manoeuvre being flown, cut at the newest sample; None between manoeuvres."""
+        """Return the manoeuvre being flown, cut at the newest sample; None between manoeuvres."""
         return self._path.so_far()
 
     def feed(self, columns: Sequence[Columns]) -> list[FlightEvent]:
-        """Take messages that have arrived; what became known by them, in order."""
+        """Take messages; return the events that they cause, in order."""
         events: list[FlightEvent] = []
         several = self._who.may_choose or len({c.system for c in columns if c.name == "HEARTBEAT"}) > 1
         for piece in pieces(self._attitudes.of(columns), by_second=several):
@@ -237,21 +238,21 @@ class FlightStream:
         return events
 
     def finish(self) -> list[FlightEvent]:
-        """No more messages will come: whatever is open is closed."""
+        """Take the end of the messages, and close every open movement."""
         events = self._finish_boot()
         self._service.end()
         self._over = True
         return events
 
     def _finish_boot(self) -> list[FlightEvent]:
-        events = self._path.finish(self._master_s)
+        events = [*self._path.finish(self._master_s), *self._texts.finish(self._master_s)]
         self._past = self._at_best()
         if self._keep_s == np.inf:
             self.power_ons.append(self._power_on())
         return events
 
     def _power_on(self) -> PowerOn:
-        """Everything that was heard since the vehicle's clock began."""
+        """Return everything that was heard since the vehicle's clock began."""
         found = {name: self._tracks.cut(name, -np.inf, np.inf) for name in ALL_UNITS}
         channels = {
             name: replace(c, provenance=self._who.provenance(c.source, c.provenance))
@@ -265,18 +266,24 @@ class FlightStream:
         return PowerOn(self.boot, channels, order, t)
 
     def _at_best(self) -> dict[str, ChannelStatus]:
-        """How each channel arrived when it arrived fastest, over all power-ons."""
+        """Return the arrival of each channel at its fastest, over all power-ons."""
         now = {name: status.at_best(self._past.get(name)) for name, status in self._tracks.statuses().items()}
         return {**self._past, **now}
 
     def _feed_piece(self, piece: Sequence[Columns]) -> list[FlightEvent]:
-        """Columns within which neither vehicle nor parameters nor mode change."""
+        """Take columns within which neither vehicle nor parameters nor mode change."""
         mode = self._who.mode
         flown = self._cutting.maneuvers > self._flown_before
-        events = self._who.learn(piece, self._master_s, flown)
+        events: list[FlightEvent] = [
+            said
+            for columns in piece
+            if columns.name == "STATUSTEXT"
+            for said in self._texts.heard(columns, self._master_s)
+        ]
+        events += self._who.learn(piece, self._master_s, flown)
         vehicle = self._who.vehicle
         if vehicle is None:
-            return [*events, *self._service.advance(piece)]
+            return [*events, *self._serving(piece)]
         if vehicle.system != self._system:
             left = self._start_again(BootClock(self.boot + 1)) if self._system is not None else []
             events = [*left, *events]
@@ -288,7 +295,8 @@ class FlightStream:
                 order = min(int(c.order[0]) for c in piece)
                 earliest_s = max(self._heartbeat_s, self._master_s - _HEARTBEAT_S)
                 self._path.mode_changed(earliest_s, order)
-                # Who takes over and flies an input at once did so before the heartbeat that tells of it.
+                # A pilot who takes over and flies an input at once did so before the heartbeat that reports
+                # the mode.
                 closed = closes_pitch_loop(self._who.mode)
                 self._cutting.change(self._who.mode, self._master_s if closed else earliest_s)
             else:
@@ -300,10 +308,14 @@ class FlightStream:
                 events += [*self._start_again(self._clock), Rebooted(self.boot)]
             events += self._feed_part(part, master, vehicle)
         self._senders.hear(mine, vehicle.component)
-        return [*events, *self._service.advance(mine)]
+        return [*events, *self._serving(mine)]
+
+    def _serving(self, piece: Sequence[Columns]) -> list[FlightEvent]:
+        """Whether what arrives can serve, where that has changed."""
+        return [replace(told, at_s=self._master_s) for told in self._service.advance(piece)]
 
     def _start_again(self, clock: BootClock) -> list[FlightEvent]:
-        """What belonged together so far is over: another power-on, or another vehicle."""
+        """Begin another power-on, or another vehicle, and drop the earlier state."""
         events = self._finish_boot()
         self._earlier_s = self.duration_s
         self._clock = clock
@@ -315,10 +327,10 @@ class FlightStream:
         return events
 
     def _feed_part(self, part: Sequence[Columns], master: Master, vehicle: Vehicle) -> list[FlightEvent]:
-        """Columns of one boot: channels first, then the elevator sample by sample."""
+        """Take columns of one boot: channels first, then the elevator sample by sample."""
         self._tracks.forget(max(self._path.newest_s, self._master_s) - self._keep_s)
         orders = np.concatenate(([-1], master.order))
-        # A late ATTITUDE says when it was, not what the time is.
+        # A late ATTITUDE states its own time, not the present time.
         clock = np.fmax.accumulate(np.concatenate(([self._master_s], master.t)))
         if self._keep_s == np.inf:
             self._clock_heard.append(replace(master, t=clock[1:]))

@@ -1,10 +1,10 @@
-"""Why a stream cannot serve to identify a short period: what is missing or too slow, and how to mend it.
+"""Reasons for which a stream cannot serve to identify a short period: missing or slow messages, with
+remedies.
 
-How fast is fast enough depends on the aircraft. Before there is an estimate only a floor can
-be demanded: a 3-2-1-1 is matched to the short period, its shortest step is about a third of
-the natural period, and below four samples to that step neither the step nor the answer to it
-can be placed. The floor is eight samples a second: it lets a slow jet pass at 10 Hz and
-refuses what an autopilot sends when nobody asks (2 to 4 Hz). Once there is an estimate, each
+The necessary rate depends on the aircraft. Before an estimate exists, only a floor can be demanded. A 3-2-1-1
+is matched to the short period, and its shortest step is about a third of the natural period. With fewer than
+four samples to that step, neither the step nor its answer can be placed. The floor is eight samples a second.
+A slow jet passes at 10 Hz, and the default rates of autopilots (2 to 4 Hz) fail. With an estimate, each
 manoeuvre is judged against its own natural frequency (`advisor.decision.quality`).
 """
 
@@ -22,9 +22,9 @@ from advisor.problems import Problem
 from advisor.rounding import distinct_texts
 
 SLOWEST_HZ = 8.0
-"""Least rate of elevator, pitch rate and angle of attack, whatever the aircraft."""
+"""Least rate of elevator, pitch rate and angle of attack for any aircraft, Hz."""
 _MOTION = ("a_z", "airspeed", "theta")
-"""Channels that stand in for an angle of attack, besides the pitch rate."""
+"""Channels that replace an angle of attack, in addition to the pitch rate."""
 
 
 def problems(
@@ -37,22 +37,22 @@ def problems(
     still: Collection[Distrust] = (),
     seen: Collection[str] = (),
 ) -> list[Problem]:
-    """Everything that keeps a stream from being used, the most fundamental first.
+    """Return every problem that keeps a stream from being used, the most fundamental first.
 
     Parameters
     ----------
     vehicle, other_systems
-        Who is followed, and the system ids of further vehicles heard.
+        Vehicle that is followed, and system ids of the other vehicles heard.
     elevator
-        The elevator's outputs, or why there are none.
+        Outputs of the elevator, or the reason for their absence.
     channels
-        How every channel arrived, at its best.
+        Best arrival of every channel.
     maneuvers
-        How many manoeuvres were found.
+        Number of manoeuvres found.
     activities
-        How many movements of the elevator were no test inputs, by the reason in words.
+        Number of elevator movements that were no test inputs, by the reason in words.
     still
-        Channels that stand still in flight.
+        Channels that are frozen in flight.
     seen
         Names of the messages that the vehicle has sent.
     """
@@ -61,7 +61,7 @@ def problems(
     if vehicle.is_multicopter and isinstance(elevator, Problem):
         found = [_no_surfaces(vehicle)]
     else:
-        # An angle of attack that stands still has a stand-in: the one derived from climb rate and air speed.
+        # A frozen angle of attack has a replacement: the one derived from climb rate and air speed.
         dead = {distrust.channel for distrust in still} & {"a_z"}
         alive = {name: status for name, status in channels.items() if name not in dead}
         found = [
@@ -77,7 +77,7 @@ def problems(
 
 
 def with_guess(problem: Problem, guess: Guess) -> Problem:
-    """The problem that nothing says which output is the elevator, with a guess; any other as it is."""
+    """Return the problem of an unknown elevator output with a guess added; any other problem unchanged."""
     if problem.code != "no_elevator":
         return problem
     return Problem(problem.code, problem.text, f"{problem.fix.rstrip('.')}; {guess}.")
@@ -163,7 +163,7 @@ def _missing(
         found.append(
             Problem(
                 "no_alpha",
-                f"There is no angle of attack, and the motion cannot stand in for it: no {absent} arrived.",
+                f"There is no angle of attack, and the motion cannot replace it: no {absent} arrived.",
                 f"{sentence(mends.present(['RAW_IMU', 'VFR_HUD']), or_else)}; "
                 f"a vane may send {mends.called('NAMED_VALUE_FLOAT')} (alpha.source).",
             )
@@ -172,11 +172,11 @@ def _missing(
 
 
 def _sent(seen: Collection[str]) -> dict[str, ChannelStatus]:
-    """Channels whose messages came, though nothing could be placed in time."""
+    """Return channels whose messages came, although none could be placed in time."""
     sources = {reading.channel: reading.message for reading in READINGS if reading.message in seen}
     if not {"SERVO_OUTPUT_RAW", "ACTUATOR_OUTPUT_STATUS"}.isdisjoint(seen):
         sources["elevator"] = "SERVO_OUTPUT_RAW"
-    # The attitude comes with the pitch rate that is asked for.
+    # The attitude comes with the pitch rate, which is requested anyway.
     sources["theta"] = "ATTITUDE"
     return {name: ChannelStatus(source, "", nan, nan, nan) for name, source in sources.items()}
 
@@ -184,7 +184,7 @@ def _sent(seen: Collection[str]) -> dict[str, ChannelStatus]:
 def _not_logged(
     elevator: Surface | Problem, channels: Mapping[str, ChannelStatus], vehicle: Vehicle
 ) -> list[Problem]:
-    """All that a log of the autopilot's own lacks, in one problem."""
+    """Return one problem with everything that a log of the autopilot lacks."""
     lacks: dict[str, tuple[str, str]] = {}
     if "q" not in channels:
         lacks["no_pitch_rate"] = ("pitch rate", "ATTITUDE")
@@ -208,7 +208,8 @@ def _not_logged(
 
 
 def motion_stands_in(channels: Collection[str]) -> bool:
-    """Whether an estimate needs no angle of attack: specific force, air speed and attitude arrive."""
+    """Return whether an estimate needs no angle of attack, because specific force, air speed and attitude
+    arrive."""
     return all(name in channels for name in _MOTION)
 
 
@@ -235,5 +236,5 @@ def _at(rate_hz: float) -> str:
 
 
 def _message(status: ChannelStatus) -> str:
-    """Name of the message that sets the rate of a channel."""
+    """Return the name of the message that sets the rate of a channel."""
     return "VFR_HUD" if status.source.startswith("theta") else status.source.partition(".")[0]

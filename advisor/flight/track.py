@@ -1,4 +1,4 @@
-"""A track: the samples of one channel from one source, as they arrive, with bounded memory."""
+"""A track: the samples of one channel from one source as they arrive, with bounded memory."""
 
 from dataclasses import dataclass, replace
 
@@ -11,7 +11,7 @@ from advisor.flight.record import Channel
 
 @dataclass(frozen=True, slots=True)
 class ChannelStatus:
-    """How one channel arrives."""
+    """Arrival of one channel."""
 
     source: str
     provenance: str
@@ -29,12 +29,12 @@ class ChannelStatus:
     """Largest value since boot, SI."""
 
     def at_best(self, earlier: "ChannelStatus | None" = None) -> "ChannelStatus":
-        """The status with the rate of the best ten seconds, and the range, of this source in all boots.
+        """Return the status with the best ten seconds' rate, and the range, of this source over all boots.
 
         Parameters
         ----------
         earlier
-            What this method returned before for the channel.
+            Earlier result of this method for the channel.
         """
         best = replace(self, rate_hz=self.best_hz)
         if earlier is None or earlier.source != self.source:
@@ -48,9 +48,9 @@ class ChannelStatus:
 
 
 class Track:
-    """Grows at its end, forgets its beginning.
+    """Buffer that grows at its end and drops its beginning.
 
-    Late packets are kept and sorted in when a stretch is cut; duplicates are dropped there.
+    Late packets are kept, and sorted in when a stretch is cut. Duplicates are dropped there.
     """
 
     def __init__(self, name: str, source: str, provenance: str) -> None:
@@ -85,11 +85,11 @@ class Track:
         self._size = new.stop
 
     def forget(self, before_s: float) -> None:
-        """Let go of samples older than this when room is needed."""
+        """Drop samples older than ``before_s`` when room is needed."""
         self._keep_from_s = before_s
 
     def cut(self, start_s: float, end_s: float, up_to_order: int | None = None) -> Channel:
-        """The samples with ``start_s <= t <= end_s`` that had arrived by ``up_to_order``."""
+        """Return the samples with ``start_s <= t <= end_s`` that had arrived by ``up_to_order``."""
         t, y = self._t[: self._size], self._y[: self._size]
         wanted = (t >= start_s) & (t <= end_s)
         if up_to_order is not None:
@@ -100,7 +100,7 @@ class Track:
 
     @property
     def status(self) -> ChannelStatus:
-        """How it arrives."""
+        """Arrival of the channel."""
         recent = self.cut(self.newest_s - 10.0, self.newest_s)
         gap = self.largest_gap_s if self._size > 1 else float("inf")
         span = float(recent.t[-1] - recent.t[0]) if len(recent) > 1 else 0.0

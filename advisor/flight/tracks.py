@@ -1,4 +1,4 @@
-"""All tracks of one vehicle, and which source speaks for a channel."""
+"""All tracks of one vehicle, and the choice of each channel's source."""
 
 from dataclasses import replace
 
@@ -11,15 +11,15 @@ from advisor.flight.track import ChannelStatus, Track
 
 
 class Tracks:
-    """All tracks of one vehicle, and which source speaks for a channel.
+    """All tracks of one vehicle, and the choice of each channel's source.
 
     Parameters
     ----------
     alpha_source
-        ``auto``, ``aoa_ssa``, ``derived``, ``named_value:NAME`` or ``none``, as the aircraft file has it.
+        Source in the aircraft file: ``auto``, ``aoa_ssa``, ``derived``, ``named_value:NAME`` or ``none``.
         With ``none`` the channel is kept as with ``auto``, but no estimate uses it.
     airspeed_m_s
-        Air speed where none is measured, as the aircraft file has it.
+        Air speed of the aircraft file, for a log without air speed.
     """
 
     def __init__(self, alpha_source: str, airspeed_m_s: float | None = None) -> None:
@@ -38,11 +38,11 @@ class Tracks:
         }.get(alpha_source, [f"NAMED_VALUE_FLOAT.{named}"])
 
     def clear(self) -> None:
-        """Forget everything: another boot."""
+        """Drop all samples before another boot."""
         self._tracks.clear()
 
     def forget(self, before_s: float) -> None:
-        """Let go of what is older, when room is needed."""
+        """Drop samples older than ``before_s`` when room is needed."""
         for track in self._tracks.values():
             track.forget(before_s)
 
@@ -56,7 +56,7 @@ class Tracks:
         self._tracks[key].append(new.t, new.y, new.order)
 
     def serves(self, new: Decoded) -> bool:
-        """Whether the channel may come from this source."""
+        """Return whether this source may give the channel."""
         return new.source in self._sources.get(new.channel, (new.source,))
 
     @property
@@ -65,7 +65,7 @@ class Tracks:
         return DERIVED_ALPHA in self._sources["alpha"]
 
     def cut(self, name: str, start_s: float, end_s: float, up_to_order: int | None = None) -> Channel | None:
-        """A stretch of a channel from its best source that says anything there; None without one."""
+        """Return a stretch of a channel from its best source with samples there; None without one."""
         spare = None
         for track in self._candidates(name):
             channel = track.cut(start_s, end_s, up_to_order)
@@ -77,17 +77,17 @@ class Tracks:
         return spare
 
     def recent(self, name: str, seconds: float) -> Channel | None:
-        """The newest stretch of a channel; None when nothing of it has arrived."""
+        """Return the newest stretch of a channel; None without samples."""
         newest = max((track.newest_s for track in self._candidates(name)), default=None)
         return None if newest is None else self.cut(name, newest - seconds, newest)
 
     def statuses(self) -> dict[str, ChannelStatus]:
-        """How every channel arrives, from its best source."""
+        """Return the arrival of every channel, from its best source."""
         found = {name: next(iter(self._candidates(name)), None) for name in UNITS}
         return {name: track.status for name, track in found.items() if track is not None}
 
     def _candidates(self, name: str) -> list[Track | DerivedAlpha]:
-        """Tracks of a channel, the preferred source first."""
+        """Return tracks of a channel, the preferred source first."""
         preferred = self._sources.get(name)
         if preferred is None:
             return [track for (channel, _), track in self._tracks.items() if channel == name]
@@ -100,17 +100,19 @@ class Tracks:
         return found
 
     def _best(self, name: str) -> Track | None:
-        """The track of the best source of a channel that is not derived; None where nothing has arrived."""
+        """Return the track of the best measured source of a channel; None without samples."""
         found = (self._tracks.get((name, source)) for source in self._sources[name])
         return next((track for track in found if track is not None), None)
 
 
 _LARGEST_ALPHA_RAD = 0.7
-"""Nobody flies a short period at 40 degrees: a named value beyond this is in degrees."""
+"""Largest angle of attack in radians, rad. Nobody flies a short period at 40 degrees, so that a larger named
+value is in degrees."""
 
 
 def _in_radians(channel: Channel) -> Channel:
-    """A vane's named value carries no unit: degrees and radians are told apart by their size."""
+    """Return a vane's channel in radians. A named value carries no unit; its size shows degrees or
+    radians."""
     if not channel.source.startswith("NAMED_VALUE_FLOAT") or np.max(np.abs(channel.y)) <= _LARGEST_ALPHA_RAD:
         return channel
     return replace(channel, y=np.radians(channel.y))

@@ -1,6 +1,6 @@
-"""Channels that cannot be right: one stands still while the aircraft moves, or two contradict each other.
+"""Channels that cannot be right: a frozen one while the aircraft moves, or two that contradict each other.
 
-A larger input mends neither. Whoever advises a crew asks here first.
+A larger input remedies neither. Advice to a crew starts with this check.
 """
 
 from collections.abc import Mapping
@@ -18,19 +18,20 @@ MOVED_RAD = radians(2.0)
 """Least range of the pitch angle, or of the integrated pitch rate, of an aircraft that has moved, rad. Every
 manoeuvre on record moves by more, and no parked aircraft does."""
 _ALIKE = (0.5, 2.0)
-"""Ratio of the pitch angle's change to the integrated pitch rate, within which both are of one motion. The
-manoeuvres on record have 0.96 to 1.04; a rate in deg/s has 0.02, one with a wrong sign -1."""
+"""Range of the ratio of the pitch angle's change to the integrated pitch rate, within which both belong to
+one motion. The manoeuvres on record have 0.96 to 1.04. A rate in deg/s has 0.02, and one with a wrong sign
+-1."""
 _LEAST_SAMPLES = 20
-"""Fewer samples do not show whether a channel stands still."""
+"""Fewest samples that show whether a channel is frozen."""
 _LONGEST_GAP_S = 0.5
-"""Across a longer gap, s, and in slower samples, the pitch rate has no integral."""
+"""Longest gap, s, across which the pitch rate is integrated."""
 _WATCHED = {
     "q": ("pitch rate", "deg/s", degrees(1.0)),
     "a_z": ("normal acceleration", "m/s^2", 1.0),
     "alpha": ("angle of attack", "deg", degrees(1.0)),
     "airspeed": ("air speed", "m/s", 1.0),
 }
-"""Channels that never stand still in flight: name, unit and factor for people."""
+"""Channels that always change in flight: name, unit and factor for people."""
 _MENDS = {
     "q": "check the gyro and how its rate is recorded",
     "a_z": "check the accelerometer and how it is recorded",
@@ -47,30 +48,31 @@ class Distrust:
     """``frozen`` or ``contradiction``."""
     channel: str
     text: str
-    """What is so, without a full stop."""
+    """Description of the defect, without a full stop."""
     fix: str
-    """What to check, without a full stop."""
+    """Remedy, without a full stop."""
     value: float
-    """The value that stands still in SI, or the ratio of both motions."""
+    """Frozen value in SI, or the ratio of both motions."""
 
     @property
     def sentence(self) -> str:
-        """What is so, from its capital letter to its end without a full stop."""
+        """Description of the defect with a capital letter, without a full stop."""
         return f"{self.text[0].upper()}{self.text[1:]}"
 
     @property
     def stops(self) -> bool:
-        """Whether nothing can be estimated: the pitch rate is needed, what else stands still is left out."""
+        """Whether nothing can be estimated. The pitch rate is needed; any other frozen channel is left
+        out."""
         return self.channel == "q"
 
 
 def frozen(ranges: Mapping[str, tuple[float, float]]) -> list[Distrust]:
-    """Channels that stand still while the pitch angle or the pitch rate shows that the aircraft moves.
+    """Return channels that are frozen while the pitch angle or the pitch rate shows that the aircraft moves.
 
     Parameters
     ----------
     ranges
-        Channel name to its lowest and highest value in SI, over the same flight.
+        Channel name to its lowest and highest value in SI, over one flight.
     """
     moves = [ranges[name][1] - ranges[name][0] > MOVED_RAD for name in ("theta", "q") if name in ranges]
     if not any(moves):
@@ -84,7 +86,7 @@ def frozen(ranges: Mapping[str, tuple[float, float]]) -> list[Distrust]:
 
 
 def distrusted(channels: Mapping[str, Channel]) -> list[Distrust]:
-    """Channels of one stretch of flight that cannot be right; empty where nothing speaks against any."""
+    """Return the channels of one stretch of flight that cannot be right; empty where all seem sound."""
     told = {name: c for name, c in channels.items() if len(c) >= _LEAST_SAMPLES}
     found = frozen({name: (float(np.min(c.y)), float(np.max(c.y))) for name, c in told.items()})
     if found or not {"q", "theta"} <= told.keys() or told["q"].largest_gap_s > _LONGEST_GAP_S:
@@ -103,9 +105,10 @@ def _stands_still(name: str, value: float) -> Distrust:
 
 
 def _angle_over_rate(channels: Mapping[str, Channel]) -> float | None:
-    """Regression of the pitch angle on the integral of the rates that make it; None where it hardly moves.
+    """Return the regression of the pitch angle on the integral of its rate; None where the angle hardly
+    moves.
 
-    The pitch angle's rate is q cos φ − r sin φ. Offsets and drifts of both are left out of account.
+    The pitch angle's rate is q cos φ − r sin φ. Offsets and drifts of both do not count.
     """
     q, theta, r = channels["q"], channels["theta"], channels.get("r")
     bank = bank_at(q.t, channels)
@@ -119,6 +122,6 @@ def _angle_over_rate(channels: Mapping[str, Channel]) -> float | None:
 
 
 def _level(t: FloatArray, y: FloatArray) -> FloatArray:
-    """Values without their mean and their trend."""
+    """Return values without their mean and their trend."""
     s = t - t.mean()
     return np.asarray(y - y.mean() - s * float(s @ y) / float(s @ s))

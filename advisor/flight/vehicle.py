@@ -1,4 +1,4 @@
-"""Who the vehicle is: the heartbeat that belongs to an aircraft."""
+"""Identity of the vehicle: the heartbeat that belongs to an aircraft."""
 
 from dataclasses import dataclass, replace
 
@@ -9,25 +9,26 @@ from advisor.mends import Carrier, Mends, mends_of
 _AUTOPILOT_INVALID = 8
 _AUTOPILOTS = {0: "generic", 3: "ardupilot", 12: "px4", 4: "openpilot", 15: "armazila", 18: "smartap"}
 _PERIPHERALS = frozenset({5, 6, 18, 26, 27, 30, 31, 32, 33, 34, 36, 37, 38, 39, 40, 41, 42})
-"""Antenna tracker, ground station, onboard controller, gimbal, ADS-B, camera, and other parts."""
+"""Types that are no vehicle: antenna tracker, ground station, onboard controller, gimbal, ADS-B, camera, and
+other parts."""
 _MULTICOPTERS = frozenset({2, 13, 14, 15, 29, 35})
 """Aircraft on four, six, eight, three, twelve and ten rotors."""
 
 
 @dataclass(frozen=True, slots=True)
 class Vehicle:
-    """The autopilot whose messages count."""
+    """Autopilot whose messages count."""
 
     system: int
     component: int
     autopilot: str
     """``ardupilot``, ``px4``, or another name or number of MAV_AUTOPILOT."""
     type: int
-    """MAV_TYPE of its heartbeat."""
+    """MAV_TYPE of the heartbeat."""
     firmware: str | None = None
-    """Version as the vehicle states it; None until it does."""
+    """Version that the vehicle states. None before the first statement."""
     carrier: Carrier = "telemetry"
-    """What brings its messages: a mend must fit this."""
+    """Kind of record or link that brings the messages, which decides on the remedies."""
 
     def __str__(self) -> str:
         return f"{self.autopilot} {self.system}/{self.component}"
@@ -39,38 +40,38 @@ class Vehicle:
 
     @property
     def mends(self) -> Mends:
-        """What can be done about messages that are missing or slow, in the words of this autopilot."""
+        """Remedies for missing or slow messages, in the words of this autopilot."""
         return mends_of(self.autopilot, self.carrier)
 
     def with_firmware(self, firmware: str) -> "Vehicle":
-        """The same vehicle, its version known."""
+        """Return the vehicle with a known version."""
         return replace(self, firmware=firmware)
 
 
 def is_aircraft(autopilot: int, kind: int) -> bool:
-    """Whether a heartbeat with this MAV_AUTOPILOT and MAV_TYPE is that of a vehicle."""
+    """Return whether a heartbeat with this MAV_AUTOPILOT and MAV_TYPE is that of a vehicle."""
     return autopilot != _AUTOPILOT_INVALID and kind not in _PERIPHERALS
 
 
 class VehicleFinder:
-    """Picks the vehicle out of everything that sends heartbeats.
+    """Chooses the vehicle among all senders of heartbeats.
 
     Parameters
     ----------
     target_system
-        System id the user asked for; None: the first vehicle heard.
+        System id that the user asked for. None: the first vehicle heard.
     """
 
     def __init__(self, target_system: int | None = None) -> None:
         self._target = target_system
         self.vehicle: Vehicle | None = None
         self.others: set[int] = set()
-        """System ids of further vehicles on the same stream."""
+        """System ids of the other vehicles on the stream."""
         self.heard: dict[int, Vehicle] = {}
-        """Every vehicle by its system id, as its first heartbeat has it."""
+        """Every vehicle by its system id, from its first heartbeat."""
 
     def hear(self, heartbeat: Columns) -> bool:
-        """Take the first row of one sender's heartbeats; true when it settles who the vehicle is."""
+        """Take the first row of one sender's heartbeats; return True when it decides the vehicle."""
         autopilot = int(heartbeat.fields["autopilot"][0])
         kind = int(heartbeat.fields["type"][0])
         if not is_aircraft(autopilot, kind):
@@ -91,7 +92,7 @@ class VehicleFinder:
         return self._target is None and self.vehicle is not None and bool(self.others)
 
     def follow(self, vehicle: Vehicle) -> None:
-        """Another vehicle is followed from here on."""
+        """Follow another vehicle."""
         self.others |= {other for other in self.heard if self.vehicle is not None}
         self.others.discard(vehicle.system)
         self.vehicle = vehicle

@@ -1,4 +1,4 @@
-"""What an autopilot's parameters say of its servo outputs: what each moves, and how far and which way."""
+"""Roles, travels and directions of servo outputs, from an autopilot's parameters."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -7,18 +7,18 @@ from typing import Literal
 from advisor.flight.surfaces import Part, Scale, Surface, in_shares
 
 Parameters = Mapping[str, float]
-"""PARAM_VALUEs of the vehicle by name."""
+"""Name to the value of each of the vehicle's parameters."""
 
 
 @dataclass(frozen=True, slots=True)
 class Role:
-    """What an output moves."""
+    """Surface that an output moves."""
 
     surface: str
     """``elevator``, ``aileron``, ``rudder``, or a mixed pair: ``elevon``, ``V-tail``, ``A-tail``,
     ``differential spoiler``."""
     side: Literal["", "left", "right"] = ""
-    """Which half of a mixed pair; empty for a plain surface."""
+    """Half of a mixed pair; empty for a plain surface."""
 
 
 ELEVATOR, AILERON, RUDDER = Role("elevator"), Role("aileron"), Role("rudder")
@@ -26,47 +26,49 @@ ELEVATOR, AILERON, RUDDER = Role("elevator"), Role("aileron"), Role("rudder")
 
 @dataclass(frozen=True, slots=True)
 class Words:
-    """What the users of an autopilot call the parameters of its outputs."""
+    """Names of the outputs' parameters for the users of an autopilot."""
 
     function: str
-    """What an output moves."""
+    """Parameter of the surface that an output moves."""
     elevator: str
-    """What makes an output the elevator."""
+    """Setting that makes an output the elevator."""
     limits: str
-    """Pulses of the full strokes."""
+    """Parameters of the pulses at full strokes."""
     trim: str
-    """Pulse of no deflection."""
+    """Parameter of the pulse at zero deflection."""
     sense: str
-    """Which way an output moves; ``{n}`` stands for its number."""
+    """Parameter of an output's direction; ``{n}`` stands for its number."""
     unknown: str
-    """Why no output is the elevator: a sentence."""
+    """Sentence with the reason for which no output is the elevator."""
     usual: str
-    """Where the elevator usually is."""
+    """Usual place of the elevator."""
 
 
 @dataclass(frozen=True, slots=True)
 class Wiring:
-    """The outputs, as far as they are known."""
+    """Known roles, scales and directions of the servo outputs."""
 
     words: Words
     roles: Mapping[int, Role] = field(default_factory=dict)
-    """Outputs 1.. whose function is known; those that move no surface have a role without a name."""
+    """Output number, from 1, to its role where known. Outputs that move no surface have a role without a
+    name."""
     scales: Mapping[int, Scale] = field(default_factory=dict)
-    told: frozenset[int] = frozenset()
-    """Outputs of which the parameters say which way they move."""
+    known_directions: frozenset[int] = frozenset()
+    """Outputs whose direction the parameters give."""
     assumed: str = ""
-    """What of the roles is a guess, in a sentence."""
+    """Sentence on guesses among the roles."""
 
     def scale(self, n: int) -> Scale:
-        """Scale of output ``n``; where no parameter tells, that of ArduPilot's defaults."""
+        """Return the scale of output ``n``, with ArduPilot's defaults for unknown parameters."""
         return self.scales.get(n, Scale())
 
     def outputs_of(self, role: Role) -> list[int]:
-        """Outputs that have this role, rising."""
+        """Return the outputs with this role, rising."""
         return sorted(n for n, mine in self.roles.items() if mine == role)
 
     def surface(self, role: Role) -> Surface | None:
-        """The surface of the outputs with this role; None when no parameter says, or in two banks."""
+        """Return the surface of the outputs with this role; None without such a parameter, or for two
+        banks."""
         outputs = self.outputs_of(role)
         surface = Surface(in_shares([Part(n, self.scale(n)) for n in outputs]), False, "")
         return surface if len(surface.ports) == 1 else None

@@ -1,1 +1,1 @@
-"""The sim-to-real gap: where it lies, which effect causes it, how far it shrinks."""
+"""The sim-to-real gap: the block in which it lies, the effect that causes it, and how far it shrinks."""

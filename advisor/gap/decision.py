@@ -1,27 +1,27 @@
-"""A decision of the diagnosis as the ledger holds it: a number against its limit."""
+"""One decision of the diagnosis, as the ledger keeps it: a statistic compared with its limit."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)
 class Decision:
-    """One question, answered yes where the statistic reaches the limit."""
+    """One question, answered yes where the statistic is at least the limit."""
 
     about: str
-    """The effect, the block or the verdict in question."""
+    """Effect, block or verdict that the question is about."""
     name: str
-    """The question in a word or two."""
+    """The question in one or two words."""
     statistic: float
     limit: float
     unit: str
-    """What both numbers count."""
+    """Unit of the statistic and of the limit."""
 
     @property
     def margin(self) -> float:
-        """By how much the limit is exceeded; below zero: by how much it is missed."""
+        """Statistic minus limit: positive where the limit is exceeded."""
         return self.statistic - self.limit
 
     @property
     def holds(self) -> bool:
-        """Whether the answer is yes."""
+        """Whether the statistic is at least the limit."""
         return self.statistic >= self.limit

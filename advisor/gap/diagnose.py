@@ -1,4 +1,4 @@
-"""The diagnosis: where the gap lies, which effect causes it, how far it shrinks without it."""
+"""The diagnosis: where the gap lies, which effect causes it, and how far it shrinks with that effect."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -6,22 +6,22 @@ from dataclasses import dataclass, replace
 from advisor.aircraft import Aircraft
 from advisor.flight.kinematics import KinematicCheck, check_alpha, combine
 from advisor.flight.maneuver import Maneuver
-from advisor.gap.explain import explain, seen_once
-from advisor.gap.fitting.filed_speed import filed_speed
+from advisor.gap.explain import evidence_of_one_maneuver, explain
+from advisor.gap.fitting.prior_speed import prior_speed
 from advisor.gap.records.airspeed import measures_speed
 from advisor.gap.records.flights import Flights
 from advisor.gap.records.prepare import prepare
 from advisor.gap.records.unmeasured_speed import speed_of_the_motion
 from advisor.gap.records.usable import usable_of
 from advisor.gap.result import Diagnosis
+from advisor.gap.search.acceptance import LEAST_OFFSET_RAD, OFFSET_SIGMAS
 from advisor.gap.search.baseline import at_another_speed, fit_baseline
-from advisor.gap.search.merit import LEAST_OFFSET_RAD, OFFSET_SIGMAS
 from advisor.gap.search.stage import added_in
 from advisor.gap.search.waterfall import Progress
-from advisor.gap.unnamed.leftover import Leftover, of_the_wind
-from advisor.gap.unnamed.true_speed import true_over_read, true_speed_of
-from advisor.gap.unnamed.weight import Weight, weight_carried
-from advisor.gap.unnamed.wind import blows_along, wind_shear
+from advisor.gap.uncatalogued.airspeed_scale import airspeed_scale_of, true_over_read
+from advisor.gap.uncatalogued.unexplained import Unexplained, as_wind
+from advisor.gap.uncatalogued.weight_check import WeightReading, weight_reading
+from advisor.gap.uncatalogued.wind_shear import moves_along_path, wind_shear
 from advisor.gap.verdict.answer import answer
 from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.notes import left_out
@@ -30,7 +30,7 @@ from advisor.problems import UnusableInputError
 
 @dataclass(frozen=True)
 class Examined:
-    """A diagnosis with what it was made from."""
+    """A diagnosis, together with the evidence that the diagnosis was made from."""
 
     diagnosis: Diagnosis
     evidence: Evidence
@@ -47,15 +47,15 @@ def diagnose(
     Parameters
     ----------
     maneuvers
-        As the segmenter found them, with elevator, α and pitch rate. A single one tells where the gap lies,
-        not its cause: none is left to keep out of the fit.
+        Manoeuvres of the segmenter, with elevator, α and pitch rate. A single manoeuvre shows where the gap
+        lies. It shows no cause, because no manoeuvre remains for the hold-out.
     aircraft
-        The aircraft file: what the simulator believes today.
+        The aircraft file: the simulator's model of today.
     holdout
-        How many manoeuvres, the last ones, the shrink is measured on, with every number fitted without them
-        (which effects are there is judged on all); None: all, each kept out in turn with a third of them.
+        Number of manoeuvres, the last ones, on which the shrink is measured. Parameters are fitted without
+        them; which effects are present is judged on all. None: every manoeuvre is held out in turn.
     progress
-        Called with a sentence and the share done.
+        Function that receives a sentence and the share of the work that is done, 0 to 1.
 
     Raises
     ------
@@ -71,7 +71,7 @@ def examine(
     holdout: int | None = None,
     progress: Progress = lambda *_: None,
 ) -> Examined:
-    """Diagnose as ``diagnose`` does, and keep the evidence for a simulator that flies the answer.
+    """Diagnose like ``diagnose``, and return the evidence too, so that a user's simulator can fly the result.
 
     Raises
     ------
@@ -93,7 +93,7 @@ def examine(
 def _explained(
     maneuvers: Sequence[Maneuver], aircraft: Aircraft, progress: Progress
 ) -> tuple[Evidence, KinematicCheck]:
-    """What the manoeuvres tell, and the check of α without aerodynamics."""
+    """Return the evidence of the manoeuvres, and the check of α against the kinematics alone."""
     flights = prepare(maneuvers, aircraft)
     _refuse(flights)
     arms = aircraft.accelerometer.arm_m, aircraft.alpha.vane_arm_m
@@ -103,31 +103,31 @@ def _explained(
     progress("fitting the simulator's model", 0.1)
     least = max(LEAST_OFFSET_RAD, OFFSET_SIGMAS * kinematics.offset.std_rad)
     if kinematics.offset.stays and abs(kinematics.offset.rad) > least:
-        # What the climb rate shows is taken out first, else the trim would carry it into the lift.
+        # The offset that the climb rate shows is removed first: the trim would carry it into the lift.
         maneuvers = [_without_offset(m, kinematics.offset.rad) for m in maneuvers]
         flights = prepare(maneuvers, aircraft)
     problem, baseline = fit_baseline(flights, aircraft)
-    speed = None if aircraft.reference_airspeed_m_s else filed_speed(problem, baseline)
+    speed = None if aircraft.reference_airspeed_m_s else prior_speed(problem, baseline)
     if speed is not None:
         aircraft = replace(aircraft, reference_airspeed_m_s=speed)
         flights = prepare(maneuvers, aircraft)
         problem, baseline = at_another_speed(problem, baseline, flights)
-    weight = weight_carried(flown, flights.reference_m_s)
-    over_read = true_over_read(true_speed_of(problem, baseline), weight)
+    weight = weight_reading(flown, flights.reference_m_s)
+    over_read = true_over_read(airspeed_scale_of(problem, baseline), weight)
     if over_read > 1.0:
-        # An indicated air speed changes by less than the accelerometers say.
+        # An indicated air speed changes by less than the integral of the accelerations.
         flights = prepare(maneuvers, aircraft, over_read)
         problem, baseline = at_another_speed(problem, baseline, flights)
     if len(flights) == 1:
-        return seen_once(problem, baseline), kinematics
-    return _held_against_the_path(explain(problem, baseline, aircraft, progress), flown, weight), kinematics
+        return evidence_of_one_maneuver(problem, baseline), kinematics
+    return _checked_against_path(explain(problem, baseline, aircraft, progress), flown, weight), kinematics
 
 
 def _refuse(flights: Flights) -> None:
     if not len(flights):
         raise UnusableInputError(
             "no_maneuver",
-            "No usable manoeuvre in the log: no simulator can be held against it.",
+            "No usable manoeuvre in the log: there is nothing to compare a simulator with.",
             "Fly at least three elevator manoeuvres (3-2-1-1 or doublets), better nine.",
         )
     if "alpha" not in flights.channels:
@@ -139,57 +139,65 @@ def _refuse(flights: Flights) -> None:
 
 
 def _without_dead_pitot(maneuver: Maneuver) -> Maneuver:
-    """The manoeuvre without an air speed that stands still in flight."""
+    """Return the manoeuvre without its air speed channel, if that channel is constant in flight."""
     if measures_speed(maneuver):
         return maneuver
     return replace(maneuver, channels={k: c for k, c in maneuver.channels.items() if k != "airspeed"})
 
 
 def _with_speed(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Aircraft:
-    """The aircraft with the speed that its motion shows, where neither file nor every manoeuvre has one."""
+    """Return the aircraft with the air speed that the motion implies, if file and log leave the speed
+    open."""
     if aircraft.stated_airspeed_m_s or all(measures_speed(m) for m in maneuvers):
         return aircraft
     return replace(aircraft, airspeed_m_s=speed_of_the_motion(maneuvers))
 
 
 def _without_offset(maneuver: Maneuver, offset: float) -> Maneuver:
-    """The manoeuvre with a constant taken off its angle of attack."""
+    """Return the manoeuvre with ``offset``, in rad, subtracted from its angle of attack."""
     channels = dict(maneuver.channels)
     if "alpha" in channels:
         channels["alpha"] = replace(channels["alpha"], y=channels["alpha"].y - offset)
     return replace(maneuver, channels=channels)
 
 
-def _held_against_the_path(e: Evidence, flown: Sequence[Maneuver], weight: Weight | None) -> Evidence:
-    """What air speed and accelerometer are off by beside the path, without any aerodynamics."""
-    shear = wind_shear(flown, true_over_read(e.true_speed, weight))
-    of_gusts = shear is not None and shear.is_feigned and e.air is not None
-    if shear is not None and not of_gusts and not _feigns_wind(e.leftover):
-        # Air that moves swings the air speed, too: beside it what is not plain is worth a note, no more.
-        is_there = e.air is None or shear.is_plain
-        e = replace(e, shear=shear, leftover=of_the_wind(e.leftover) if is_there else e.leftover)
-    if e.leftover is not None and e.leftover.block == "force_equation" and blows_along(flown):
-        # A wind that changes is felt as lift that comes and goes.
-        e = replace(e, leftover=of_the_wind(e.leftover))
+def _checked_against_path(e: Evidence, flown: Sequence[Maneuver], weight: WeightReading | None) -> Evidence:
+    """Return the evidence with what the flight path says of air speed and accelerometer, without
+    aerodynamics."""
+    shear = wind_shear(flown, true_over_read(e.airspeed_scale, weight))
+    of_gusts = shear is not None and shear.is_implausible and e.air is not None
+    if shear is not None and not of_gusts and not _mimics_wind(e.unexplained):
+        # Moving air changes the air speed too: next to it only a clear wind shear becomes the unexplained
+        # residual.
+        is_there = e.air is None or shear.exceeds_gusts
+        e = replace(e, shear=shear, unexplained=as_wind(e.unexplained) if is_there else e.unexplained)
+    if e.unexplained is not None and e.unexplained.block == "force_equation" and moves_along_path(flown):
+        # A change of the wind along the path appears as lift that comes and goes.
+        e = replace(e, unexplained=as_wind(e.unexplained))
     is_off = weight is not None and weight.is_off
-    # What an accelerometer reads wrong looks like a force, too: a name for one is no other explanation.
+    # An accelerometer error appears as a force too: an effect of the force equation is no separate
+    # explanation.
     elsewhere = any(j.block != "force_equation" for j in added_in(e.stages))
-    is_scaled = e.true_speed is not None and e.true_speed.is_the_accelerometers(weight)
-    if e.leftover is None and (is_scaled or (is_off and not elsewhere) or _reads_another_speed(e, weight)):
-        e = replace(e, leftover=Leftover("accelerometer", 1.0, (("accelerometer", 1.0),)))
+    is_scaled = e.airspeed_scale is not None and e.airspeed_scale.is_the_accelerometers(weight)
+    if e.unexplained is None and (is_scaled or (is_off and not elsewhere) or _reads_another_speed(e, weight)):
+        e = replace(e, unexplained=Unexplained("accelerometer", 1.0, (("accelerometer", 1.0),)))
     return replace(e, weight=weight if is_off else None)
 
 
-def _reads_another_speed(e: Evidence, weight: Weight | None) -> bool:
-    """Whether air speed and accelerometer are too far apart for any air speed, and nothing else was named."""
-    # A gust moves α by more than its filter knows, and by as much what the motion says of the speed.
+def _reads_another_speed(e: Evidence, weight: WeightReading | None) -> bool:
+    """Return whether no true air speed fits both air speed and accelerometer, and no effect was found."""
+    # A gust changes α, and the air speed that the motion implies, by more than its filter assumes.
     alone = len(e.stages) == 1 and not (e.air is not None and e.air.gust)
-    return alone and e.true_speed is not None and e.true_speed.is_wrong(e.air is not None, weight)
+    return alone and e.airspeed_scale is not None and e.airspeed_scale.is_wrong(e.air is not None, weight)
 
 
-def _feigns_wind(leftover: Leftover | None) -> bool:
-    """An attitude that is wrong, or an accelerometer by a law that is known: the climb, or the speed along
-    the path, is computed from it, and parts from the air speed as in a wind that changes with height."""
-    if leftover is None:
+def _mimics_wind(unexplained: Unexplained | None) -> bool:
+    """Return whether an attitude error, or a known accelerometer law, looks like a wind gradient.
+
+    Climb and path speed are computed from these channels, so their errors grow with the height climbed.
+    """
+    if unexplained is None:
         return False
-    return leftover.block == "attitude_sensor" or (leftover.block == "accelerometer" and leftover.note != "")
+    return unexplained.block == "attitude_sensor" or (
+        unexplained.block == "accelerometer" and unexplained.note != ""
+    )

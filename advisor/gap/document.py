@@ -1,4 +1,4 @@
-"""The ``advisor.gap/1`` document: what scripts read. SI units; None where there is nothing, never NaN."""
+"""The ``advisor.gap/1`` document for scripts. Units are SI; a missing value is None, never NaN."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -15,13 +15,13 @@ _NOTHING: Mapping[str, Any] = {
     "alpha_check": None, "yardsticks": None, "notes": [], "improved_model": None,
     "share_irreducible": None, "decisions": [], "simulator": None, "qualification": None,
 }  # fmt: skip
-"""What stands in a document without a diagnosis."""
+"""Keys and values of a document without a diagnosis."""
 
 
 def gap_document(
     diagnosis: Diagnosis | None, problems: Sequence[Problem] = (), improved_model: str | None = None
 ) -> dict[str, Any]:
-    """Build the document of ``advisor gap --json``; without a diagnosis only what stands in its way."""
+    """Build the document of ``advisor gap --json``; without a diagnosis it holds the problems alone."""
     document: dict[str, Any] = {
         "schema": SCHEMA,
         "usable": diagnosis is not None and not problems,
@@ -94,7 +94,7 @@ def _cause(c: Cause) -> dict[str, Any]:
 
 
 def _with_simulator(found: InSimulator | None) -> dict[str, Any]:
-    """The user's simulator, and its tolerances by channel; both null without a simulator."""
+    """Return the user's simulator and its tolerances by channel, both None without a simulator."""
     if found is None:
         return {"simulator": None, "qualification": None}
     by_channel = {q.channel: _qualification(q) for q in found.qualification}

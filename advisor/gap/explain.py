@@ -1,4 +1,4 @@
-"""From the plain model to the evidence: effects are added, then what is left is looked at."""
+"""From the baseline model to the evidence: effects are added one by one, then the residual is examined."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -14,12 +14,12 @@ from advisor.gap.fitting.fit import Fitted, fit
 from advisor.gap.fitting.holdout import hold_out
 from advisor.gap.fitting.measure import file_model_of, whole_gap
 from advisor.gap.fitting.problem import Problem, counts
-from advisor.gap.fitting.uncertainty import file_is_off, worth
+from advisor.gap.fitting.uncertainty import effective_samples, file_is_off
 from advisor.gap.noise.quiet import quiet_rms
 from advisor.gap.noise.stamps import stamp_power
 from advisor.gap.records.floor import stated_floor, tolerance_of
 from advisor.gap.result import VISIBLE
-from advisor.gap.search.air import Air, moving_air, one_stands_out
+from advisor.gap.search.air import Air, moving_air, one_maneuver_stands_out
 from advisor.gap.search.speed import at_constant_speed
 from advisor.gap.search.stage import Stage
 from advisor.gap.search.waterfall import (
@@ -30,104 +30,113 @@ from advisor.gap.search.waterfall import (
     reduced_to,
     settled,
 )
-from advisor.gap.unnamed.leftover import Leftover, left_over, placed
-from advisor.gap.unnamed.remainder import only_resemble
-from advisor.gap.unnamed.swing import swinging
-from advisor.gap.unnamed.tone import ringing_hz
-from advisor.gap.unnamed.true_speed import true_speed_of
-from advisor.gap.unnamed.unnamed_law import Law, unnamed_law
+from advisor.gap.uncatalogued.airspeed_scale import airspeed_scale_of
+from advisor.gap.uncatalogued.beyond_air import explain_little_beyond_air
+from advisor.gap.uncatalogued.law_search import Law, search_law
+from advisor.gap.uncatalogued.spectral_line import ringing_hz
+from advisor.gap.uncatalogued.sustained_oscillation import sustained_oscillation
+from advisor.gap.uncatalogued.unexplained import Unexplained, located, unexplained_residual
 from advisor.gap.verdict.evidence import Evidence
 
 _HARDLY_DAMPED = 0.02
-"""Damping ratio of a structure that rings: of bare metal, or a boom."""
+"""Damping ratio at which the search for a structural mode starts, of bare metal or a boom. A start far from
+the true value only costs iterations."""
 
 
 def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Progress) -> Evidence:
-    """Build the model up, then look at what is left: the air, and whatever the motion still predicts.
+    """Add effects to the baseline model, then examine the residual: moving air, and unexplained motion.
 
     Parameters
     ----------
     problem, baseline
-        The data, and the plain model fitted to them.
+        The data, and the baseline model fitted to the data.
     aircraft
-        The aircraft file: its effects are in every model.
+        The aircraft file, whose effects are part of every model.
     progress
-        Called with a sentence and the share done.
+        Function that receives a sentence and the share of the work that is done, 0 to 1.
     """
     variants = beyond_servo(aircraft, variants_for(problem.flights))
     variants = beyond_known(aircraft.effects, variants)
     variants = [_begun_where_it_rings(v, problem, baseline) for v in variants]
-    stages, law = _named(problem, baseline, variants, progress)
+    stages, law = _with_effects(problem, baseline, variants, progress)
     progress("looking at the air", 0.7)
     stages, air = _with_the_air(problem, stages, law)
     progress("looking for what has no name", 0.8)
     stages = as_measured(problem, stages)
-    if air is not None and only_resemble(stages):
+    if air is not None and explain_little_beyond_air(stages):
         stages = reduced_to(problem, stages, [])
         air = moving_air(problem, stages[0].fitted)
     first, last, tolerance = stages[0].fitted, stages[-1].fitted, tolerance_of(problem.flights)
-    leftover = None if law is None else law.leftover
-    if leftover is None:
-        leftover = _without_a_name(problem, stages, tolerance, air is not None)
+    unexplained = None if law is None else law.unexplained
+    if unexplained is None:
+        unexplained = _unexplained(problem, stages, tolerance, air is not None)
     floor = _floor(problem, stages[-1], tolerance)
-    # A model without the law that was found bends its air speed to it.
-    true_speed = true_speed_of(problem, last) if law is None else None
-    if leftover is not None and leftover.in_quiet is not None:
+    # Without a law that was found, the model would fit its air speed to the law's motion.
+    airspeed_scale = airspeed_scale_of(problem, last) if law is None else None
+    if unexplained is not None and unexplained.in_quiet is not None:
         least = np.maximum(stated_floor(problem.flights), tolerance)
-        floor = np.sqrt(np.maximum(floor**2 - leftover.in_quiet, least**2))
+        floor = np.sqrt(np.maximum(floor**2 - unexplained.in_quiet, least**2))
     file_model = file_model_of(problem, first)
-    named = file_model_of(problem, last) if len(stages) > 1 else None
+    with_effects = file_model_of(problem, last) if len(stages) > 1 else None
     speed = at_constant_speed(problem, last)
-    return Evidence(problem, stages, leftover, air, floor, file_model, named, speed, true_speed)
+    return Evidence(problem, stages, unexplained, air, floor, file_model, with_effects, speed, airspeed_scale)
 
 
-def _without_a_name(
+def _unexplained(
     problem: Problem, stages: Sequence[Stage], tolerance: FloatArray, moving_air: bool
-) -> Leftover | None:
-    """What swings by itself, or what the last model leaves otherwise. ``tolerance`` as in ``left_over``."""
+) -> Unexplained | None:
+    """Return a sustained oscillation, or else the unexplained residual of the last model.
+
+    ``tolerance`` and ``moving_air`` are defined in ``unexplained_residual``.
+    """
     first, last = stages[0].fitted, stages[-1].fitted
-    found = swinging(problem, first, last, tolerance)
+    found = sustained_oscillation(problem, first, last, tolerance)
     if found is not None:
         return found
-    found = left_over(problem, first, last, tolerance, moving_air)
+    found = unexplained_residual(problem, first, last, tolerance, moving_air)
     slight = None if found is None else stages[-1].slight_in(found.block)
     if slight is None:
         return found
-    # A cause that is known, and below its physical minimum, leaves nothing without a name.
-    return left_over(problem, first, slight.fitted, tolerance, moving_air)
+    # A known effect below its physical minimum explains the residual of its block.
+    return unexplained_residual(problem, first, slight.fitted, tolerance, moving_air)
 
 
 def _floor(problem: Problem, last: Stage, tolerance: FloatArray) -> FloatArray:
-    """Noise of each channel where nothing was flown, shape (channels,), no less than ``tolerance``."""
-    # Stamps that jitter are the instruments', too, but show only where something moves.
+    """Return the noise of each channel where nothing was flown, shape (channels,), at least ``tolerance``."""
+    # Jitter of the stamps belongs to the instruments, but appears only where a channel moves.
     measured = quiet_rms(problem, last.fitted) ** 2 + stamp_power(problem, last.fitted)
     return np.maximum(np.sqrt(np.minimum(measured, last.held_out.mean_square)), tolerance)
 
 
-def seen_once(problem: Problem, plain: Fitted) -> Evidence:
-    """What a single manoeuvre tells: where the gap lies. No cause is sought, for nothing could confirm one.
+def evidence_of_one_maneuver(problem: Problem, baseline: Fitted) -> Evidence:
+    """Return the evidence of a single manoeuvre: where the gap lies. No cause is sought, for lack of a
+    hold-out.
 
-    The gap is what the aircraft file's derivatives leave where they are wrong, or else what fitted ones do.
+    The gap is the residual of the aircraft file's derivatives if these are wrong, otherwise that of fitted
+    ones.
     """
-    stage = Stage(plain, hold_out(problem, plain), (), None)
-    floor, file_model = _floor(problem, stage, tolerance_of(problem.flights)), file_model_of(problem, plain)
-    as_filed, held = plain, stage.held_out
-    is_off = file_is_off(problem, plain, plainly=False)
-    if problem.believed is not None and file_model is not None and is_off:
-        file = replace(plain.point, derivatives=problem.believed)
-        as_filed, held = fit(replace(problem, holds_the_file=True), file, plain.noise), file_model
+    stage = Stage(baseline, hold_out(problem, baseline), (), None)
+    floor, file_model = (
+        _floor(problem, stage, tolerance_of(problem.flights)),
+        file_model_of(problem, baseline),
+    )
+    as_filed, held = baseline, stage.held_out
+    is_off = file_is_off(problem, baseline, clear_gap=False)
+    if problem.prior_derivatives is not None and file_model is not None and is_off:
+        file = replace(baseline.point, derivatives=problem.prior_derivatives)
+        as_filed, held = fit(replace(problem, derivatives_fixed=True), file, baseline.noise), file_model
     is_gap = whole_gap(held.mean_square, floor) >= VISIBLE
-    leftover = placed(problem, as_filed) if is_gap else None
-    return Evidence(problem, [stage], leftover, None, floor, file_model, None, None)
+    unexplained = located(problem, as_filed) if is_gap else None
+    return Evidence(problem, [stage], unexplained, None, floor, file_model, None, None)
 
 
-def _begun_where_it_rings(variant: Variant, problem: Problem, plain: Fitted) -> Variant:
-    """A structural mode also sought where the pitch rate rings: hardly damped, it shows nowhere else."""
+def _begun_where_it_rings(variant: Variant, problem: Problem, baseline: Fitted) -> Variant:
+    """Return a structural mode with one more start, at the frequency where the pitch rate rings."""
     if variant.effect != "structural_mode":
         return variant
     omega = variant.names.index("omega_rad_s")
     lowest, highest = (w / (2.0 * np.pi) for w in variant.bounds[omega])
-    hz = ringing_hz(problem, plain, lowest, highest)
+    hz = ringing_hz(problem, baseline, lowest, highest)
     if hz is None:
         return variant
     start = list(variant.starts[0])
@@ -135,29 +144,32 @@ def _begun_where_it_rings(variant: Variant, problem: Problem, plain: Fitted) -> 
     return replace(variant, starts=(*variant.starts, tuple(start)))
 
 
-def _named(
+def _with_effects(
     problem: Problem, baseline: Fitted, variants: Sequence[Variant], progress: Progress
 ) -> tuple[list[Stage], Law | None]:
-    """The model built up, and the law without a name that explains more than all of its names, if any."""
+    """Return the stages of the search, and the uncatalogued law that explains more than all effects, if
+    any."""
     stages = one_after_another(problem, baseline, variants, progress)
-    law = unnamed_law(problem, stages)
+    law = search_law(problem, stages)
     return (in_full(problem, settled(problem, stages)) if law is None else stages), law
 
 
 def _with_the_air(problem: Problem, stages: list[Stage], law: Law | None) -> tuple[list[Stage], Air | None]:
-    """The names and the air's motion; of a law, the law alone with what air there is beside it."""
+    """Return the stages and the moving air. With a law, only the air that the law leaves unexplained
+    counts."""
     if law is None:
-        return stages, _air_beside(problem, stages[-1].fitted)
-    plain = reduced_to(problem, stages, [])
-    air = _air_beside(problem, plain[-1].fitted)
-    # What the law does is no air: with it in the model there may be none.
+        return stages, _air_with(problem, stages[-1].fitted)
+    baseline = reduced_to(problem, stages, [])
+    air = _air_with(problem, baseline[-1].fitted)
+    # Motion of the law is no moving air: with the law in the model the air may be still.
     still = air is None or moving_air(problem, law.fitted) is None
-    return plain, None if still else air
+    return baseline, None if still else air
 
 
-def _air_beside(problem: Problem, last: Fitted) -> Air | None:
-    """The air's motion beside a model; it is not asked for where nothing hints at it."""
-    nearly_white = np.all(worth(problem, last.innovations) >= 0.5 * counts(problem))
-    if not problem.knows_the_noise and nearly_white and not one_stands_out(problem, last):
+def _air_with(problem: Problem, last: Fitted) -> Air | None:
+    """Return the moving air that a model leaves, or None. A white residual without a loud manoeuvre is not
+    searched."""
+    nearly_white = np.all(effective_samples(problem, last.innovations) >= 0.5 * counts(problem))
+    if not problem.knows_the_noise and nearly_white and not one_maneuver_stands_out(problem, last):
         return None
     return moving_air(problem, last)

@@ -1,4 +1,4 @@
-"""What the diagnosis says: verdict, sentence, evidence."""
+"""Results of the diagnosis: verdict, sentence, causes and evidence."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -9,14 +9,14 @@ from advisor.flight.messages import FloatArray
 from advisor.gap.decision import Decision
 
 Verdict = Literal["none", "parameters", "effect", "unknown", "untested"]
-"""``untested``: no simulator was given, and the flight shows no effect either; the JSON document has null."""
+"""Verdict of a diagnosis. ``untested``: no simulator was given and no effect was found; JSON writes null."""
 VISIBLE = 0.05
-"""Gap above the floor from which on there is something to explain."""
+"""Least gap that is called visible: mean square error over the floor's square, minus 1."""
 
 
 @dataclass(frozen=True, slots=True)
 class Value:
-    """A number and its standard deviation."""
+    """A number and its standard deviation, in the unit of the number."""
 
     value: float
     std: float
@@ -24,77 +24,78 @@ class Value:
 
 @dataclass(frozen=True, slots=True)
 class Gap:
-    """The simulator's error on manoeuvres kept out: mean square over the floor's square, minus 1."""
+    """Gap of the simulator on held-out manoeuvres: mean square error over the floor's square, minus 1."""
 
     before: float
-    """Mean over channels."""
+    """Mean over the channels, with the simulator as given."""
     after: float
-    """The same for the final model."""
+    """Mean over the channels, with the final model."""
     floor: Mapping[str, float]
-    """Standard deviation of what is left where nothing was flown, SI of the channel."""
+    """Standard deviation of the residual where nothing was flown, by channel, in the channel's SI unit."""
     floor_note: str
-    """Whether the floor was measured, or stated because the record was filtered before."""
+    """How the floor was found: measured, or stated because the record was filtered before storage."""
     by_channel: Mapping[str, float]
     by_channel_after: Mapping[str, float]
     by_maneuver: tuple[tuple[int, float, float], ...]
-    """Number, gap before, gap after."""
+    """Manoeuvre number, gap before, gap after."""
     by_phase: Mapping[str, float]
-    """``step edge``, ``plateau``, ``free response``: gap before."""
+    """Gap before, for ``step edge``, ``plateau`` and ``free response``."""
     by_band_hz: tuple[tuple[float, float, float], ...]
-    """From, to, share of the pitch-rate error's power."""
+    """Band limits in Hz, and the band's share of the power of the pitch-rate error."""
 
 
 @dataclass(frozen=True, slots=True)
 class Cause:
-    """One explanation."""
+    """One candidate explanation of the gap."""
 
     effect: str
     block: str
     probability: float
-    """That this effect is a cause of the gap, or the main one where several are."""
+    """Probability that the effect causes the gap, or is its main cause where several are present."""
     parameters: Mapping[str, Value]
     cannot_be_told_from: tuple[str, ...]
     tell_apart_by: str
     gap_after: float
     present: bool = False
-    """Part of the final model, not just an alternative."""
+    """Whether the effect is part of the final model; if not, it is an alternative."""
 
 
 @dataclass(frozen=True, slots=True)
 class Where:
-    """The block the gap comes from."""
+    """The block of the simulator in which the gap arises."""
 
     block: str
     share: float
     ranking: tuple[tuple[str, float], ...]
-    """Block and score, 1 for the best explanation there is."""
+    """Blocks with their scores; the best explanation scores 1."""
 
 
 @dataclass(frozen=True, slots=True)
 class Shrink:
-    """How far the gap shrinks on manoeuvres whose numbers were fitted without them.
+    """Shrink of the gap on manoeuvres whose parameters were fitted without them.
 
-    Where the air moves, its likeliest course is taken out: it is fitted to the very samples, for no other
-    manoeuvre can predict it.
+    In moving air the likeliest course of the air is removed. That course is fitted to the same samples,
+    because no other manoeuvre predicts it.
     """
 
     holdout: tuple[int, ...]
-    """Numbers of the manoeuvres kept out."""
+    """Numbers of the held-out manoeuvres."""
     before: float
     after: float
     percent: float
     ci95_percent: tuple[float, float]
     beyond_air_percent: float | None = None
-    """Of what each next sample surprises by beyond the noise, with a filter that knows how the air moves:
-    what causes other than the air remove, on manoeuvres kept out. Without such a cause: what fitted numbers
-    remove of the gap, the air's share left in it. None in still air."""
+    """Share of the innovation power beyond noise that the effects remove, in per cent, on held-out
+    manoeuvres. The filter of the innovations knows the moving air. Without an effect: share of the gap that
+    fitted derivatives remove. None in still air."""
     by_numbers_percent: float | None = None
-    """Where the file's derivatives are wrong besides: what fitted ones remove without any effect. Or None."""
+    """Share of the gap, in per cent, that fitted derivatives remove without any effect. None where the file's
+    are right."""
 
 
 @dataclass(frozen=True, slots=True)
 class Unseen:
-    """An effect this log could not show, and what it would take."""
+    """An effect that this log cannot show, and the channel or manoeuvre that would show it."""
 
     effect: str
     because: str
@@ -103,32 +104,33 @@ class Unseen:
 
 @dataclass(frozen=True, slots=True)
 class Yardsticks:
-    """Accepted measures of fidelity for one channel, on manoeuvres kept out of the fit."""
+    """Published measures of fidelity for one channel, on held-out manoeuvres."""
 
     theil: float
-    """Inequality coefficient, 0 to 1; below 0.25-0.3 is called acceptable."""
+    """Theil's inequality coefficient, 0 to 1; values below 0.25 to 0.3 are commonly accepted."""
     bias: float
     variance: float
     covariance: float
-    """Shares of the mean square error, adding to 1."""
+    """Share of the mean square error; with ``bias`` and ``variance`` the shares add up to 1."""
     r2: float
     within_tolerance: float | None
-    """Share of samples inside the simulator qualification's band; None where it has none."""
+    """Share of the samples within the tolerance of simulator qualification; None where no tolerance is
+    published."""
 
 
 @dataclass(frozen=True, slots=True)
 class Qualification:
-    """One channel of the user's simulator beside the tolerance for qualifying training simulators."""
+    """One channel of the user's simulator, compared with the tolerance for qualifying training simulators."""
 
     channel: str
     limit: float | None
-    """14 CFR Part 60, Appendix A, test 2.c.10, SI of the channel; None: none is published."""
+    """Tolerance of 14 CFR Part 60, Appendix A, test 2.c.10, in SI units; None where none is published."""
     before: float
-    """Largest error of the simulator as given, on manoeuvres kept out, SI of the channel."""
+    """Largest error of the simulator as given, on held-out manoeuvres, in SI units."""
     after: float | None
-    """Largest error with the effects added to the simulator; None: nothing was added."""
+    """Largest error with the effects added to the simulator; None where no effect was added."""
     theil: tuple[float, float | None]
-    """Theil's inequality coefficient, before and after."""
+    """Theil's inequality coefficient before and after."""
 
     @property
     def passes_before(self) -> bool | None:
@@ -143,73 +145,74 @@ class Qualification:
 
 @dataclass(frozen=True, slots=True)
 class InSimulator:
-    """The gap measured in the user's own simulator, on manoeuvres kept out of the fit."""
+    """The gap of the user's own simulator on held-out manoeuvres."""
 
     simulator: str
-    """What the simulator is, for people."""
+    """Description of the simulator for people."""
     before: float
-    """Gap of the simulator as given, times the floor's power."""
+    """Gap of the simulator as given."""
     after: float | None
-    """Gap with the effects added to the simulator; None: nothing was added."""
+    """Gap with the effects added to the simulator; None where no effect was added."""
     percent: float | None
     on_paper: tuple[str, ...]
-    """What the simulator cannot be given: effects, ``derivatives``, ``its own servo``."""
+    """Corrections that the simulator cannot take: effects, ``derivatives``, ``its own servo``."""
     qualification: tuple[Qualification, ...]
     refused: str = ""
-    """Why the simulator does not fly with the effects; empty where it does, or none was added."""
+    """Why the simulator does not fly with the effects; empty where it does, or where none was added."""
 
 
 @dataclass(frozen=True, slots=True)
 class Trace:
-    """One channel of one manoeuvre for plotting, at its own stamps."""
+    """Measured and simulated values of one channel in one manoeuvre, at the channel's own stamps, for
+    plotting."""
 
     number: int
     channel: str
     t: FloatArray
     measured: FloatArray
     before: FloatArray
-    """Simulated by the plain model."""
+    """Values of the simulator as given."""
     after: FloatArray
-    """Simulated by the final model."""
+    """Values of the final model."""
 
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """The whole answer."""
+    """The complete result of a diagnosis."""
 
     verdict: Verdict
     sentence: str
-    """For pilots."""
+    """One sentence for the crew."""
     gap: Gap
     where: Where
     causes: tuple[Cause, ...]
     shrink: Shrink | None
-    """None when there was nothing to keep out, or no gap to shrink."""
+    """None where no manoeuvre could be held out, or where there is no gap."""
     waterfall: tuple[tuple[str, float], ...]
-    """Effect and gap after adding it."""
+    """Effects in the order of addition, each with the gap after its addition."""
     cannot_see: tuple[Unseen, ...]
     kinematics: KinematicCheck
     model: Mapping[str, Value]
     """The eight parameters of the final model at the reference speed."""
     reference_airspeed_m_s: float | None
-    """Speed the derivatives belong to: measured, else the file's or what the motion shows; None: unknown."""
+    """Speed of the derivatives: as measured, or of the file, or implied by the motion; None where unknown."""
     effects: Mapping[str, Mapping[str, float]]
-    """What the improved simulator's file has under ``effects``."""
+    """Section ``effects`` of the improved simulator's aircraft file."""
     yardsticks: Mapping[str, tuple[Yardsticks, Yardsticks]]
-    """Channel to before and after."""
+    """Channel to the measures of the simulator as given and of the final model."""
     share_irreducible: float
-    """Of what the final model leaves, the part that is noise and air; the rest is the model's."""
+    """Share of the final model's error that is noise and moving air. The rest is model error."""
     decisions: tuple[Decision, ...] = ()
-    """Every number that was held against a limit, in the order of asking."""
+    """Every statistic that was compared with a limit, in the order of the comparisons."""
     traces: tuple[Trace, ...] = ()
     notes: tuple[str, ...] = ()
     in_simulator: InSimulator | None = None
-    """The gap in the user's own simulator; None where no simulator was named."""
+    """The gap of the user's own simulator; None where no simulator was named."""
     maneuvers: tuple[int, ...] = field(default=())
     height_m: float | None = None
-    """Mean height of the manoeuvres, as recorded; None: not recorded."""
+    """Mean height of the manoeuvres in m; None where the height was not recorded."""
 
 
 def spelled(effect: str) -> str:
-    """An effect's name as people write it."""
+    """Return the name of an effect as people write it."""
     return effect.replace("_", " ")

@@ -1,4 +1,4 @@
-"""Compile the gap's kernels once, so that no user waits for it: ``python -m advisor.gap.warm``."""
+"""Compile the kernels of the gap diagnosis once, so that no user waits: ``python -m advisor.gap.warm``."""
 
 import numpy as np
 
@@ -10,7 +10,7 @@ _ANY_AIRCRAFT = dict(zip(PARAMETERS, (0.0, -4.0, 0.0, -0.3, 0.0, -30.0, -4.0, -5
 
 
 def warm_up() -> None:
-    """Foresee a tiny plan; compare, sum and filter some samples: that runs through all that is compiled."""
+    """Foresee a tiny plan, then compare, sum and filter some samples, so that every kernel is compiled."""
     foresee_plan(Aircraft(model=_ANY_AIRCRAFT), ("pulse", "pulse"), 50.0, 1.0)
     none = np.zeros(2, dtype=np.int64)
     differences(np.ones((4, 2)), np.ones(4), none, np.ones(2))

@@ -1,4 +1,4 @@
-"""What a diagnosis says where the aircraft file holds no model: no simulator was tested."""
+"""The diagnosis without a simulator: the aircraft file holds no model."""
 
 from dataclasses import replace
 
@@ -6,8 +6,8 @@ from advisor.gap.result import Diagnosis
 
 _NOT_GIVEN = "No simulator was given: the aircraft file holds no complete model."
 _INSTEAD = (
-    "The flight was held against a model fitted to it: that shows effects which eight numbers cannot, and "
-    "nothing of a simulator's numbers."
+    "The flight was compared with a model fitted to it. That shows effects beyond eight parameters, and "
+    "nothing about a simulator's parameters."
 )
 _STATEMENT = (
     "No simulator was given, so no gap can be stated. A model fitted to this flight leaves no effect to name."
@@ -15,7 +15,7 @@ _STATEMENT = (
 
 
 def without_simulator(diagnosis: Diagnosis) -> Diagnosis:
-    """Return the diagnosis as one of the flight alone; it never says that there is no gap."""
+    """Return the diagnosis as a statement about the flight alone, which never claims that there is no gap."""
     notes = (f"{_NOT_GIVEN} {_INSTEAD}", *diagnosis.notes)
     if diagnosis.verdict != "none":
         return replace(diagnosis, notes=notes)

@@ -1,1 +1,1 @@
-"""Bytes and messages: logs, live link, and who the vehicle is."""
+"""Bytes and messages: logs, the live link, and the identity of the vehicle."""

@@ -1,4 +1,4 @@
-"""Telling the crew on their own ground station: verdicts as STATUSTEXT."""
+"""Announcements on the crew's own ground station: verdicts as STATUSTEXT."""
 
 from collections import deque
 from typing import Any
@@ -11,22 +11,23 @@ from advisor.mavlink.outgoing import Ids, Talker
 CHUNK_BYTES = 50
 MOST_CHUNKS = 4
 SPOKEN = "@"
-"""MAVProxy's speech module says a text that begins so, of any component of its vehicle's system."""
+"""First character of a text that MAVProxy's speech module speaks, from any component of its vehicle's
+system."""
 
 
 def status_text(text: str, number: int) -> list[Any]:
-    """One sentence as STATUSTEXT messages.
+    """Return one sentence as STATUSTEXT messages.
 
     MAVLink, STATUSTEXT: a text longer than 50 bytes is sent in chunks that share an id
-    other than 0; the chunk that is not full ends it. Texts are cut to ``MOST_CHUNKS``
+    other than 0. The first chunk that is not full ends the text. Texts are cut to ``MOST_CHUNKS``
     chunks and written in ASCII, which every ground station shows.
 
     Parameters
     ----------
     text
-        What to say.
+        Text of the announcement.
     number
-        Running number of the announcement, makes the id of a chunked text.
+        Running number of the announcement, from which the id of a chunked text follows.
     """
     data = plain(" ".join(text.split())).encode("ascii")
     if len(data) >= CHUNK_BYTES * MOST_CHUNKS:
@@ -42,9 +43,9 @@ def status_text(text: str, number: int) -> list[Any]:
 
 
 class Announcer(Talker):
-    """Sends one text for each manoeuvre, never a second one for the same.
+    """Sends one text for each manoeuvre, and never a second one.
 
-    ``judged`` may be called from any thread; the link asks for the messages from its own.
+    ``judged`` may be called from any thread. The link asks for the messages in its own thread.
     """
 
     def __init__(self) -> None:
@@ -54,16 +55,16 @@ class Announcer(Talker):
         self._stop_told = False
 
     def judged(self, maneuver: int, sentence: str, stop: str | None = None) -> None:
-        """A manoeuvre has its verdict.
+        """Take the verdict on a manoeuvre.
 
         Parameters
         ----------
         maneuver
-            Its number; whatever is said about it later is not sent.
+            Number of the manoeuvre. A later verdict on it is not sent.
         sentence
-            The verdict.
+            Sentence of the verdict.
         stop
-            The sentence of the flight-test verdict when it says stop; sent the first time only.
+            Sentence of the flight-test verdict when it says stop. It is sent the first time only.
         """
         if maneuver in self._announced:
             return
@@ -75,11 +76,12 @@ class Announcer(Talker):
         self._waiting.append(SPOKEN + sentence)
 
     def source(self, own: Ids, vehicle: Ids) -> Ids:
-        """A computer on board: ground stations show texts of their vehicle's system only."""
+        """Return the id of a computer on board, because ground stations show texts of their vehicle's system
+        only."""
         return vehicle[0], dialect.MAV_COMP_ID_ONBOARD_COMPUTER
 
     def speak(self, vehicle: tuple[int, int] | None, now_s: float) -> list[Any]:
-        """The next text that waits, once there is a vehicle whose link it can take."""
+        """Return the next text that waits, once a vehicle is known."""
         if vehicle is None or not self._waiting:
             return []
         self._number += 1

@@ -1,4 +1,4 @@
-"""How an ArduPilot log tells of the air: air speed, climb rate, throttle, each at its own stamps."""
+"""Air data of an ArduPilot log: air speed, climb rate, throttle, each at its own stamps."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -13,14 +13,14 @@ from advisor.mavlink.equivalent import nearest
 from advisor.mavlink.sensors import Said
 
 _AIR_SPEED = {"ARSP": "Airspeed", "CTUN": "As", "NTUN": "Arspd"}
-"""Records that hold the air speed, the best first, and the field that does."""
+"""Record with the air speed to its field, the best record first."""
 _CLIMB = ("XKF1", "NKF1", "EKF1")
-"""Records of the estimators, whose VD is the rate of descent, the newest estimator first."""
+"""Records of the estimators, whose VD is the rate of descent. The newest estimator comes first."""
 
 
 @dataclass(frozen=True, slots=True)
 class Air:
-    """What was found, and what is to be said of it."""
+    """Air data, and the sentences about their sources."""
 
     records: list[dict[str, NDArray[Any]]]
     """Places in the order of arrival, stamps in us and values of one field, each of shape (n,)."""
@@ -28,7 +28,7 @@ class Air:
 
 
 def air(tables: Mapping[str, Table], interrupted: bool) -> Air:
-    """The air data in these records.
+    """Return the air data in these records.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ def air(tables: Mapping[str, Table], interrupted: bool) -> Air:
     climb = _first(tables, [("BARO", "CRt")]) if descent is None else (descent[0], -descent[1])
     found = {"climb": climb, "throttle": _first(tables, [("CTUN", "ThO")])}
     others = [
-        # The places of one record follow each other: CTUN may hold an air speed and the throttle.
+        # The orders of one record are consecutive: CTUN may hold air speed and throttle.
         {"order": one[0].order + place, "time_usec": one[0].time_us, field: one[1]}
         for place, (field, one) in enumerate(found.items(), start=2)
         if one is not None
@@ -53,7 +53,7 @@ def air(tables: Mapping[str, Table], interrupted: bool) -> Air:
 def _airspeed(
     tables: Mapping[str, Table], interrupted: bool
 ) -> tuple[list[dict[str, NDArray[Any]]], list[Said]]:
-    """The air speed of the best record, and of the next one where no sensor was healthy."""
+    """Return the air speed of the best record, and of the next one where no sensor was healthy."""
     sources = [
         (tables[name], field)
         for name, field in _AIR_SPEED.items()
@@ -77,7 +77,7 @@ def _airspeed(
 
 
 def _first(tables: Mapping[str, Table], places: Iterable[tuple[str, str]]) -> tuple[Table, FloatArray] | None:
-    """The first record that has its field, and the values of the field; None where none has."""
+    """Return the first record that has its field, and the field's values; None without one."""
     for name, field in places:
         if name in tables and field in tables[name].fields:
             table = tables[name].first_instance()
@@ -86,7 +86,7 @@ def _first(tables: Mapping[str, Table], places: Iterable[tuple[str, str]]) -> tu
 
 
 def _away_from(time_us: IntArray, other_us: IntArray) -> NDArray[np.bool_]:
-    """Which of the other times lie further from all times than three of these are apart."""
+    """Return whether each other time is farther from all times than three intervals of these."""
     if len(time_us) < 2:
         return np.ones(len(other_us), dtype=np.bool_)
     apart_us = np.abs(other_us - time_us[nearest(other_us, time_us)])

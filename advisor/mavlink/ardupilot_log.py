@@ -1,4 +1,4 @@
-"""What an ArduPilot log says, as the messages its telemetry would have carried."""
+"""An ArduPilot log as the messages that its telemetry would have carried."""
 
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -21,7 +21,7 @@ from advisor.mavlink.ardupilot_vehicle import (
 from advisor.mavlink.body_rates import RATE_RECORDS, body_rates, calmed
 from advisor.mavlink.dataflash import Table, gps_time_base_s, read_tables, seconds
 from advisor.mavlink.equivalent import air_data, message, nearest
-from advisor.mavlink.eras import SENSORS_APART, Clocked, in_todays_names
+from advisor.mavlink.former_records import SENSORS_APART, Clocked, in_todays_names
 from advisor.mavlink.sdlog2 import SDLOG2_RECORDS, Sdlog2, is_sdlog2
 from advisor.mavlink.sensors import Said, flown, said, silent
 from advisor.problems import UnusableInputError
@@ -47,21 +47,21 @@ _RECORDS: dict[str, set[str]] = {
     "RCO3": set(),
     "XKF1": {"VD"},
 }
-"""Records, and the fields needed of each: without them (another kind of vehicle, an older version)
-a record counts as missing."""
+"""Record to its necessary fields. Without them (another kind of vehicle, an older version) a record counts as
+missing."""
 _TEXTS = {"Name", "Message"}
-"""Fields that hold text; all others are numbers."""
+"""Fields that hold text. All others are numbers."""
 _SENSORS = {"ARSP": "Air speed", "IMU": "Angular rates and specific force"}
-"""Records of which a vehicle may carry several, and the quantities that they hold."""
+"""Record, of which a vehicle may carry several, to the quantities that the record holds."""
 
 
 def read_dataflash(path: Path, wanted: Iterable[str] | None = None) -> Iterator[list[Columns]]:
-    """The messages of a ``.bin``, or of PX4's ``.px4log`` in its container, in one batch.
+    """Yield the messages of a ``.bin``, or of PX4's ``.px4log`` in its container, in one batch.
 
     Raises
     ------
     UnusableInputError
-        When it holds neither attitude, inertial sensors, nor servo outputs.
+        The log holds neither attitude, inertial sensors, nor servo outputs.
     """
     apart = (name for names in SENSORS_APART.values() for name in names)
     every = read_tables(path, (*_RECORDS, *SDLOG2_RECORDS, *apart))
@@ -86,7 +86,8 @@ def read_dataflash(path: Path, wanted: Iterable[str] | None = None) -> Iterator[
 
 
 def _believable(table: Table) -> Table:
-    """The fields that hold what their names say: damage to a definition makes a number a text."""
+    """Return the fields whose values fit their names. Damage to a definition can turn a number into a
+    text."""
     fields = {
         name: values
         for name, values in table.fields.items()
@@ -96,7 +97,7 @@ def _believable(table: Table) -> Table:
 
 
 def _batch(columns: Iterator[Columns], names: set[str] | None) -> Iterator[list[Columns]]:
-    """All wanted messages in one batch; none where there are none."""
+    """Yield all wanted messages in one batch; none where there are none."""
     with np.errstate(over="ignore", invalid="ignore"):  # damaged records hold any number
         wanted = [c for c in columns if len(c) and (names is None or c.name in names)]
     if wanted:
@@ -110,7 +111,7 @@ class _Translation:
         self._interrupted: set[str] = set()
         """Records of sensors that were not healthy all the time."""
         if read.epoch_s:
-            self._said.append(Said(0, 0, "Stamps count from 1970: times are given from the first record on"))
+            self._said.append(Said(0, 0, "Stamps count from 1970: times are given since the first record"))
         for name, quantity in _SENSORS.items():
             if name in self._tables:
                 every = self._tables[name]
@@ -146,7 +147,8 @@ class _Translation:
         yield self._statustext()
 
     def _message(self, name: str, table: Table, fields: dict[str, ArrayLike], place: int = 0) -> Columns:
-        """A message made of each record; ``place`` keeps several made of one record in order."""
+        """Return one message for each row of a record. ``place`` keeps several messages of one row in
+        order."""
         return self._made(name, table.order + place, table.time_us, fields)
 
     def _made(self, name: str, order: IntArray, time_us: IntArray, fields: dict[str, ArrayLike]) -> Columns:
@@ -154,7 +156,7 @@ class _Translation:
         return message(name, self._system, order, arrival_s, fields, "dataflash")
 
     def _attitude(self) -> Iterator[Columns]:
-        """Angles at the stamps of ATT, rates at those of their own records."""
+        """Yield angles at the stamps of ATT, rates at those of their own records."""
         blocks: list[tuple[IntArray, IntArray, NDArray[np.float64]]] = []
         if "ATT" in self._tables:
             att = self._tables["ATT"]
@@ -195,7 +197,8 @@ class _Translation:
         return self._message("AOA_SSA", aoa, {"time_usec": aoa.time_us, **angles})
 
     def _servo_outputs(self) -> Iterator[Columns]:
-        """RCOU has outputs 1 to 14, RCO2 15 to 18, RCO3 19 to 32; each bank of 16 is one message."""
+        """Yield SERVO_OUTPUT_RAW, one for each bank of 16. RCOU has outputs 1 to 14, RCO2 15 to 18, RCO3 19
+        to 32."""
         pulses: dict[int, NDArray[Any]] = {}
         if "RCOU" not in self._tables:
             return
@@ -205,7 +208,7 @@ class _Translation:
                 table = self._tables[name]
                 for field, values in table.fields.items():
                     if field[0] == "C" and field[1:].isdigit():
-                        # The autopilot writes the records of one loop's outputs one after the other.
+                        # The autopilot writes the output records of one loop one after the other.
                         at = nearest(rcou.time_us, table.time_us)
                         pulses[int(field[1:])] = values if table is rcou else values[at]
         banks = []
@@ -229,7 +232,7 @@ class _Translation:
         return self._message("RC_CHANNELS", rcin, {"time_boot_ms": _milliseconds(rcin.time_us), **pulses})
 
     def _vfr_hud(self) -> Iterator[Columns]:
-        """Air speed, climb rate and throttle, each at the stamps of its own record."""
+        """Yield the air speed, climb rate and throttle, each at the stamps of its own record."""
         found = air(self._tables, "ARSP" in self._interrupted)
         self._said += found.said
         if found.records:
@@ -248,10 +251,10 @@ class _Translation:
         return self._message("GLOBAL_POSITION_INT", pos, fields)
 
     def _statustext(self) -> Columns:
-        """The vehicle's own texts, and what was chosen in reading the log."""
+        """Return the vehicle's own texts, and sentences on choices made in reading the log."""
         msg = self._tables.get("MSG")
         own = [] if msg is None else zip(msg.order, msg.time_us, msg.fields["Message"].tolist(), strict=True)
-        # A record's own messages take its place and the one after it.
+        # A record's own messages use its order and the next one.
         read = [
             (one.order + 2 + k, one.time_us, READER + one.text.encode()) for k, one in enumerate(self._said)
         ]

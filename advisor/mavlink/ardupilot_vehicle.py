@@ -1,4 +1,4 @@
-"""Who an ArduPilot log says its vehicle is: kind, mode, parameters, version."""
+"""Identity of an ArduPilot log's vehicle: kind, mode, parameters, version."""
 
 from collections.abc import Mapping
 
@@ -15,21 +15,21 @@ VEHICLE_RECORDS: dict[str, set[str]] = {
     "PARM": {"Name", "Value"},
     "VER": {"Maj", "Min", "Pat", "FWT"},
 }
-"""Records, and the fields needed of each."""
+"""Record to its necessary fields."""
 _ARDUPILOTMEGA = 3  # MAV_AUTOPILOT
 _BUILD_TO_MAV_TYPE = {1: 10, 2: 2, 3: MAV_TYPE_FIXED_WING, 4: 5, 7: 12, 12: 7, 13: 4}
-"""VER.BU: rover, copter, plane, antenna tracker, submarine, airship, helicopter."""
+"""Value of VER.BU to MAV_TYPE: rover, copter, plane, antenna tracker, submarine, airship, helicopter."""
 _TITLES = {"ArduPlane": MAV_TYPE_FIXED_WING, "ArduCopter": 2, "ArduRover": 10, "ArduSub": 12}
-"""Firmware names in MSG, for logs older than VER."""
+"""Firmware name in MSG to MAV_TYPE, for logs older than VER."""
 _STICKS = {"RCMAP_ROLL": (1, 4), "RCMAP_PITCH": (2, 19), "RCMAP_YAW": (4, 21)}
-"""Of firmware before SERVOn_FUNCTION: the parameter that names the output of a stick, its value where it is
-not stored, and the SERVOn_FUNCTION of today (ArduPlane 3.7: radio.cpp, RCMapper.cpp)."""
+"""For firmware before SERVOn_FUNCTION: parameter of a stick's output, to its default and to today's
+SERVOn_FUNCTION (ArduPlane 3.7: radio.cpp, RCMapper.cpp)."""
 _MIXERS = ("ELEVON_MIXING", "ELEVON_OUTPUT", "VTAIL_OUTPUT")
-"""Parameters of that firmware that make outputs serve two axes: which output does what is then not known."""
+"""Parameters of that firmware that let outputs serve two axes. The role of each output is then unknown."""
 
 
 def system_of(tables: Mapping[str, Table]) -> int:
-    """System id as the parameters give it, under its old or its new name."""
+    """Return the system id from its parameter, under the old or the new name."""
     for name, value in _parameters(tables):
         if name in (b"SYSID_THISMAV", b"MAV_SYSID"):
             return system_id(value)
@@ -37,10 +37,11 @@ def system_of(tables: Mapping[str, Table]) -> int:
 
 
 def heartbeats(tables: Mapping[str, Table]) -> tuple[IntArray, IntArray, dict[str, ArrayLike]]:
-    """One before everything else, so that the vehicle is known, and two at each change of mode.
+    """Return a heartbeat before everything else, to make the vehicle known, and two at each change of mode.
 
-    A log tells of a change when it happens. The mode of before lasted until then, which the first of the
-    two says: heard once a second, as over a link, it may have ended any time since the heartbeat before.
+    A log states a change of mode at its moment. The first of the two heartbeats says that the earlier mode
+    lasted until then. Over a link, with one heartbeat a second, the mode might have ended at any time since
+    the last heartbeat.
 
     Returns
     -------
@@ -65,7 +66,7 @@ def heartbeats(tables: Mapping[str, Table]) -> tuple[IntArray, IntArray, dict[st
 
 
 def parameter_fields(parm: Table) -> dict[str, ArrayLike]:
-    """The fields of PARAM_VALUE."""
+    """Return the fields of PARAM_VALUE from the records PARM."""
     return {
         "param_id": parm.fields["Name"],
         "param_value": parm.fields["Value"],
@@ -76,7 +77,7 @@ def parameter_fields(parm: Table) -> dict[str, ArrayLike]:
 
 
 def in_todays_parameters(parm: Table) -> Table:
-    """The parameters; those of outputs under today's names in firmware older than SERVOn_FUNCTION."""
+    """Return the parameters under today's names, also from firmware older than SERVOn_FUNCTION."""
     names = [bytes(name) for name in parm.fields["Name"].tolist()]
     if any(name.startswith(b"SERVO") and name.endswith(b"_FUNCTION") for name in names):
         return parm
@@ -116,7 +117,7 @@ def _stick_functions(stored: Mapping[str, float]) -> dict[bytes, float]:
 
 
 def version_fields(ver: Table) -> dict[str, ArrayLike]:
-    """The fields of AUTOPILOT_VERSION."""
+    """Return the fields of AUTOPILOT_VERSION from the records VER."""
     major, minor, patch, kind = (ver.fields[name].astype(np.int64) for name in ("Maj", "Min", "Pat", "FWT"))
     return {"flight_sw_version": major << 24 | minor << 16 | patch << 8 | kind}
 

@@ -1,13 +1,14 @@
-"""Which packets are news: repeats of a second path are dropped, losses and late packets counted.
+"""Classification of packets: repeats of a second path are dropped, losses and late packets counted.
 
-Two radios, a router's loop or a duplicated output bring the same packets twice, the second time up to
-`REPEAT_US` later. A repeat has source, sequence number, message and checksum of a packet heard before. One
-alone proves no second path: sequence numbers return after 256 packets, and a heartbeat says the same each
-time. `_RUN` repeats in a row do.
+Two radios, a router's loop or a duplicated output bring packets twice, the second time up to `REPEAT_US`
+later. A repeat has source, sequence number, message and checksum of an earlier packet. A single repeat proves
+no second path: sequence numbers return after 256 packets, and heartbeats are all alike. `_RUN` repeats in a
+row prove one.
 
 A late path also brings packets that the first path has lost. Such a packet comes among repeats and continues
-their sequence numbers. It is dropped when the path is late by more than `LATE_US`, for a message without a
-time stamp would count as new. When the first path falls silent, the late path's packets are news.
+their sequence numbers. When the path is late by more than `LATE_US`, the packet is dropped, because a message
+without a time stamp would count as new. When the first path falls silent, the late path's packets count as
+new.
 """
 
 import numpy as np
@@ -18,23 +19,25 @@ from advisor.compiled import kernel
 Ints = NDArray[np.int64]
 
 REPEAT_US = 18_000_000
-"""A packet heard again within this time, us, may be a repeat: radios and routers hold packets up to 15 s."""
+"""Longest time after which a packet may repeat an earlier one, us. Radios and routers hold packets up to 15
+s."""
 LATE_US = 2_000_000
-"""A path that is late by more, us, brings nothing but repeats: channels take packets as late as this."""
+"""Lateness of a path, us, above which it brings nothing but repeats. Channels accept packets up to this
+age."""
 _PATH_US = 2_000_000
-"""A path is remembered so long after its last packet, us: a heartbeat comes once a second."""
+"""Time after its last packet for which a path is remembered, us. A heartbeat comes once a second."""
 _RUN = 8
-"""So many repeats in a row are a second path; one heartbeat in 256 after a loss repeats by chance."""
+"""Repeats in a row that prove a second path. One heartbeat in 256 after a loss repeats by chance."""
 _STEADY_US = 1_000_000
-"""A path's lateness changes by less from one packet to the next, us; else the repeat is another's."""
+"""Largest change of a path's lateness from one packet to the next, us. A larger change shows another path."""
 _STEP = 16
-"""A path's next packet is at most so many sequence numbers ahead, short losses among them."""
+"""Largest step of sequence numbers to a path's next packet, with short losses among them."""
 _MOST_NEW = 64
-"""A late path brings at most so many packets in a row that the first path lost; more are a first path."""
+"""Most packets in a row that only a late path brings. More of them make it the first path."""
 _BACK = 192
-"""Sequence numbers count to 256: a step of at least so many forward is a packet out of order."""
+"""Least step of sequence numbers (modulo 256) that shows a packet out of order."""
 
-# What is kept of each sender.
+# State of each sender.
 HEARD, NEWEST, NEWEST_US, LOST, LATE, REPEATED, REPEATED_LATE_US = range(7)
 """Packets heard; the newest one's sequence number and arrival, us; packets lost, late, repeated; the sum of
 the repeats' lateness, us."""
@@ -43,18 +46,19 @@ _ECHO, _ECHO_US, _ECHO_LATE_US, _ECHO_RUN, _ECHO_NEW = range(7, 12)
 since the last repeat."""
 SENDER_COLUMNS = 12
 
-# What is kept of each packet: its mark, arrival, and the packet before with its sequence number.
+# State of each packet: its mark, arrival, and the earlier packet with its sequence number.
 _MARK, _AT_US, _BEFORE = range(3)
 PACKET_COLUMNS = 3
 PACKETS = 1 << 15
-"""Packets remembered: those of ``REPEAT_US`` at 1800 a second."""
+"""Number of packets remembered: those of ``REPEAT_US`` at 1800 a second."""
 COUNT = 256
-"""Entry of ``newest`` that holds the number of packets so far, behind one for each sequence number."""
+"""Entry of ``newest`` with the number of packets so far. It stands after one entry for each sequence
+number."""
 
 
 @kernel()
 def _heard_ago(packets: Ints, newest: Ints, sequence: int, mark: int, now_us: int) -> int:
-    """How long ago, us, a packet was heard; -1: not within ``REPEAT_US``."""
+    """Return the age of a packet's earlier copy, us; -1: none within ``REPEAT_US``."""
     number = newest[sequence]
     while number > newest[COUNT] - PACKETS and number > 0:
         row = number % PACKETS
@@ -69,7 +73,7 @@ def _heard_ago(packets: Ints, newest: Ints, sequence: int, mark: int, now_us: in
 
 @kernel()
 def _has_path(senders: Ints, source: int, now_us: int) -> bool:
-    """Whether a second path was heard lately."""
+    """Return whether a second path was heard recently."""
     return bool(senders[source, _ECHO_RUN] > 0 and 0 <= now_us - senders[source, _ECHO_US] <= _PATH_US)
 
 
@@ -77,9 +81,9 @@ def _has_path(senders: Ints, source: int, now_us: int) -> bool:
 def _is_heard_again(
     senders: Ints, packets: Ints, newest: Ints, source: int, sequence: int, mark: int, now_us: int
 ) -> bool:
-    """Whether a packet was heard before; the second path then stands at the packet.
+    """Return whether a packet repeats an earlier one. The second path's state then moves to this packet.
 
-    Without a second path, what a vehicle says again with its next sequence number is news.
+    Without a second path, a message that a vehicle sends again with its next sequence number is new.
     """
     has_path = _has_path(senders, source, now_us)
     if not has_path and sequence == (senders[source, NEWEST] + 1) & 0xFF:
@@ -99,7 +103,7 @@ def _is_heard_again(
 
 @kernel()
 def _is_overtaken(senders: Ints, source: int, sequence: int, now_us: int) -> bool:
-    """Whether a packet that is no repeat came by the late path, after younger ones by the first."""
+    """Return whether a new packet came by the late path, after younger ones by the first path."""
     if senders[source, _ECHO_RUN] < _RUN or not _has_path(senders, source, now_us):
         return False
     ahead = (sequence - senders[source, NEWEST] - 1) & 0xFF
@@ -118,16 +122,16 @@ def _is_overtaken(senders: Ints, source: int, sequence: int, now_us: int) -> boo
 def weigh(
     senders: Ints, packets: Ints, newest: Ints, source: int, sequence: int, mark: int, now_us: int
 ) -> bool:
-    """Count one packet; whether it is news.
+    """Count one packet; return whether the packet is new.
 
     Parameters
     ----------
     senders : shape (65536, SENDER_COLUMNS)
-        What is known of each sender; changed.
+        State of each sender; changed.
     packets, newest : shape (PACKETS, PACKET_COLUMNS), (COUNT + 1,)
-        What was heard last, and where the newest packet of each sequence number stands; changed.
+        Newest packets, and the index of the newest packet of each sequence number; changed.
     source, sequence, mark, now_us
-        The packet's sender and sequence number, what tells it from others, and its time of arrival, us.
+        The packet's sender, sequence number, distinguishing mark, and time of arrival, us.
     """
     first = senders[source, HEARD] == 0
     senders[source, HEARD] += 1

@@ -13,19 +13,20 @@ RATE_RECORDS: dict[str, set[str]] = {
     "PIDP": {"Act"},
     "RATE": {"R", "P", "Y"},
 }
-"""Records that hold rates beside IMU, and the fields needed of each; PIDP.Act and RATE are in deg/s
-(ArduPilot: AP_PitchController.cpp of every version that logs Act; log messages PIDP and RATE)."""
+"""Record with rates, other than IMU, to its necessary fields. PIDP.Act and RATE are in deg/s (ArduPilot:
+AP_PitchController.cpp of every version that logs Act; log messages PIDP and RATE)."""
 FASTEST_SAMPLES_HZ = 200.0
-"""Raw gyro records come 1000 times a second and more. Means over 5 ms keep all that a short period does: at
-40 rad/s they lose 0.2 % of its amplitude."""
+"""Largest rate of samples, Hz. Raw gyro records come 1000 times a second and more. Means over 5 ms keep the
+short period: at 40 rad/s they lose 0.2 % of its amplitude."""
 SLOWEST_ANGLES_HZ = 20.0
-"""The change of an angle over 1/20 s is the rate to 1 % for a natural frequency up to 10 rad/s, as of a small
-aircraft; angles that come more slowly give no rate."""
+"""Least rate of angles, Hz, from which angular rates are derived. The difference over 1/20 s gives the rate
+to 1 % for a natural frequency up to 10 rad/s, typical of a small aircraft."""
 GYRO_FILTER_HZ = 20.0
-"""INS_GYRO_FILTER where the log does not state it, ArduPlane's default: the corner of a second-order low-pass
-that every gyro reading of the autopilot has gone through."""
+"""INS_GYRO_FILTER where the log does not state it, Hz, which is ArduPlane's default. This is the corner of a
+second-order low-pass for all gyro readings of the autopilot."""
 _FROZEN_S = 1.0
-"""A controller that does not run leaves its last rate standing, as ArduPlane's do in MANUAL."""
+"""Least time of constant output, s, that shows a controller at rest. A controller that does not run keeps its
+last rate, as ArduPlane's do in MANUAL."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,17 +34,18 @@ class Rates:
     """Angular rates about the body axes, each at its own stamp."""
 
     order: IntArray
-    """Shape (n,). Where the record begins in the file, bytes."""
+    """Shape (n,). Position of each record in the file, bytes."""
     time_us: IntArray
     """Shape (n,). Microseconds since boot."""
     values: FloatArray
     """Shape (3, n), rad/s; NaN for an axis that the record does not hold."""
     said: str
-    """Where the rates come from, for the user; empty for IMU."""
+    """Sentence on the source of the rates, for the user; empty for IMU."""
 
 
 def body_rates(tables: Mapping[str, Table]) -> Rates | None:
-    """The rates of IMU, else GYR, PIDP, RATE, else those by which the angles of ATT change; None without."""
+    """Return the rates of IMU, else GYR, PIDP, RATE, else those derived from the angles of ATT; None without
+    any."""
     if "IMU" in tables:
         return _read(tables["IMU"], ("GyrX", "GyrY", "GyrZ"), 1.0, "")
     if "GYR" in tables:
@@ -58,10 +60,10 @@ def body_rates(tables: Mapping[str, Table]) -> Rates | None:
 
 
 def gyro_delay_s(parm: Table | None) -> float:
-    """How late the autopilot's gyro readings are at the frequencies of flight, s.
+    """Return the delay of the autopilot's gyro readings at the frequencies of flight, s.
 
-    That of a second-order Butterworth low-pass, √2 / (2π f), with f of INS_GYRO_FILTER; 11 ms at 20 Hz, where
-    12 ms were measured in a log of ArduPlane 4.5 (logs/arduplane-calm.tlog).
+    This is the delay of a second-order Butterworth low-pass, √2 / (2π f), with f of INS_GYRO_FILTER. The
+    result is 11 ms at 20 Hz, where 12 ms were measured in a log of ArduPlane 4.5 (logs/arduplane-calm.tlog).
     """
     corner_hz = GYRO_FILTER_HZ
     if parm is not None:
@@ -71,8 +73,7 @@ def gyro_delay_s(parm: Table | None) -> float:
 
 
 def calmed(table: Table) -> Table:
-    """Records of the first of several raw sensors, as means of so many that no more than
-    ``FASTEST_SAMPLES_HZ`` remain."""
+    """Return the records of the first raw sensor, averaged so that at most ``FASTEST_SAMPLES_HZ`` remain."""
     table = table.first_instance()
     steps_us = np.diff(table.time_us)
     many = int(1e6 / FASTEST_SAMPLES_HZ // max(float(np.median(steps_us)), 1.0)) if len(steps_us) else 1
@@ -95,16 +96,17 @@ def _read(table: Table, fields: tuple[str | None, str | None, str | None], scale
 
 
 def _stands_still(pid: Table) -> bool:
-    """Whether the controller's rate ever stands still for ``_FROZEN_S``."""
+    """Return whether the controller's rate is ever constant for ``_FROZEN_S``."""
     moved = np.flatnonzero(np.diff(pid.fields["Act"]) != 0.0) + 1
     edges_us = pid.time_us[np.concatenate(([0], moved, [len(pid) - 1]))]
     return bool(np.max(np.diff(edges_us)) > 1e6 * _FROZEN_S)
 
 
 def _from_angles(att: Table, delay_s: float) -> Rates | None:
-    """Rates from the change of the angles from record to record, as late as the gyro's would be.
+    """Return the rates from differences of the angles, delayed like the gyro's rates.
 
-    The angle of attack is late, too: beside a rate that is not, derivatives come out wrong by half.
+    The angle of attack is also late. Together with a rate without delay, derivatives would come out wrong by
+    half.
     """
     t = att.time_us.astype(np.float64) * 1e-6
     step_s = np.diff(t)

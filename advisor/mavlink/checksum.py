@@ -33,7 +33,7 @@ _REMAINDERS: list[int] = TABLE.tolist()
 
 
 def crc16(data: bytes, crc: int = INITIAL) -> int:
-    """Checksum of ``data``, continued from ``crc``."""
+    """Return the checksum of ``data``, continued from ``crc``."""
     for byte in data:
         crc = crc >> 8 ^ _REMAINDERS[(crc ^ byte) & 0xFF]
     return crc

@@ -1,4 +1,4 @@
-"""Where to listen: connection strings as pymavlink, MAVProxy and MAVSDK write them."""
+"""Connection strings in the forms of pymavlink, MAVProxy and MAVSDK."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -28,15 +28,17 @@ class Address:
 
     kind: Kind
     host: str
-    """Host to listen on or to call, empty: every interface; device of a line, path of a local socket."""
+    """Host to listen on or to call; empty for every interface. Device of a serial line, or path of a local
+    socket."""
     port: int
-    """Network port; the baud rate of a serial line."""
+    """Network port, or the baud rate of a serial line."""
     text: str
-    """The string as the user wrote it."""
+    """Connection string as the user wrote it."""
 
     @property
     def speaks_first(self) -> bool:
-        """Whether nothing is heard until something was sent: the peer learns our address from it."""
+        """Whether a packet must be sent before any is received, because the peer learns our address from
+        it."""
         return self.kind == "udpout"
 
 
@@ -46,14 +48,14 @@ def parse_connection(text: str) -> Address:
     Parameters
     ----------
     text
-        As pymavlink takes it (``udpin:``, ``udpout:``, ``udp:``, ``tcp:``, ``tcpin:``,
-        ``/dev/ttyX,57600``, bare ``host:port`` listens on UDP) or as MAVSDK does
+        String in pymavlink's form (``udpin:``, ``udpout:``, ``udp:``, ``tcp:``, ``tcpin:``,
+        ``/dev/ttyX,57600``, bare ``host:port`` listens on UDP) or MAVSDK's
         (``udpin://``, ``udpout://``, ``tcpout://``, ``serial://device:baud``).
 
     Raises
     ------
     ConfigurationError
-        When the string names no connection; the message says what one looks like.
+        The string names no connection. The message shows examples.
     """
     text = text.strip()
     scheme, colon, rest = text.partition(":")

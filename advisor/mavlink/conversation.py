@@ -1,4 +1,4 @@
-"""What the advisor says on a link, and what those who speak there hear."""
+"""Messages of the advisor on a link, and their distribution to those who need them."""
 
 from collections.abc import Callable, Iterable
 from typing import Any
@@ -11,7 +11,7 @@ from advisor.mavlink.outgoing import Ids, Packer, Talker
 from advisor.mavlink.signing import signing_time
 
 Send = Callable[[bytes], bool]
-"""Puts one frame on the air; False when nobody is there to send to."""
+"""Function that sends one frame, and returns False without a receiver."""
 
 
 class Conversation:
@@ -20,7 +20,7 @@ class Conversation:
     Parameters
     ----------
     talkers
-        Who may speak.
+        Talkers of the link.
     own
         Ids of the advisor.
     key
@@ -33,11 +33,12 @@ class Conversation:
         self._packer = Packer(key)
 
     def join(self, talker: Talker) -> None:
-        """Let another talker speak from now on."""
+        """Add a talker."""
         self._talkers.append(talker)
 
     def hear(self, frames: list[Frame], vehicle: Ids | None, now_s: float) -> list[str]:
-        """Let the talkers hear the vehicle and every heartbeat; what the crew should know, once."""
+        """Pass the vehicle's frames and every heartbeat to the talkers; return sentences for the crew, each
+        once."""
         system = vehicle[0] if vehicle is not None else None
         heard = [frame for frame in frames if frame.system == system or frame.message_id == HEARTBEAT]
         said = []
@@ -50,18 +51,18 @@ class Conversation:
     def speak(
         self, vehicle: Ids | None, reachable: bool, now_s: float, unix_s: float, send: Send
     ) -> list[bytes]:
-        """Send what is due; the frames that could be sent.
+        """Send the due messages; return the frames that could be sent.
 
         Parameters
         ----------
         vehicle
-            Who is followed; None before the first heartbeat.
+            Vehicle that is followed. None before the first heartbeat.
         reachable
-            Whether the vehicle hears what is asked.
+            Whether the vehicle receives messages.
         now_s, unix_s
             The reader's monotonic time, and the host's time since 1970, s.
         send
-            Puts one frame on the air.
+            Sends one frame.
         """
         hearing = vehicle if reachable else None
         return [
@@ -71,7 +72,7 @@ class Conversation:
         ]
 
     def leave(self, vehicle: Ids | None, now_s: float, unix_s: float, send: Send) -> list[bytes] | None:
-        """Send what talkers must still say before the link is closed; None: nothing is left to wait for."""
+        """Send the talkers' last messages before the link is closed; None: no answer is awaited any more."""
         last = [talker.leave(now_s) for talker in self._talkers]
         if all(messages is None for messages in last):
             return None
@@ -82,7 +83,7 @@ class Conversation:
         ]
 
     def note(self, text: bytes, unix_s: float) -> bytes:
-        """A text of the advisor for its own stream alone, as a frame; nothing goes on the air."""
+        """Return a frame with a text of the advisor for its own stream alone. Nothing is sent."""
         message = dialect.MAVLink_statustext_message(dialect.MAV_SEVERITY_INFO, text)
         return self._packer.pack(message, self._own, signing_time(unix_s))
 

@@ -1,8 +1,8 @@
 """ArduPilot's own log (``.bin``, "dataflash"): self-describing binary records.
 
-A record is two bytes of header, a type, and the fields that the type's FMT record lists
-(ArduPilot: AP_Logger, "Log message formats"). Records carry no checksum, so one counts only
-when another header, or the end of the file, follows right behind it.
+A record is two bytes of header, a type, and the fields that the type's FMT record lists (ArduPilot:
+AP_Logger, "Log message formats"). Records carry no checksum. So a record counts only when another header, or
+the end of the file, follows right behind it.
 """
 
 from collections.abc import Iterable
@@ -25,7 +25,7 @@ _FMT_LAYOUT = np.dtype(
     [("type", "u1"), ("length", "u1"), ("name", "S4"), ("format", "S16"), ("columns", "S64")]
 )
 
-# Format characters: dtype, and what a scaled integer is divided by.
+# Format character to dtype, and to the divisor of a scaled integer.
 _FORMATS: dict[str, tuple[Any, float | None]] = {
     "a": (("<i2", (32,)), None),
     "b": ("i1", None),
@@ -56,7 +56,7 @@ class Table:
     """All records of one type, in the order of the file."""
 
     order: IntArray
-    """Shape (n,). Where each record begins in the file, bytes."""
+    """Shape (n,). Position of each record in the file, bytes."""
     fields: dict[str, NDArray[Any]]
     """Field name to shape (n,), in the units of the log."""
 
@@ -65,11 +65,11 @@ class Table:
 
     @property
     def time_us(self) -> IntArray:
-        """Shape (n,). Microseconds since boot."""
+        """Time stamps, shape (n,), microseconds since boot."""
         return np.asarray(self.fields["TimeUS"], dtype=np.int64)
 
     def first_instance(self) -> "Table":
-        """The records of the first of several like sensors or estimators."""
+        """Return the records of the first of several sensors or estimators of one kind."""
         for name in ("I", "C"):
             if name in self.fields:
                 return self[self.fields[name] == 0]
@@ -80,7 +80,7 @@ class Table:
 
 
 def read_tables(path: Path, names: Iterable[str]) -> dict[str, Table]:
-    """The records of the named types, as the log has them; those that do not occur are left out."""
+    """Return the records of the named types; a type without records is left out."""
     stream = np.fromfile(path, dtype=np.uint8)
     starts = np.empty(len(stream) // 4 + 1, dtype=np.int64)
     starts = starts[: scan_records(stream, starts)]
@@ -106,7 +106,7 @@ def read_tables(path: Path, names: Iterable[str]) -> dict[str, Table]:
 
 
 def first_definition(beginning: bytes) -> int:
-    """Where the first FMT record begins that another record follows; -1 for none."""
+    """Return the position of the first FMT record that another record follows; -1 for none."""
     at = beginning.find(_DEFINITION)
     while at >= 0 and beginning[at + _FMT_LENGTH : at + _FMT_LENGTH + len(HEADER)] != HEADER:
         at = beginning.find(_DEFINITION, at + 1)
@@ -114,7 +114,7 @@ def first_definition(beginning: bytes) -> int:
 
 
 def gps_time_base_s(gps: Table | None) -> float:
-    """Seconds since 1970 at boot, from the first fix with a GPS week; 0 when there is none."""
+    """Return the time of boot, seconds since 1970, from the first fix with a GPS week; 0 without one."""
     if gps is None:
         return 0.0
     known = np.flatnonzero(gps.fields["GWk"] > 0)
@@ -127,7 +127,8 @@ def gps_time_base_s(gps: Table | None) -> float:
 
 
 def _layout(definition: Any) -> tuple["np.dtype[np.void] | None", list[float | None]]:
-    """How records of a type are laid out, and the divisors of their fields; None when unreadable."""
+    """Return the dtype of a type's records, and the divisors of their fields; None for an unreadable
+    definition."""
     characters = definition["format"].decode("ascii", "replace")
     names = definition["columns"].decode("ascii", "replace").split(",")
     if (
@@ -155,14 +156,14 @@ def _records(stream: NDArray[np.uint8], bodies: IntArray, layout: "np.dtype[np.v
 
 @kernel()
 def gather(stream: NDArray[np.uint8], bodies: IntArray, rows: NDArray[np.uint8]) -> None:
-    """Copy what begins at each of ``bodies`` into its row of ``rows``."""
+    """Copy the bytes that begin at each of ``bodies`` into a row of ``rows``."""
     for i in range(len(bodies)):
         rows[i] = stream[bodies[i] : bodies[i] + rows.shape[1]]
 
 
 @kernel()
 def scan_records(stream: NDArray[np.uint8], starts: IntArray) -> int:
-    """Find the records; fill ``starts``, give their number. FMT records teach the lengths."""
+    """Find the records: fill ``starts`` and return their number. FMT records give the lengths."""
     n = len(stream)
     lengths = np.zeros(256, dtype=np.int64)
     lengths[_FMT] = _FMT_LENGTH
@@ -185,5 +186,5 @@ def scan_records(stream: NDArray[np.uint8], starts: IntArray) -> int:
 
 
 def seconds(time_us: IntArray) -> FloatArray:
-    """Microseconds as seconds."""
+    """Return microseconds as seconds."""
     return time_us.astype(np.float64) * 1e-6

@@ -1,4 +1,4 @@
-"""From records of a link to messages, and to the vehicle that the flight's own stream follows."""
+"""From records of a link to messages, and to the vehicle that the flight's stream follows."""
 
 from dataclasses import replace
 
@@ -12,18 +12,18 @@ from advisor.mavlink.outgoing import OWN_COMPONENT, OWN_SYSTEM, Heartbeat, Ids, 
 
 
 class Decoding:
-    """Decodes as a log is decoded, and decides whom to follow by the same messages as the flight's stream.
+    """Decodes records like a log, and chooses the vehicle by the messages that the flight's stream uses.
 
     Parameters
     ----------
     elevator
-        As the aircraft file has it: it tells which of several vehicles has one. None: by the parameters.
+        Elevator of the aircraft file, which shows which of several vehicles has one. None: by parameters.
     target_system
         System id of the vehicle; None: the first autopilot heard.
     """
 
     def __init__(self, elevator: Elevator | None, target_system: int | None) -> None:
-        # No packet of the vehicle shall wait for the decoder's kernels to be loaded.
+        # No packet of the vehicle may wait for the decoder's kernels to load.
         hello = Packer(None).pack(Heartbeat().speak(None, 0.0)[0], (OWN_SYSTEM, OWN_COMPONENT), 0)
         FrameScanner().feed(bytes(8) + hello)
         self._scanner = FrameScanner()
@@ -31,14 +31,15 @@ class Decoding:
         self._followed: Ids | None = None
 
     def feed(self, records: bytes) -> list[Columns]:
-        """The messages of these records."""
+        """Return the messages of these records."""
         columns = self._scanner.feed(records)
         for piece in pieces(columns, by_second=True):
             self._who.learn(piece)
         return columns
 
     def counted(self, statistics: LinkStatistics) -> LinkStatistics:
-        """The statistics with what the decoder counts of the vehicle: frames lost, late, and come twice."""
+        """Return the statistics with the decoder's counts of the vehicle's frames: lost, late, and
+        repeated."""
         vehicle = statistics.vehicle
         received = self._scanner.statistics.senders.get(vehicle) if vehicle is not None else None
         if received is None:
@@ -53,11 +54,11 @@ class Decoding:
         )
 
     def forget_followed(self) -> None:
-        """Whoever listens is new: tell the vehicle again."""
+        """Report the followed vehicle again, for a new listener."""
         self._followed = None
 
     def newly_followed(self) -> Ids | None:
-        """The vehicle followed since the last call; None: the same as before."""
+        """Return the vehicle followed since the last call; None without a change."""
         vehicle = self._who.vehicle
         followed = (vehicle.system, vehicle.component) if vehicle is not None else None
         if followed == self._followed:

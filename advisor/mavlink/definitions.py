@@ -1,9 +1,9 @@
-"""The MAVLink messages the advisor reads: ids, fields, layouts on the wire.
+"""The MAVLink messages that the advisor reads: ids, fields, layouts on the wire.
 
-One line a message, as the MAVLink definitions (common.xml, ardupilotmega.xml) give it:
-``NAME id: type field, ... + extension fields of MAVLink 2``. Everything else follows from
-the protocol's rules: the order on the wire and the seed of the checksum. So reading a log
-needs no dialect of pymavlink, which costs a tenth of a second and more to import.
+One line for each message, from the MAVLink definitions (common.xml, ardupilotmega.xml): ``NAME id: type
+field, ... + extension fields of MAVLink 2``. The order on the wire and the seed of the checksum follow from
+the protocol's rules. So reading a log needs no dialect of pymavlink, whose import costs a tenth of a second
+and more.
 """
 
 from dataclasses import dataclass
@@ -94,7 +94,7 @@ class _Field:
     name: str
     type: str
     length: int
-    """Elements of an array field, 0 for a scalar."""
+    """Number of elements of an array field, 0 for a scalar."""
 
     @classmethod
     def parse(cls, text: str) -> "_Field":
@@ -116,7 +116,7 @@ class _Field:
 
     @property
     def signature(self) -> bytes:
-        """What the field adds to the seed of the checksum."""
+        """Contribution of the field to the seed of the checksum."""
         c_type = self.type if self.type in ("char", "float", "double") else f"{self.type}_t"
         return f"{c_type} {self.name} ".encode() + (bytes([self.length]) if self.length else b"")
 
@@ -128,7 +128,7 @@ class Definition:
     name: str
     id: int
     crc_extra: int
-    """Seed that tells two versions of a message apart, last byte of every checksum."""
+    """Seed that distinguishes versions of a message; last byte of every checksum."""
     layout: "np.dtype[np.void]"
     """Structured dtype in wire order, extension fields of MAVLink 2 at the end, no padding."""
 
@@ -139,7 +139,7 @@ def _parse(line: str) -> Definition:
     base, extensions = (
         [_Field.parse(field) for field in part.split(", ") if field] for part in (*body.split(" + "), "")[:2]
     )
-    # Wire order: the largest scalars first, otherwise as defined; extensions are not sorted.
+    # Order on the wire: the largest scalars first, otherwise as defined. Extensions are not sorted.
     base.sort(key=lambda field: -field.scalar_size)
     seed = crc16(f"{name} ".encode() + b"".join(field.signature for field in base))
     layout = np.dtype([field.column for field in (*base, *extensions)])
@@ -150,4 +150,4 @@ DEFINITIONS = {
     definition.name: definition
     for definition in map(_parse, _DEFINITIONS.replace("\n    ", " ").strip().splitlines())
 }
-"""Every message the advisor can read, by name."""
+"""Every message that the advisor can read, by name."""

@@ -1,11 +1,11 @@
-"""Counting the messages that a vehicle really delivers, window by window."""
+"""Counts of the messages that a vehicle delivers, window by window."""
 
 from collections import Counter
 from collections.abc import Collection
 
 
 class Delivery:
-    """Counts messages of some ids; a window with a pause of the vehicle in it tells nothing of rates.
+    """Counts messages of some ids. A window with a pause of the vehicle gives no rates.
 
     Parameters
     ----------
@@ -23,11 +23,11 @@ class Delivery:
         self._heard_s = float("-inf")
 
     def restart(self) -> None:
-        """The next window begins with the next look."""
+        """Begin a new window at the next call of ``look``."""
         self._since_s = None
 
     def hear(self, message: int, now_s: float) -> None:
-        """Count a frame of the vehicle, whatever it is."""
+        """Count any frame of the vehicle."""
         if now_s - self._heard_s > self._window_s / 2.0:
             self._begin(now_s)
         self._heard_s = now_s
@@ -35,7 +35,8 @@ class Delivery:
             self._counts[message] += 1
 
     def look(self, now_s: float) -> dict[int, float] | None:
-        """Rate of each message over the window that is complete now, Hz; None: none is."""
+        """Return the rate of each message over a window that is complete now, Hz; None for an incomplete
+        window."""
         if self._since_s is None:
             self._begin(now_s)
         assert self._since_s is not None

@@ -1,9 +1,8 @@
-"""Messages as the vehicle would have sent them, from logs that hold its own records.
+"""Messages as the vehicle would have sent them, from logs with the autopilot's own records.
 
-Autopilots log angles, rates, outputs and air data as separate records, each at its own time.
-They become the messages a telemetry link carries, so that everything behind has one path. A
-message gets only what its record holds: what is missing is NaN, where the definition has a
-floating-point field, and zero otherwise. Nothing is interpolated.
+Autopilots log angles, rates, outputs and air data as separate records, each at its own time. Here they become
+the messages of a telemetry link, so that all later code has one path. A message holds only values of its
+record. Missing values are NaN in a floating-point field, and zero otherwise. Nothing is interpolated.
 """
 
 from collections.abc import Mapping
@@ -29,7 +28,7 @@ def message(
     fields: Mapping[str, ArrayLike],
     carrier: Carrier,
 ) -> Columns:
-    """Messages of one type from the values at hand, put into their order.
+    """Return messages of one type from the given values, sorted by their order.
 
     Parameters
     ----------
@@ -38,11 +37,11 @@ def message(
     system : int
         System id of the vehicle.
     order, arrival_s : shape (n,)
-        In any order, as the fields.
+        Arrival index and time of each message, in the order of the fields.
     fields : mapping
         Field name to shape (n,), or a scalar for all, in the units of the definition. Integers
-        are cut to the size of the field, as a vehicle's counters wrap; texts and floating-point
-        values are kept as they are, and so are fields that the definition lacks (a stamp).
+        are cut to the size of the field, as a vehicle's counters wrap. Texts, floating-point
+        values and fields that the definition lacks (a stamp) are unchanged.
     carrier : Carrier
         The kind of log.
     """
@@ -66,7 +65,7 @@ def message(
 
 
 def side_by_side(*records: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
-    """Fields of several records, each in rows of its own: what a record does not hold is NaN in its rows.
+    """Return fields of several records, each in rows of its own, with NaN for fields that a record lacks.
 
     Parameters
     ----------
@@ -83,25 +82,26 @@ def side_by_side(*records: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]
 
 
 def air_data(*records: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
-    """Fields of VFR_HUD from records of air speed, climb rate and throttle; NaN without a throttle."""
+    """Return fields of VFR_HUD from records of air speed, climb rate and throttle, with NaN for a missing
+    throttle."""
     fields = side_by_side(*records)
     return {"throttle": np.full(len(next(iter(fields.values()))), np.nan), **fields}
 
 
 def system_id(parameter: object) -> int:
-    """The system id that a parameter states; 1 when it is none."""
+    """Return the system id from a parameter's value; 1 for an invalid one."""
     return int(parameter) if isinstance(parameter, int | float) and 1 <= parameter <= 255 else 1
 
 
 def latest(at: IntArray, order: IntArray, values: NDArray[Any]) -> FloatArray:
-    """The newest of ``values`` before each place ``at``: what the vehicle then knew.
+    """Return the newest of ``values`` before each place ``at``, as the vehicle knew it then.
 
     Parameters
     ----------
     at : shape (n,)
         Arrival indices asked for.
     order, values : shape (m,)
-        Arrival indices, rising, and what came then.
+        Arrival indices, rising, and the values that arrived.
 
     Returns
     -------
@@ -113,7 +113,7 @@ def latest(at: IntArray, order: IntArray, values: NDArray[Any]) -> FloatArray:
 
 
 def nearest(at_us: IntArray, time_us: IntArray) -> IntArray:
-    """Index of the record nearest to each time asked for, the earlier of two."""
+    """Return the index of the record nearest to each given time, the earlier one of two."""
     after = np.clip(np.searchsorted(time_us, at_us), 1, max(len(time_us) - 1, 1))
     before = after - 1
     after = np.minimum(after, len(time_us) - 1)

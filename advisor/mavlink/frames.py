@@ -1,4 +1,4 @@
-"""From bytes to columns: the one reader behind logs and live links."""
+"""From bytes to columns: the one reader for logs and live links."""
 
 import math
 from collections.abc import Iterable, Mapping
@@ -20,18 +20,18 @@ _SOURCES = 1 << 16
 
 @dataclass(frozen=True, slots=True)
 class Received:
-    """What came of one sender's frames, by their sequence numbers and bytes."""
+    """Counts of one sender's frames, by their sequence numbers and bytes."""
 
     frames: int = 0
-    """Good frames, each once."""
+    """Good frames, each counted once."""
     lost: int = 0
     """Frames missing by their sequence numbers."""
     late: int = 0
     """Frames that came after a younger one."""
     repeated: int = 0
-    """Frames that a second path brought again; none of them counts."""
+    """Frames that a second path brought again. None of them counts."""
     repeated_after_s: float = math.nan
-    """How much later a repeat came, mean, s."""
+    """Mean delay of a repeat after the first copy, s."""
 
     @property
     def repeated_percent(self) -> float:
@@ -41,18 +41,18 @@ class Received:
 
 @dataclass(frozen=True, slots=True)
 class ScanStatistics:
-    """What a stream was made of, up to the last byte fed."""
+    """Counts of a stream up to the last byte taken."""
 
     frames: int
     """Good frames of any message."""
     known_frames: int
-    """Those of messages the advisor has a definition of, their checksum proven."""
+    """Good frames of messages with a definition, whose checksum is therefore proven."""
     damaged: int
-    """Places where no good frame was found where one was due."""
+    """Places where a good frame was due and none was found."""
     skipped_bytes: int
-    """Bytes that belong to no good frame or time stamp."""
+    """Bytes outside all good frames and time stamps."""
     senders: Mapping[tuple[int, int], Received]
-    """What came of each sender's frames, by (system, component)."""
+    """Counts of each sender's frames, by (system, component)."""
     refused: Mapping[Verdict, int]
     """Frames of wanted messages refused for their signature, by verdict; empty without a key."""
 
@@ -60,18 +60,18 @@ class ScanStatistics:
 class FrameScanner:
     """Finds MAVLink 1 and 2 frames in a stream of tlog records and decodes the wanted ones.
 
-    The stream is a row of records, 8 bytes of big-endian microseconds since 1970 and one
-    frame, cut into pieces anywhere: the columns of all feeds together do not depend on the
-    cuts. A frame counts when its checksum is right; everything else is stepped over, and so is
-    what a second path repeats (`advisor.mavlink.arrivals`).
+    The stream is a row of records, each with 8 bytes of big-endian microseconds since 1970 and one frame. The
+    stream may be cut into pieces anywhere: the columns of all feeds together do not depend on the cuts. A
+    frame counts when its checksum is right. Everything else is skipped, and so are repeats by a second path
+    (`advisor.mavlink.arrivals`).
 
     Parameters
     ----------
     wanted : iterable of str, optional
         Names of the messages to decode; all of ``DEFINITIONS`` by default.
     key : bytes, optional
-        Signing key of 32 bytes: frames without a good, fresh signature are refused, but for
-        RADIO_STATUS, which radios inject unsigned.
+        Signing key of 32 bytes: frames without a good, fresh signature are refused. RADIO_STATUS is
+        accepted, because radios inject it unsigned.
 
     Raises
     ------
@@ -99,7 +99,7 @@ class FrameScanner:
         self._offset = 0
 
     def feed(self, data: bytes) -> list[Columns]:
-        """Take the next bytes of the stream; give the messages they complete.
+        """Take the next bytes of the stream; return the messages that they complete.
 
         Returns
         -------
@@ -110,12 +110,12 @@ class FrameScanner:
         return self._scan(self._tail + data, final=False)
 
     def close(self) -> list[Columns]:
-        """The stream ends here: what the last bytes still hold when nothing follows."""
+        """Take the end of the stream; return the messages that the last bytes still hold."""
         return self._scan(self._tail, final=True)
 
     @property
     def statistics(self) -> ScanStatistics:
-        """What the stream was made of so far."""
+        """Counts of the stream so far."""
         state = self._state
         return ScanStatistics(
             frames=int(state[kernel.FRAMES]),
@@ -161,7 +161,7 @@ class FrameScanner:
         return False
 
     def _columns(self, stream: NDArray[np.uint8], found: NDArray[np.int64]) -> list[Columns]:
-        """Sort the frames found by message and sender, keeping their order, and decode them."""
+        """Sort the frames found by message and sender, keep their order, and decode them."""
         if not len(found):
             return []
         sender = found[:, kernel.KIND] * _SOURCES + found[:, kernel.SOURCE]
@@ -201,7 +201,7 @@ def _received(sender: NDArray[np.int64]) -> Received:
 
 
 def _fields(definition: Definition, payloads: NDArray[np.uint8]) -> dict[str, NDArray[Any]]:
-    """The payloads seen through the layout of their message; texts end at their first zero."""
+    """Return the fields of payloads by the layout of their message. Texts end at their first zero."""
     records = payloads.view(definition.layout)[:, 0]
     fields: dict[str, NDArray[Any]] = {name: records[name] for name in definition.layout.names or ()}
     for name, column in fields.items():

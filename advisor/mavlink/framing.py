@@ -1,4 +1,4 @@
-"""Cutting whole MAVLink frames out of what a socket or a serial line delivers."""
+"""Cuts whole MAVLink frames out of the bytes from a socket or a serial line."""
 
 from collections.abc import Mapping
 from typing import NamedTuple
@@ -15,13 +15,13 @@ SIGNED = 0x01
 SIGNATURE_LENGTH = 13
 LONGEST_FRAME = 12 + 255 + SIGNATURE_LENGTH
 CRC_EXTRA: Mapping[int, int] = {number: message.crc_extra for number, message in dialect.mavlink_map.items()}
-"""Message id to the checksum's seed, of every message that the advisor knows."""
+"""Message id to the checksum's seed, for every message that the advisor knows."""
 
 _SEED_REMAINDERS = frozenset(TABLE.tolist())
 
 
 class Frame(NamedTuple):
-    """One frame as it was on the wire."""
+    """One frame as on the wire."""
 
     raw: bytes
     message_id: int
@@ -32,7 +32,7 @@ class Frame(NamedTuple):
 
     @property
     def payload(self) -> bytes:
-        """The payload; in MAVLink 2 its trailing zeros are cut off."""
+        """Payload of the frame. In MAVLink 2 its trailing zeros are cut off."""
         start = 6 if self.raw[0] == MAGIC_V1 else 10
         return self.raw[start : start + self.raw[1]]
 
@@ -40,11 +40,10 @@ class Frame(NamedTuple):
 class FrameCutter:
     """Finds frames in a stream of bytes that starts anywhere and may hold garbage.
 
-    A frame of a known message must pass its checksum (CRC-16/MCRF4XX over everything
-    after the magic byte and the definition's CRC_EXTRA, as the MAVLink serialisation
-    guide defines it). A frame of an unknown message can only be checked for a checksum
-    that some CRC_EXTRA would give, one in 256; so it is taken only where one is due: right
-    after a good one, and followed by another or by nothing.
+    A frame of a known message must pass its checksum. The MAVLink serialisation guide defines it as
+    CRC-16/MCRF4XX over everything after the magic byte and the definition's CRC_EXTRA. For a frame of an
+    unknown message, some CRC_EXTRA gives any checksum in one case of 256. So such a frame is accepted only
+    where one is due: right after a good one, and followed by another or by nothing.
     """
 
     def __init__(self, crc_extra: Mapping[int, int]) -> None:
@@ -52,12 +51,12 @@ class FrameCutter:
         self._rest = b""
         self._in_step = True
         self.bad_crc = 0
-        """Frames whose checksum did not fit."""
+        """Frames with a wrong checksum."""
         self.garbage_bytes = 0
         """Bytes outside any frame."""
 
     def feed(self, data: bytes) -> list[Frame]:
-        """Take the next bytes; give the frames they complete."""
+        """Take the next bytes; return the frames that they complete."""
         buffer = self._rest + data if self._rest else data
         frames = []
         i, n = 0, len(buffer)
@@ -79,7 +78,7 @@ class FrameCutter:
         return frames
 
     def _skip(self, buffer: bytes, i: int) -> int:
-        """Give up the byte at ``i``; the next place where a frame may start."""
+        """Give up the byte at ``i``; return the next place where a frame may start."""
         v1, v2 = buffer.find(MAGIC_V1, i + 1), buffer.find(MAGIC_V2, i + 1)
         found = [k for k in (v1, v2) if k >= 0]
         following = min(found) if found else len(buffer)
@@ -112,7 +111,7 @@ class FrameCutter:
 
 
 def _frame_length(buffer: bytes, i: int) -> int | None:
-    """Length of the frame whose magic byte is at ``i``; None when its header is not whole yet."""
+    """Return the length of the frame whose magic byte is at ``i``; None for an incomplete header."""
     if buffer[i] == MAGIC_V1:
         return 8 + buffer[i + 1] if len(buffer) > i + 1 else None
     if len(buffer) < i + 3:

@@ -1,4 +1,4 @@
-"""How a link is doing: counted frame by frame, read as one snapshot."""
+"""Health of a link: counted frame by frame, read as one snapshot."""
 
 import math
 from collections import Counter, deque
@@ -13,7 +13,7 @@ RATE_WINDOW_S = 2.0
 
 @dataclass(frozen=True, slots=True)
 class Notice:
-    """Something a crew should know about the link."""
+    """A message about the link for the crew."""
 
     at_s: float
     """Host time, seconds since 1970."""
@@ -22,36 +22,36 @@ class Notice:
 
 @dataclass(frozen=True, slots=True)
 class LinkStatistics:
-    """One look at a link."""
+    """Counts of a link at one moment."""
 
     connected: bool = False
     vehicle: tuple[int, int] | None = None
-    """System and component listened to; None before the first heartbeat of an autopilot."""
+    """System and component of the followed vehicle. None before the first heartbeat of an autopilot."""
     messages: int = 0
     """Frames taken from every system."""
     messages_per_s: float = 0.0
-    """Over the last two seconds."""
+    """Rate of frames over the last two seconds."""
     vehicle_messages: int = 0
-    """Frames taken from the vehicle, each once."""
+    """Frames taken from the vehicle, each counted once."""
     lost: int = 0
-    """Frames of the vehicle that its sequence numbers say are missing."""
+    """Frames of the vehicle missing by its sequence numbers."""
     repeated: int = 0
     """Frames of the vehicle that a second path brought again."""
     repeated_after_s: float = math.nan
-    """How much later a repeat came, mean, s."""
+    """Mean delay of a repeat after the first copy, s."""
     late: int = 0
     """Frames of the vehicle that arrived after a younger one."""
     bad_crc: int = 0
     garbage_bytes: int = 0
     refused: Mapping[str, int] = field(default_factory=dict)
-    """Frames not believed, by reason: ``unsigned``, ``forged``, ``replayed``."""
+    """Refused frames by reason: ``unsigned``, ``forged``, ``replayed``."""
     silent_s: float = 0.0
     """Time since the vehicle was last heard."""
     reconnects: int = 0
     recording: Path | None = None
     recorded_bytes: int = 0
     recording_problem: str | None = None
-    """Why the disk takes nothing at this moment."""
+    """Reason for which the disk accepts nothing at this moment."""
 
     @property
     def lost_percent(self) -> float:
@@ -66,7 +66,7 @@ class LinkStatistics:
 
 
 class LinkCounters:
-    """The counts behind ``LinkStatistics``; times are the monotonic seconds of the reader."""
+    """Counts behind ``LinkStatistics``. Times are the monotonic seconds of the reader."""
 
     def __init__(self) -> None:
         self.messages = 0
@@ -74,7 +74,7 @@ class LinkCounters:
         self._recent: deque[tuple[float, int]] = deque()
 
     def add(self, frames: list[Frame], now_s: float) -> None:
-        """Count a batch of believed frames."""
+        """Count a batch of accepted frames."""
         self.messages += len(frames)
         self._recent.append((now_s, len(frames)))
         self._forget(now_s)
@@ -84,5 +84,5 @@ class LinkCounters:
             self._recent.popleft()
 
     def rate(self, now_s: float) -> float:
-        """Frames per second over the last ``RATE_WINDOW_S``."""
+        """Return frames per second over the last ``RATE_WINDOW_S``."""
         return sum(n for t, n in tuple(self._recent) if t >= now_s - RATE_WINDOW_S) / RATE_WINDOW_S

@@ -1,4 +1,4 @@
-"""Asking the vehicle what its outputs are and which firmware it runs."""
+"""Questions to the vehicle: the roles of its outputs, and its firmware."""
 
 from typing import Any
 
@@ -16,17 +16,17 @@ _HEARTBEAT, _PARAM_VALUE = dialect.MAVLINK_MSG_ID_HEARTBEAT, dialect.MAVLINK_MSG
 
 
 class Inquiry(Talker):
-    """Reads the parameters that say which output is the elevator and how it moves.
+    """Reads the parameters that give the elevator's output and its scale.
 
-    ArduPilot's questions are asked until a heartbeat tells of PX4. A few questions stand at a
-    time; an unanswered one is repeated, then given up: a vehicle does not answer for a
-    parameter it does not have. The answers reach the advisor as every other message of the
-    link does; here they only decide what to ask next. Another vehicle is asked anew.
+    ArduPilot's questions are asked until a heartbeat shows PX4. A few questions are open at a time. An
+    unanswered one is repeated and then given up, because a vehicle does not answer for a parameter that it
+    lacks. The answers reach the advisor like every other message of the link. Here they only decide on the
+    next question. Another vehicle is asked anew.
 
     Parameters
     ----------
     outputs_only
-        Ask for the outputs alone, not for the stream rates, the ground station's id and the firmware.
+        Whether to ask for the outputs alone, not for stream rates, the ground station's id and the firmware.
     """
 
     def __init__(self, outputs_only: bool = False) -> None:
@@ -41,7 +41,7 @@ class Inquiry(Talker):
         self._firmware_asked = self._outputs_only
         self._told = False
         self.parameters: dict[str, float] = {}
-        """What was answered."""
+        """Answers so far."""
 
     def _first_questions(self) -> list[str]:
         return list(self._questions.outputs if self._outputs_only else self._questions.first)
@@ -52,7 +52,7 @@ class Inquiry(Talker):
         return not self._to_ask and not self._standing
 
     def hear(self, frame: Frame, now_s: float) -> None:
-        """Take an answer, or learn which autopilot is asked."""
+        """Take an answer, or the autopilot's heartbeat."""
         payload = frame.payload.ljust(25, b"\0")
         if frame.message_id == _HEARTBEAT:
             is_px4 = payload[5] == dialect.MAV_AUTOPILOT_PX4
@@ -73,7 +73,7 @@ class Inquiry(Talker):
             self._to_ask += [detail for detail in details if detail not in self.parameters]
 
     def speak(self, vehicle: tuple[int, int] | None, now_s: float) -> list[Any]:
-        """The questions that are due."""
+        """Return the questions that are due."""
         if vehicle is None:
             return []
         if self._vehicle not in (None, vehicle):
@@ -98,7 +98,7 @@ class Inquiry(Talker):
         return questions
 
     def report(self) -> list[str]:
-        """What was found, once everything was asked."""
+        """Return a sentence on the answers, once everything was asked."""
         if self._told or not self.done:
             return []
         self._told = True

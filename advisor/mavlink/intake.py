@@ -1,10 +1,10 @@
-"""From pieces of a connection to frames one may believe, and to the vehicle that sends them."""
+"""From pieces of a connection to accepted frames, and to the vehicle that sends them."""
 
 from collections.abc import Mapping
 
 from advisor.flight.vehicle import is_aircraft
-from advisor.mavlink.company import is_ground_station
 from advisor.mavlink.framing import Frame, FrameCutter
+from advisor.mavlink.ground_stations import is_ground_station
 from advisor.mavlink.health import LinkCounters
 from advisor.mavlink.signing import RADIO_STATUS, SignatureCheck
 from advisor.mavlink.transport import Peer
@@ -14,7 +14,7 @@ MOST_PEERS = 64
 
 
 class Intake:
-    """Cuts, believes, counts; knows the vehicle and where it is heard from.
+    """Cuts, checks and counts frames; knows the vehicle and its network address.
 
     Parameters
     ----------
@@ -23,7 +23,7 @@ class Intake:
     target_system
         System id of the vehicle; None: the first autopilot heard.
     signatures
-        None: unsigned frames are taken as they are.
+        Check of signatures. None: unsigned frames are accepted.
     """
 
     def __init__(
@@ -41,10 +41,10 @@ class Intake:
         self.vehicle: tuple[int, int] | None = None
         self._peers: dict[int, Peer] = {}
         self.other_vehicles: set[int] = set()
-        """System ids of autopilots heard beside the vehicle."""
+        """System ids of other autopilots than the vehicle."""
 
     def take(self, pieces: list[tuple[Peer, bytes]], now_s: float) -> list[Frame]:
-        """The frames that these pieces complete, of every system, in order of arrival."""
+        """Return the frames that these pieces complete, of every system, in order of arrival."""
         taken: list[Frame] = []
         for peer, data in pieces:
             frames = [frame for frame in self._cutter(peer).feed(data) if self._believed(frame)]
@@ -58,18 +58,18 @@ class Intake:
 
     @property
     def vehicle_peer(self) -> Peer | None:
-        """Who to answer."""
+        """Network address of the vehicle."""
         return self._peers.get(self.vehicle[0]) if self.vehicle is not None else None
 
     def follow(self, vehicle: tuple[int, int]) -> None:
-        """Another vehicle is listened to."""
+        """Follow another vehicle."""
         if self.vehicle is not None:
             self.other_vehicles.add(self.vehicle[0])
         self.other_vehicles.discard(vehicle[0])
         self.vehicle = vehicle
 
     def forget_pieces(self) -> None:
-        """A connection was cut: what was half received will never be whole."""
+        """Drop incomplete frames after a cut of the connection."""
         for cutter in self._cutters.values():
             self._bad_crc += cutter.bad_crc
             self._garbage_bytes += cutter.garbage_bytes
@@ -77,7 +77,7 @@ class Intake:
 
     @property
     def bad_crc(self) -> int:
-        """Frames whose checksum did not fit."""
+        """Frames with a wrong checksum."""
         return self._bad_crc + sum(cutter.bad_crc for cutter in tuple(self._cutters.values()))
 
     @property

@@ -1,8 +1,8 @@
-"""The process of the link: listens, records, and passes on what it hears to whoever reads it.
+"""The process of the link: listens, records, and passes the bytes on to its readers.
 
 python -m advisor.mavlink.keeper
 
-Nothing is estimated, drawn or decoded here, so nothing of that can take the link or the recording along.
+Nothing is estimated, drawn or decoded here, so that no fault of these can harm the link or the recording.
 """
 
 import contextlib
@@ -19,28 +19,30 @@ from queue import Empty, SimpleQueue
 from threading import Thread
 
 from advisor import interrupt
-from advisor.mavlink import running
+from advisor.mavlink import running_links
 from advisor.mavlink.announce import Announcer
-from advisor.mavlink.aside import Aside
 from advisor.mavlink.health import Notice
 from advisor.mavlink.inquiry import Inquiry
-from advisor.mavlink.keeping import Door, Guard, Heard, Hello, Judged, Keeping, Listen, Order, Stop, Told
+from advisor.mavlink.keeping import Guard, Heard, Hello, Judged, Keeping, Listen, Order, Stop, Told
 from advisor.mavlink.link import Link
 from advisor.mavlink.outgoing import Talker
 from advisor.mavlink.rates import STREAMS, RateRequest
+from advisor.mavlink.separate_connection import SeparateConnection
 from advisor.problems import UnusableInputError
 
 TELL_EVERY_S = 0.2
 ALONE_FOR_S = 60.0
-"""So long a link that nobody looks after waits for a silent vehicle, then it ends; the recording is whole."""
+"""Time for which a link without an advisor waits for a silent vehicle before its end, s. The recording is
+whole."""
 MOST_BEHIND_BYTES = 64_000_000
-"""A reader further behind is cut off; it comes again and reads the recording."""
+"""Backlog of a reader, bytes, above which the reader is cut off. The reader connects again and reads the
+recording."""
 
 _Message = Hello | Heard | Told
 
 
 class Reader:
-    """Sends to one reader from a thread of its own, so that a slow one holds up nobody."""
+    """Sends to one reader from a separate thread, so that a slow reader delays nobody."""
 
     def __init__(self, connection: Connection, hello: Hello) -> None:
         self._connection = connection
@@ -51,7 +53,7 @@ class Reader:
         Thread(target=self._run, daemon=True).start()
 
     def send(self, message: _Message) -> None:
-        """Hand over a message."""
+        """Queue a message for the reader."""
         if isinstance(message, Heard):
             self._behind_bytes += len(message.records)
         self._waiting.put(message)
@@ -68,12 +70,12 @@ class Reader:
 
 
 class Keeper:
-    """Keeps one link until told to stop, or until it is alone and the vehicle silent.
+    """Keeps one link until a stop, or until no advisor looks after it and the vehicle is silent.
 
     Parameters
     ----------
     keeping
-        The link and its recording.
+        Description of the link and its recording.
     """
 
     def __init__(self, keeping: Keeping) -> None:
@@ -99,7 +101,7 @@ class Keeper:
         self._stop = threading.Event()
 
     def start(self) -> Path | None:
-        """Open the link; the file of the recording is returned.
+        """Open the link; return the file of the recording.
 
         Raises
         ------
@@ -113,12 +115,12 @@ class Keeper:
 
     @property
     def recording(self) -> Path | None:
-        """File of the recording; None where nothing is recorded."""
+        """File of the recording. None where nothing is recorded."""
         recorder = self._link.recorder
         return recorder.path if recorder else None
 
     def run(self) -> None:
-        """Pass on what is heard; close link and recording in the end."""
+        """Pass on the link's bytes until the end, then close link and recording."""
         told_s = time.monotonic()
         try:
             while not self._stop.is_set() and not self._abandoned():
@@ -161,13 +163,13 @@ class Keeper:
             reader.send(message)
 
     def _abandoned(self) -> bool:
-        """Whether nobody looks after the link, and the vehicle has been silent for long."""
+        """Return whether no advisor looks after the link, and the vehicle has long been silent."""
         since_s, now_s = self._alone_since_s, time.monotonic()
         if since_s is None or now_s - since_s < ALONE_FOR_S:
             return False
         return self._link.statistics.silent_s > ALONE_FOR_S
 
-    # From here on: threads of the connections.
+    # The methods below run in threads of the connections.
 
     def _accept(self) -> None:
         while not self._stop.is_set():
@@ -202,7 +204,8 @@ class Keeper:
             self._guarded(-1)
 
     def _lend_socket(self, connection: Connection) -> None:
-        """Share a UDP socket: what arrives after the death of this process waits in it for the next one."""
+        """Share a UDP socket: packets that arrive after this process's death wait in it for the next
+        process."""
         descriptor = self._link.descriptor if os.name == "posix" else None
         connection.send(descriptor is not None)
         if descriptor is not None:
@@ -215,28 +218,23 @@ class Keeper:
             link = self._keeping
             alone = self._guards == 0
             with contextlib.suppress(OSError):
-                running.note(running.RunningLink(os.getpid(), link.master, self.recording, link.door, alone))
+                running_links.note(
+                    running_links.RunningLink(os.getpid(), link.master, self.recording, link.door, alone)
+                )
 
 
 def _talkers(keeping: Keeping, announcer: Announcer | None) -> list[Talker]:
     talkers: list[Talker] = [announcer] if announcer else []
     if announcer and keeping.announce_to:
-        talkers = [Aside(announcer, keeping.announce_to)]
+        talkers = [SeparateConnection(announcer, keeping.announce_to)]
     if keeping.request_rates:
         talkers += [RateRequest(dict.fromkeys(STREAMS, 50.0)), Inquiry()]
     return talkers
 
 
-def _clear(door: Door) -> None:
-    """Remove what a local socket leaves in the file system."""
-    if os.name != "nt":
-        with contextlib.suppress(OSError):
-            Path(door.address).unlink(missing_ok=True)
-            Path(door.address).parent.rmdir()
-
-
 def main() -> None:
-    """Keep the link that standard input describes; the first answer on standard output is its recording."""
+    """Keep the link that standard input describes; the first answer on standard output names its
+    recording."""
     interrupt.ignore()  # a signal is for the screens, which stop this process in order
     keeping: Keeping = pickle.load(sys.stdin.buffer)
     with contextlib.suppress(OSError):  # left by a process of this link that was killed
@@ -252,13 +250,13 @@ def main() -> None:
     sys.stdout.buffer.flush()
     sys.stdout.close()
     if isinstance(answer, Exception):
-        _clear(keeping.door)
+        keeping.door.clear()
         sys.exit(0 if isinstance(answer, UnusableInputError) else 1)
     try:
         keeper.run()
     finally:
-        running.forget(os.getpid())
-        _clear(keeping.door)
+        running_links.forget(os.getpid())
+        keeping.door.clear()
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
-"""What the process of the link is asked to do, and what it and its readers send each other."""
+"""Task of the link's process, and its messages to and from its readers."""
 
+import contextlib
 import os
 import secrets
 import tempfile
@@ -13,13 +14,13 @@ from advisor.mavlink.health import LinkStatistics, Notice
 
 @dataclass(frozen=True, slots=True)
 class Door:
-    """Where the process of a link is spoken to; only who holds the key is let in."""
+    """Address of a link's process. Only holders of the key are let in."""
 
     address: str
     key: bytes = field(repr=False)
 
     def open(self) -> Connection:
-        """Speak with the process.
+        """Connect to the process.
 
         Raises
         ------
@@ -28,9 +29,16 @@ class Door:
         """
         return Client(self.address, authkey=self.key)
 
+    def clear(self) -> None:
+        """Remove the files of a local socket."""
+        if os.name != "nt":
+            with contextlib.suppress(OSError):
+                Path(self.address).unlink(missing_ok=True)
+                Path(self.address).parent.rmdir()
+
 
 def new_door() -> Door:
-    """A door that nobody else has: a local socket in a folder of its own, on Windows a named pipe."""
+    """Return a new private address: a local socket in a folder of its own, or a named pipe on Windows."""
     name = secrets.token_hex(8)
     if os.name == "nt":
         return Door(rf"\\.\pipe\advisor-{name}", secrets.token_bytes(32))
@@ -39,7 +47,7 @@ def new_door() -> Door:
 
 @dataclass(frozen=True, slots=True)
 class Keeping:
-    """A link and its recording, as the process of the link opens them."""
+    """Description of a link and its recording, for the process of the link."""
 
     master: str
     """Connection, as in pymavlink."""
@@ -48,19 +56,19 @@ class Keeping:
     target_system: int | None = None
     record_to: Path | None = None
     goes_on: bool = False
-    """The recording exists and is appended to."""
+    """Whether the recording exists and is appended to."""
     signing_key: bytes | None = field(default=None, repr=False)
     request_rates: bool = False
     announce: bool = False
     announce_to: str | None = None
-    """Connection to a ground station for announcements; None: they go over the link."""
+    """Connection to a ground station for announcements. None: announcements go over the link."""
     inherited: int | None = None
-    """File descriptor of the UDP socket of an earlier process, in which packets wait; None: open one."""
+    """File descriptor of an earlier process's UDP socket, in which packets wait. None: open one."""
 
 
 @dataclass(frozen=True, slots=True)
 class Hello:
-    """The first answer to a reader: what was heard before it came."""
+    """First answer to a reader, with the position in the recording."""
 
     recording: Path | None
     written: int
@@ -68,7 +76,7 @@ class Hello:
     unsaved: bytes
     """Records that follow and are not in the file yet."""
     before: int
-    """Bytes at the start of the recording that an earlier flight left."""
+    """Bytes at the start of the recording from an earlier flight."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,13 +84,13 @@ class Heard:
     """The next records, for every reader."""
 
     at: int
-    """Where the records stand in the recording, in bytes from its start."""
+    """Position of the records in the recording, bytes from its start."""
     records: bytes
 
 
 @dataclass(frozen=True, slots=True)
 class Told:
-    """How the link is doing, several times a second, and what has happened to it since."""
+    """Health of the link, several times a second, with the notices since the last one."""
 
     statistics: LinkStatistics
     notices: tuple[Notice, ...]
@@ -90,7 +98,7 @@ class Told:
 
 @dataclass(frozen=True, slots=True)
 class Judged:
-    """Asks the process of the link to announce a verdict, if it announces any."""
+    """Asks the process of the link to announce a verdict, where announcements are on."""
 
     maneuver: int
     sentence: str
@@ -99,7 +107,7 @@ class Judged:
 
 @dataclass(frozen=True, slots=True)
 class Order:
-    """Asks for a call of one of the link's methods that say what a crew or a reader wants."""
+    """Asks for a call of one of the link's methods, with a request of a crew or a reader."""
 
     method: Literal["listen_to", "follow", "take_output", "ask_for_outputs"]
     arguments: tuple[object, ...] = ()
@@ -107,12 +115,13 @@ class Order:
 
 @dataclass(frozen=True, slots=True)
 class Listen:
-    """Asks for everything heard so far, and from now on."""
+    """Asks for everything heard so far, and for all later records."""
 
 
 @dataclass(frozen=True, slots=True)
 class Guard:
-    """Tells that the sender looks after the process: when it goes without ``Stop``, the process is alone.
+    """Says that the sender looks after the process. When the sender goes without ``Stop``, the process is
+    alone.
 
     The answer says whether the descriptor of a UDP socket follows.
     """

@@ -1,4 +1,4 @@
-"""A link that a process of its own keeps, as its readers see it."""
+"""A link in a separate process, as its readers see it."""
 
 import time
 from collections.abc import Iterator
@@ -21,17 +21,17 @@ RETRY_EVERY_S = 0.1
 
 
 class KeptLink:
-    """Reads everything that the process of a link has heard from the beginning, then what it hears.
+    """Reads everything that the process of a link has heard since its beginning, then its new records.
 
-    A reader that is started again therefore comes to the same campaign. When the process of the link
-    is started again, the reader goes on where it was.
+    A restarted reader therefore comes to an equal campaign. After a restart of the link's process, the reader
+    goes on where it was.
 
     Parameters
     ----------
     door
-        Where the process is spoken to.
+        Address of the process.
     elevator
-        As the aircraft file has it: it tells which of several vehicles has one. None: by the parameters.
+        Elevator of the aircraft file, which shows which of several vehicles has one. None: by parameters.
     target_system
         System id of the vehicle; None: the first autopilot heard.
     """
@@ -44,14 +44,14 @@ class KeptLink:
         self._connection: Connection | None = None
         self._past: Iterator[bytes] = iter(())
         self._position = 0
-        """Bytes of the recording that were read."""
+        """Bytes of the recording read so far."""
         self._before = 0
         self._next_try_s = 0.0
         self._notices: list[Notice] = []
         self._broken = False
         self._told = LinkStatistics()
         self.catching_up = True
-        """Whether what was heard before is still being read."""
+        """Whether earlier records are still being read."""
 
     def __enter__(self) -> Self:
         return self
@@ -63,7 +63,7 @@ class KeptLink:
             self._connection.close()
 
     def read(self, timeout_s: float = 0.1) -> list[Columns]:
-        """The next messages in order of arrival, or nothing when none came in time."""
+        """Return the next messages in order of arrival, or nothing when none came in time."""
         if self._connection is None:
             self._connect(timeout_s)
         piece = next(self._past, None)
@@ -79,25 +79,25 @@ class KeptLink:
 
     @property
     def statistics(self) -> LinkStatistics:
-        """How the link is doing, as told last."""
+        """Health of the link, as reported last."""
         return self._decoding.counted(self._told)
 
     def take_notices(self) -> list[Notice]:
-        """What happened to the link since the last call, oldest first."""
+        """Return the notices since the last call, oldest first."""
         notices, self._notices = self._notices, []
         return notices
 
     def judged(self, maneuver: int, sentence: str, stop: str | None) -> None:
-        """Have a verdict announced, unless the manoeuvre belongs to a recording that was taken up."""
+        """Request the announcement of a verdict, unless the manoeuvre belongs to a continued recording."""
         if self._connection is not None and self._position > self._before:
             self._send(Judged(maneuver, sentence, stop))
 
     def follow(self, system: int) -> None:
-        """Let another vehicle be followed; the stream keeps it, and nothing goes on the air."""
+        """Follow another vehicle. The stream records the choice, and nothing is sent to a vehicle."""
         self._send(Order("follow", (system,)))
 
     def take_output(self, output: int) -> None:
-        """Take an output for the elevator; the stream keeps it, and nothing goes on the air."""
+        """Use an output as the elevator. The stream records the choice, and nothing is sent to a vehicle."""
         self._send(Order("take_output", (output,)))
 
     def ask_for_outputs(self) -> None:
@@ -106,7 +106,7 @@ class KeptLink:
 
     @cached_property
     def _decoding(self) -> "Decoding":
-        # Loaded by the process that reads, not by the one that only names the link.
+        # Loaded by the reading process, not by the process that only names the link.
         from advisor.mavlink.decoding import Decoding
 
         return Decoding(self._elevator, self._target_system)
@@ -132,7 +132,7 @@ class KeptLink:
         self._decoding.forget_followed()
 
     def _records_of(self, hello: Hello) -> Iterator[bytes]:
-        """What the recording holds beyond what was read, in pieces."""
+        """Yield the records of the recording after the last read, in pieces."""
         if hello.recording is not None and self._position < hello.written:
             with hello.recording.open("rb") as file:
                 file.seek(self._position)
@@ -149,7 +149,7 @@ class KeptLink:
             yield unread
 
     def _hear(self, timeout_s: float) -> bytes:
-        """The next records of the process; nothing when none came in time."""
+        """Return the next records of the process; empty when none came in time."""
         if self._connection is None:
             return b""
         try:

@@ -1,4 +1,4 @@
-"""What kind of log a file holds: told by its content, never by its name."""
+"""Kind of a log file, recognised by its content and never by its name."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -9,8 +9,8 @@ from advisor.mavlink.scan import STAMP_BYTES
 from advisor.problems import Problem
 
 BEGINNING_BYTES = 1 << 20
-"""Bytes of a file within which its log must begin. Text in front of a log is a few lines; a megabyte is read
-in milliseconds, so that neither a huge file nor a packed one costs more before it is refused."""
+"""Bytes of a file within which its log must begin. Text in front of a log is a few lines. A megabyte is read
+in milliseconds, so that huge and packed files are refused quickly."""
 
 Kind = Literal["tlog", "dataflash", "ulog"]
 
@@ -21,7 +21,7 @@ _ARCHIVES = {
     b"Rar!": "RAR",
     b"\x28\xb5\x2f\xfd": "zstd",
 }
-"""First bytes of packed files that are not unpacked here."""
+"""First bytes of packed files that the advisor does not unpack, to the name of the archive."""
 _PACKED_INSIDE = (b"\x1f\x8b", b"PK\x03\x04")
 
 
@@ -31,11 +31,11 @@ class Found:
 
     kind: Kind
     starts_at: int
-    """Bytes in front of its first record."""
+    """Bytes before the log's first record."""
 
 
 def recognised(beginning: bytes) -> Found | None:
-    """The kind of log that begins within the first ``BEGINNING_BYTES`` of a file; None for no log."""
+    """Return the kind of log that begins within the first ``BEGINNING_BYTES`` of a file; None for no log."""
     if beginning.startswith(dataflash.HEADER):
         return Found("dataflash", 0)
     starts: dict[Kind, int] = {
@@ -62,14 +62,14 @@ def _telemetry(beginning: bytes) -> Found | None:
 
 
 def refusal(name: str, beginning: bytes) -> Problem:
-    """Why a file that begins like this is no log, and what to give in its place.
+    """Return a problem with the reason for which a file is no log, and with the remedy.
 
     Parameters
     ----------
     name
-        Of the file, as the sentence has it.
+        Name of the file in the sentence.
     beginning
-        Of a file in which :func:`recognised` finds no log.
+        Beginning of the file, in which :func:`recognised` finds no log.
     """
     text = beginning[:1024].lstrip(b"\xef\xbb\xbf \t\r\n").lower()
     if not beginning:

@@ -1,4 +1,4 @@
-"""The connection under a link: opened, cut, opened again."""
+"""The connection under a link: opened, cut, and opened again."""
 
 import contextlib
 import time
@@ -21,9 +21,9 @@ class Line:
     address
         Parsed connection string.
     inherited
-        File descriptor of a UDP socket that another process has opened for the address; None: open one.
+        File descriptor of another process's UDP socket for the address. None: open one.
     stop
-        Set when nothing more is wanted; ends every wait.
+        Event that ends every wait.
     """
 
     def __init__(self, address: Address, inherited: int | None, stop: Event) -> None:
@@ -33,21 +33,21 @@ class Line:
 
     @property
     def is_open(self) -> bool:
-        """Whether something can be heard and sent."""
+        """Whether the connection can receive and send."""
         return self._transport is not None
 
     @property
     def port(self) -> int | None:
-        """The local network port; None when there is none."""
+        """Local network port. None without one."""
         return self._transport.port if self._transport is not None else None
 
     @property
     def descriptor(self) -> int | None:
-        """File descriptor of a socket that another process can go on with; None where there is none."""
+        """File descriptor of a socket that another process can continue to use. None without one."""
         return self._transport.descriptor if self._transport is not None else None
 
     def open(self, patience_s: float) -> None:
-        """Open the connection, trying for so long.
+        """Open the connection, with attempts for ``patience_s``.
 
         Raises
         ------
@@ -75,7 +75,8 @@ class Line:
             self._stop.wait(_TRY_EVERY_S)
 
     def take(self, wait_s: float) -> list[tuple[Peer, bytes]]:
-        """What has arrived, waiting for it at most so long; a cut connection is opened again.
+        """Return the bytes that have arrived, after waiting at most ``wait_s``. A cut connection is opened
+        again.
 
         Raises
         ------
@@ -93,11 +94,11 @@ class Line:
             raise
 
     def send(self, raw: bytes, to: Peer | None) -> bool:
-        """Send; False when nobody is there to send to."""
+        """Send a frame; return False without a receiver."""
         return self._transport is not None and self._transport.send(raw, to)
 
     def close(self) -> None:
-        """Let go of the socket or line."""
+        """Close the socket or line."""
         if self._transport is not None:
             self._transport.close()
             self._transport = None

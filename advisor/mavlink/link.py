@@ -1,9 +1,8 @@
-"""A live link: a tlog being written.
+"""A live link, treated as a tlog being written.
 
-A thread of its own takes frames off the connection, puts a time stamp before each as a
-tlog has it, and hands these records to the recorder and to whoever reads the link. Readers
-decode the very same bytes with the scanner that reads logs. What is seen live and what the
-recording replays are therefore the same messages in the same order.
+A separate thread takes frames from the connection and puts a time stamp before each, as in a tlog. The thread
+hands these records to the recorder and to the reader of the link. Readers decode these bytes with the scanner
+that reads logs. So the live messages and the replayed ones are equal, in equal order.
 """
 
 import contextlib
@@ -27,60 +26,60 @@ from advisor.mavlink.health import LinkStatistics, Notice
 from advisor.mavlink.inquiry import Inquiry
 from advisor.mavlink.intake import Intake
 from advisor.mavlink.line import Line
+from advisor.mavlink.link_watch import LinkWatch
 from advisor.mavlink.outgoing import OWN_COMPONENT, OWN_SYSTEM, Heartbeat, Ids, Talker
 from advisor.mavlink.recorder import Recorder
 from advisor.mavlink.signing import SignatureCheck
 from advisor.mavlink.transport import ConnectionCutError
-from advisor.mavlink.watch import LinkWatch
 from advisor.printable import printable
 
 if TYPE_CHECKING:
     from advisor.mavlink.decoding import Decoding
 
 BATCH_S = 0.012
-"""Frames gather this long before they are handed over together."""
+"""Time for which frames gather before they are handed over together, s."""
 PAUSE_S = 0.003
-"""Rest between two looks at a busy socket, so that several packets share one look."""
+"""Rest between two looks at a busy socket, s, so that several packets share one look."""
 UNREACHABLE_S = 3.0
 """Silence of the vehicle after which nothing is sent to it, s: three heartbeats."""
 FAREWELL_S = 0.7
-"""How long quitting may last for the sake of what must be put back on the vehicle, s."""
+"""Longest time that the end of a link may take to restore settings of the vehicle, s."""
 QUEUE_LENGTH = 12_000  # batches: more than a minute behind at full load
 
 _HEARD, _SENT_BY_US = 0, 3  # link numbers, the low two bits of a tlog's time stamps
 
 
 class Link:
-    """Listens to one vehicle on one connection; sends nothing unless it was given something to say.
+    """Listens to one vehicle on one connection. Nothing is sent without talkers.
 
     Parameters
     ----------
     connection
-        Where to listen, see ``parse_connection``.
+        Connection string, see ``parse_connection``.
     source_system, source_component
-        Own ids, on whatever is sent.
+        Ids of the advisor, for all messages sent.
     target_system
         System id of the vehicle; None: the first autopilot heard.
     record_to
         File of the recording; None: no recording.
     goes_on
-        The file exists and is appended to.
+        Whether the file exists and is appended to.
     key
-        32-byte signing key: what is not signed with it is refused, what is sent is signed.
+        32-byte signing key: sent messages are signed, and messages without its signature are refused.
     talkers
-        What may be sent. A connection that must speak first to be heard (``udpout``) adds
-        a heartbeat once a second by itself.
+        Sources of sent messages. A connection that must send before it receives (``udpout``) adds a
+        heartbeat once a second.
     inherited
-        File descriptor of a UDP socket that another process has opened for the connection; None: open one.
+        File descriptor of another process's UDP socket for the connection. None: open one.
     elevator
-        As the aircraft file has it: it tells which of several vehicles has one. None: by the parameters.
+        Elevator of the aircraft file, which shows which of several vehicles has one. None: by parameters.
     patience_s
-        How long the first connection is tried; later a lost one is tried for ever.
+        Time for attempts at the first connection, s. A lost connection is tried for ever.
 
     Raises
     ------
     ConfigurationError
-        When the connection string names no connection.
+        The connection string names no connection.
     """
 
     def __init__(
@@ -124,12 +123,12 @@ class Link:
         Raises
         ------
         UnusableInputError
-            When the connection cannot be opened or the recording cannot be made.
+            The connection cannot be opened, or the recording cannot be made.
         """
         self._line.open(self._patience_s)
         if self._record_to is not None:
             self._recorder = Recorder(self._record_to, self._goes_on)
-        # Stamps run on the monotonic clock: a host whose clock is set does not tear the recording.
+        # Stamps run on the monotonic clock, so that setting the host's clock does not tear the recording.
         self._unix_offset_s = time.time() - time.monotonic()
         self._watch.begin(time.monotonic())
         if self.address.speaks_first:
@@ -139,7 +138,7 @@ class Link:
         return self
 
     def stop(self) -> None:
-        """Close everything; the recording is whole afterwards."""
+        """Close everything. The recording is whole afterwards."""
         self._stop.set()
         if self._thread.ident is not None:
             self._thread.join()
@@ -157,19 +156,19 @@ class Link:
 
     @property
     def port(self) -> int | None:
-        """The local network port, which the system chose where the address says 0."""
+        """Local network port, which the system chose where the address says 0."""
         return self._line.port
 
     @property
     def descriptor(self) -> int | None:
-        """File descriptor of a socket that another process can go on with; None where there is none."""
+        """File descriptor of a socket that another process can continue to use. None without one."""
         return self._line.descriptor
 
     catching_up = False
-    """A link of this process has no past that a reader would have to catch up with."""
+    """Always False: a link in this process has no earlier records for a reader."""
 
     def read(self, timeout_s: float = 0.1) -> list[Columns]:
-        """The messages of the next micro-batch, or nothing when none came in time."""
+        """Return the messages of the next micro-batch, or nothing when none came in time."""
         records = self.read_records(timeout_s)
         if not records:
             return []
@@ -184,7 +183,7 @@ class Link:
         return columns
 
     def read_records(self, timeout_s: float = 0.1) -> bytes:
-        """The next micro-batch as records of a tlog, or nothing when none came in time."""
+        """Return the next micro-batch as records of a tlog, or nothing when none came in time."""
         with contextlib.suppress(Empty):
             return self._queue.get(timeout=timeout_s)
         if self._failure is not None:
@@ -193,19 +192,20 @@ class Link:
 
     @property
     def recorder(self) -> Recorder | None:
-        """Who keeps the recording; None before the start, and where nothing is recorded."""
+        """Recorder of the link. None before the start, and where nothing is recorded."""
         return self._recorder
 
     def listen_to(self, vehicle: Ids) -> None:
-        """Count, watch and answer this vehicle: whoever decodes the stream says whom the flight follows."""
+        """Count, watch and answer this vehicle. The decoder of the stream says which vehicle the flight
+        follows."""
         self._orders.append(vehicle)
 
     def follow(self, system: int) -> None:
-        """Let another vehicle be followed; the stream keeps it, and nothing goes on the air."""
+        """Follow another vehicle. The stream records the choice, and nothing is sent to a vehicle."""
         self._orders.append(FOLLOW + str(system).encode())
 
     def take_output(self, output: int) -> None:
-        """Take an output for the elevator; the stream keeps it, and nothing goes on the air."""
+        """Use an output as the elevator. The stream records the choice, and nothing is sent to a vehicle."""
         self._orders.append(TAKE + str(output).encode())
 
     def ask_for_outputs(self) -> None:
@@ -213,7 +213,7 @@ class Link:
         self._orders.append(Inquiry(outputs_only=True))
 
     def take_notices(self) -> list[Notice]:
-        """What happened to the link since the last call, oldest first."""
+        """Return the notices since the last call, oldest first."""
         notices = []
         while self._notices:
             notices.append(self._notices.popleft())
@@ -221,7 +221,7 @@ class Link:
 
     @property
     def statistics(self) -> LinkStatistics:
-        """How the link is doing now."""
+        """Health of the link now."""
         now_s = time.monotonic()
         counters = self._intake.counters
         found = LinkStatistics(
@@ -240,7 +240,7 @@ class Link:
         )
         return self._decoding.counted(found) if self._decoding is not None else found
 
-    # From here on: the reader thread.
+    # The methods below run in the reader thread.
 
     def _run(self) -> None:
         try:
@@ -270,7 +270,7 @@ class Link:
             self._hand_over(bytes(batch))
 
     def _take_leave(self) -> bytes:
-        """Let the talkers end what they began, as long as the vehicle hears us and quitting may last."""
+        """Let the talkers end their work, while the vehicle is heard and within ``FAREWELL_S``."""
         records = bytearray()
         give_up_s = time.monotonic() + FAREWELL_S
         while (now_s := time.monotonic()) < give_up_s and self._reachable(now_s):
@@ -294,7 +294,7 @@ class Link:
         return self._intake.take(pieces, time.monotonic()) if pieces else []
 
     def _obey(self) -> list[bytes]:
-        """Do what was ordered since the last look; texts for the stream alone are returned."""
+        """Carry out the orders since the last look; return texts for the stream alone."""
         texts = []
         while self._orders:
             match self._orders.popleft():
@@ -313,7 +313,7 @@ class Link:
         return self._conversation.speak(self._intake.vehicle, reachable, now_s, unix_s, self._send)
 
     def _reachable(self, now_s: float) -> bool:
-        """Whether the vehicle is known and hears what is asked."""
+        """Return whether the vehicle is known and receives messages."""
         down = not self._line.is_open or self._watch.silent_s(now_s) > UNREACHABLE_S
         return not down and self._intake.vehicle is not None
 

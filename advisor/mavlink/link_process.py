@@ -1,4 +1,4 @@
-"""The process of a link, as the process with the screens looks after it."""
+"""Supervision of a link's process by the process with the screens."""
 
 import contextlib
 import os
@@ -17,22 +17,22 @@ from advisor.aircraft import Elevator
 from advisor.interrupt import hung_up
 from advisor.mavlink.keeping import Guard, Keeping, Stop
 from advisor.mavlink.kept_link import KeptLink
-from advisor.mavlink.running import RunningLink
+from advisor.mavlink.running_links import RunningLink
 
 RETRY_EVERY_S = 1.0
 PATIENCE_S = 10.0
-"""So long a process may take to close its recording."""
+"""Longest time that a process may take to close its recording, s."""
 
 
 class LinkProcess:
-    """Starts the process of a link, starts it again when something ends it, and stops it.
+    """Starts the process of a link, restarts it after any unwanted end, and stops it.
 
     Parameters
     ----------
     keeping
-        The link and its recording.
+        Description of the link and its recording.
     running
-        A process that keeps this link already and that nobody looks after; None: start one.
+        Running process that keeps this link and that nobody looks after. None: start one.
     """
 
     def __init__(self, keeping: Keeping, running: RunningLink | None = None) -> None:
@@ -47,12 +47,13 @@ class LinkProcess:
         """File of the recording; None where nothing is recorded."""
 
     def link(self, elevator: Elevator | None = None) -> KeptLink:
-        """A new reader of the link; it can be handed to another process before it reads.
+        """Return a new reader of the link, which can be handed to another process before its first read.
 
         Parameters
         ----------
         elevator
-            As the aircraft file has it: it tells which of several vehicles has one. None: by the parameters.
+            Elevator of the aircraft file, which shows which of several vehicles has one. None: by
+            parameters.
         """
         return KeptLink(self._keeping.door, elevator, self._keeping.target_system)
 
@@ -63,11 +64,11 @@ class LinkProcess:
 
     @property
     def pid(self) -> int | None:
-        """Number of the process; None for one that another advisor has started."""
+        """Id of the process. None for a process that another advisor has started."""
         return self._process.pid if self._process else None
 
     def __enter__(self) -> Self:
-        """Start.
+        """Start the process.
 
         Raises
         ------
@@ -76,7 +77,7 @@ class LinkProcess:
         """
         if self._running is None:
             self._start()
-            # Started again, the process goes on with the recording that the first one made.
+            # After a restart the process goes on with the recording that the first process made.
             goes_on = self.recording is not None
             self._keeping = replace(self._keeping, record_to=self.recording, goes_on=goes_on)
         self._guard = self._stand_guard()
@@ -105,7 +106,7 @@ class LinkProcess:
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
-            # A terminal that is closed, or an interrupt in it, is nothing to the recording.
+            # The recording must not depend on a terminal's end or an interrupt in it.
             start_new_session=True,
             pass_fds=[] if self._socket is None else [self._socket],
         )
@@ -139,7 +140,7 @@ class LinkProcess:
             self._socket = None
 
     def _look_after(self) -> None:
-        """Wait for the end of the process; unless it was asked for, start the process again."""
+        """Wait for the end of the process, and restart the process after an unwanted end."""
         while not self._stopping.is_set():
             with contextlib.suppress(OSError, EOFError):
                 if self._guard is not None:
@@ -157,7 +158,7 @@ class LinkProcess:
 
 
 def end(running: RunningLink) -> None:
-    """End a link that runs alone; its recording is whole afterwards."""
+    """End a link that runs alone. Its recording is whole afterwards."""
     with contextlib.suppress(OSError, EOFError):
         connection = running.door.open()
         _ask_to_stop(connection)

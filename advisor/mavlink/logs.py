@@ -1,4 +1,4 @@
-"""Opening a log of any kind, packed or not."""
+"""Opening of a log of any kind, packed or not."""
 
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -25,23 +25,23 @@ def open_log(
 ) -> Iterator[list[Columns]]:
     """Stream the messages of a ``.tlog``, an ArduPilot ``.bin`` or a PX4 ``.ulg``, packed or not.
 
-    The latter two hold the autopilot's own records; they come as the messages its telemetry
-    would have carried, in one batch.
+    The last two hold the autopilot's own records. These become the messages that telemetry would have
+    carried, in one batch.
 
     Parameters
     ----------
     path : Path
     wanted : iterable of str, optional
-        Names of the messages to give; all that are defined by default.
+        Names of the messages to return. Default: all defined messages.
     key : bytes, optional
         Signing key of a tlog.
     scanner : FrameScanner, optional
-        Reads a tlog in place of one made with ``wanted`` and ``key``; its statistics then tell of the log.
+        Scanner for a tlog, in place of one made with ``wanted`` and ``key``, for the sake of its statistics.
 
     Raises
     ------
     UnusableInputError
-        When the file is missing or no file; while reading, when it holds no messages.
+        The file is missing or no regular file. While reading: the file holds no messages.
     """
     return _read(path, beginning_of(path), wanted, scanner or FrameScanner(wanted, key))
 
@@ -70,7 +70,7 @@ def _batches(
 
 
 def _skipped(found: Found, first: list[Columns]) -> Columns:
-    """The note that something stood in front of the first record, before the first messages."""
+    """Return a note on bytes before the first record, placed before the first messages."""
     text = f"{READER.decode()}{found.starts_at} bytes in front of the first record were skipped"
     return message(
         "STATUSTEXT",

@@ -1,4 +1,4 @@
-"""What the advisor sends, when asked to send at all: packed under its own ids, signed when it has a key."""
+"""Messages that the advisor sends: packed under its own ids, and signed where a key is given."""
 
 from abc import ABC, abstractmethod
 from typing import Any
@@ -12,34 +12,34 @@ OWN_COMPONENT = dialect.MAV_COMP_ID_MISSIONPLANNER
 
 
 Ids = tuple[int, int]
-"""System and component."""
+"""System id and component id."""
 
 
 class Talker(ABC):
-    """Something that speaks with the vehicle over a link: a state machine without a clock."""
+    """Source of messages for the vehicle: a state machine without a clock."""
 
     def source(self, own: Ids, vehicle: Ids) -> Ids:
-        """Ids under which the messages go out: the advisor's own."""
+        """Return the ids under which the messages are sent; by default the advisor's own."""
         return own
 
     def hear(self, frame: Frame, now_s: float) -> None:  # noqa: B027
-        """Take a frame of the vehicle, or a heartbeat of whoever else is on the link."""
+        """Take a frame of the vehicle, or a heartbeat of any other sender on the link."""
 
     @abstractmethod
     def speak(self, vehicle: Ids | None, now_s: float) -> list[Any]:
-        """Messages to send now; no vehicle: none was heard yet, or none is heard at present."""
+        """Return the messages to send now. Without a vehicle, none is heard yet or at present."""
 
     def leave(self, now_s: float) -> list[Any] | None:
-        """Messages to send before the link is closed; None: nothing is left to say or to wait for."""
+        """Return the messages to send before the link is closed; None: no answer is awaited any more."""
         return None
 
     def report(self) -> list[str]:
-        """What the crew should know, once."""
+        """Return sentences for the crew, each once."""
         return []
 
 
 class Packer:
-    """Turns messages into frames, each sender's with sequence numbers of their own.
+    """Packs messages into frames, with separate sequence numbers for each sender.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ class Packer:
         self._senders: dict[Ids, dialect.MAVLink] = {}
 
     def pack(self, message: Any, source: Ids, signing_time: int) -> bytes:
-        """One frame; ``signing_time`` in 10 us since 2015, raised when it does not rise by itself."""
+        """Return one frame. ``signing_time`` is in 10 us since 2015, and is raised where it does not rise."""
         mavlink = self._senders.get(source) or self._senders.setdefault(source, self._sender(source))
         mavlink.signing.timestamp = max(mavlink.signing.timestamp, signing_time)
         raw = bytes(message.pack(mavlink))
@@ -74,7 +74,7 @@ class Heartbeat(Talker):
         self._next_s = float("-inf")
 
     def speak(self, vehicle: Ids | None, now_s: float) -> list[Any]:
-        """A heartbeat when one is due."""
+        """Return a heartbeat when one is due."""
         if now_s < self._next_s:
             return []
         self._next_s = now_s + 1.0

@@ -1,4 +1,4 @@
-"""What a PX4 log says, as the messages its telemetry would have carried."""
+"""A PX4 log as the messages that its telemetry would have carried."""
 
 from typing import Any
 
@@ -12,7 +12,7 @@ from advisor.mavlink.px4_topics import TimedMessages, Topics
 
 
 def translate(log: Any, topics: Topics) -> list[TimedMessages]:
-    """Every message that a `pyulog.ULog` and the topics in it give."""
+    """Return every message from a `pyulog.ULog` and its topics."""
     parameters = px4_vehicle.parameters_of(log)
     breathed, said = air(topics)
     moved = outputs(topics, parameters)

@@ -1,4 +1,4 @@
-"""How a PX4 log tells of the motion: attitude, rates, specific force and height."""
+"""Motion data of a PX4 log: attitude, rates, specific force and height."""
 
 from collections.abc import Iterator
 
@@ -22,7 +22,7 @@ _RATES = ("rollspeed", "pitchspeed", "yawspeed")
 
 
 def motion(topics: Topics) -> Iterator[TimedMessages]:
-    """ATTITUDE, HIGHRES_IMU and GLOBAL_POSITION_INT, as far as the log has their values."""
+    """Yield ATTITUDE, HIGHRES_IMU and GLOBAL_POSITION_INT, where the log has their values."""
     yield from _attitude(topics)
     yield from _highres_imu(topics)
     position = first(topics, "vehicle_local_position")
@@ -35,7 +35,7 @@ def motion(topics: Topics) -> Iterator[TimedMessages]:
 
 
 def _attitude(topics: Topics) -> Iterator[TimedMessages]:
-    """Angles at the stamps of the attitude, rates at those of the angular velocity or of the gyro."""
+    """Yield angles at the stamps of the attitude, rates at those of the angular velocity or of the gyro."""
     records = []
     attitude = first(topics, "vehicle_attitude")
     if attitude is not None:
@@ -52,7 +52,7 @@ def _attitude(topics: Topics) -> Iterator[TimedMessages]:
 
 
 def _highres_imu(topics: Topics) -> Iterator[TimedMessages]:
-    """Specific force at the stamps of the accelerometer."""
+    """Yield the specific force at the stamps of the accelerometer."""
     raw, filtered = first(topics, "sensor_combined"), first(topics, "vehicle_acceleration")
     chosen = best((raw, filtered))
     if chosen is None:

@@ -1,7 +1,7 @@
-"""How a PX4 log tells of the servo outputs: SERVO_OUTPUT_RAW from outputs, servos or the pitch command.
+"""Servo outputs of a PX4 log: SERVO_OUTPUT_RAW from outputs, servos or the pitch command.
 
 PX4 publishes the outputs of each driver as an instance of ``actuator_outputs``, in the order in which the
-drivers started. Which instance belongs to PWM_MAIN, which to PWM_AUX, only the outputs' movement tells.
+drivers started. Only the movements show which instance belongs to PWM_MAIN, and which to PWM_AUX.
 """
 
 from collections.abc import Mapping, Sequence
@@ -25,15 +25,16 @@ from advisor.mavlink.px4_topics import TimedMessages, Topic, Topics, best, first
 
 @dataclass(frozen=True, slots=True)
 class Outputs:
-    """What the outputs were, and what had to be found out about them."""
+    """The outputs, and findings about them."""
 
     messages: Sequence[TimedMessages]
     found: Mapping[str, float]
-    """In the form of parameters."""
+    """Findings in the form of parameters."""
 
 
 def outputs(topics: Topics, parameters: Mapping[str, float]) -> Outputs:
-    """The outputs by the parameters that describe them, else by what follows the pitch command."""
+    """Return the outputs by the parameters that describe them, else by their agreement with the pitch
+    command."""
     moving = _moving(topics.get("actuator_outputs", []))
     if any(role.surface for role in px4_wiring(parameters).roles.values()):
         servos = first(topics, "actuator_servos")
@@ -54,7 +55,7 @@ def outputs(topics: Topics, parameters: Mapping[str, float]) -> Outputs:
 
 
 def _moving(instances: Sequence[Topic]) -> list[Topic]:
-    """The instances in which any output moves; all where none does."""
+    """Return the instances in which any output moves; all where none does."""
     moving = [topic for topic in instances if any(_moves(topic, k) for k in OUTPUTS)]
     return moving or list(instances)
 
@@ -69,7 +70,8 @@ def _varies(values: FloatArray) -> bool:
 
 
 def _assigned(instances: Sequence[Topic], parameters: Mapping[str, float]) -> dict[int, Topic]:
-    """Instances by the number of the group whose functions agree best with what moves, from 0."""
+    """Return instances by the number of the group, from 0, whose functions agree best with the moving
+    outputs."""
     agreements = []
     for bank, group in enumerate(banks(parameters) or ["PWM_MAIN"]):
         used = {k for k in OUTPUTS if parameters.get(f"{group}_FUNC{k}")}
@@ -87,7 +89,7 @@ def _of_instance(port: int, topic: Topic) -> TimedMessages:
 
 
 def _of_servos(servos: Topic, parameters: Mapping[str, float]) -> list[TimedMessages]:
-    """The pulses that normalised servo commands become at the outputs which carry them."""
+    """Return pulses of the outputs that carry servos, from normalised servo commands."""
     ports: dict[int, dict[int, FloatArray]] = {}
     for output in servo_outputs(parameters):
         field = f"control[{output.servo}]"
@@ -101,7 +103,7 @@ def _of_servos(servos: Topic, parameters: Mapping[str, float]) -> list[TimedMess
 
 
 def _of_command(command: Command) -> TimedMessages:
-    """The pitch command as the pulses of output 1."""
+    """Return the pitch command as the pulses of output 1."""
     return _pulses(0, published_us(command.topic), {1: 1500.0 + 500.0 * command.axes["pitch"]})
 
 

@@ -1,7 +1,7 @@
-"""Which outputs of a PX4 log follow the pitch command, where no parameter tells.
+"""Outputs of a PX4 log that follow the pitch command, where no parameter names them.
 
-PX4 before 1.13 mixes its outputs by files that no log holds. Its outputs are linear in the commands, so least
-squares of each output on the commands tells the mixer.
+PX4 before 1.13 mixes its outputs by files that no log holds. The outputs are linear in the commands, so that
+least squares of each output on the commands gives the mixer.
 """
 
 from collections.abc import Mapping
@@ -14,27 +14,28 @@ from advisor.flight.px4_wiring import OUTPUTS
 from advisor.mavlink.px4_topics import Topic, Topics, published_us, vector
 
 _FOLLOWS = 0.5
-"""Share that the pitch command explains at least of what the other commands leave of an output's movement. At
-10 Hz two topics catch different moments of each step and keep about 0.8."""
+"""Least share of an output's movement, without the other commands' part, that the pitch command must explain.
+At 10 Hz two topics catch different moments of each step and keep about 0.8."""
 _SMALLER = 0.3
-"""Least effect of pitch on an output that counts, as a share of the largest effect on any output: less is a
+"""Least effect of pitch on an output, as a share of the largest effect on any output. A smaller effect is a
 mixer's trim, such as flaps that compensate."""
 _LEAST_SAMPLES = 20
 
 
 @dataclass(frozen=True, slots=True)
 class Command:
-    """The commands of the attitude controller, -1 to 1."""
+    """Commands of the attitude controller, -1 to 1."""
 
     name: str
-    """Topic."""
+    """Name of the topic."""
     topic: Topic
     axes: Mapping[str, FloatArray]
-    """roll, pitch, yaw and, where the topic has one, throttle; shape (n,). Positive pitch lifts the nose."""
+    """Roll, pitch, yaw and, where the topic has one, throttle; shape (n,). Positive pitch lifts the nose."""
 
 
 def pitch_commands(topics: Topics) -> list[Command]:
-    """The topics that hold the commands, the preferred first; of a VTOL the one for wings comes last."""
+    """Return the topics with the commands, the preferred first. For a VTOL aircraft, the topic of the wing
+    comes last."""
     found = []
     for topic in topics.get("actuator_controls_0", []):
         axes = dict(zip(("roll", "pitch", "yaw", "throttle"), vector(topic, "control", 4), strict=True))
@@ -46,7 +47,7 @@ def pitch_commands(topics: Topics) -> list[Command]:
 
 
 def followers(outputs: Topic, command: Command) -> dict[int, float]:
-    """Outputs that follow the pitch command: number from 1 to 1.0, or -1.0 where they follow its opposite."""
+    """Return the outputs that follow the pitch command: number from 1 to 1.0, or to -1.0 for the opposite."""
     at, known = published_us(outputs), published_us(command.topic)
     told = {name: np.interp(at, known, values) for name, values in command.axes.items()}
     inside = (at >= known[0]) & (at <= known[-1]) & np.all(np.isfinite([*told.values()]), axis=0)
@@ -67,7 +68,7 @@ def followers(outputs: Topic, command: Command) -> dict[int, float]:
 
 
 def _without(columns: FloatArray, values: FloatArray) -> FloatArray:
-    """What the columns do not explain of the values by least squares."""
+    """Return the residual of the values after least squares on the columns."""
     if not np.all(np.isfinite(values)):
         return np.full(len(values), np.nan)
     return np.asarray(values - columns @ np.linalg.lstsq(columns, values, rcond=None)[0])

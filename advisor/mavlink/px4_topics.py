@@ -1,4 +1,4 @@
-"""The topics of a PX4 log: instances, stamps, and which of several that hold one quantity is read.
+"""Topics of a PX4 log: instances, stamps, and the choice among topics with one quantity.
 
 Topics and fields are those of PX4's message definitions (msg/*.msg).
 """
@@ -31,11 +31,11 @@ TOPICS: dict[str, set[str]] = {
     "vehicle_thrust_setpoint": {"xyz[0]"},
     "vehicle_torque_setpoint": {"xyz[2]"},
 }
-"""Topics, and the fields needed of each: without them (another version) a topic counts as missing."""
+"""Topic to its necessary fields. Without them (another version) a topic counts as missing."""
 
 ENOUGH_HZ = 25.0
-"""Least rate at which the preferred topic is read although another topic is faster, 1/s: twelve samples
-to a short period of 2 Hz. PX4's filtered rates come at 50 Hz by default, its raw gyro at 200 Hz."""
+"""Least rate at which the preferred topic is used although another topic is faster, 1/s: twelve samples in a
+short period of 2 Hz. PX4's filtered rates come at 50 Hz by default, its raw gyro at 200 Hz."""
 
 Topic = Mapping[str, NDArray[Any]]
 Topics = Mapping[str, Sequence[Topic]]
@@ -43,16 +43,16 @@ Topics = Mapping[str, Sequence[Topic]]
 
 @dataclass(frozen=True, slots=True)
 class TimedMessages:
-    """Messages of one type, by the autopilot's clock."""
+    """Messages of one type, stamped by the autopilot's clock."""
 
     name: str
     time_us: IntArray
-    """Shape (n,), microseconds since boot, in any order, as the fields."""
+    """Shape (n,), microseconds since boot, in the order of the fields."""
     fields: Mapping[str, ArrayLike]
 
 
 def topics_of(log: Any) -> dict[str, list[Topic]]:
-    """The instances of each topic that have the fields needed, in the order of their time."""
+    """Return the instances of each topic with the necessary fields, in the order of time."""
     topics: dict[str, list[Topic]] = {}
     for data in sorted(log.data_list, key=lambda data: (data.name, data.multi_id)):
         if {"timestamp"} | TOPICS[data.name] <= data.data.keys() and len(data.data["timestamp"]):
@@ -64,22 +64,23 @@ def topics_of(log: Any) -> dict[str, list[Topic]]:
 
 
 def _wide(values: NDArray[Any]) -> NDArray[Any]:
-    """Floating-point values in double precision: damaged ones convert here, where nobody warns of them."""
+    """Return floating-point values in double precision. Damaged values are converted here without a
+    warning."""
     return values.astype(np.float64) if values.dtype.kind == "f" else values
 
 
 def first(topics: Topics, name: str) -> Topic | None:
-    """The first instance of a topic, None where the log has none."""
+    """Return the first instance of a topic, None where the log has none."""
     return topics[name][0] if name in topics else None
 
 
 def published_us(topic: Topic) -> IntArray:
-    """When the samples of a topic were published, us since boot."""
+    """Return the times of publication of a topic's samples, us since boot."""
     return topic["timestamp"].astype(np.int64)
 
 
 def sampled_us(topic: Topic) -> IntArray:
-    """When the sensor was read, where the topic says; otherwise when the sample was published."""
+    """Return the times of the sensor's reading where the topic has them, else the times of publication."""
     published = published_us(topic)
     if "timestamp_sample" not in topic:
         return published
@@ -88,24 +89,24 @@ def sampled_us(topic: Topic) -> IntArray:
 
 
 def vector(topic: Topic, name: str, size: int) -> FloatArray:
-    """An array field, shape (size, n)."""
+    """Return an array field, shape (size, n)."""
     return np.array([topic[f"{name}[{i}]"] for i in range(size)], dtype=np.float64)
 
 
 def rows(topic: Topic, which: NDArray[np.bool_]) -> Topic:
-    """Some samples of a topic."""
+    """Return some samples of a topic."""
     return {name: values[which] for name, values in topic.items()}
 
 
 def rate_hz(topic: Topic) -> float:
-    """Samples per second in the typical interval; 0 with fewer than two samples."""
+    """Return samples per second in the typical interval; 0 with fewer than two samples."""
     if len(topic["timestamp"]) < 2:
         return 0.0
     return 1e6 / max(float(np.median(np.diff(published_us(topic)))), 1.0)
 
 
 def best(candidates: Iterable[Topic | None]) -> Topic | None:
-    """The first that is fast enough, otherwise the fastest; None without any.
+    """Return the first topic that is fast enough, else the fastest; None without any.
 
     Parameters
     ----------
@@ -118,5 +119,5 @@ def best(candidates: Iterable[Topic | None]) -> Topic | None:
 
 
 def milliseconds(time_us: IntArray) -> IntArray:
-    """Microseconds rounded to milliseconds."""
+    """Return microseconds rounded to milliseconds."""
     return (time_us + 500) // 1000

@@ -1,4 +1,4 @@
-"""How a PX4 log tells of the vehicle: its kind, its modes, its firmware, its parameters, its words."""
+"""Identity of a PX4 log's vehicle: kind, modes, firmware, parameters, texts."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from math import isfinite
@@ -37,13 +37,13 @@ _MODES = {
     21: (_POSITION, 1),
     22: (_AUTO, 10),
 }
-"""vehicle_status.nav_state to main and sub mode of PX4's custom_mode (px4_custom_mode.h); others fly by
-themselves."""
+"""vehicle_status.nav_state to main and sub mode of PX4's custom_mode (px4_custom_mode.h). All other states
+are automatic."""
 _KEY_BYTES = 10
 
 
 def unix_time_base_s(topics: Topics) -> float:
-    """Seconds since 1970 at boot, from the first fix that has a date; 0 when there is none."""
+    """Return the time of boot, seconds since 1970, from the first fix with a date; 0 without one."""
     for fixes in topics.get("vehicle_gps_position", []):
         for utc_us, boot_us in zip(fixes["time_utc_usec"].tolist(), fixes["timestamp"].tolist(), strict=True):
             if utc_us > 0:
@@ -52,7 +52,7 @@ def unix_time_base_s(topics: Topics) -> float:
 
 
 def heartbeat(topics: Topics, parameters: Mapping[str, Any], start_us: int) -> TimedMessages:
-    """One before everything else, so that the vehicle is known, then as the mode may change."""
+    """Return a heartbeat before everything else, to make the vehicle known, then one at each status."""
     status = first(topics, "vehicle_status")
     at, states = np.array([start_us]), np.zeros(1, np.int64)
     if status is not None:
@@ -70,7 +70,7 @@ def heartbeat(topics: Topics, parameters: Mapping[str, Any], start_us: int) -> T
 
 
 def vtol_states(topics: Topics) -> Iterator[TimedMessages]:
-    """EXTENDED_SYS_STATE of a VTOL aircraft: whether rotors or the wing carry it."""
+    """Yield EXTENDED_SYS_STATE of a VTOL aircraft: whether rotors or the wing carry it."""
     status = first(topics, "vehicle_status")
     if status is not None and np.any(status.get("is_vtol", 0)):
         rotors = _on_rotors(status) | (status.get("in_transition_mode", np.zeros(1)) > 0)
@@ -79,16 +79,16 @@ def vtol_states(topics: Topics) -> Iterator[TimedMessages]:
 
 
 def _on_rotors(status: Topic) -> NDArray[np.bool_]:
-    """Whether vehicle_status says rotary wing: by vehicle_type, once by is_rotary_wing."""
+    """Return whether rotors carry the vehicle, by vehicle_type or by the older is_rotary_wing."""
     if "is_rotary_wing" in status:
         return np.asarray(status["is_rotary_wing"] > 0)
     return np.asarray(status.get("vehicle_type", np.zeros(len(status["timestamp"]))) == _ROTARY_WING)
 
 
 def _mav_type(parameters: Mapping[str, Any], status: Topic | None) -> int:
-    """MAV_TYPE as the parameter states, else as vehicle_status does.
+    """Return MAV_TYPE from the parameters, else from vehicle_status.
 
-    A VTOL aircraft says rotary wing while it hovers; its elevator is there all the same.
+    A VTOL aircraft reports rotary wing in hover, although it has an elevator.
     """
     stated = parameters.get("MAV_TYPE")
     if isinstance(stated, int | float) and stated in range(1, 256):
@@ -99,13 +99,13 @@ def _mav_type(parameters: Mapping[str, Any], status: Topic | None) -> int:
 
 
 def parameters_of(log: Any) -> dict[str, float]:
-    """The parameters that are numbers, as they were when the log began."""
+    """Return the numeric parameters at the beginning of the log."""
     initial = log.initial_parameters.items()
     return {name: float(v) for name, v in initial if isinstance(v, int | float) and isfinite(v)}
 
 
 def dropouts(log: Any) -> list[str]:
-    """A sentence on the times in which the logger could not write; none where it always could."""
+    """Return a sentence on the times in which the logger could not write; empty without such a time."""
     lasted_s = [dropout.duration * 1e-3 for dropout in log.dropouts]
     if not lasted_s:
         return []
@@ -116,12 +116,12 @@ def dropouts(log: Any) -> list[str]:
 
 
 def stated(log: Any, further: Mapping[str, float], start_us: int) -> Iterator[TimedMessages]:
-    """PARAM_VALUE of every parameter at the start of the log, then of every change.
+    """Yield PARAM_VALUE of every parameter at the start of the log, then of every change.
 
     Parameters
     ----------
     further
-        What the reader has found out, in the form of parameters.
+        Findings of the reader, in the form of parameters.
     """
     initial = parameters_of(log)
     rows = [(start_us, name, value) for name, value in (initial | dict(further)).items()]
@@ -141,19 +141,19 @@ def stated(log: Any, further: Mapping[str, float], start_us: int) -> Iterator[Ti
 
 
 def texts(log: Any) -> Iterator[TimedMessages]:
-    """STATUSTEXT: what the vehicle said."""
+    """Yield STATUSTEXT with the vehicle's own texts."""
     yield from _said(
         [(text.timestamp, text.log_level - ord("0"), text.message.encode()) for text in log.logged_messages]
     )
 
 
 def remarks(said: Sequence[str], start_us: int) -> Iterator[TimedMessages]:
-    """STATUSTEXT: what the reader of the log has to say."""
+    """Yield STATUSTEXT with the sentences of the log's reader."""
     yield from _said([(start_us, 6, READER + text.encode()) for text in said])
 
 
 def _said(rows: Sequence[tuple[int, int, bytes]]) -> Iterator[TimedMessages]:
-    """Time in us, severity and text."""
+    """Yield the time in us, severity and text."""
     if rows:
         fields: dict[str, ArrayLike] = {
             "severity": np.array([level for _, level, _ in rows]),
@@ -163,14 +163,14 @@ def _said(rows: Sequence[tuple[int, int, bytes]]) -> Iterator[TimedMessages]:
 
 
 def version(log: Any, start_us: int) -> Iterator[TimedMessages]:
-    """AUTOPILOT_VERSION, where the log states a release."""
+    """Yield AUTOPILOT_VERSION, where the log states a release."""
     release = log.msg_info_dict.get("ver_sw_release")
     if isinstance(release, int):
         yield TimedMessages("AUTOPILOT_VERSION", np.array([start_us]), {"flight_sw_version": release})
 
 
 def named_values(topics: Topics) -> Iterator[TimedMessages]:
-    """NAMED_VALUE_FLOAT, as a vane may send its angle."""
+    """Yield NAMED_VALUE_FLOAT, as a vane may send its angle."""
     values = first(topics, "debug_key_value")
     if values is not None:
         letters = np.stack([values[f"key[{i}]"].astype(np.uint8) for i in range(_KEY_BYTES)], axis=1)
@@ -184,7 +184,7 @@ def named_values(topics: Topics) -> Iterator[TimedMessages]:
 
 
 def receiver(topics: Topics) -> Iterator[TimedMessages]:
-    """RC_CHANNELS: the pilot's sticks and switches."""
+    """Yield RC_CHANNELS with the pilot's sticks and switches."""
     received = first(topics, "input_rc")
     if received is not None:
         at = published_us(received)
@@ -193,5 +193,5 @@ def receiver(topics: Topics) -> Iterator[TimedMessages]:
 
 
 def _stamps(times_us: Iterable[int]) -> IntArray:
-    """As an array; the 64th bit, which only a damaged stamp can have, is dropped."""
+    """Return the times as an array, without the 64th bit, which only a damaged stamp can have."""
     return np.array([time_us & (1 << 63) - 1 for time_us in times_us], dtype=np.int64)

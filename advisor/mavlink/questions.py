@@ -1,4 +1,4 @@
-"""Which parameters of an autopilot say which output is the elevator and how it moves."""
+"""Parameters of an autopilot that give the elevator's output and its scale."""
 
 import struct
 from collections.abc import Sequence
@@ -8,9 +8,9 @@ from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 OUTPUTS = range(1, 17)
 _FUNCTIONS = [f"FUNC{k}" for k in range(1, 9)]
-"""Of the eight outputs that a bank of PX4 has at most."""
+"""Functions of the eight outputs that a bank of PX4 has at most."""
 _SERVOS = range(201, 217)
-"""PX4's output functions that are servos."""
+"""Output functions of PX4 that are servos."""
 PITCH_FUNCTIONS = (19, 77, 78, 79, 80, 16, 17, 86, 87)
 """SERVOn_FUNCTION of elevator, left and right elevon, left and right V-tail, differential spoilers."""
 
@@ -19,22 +19,23 @@ RENAMED = {
     "SYSID_MYGCS": "MAV_GCS_SYSID",
     **{f"SR0_{group}": f"MAV1_{group}" for group in STREAM_GROUPS},
 }
-"""Names up to ArduPilot 4.6 to names after it; a vehicle has one or the other, so both are asked for."""
+"""Names of parameters up to ArduPilot 4.6 to later names. A vehicle has one or the other, so that both are
+requested."""
 
 
 class Questions(Protocol):
     """The parameters of one kind of autopilot."""
 
     outputs: Sequence[str]
-    """What says which output is the elevator."""
+    """Parameters that show which output is the elevator."""
     first: Sequence[str]
-    """All that is asked anyway."""
+    """Parameters that are requested in any case."""
 
     def value(self, payload: bytes) -> float:
-        """The value in a PARAM_VALUE."""
+        """Return the value in a PARAM_VALUE."""
 
     def follow(self, name: str, value: float) -> list[str]:
-        """What an answer makes worth asking."""
+        """Return the parameters that an answer makes useful."""
 
 
 class ArduPilotQuestions:
@@ -44,11 +45,11 @@ class ArduPilotQuestions:
     first: Sequence[str] = (*outputs, *(name for pair in RENAMED.items() for name in pair))
 
     def value(self, payload: bytes) -> float:
-        """Integers come converted to floating point."""
+        """Return the value, which ArduPilot sends converted to floating point."""
         return float(struct.unpack_from("<f", payload)[0])
 
     def follow(self, name: str, value: float) -> list[str]:
-        """MIN, TRIM, MAX and REVERSED of the outputs that pitch."""
+        """Return MIN, TRIM, MAX and REVERSED of the outputs that pitch."""
         stem, _, kind = name.rpartition("_")
         if kind != "FUNCTION" or not stem.startswith("SERVO") or value not in PITCH_FUNCTIONS:
             return []
@@ -66,12 +67,12 @@ class Px4Questions:
     first = outputs
 
     def value(self, payload: bytes) -> float:
-        """Integers come as their bytes."""
+        """Return the value, which PX4 sends as bytes of an integer."""
         is_float = payload[24] == dialect.MAV_PARAM_TYPE_REAL32
         return float(struct.unpack_from("<f" if is_float else "<i", payload)[0])
 
     def follow(self, name: str, value: float) -> list[str]:
-        """The torque in pitch of every surface, the limits of the outputs that move one."""
+        """Return the torque in pitch of every surface, and the limits of the outputs that drive one."""
         if name.startswith("CA_SV_CS") and name.endswith("_TYPE") and value:
             return [f"{name.removesuffix('_TYPE')}_TRQ_P"]
         bank, _, number = name.partition("_FUNC")

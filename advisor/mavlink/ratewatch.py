@@ -1,27 +1,27 @@
-"""Noticing that a stream has slowed down: another ground station can cut 50 Hz to 4 Hz in flight."""
+"""Detection of a stream that slows down: another ground station can cut 50 Hz to 4 Hz in flight."""
 
 from collections.abc import Collection
 
-from advisor.mavlink.company import who_sets_rates
 from advisor.mavlink.definitions import DEFINITIONS
 from advisor.mavlink.delivery import Delivery
 from advisor.mavlink.framing import Frame
+from advisor.mavlink.ground_stations import who_sets_rates
 
 WATCHED = ("ATTITUDE", "SERVO_OUTPUT_RAW", "AOA_SSA")
 WINDOW_S = 3.0
 FALLEN = 0.6
-"""Share of its best rate below which a stream counts as cut."""
+"""Share of its best rate below which a stream counts as slowed down."""
 RECOVERED = 0.8
 LEAST_HZ = 2.0
-"""Least best rate of a stream that can be cut, Hz: a window holds too few messages of a slower one."""
+"""Least best rate of a watched stream, Hz. A window holds too few messages of a slower one."""
 
 _NAMES = {DEFINITIONS[name].id: name for name in WATCHED}
 
 
 class RateWatch:
-    """Holds the indispensable messages of one vehicle against their best rates, window by window.
+    """Compares the indispensable messages of one vehicle with their best rates, window by window.
 
-    Silence is not its business: a window with a pause in it tells nothing of rates.
+    Silence is not watched here: a window with a pause gives no rates.
     """
 
     def __init__(self) -> None:
@@ -30,18 +30,18 @@ class RateWatch:
         self._cut: set[int] = set()
 
     def restart(self) -> None:
-        """The vehicle rebooted: its streams begin at their own rates."""
+        """Forget the best rates after a reboot."""
         self._best_hz.clear()
         self._cut.clear()
         self._delivery.restart()
 
     def look(self, from_vehicle: list[Frame], now_s: float, stations: Collection[int] = ()) -> list[str]:
-        """Sentences for what the vehicle's newest frames reveal.
+        """Return sentences on streams that slowed down or recovered in the vehicle's newest frames.
 
         Parameters
         ----------
         from_vehicle
-            Its frames since the last look.
+            Frames of the vehicle since the last look.
         now_s
             Monotonic seconds.
         stations

@@ -1,4 +1,4 @@
-"""Noticing on the link that the vehicle began anew: its clock runs back."""
+"""Detection of a reboot on the link, by a clock that runs back."""
 
 import struct
 
@@ -12,13 +12,13 @@ _ATTITUDE = DEFINITIONS["ATTITUDE"].id
 
 
 class RebootWatch:
-    """Follows the clock of ATTITUDE as the flight's own stream does."""
+    """Follows the clock of ATTITUDE by the rules of the flight's own stream."""
 
     def __init__(self) -> None:
         self._clock = BootClock()
 
     def hear(self, frame: Frame) -> bool:
-        """Take a frame of the vehicle; true when it confirms a reboot."""
+        """Take a frame of the vehicle; return True when it confirms a reboot."""
         if frame.message_id != _ATTITUDE:
             return False
         boot = self._clock.boot

@@ -1,4 +1,4 @@
-"""The link's own recording: a tlog that a power cut cannot rob of more than its last second."""
+"""The link's own recording: a tlog that loses at most its last second in a power cut."""
 
 import contextlib
 import os
@@ -11,53 +11,53 @@ from pathlib import Path
 from advisor.mavlink.recording_file import create, take_up
 
 WRITE_EVERY_S = 0.05
-"""Records go to the operating system so often: the death of this process costs no more."""
+"""Time between two writes to the operating system, s. The death of this process costs no more."""
 SYNC_EVERY_S = 0.5
-"""Records go to the disk itself so often: a power cut costs no more, and one write."""
+"""Time between two synchronisations with the disk, s. A power cut costs no more, and one write."""
 RETRY_EVERY_S = 1.0
 MOST_UNSAVED_BYTES = 64_000_000
-"""Records that wait in memory while the disk fails: 17 minutes of a link of 60 kB/s."""
+"""Most bytes that wait in memory while the disk fails: 17 minutes of a link of 60 kB/s."""
 LITTLE_SPACE_BYTES = 200_000_000
-"""Free space below which the crew is warned: one hour of a link of 60 kB/s."""
+"""Free space, bytes, below which the crew is warned: one hour of a link of 60 kB/s."""
 
 
 @dataclass(frozen=True, slots=True)
 class Recorded:
-    """How far a recording has come."""
+    """Progress of a recording."""
 
     written: int
-    """Bytes of the file, all of them whole records."""
+    """Bytes in the file, all of them whole records."""
     unsaved: bytes
-    """Records that follow in memory and are not in the file yet."""
+    """Records in memory that are not in the file yet."""
 
 
 class Recorder:
-    """Appends whole tlog records to a file from a thread of its own.
+    """Appends whole tlog records to a file, in a separate thread.
 
-    A slow disk cannot delay a packet, for writing and syncing happen in the recorder's thread.
-    A disk that fails ends neither the link nor the recording: records wait in memory, the recorder
-    tries again every ``RETRY_EVERY_S``, and the file ends with a whole record at every moment between.
+    A slow disk cannot delay a packet, because the recorder's thread writes. A failing disk ends neither the
+    link nor the recording. Records wait in memory, and the recorder tries again every ``RETRY_EVERY_S``. The
+    file ends with a whole record at every moment between.
 
     Parameters
     ----------
     path
-        File to make; its folder is made too. When the file exists, a number is added to the name.
+        File to make, with its folder. When the file exists, a number is added to the name.
     goes_on
-        Append to the file that exists, after its last whole record.
+        Whether to append to an existing file, after its last whole record.
 
     Raises
     ------
     UnusableInputError
-        No file can be made there; or the file to go on with is no recording, or is being recorded.
+        The file cannot be made. Or the existing file is no recording, or is in use.
     """
 
     def __init__(self, path: Path, goes_on: bool = False) -> None:
         self.path, self._file = take_up(path) if goes_on else create(path)
         self._written = self._file.tell()
         self.before = self._written
-        """Bytes of the recording that an earlier flight left."""
+        """Bytes of the recording from an earlier flight."""
         self.problem: str | None = None
-        """Why records wait in memory at this moment; None while all is well."""
+        """Reason for which records wait in memory at this moment; None while all is well."""
         self._notices: list[str] = []
         self._pending = bytearray()
         self._dropped = 0
@@ -75,7 +75,7 @@ class Recorder:
         return self._written - self.before
 
     def write(self, records: bytes) -> None:
-        """Hand over whole records."""
+        """Queue whole records."""
         with self._lock:
             if len(self._pending) + len(records) > MOST_UNSAVED_BYTES:
                 self._dropped += len(records)
@@ -83,18 +83,18 @@ class Recorder:
                 self._pending += records
 
     def recorded(self) -> Recorded:
-        """Everything handed over so far: what the file holds, and what waits in memory."""
+        """Return everything queued so far: the bytes in the file, and the records in memory."""
         with self._lock:
             return Recorded(self._written, bytes(self._pending))
 
     def take_notices(self) -> list[str]:
-        """What the crew should know of the disk since the last call."""
+        """Return sentences on the disk for the crew, since the last call."""
         with self._lock:
             notices, self._notices = self._notices, []
         return notices
 
     def close(self) -> None:
-        """Write what is left and close the file."""
+        """Write the waiting records and close the file."""
         self._stop.set()
         self._thread.join()
         self._failed_s = self._synced_s = -RETRY_EVERY_S
@@ -107,7 +107,7 @@ class Recorder:
             self._step()
 
     def _step(self) -> None:
-        """Write what waits, and sync when it is time."""
+        """Write the waiting records, and synchronise when due."""
         now_s = time.monotonic()
         if now_s - self._failed_s < RETRY_EVERY_S:
             return
@@ -132,7 +132,7 @@ class Recorder:
             while at < len(records):
                 at += os.write(self._file.fileno(), records[at:])
         except OSError:
-            # What was written of the batch may end within a record; the batch is written again as a whole.
+            # The written part of a batch may end within a record; the batch is written again as a whole.
             with contextlib.suppress(OSError):
                 self._file.truncate(self._written)
                 self._file.seek(self._written)

@@ -1,4 +1,4 @@
-"""Files of recordings: their names, a new one, one that goes on."""
+"""Files of recordings: their names, new files, and continued files."""
 
 import contextlib
 import os
@@ -12,11 +12,11 @@ from advisor.mavlink.framing import CRC_EXTRA, LONGEST_FRAME, MAGIC, FrameCutter
 from advisor.problems import UnusableInputError
 
 _TAIL_BYTES = 65_536
-"""Bytes at the end of a recording in which the last whole record is looked for."""
+"""Bytes at the end of a recording in which the last whole record is sought."""
 
 
 def default_recording(folder: Path | None = None, now: datetime | None = None) -> Path:
-    """The place of a recording that the user does not name.
+    """Return the path of a recording that the user does not name.
 
     Parameters
     ----------
@@ -28,14 +28,14 @@ def default_recording(folder: Path | None = None, now: datetime | None = None) -
     Returns
     -------
     Path
-        One file a flight, named by the start in UTC.
+        One file for each flight, named by the start in UTC.
     """
     stamp = (now or datetime.now(UTC)).strftime("%Y-%m-%dT%H-%M-%SZ")
     return (folder or recordings_folder()) / f"{stamp}.tlog"
 
 
 def recordings_folder() -> Path:
-    """The user's own folder of recordings."""
+    """Return the user's own folder of recordings."""
     return Path(platformdirs.user_data_dir("inflight-advisor")) / "recordings"
 
 
@@ -63,7 +63,7 @@ def create(path: Path) -> tuple[Path, BinaryIO]:
 
 
 def take_up(path: Path) -> tuple[Path, BinaryIO]:
-    """Open a recording behind its last whole record; what a power cut left of a record is cut off.
+    """Open a recording behind its last whole record. The rest of a record that a power cut broke is cut off.
 
     Raises
     ------
@@ -89,7 +89,7 @@ def take_up(path: Path) -> tuple[Path, BinaryIO]:
 
 
 def _end_of_whole_records(file: BinaryIO, path: Path) -> int:
-    """Where the last whole record ends, in bytes; what follows was cut off by a power cut."""
+    """Return the end of the last whole record, bytes. A power cut broke the bytes after it."""
     size = file.seek(0, os.SEEK_END)
     start = max(0, size - _TAIL_BYTES)
     file.seek(start)
@@ -109,13 +109,13 @@ def _end_of_whole_records(file: BinaryIO, path: Path) -> int:
 
 
 def _last_frame_ends(data: bytes) -> int:
-    """Where the last frame that the cutter finds ends; 0 without a frame."""
+    """Return the end of the last frame that the cutter finds; 0 without a frame."""
     frames = FrameCutter(CRC_EXTRA).feed(data)
     return data.rindex(frames[-1].raw) + len(frames[-1].raw) if frames else 0
 
 
 def _alone(path: Path, file: BinaryIO) -> BinaryIO:
-    """Hold the file against a second recorder, where the system can."""
+    """Lock the file against a second recorder, where the system can."""
     try:
         import fcntl
     except ImportError:  # Windows opens no file for writing twice in one program, and has no such lock

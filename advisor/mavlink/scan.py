@@ -1,10 +1,9 @@
 """The inner loop of the frame scanner, compiled.
 
-A stream is a row of records: 8 bytes of time stamp, then one frame. ``scan`` steps from
-record to record; where no good frame is due it looks at every byte for the next one. A
-decision never depends on how much of the stream is at hand: where bytes are missing it
-stops and says where to go on. Each good frame is weighed by `arrivals`: a packet that a
-second path repeats is stepped over.
+A stream is a row of records: 8 bytes of time stamp, then one frame. ``scan`` steps from record to record.
+Where a good frame is due and missing, it looks at every byte for the next one. A decision never depends on
+the length of the stream at hand. Where bytes are missing the function stops and returns the place to go on.
+Each good frame passes `arrivals`, which skips a packet that a second path repeats.
 """
 
 import numpy as np
@@ -21,7 +20,7 @@ V1, V2 = 0xFE, 0xFD
 SIGNED = 0x01
 STAMP_BYTES = 8
 
-# Columns of the table of frames found.
+# Columns of the table of found frames.
 KIND, SOURCE, START, LENGTH, STAMP = range(5)
 FOUND_COLUMNS = 5
 # Entries of the running state.
@@ -44,7 +43,7 @@ def _little_endian(stream: Bytes, at: int, size: int) -> int:
 
 @kernel()
 def _remainder(stream: Bytes, first: int, past: int) -> int:
-    """CRC-16 of the bytes from ``first`` to before ``past``, four at a time."""
+    """Return the CRC-16 of the bytes from ``first`` to before ``past``, four bytes at a time."""
     crc = INITIAL
     at = first
     while at + 4 <= past:
@@ -58,11 +57,11 @@ def _remainder(stream: Bytes, first: int, past: int) -> int:
 
 @kernel()
 def _frame_length(stream: Bytes, at: int, final: bool, seeds: Ints) -> int:
-    """Length of the good frame that begins at ``at``; ``_NONE``, or ``_WAIT`` for more bytes.
+    """Return the length of the good frame at ``at``; ``_NONE`` without one, or ``_WAIT`` for more bytes.
 
-    ``seeds`` holds the CRC_EXTRA of each message id, -1 where it is not known. The checksum
-    of an unknown message then fits one seed in 256 of the possible remainders; that, and
-    another frame due right behind it, makes it a frame to step over.
+    ``seeds`` holds the CRC_EXTRA of each message id, -1 for an unknown one. The checksum of an unknown
+    message fits some seed for one in 256 of the possible remainders. Such a frame is skipped as a frame where
+    another one is due right behind it.
     """
     n = len(stream)
     short = _NONE if final else _WAIT
@@ -103,7 +102,7 @@ def _frame_length(stream: Bytes, at: int, final: bool, seeds: Ints) -> int:
 
 @kernel()
 def _stamp(stream: Bytes, at: int, last: int) -> int:
-    """Big-endian microseconds at ``at``; the last good stamp instead of an impossible one."""
+    """Return the time stamp at ``at`` in microseconds; the last good stamp in place of an impossible one."""
     stamp = 0
     for i in range(at, at + STAMP_BYTES):
         stamp = stamp << 8 | int(np.int64(stream[i]))
@@ -127,17 +126,18 @@ def scan(
     Parameters
     ----------
     stream : shape (n,)
-        Bytes at hand, from the end of the last frame (or 8 bytes before the place reached) on.
+        Bytes at hand, beginning at the end of the last frame (or 8 bytes before the place reached).
     final : bool
-        Nothing follows: an incomplete frame at the end is garbage.
+        Whether the stream ends here, so that an incomplete frame at the end is garbage.
     kinds, seeds : shape (largest known id + 1,)
         For each message id the caller's number of a wanted message or -1, and its CRC_EXTRA or -1.
     state : shape (STATE_ENTRIES,)
-        Carried from call to call.
+        State, kept from call to call.
     senders, packets, newest
-        Carried from call to call, see `advisor.mavlink.arrivals`; the first by ``system << 8 | component``.
+        State, kept from call to call, see `advisor.mavlink.arrivals`. The first is indexed by
+        ``system << 8 | component``.
     found : shape (at least n // 8 + 1, FOUND_COLUMNS)
-        Receives one row a wanted frame.
+        Table that receives one row for each wanted frame.
 
     Returns
     -------
@@ -163,7 +163,7 @@ def scan(
                 state[SKIPPED] += 1
             continue
 
-        # sequence, system, component and message id stand side by side in either version
+        # Sequence, system, component and message id are contiguous in either version.
         v1 = stream[at] == V1
         address = at + (2 if v1 else 4)
         source = _little_endian(stream, address + 1, 1) << 8 | _little_endian(stream, address + 2, 1)
@@ -201,13 +201,13 @@ def scan(
 
 @kernel()
 def copy_payloads(stream: Bytes, starts: Ints, payloads: Bytes) -> None:
-    """Copy the payload of each frame into its row; the zeros MAVLink 2 cut off stay zeros.
+    """Copy the payload of each frame into its row. Zeros that MAVLink 2 cut off stay zeros.
 
     Parameters
     ----------
     stream : shape (n,)
     starts : shape (m,)
-        Where the frames begin.
+        Positions of the frames.
     payloads : shape (m, size)
         Zeros on entry.
     """

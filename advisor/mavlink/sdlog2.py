@@ -1,7 +1,7 @@
-"""PX4's log before ULog (``.px4log``, "sdlog2"): the container of DataFlash with PX4's own records.
+"""PX4's log before ULog (``.px4log``, "sdlog2"): DataFlash's container with PX4's own records.
 
-Records state no time: a TIME record goes before all that were taken in one round of the logger (PX4,
-sdlog2_messages.h of 2013 to 2016). Angles and rates are in rad, accelerations in m/s².
+Records state no time. A TIME record precedes all records of one round of the logger (PX4, sdlog2_messages.h
+of 2013 to 2016). Angles and rates are in rad, accelerations in m/s².
 """
 
 from collections.abc import Iterator, Mapping
@@ -26,26 +26,26 @@ SDLOG2_RECORDS: dict[str, set[str]] = {
     "PARM": {"Name", "Value"},
     "STAT": {"MainState"},
 }
-"""Records, and the fields needed of each."""
+"""Record to its necessary fields."""
 _PX4 = 12  # MAV_AUTOPILOT
 _MAIN_MODES = {0: 1, 1: 2, 2: 3, 6: 5, 7: 6, 8: 7}
 """STAT.MainState to the main mode of PX4's custom_mode: manual, altitude, position, acro, offboard,
-stabilised; any other is automatic."""
+stabilised. Any other state is automatic."""
 _AUTO = 4
 
 
 def is_sdlog2(tables: Mapping[str, Table]) -> bool:
-    """Whether records of a DataFlash container are PX4's."""
+    """Return whether records of a DataFlash container are PX4's."""
     return "TIME" in tables and "StartTime" in tables["TIME"].fields
 
 
 class Sdlog2:
-    """Gives the records as the messages that telemetry would have carried.
+    """Converts the records to the messages that telemetry would have carried.
 
     Parameters
     ----------
     tables
-        By name, as the log has them.
+        Records of the log by name.
     """
 
     def __init__(self, tables: Mapping[str, Table]) -> None:
@@ -66,7 +66,7 @@ class Sdlog2:
         self._type = int(stored.get(b"MAV_TYPE", MAV_TYPE_FIXED_WING))
 
     def columns(self) -> Iterator[Columns]:
-        """The messages of each type."""
+        """Yield the messages of each type."""
         yield self._heartbeat()
         if "PARM" in self._tables:
             parm = self._tables["PARM"]
@@ -108,7 +108,7 @@ class Sdlog2:
         return message(name, self._system, table.order, arrival_s, fields, "sdlog2")
 
     def _heartbeat(self) -> Columns:
-        """One before everything else, so that the vehicle is known, then as the mode may change."""
+        """Return a heartbeat before everything else, to make the vehicle known, then one at each status."""
         order, states, time_us = np.zeros(1, np.int64), np.zeros(1, np.int64), np.zeros(1, np.int64)
         if "STAT" in self._tables:
             stat = self._tables["STAT"]
@@ -133,7 +133,7 @@ class Sdlog2:
         return dict(zip(fields["Name"].tolist(), fields["Value"].tolist(), strict=True))
 
     def _unix_time_base_s(self) -> float:
-        """Seconds since 1970 at boot, from the first fix that has a date; 0 when there is none."""
+        """Return the time of boot, seconds since 1970, from the first fix with a date; 0 without one."""
         if "GPS" not in self._tables:
             return 0.0
         gps = self._tables["GPS"]

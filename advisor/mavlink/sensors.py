@@ -1,4 +1,4 @@
-"""Which of several like sensors of an ArduPilot log flew: healthy, in use, and primary."""
+"""Choice among several sensors of one kind in an ArduPilot log: healthy, in use, and primary."""
 
 from dataclasses import dataclass
 
@@ -8,26 +8,27 @@ from numpy.typing import NDArray
 from advisor.flight.messages import IntArray
 from advisor.mavlink.dataflash import Table
 from advisor.mavlink.equivalent import latest
+from advisor.vehicle_time import between, clock
 
 BoolArray = NDArray[np.bool_]
 
 _HEALTH = ("H", "GH", "AH")
-"""ARSP.H, IMU.GH and IMU.AH (air speed, gyro and accelerometer healthy): 1 is good."""
+"""Fields of health (air speed, gyro and accelerometer), 1 for healthy."""
 _IN_USE = "U"
-"""ARSP.U: 1 where the autopilot uses the sensor."""
+"""Field that is 1 where the autopilot uses the sensor."""
 _MOVING = ("GyrX", "GyrY", "GyrZ", "AccX", "AccY", "AccZ")
-"""Values of IMU, of which the noise moves at least one from sample to sample."""
+"""Fields of IMU. Noise moves at least one of them from sample to sample."""
 _FROZEN_S = 0.5
-"""An inertial sensor that repeats all its values for so long is dead, whatever its health says. A sound one
-repeats them from one record to the next at most, when records come faster than samples."""
+"""Time, s, of constant values after which an inertial sensor counts as dead, whatever its health says. A
+sound sensor repeats its values at most once, when records come faster than samples."""
 
 
 def flown(table: Table) -> Table:
-    """The records of the sensor that flew, at each time; none where no sensor was healthy.
+    """Return the records of the sensor in use at each time; none where no sensor was healthy.
 
-    ARSP.Pri names the primary sensor. Where it names one that is not both healthy and in use, the
-    lowest-numbered such sensor flew; where there is none, the lowest-numbered healthy one.
-    (ArduPilot log messages ARSP and IMU.)
+    ARSP.Pri names the primary sensor. Where that sensor is not both healthy and in use, the lowest-numbered
+    such sensor counts. Without one, the lowest-numbered healthy sensor counts. (ArduPilot log messages ARSP
+    and IMU.)
     """
     if len(table) == 0:
         return table
@@ -50,34 +51,35 @@ def flown(table: Table) -> Table:
 
 @dataclass(frozen=True, slots=True)
 class Said:
-    """One sentence about the sensor that flew, and the record it belongs to."""
+    """One sentence about the sensor in use, with the record that the sentence belongs to."""
 
     order: int
-    """Where the record begins in the file, bytes."""
+    """Position of the record in the file, bytes."""
     time_us: int
     """Microseconds since boot."""
     text: str
 
 
 def said(every: Table, table: Table, quantity: str) -> list[Said]:
-    """The sensor that flew first, each change of sensor, and the time without a healthy one.
+    """Return sentences on the first sensor in use, on each change of sensor, and on times without a healthy
+    one.
 
-    Nothing is said where sensor 0 flew throughout.
+    Where sensor 0 is in use throughout, there is no sentence.
 
     Parameters
     ----------
     every
-        The records of all sensors.
+        Records of all sensors.
     table
-        Those of the sensor that flew, as :func:`flown` gives them.
+        Records of the sensor in use, from :func:`flown`.
     quantity
-        Name of what the sensor measures.
+        Name of the measured quantity.
     """
     return [*_doubts(every, quantity), *_changes(table, quantity), *_silences(every, table, quantity)]
 
 
 def _doubts(every: Table, quantity: str) -> list[Said]:
-    """That no record calls any of the sensors healthy: they are then read as if all were."""
+    """Return a sentence where no record states any sensor as healthy. All sensors then count as healthy."""
     if len(every) == 0 or _spoken_for(every) == _stated(every):
         return []
     text = f"{quantity}: no sensor is ever stated to be healthy, and they are used all the same"
@@ -91,7 +93,7 @@ def _changes(table: Table, quantity: str) -> list[Said]:
         return []
     sentences = []
     for row in rows.tolist():
-        since = f" from {table.time_us[row] / 1e6:.1f} s on" if row else ""
+        since = f" since {clock(table.time_us[row] / 1e6)}" if row else ""
         text = f"{quantity}: sensor {instance[row]} flew{since}"
         sentences.append(Said(int(table.order[row]), int(table.time_us[row]), text))
     return sentences
@@ -101,24 +103,24 @@ def _silences(every: Table, table: Table, quantity: str) -> list[Said]:
     sentences = []
     for first, last in silent(every, table):
         start_s, end_s = every.time_us[[first, last]] / 1e6
-        text = f"{quantity}: no sensor was healthy from {start_s:.1f} to {end_s:.1f} s and none is used there"
+        text = f"{quantity}: no sensor was healthy from {between(start_s, end_s)} and none is used there"
         sentences.append(Said(int(every.order[first]), int(every.time_us[first]), text))
     return sentences
 
 
 def silent(every: Table, table: Table) -> list[tuple[int, int]]:
-    """Stretches in which sensors were recorded and none was healthy: rows of ``every``, first and last.
+    """Return stretches with records but without a healthy sensor: rows of ``every``, first and last.
 
     Parameters
     ----------
     every
-        The records of all sensors.
+        Records of all sensors.
     table
-        Those of the sensor that flew, as :func:`flown` gives them.
+        Records of the sensor in use, from :func:`flown`.
     """
     if len(table) == len(every):
         return []
-    # A stretch without a healthy sensor is longer than the time between two records of the sensor that flew.
+    # A stretch without a healthy sensor is longer than the interval of the records of the sensor in use.
     usual_us = float(np.median(np.diff(table.time_us))) if len(table) > 1 else 0.0
     edges = np.concatenate(([every.time_us[0] - usual_us], table.time_us, [every.time_us[-1] + usual_us]))
     found = []
@@ -130,7 +132,7 @@ def silent(every: Table, table: Table) -> list[tuple[int, int]]:
 
 
 def _numbers(table: Table) -> IntArray:
-    """The sensor of each record; shape (n,)."""
+    """Return the sensor number of each record, shape (n,)."""
     if "I" not in table.fields:
         return np.zeros(len(table), dtype=np.int64)
     return table.fields["I"].astype(np.int64)
@@ -152,17 +154,18 @@ def _healthy(table: Table, instance: IntArray) -> BoolArray:
 
 
 def _stated(table: Table) -> list[str]:
-    """The fields of health that the records have."""
+    """Return the fields of health in the records."""
     return [name for name in _HEALTH if name in table.fields]
 
 
 def _spoken_for(table: Table) -> list[str]:
-    """Those that ever say healthy: one that never does cannot tell one sensor or time from another."""
+    """Return the fields that ever state a healthy sensor. A field that never does cannot distinguish sensors
+    or times."""
     return [name for name in _stated(table) if np.any(table.fields[name] != 0)]
 
 
 def _frozen(table: Table) -> BoolArray:
-    """Records of one inertial sensor that belong to a stretch of ``_FROZEN_S`` without any change."""
+    """Return records of one inertial sensor that belong to a stretch of ``_FROZEN_S`` without any change."""
     values = np.stack([table.fields[name] for name in _MOVING], axis=1)
     moved = np.concatenate(([True], np.any(np.diff(values, axis=0) != 0.0, axis=1)))
     stretch = np.cumsum(moved) - 1

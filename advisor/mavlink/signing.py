@@ -1,13 +1,13 @@
-"""MAVLink 2 message signing: who may be believed.
+"""MAVLink 2 message signing: which frames are accepted.
 
-Source: MAVLink guide, "Message signing": the last 13 bytes of a signed frame are a link
-id, a 48-bit time in 10 us since 2015-01-01 that only rises, and the first 48 bits of
-SHA-256 over key, frame, link id and time.
+Source: MAVLink guide, "Message signing". The last 13 bytes of a signed frame are a link id, a time stamp and
+a signature. The time stamp has 48 bits, in 10 us since 2015-01-01, and only rises. The signature is the first
+48 bits of SHA-256 over key, frame, link id and time.
 
-The guide has a new stream refused when its time lies more than a minute behind the local one. An
-autopilot without GPS counts on from the time it stored last, which may lie months behind this
-host's clock. The host's clock therefore judges nobody: each sender is held against its own newest
-time. What was recorded before this session can be replayed until its sender is heard.
+By the guide, a new stream is refused when its time lies more than a minute behind the local one. An autopilot
+without GPS counts on from the time it stored last, which may lie months behind this host's clock. So the
+host's clock does not count: each sender is compared with its own newest time. Frames recorded before this
+session can be replayed until their sender is heard.
 """
 
 import hashlib
@@ -21,44 +21,46 @@ from advisor.problems import ConfigurationError
 KEY_LENGTH = 32
 EPOCH_2015_S = 1_420_070_400
 RADIO_STATUS = 109
-"""Injected by the radios themselves, which hold no key: always unsigned."""
+"""Message of the radios themselves, which hold no key and never sign."""
 
 _NEW_STREAM_MAY_LAG = 6_000_000
-"""How far a new stream may lie behind other streams of its sender: one minute, in 10 us (MAVLink guide)."""
+"""Largest delay of a new stream behind its sender's other streams: one minute, in 10 us (MAVLink guide)."""
 
 Verdict = Literal["ok", "unsigned", "forged", "replayed"]
 
 
 def read_key(path: Path) -> bytes:
-    """The key in a file: 32 bytes as they are, anything else a passphrase.
+    """Return the key in a file: 32 bytes unchanged, anything else as a passphrase.
 
-    A passphrase is hashed with SHA-256 after the line end is taken off, as Mission
-    Planner and MAVProxy do, so that the same words give the same key everywhere.
+    A passphrase is hashed with SHA-256 after removal of the line end. Mission Planner and MAVProxy do so too,
+    so that one passphrase gives one key everywhere.
 
     Raises
     ------
     ConfigurationError
-        When the file cannot be read or is empty.
+        The file cannot be read or is empty.
     """
     try:
         content = path.read_bytes()
     except OSError as error:
-        raise ConfigurationError(f"Signing key {path}: {error.strerror}.") from None
+        raise ConfigurationError(
+            f"Signing key {path}: {error.strerror}; name a file that can be read."
+        ) from None
     if len(content) == KEY_LENGTH:
         return content
     phrase = content.rstrip(b"\r\n")
     if not phrase:
-        raise ConfigurationError(f"Signing key {path} is empty: it holds 32 bytes or a passphrase.")
+        raise ConfigurationError(f"Signing key {path} is empty: write 32 bytes or a passphrase into it.")
     return hashlib.sha256(phrase).digest()
 
 
 def signing_time(unix_s: float) -> int:
-    """Time stamp of a signature made now: 10 us since 2015-01-01."""
+    """Return the time stamp of a signature made now: 10 us since 2015-01-01."""
     return int((unix_s - EPOCH_2015_S) * 1e5)
 
 
 class SignatureCheck:
-    """Judges frame after frame; remembers the newest time of every stream against replays.
+    """Judges frame after frame, and remembers the newest time of every stream against replays.
 
     Parameters
     ----------
@@ -74,10 +76,10 @@ class SignatureCheck:
         """Newest time of a sender (system, component) on any of its links, 10 us since 2015."""
 
     def verdict(self, frame: bytes) -> Verdict:
-        """Whether one whole frame may be believed.
+        """Return the verdict on one whole frame.
 
-        A time is remembered only after its signature was found good: otherwise one forged
-        frame from the future would silence the real sender.
+        A time is remembered only after its signature was found good. Otherwise one forged frame from the
+        future would silence the real sender.
         """
         if frame[0] != 0xFD or not frame[2] & 0x01:
             return "unsigned"

@@ -12,14 +12,14 @@ _MOST_CHUNKS = 512  # taken in one go, so that a flood cannot keep the reader fr
 
 
 class UdpTransport(Transport):
-    """UDP, listening (``udpin``) or calling (``udpout``).
+    """UDP transport, listening (``udpin``) or calling (``udpout``).
 
     Parameters
     ----------
     address
-        Where to listen, or whom to call.
+        Address to listen on or to call.
     inherited
-        File descriptor of a socket that another process has opened; None: open one.
+        File descriptor of another process's socket. None: open one.
     """
 
     def __init__(self, address: Address, inherited: int | None = None) -> None:
@@ -43,11 +43,11 @@ class UdpTransport(Transport):
             raise
 
     def wait(self, timeout_s: float) -> bool:
-        """Whether bytes are there."""
+        """Return whether bytes are available."""
         return bool(select.select([self._socket], [], [], timeout_s)[0])
 
     def receive(self) -> list[tuple[Peer, bytes]]:
-        """Everything that has arrived."""
+        """Return everything that has arrived."""
         pieces: list[tuple[Peer, bytes]] = []
         for _ in range(_MOST_CHUNKS):
             try:
@@ -60,7 +60,7 @@ class UdpTransport(Transport):
         return pieces
 
     def send(self, data: bytes, to: Peer | None) -> bool:
-        """Send; False when nobody is there to send to."""
+        """Send bytes; return False without a receiver."""
         target = self._remote or to
         if target is None:
             return False
@@ -69,22 +69,23 @@ class UdpTransport(Transport):
         return True
 
     def close(self) -> None:
-        """Let go."""
+        """Close the socket."""
         self._socket.close()
 
     @property
     def port(self) -> int | None:
-        """The local port."""
+        """Local network port."""
         return int(self._socket.getsockname()[1])
 
     @property
     def descriptor(self) -> int | None:
-        """The socket's own."""
+        """File descriptor of the socket."""
         return self._socket.fileno()
 
 
 class StreamTransport(Transport):
-    """TCP, calling (``tcp``) or waiting for one caller after the other (``tcpin``); a local socket."""
+    """TCP transport, calling (``tcp``) or waiting for one caller after the other (``tcpin``); or a local
+    socket."""
 
     def __init__(self, address: Address, timeout_s: float = 2.0) -> None:
         self._listener: socket.socket | None = None
@@ -111,7 +112,7 @@ class StreamTransport(Transport):
         self._stream = stream
 
     def wait(self, timeout_s: float) -> bool:
-        """Whether bytes are there."""
+        """Return whether bytes are available."""
         ends = [end for end in (self._stream or self._listener,) if end is not None]
         ready = select.select(ends, [], [], timeout_s)[0]
         if ready and self._stream is None and self._listener is not None:
@@ -121,7 +122,7 @@ class StreamTransport(Transport):
         return bool(ready)
 
     def receive(self) -> list[tuple[Peer, bytes]]:
-        """Everything that has arrived."""
+        """Return everything that has arrived."""
         if self._stream is None:
             return []
         try:
@@ -141,7 +142,7 @@ class StreamTransport(Transport):
         return ConnectionCutError(why, listening=self._listener is not None)
 
     def send(self, data: bytes, to: Peer | None) -> bool:
-        """Send; False when nobody is there to send to."""
+        """Send bytes; return False without a receiver."""
         if self._stream is None:
             return False
         with contextlib.suppress(OSError):  # the next read tells that the line is cut
@@ -149,13 +150,13 @@ class StreamTransport(Transport):
         return True
 
     def close(self) -> None:
-        """Let go."""
+        """Close the socket."""
         for end in (self._stream, self._listener):
             if end is not None:
                 end.close()
 
     @property
     def port(self) -> int | None:
-        """The local port."""
+        """Local network port."""
         end = self._listener or self._stream
         return None if end is None or end.family == socket.AF_UNIX else int(end.getsockname()[1])

@@ -1,4 +1,4 @@
-"""Telemetry logs as ground stations write them (``.tlog``): time stamp and frame, in a row."""
+"""Telemetry logs of ground stations (``.tlog``): a row of time stamps and frames."""
 
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -18,28 +18,28 @@ def read_tlog(
     key: bytes | None = None,
     chunk_bytes: int = CHUNK_BYTES,
 ) -> Iterator[list[Columns]]:
-    """Stream a log, however large: columns chunk by chunk.
+    """Stream a log of any size: columns chunk by chunk.
 
     Parameters
     ----------
     path : Path
     wanted : iterable of str, optional
-        Names of the messages to decode; all that are defined by default.
+        Names of the messages to decode. Default: all defined messages.
     key : bytes, optional
         Signing key: frames not signed with it are refused.
     chunk_bytes : int
-        Bytes read at a time; has no influence on the messages given.
+        Bytes read at a time, without influence on the messages.
 
     Raises
     ------
     UnusableInputError
-        At the end, when the file held no MAVLink.
+        The file holds no MAVLink, which is known at its end.
     """
     return scan_tlog(path, FrameScanner(wanted, key), chunk_bytes)
 
 
 def scan_tlog(path: Path, scanner: FrameScanner, chunk_bytes: int = CHUNK_BYTES) -> Iterator[list[Columns]]:
-    """Stream a log through a scanner of the caller's, whose statistics then tell of the log."""
+    """Stream a log through the caller's scanner, for the sake of the scanner's statistics."""
     size = 0
     with path.open("rb") as file:
         while chunk := file.read(chunk_bytes):
@@ -49,7 +49,7 @@ def scan_tlog(path: Path, scanner: FrameScanner, chunk_bytes: int = CHUNK_BYTES)
     if columns := scanner.close():
         yield columns
     statistics = scanner.statistics
-    # In noise a checksum comes out right once in 65536 times: a frame or two prove nothing.
+    # In noise a checksum is right once in 65536 times, so that a frame or two prove nothing.
     if statistics.known_frames == 0 or size - statistics.skipped_bytes < _HARDLY_ANY * size:
         raise UnusableInputError(
             "not_a_tlog",

@@ -1,7 +1,7 @@
-"""What a link needs of whatever lies under it: take bytes, give bytes, notice a cut.
+"""Interface of a link's transport: take bytes, give bytes, notice a cut.
 
-Packets are read raw and never blocking: a parser that decodes every message in Python is the
-slow part of the usual way, not the socket.
+Packets are read raw and never blocking, because decoding every message in Python would be the slow part, not
+the socket.
 """
 
 from abc import ABC, abstractmethod
@@ -18,9 +18,9 @@ class ConnectionCutError(Exception):
     Parameters
     ----------
     why
-        In words.
+        Reason in words.
     listening
-        The transport waits for the next caller by itself; otherwise it is to be opened again.
+        Whether the transport waits for the next caller itself. Otherwise the caller opens it again.
     """
 
     def __init__(self, why: str, listening: bool = False) -> None:
@@ -33,26 +33,26 @@ class Transport(ABC):
 
     @abstractmethod
     def wait(self, timeout_s: float) -> bool:
-        """Whether bytes are there, waiting for them at most so long."""
+        """Return whether bytes are available, after waiting at most ``timeout_s``."""
 
     @abstractmethod
     def receive(self) -> list[tuple[Peer, bytes]]:
-        """Everything that has arrived, each piece with its sender."""
+        """Return everything that has arrived, each piece with its sender."""
 
     @abstractmethod
     def send(self, data: bytes, to: Peer | None) -> bool:
-        """Send to a peer heard before; False when nobody is there to send to."""
+        """Send to a known peer; return False without a receiver."""
 
     @abstractmethod
     def close(self) -> None:
-        """Let go of the socket or line."""
+        """Close the socket or line."""
 
     @property
     def port(self) -> int | None:
-        """The local network port; None when there is none."""
+        """Local network port. None without one."""
         return None
 
     @property
     def descriptor(self) -> int | None:
-        """File descriptor of a socket that another process can go on with; None where there is none."""
+        """File descriptor of a socket that another process can continue to use. None without one."""
         return None

@@ -1,4 +1,4 @@
-"""Opening what a connection string names; serial lines and what is left to pymavlink."""
+"""Opening of connections: serial lines, and rarer kinds by pymavlink."""
 
 import contextlib
 import errno
@@ -21,14 +21,14 @@ class SerialTransport(Transport):
         self._line = serial.Serial(address.host, address.port, timeout=0, write_timeout=0.5, exclusive=True)
 
     def wait(self, timeout_s: float) -> bool:
-        """Whether bytes are there."""
+        """Return whether bytes are available."""
         try:
             return bool(select.select([self._line.fileno()], [], [], timeout_s)[0])
         except (OSError, ValueError, TypeError) as error:
             raise ConnectionCutError(str(error)) from None
 
     def receive(self) -> list[tuple[Peer, bytes]]:
-        """Everything that has arrived."""
+        """Return everything that has arrived."""
         try:
             data = self._line.read(CHUNK_BYTES)
         except (OSError, TypeError) as error:  # pyserial's own error is an OSError
@@ -36,18 +36,18 @@ class SerialTransport(Transport):
         return [((), data)] if data else []
 
     def send(self, data: bytes, to: Peer | None) -> bool:
-        """Send; False when nobody is there to send to."""
+        """Send bytes; return False without a receiver."""
         with contextlib.suppress(OSError):  # the next read tells that the line is cut
             self._line.write(data)
         return True
 
     def close(self) -> None:
-        """Let go."""
+        """Close the line."""
         self._line.close()
 
 
 class PymavlinkTransport(Transport):
-    """The rarer kinds (multicast, broadcast, web sockets), opened by pymavlink, read raw."""
+    """The rarer kinds (multicast, broadcast, web sockets), opened by pymavlink and read raw."""
 
     def __init__(self, address: Address) -> None:
         from pymavlink import mavutil
@@ -56,29 +56,29 @@ class PymavlinkTransport(Transport):
         self._may_end = address.text.startswith("ws")
 
     def wait(self, timeout_s: float) -> bool:
-        """Whether bytes are there."""
+        """Return whether bytes are available."""
         return bool(self._connection.select(timeout_s))
 
     def receive(self) -> list[tuple[Peer, bytes]]:
-        """Everything that has arrived."""
+        """Return everything that has arrived."""
         data = bytes(self._connection.recv(CHUNK_BYTES))
         if not data and self._may_end:
             raise ConnectionCutError("closed by the other side")
         return [((), data)] if data else []
 
     def send(self, data: bytes, to: Peer | None) -> bool:
-        """Send; False when nobody is there to send to."""
+        """Send bytes; return False without a receiver."""
         with contextlib.suppress(OSError):
             self._connection.write(data)
         return True
 
     def close(self) -> None:
-        """Let go."""
+        """Close the connection."""
         self._connection.close()
 
 
 def _is_terminal(path: str) -> bool:
-    """Whether a file of the system is a serial line; a name that is no file may be one of Windows."""
+    """Return whether a file is a serial line. A name without a file may be a line of Windows."""
     if not os.path.exists(path):
         return True
     end = os.open(path, os.O_RDWR | getattr(os, "O_NOCTTY", 0) | getattr(os, "O_NONBLOCK", 0))
@@ -89,19 +89,19 @@ def _is_terminal(path: str) -> bool:
 
 
 def open_transport(address: Address, inherited: int | None = None) -> Transport:
-    """Open what an address names.
+    """Open the transport of an address.
 
     Parameters
     ----------
     address
         Parsed connection string.
     inherited
-        File descriptor of a UDP socket that another process has opened for this address; None: open one.
+        File descriptor of another process's UDP socket for this address. None: open one.
 
     Raises
     ------
     OSError
-        When it cannot be opened now: port taken, nobody answering, no such device.
+        The connection cannot be opened now: port taken, nobody answers, no such device.
     """
     match address.kind:
         case "udpin" | "udpout":

@@ -1,7 +1,7 @@
-"""Make a log smaller: keep the records of the messages the advisor reads.
+"""Reduction of a log to the messages that the advisor reads.
 
-``python -m advisor.mavlink.trim IN OUT [--drop NAME,NAME]`` copies whole records, byte for byte
-and in their order; only the messages left out are missing (and their sequence numbers).
+``python -m advisor.mavlink.trim IN OUT [--drop NAME,NAME]`` copies whole records, byte for byte and in their
+order. Only the messages left out are missing (and their sequence numbers).
 """
 
 import argparse
@@ -16,7 +16,7 @@ from advisor.mavlink.scan import SIGNED, STAMP_BYTES, V1
 
 
 def trim(log: bytes, drop: Iterable[str] = ()) -> bytes:
-    """The log with the records of known messages but those in ``drop``."""
+    """Return the log with the records of known messages, without those in ``drop``."""
     dropped = set(drop)
     if unknown := dropped - DEFINITIONS.keys():
         raise KeyError(*sorted(unknown))

@@ -24,12 +24,12 @@ MAGIC = b"ULog\x01\x12\x35"
 class WholeFile(io.BufferedReader):
     """A file in which a read beyond the end fails, unless nothing is left.
 
-    Where damage in the definitions leads pyulog 1.3 beyond the end it steps back by what it wanted to read,
-    not by what it got, and never arrives.
+    Where damaged definitions lead pyulog 1.3 beyond the end, pyulog steps back by the bytes it wanted to
+    read, not by those it got. It would never arrive.
     """
 
     def read(self, size: int | None = -1, /) -> bytes:
-        """That many bytes, or none at the end."""
+        """Return exactly ``size`` bytes, or none at the end."""
         data = super().read(size)
         if size is not None and 0 < len(data) < size:
             raise struct.error
@@ -37,20 +37,20 @@ class WholeFile(io.BufferedReader):
 
 
 def read_ulog(path: Path, wanted: Iterable[str] | None = None, starts_at: int = 0) -> Iterator[list[Columns]]:
-    """The messages of a ``.ulg``, in one batch, ordered by time.
+    """Yield the messages of a ``.ulg``, in one batch, ordered by time.
 
     Parameters
     ----------
     path
     wanted
-        Names of the messages to give; all by default.
+        Names of the messages to return. Default: all.
     starts_at
-        Bytes in front of the log.
+        Bytes before the log.
 
     Raises
     ------
     UnusableInputError
-        When the file holds neither attitude, sensors, nor outputs.
+        The file holds neither attitude, sensors, nor outputs.
     """
     from pyulog import ULog  # here, for no other command needs to wait for its import
 
@@ -79,7 +79,7 @@ def _nothing_in(path: Path) -> UnusableInputError:
 
 
 def _columns(log: Any) -> list[Columns]:
-    """Every message the topics give, numbered by time."""
+    """Return every message from the topics, numbered by time."""
     topics = topics_of(log)
     messages = translate(log, topics)
     time_us = np.concatenate([m.time_us for m in messages])

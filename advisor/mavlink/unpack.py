@@ -1,4 +1,4 @@
-"""The file of a log: refused where it is none, unpacked where it is packed (gzip, zip)."""
+"""Access to the file of a log: refused where unreadable, unpacked where packed (gzip, zip)."""
 
 import gzip
 import stat
@@ -14,11 +14,11 @@ from advisor.mavlink.kinds import BEGINNING_BYTES, recognised, refusal
 from advisor.problems import UnusableInputError
 
 LARGEST_UNPACKED_BYTES = (1 << 32) - 1
-"""Longest log that is unpacked: autopilots write to FAT32 cards, on which no file is longer."""
+"""Largest log that is unpacked, bytes. Autopilots write to FAT32 cards, on which no file is larger."""
 _MOST_MEMBERS = 1000
-"""Files of an archive that are looked into."""
+"""Most files of an archive that are examined."""
 _NAMED = 5
-"""Logs of an archive that a sentence names."""
+"""Most logs of an archive that a sentence names."""
 _GZIP, _ZIP = b"\x1f\x8b", b"PK\x03\x04"
 _OTHER_FILES = {
     stat.S_ISDIR: ("not_a_file", "is a folder", "Give the log file inside it."),
@@ -30,12 +30,12 @@ _OTHER_FILES = {
 
 
 def beginning_of(path: Path) -> bytes:
-    """The first ``BEGINNING_BYTES`` of a file.
+    """Return the first ``BEGINNING_BYTES`` of a file.
 
     Raises
     ------
     UnusableInputError
-        There is no such file, it is no regular file, or it may not be read.
+        The file is missing, is no regular file, or may not be read.
     """
     try:
         mode = path.stat().st_mode
@@ -57,14 +57,14 @@ def beginning_of(path: Path) -> bytes:
 
 @contextmanager
 def unpacked(path: Path, beginning: bytes) -> Iterator[Path]:
-    """The file itself; of a packed one the log inside, for as long as the context lasts.
+    """Yield the file itself, or the log inside a packed file, for the duration of the context.
 
     Parameters
     ----------
     path
         A regular file.
     beginning
-        As :func:`beginning_of` gives it.
+        Result of :func:`beginning_of`.
 
     Raises
     ------
@@ -107,7 +107,7 @@ def _damaged(path: Path) -> UnusableInputError:
 
 
 def _copy(packed: IO[bytes] | gzip.GzipFile, name: str, to: Path) -> Path:
-    """Write what is packed to a file, once its beginning has shown a log."""
+    """Unpack a log to a file, after its beginning has shown a log."""
     beginning = packed.read(BEGINNING_BYTES)
     if recognised(beginning) is None:
         raise UnusableInputError.of([refusal(f"{name}, unpacked,", beginning)])
@@ -125,7 +125,7 @@ def _copy(packed: IO[bytes] | gzip.GzipFile, name: str, to: Path) -> Path:
 
 
 def _only_log(archive: zipfile.ZipFile, name: str) -> zipfile.ZipInfo:
-    """The one member of an archive that is a log."""
+    """Return the one member of an archive that is a log."""
     logs = []
     for member in archive.infolist()[:_MOST_MEMBERS]:
         if member.is_dir() or member.filename.startswith("__MACOSX/"):
@@ -149,5 +149,5 @@ def _only_log(archive: zipfile.ZipFile, name: str) -> zipfile.ZipInfo:
 
 
 def _shown(member: zipfile.ZipInfo) -> str:
-    """The name of a member without what would steer a terminal."""
+    """Return the name of a member without control characters."""
     return "".join(letter for letter in member.filename if letter.isprintable())

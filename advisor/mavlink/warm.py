@@ -1,6 +1,6 @@
 """Compile the log readers once: ``python -m advisor.mavlink.warm``, when installing.
 
-numba keeps what it compiled beside the modules, so that later starts only load it.
+numba keeps its machine code next to the modules, so that later starts only load it.
 """
 
 import numpy as np

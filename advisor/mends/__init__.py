@@ -1,7 +1,7 @@
-"""What the crew can do about a record that falls short, in the words that its autopilot's users know.
+"""Remedies for a record that falls short, in the words of its autopilot's users.
 
 A vehicle is heard over telemetry, live or from a ``.tlog``, or read from the log that its autopilot keeps.
-Each of these calls the same values by other names and has other settings for their rates.
+Each of these has other names for the values, and other settings for their rates.
 """
 
 from advisor.mends.choice import Carrier, mends_of

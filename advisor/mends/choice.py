@@ -1,4 +1,4 @@
-"""Which mends belong to an autopilot and a kind of record."""
+"""Choice of the remedies for an autopilot and a kind of record."""
 
 from typing import Literal
 
@@ -9,19 +9,19 @@ from advisor.mends.telemetry import ArduPilotTelemetry, OtherTelemetry, Px4Telem
 from advisor.mends.ulog import Ulog
 
 Carrier = Literal["telemetry", "dataflash", "ulog", "sdlog2"]
-"""What brings messages: a link or its ``.tlog``, ArduPilot's own log (``.bin``), PX4's own log (``.ulg``),
-and PX4's own log before 2017 (``.px4log``)."""
+"""Kind of record: a link or its ``.tlog``, ArduPilot's own log (``.bin``), PX4's own log (``.ulg``), or PX4's
+own log before 2017 (``.px4log``)."""
 
 
 def mends_of(autopilot: str, carrier: Carrier) -> Mends:
-    """The mends for a vehicle.
+    """Return the remedies for a vehicle.
 
     Parameters
     ----------
     autopilot
         ``ardupilot``, ``px4``, or another name.
     carrier
-        What brings the vehicle's messages.
+        Kind of record with the vehicle's messages.
     """
     if carrier == "dataflash":
         return Dataflash()

@@ -8,13 +8,13 @@ from advisor.mends.mends import GOOD_HZ
 
 @dataclass(frozen=True, slots=True)
 class _Record:
-    """What the log has in place of a message."""
+    """Record of the log that replaces a message."""
 
     name: str
     bit: int
     bit_name: str
     paced: str
-    """What sets its rate."""
+    """Origin of the record's rate."""
 
 
 _IMU = _Record("IMU", 7, "IMU", "the main loop's rate")
@@ -26,7 +26,7 @@ _RECORDS = {
     "AOA_SSA": _Record("AOA", 0, "ATTITUDE_FAST", "10 Hz"),
     "VFR_HUD": _Record("ARSP", 7, "IMU", "10 Hz"),
 }
-"""ArduPlane's records, the bits of LOG_BITMASK that log them (ArduPlane/defines.h), and their rates
+"""Message to ArduPlane's record, with the bit of LOG_BITMASK that logs it (ArduPlane/defines.h) and its rate
 (ArduPlane.cpp: update_logging10, update_logging25)."""
 
 
@@ -34,11 +34,11 @@ class Dataflash:
     """Records of ArduPlane's log."""
 
     def called(self, message: str) -> str:
-        """The record."""
+        """Return the name of the record."""
         return _RECORDS[message].name if message in _RECORDS else message
 
     def faster(self, message: str) -> str:
-        """The rate that the log has anyway, and what has a higher one."""
+        """Return the log's own rate, and the source of a higher one."""
         record = _RECORDS.get(message)
         logged = (
             f"LOG_BITMASK logs {record.name} at {record.paced} (bit {record.bit}, {record.bit_name}); "
@@ -48,7 +48,7 @@ class Dataflash:
         return f"{logged}for more record a telemetry log with {message} at {GOOD_HZ} Hz"
 
     def present(self, messages: Sequence[str]) -> str:
-        """The bits that log the records at all."""
+        """Return the bits of LOG_BITMASK that log the records."""
         records = [_RECORDS[message] for message in messages if message in _RECORDS]
         bits = dict.fromkeys(f"{one.name} by bit {one.bit} ({one.bit_name})" for one in records)
         return f"set LOG_BITMASK so that these are logged: {', '.join(bits)}; its default, 65535, has all"

@@ -18,14 +18,14 @@ class Sdlog2:
     """Records of sdlog2."""
 
     def called(self, message: str) -> str:
-        """The record."""
+        """Return the name of the record."""
         return _RECORDS.get(message, message)
 
     def faster(self, message: str) -> str:
-        """The rate of all records."""
+        """Return the setting of the rate, which all records share."""
         return f"set SDLOG_RATE to {GOOD_HZ}, at which sdlog2 logs {self.called(message)}"
 
     def present(self, messages: Sequence[str]) -> str:
-        """The set that holds the records."""
+        """Return the setting that adds the records."""
         named = ", ".join(dict.fromkeys(self.called(message) for message in messages))
         return f"set SDLOG_EXT to 1, so that sdlog2 logs {named}"

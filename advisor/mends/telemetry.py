@@ -14,7 +14,7 @@ _STREAM_GROUPS = {
     "SCALED_IMU2": "RAW_SENS",
     "GLOBAL_POSITION_INT": "POSITION",
 }
-"""ArduPilot's stream groups, GCS_MAVLink: the suffix of the parameter that holds their rate."""
+"""Message to ArduPilot's stream group (GCS_MAVLink): the suffix of the parameter with the rate."""
 
 _IDS = {
     "SCALED_IMU": 26,
@@ -30,7 +30,7 @@ _IDS = {
 }
 
 _PX4_STREAMS = {"SERVO_OUTPUT_RAW": "SERVO_OUTPUT_RAW_0", "RAW_IMU": "HIGHRES_IMU"}
-"""Streams of PX4 whose name is not that of the message, PX4's ``mavlink_messages.cpp``."""
+"""Message to its PX4 stream, where the names differ (PX4's ``mavlink_messages.cpp``)."""
 
 
 def _request(message: str) -> str:
@@ -46,11 +46,11 @@ class ArduPilotTelemetry:
     """ArduPilot's streams: one parameter for each group of messages."""
 
     def called(self, message: str) -> str:
-        """The message itself."""
+        """Return the name of the message."""
         return message
 
     def faster(self, message: str) -> str:
-        """The parameter of the stream group, in both spellings, or a request."""
+        """Return the parameter of the stream group, in both spellings, or a request."""
         group = _STREAM_GROUPS.get(message)
         if group is None:
             return f"raise the rate of {message} at its sender to {GOOD_HZ} Hz"
@@ -60,7 +60,7 @@ class ArduPilotTelemetry:
         )
 
     def present(self, messages: Sequence[str]) -> str:
-        """A request for the messages."""
+        """Return a request for the messages."""
         return _each(messages, messages)
 
 
@@ -68,11 +68,11 @@ class Px4Telemetry:
     """PX4's streams: a rate for each, under the limit of its link."""
 
     def called(self, message: str) -> str:
-        """The message that PX4 sends; HIGHRES_IMU takes the place of RAW_IMU."""
+        """Return the name of the message that PX4 sends. HIGHRES_IMU takes the place of RAW_IMU."""
         return "HIGHRES_IMU" if message == "RAW_IMU" else message
 
     def faster(self, message: str) -> str:
-        """The command of PX4's shell, or a request."""
+        """Return the command of PX4's shell, or a request."""
         stream = _PX4_STREAMS.get(message, message)
         return (
             f"set mavlink stream -d DEVICE -s {stream} -r {GOOD_HZ} in etc/extras.txt on the SD card, with "
@@ -81,21 +81,21 @@ class Px4Telemetry:
         )
 
     def present(self, messages: Sequence[str]) -> str:
-        """A request for the messages that PX4 has."""
+        """Return a request for the messages that PX4 has."""
         return _each(messages, [self.called(message) for message in messages])
 
 
 class OtherTelemetry:
-    """Streams of an autopilot whose parameters nobody here knows."""
+    """Streams of an autopilot with unknown parameters."""
 
     def called(self, message: str) -> str:
-        """The message itself."""
+        """Return the name of the message."""
         return message
 
     def faster(self, message: str) -> str:
-        """A request."""
+        """Return a request for the rate."""
         return f"raise the rate of {message} on the vehicle to {GOOD_HZ} Hz, or {_request(message)}"
 
     def present(self, messages: Sequence[str]) -> str:
-        """A request for the messages."""
+        """Return a request for the messages."""
         return _each(messages, messages)

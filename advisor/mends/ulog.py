@@ -13,7 +13,7 @@ _TOPICS = {
     "AOA_SSA": "vehicle_local_position",
     "NAMED_VALUE_FLOAT": "debug_key_value",
 }
-"""Topics in place of messages; the climb rate of the position gives the angle of attack that PX4 lacks."""
+"""Message to its topic. The climb rate of the position gives the angle of attack that PX4 lacks."""
 
 _DEFAULT, _REPLAY, _HIGH_RATE, _DEBUG = (
     (0, "default set"),
@@ -28,9 +28,9 @@ _BITS = {
     "VFR_HUD": _REPLAY,
     "NAMED_VALUE_FLOAT": _DEBUG,
 }
-"""Bits of SDLOG_PROFILE that log a topic at its full rate, PX4's ``logged_topics.cpp``.
+"""Message to the bit of SDLOG_PROFILE that logs its topic at full rate (PX4's ``logged_topics.cpp``).
 
-With the bit for high rates ``actuator_servos`` comes at full rate, ``actuator_outputs`` stays at 10 Hz.
+With the bit for high rates, ``actuator_servos`` comes at full rate, and ``actuator_outputs`` stays at 10 Hz.
 """
 
 
@@ -38,15 +38,15 @@ class Ulog:
     """Topics of PX4's log."""
 
     def called(self, message: str) -> str:
-        """The topic."""
+        """Return the name of the topic."""
         return _TOPICS.get(message, message)
 
     def faster(self, message: str) -> str:
-        """The bit that logs the topic at its full rate."""
+        """Return the bit that logs the topic at its full rate."""
         return f"set {_bit(_BITS.get(message, _DEFAULT))}"
 
     def present(self, messages: Sequence[str]) -> str:
-        """The bits that log the topics at all."""
+        """Return the bits that log the topics at all."""
         bits = dict.fromkeys(_BITS[m] if _BITS.get(m) == _DEBUG else _DEFAULT for m in messages)
         topics = " and ".join(dict.fromkeys(self.called(message) for message in messages))
         return f"set {' and '.join(map(_bit, bits))}, so that {topics} are logged"

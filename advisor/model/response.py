@@ -1,9 +1,8 @@
 """The model solved on the union of all stamps, with exact sensitivities.
 
-*Interpolate the model, not the data.* The input is linear (or held) between its own stamps, so
-between two neighbouring stamps of any channel the solution is known in closed form
-(``transition``); each output is read off exactly where it was measured. Gaps and irregular
-sampling need no special case.
+*Interpolate the model, not the data.* The input is linear (or held) between its own stamps. Between two
+neighbouring stamps of any channel the solution is therefore known in closed form (``transition``), and each
+output is read off exactly where it was measured. Gaps and irregular sampling need no special case.
 
 Parameters of one manoeuvre, in this order: what all share, ``SHARED``, then its own
 ``LOCAL``. With the air speed ratio s = V/V_ref of a step, the model is
@@ -39,7 +38,7 @@ LOCAL = ("Z_0", "M_0", "alpha_initial", "q_initial", "theta_initial", "q_bias", 
 N_SHARED, N_LOCAL = len(SHARED), len(LOCAL)
 N_PARAMETERS = N_SHARED + N_LOCAL
 N_MOVING = N_SHARED + 4
-"""Parameters up to here move α and q; the rest only enter the outputs."""
+"""Number of parameters that move α and q; the rest only enter the outputs."""
 
 
 class Grid(NamedTuple):
@@ -49,9 +48,9 @@ class Grid(NamedTuple):
     """
 
     first: Index
-    """(m + 1,) where each manoeuvre's events begin, and E."""
+    """(m + 1,) index of the first event of each manoeuvre, and E."""
     kind: Index
-    """(E,) which step leads to the next event; at a manoeuvre's last event, to the event."""
+    """(E,) kind of the step to the next event; at a manoeuvre's last event, of the step to that event."""
     step_s: FloatArray
     """(U,) length of the step."""
     ratio: FloatArray
@@ -63,9 +62,9 @@ class Grid(NamedTuple):
     slope: FloatArray
     """(E,) rate of δe on the step, rad/s."""
     known: FloatArray
-    """(E,) g(t): what is known to drive α̇ besides the model, rad/s, constant over the step."""
+    """(E,) g(t), the known contribution to α̇ beyond the model, rad/s, constant over the step."""
     row: Index
-    """(4, E) which measurement each output of ``OUTPUTS`` has at the event, -1 for none."""
+    """(4, E) row of the measurement of each output of ``OUTPUTS`` at the event, -1 for none."""
     vane: FloatArray
     """(E,) -x_α/V in s."""
     airspeed: FloatArray
@@ -86,96 +85,145 @@ def respond(grid: Grid, shared: FloatArray, local: FloatArray, y: FloatArray, g:
     ----------
     shared : (7,), order of ``SHARED``.
     local : (m, 7), order of ``LOCAL``.
-    y : (N,) receives the outputs.
+    y : (N,), which receives the outputs.
     g : (N, 14) receives their derivatives by the parameters of the row's manoeuvre; with
         shape (0, 14) only the outputs are computed.
 
     Returns
     -------
-    False when the parameters make the model overflow; ``y`` and ``g`` are then useless.
+    False where the parameters make the model overflow; ``y`` and ``g`` are then useless.
     """
-    wanted = g.shape[0] > 0
     kinds = len(grid.step_s)
     table = np.empty((kinds, WIDTH))
     parts = np.empty(kinds, np.int64)
-    z_alpha, z_q, z_delta = shared[0], shared[1], shared[2]
-    m_alpha, m_q, m_delta = shared[3], shared[4], shared[5]
-    for i in range(kinds):
+    if not _fill_transitions(grid, shared, table, parts):
+        return False
+    state = np.empty((3, N_PARAMETERS))
+    attitude = grid.row[3].max() >= 0
+    for m in range(len(grid.first) - 1):
+        if not _respond_in(grid, m, shared, local[m], table, parts, state, attitude, y, g):
+            return False
+    return True
+
+
+@kernel()
+def _fill_transitions(grid: Grid, shared: FloatArray, table: FloatArray, parts: Index) -> bool:
+    """Write the exact solution over each kind of step.
+
+    Parameters
+    ----------
+    shared : (7,), order of ``SHARED``.
+    table : (kinds, WIDTH) receives the solution over one part of the step, as ``transition.fill`` writes it.
+    parts : (kinds,) receives in how many equal parts the step is taken.
+
+    Returns
+    -------
+    False when no division of a step is short enough for the model.
+    """
+    z_alpha, z_q, m_alpha, m_q = shared[0], shared[1], shared[3], shared[4]
+    for i in range(len(grid.step_s)):
         s = grid.ratio[i]
         a11, a12, a21, a22 = s * z_alpha, 1.0 + z_q, s * s * m_alpha, s * m_q
         parts[i] = divisions(a11, a12, a21, a22, grid.step_s[i])
         if parts[i] == 0:
             return False
         fill(table[i], a11, a12, a21, a22, grid.step_s[i] / parts[i])
+    return True
 
-    state = np.empty((3, N_PARAMETERS))
+
+@kernel()
+def _respond_in(
+    grid: Grid,
+    m: int,
+    shared: FloatArray,
+    local: FloatArray,
+    table: FloatArray,
+    parts: Index,
+    state: FloatArray,
+    attitude: bool,
+    y: FloatArray,
+    g: FloatArray,
+) -> bool:
+    """Solve the model over manoeuvre ``m``.
+
+    Parameters
+    ----------
+    shared : (7,), order of ``SHARED``; local : (7,), order of ``LOCAL``.
+    table, parts : as ``_fill_transitions`` writes them.
+    state : (3, 14), overwritten: derivatives of α, q and θ by all parameters.
+    attitude : whether any manoeuvre measures θ.
+    y, g : as ``respond`` takes them.
+
+    Returns
+    -------
+    False when the parameters make the model overflow.
+    """
+    wanted = g.shape[0] > 0
+    z_delta, m_delta = shared[2], shared[5]
     nothing = np.empty(0)
     rows, kind, start, slope = grid.row, grid.kind, grid.start, grid.slope
     vane, known = grid.vane, grid.known
-    attitude = rows[3].max() >= 0
-    for m in range(len(grid.first) - 1):
-        begin, end = grid.first[m], grid.first[m + 1]
-        z_0, m_0 = local[m, 0], local[m, 1]
-        alpha, q, theta = local[m, 2], local[m, 3], local[m, 4]
-        state[:] = 0.0
-        state[0, 9] = state[1, 10] = state[2, 11] = 1.0
-        for e in range(begin, end):
-            row = rows[0, e]
-            if row >= 0:
-                y[row] = alpha + vane[e] * q
-                if wanted:
-                    for j in range(N_PARAMETERS):
-                        g[row, j] = state[0, j] + vane[e] * state[1, j]
-            row = rows[1, e]
-            if row >= 0:
-                y[row] = q + local[m, 5]
-                if wanted:
-                    for j in range(N_PARAMETERS):
-                        g[row, j] = state[1, j]
-                    g[row, 12] += 1.0
-            row = rows[3, e]
-            if row >= 0:
-                y[row] = theta
-                if wanted:
-                    g[row] = state[2]
-            row = rows[2, e]
-            if row >= 0:
-                force = _specific_force(
-                    grid.ratio[kind[e]],
-                    grid.elevator[e],
-                    known[e],
-                    grid.airspeed[e],
-                    grid.acceleration[e],
-                    grid.arm,
-                    shared,
-                    local[m],
-                    alpha,
-                    q,
-                    state,
-                    g[row] if wanted else nothing,
-                )
-                y[row] = force - grid.gravity[e] + local[m, 6]
-            if e + 1 == end:
-                break
-            i = kind[e]
-            s = grid.ratio[i]
-            h = grid.step_s[i] / parts[i]
-            for part in range(parts[i]):
-                delta = start[e] + part * h * slope[e]
-                u1 = s * (z_0 + z_delta * delta) + known[e]
-                u2 = s * s * (m_0 + m_delta * delta)
-                v1, v2 = s * z_delta * slope[e], s * s * m_delta * slope[e]
-                if wanted:
-                    _carry(table[i], s, shared, alpha, q, u1, u2, v1, v2, delta, slope[e], state, attitude)
-                t = table[i]
-                theta += t[15] * alpha + t[16] * q + t[28] * u1 + t[29] * u2 + t[41] * v1 + t[42] * v2
-                alpha, q = (
-                    t[0] * alpha + t[1] * q + t[13] * u1 + t[14] * u2 + t[26] * v1 + t[27] * v2,
-                    t[2] * alpha + t[3] * q + t[15] * u1 + t[16] * u2 + t[28] * v1 + t[29] * v2,
-                )
-        if not abs(alpha) + abs(q) < 1e12:
-            return False
-    return True
+    begin, end = grid.first[m], grid.first[m + 1]
+    z_0, m_0 = local[0], local[1]
+    alpha, q, theta = local[2], local[3], local[4]
+    state[:] = 0.0
+    state[0, 9] = state[1, 10] = state[2, 11] = 1.0
+    for e in range(begin, end):
+        row = rows[0, e]
+        if row >= 0:
+            y[row] = alpha + vane[e] * q
+            if wanted:
+                for j in range(N_PARAMETERS):
+                    g[row, j] = state[0, j] + vane[e] * state[1, j]
+        row = rows[1, e]
+        if row >= 0:
+            y[row] = q + local[5]
+            if wanted:
+                for j in range(N_PARAMETERS):
+                    g[row, j] = state[1, j]
+                g[row, 12] += 1.0
+        row = rows[3, e]
+        if row >= 0:
+            y[row] = theta
+            if wanted:
+                g[row] = state[2]
+        row = rows[2, e]
+        if row >= 0:
+            force = _specific_force(
+                grid.ratio[kind[e]],
+                grid.elevator[e],
+                known[e],
+                grid.airspeed[e],
+                grid.acceleration[e],
+                grid.arm,
+                shared,
+                local,
+                alpha,
+                q,
+                state,
+                g[row] if wanted else nothing,
+            )
+            y[row] = force - grid.gravity[e] + local[6]
+        if e + 1 == end:
+            break
+        i = kind[e]
+        s = grid.ratio[i]
+        h = grid.step_s[i] / parts[i]
+        for part in range(parts[i]):
+            delta = start[e] + part * h * slope[e]
+            u1 = s * (z_0 + z_delta * delta) + known[e]
+            u2 = s * s * (m_0 + m_delta * delta)
+            v1, v2 = s * z_delta * slope[e], s * s * m_delta * slope[e]
+            if wanted:
+                _carry(table[i], s, shared, alpha, q, u1, u2, v1, v2, delta, slope[e], state, attitude)
+            t = table[i]
+            theta += t[15] * alpha + t[16] * q + t[28] * u1 + t[29] * u2 + t[41] * v1 + t[42] * v2
+            alpha, q = (
+                t[0] * alpha + t[1] * q + t[13] * u1 + t[14] * u2 + t[26] * v1 + t[27] * v2,
+                t[2] * alpha + t[3] * q + t[15] * u1 + t[16] * u2 + t[28] * v1 + t[29] * v2,
+            )
+    finite: bool = abs(alpha) + abs(q) < 1e12
+    return finite
 
 
 @kernel()
@@ -194,7 +242,7 @@ def _carry(
     state: FloatArray,
     attitude: bool,
 ) -> None:
-    """Carry the sensitivities ``state`` (3, 14) of α, q and, if asked, θ over one step from (α, q)."""
+    """Advance the sensitivities ``state`` (3, 14) of α, q and, on request, θ over one step from (α, q)."""
     a11, a12, a21, a22 = s * shared[0], 1.0 + shared[1], s * s * shared[3], s * shared[4]
     t0, t1, t2, t3 = t[0], t[1], t[2], t[3]
     if attitude:
@@ -258,7 +306,8 @@ def _specific_force(
     state: FloatArray,
     row: FloatArray,
 ) -> float:
-    """a_z without gravity and bias, from α̇ and q̇ of the model; derivatives into ``row`` (14,) or (0,)."""
+    """Return a_z without gravity and bias, from α̇ and q̇ of the model; derivatives into ``row`` (14,) or
+    (0,)."""
     a11, a12, a21, a22 = s * shared[0], 1.0 + shared[1], s * s * shared[3], s * shared[4]
     alpha_dot = a11 * alpha + a12 * q + s * (shared[2] * delta + local[0]) + known
     q_dot = a21 * alpha + a22 * q + s * s * (shared[5] * delta + local[1])

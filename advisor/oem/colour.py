@@ -2,11 +2,10 @@
 
     ν_k = w_k + x_k,   x_{k+1} = φ·x_k + e_k
 
-Real residuals are a mixture of the two: sensor noise that forgets at once and small errors of
-the model that last. Sample autocorrelations of residuals come out too small, because the fitted
-parameters have eaten part of the slow noise; restricted maximum likelihood (Patterson &
-Thompson, *Biometrika* 58, 1971) looks only at what no parameter can explain and is free of that
-bias.
+Real residuals are a mixture of white sensor noise and small, lasting errors of the model. Sample
+autocorrelations of residuals are too small, because the fitted parameters absorb part of the slow noise.
+Restricted maximum likelihood (Patterson & Thompson, *Biometrika* 58, 1971) uses only what no parameter can
+explain, and is free of that bias.
 """
 
 import math
@@ -22,13 +21,13 @@ from advisor.oem.recursion import accumulated
 from advisor.oem.whitening import schedule, whiten
 
 MEMORIES = (-0.4, 0.3, 0.5, 0.7, 0.8, 0.87, 0.92, 0.95, 0.97, 0.985, 0.993)
-"""First guesses of φ."""
+"""Starting values of φ in the search."""
 WHITE_SHARES = (0.0, 0.1, 0.5, 2.0)
-"""First guesses of var w / var x."""
+"""Starting values of var w / var x in the search."""
 SIGNIFICANT = 6.0
-"""Gain in twice the log-likelihood from which colour is believed."""
+"""Least gain in twice the log likelihood for coloured noise."""
 PROMISING = 1.0
-"""Gain of the best first guess below which the search for colour is not begun."""
+"""Least gain of the best starting value for which the search is begun."""
 LARGEST_MEMORY = 0.9995
 SMALLEST_SHARE = 1e-4
 LOG_SMALLEST_SHARE = math.log(SMALLEST_SHARE)
@@ -37,31 +36,31 @@ _NEARLY_ONE = 1.0 - 1e-9
 
 @dataclass(frozen=True, slots=True)
 class Stretch:
-    """Residuals of one output in one manoeuvre, and what its parameters could explain."""
+    """Residuals of one output in one manoeuvre, and the regressors of its parameters."""
 
     residual: FloatArray
-    """(n,)."""
+    """(n,) residuals."""
     columns: FloatArray
     """(n, p) derivatives by the manoeuvre's parameters."""
 
 
 @dataclass(frozen=True, slots=True)
 class Colour:
-    """Noise of one output."""
+    """Noise model of one output."""
 
     variance: float
-    """Of the coloured part x, or of all when ``memory`` is 0."""
+    """Variance of the coloured part x, or of the whole noise when ``memory`` is 0."""
     memory: float
-    """φ; 0: white."""
+    """φ; 0 for white noise."""
     white_share: float
     """var w / var x."""
     uncertainty: FloatArray
-    """(k, k) covariance of the logarithm of ``variance``, and with colour of the two shape
-    parameters of ``shape``."""
+    """(k, k) covariance of the logarithm of ``variance`` and, for coloured noise, of the two parameters of
+    ``shape``."""
 
     @property
     def shape(self) -> FloatArray:
-        """(2,) φ and var w / var x on unbounded scales."""
+        """(2,) φ and var w / var x, transformed to unbounded scales."""
         return _unbounded(self.memory, self.white_share)
 
 
@@ -108,7 +107,7 @@ def find_colour(stretches: Sequence[Stretch]) -> Colour:
     variance = cost(memory, share)[1]
 
     def joint(x: FloatArray) -> float:
-        """-2·log-likelihood by log variance and shape."""
+        """Return -2·log-likelihood by log variance and shape."""
         power = determinants = 0.0
         for block in prepared:
             part, determinant = _restricted(block, *_bounded(x[1:]))
@@ -121,7 +120,7 @@ def find_colour(stretches: Sequence[Stretch]) -> Colour:
 
 
 def product(rows: FloatArray, colour: Colour) -> FloatArray:
-    """AᵀΓA, shape (k, k), for the influence ``rows`` (n, k) of one stretch."""
+    """Return AᵀΓA, shape (k, k), for the influence ``rows`` (n, k) of one stretch."""
     square = rows.T @ rows
     if colour.memory == 0.0:
         return colour.variance * square
@@ -131,7 +130,7 @@ def product(rows: FloatArray, colour: Colour) -> FloatArray:
 
 
 def moved(colour: Colour, step: FloatArray) -> Colour:
-    """The colour with log variance and shape displaced by ``step`` (3,)."""
+    """Return the colour with log variance and shape displaced by ``step`` (3,)."""
     memory, share = _bounded(colour.shape + step[1:])
     return Colour(colour.variance * float(np.exp(step[0])), memory, share, colour.uncertainty)
 
@@ -151,7 +150,7 @@ def _simplex(x: FloatArray) -> FloatArray:
 
 
 def _orthogonal(stretch: Stretch, scale: float) -> FloatArray:
-    """(n, r + 1) orthonormal basis of the columns, and the residual last."""
+    """Return (n, r + 1) orthonormal basis of the columns, and the residual last."""
     columns = stretch.columns / np.where(np.any(stretch.columns != 0.0, axis=0), 1.0, np.inf)
     size = np.linalg.norm(columns, axis=0)
     basis, values, _ = np.linalg.svd(columns[:, size > 0.0] / size[size > 0.0], full_matrices=False)
@@ -162,7 +161,7 @@ def _orthogonal(stretch: Stretch, scale: float) -> FloatArray:
 
 @kernel(fastmath={"reassoc", "contract"})
 def _restricted(block: FloatArray, memory: float, share: float) -> tuple[float, float]:
-    """Residual power after whitening and regression, and log det Γ + log det XᵀΓ⁻¹X.
+    """Return the residual power after whitening and regression, and log det Γ + log det XᵀΓ⁻¹X.
 
     ``block`` (n, p + 1): regressors and residual; Γ that of unit-variance x.
     """
@@ -191,7 +190,7 @@ def _restricted(block: FloatArray, memory: float, share: float) -> tuple[float, 
 
 
 def _uncertainty(cost: Callable[[FloatArray], float], centre: FloatArray) -> FloatArray:
-    """Covariance of the parameters from the curvature of -2·log-likelihood."""
+    """Return the covariance of the parameters from the curvature of -2·log-likelihood."""
     n = len(centre)
     steps = np.array([0.05, 0.05, 0.3])
     hessian = np.empty((n, n))

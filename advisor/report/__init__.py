@@ -1,1 +1,1 @@
-"""Faces without a screen: text, JSON, pictures."""
+"""Results without a screen: text, JSON, pictures."""

@@ -9,20 +9,21 @@ from advisor.ascii_output import plain
 
 
 class PlainConsole(Console):
-    """Standard output: text as it stands, for what files and vehicles call themselves may hold any bracket.
+    """Console on standard output that shows text literally, because names from files and vehicles may hold
+    brackets.
 
-    Where the encoding is none of Unicode's, cells are spelled in ASCII before their widths are taken, so that
+    In an encoding other than Unicode, cells are spelled in ASCII before their widths are taken, so that
     columns stay straight.
 
     Parameters
     ----------
     soft_wrap
-        Whether long lines are left to the terminal to wrap.
+        Whether the terminal wraps long lines.
     """
 
     def __init__(self, soft_wrap: bool = False) -> None:
         super().__init__(highlight=False, markup=False, emoji=False, soft_wrap=soft_wrap)
 
     def render_str(self, text: str, **options: Any) -> Text:
-        """Make text of a cell or a line given as a string."""
+        """Make text of a cell or line given as a string."""
         return super().render_str(plain(text) if self.options.ascii_only else text, **options)

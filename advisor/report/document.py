@@ -1,4 +1,5 @@
-"""The ``advisor.analyze/1`` document: what scripts read. SI units, NaN never, None where there is nothing."""
+"""The ``advisor.analyze/1`` document for scripts, in SI units, with None in place of missing values and
+NaN."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -29,15 +30,15 @@ def analysis_document(
     Parameters
     ----------
     state
-        The campaign at the end of the logs; None when none could be read at all.
+        Campaign at the end of the logs. None when no log could be read.
     files
         Names of the logs, as given, flight by flight.
     aircraft
-        Its reference data make non-dimensional coefficients of the model.
+        Aircraft with reference data for non-dimensional coefficients.
     left_out
-        Why logs do not count, by flight; ``usable`` is false when none counts.
+        Reasons for which logs do not count, by flight. ``usable`` is false when no log counts.
     notes
-        What is to be said of the series of logs.
+        Sentences on the series of logs.
     """
     several = len(files) > 1
     read = [*state.elevator_notes, *state.reader_notes, *state.mark_notes] if state else []
@@ -162,7 +163,8 @@ def _rule(result: RuleResult) -> dict[str, Any]:
 
 
 def parameters(estimate: Estimate | NoEstimate | None) -> dict[str, Any] | None:
-    """Every parameter as ``{value, std, std_cr}``; one that is not identifiable has None and its reason."""
+    """Return every parameter as ``{value, std, std_cr}``. An unidentifiable parameter has None and the
+    reason."""
     if not isinstance(estimate, Estimate):
         return None
     return {
@@ -176,13 +178,13 @@ def parameters(estimate: Estimate | NoEstimate | None) -> dict[str, Any] | None:
 
 
 def instruments(estimate: Estimate | None) -> dict[str, Any]:
-    """Parameters of the instruments that were estimated with the derivatives, by name."""
+    """Return parameters of the instruments that were estimated with the derivatives, by name."""
     found = estimate.instruments if estimate else ()
     return {x.name: {"value": number(x.value), "std": number(x.std)} for x in found}
 
 
 def identifiability(estimate: Estimate | None) -> dict[str, Any] | None:
-    """How well the input told the parameters apart."""
+    """Return measures of how well the input separates the parameters."""
     if estimate is None:
         return None
     return {
@@ -215,8 +217,8 @@ def _flight_test(verdict: FlightTestVerdict) -> dict[str, Any]:
             "advice": verdict.next.advice,
             "holding_back": verdict.next.holding_back,
             "remaining_maneuvers": {
-                "median": verdict.next.remaining.median,
-                "p90": verdict.next.remaining.p90,
+                "median": verdict.next.remaining and verdict.next.remaining.median,
+                "p90": verdict.next.remaining and verdict.next.remaining.p90,
             },
         },
         "warnings": list(verdict.warnings),
@@ -224,7 +226,8 @@ def _flight_test(verdict: FlightTestVerdict) -> dict[str, Any]:
 
 
 def _held_to(progress: RuleProgress) -> dict[str, Any]:
-    """What the rule information weighs, each beside its tolerance; nothing for the other rules."""
+    """Return the quantities of the rule ``information`` with their tolerances; nothing for the other
+    rules."""
     if not progress.prediction_percent and not progress.parameter_percent:
         return {}
     return {
@@ -252,5 +255,5 @@ def _model(model: Estimate | None) -> dict[str, Any] | None:
 
 
 def number(value: float | None) -> float | None:
-    """A number JSON can hold: None for what is missing, infinite or not a number."""
+    """Return a number that JSON can hold: None for a missing, infinite or undefined value."""
     return None if value is None or not math.isfinite(value) else float(value)

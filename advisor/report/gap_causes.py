@@ -1,4 +1,5 @@
-"""Which effect: the ranking with sizes, what each is tied with, and what the flight could not show."""
+"""Causes of the gap: the ranking with sizes, the confusions of each, and the effects that the flight cannot
+show."""
 
 from collections.abc import Iterator, Sequence
 
@@ -11,12 +12,12 @@ from advisor.gap.result import Cause, Unseen, spelled
 from advisor.report.gap_sizes import short, sizes_of
 
 _LIKELY = 0.01
-"""Alternatives below this probability share one line."""
+"""Probability below which alternatives share one line."""
 PRESENT = "●"
 
 
 def ranking(causes: Sequence[Cause]) -> Iterator[RenderableType]:
-    """The causes as a table, the unlikely in a line, then every tie as a sentence."""
+    """Yield the causes as a table, the unlikely ones in a line, then every confusion as a sentence."""
     likely = [c for c in causes if c.present or c.probability >= _LIKELY]
     if likely:
         yield _table(likely)
@@ -27,11 +28,11 @@ def ranking(causes: Sequence[Cause]) -> Iterator[RenderableType]:
         yield Text(f"Below 1 %: {', '.join(unlikely)}.", style="dim")
     for c in likely:
         if c.cannot_be_told_from:
-            yield Text(tie_sentence(c))
+            yield Text(confusion_sentence(c))
 
 
-def tie_sentence(c: Cause) -> str:
-    """What else would look the same, and what would tell the two apart."""
+def confusion_sentence(c: Cause) -> str:
+    """Return a sentence on effects that look alike here, and on the way to distinguish them."""
     others = [spelled(name) for name in c.cannot_be_told_from]
     listed = others[0] if len(others) == 1 else f"{', '.join(others[:-1])} or {others[-1]}"
     way = f" To tell them apart, {c.tell_apart_by}." if c.tell_apart_by else ""
@@ -39,7 +40,8 @@ def tie_sentence(c: Cause) -> str:
 
 
 def unseen(effects: Sequence[Unseen]) -> Table:
-    """What the flight could not show, an effect a line, and what it would take."""
+    """Return the effects that the flight cannot show, one on each line, with the data that would show
+    them."""
     table = Table.grid(padding=(0, 2))
     table.add_column(no_wrap=True)
     table.add_column()

@@ -1,4 +1,5 @@
-"""How far: the error along the worst manoeuvre, and accepted yardsticks, before and after."""
+"""Size of the gap: the error along the worst manoeuvre, and standard measures of fidelity, before and
+after."""
 
 import math
 from collections.abc import Iterator
@@ -22,30 +23,30 @@ _LEGEND = (
     "Band: q ±2 deg/s, θ ±1.5 deg, a_z ±0.10 g."
 )
 _BESIDE_BARS = 34
-"""Columns taken by the letters before and the numbers behind the bars."""
+"""Columns used by the letters before the bars and the numbers behind them."""
 
 
 def errors(d: Diagnosis, width: int) -> Text:
-    """Largest error along the manoeuvre with the largest gap, one scale a channel."""
+    """Return the largest error along the manoeuvre with the largest gap, with one scale for each channel."""
     worst = worst_maneuver(d)
     lines = [line for t in d.traces if t.number == worst for line in _pair(t, max(width - _BESIDE_BARS, 10))]
     return Text("\n".join(lines) or "no traces", no_wrap=True, overflow="crop")
 
 
 def worst_maneuver(d: Diagnosis) -> int:
-    """Number of the manoeuvre with the largest gap."""
+    """Return the number of the manoeuvre with the largest gap."""
     return max(d.gap.by_maneuver, key=lambda row: row[1])[0]
 
 
 def yardsticks(d: Diagnosis) -> Iterator[RenderableType]:
-    """Gap, Theil's coefficient with its split, R² and the share inside the qualification's band."""
-    yield Text("fidelity on manoeuvres kept out, before → after", style="bold")
+    """Yield gap, Theil's coefficient with its parts, R² and the share inside the qualification's band."""
+    yield Text("fidelity on held-out manoeuvres, before → after", style="bold")
     yield _yardsticks(d)
     yield Text(_LEGEND, style="dim")
 
 
 def _yardsticks(d: Diagnosis) -> Table:
-    # One column of padding, not two: with the largest numbers there are the table fills 80 columns.
+    # One column of padding, not two: with the largest possible numbers the table fills 80 columns.
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, padding=(0, 1, 0, 0))
     for heading in ("", "gap", "Theil", "of error", "R²", "in band, %"):
         table.add_column(heading, justify="right" if heading else "left", no_wrap=True)

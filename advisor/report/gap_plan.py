@@ -1,4 +1,4 @@
-"""What ``advisor gap --foresee`` prints: no flight yet, but what it could show."""
+"""Output of ``advisor gap --foresee``: effects that a planned flight could show."""
 
 import json
 import math
@@ -23,22 +23,22 @@ _OF_LINEAR = {"M_alpha2": "M_alpha", "Z_alpha2": "Z_alpha", "M_delta2": "M_delta
 
 _IN_WORDS = {"gain": "deg/s per deg", "M_throttle": "rad/s², full throttle", "M_thrust": "rad/s² of trim"}
 _NO_ALPHA = (
-    "Without an angle of attack a flight is diagnosed only if VFR_HUD brings what it can be derived from: "
+    "Without an angle of attack, a flight is diagnosed only if VFR_HUD brings the data to derive one: "
     "climb rate and air speed, at 10 Hz."
 )
 _ALIKE = 2
-"""Confusions that are shown; JSON has them all."""
+"""Number of confusions that are printed. JSON has all of them."""
 
 
 def print_foresight(
     aircraft: Aircraft, plan: str, rate_hz: float, amplitude_deg: float, without: str, as_json: bool
 ) -> int:
-    """Print the smallest detectable size and the confusions of every effect; exit code 0.
+    """Print the smallest detectable size and the confusions of every effect; return exit code 0.
 
     Raises
     ------
     ConfigurationError
-        The aircraft file has no complete ``model``, or the plan cannot be flown or sampled as it says.
+        The aircraft file has no complete ``model``, or the plan cannot be flown or sampled.
     """
     inputs = [name.strip() for name in plan.split(",") if name.strip()]
     absent = [name.strip() for name in without.split(",") if name.strip()]
@@ -56,7 +56,7 @@ def print_foresight(
 
 
 class ForesightScreen:
-    """Sizes that would show, what tells twins apart, and what the plan cannot show at all."""
+    """Detectable sizes, ways to distinguish similar effects, and effects that the plan cannot show."""
 
     def __init__(self, title: str, found: Sequence[Foreseen], notes: Sequence[str] = ()) -> None:
         self.title, self.found, self.notes = title, found, notes
@@ -72,7 +72,7 @@ class ForesightScreen:
         ways = _ways(self.found)
         if ways:
             yield ""
-            yield Text("To tell these apart:", style="bold")
+            yield Text("To distinguish these:", style="bold")
             yield _listed(ways)
         hidden = [(spelled(f.effect), f.add) for f in self.found if not math.isfinite(f.smallest)]
         if hidden:
@@ -82,7 +82,7 @@ class ForesightScreen:
 
 
 def size_of(f: Foreseen) -> str:
-    """The smallest size that shows, with a unit people use."""
+    """Return the smallest detectable size, with a unit for people."""
     factor, unit = in_units(f.parameter)
     size = abs(factor * f.smallest)
     if f.share is not None:
@@ -106,7 +106,7 @@ def _table(shown: Sequence[Foreseen]) -> Table:
 
 
 def _ways(found: Sequence[Foreseen]) -> list[tuple[str, str]]:
-    """Each pair of twins once, and what would tell the two apart."""
+    """Return each pair of similar effects once, with the way to distinguish them."""
     ways: dict[frozenset[str], tuple[str, str]] = {}
     for f in found:
         twins = [name for name, cosine in f.confused_with if cosine > CONFUSED_AT]
@@ -134,7 +134,7 @@ def _noise() -> str:
 
 
 def _whole(x: float) -> str:
-    """Two digits; all of them before the point."""
+    """Return a number with two digits; with all of them before the decimal point."""
     return f"{x:.0f}" if x >= 100.0 else f"{x:.2g}"
 
 

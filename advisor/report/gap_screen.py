@@ -1,4 +1,4 @@
-"""The diagnosis on a terminal: verdict, where and when, waterfall, ranking, error before and after."""
+"""The diagnosis on a terminal: verdict, place and time, waterfall, ranking, error before and after."""
 
 from collections.abc import Iterator, Sequence
 
@@ -9,6 +9,7 @@ from rich.panel import Panel
 from rich.table import Table
 from rich.text import Text
 
+from advisor.bundled import SIMULATOR
 from advisor.gap.result import Diagnosis, spelled
 from advisor.gap.verdict.ledger import in_words
 from advisor.gap.verdict.text import place
@@ -19,7 +20,7 @@ from advisor.report.gap_sizes import short
 from advisor.report.gap_where import whereabouts
 
 WIDEST = 120
-"""Columns beyond which lines only become harder to read."""
+"""Columns beyond which lines become harder to read."""
 _VERDICTS = {
     "none": "NO GAP",
     "parameters": "WRONG NUMBERS",
@@ -37,17 +38,17 @@ _PICTURE = (
     (("timing", "time stamps"), ("accelerometer", "accelerometer"), ("attitude_sensor", "attitude")),
 )
 _SCORES = "per cent: how well a block would explain the gap on its own, the best 100 %"
-_AS_GOOD = "100 % beside the marked block: the data alone can hardly tell the two apart"
+_AS_GOOD = "100 % elsewhere: the data alone can hardly distinguish the two blocks"
 _ROUNDS_TO_ALL = 0.995
 _BAR = 40
 _SPEED = "airspeed_variation"
-"""Where the measured speed is in the simulator as it is, it is no step."""
+"""Effect that is no step where the simulator already contains the measured speed."""
 _WORTH_SAYING = 0.005
-"""Shares that round to nothing are left out."""
+"""Share below which a number rounds to nothing and is left out."""
 
 
 class GapScreen:
-    """Everything an engineer wants of a diagnosis, readable without colour and at 80 columns."""
+    """Diagnosis for an engineer, readable without colour and at 80 columns."""
 
     def __init__(self, diagnosis: Diagnosis, improved: str | None = None, why: bool = False) -> None:
         self.diagnosis, self.improved, self.why = diagnosis, improved, why
@@ -95,11 +96,11 @@ class GapScreen:
     def _written(self) -> str:
         if self.improved is None:
             return ""
-        return f"The improved simulator is {self.improved}; python -m sim flies it with --aircraft."
+        return f"The improved simulator is {self.improved}; python -m {SIMULATOR} flies it with --aircraft."
 
 
 def _note(text: str) -> Table:
-    """A note whose further lines stand under its first."""
+    """Return a note whose further lines are aligned below its first."""
     table = Table.grid(padding=(0, 1))
     table.add_row("·", Text(text))
     return table
@@ -115,8 +116,8 @@ def _numbers(d: Diagnosis) -> Text:
     if d.shrink is not None:
         low, high = d.shrink.ci95_percent
         lines.append(
-            f"{d.shrink.percent:.1f} % less (95 %: {low:.1f} to {high:.1f}) on manoeuvres "
-            f"kept out of the fit: {_counted(d.shrink.holdout)}"
+            f"{d.shrink.percent:.1f} % less (95 %: {low:.1f} to {high:.1f}) on held-out "
+            f"manoeuvres: {_counted(d.shrink.holdout)}"
         )
         if d.shrink.beyond_air_percent is not None:
             lines.append(f"without the air's own course: {d.shrink.beyond_air_percent:.0f} % less")
@@ -124,7 +125,7 @@ def _numbers(d: Diagnosis) -> Text:
 
 
 def _counted(numbers: Sequence[int]) -> str:
-    """``1 to 9`` where none is missing between."""
+    """Return ``1 to 9`` for numbers without a gap, else a list."""
     if len(numbers) > 2 and numbers[-1] - numbers[0] == len(numbers) - 1:
         return f"{numbers[0]} to {numbers[-1]}"
     return ", ".join(map(str, numbers))
@@ -138,7 +139,8 @@ def _where(d: Diagnosis) -> str:
 
 
 def _picture(d: Diagnosis) -> Iterator[RenderableType]:
-    """The simulator as blocks: the guilty one between arrows, others that are named, how well the rest do."""
+    """Yield the simulator as blocks: the guilty block between arrows, other named blocks, and the scores of
+    the rest."""
     table = Table.grid(expand=True, padding=(0, 1))
     guilty = d.where.block if d.verdict in ("effect", "unknown") else ""
     named = {c.block for c in d.causes if c.present} - {guilty}

@@ -1,4 +1,4 @@
-"""How far in the user's own simulator, and whether it would pass as a training simulator: as text."""
+"""Gap in the user's own simulator, and its qualification as a training simulator, as text."""
 
 import math
 from collections.abc import Iterator
@@ -23,7 +23,7 @@ _LEGEND = (
 
 
 def simulated(found: InSimulator) -> Iterator[RenderableType]:
-    """Yield what the simulator does as given and with the effects, and the table of qualification."""
+    """Yield the simulator's gap as given and with the effects, and the table of qualification."""
     yield Text(f"in your simulator, {found.simulator}", style="bold")
     yield Text("\n".join(_shrunk(found)))
     yield _table(found)
@@ -36,11 +36,11 @@ def _shrunk(found: InSimulator) -> Iterator[str]:
         return
     yield (
         f"gap {short(found.before)} → {short(found.after)} with the effects added to it, "
-        f"{found.percent:.1f} % less, on manoeuvres kept out of the fit"
+        f"{found.percent:.1f} % less, on held-out manoeuvres"
     )
     if found.on_paper:
         names = ", ".join(spelled(name) for name in found.on_paper)
-        yield f"on paper only, for this simulator cannot be given it: {names}"
+        yield f"on paper only, because this simulator cannot take it: {names}"
 
 
 def _table(found: InSimulator) -> Table:

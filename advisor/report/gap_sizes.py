@@ -1,4 +1,4 @@
-"""Sizes of effects in the units people use: milliseconds, degrees, per cent, metres."""
+"""Sizes of effects in units for people: milliseconds, degrees, per cent, metres."""
 
 import math
 
@@ -14,12 +14,12 @@ _ENDINGS = {
     "_s": (1e3, "ms"),
     "_m": (1.0, "m"),
 }
-"""Ending of a parameter's name: factor from SI, unit. The longest that fits counts."""
+"""Ending of a parameter's name to its factor from SI and its unit. The longest fitting ending counts."""
 _LEAST, _ROUNDING = 1e-3, 1e-9
-"""Gap too small for a number, and too small to be anything but the rounding of nothing."""
+"""Gap too small for a number, and gap that is only rounding."""
 _SHARES = frozenset({"scale", "step", "inertia", "change", "share", "damping", "lift_h"})
 _ICE = frozenset({"Z_alpha", "Z_delta_e", "M_alpha", "M_delta_e"})
-"""Changes of derivatives, as a share of them."""
+"""Changes of derivatives, as a share of each derivative."""
 _OF_DERIVATIVES = {
     "Z_alpha2": "s⁻¹rad⁻¹", "Z_alpha3": "s⁻¹rad⁻²", "Z_h": "s⁻¹",
     "M_alpha2": "s⁻²rad⁻¹", "M_alpha3": "s⁻²rad⁻²", "M_delta2": "s⁻²rad⁻¹", "M_delta3": "s⁻²rad⁻²",
@@ -27,7 +27,7 @@ _OF_DERIVATIVES = {
     "gain": "s⁻¹", "displacement_gain": "s⁻¹", "sharpness": "rad⁻¹",
 }  # fmt: skip
 _SIGNED = frozenset({"scale", "step", "inertia", "change", "skew_s", "bias_rad", "bias_rad_s", *_ICE})
-"""Parameters whose direction matters to the reader."""
+"""Parameters whose sign matters to the reader."""
 
 
 _IN_WORDS = {
@@ -36,18 +36,18 @@ _IN_WORDS = {
     "with_attitude": "the attitude, too",
     "stability_only": "of the stability alone",
 }
-"""Parameters that only say that something is so."""
+"""Parameters that only state a fact."""
 
 
 def short(x: float) -> str:
-    """Three digits, never in powers of ten where people count in thousands or it might as well be nothing."""
+    """Return three digits, never in powers of ten up to thousands or for a negligible number."""
     if abs(x) < _LEAST:
         return "0" if abs(x) < _ROUNDING else "<0.001"
     return f"{x:,.0f}" if 1e3 <= abs(x) < 1e7 else f"{x:.3g}"
 
 
 def in_units(parameter: str) -> tuple[float, str]:
-    """Factor from SI and the unit a parameter is shown in."""
+    """Return the factor from SI and the displayed unit of a parameter."""
     if parameter in _SHARES or parameter in _ICE:
         return 100.0, "%"
     if parameter in _OF_DERIVATIVES:
@@ -61,20 +61,20 @@ def in_units(parameter: str) -> tuple[float, str]:
 
 
 def with_error(parameter: str, value: Value) -> str:
-    """``30 ± 6 ms``: no more digits than the error leaves a meaning to."""
+    """Return ``30 ± 6 ms``, with no more digits than the error justifies."""
     factor, unit = in_units(parameter)
     number, error = factor * value.value, abs(factor * value.std)
     sign = "+" if parameter in _SIGNED else ""
     if not math.isfinite(error) or error == 0.0:
         return f"{number:{sign}.3g} {unit}".rstrip()
-    # One digit of the error; two where it begins with a one.
+    # One digit of the error; two where the error begins with a one.
     first = math.floor(math.log10(error))
     decimals = -first + (1 if error < 2.0 * 10.0**first else 0)
     return f"{_rounded(number, decimals, sign)} ± {_rounded(error, decimals)} {unit}".rstrip()
 
 
 def sizes_of(cause: Cause) -> list[str]:
-    """Every parameter of a cause, one a line; its name only where there are several."""
+    """Return every parameter of a cause, one on each line, with its name only where there are several."""
     words = [text for name, text in _IN_WORDS.items() if name in cause.parameters]
     shown = {
         name: with_error(name, value) for name, value in cause.parameters.items() if name not in _IN_WORDS
@@ -89,7 +89,7 @@ def _rounded(x: float, decimals: int, sign: str = "") -> str:
 
 
 def _named(parameter: str) -> str:
-    """A parameter's name without its unit."""
+    """Return a parameter's name without its unit."""
     if parameter in _ICE or parameter in _OF_DERIVATIVES:
         return parameter
     for ending in _ENDINGS:

@@ -1,4 +1,4 @@
-"""Where the gap lies: in which part of the manoeuvres, at which frequencies, in which manoeuvre."""
+"""Place of the gap: part of the manoeuvres, frequencies, manoeuvre."""
 
 from collections.abc import Iterator
 from itertools import zip_longest
@@ -11,13 +11,13 @@ from advisor.report.gap_sizes import short
 _BAR = 12
 _EIGHTHS = "▏▎▍▌▋▊▉"
 _AS_LOUD_AS_NOISE = 1.0
-"""Gap that fills a bar where none is larger: a smaller one should not look like much."""
+"""Least gap that fills a bar. A smaller gap must not look large."""
 _LEFT = 38
-"""Columns of what stands left of something else."""
+"""Columns for the text left of the bars."""
 
 
 def whereabouts(gap: Gap) -> Text:
-    """Phases beside frequencies, then every manoeuvre before and after; bars are in proportion."""
+    """Return phases next to frequencies, then every manoeuvre before and after, with bars in proportion."""
     lines = [*_beside(list(_phases(gap)), list(_bands(gap))), "", *_maneuvers(gap)]
     return Text("\n".join(lines), no_wrap=True, overflow="crop")
 

@@ -1,4 +1,4 @@
-"""The improved simulator as a file: the aircraft file with what the flight showed."""
+"""The improved simulator as a file: the aircraft file with the flight's findings."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, replace
@@ -14,7 +14,7 @@ from advisor.gap.result import Diagnosis
 
 
 def improved_file(diagnosis: Diagnosis, aircraft: Aircraft) -> Mapping[str, Any]:
-    """The aircraft file with the fitted model and the effects found in it."""
+    """Return the aircraft file with the fitted model and the effects found in it."""
     content: dict[str, Any] = {"name": f"{aircraft.name}, improved"}
     flown, effects = less_of_the_servo(aircraft, together(aircraft.effects, diagnosis.effects))
     kept = replace(flown, name=Aircraft().name, model={}, effects={}, simulator=None)
@@ -29,7 +29,7 @@ def improved_file(diagnosis: Diagnosis, aircraft: Aircraft) -> Mapping[str, Any]
 
 
 def _beyond(content: Mapping[str, Any], usual: Mapping[str, Any]) -> dict[str, Any]:
-    """What a file must say because it is not what is taken without it, section by section."""
+    """Return the values of a file that differ from the defaults, section by section."""
     found = {}
     for key, value in content.items():
         if isinstance(value, Mapping) and (inside := _beyond(value, usual.get(key) or {})):
@@ -42,13 +42,13 @@ def _beyond(content: Mapping[str, Any], usual: Mapping[str, Any]) -> dict[str, A
 def write_improved(diagnosis: Diagnosis, aircraft: Aircraft, path: Path) -> Path:
     """Write the improved simulator as a file that ``advisor`` and ``python -m sim`` load."""
     text = yaml.safe_dump(_plain(improved_file(diagnosis, aircraft)), sort_keys=False, allow_unicode=True)
-    head = "# Written by `advisor gap`: the simulator with what the flight showed.\n"
+    head = "# Written by `advisor gap`: the simulator with the findings of the flight.\n"
     write_atomically(path, head + text)
     return path
 
 
 def improved_name(diagnosis: Diagnosis, aircraft_file: Path | None) -> str:
-    """``<aircraft>-with-<effect>.yaml``."""
+    """Return the name ``<aircraft>-with-<effect>.yaml``."""
     stem = aircraft_file.stem if aircraft_file is not None else "aircraft"
     first = next(iter(diagnosis.effects), "fitted-model")
     return f"{stem}-with-{first.replace('_', '-')}.yaml"
@@ -59,7 +59,7 @@ def _digits(x: float) -> float:
 
 
 def _plain(value: Any) -> Any:
-    """Tuples as lists, so that the file reads as people write it."""
+    """Return tuples as lists, so that the file reads as people write it."""
     if isinstance(value, Mapping):
         return {k: _plain(v) for k, v in value.items()}
     if isinstance(value, list | tuple):

@@ -19,16 +19,16 @@ NAMES: Mapping[str, str] = {
     "static_margin": "static margin",
     "neutral_point": "neutral point",
 }
-"""As people read them."""
+"""Quality to its name for people."""
 
 
 def qualities_of(state: CampaignState, reference: Reference) -> FlyingQualities | None:
-    """Flying qualities of the joint estimate; None without an estimate."""
+    """Return flying qualities of the joint estimate; None without an estimate."""
     return None if state.model is None else flying_qualities(state.model, _air(state, reference), reference)
 
 
 def coefficients_of(state: CampaignState, reference: Reference) -> Mapping[str, Coefficient]:
-    """Non-dimensional coefficients of the joint estimate; empty without an estimate."""
+    """Return the non-dimensional coefficients of the joint estimate; empty without an estimate."""
     return {} if state.model is None else coefficients(state.model, reference, _air(state, reference))
 
 
@@ -39,7 +39,7 @@ def _air(state: CampaignState, reference: Reference) -> AirFlown:
 
 
 def qualities_document(found: FlyingQualities | None) -> dict[str, Any] | None:
-    """The part ``flying_qualities`` of ``advisor.analyze/1``; each number in the unit that stands with it."""
+    """Return the part ``flying_qualities`` of ``advisor.analyze/1``. Each number has its unit."""
     if found is None:
         return None
     return {
@@ -72,7 +72,7 @@ def qualities_document(found: FlyingQualities | None) -> dict[str, Any] | None:
 
 
 def quality_lines(found: FlyingQualities, coefficients: Mapping[str, Coefficient]) -> Iterator[str]:
-    """Flying qualities and coefficients, a line each, with half the 95 % interval."""
+    """Yield flying qualities and coefficients, one on each line, with half the 95 % interval."""
     yield f"Flying qualities at {_speeds(found)}:"
     for name, one in found.qualities.items():
         yield f"  {NAMES[name]:<17} {one.value:8.4g} ± {1.96 * one.std:.2g} {UNITS[name].replace('1', '')}"

@@ -1,4 +1,4 @@
-"""Channels as people read them: symbol, unit, factor from SI."""
+"""Channels for people: symbol, unit, factor from SI."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -20,11 +20,11 @@ class Quantity:
 
     @property
     def label(self) -> str:
-        """For an axis: ``q [deg/s]``."""
+        """Label of an axis: ``q [deg/s]``."""
         return f"{self.symbol} [{self.unit}]"
 
     def with_interval(self, value: float, std: float) -> str:
-        """An SI value with its 95 % interval, in digits that mean something: ``-48.3 ± 2.1``."""
+        """Return an SI value with its 95 % interval, in significant digits: ``-48.3 ± 2.1``."""
         return with_half(value * self.factor, 1.96 * std * self.factor)
 
 

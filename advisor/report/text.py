@@ -1,4 +1,5 @@
-"""The analysis as text for people: degrees, a sentence a verdict, stop or continue last."""
+"""The analysis as text for people: angles in degrees, one sentence for each verdict, stop or continue at the
+end."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -15,6 +16,7 @@ from advisor.flight.events import Activity
 from advisor.flight.track import ChannelStatus
 from advisor.oem.estimate import Estimate
 from advisor.report.qualities import coefficients_of, qualities_of, quality_lines
+from advisor.vehicle_time import CLOCK, clock
 
 SYMBOLS = {
     "Z_0": "Z_0",
@@ -36,28 +38,30 @@ UNITS = {
     "M_q": "1/s",
     "M_delta_e": "1/s²",
 }
-"""As people read them: only Z_0 and M_0 carry an angle."""
+"""Parameter to its unit for people. Only Z_0 and M_0 carry an angle."""
 
 
 def shown(parameter: str, value: float) -> float:
-    """A parameter's value in the unit of ``UNITS`` (SI inside, degrees for people)."""
+    """Return a parameter's value in the unit of ``UNITS``, from SI."""
     return math.degrees(value) if parameter in ("Z_0", "M_0") else value
 
 
 def maneuver_line(judged: JudgedManeuver) -> str:
-    """One line a verdict: number, time, input, verdict and why."""
+    """Return one line for a verdict: number, time, input, verdict and reason."""
     span, verdict = judged.maneuver.span, judged.verdict
     mark = "✓" if verdict.accepted else "✗"
-    return f"{judged.maneuver.number:2d}  {span.start_s:8.2f} s  {span.kind:<15}  {mark} {verdict.sentence}"
+    return (
+        f"{judged.maneuver.number:2d}  {clock(span.start_s):>7}  {span.kind:<15}  {mark} {verdict.sentence}"
+    )
 
 
 def activity_line(activity: Activity) -> str:
-    """One line a movement of the elevator that was no test input: when, and what it was."""
-    return f" -  {activity.start_s:8.2f} s  to {activity.end_s:8.2f} s      {activity.text}"
+    """Return one line for a movement of the elevator that was no test input: time and description."""
+    return f" -  {clock(activity.start_s):>7}  to {clock(activity.end_s):<12}  {activity.text}"
 
 
 def caution_lines(maneuvers: Sequence[JudgedManeuver]) -> list[str]:
-    """Each caution once, with the numbers of the manoeuvres it stands on."""
+    """Return each caution once, with the numbers of its manoeuvres."""
     numbers: dict[str, list[int]] = {}
     for judged in maneuvers:
         for caution in judged.verdict.cautions:
@@ -71,21 +75,22 @@ def _listed(numbers: Sequence[int]) -> str:
 
 
 def stop_line(verdict: FlightTestVerdict) -> str:
-    """Stop or continue, with the criterion beside its limit."""
+    """Return stop or continue, with the criterion and its limit."""
     mark = "■" if verdict.decision == "stop" else "▶"
     return f"{mark} {verdict.sentence}"
 
 
 def next_line(verdict: FlightTestVerdict) -> str:
-    """What to fly next and how many more are expected."""
+    """Return the next input, and the expected number of further manoeuvres."""
     if verdict.next is None:
         return "no advice yet"
-    more = "" if verdict.decision == "stop" else f"; {verdict.next.remaining.spoken}"
-    return f"{verdict.next.advice}{more}"
+    more = "" if verdict.decision == "stop" else verdict.next.foretold
+    return "; ".join(filter(None, (verdict.next.advice, more)))
 
 
 class AnalysisText:
-    """The whole analysis; rich prints it at the width of the terminal, plain where colour is unwanted."""
+    """Text of the whole analysis; rich prints it at the width of the terminal, without colour where
+    unwanted."""
 
     def __init__(
         self,
@@ -122,7 +127,7 @@ class AnalysisText:
         yield from self._decision()
 
     def _movements(self) -> Iterator[Text]:
-        """The manoeuvres, and where wanted whatever else moved the elevator, in the order of time."""
+        """Yield the manoeuvres and, on request, all other elevator movements, in the order of time."""
         lines = []
         for judged in self.state.maneuvers:
             maneuver = judged.maneuver
@@ -136,6 +141,8 @@ class AnalysisText:
                 for a in self.state.activity
             ]
         in_order = sorted(lines, key=lambda entry: entry[0])
+        if in_order:
+            yield Text(f"no.  start  times are {CLOCK}", style="dim")
         for flight, here in groupby(in_order, key=lambda entry: entry[0][0]):
             if len(self.files) > 1:
                 yield Text(f"{self.files[flight]}:", style="bold")

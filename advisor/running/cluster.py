@@ -122,7 +122,7 @@ def _connected(address: str) -> "Iterator[Client]":
 
 
 def _versions_on(client: "Client") -> dict[str, Any]:
-    """Versions of the packages in the client and in each worker.
+    """Return versions of the packages in the client and in each worker.
 
     A cluster whose workers start, or start again after a death, has ``CONNECT_S`` for the first.
     """
@@ -144,7 +144,7 @@ async def _answer(address: str) -> None:
 
 
 def _cause(error: BaseException) -> str:
-    """The innermost reason of an error, in a few words."""
+    """Return the innermost reason of an error, in a few words."""
     while error.__cause__ is not None and type(error.__cause__) is not asyncio.CancelledError:
         error = error.__cause__
     if isinstance(error, TimeoutError):
@@ -182,7 +182,8 @@ def compare_versions(here: Versions, workers: Mapping[str, Versions]) -> str:
     refused = [told for name, told in differing.items() if name in _SAME]
     if refused:
         raise ConfigurationError(
-            f"--scheduler: workers need this advisor and this Python, but there is {'; '.join(refused)}."
+            f"--scheduler: workers need this advisor and this Python, but there is {'; '.join(refused)}. "
+            "Install the versions of this computer there."
         )
     return f"Results may differ in the last digits: {'; '.join(differing.values())}." if differing else ""
 

@@ -15,7 +15,7 @@ R = TypeVar("R")
 
 
 def processes(workers: int) -> Executor:
-    """Fresh processes, which leave signals to this one and end with it."""
+    """Return fresh processes, which leave signals to this one and end with it."""
     context = multiprocessing.get_context("spawn")
     return ProcessPoolExecutor(workers, mp_context=context, initializer=_begin_worker)
 

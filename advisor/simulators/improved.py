@@ -1,4 +1,4 @@
-"""How far in the user's own simulator: the effects are added to it, and it flies the manoeuvres again."""
+"""The gap in the user's own simulator: the effects are added, and it flies the manoeuvres again."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -13,7 +13,7 @@ from advisor.gap.fitting.problem import Point, Problem
 from advisor.gap.records.flights import Measured
 from advisor.gap.result import InSimulator
 from advisor.gap.simulator.layout import DERIVATIVES, INDEX, OUTPUTS
-from advisor.gap.verdict.kept_out import kept_and_folds, over_maneuvers, with_offset
+from advisor.gap.verdict.holdout_numbers import kept_and_folds, over_maneuvers, with_offset
 from advisor.problems import UnusableInputError
 from advisor.simulators.flying import AsGiven, Flying, added, beyond, without_servo
 from advisor.simulators.inputs import at_reference
@@ -27,7 +27,7 @@ EQUATIONS = ("force_equation", "moment_equation")
 
 @dataclass(frozen=True)
 class Carried:
-    """The part of a model that the simulator can be given."""
+    """The part of a model that the simulator can take."""
 
     point: Point
     on_paper: tuple[str, ...]
@@ -45,15 +45,15 @@ def in_simulator(
     Parameters
     ----------
     examined
-        The diagnosis of manoeuvres without what the simulator makes of them beyond its surrogate.
+        Diagnosis of the manoeuvres, with the simulator's difference to its surrogate subtracted.
     flying
         The simulator with the manoeuvres.
     surrogate
-        The simulator to first order.
+        Linear surrogate of the simulator.
     as_flown
-        Manoeuvre number to how the simulator flew the manoeuvre.
+        Manoeuvre number to the manoeuvre as flown by the simulator.
     holdout
-        As ``advisor.gap.diagnose.diagnose`` takes it.
+        Argument of ``advisor.gap.diagnose.diagnose``.
     """
     diagnosis, e = examined.diagnosis, examined.evidence
     problem, last = e.problem, e.stages[-1]
@@ -80,18 +80,18 @@ def in_simulator(
     try:
         replays = measured.replays(without_servo(found, surrogate), problem.held, increments)
     except UnusableInputError as error:
-        # The diagnosis stands, whatever the simulator makes of the effects.
+        # The diagnosis stands, even if the simulator does not fly with the effects.
         table = qualified(original, before, None, kept)
         return InSimulator(name, was, None, None, parts[0].on_paper, table, str(error.problem))
     grids = beyond(measured, replays, found, problem.held)
     now_problem = _with(original, grids, -1.0)
-    lefts: list[FloatArray] = [np.empty(0)] * len(problem.flights)
+    residuals: list[FloatArray] = [np.empty(0)] * len(problem.flights)
     for fold in folds:
         refitted = own_refitted(now_problem, parts[fold[0]].point, last.fitted.noise) if fold else None
         for i in fold:
             assert refitted is not None
-            lefts[i] = refitted.left[i]
-    after = over_maneuvers(problem, held_out(problem, lefts), kept)
+            residuals[i] = refitted.residuals[i]
+    after = over_maneuvers(problem, held_out(problem, residuals), kept)
     after = _without_the_air(examined, after)
     now = whole_gap(after.mean_square, floor)
     percent = 100.0 * (1.0 - now / was) if was > 1e-9 else 0.0
@@ -99,11 +99,11 @@ def in_simulator(
 
 
 def _carried(point: Point, problem: Problem, surrogate: Surrogate, flying: Flying) -> Carried:
-    """A model without what the simulator cannot be given, and the names of that."""
+    """Return a model without the parts that the simulator cannot take, and the names of those parts."""
     on_paper: list[str] = []
     if not flying.simulator.takes_increments:
         derivatives = np.array([surrogate.derivatives[name] for name in DERIVATIVES])
-        outside = [v.effect for v in point.effects if v.block in EQUATIONS and not v.always]
+        outside = [v.effect for v in point.effects if v.block in EQUATIONS and not v.is_nuisance]
         inside = [v.effect for v in point.effects if v.effect not in outside]
         point = replace(point.with_only(inside), derivatives=derivatives)
         on_paper += [*outside, DERIVATIVES_OF_IT]
@@ -121,15 +121,15 @@ def _carried(point: Point, problem: Problem, surrogate: Surrogate, flying: Flyin
 
 
 def _found(problem: Problem, points: Sequence[Point]) -> FloatArray:
-    """Shape (manoeuvres, entries): each manoeuvre's model with the effects, without initial states."""
+    """Return each manoeuvre's model with the effects, without initial states, shape (manoeuvres, entries)."""
     still = np.zeros_like(points[0].own)
     rows = [problem.driving(replace(_named(point), own=still))[i] for i, point in enumerate(points)]
     return np.array(rows)
 
 
 def _named(point: Point) -> Point:
-    """The model without what is part of every model: that is the flight's, not the simulator's."""
-    keep = [k for k, effect in enumerate(point.effects) if not effect.always]
+    """Return the model without nuisance parameters, which belong to the flight instead of the simulator."""
+    keep = [k for k, effect in enumerate(point.effects) if not effect.is_nuisance]
     return replace(
         point,
         effects=tuple(point.effects[k] for k in keep),
@@ -138,7 +138,7 @@ def _named(point: Point) -> Point:
 
 
 def _with(problem: Problem, grids: Sequence[FloatArray], sign: float) -> Problem:
-    """The problem with series on the grid added to what was measured, each by the sign."""
+    """Return the problem with series on the grid, times ``sign``, added to the measurements."""
     flights = []
     for flight, grid in zip(problem.flights.flights, grids, strict=True):
         t = np.arange(grid.shape[1]) * flight.h
@@ -151,9 +151,9 @@ def _with(problem: Problem, grids: Sequence[FloatArray], sign: float) -> Problem
 
 
 def _without_the_air(examined: Examined, after: HeldOut) -> HeldOut:
-    """The errors without the share that the air's likeliest course takes out of the model's."""
+    """Return the errors without the share that the air's likeliest course removes from the model's."""
     air, last = examined.evidence.air, examined.evidence.stages[-1].held_out
     if air is None:
         return after
-    share = np.minimum(air.left / last.mean_square, 1.0)
+    share = np.minimum(air.mean_square_beyond_air / last.mean_square, 1.0)
     return replace(after, mean_square=after.mean_square * share, by_maneuver=after.by_maneuver * share)

@@ -1,7 +1,7 @@
-"""Force and moment that effects add to a simulator: Eqs. (1)-(2) with the effects, less those without.
+"""Force and moment that effects add to a simulator: Eqs. (1)-(2) with the effects minus those without.
 
-The numbers are entries of ``advisor.gap.simulator.layout``, so that an effect acts in the user's simulator as
-in the model in which the diagnosis found the effect.
+The parameters are entries of ``advisor.gap.simulator.layout``. An effect therefore acts in the user's
+simulator as in the model in which the diagnosis found the effect.
 """
 
 from collections.abc import Mapping
@@ -21,7 +21,7 @@ CARRIED = (
 )  # fmt: skip
 """Entries that become increments."""
 _HIGHEST = 3.0
-"""Exponent of the ground's influence at which heights below the reference end."""
+"""Exponent of the ground's influence that is never exceeded below the reference height."""
 
 
 @dataclass(frozen=True)
@@ -38,14 +38,15 @@ class Added:
     _memory: dict[str, float] = field(default_factory=dict, compare=False, repr=False)
 
     def __call__(self, state: State) -> tuple[float, float]:
-        """Increments of α̇ in rad/s and of q̇ in rad/s²."""
+        """Return increments of α̇ in rad/s and of q̇ in rad/s²."""
         lagging, engine = self._remembered(state)
         z, m = self._right_side(self.found, state, lagging, engine)
         z_plain, m_plain = self._right_side(self.plain, state, state.alpha, state.throttle)
         return z - z_plain, m - m_plain
 
     def _remembered(self, state: State) -> tuple[float, float]:
-        """The lift's lagging angle and the engine's lagging throttle, after the time since the last call."""
+        """Return the lagging angle of the lift and the lagging throttle of the engine, after the time since
+        the last call."""
         seen = self._memory
         if not seen or state.t < seen["t"]:
             seen.update(t=state.t, lift=self.alpha_trim, engine=0.0)
@@ -62,7 +63,7 @@ class Added:
     def _right_side(
         self, p: Mapping[str, float], s: State, lift: float, engine: float
     ) -> tuple[float, float]:
-        """Normal force over m·V in rad/s, and pitch acceleration in rad/s²."""
+        """Return normal force over m·V in rad/s, and pitch acceleration in rad/s²."""
         v = s.airspeed_m_s / self.reference_m_s
         power = v ** p["speed_power"]
         turning = power * v ** p["moment_power"]
@@ -85,7 +86,8 @@ class Added:
 
 
 def attached(sharpness: float, beyond_rad: float) -> float:
-    """Share of the lift that is left beyond an angle of attack (Kirchhoff's flow); 1 without a sharpness."""
+    """Return the attached share of the lift beyond an angle of attack (Kirchhoff's flow); 1 without a
+    sharpness."""
     if sharpness <= 0.0:
         return 1.0
     chord = 1.0 / (1.0 + exp(min(2.0 * sharpness * beyond_rad, 700.0)))
@@ -95,7 +97,7 @@ def attached(sharpness: float, beyond_rad: float) -> float:
 def trimmed(
     p: FloatArray, alpha: float, theta: float, speed: float, height: float, reference: float
 ) -> FloatArray:
-    """Driving numbers, shape (entries,), with the trim terms of steady flight in this state."""
+    """Return driving numbers, shape (entries,), with the trim terms of steady flight in this state."""
     out = p.copy()
     e = entries_of(p)
     v = speed / reference
@@ -109,5 +111,5 @@ def trimmed(
 
 
 def entries_of(p: FloatArray) -> dict[str, float]:
-    """Entries of ``CARRIED`` by name, of driving numbers of shape (entries,)."""
+    """Return entries of ``CARRIED`` by name, of driving numbers of shape (entries,)."""
     return {name: float(p[k]) for k, name in enumerate(ENTRIES) if name in CARRIED}

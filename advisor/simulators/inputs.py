@@ -1,4 +1,4 @@
-"""What a simulator is given of a flown manoeuvre, and the replay as a manoeuvre on the gap's own grid."""
+"""Inputs of a simulator from a flown manoeuvre, and the replay as a manoeuvre on the gap's own grid."""
 
 from dataclasses import replace
 
@@ -27,7 +27,7 @@ _RATE_S = 0.02
 
 
 def condition_of(flight: Flight, flights: Flights, mass_kg: float | None) -> Condition:
-    """The steady flight in which a manoeuvre begins: mean speed and height before the first step."""
+    """Return the steady flight at the start of a manoeuvre: mean speed and height before the first step."""
     before = max(int(flight.first_step_s / flight.h), 1)
     speed = float(np.mean(flight.slow[SPEED, :before]))
     height = float(np.mean(flight.slow[HEIGHT, :before])) if "height" in flights.has else 0.0
@@ -36,7 +36,8 @@ def condition_of(flight: Flight, flights: Flights, mass_kg: float | None) -> Con
 
 
 def inputs_of(flight: Flight, flights: Flights, p: FloatArray, held: bool) -> Inputs:
-    """The recorded command after what lies between command and surface in ``p``, shape (entries,)."""
+    """Return the recorded command behind the effects between command and surface in ``p``, shape
+    (entries,)."""
     stamps = flight.t_held if held else flight.t_u
     elevator = surface(flight.h, flight.n, stamps, flight.u, held, flight.u_trim, p)
     others = {"throttle": flight.slow[THROTTLE]} if "throttle" in flights.has else {}
@@ -45,9 +46,9 @@ def inputs_of(flight: Flight, flights: Flights, p: FloatArray, held: bool) -> In
 
 
 def as_flight(flight: Flight, replay: Replay, reference_m_s: float) -> Flight:
-    """The manoeuvre as the simulator flew it: the same command, with the simulator's own speed and trim.
+    """Return the manoeuvre as flown by the simulator: equal command, with the simulator's own speed and trim.
 
-    Bank and turn are none, and thrust is taken to be drag.
+    Bank and turn are zero, and thrust equals drag.
     """
     middles = (np.arange(flight.n) + 0.5) * flight.h
     slow = np.zeros_like(flight.slow)
@@ -59,25 +60,25 @@ def as_flight(flight: Flight, replay: Replay, reference_m_s: float) -> Flight:
     trim = flight.trim.copy()
     trim[ALPHA_TRIM], trim[THETA_FROM] = float(replay.alpha[0]), float(replay.theta[0])
     trim[REFERENCE] = reference_m_s
-    return replace(flight, slow=slow, trim=trim, edges=np.empty((0, 4)), speed_doubt=np.empty((0, 0)))
+    return replace(flight, slow=slow, trim=trim, edges=np.empty((0, 4)), speed_error_factor=np.empty((0, 0)))
 
 
 def at_reference(flight: Flight, reference_m_s: float) -> Flight:
-    """The manoeuvre with derivatives that hold at another speed."""
+    """Return the manoeuvre with derivatives at another reference speed."""
     trim = flight.trim.copy()
     trim[REFERENCE] = reference_m_s
     return replace(flight, trim=trim)
 
 
 def on_grid(replay: Replay, flight: Flight) -> FloatArray:
-    """Shape (4, n + 1): α, q, a_z and θ of a replay at the ends of the steps."""
+    """Return α, q, a_z and θ of a replay at the ends of the steps, shape (4, n + 1)."""
     t = np.arange(flight.n + 1) * flight.h
     series = (replay.alpha, replay.q, replay.a_z, replay.theta)
     return np.stack([np.interp(t, replay.t, y) for y in series])
 
 
 def read_from(flight: Flight, grid: FloatArray, channels: tuple[str, ...]) -> Flight:
-    """The manoeuvre with a series on the grid, shape (4, n + 1), in place of what was measured."""
+    """Return the manoeuvre with a series on the grid, shape (4, n + 1), in place of the measurements."""
     t = np.arange(flight.n + 1) * flight.h
     stamps = np.arange(0.0, t[-1], _RATE_S)
     names = ("alpha", "q", "a_z", "theta")
@@ -91,7 +92,7 @@ def read_from(flight: Flight, grid: FloatArray, channels: tuple[str, ...]) -> Fl
 
 
 def _pull_along(replay: Replay) -> FloatArray:
-    """Specific force along body x, m/s², of a motion in the vertical plane, shape (m,)."""
+    """Return the specific force along body x, m/s², of a motion in the vertical plane, shape (m,)."""
     path = replay.theta - replay.alpha
     along = np.gradient(replay.airspeed_m_s, replay.t) + GRAVITY_M_S2 * np.sin(path)
     return np.asarray((along - replay.a_z * np.sin(replay.alpha)) / np.cos(replay.alpha))

@@ -16,11 +16,11 @@ from advisor.simulators.protocol import Condition, Increments, Inputs, Replay
 from advisor.simulators.protocol import State as Motion
 
 _PROBE = 1e-3
-"""Departure in central differences: rad of α and of elevator, rad/s of q."""
+"""Departures for central differences: of α and of the elevator in rad, of q in rad/s."""
 
 
 def make_jsbsim(model: str, aircraft: Aircraft) -> Isolated:
-    """The simulator of ``jsbsim:MODEL``, in a process of its own.
+    """Return the simulator of ``jsbsim:MODEL``, in a process of its own.
 
     Raises
     ------
@@ -60,7 +60,7 @@ class Jsbsim:
         try:
             return self._fly(condition, inputs, increments)
         except Exception:
-            # Engines and filters of a flight that failed keep what made it fail.
+            # Engines and filters keep the state of a failed flight, so a new instance is loaded.
             self._flight = Flight(self._path)
             raise
 
@@ -96,9 +96,9 @@ class Jsbsim:
         return Replay(t, alpha, q, theta, a_z, speed, height, a_x)
 
     def linearise(self, condition: Condition) -> Mapping[str, float] | None:
-        """Central differences of α̇ and q̇ about the trimmed state, at constant speed and flight path.
+        """Return central differences of α̇ and q̇ about the trimmed state, at constant speed and flight path.
 
-        A moment by the rate of α is part of the derivatives, as in the short-period model.
+        A moment by the rate of α becomes part of the derivatives, as in the short-period model.
         """
         start = self._trimmed(condition)
         by_alpha = self._slopes(condition, start, alpha=_PROBE)
@@ -114,7 +114,7 @@ class Jsbsim:
         }
 
     def close(self) -> None:
-        """Nothing to end: JSBSim lives in this process."""
+        """Do nothing: JSBSim lives in this process."""
 
     def _trimmed(self, condition: Condition) -> State:
         state = trim(self._flight, condition, self._trims.get(condition))
@@ -135,14 +135,14 @@ class Jsbsim:
         return (rates[0][0] - rates[1][0]) / width, (rates[0][1] - rates[1][1]) / width
 
     def _rates(self) -> tuple[float, float]:
-        """Rates of α, rad/s, and of q, rad/s²."""
+        """Return rates of α, rad/s, and of q, rad/s²."""
         fdm = self._flight.fdm
         u, w = fdm["velocities/u-fps"], fdm["velocities/w-fps"]
         u_dot, w_dot = fdm["accelerations/udot-ft_sec2"], fdm["accelerations/wdot-ft_sec2"]
         return (u * w_dot - w * u_dot) / (u * u + w * w), fdm["accelerations/qdot-rad_sec2"]
 
     def _throw(self, name: str) -> float:
-        """Command per radian of surface, positive where a positive surface turns to the left."""
+        """Return the command per radian of surface, positive where a positive surface turns to the left."""
         fdm = self._flight.fdm
         surface, rate = {
             "aileron": ("fcs/left-aileron-pos-rad", "accelerations/pdot-rad_sec2"),
@@ -177,7 +177,7 @@ class Jsbsim:
         )
 
     def _add(self, increments: Increments, t: float, elevator: float, throttle: float) -> None:
-        """Add the increments of the state in which this step's forces are evaluated, one step on."""
+        """Add the increments for the state in which the forces of the next step are evaluated."""
         fdm = self._flight.fdm
         alpha_dot, q_dot = self._rates()
         speed = fdm["velocities/vt-fps"]

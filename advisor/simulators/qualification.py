@@ -14,22 +14,22 @@ from advisor.gap.result import Qualification
 from advisor.gap.verdict.yardsticks import BAND, yardsticks
 
 _WINDOW_S = 0.1
-"""Over which an error is averaged, as slow inputs are: what is shorter is the instrument's noise."""
+"""Length in s of the average over an error. A shorter error is instrument noise."""
 
 
 def qualified(
     problem: Problem, before: HeldOut, after: HeldOut | None, kept: Sequence[int]
 ) -> tuple[Qualification, ...]:
-    """Every channel beside its tolerance.
+    """Return every channel compared with its tolerance.
 
     Parameters
     ----------
     problem
-        The flights as they were measured.
+        The flights as measured.
     before, after
-        What the simulator leaves as given, and with the effects; None: nothing was added.
+        Residuals of the simulator as given, and with the effects; None where nothing was added.
     kept
-        Places of the manoeuvres that count.
+        Indices of the manoeuvres that count.
     """
     table = []
     for c, channel in enumerate(problem.channels):
@@ -43,23 +43,23 @@ def qualified(
 
 
 def _error(problem: Problem, held: HeldOut, kept: Sequence[int], c: int) -> tuple[float, float]:
-    """Largest error in the channel's unit, averaged over the window, and Theil's coefficient."""
+    """Return the largest error in the channel's unit, averaged over the window, and Theil's coefficient."""
     largest = 0.0
     measured: list[FloatArray] = []
     simulated: list[FloatArray] = []
     for i in kept:
         flight = problem.flights.flights[i]
         out = flight.outputs[problem.channels[c]]
-        left = held.left[i][problem.rows(flight)[c]]
-        largest = max(largest, float(np.max(np.abs(_averaged(out.t, left)))))
+        residual = held.residuals[i][problem.rows(flight)[c]]
+        largest = max(largest, float(np.max(np.abs(_averaged(out.t, residual)))))
         measured.append(out.y)
-        simulated.append(out.y - left)
+        simulated.append(out.y - residual)
     one = yardsticks(problem.channels[c], np.concatenate(measured), np.concatenate(simulated))
     return largest, one.theil
 
 
 def _averaged(t: FloatArray, y: FloatArray) -> FloatArray:
-    """Mean of the samples within the window about each stamp, both of shape (n,)."""
+    """Return the mean of the samples within the window about each stamp, both of shape (n,)."""
     first = np.searchsorted(t, t - 0.5 * _WINDOW_S, side="left")
     behind = np.searchsorted(t, t + 0.5 * _WINDOW_S, side="right")
     sums = np.concatenate([[0.0], np.cumsum(y)])

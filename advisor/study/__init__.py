@@ -1,1 +1,1 @@
-"""The paper's simulated campaign, flown many times, and what the advisor adds to it measured the same way."""
+"""The paper's simulated campaign, flown many times, and measures of the advisor's additions."""

@@ -14,9 +14,7 @@ from advisor.decision.inputs import StepInput
 from advisor.flight.messages import FloatArray
 from advisor.study.estimating import estimate_copies
 from advisor.study.flying import Flight, Scene, as_maneuver, fly_named, follow, noise_scale
-from sim.airframe import UAV
-from sim.hangar import AIRFRAMES
-from sim.nonlinear_aircraft import NonlinearAircraft
+from advisor.study.simulator import AIRFRAMES, UAV, NonlinearAircraft
 
 MOST = 25
 """A campaign is given up after so many manoeuvres."""
@@ -27,7 +25,7 @@ HEIGHT_M = 100.0
 
 @cache
 def scenes() -> Mapping[str, Scene]:
-    """The paper's aircraft, and the bundled UAV as linear as its own linearisation is."""
+    """Return the paper's aircraft, and the bundled UAV as linear as its own linearisation is."""
     habits = AIRFRAMES["uav"][1]
     uav = NonlinearAircraft(UAV, habits.airspeed_m_s, HEIGHT_M).truth
     return {
@@ -143,7 +141,7 @@ def fly_input(scene: Scene, option: StepInput) -> Flight:
 
 
 def _crew(scene: Scene, standard: Flight, same: bool) -> Aircraft:
-    """The aircraft file, with an angle-of-attack limit where excursions are held."""
+    """Return the aircraft file, with an angle-of-attack limit where excursions are held."""
     limits = Limits()
     if same:
         # The advice keeps a margin of a tenth to the limit; the limit is set so that the standard

@@ -132,7 +132,7 @@ def outcome(
             history.append(known.percent)
             if known.sufficient or number == len(campaign):
                 needed = number if known.sufficient else None
-                return Outcome(needed, known.belief.theta, known.tolerance, tuple(history), 0)
+                return Outcome(needed, known.posterior.theta, known.tolerance, tuple(history), 0)
             continue
         members = window(taken, plan)
         history.append(None if members is None else scatter_percent(members, plan.criterion))
@@ -146,6 +146,6 @@ def outcome(
 
 
 def reported(taken: Sequence[Estimate], plan: CampaignPlan) -> FloatArray:
-    """The value a campaign of the paper ends with: the mean over the criterion's window."""
+    """Return the value a campaign of the paper ends with: the mean over the criterion's window."""
     mean: FloatArray = np.mean([e.theta for e in taken[-plan.window :]], axis=0)
     return mean

@@ -106,7 +106,7 @@ def _together(noise_percent: float, lost: str | None, several: Sequence[tuple[Bl
 def _columns(
     scene: Scene, order: tuple[str, ...], noise: FloatArray, campaigns: int, rng: np.random.Generator
 ) -> list[list[Flown]]:
-    """Manoeuvres of each campaign."""
+    """Return manoeuvres of each campaign."""
     columns: list[list[Estimate]] = [
         estimate_copies(fly_named(scene, name), noise, campaigns, rng) for name in order
     ]

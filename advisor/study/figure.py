@@ -99,7 +99,7 @@ def draw(curves: Sequence[Curve], path: Path) -> None:
 
 
 def in_terminal(curves: Sequence[Curve], rule: Rule, height: int = 13) -> list[str]:
-    """The medians of one rule as lines of text, logarithmic in the criterion."""
+    """Return the medians of one rule as lines of text, logarithmic in the criterion."""
     chosen = [c for c in curves if c.rule == rule]
     values = [q[1] for c in chosen for q in c.quantiles if q is not None]
     if not values:
@@ -122,7 +122,8 @@ def in_terminal(curves: Sequence[Curve], rule: Rule, height: int = 13) -> list[s
     rows = [f"{labels.get(i, ''):>6} |{''.join(cells).rstrip()}" for i, cells in enumerate(grid)]
     numbers = "".join(f"{i:^{width}}" for i in range(1, len(ORDER) + 1))
     return [
-        f"{rule}: criterion of Eq. (12) in %, median; each mark is a noise level in %, --- the limit",
+        f"{rule}: criterion of Eq. (12) in %, median after each manoeuvre;",
+        "  each mark is a noise level in %, --- the limit",
         *rows,
         f"{'':>6} +{'-' * (width * len(ORDER))}",
         f"{'':>8}{numbers}".rstrip() + "  manoeuvres flown",

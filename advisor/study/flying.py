@@ -1,4 +1,4 @@
-"""The linear aircraft, flown exactly: inputs, responses, and what "noise of 1 %" is taken to mean."""
+"""Exact flight of the linear aircraft: inputs, responses, and the reference of "noise of 1 %"."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -10,8 +10,7 @@ from scipy.linalg import expm
 from advisor.flight.maneuver import Maneuver, Span
 from advisor.flight.messages import FloatArray
 from advisor.flight.record import Channel
-from sim.linear import RESEARCH_JET, ShortPeriod
-from sim.maneuvers import STEPS
+from advisor.study.simulator import RESEARCH_JET, STEPS, ShortPeriod
 
 Steps = tuple[tuple[float, float], ...]
 NoiseReading = Literal["std", "peak", "rms", "sample"]
@@ -22,12 +21,12 @@ NOISE_READINGS: Mapping[NoiseReading, str] = {
     "rms": "of the root mean square of the response, trim included",
     "sample": "of each sample's own deviation from trim",
 }
-"""What the noise's standard deviation may be a percentage of; the first is the default."""
+"""Reference of the noise's percentage to its description. The first is the default."""
 
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """An aircraft and how its manoeuvres are flown and sampled."""
+    """An aircraft, with the sampling and the input of its manoeuvres."""
 
     aircraft: ShortPeriod = RESEARCH_JET
     unit_s: float = 0.7
@@ -49,11 +48,11 @@ class Flight:
 
     t: FloatArray
     elevator: FloatArray
-    """(n,) rad, linear between samples."""
+    """(n,) elevator in rad, linear between samples."""
     response: FloatArray
     """(n, 2) α in rad and q in rad/s."""
     trim: FloatArray
-    """(2,) the state before the input."""
+    """(2,) state before the input."""
 
 
 def fly(scene: Scene, steps: Steps) -> Flight:
@@ -70,7 +69,7 @@ def fly(scene: Scene, steps: Steps) -> Flight:
 
 
 def follow(scene: Scene, t: FloatArray, elevator: FloatArray) -> Flight:
-    """The response from trim to an elevator sampled at ``t``."""
+    """Return the response from trim to an elevator sampled at ``t``."""
     alpha, _ = scene.aircraft.trim()
     trim = np.array([alpha, 0.0])
     return Flight(t, elevator, respond(scene.aircraft, elevator, trim, 1.0 / scene.rate_hz), trim)
@@ -82,7 +81,8 @@ def fly_named(scene: Scene, name: str) -> Flight:
 
 
 def as_maneuver(flight: Flight) -> Maneuver:
-    """What the advisor would cut from the stream: the command and where it begins and ends."""
+    """Return the flight in the form of a manoeuvre cut from the stream: the command, its begin and its
+    end."""
     moving = np.flatnonzero(np.abs(flight.elevator - flight.elevator[0]) > 1e-9)
     start, end = flight.t[moving[0]], flight.t[min(moving[-1] + 1, len(flight.t) - 1)]
     span = Span(
@@ -98,7 +98,7 @@ def as_maneuver(flight: Flight) -> Maneuver:
 
 
 def respond(aircraft: ShortPeriod, elevator: FloatArray, state: FloatArray, step_s: float) -> FloatArray:
-    """Exact solution of Eqs. (1)-(2) for an elevator that is linear between its samples.
+    """Return the exact solution of Eqs. (1)-(2) for an elevator that is linear between its samples.
 
     The matrix exponential of the system augmented by the input and its slope (Van Loan, 1978).
 
@@ -122,7 +122,7 @@ def respond(aircraft: ShortPeriod, elevator: FloatArray, state: FloatArray, step
 
 
 def noise_scale(flight: Flight, reading: NoiseReading) -> FloatArray:
-    """What a noise of 100 % is: standard deviation of every sample, broadcastable to (n, 2)."""
+    """Return the standard deviation of a noise of 100 %, for every sample, broadcastable to (n, 2)."""
     deviation = flight.response - flight.trim
     match reading:
         case "std":

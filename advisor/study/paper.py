@@ -1,4 +1,4 @@
-"""What the paper prints: Table 1, one realisation of its campaign at three noise levels."""
+"""Figures that the paper prints: Table 1, one realisation of its campaign at three noise levels."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ class PaperRow:
     """One row of Table 1."""
 
     needed: int | None
-    """Manoeuvres until the stop; None: never."""
+    """Manoeuvres until the stop. None: never."""
     error_percent: Mapping[str, float]
     """Nominal error of each parameter."""
 

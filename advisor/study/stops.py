@@ -81,16 +81,16 @@ class Stops:
         return 100.0 * float(np.mean(wrong)) if wrong else float("nan")
 
     def error_quantile(self, share: float) -> float | None:
-        """Error that ``share`` of the stops do not exceed; None without a stop."""
+        """Return the error that ``share`` of the stops do not exceed; None without a stop."""
         return float(np.quantile(self.error_percent, share)) if self.error_percent else None
 
     def median_needed(self, rule: Rule) -> int | None:
-        """Median number of manoeuvres; None where most campaigns do not stop."""
+        """Return the median number of manoeuvres; None where most campaigns do not stop."""
         middle = sorted(np.inf if n is None else n for n in self.needed[rule])[len(self.needed[rule]) // 2]
         return None if np.isinf(middle) else int(middle)
 
     def never_percent(self, rule: Rule) -> float:
-        """Share of the campaigns that ``rule`` does not end."""
+        """Return the share of the campaigns that ``rule`` does not end."""
         return 100.0 * float(np.mean([n is None for n in self.needed[rule]]))
 
 
@@ -143,7 +143,7 @@ def by_case(found: Sequence[Stops]) -> list[Stops]:
 
 
 def _through(scene: Scene, flight: Flight, lag_s: float) -> Flight:
-    """The same command, flown through a servo with a lag."""
+    """Return the same command, flown through a servo with a lag."""
     if lag_s <= 0.0:
         return flight
     surface, _, _ = Servo(lag_s).move(flight.t, flight.elevator, flight.t)
@@ -151,7 +151,7 @@ def _through(scene: Scene, flight: Flight, lag_s: float) -> Flight:
 
 
 def _copies(flight: Flight, noise: FloatArray, campaigns: int, rng: np.random.Generator) -> list[Flown]:
-    """The same manoeuvre of all campaigns, with white noise."""
+    """Return the same manoeuvre of all campaigns, with white noise."""
     maneuver = as_maneuver(flight)
     return [Flown(e, maneuver=maneuver) for e in estimate_copies(flight, noise, campaigns, rng)]
 
@@ -159,7 +159,7 @@ def _copies(flight: Flight, noise: FloatArray, campaigns: int, rng: np.random.Ge
 def _campaign(
     scene: Scene, order: Sequence[Flight], noise: FloatArray, case: Case, rng: np.random.Generator
 ) -> tuple[Flown, ...]:
-    """One campaign through the estimator of the flight test, with its corrected covariance.
+    """Return one campaign through the estimator of the flight test, with its corrected covariance.
 
     Raises
     ------
@@ -184,7 +184,8 @@ def _campaign(
 
 
 def _gusts(scene: Scene, flight: Flight, case: Case, rng: np.random.Generator) -> FloatArray | float:
-    """(n, 2) what gusts add to α and q: a gust acts through Z_alpha and M_alpha as an elevator would."""
+    """Return (n, 2) what gusts add to α and q: a gust acts through Z_alpha and M_alpha as an elevator
+    would."""
     if case.gust_percent == 0.0:
         return 0.0
     size = 0.01 * case.gust_percent * float(np.std(flight.response[:, 0]))
@@ -201,7 +202,7 @@ def _measure(flight: Flight, disturbance: FloatArray) -> Maneuver:
 
 
 def _lag_found(maneuvers: Sequence[Maneuver]) -> float:
-    """The lag of the joint estimate; 0 where the data do not tell it from none."""
+    """Return the lag of the joint estimate; 0 where the data do not tell it from none."""
     model = estimate_jointly(maneuvers, Aircraft())
     if isinstance(model, NoEstimate):
         raise ArithmeticError(model.text)
@@ -210,7 +211,7 @@ def _lag_found(maneuvers: Sequence[Maneuver]) -> float:
 
 
 def _coloured(flight: Flight, correlation_s: float, rng: np.random.Generator) -> FloatArray:
-    """(n, 2) noise of unit variance."""
+    """Return (n, 2) noise of unit variance."""
     white = rng.standard_normal(flight.response.shape)
     if correlation_s == 0.0:
         return white
@@ -235,8 +236,9 @@ def _measured(case: Case, campaigns: Sequence[Sequence[Flown]], flights: Sequenc
 
 
 def _error_percent(flown: Sequence[Flown], flights: Sequence[Flight], plan: CampaignPlan) -> float:
-    """Largest error of the response that the model left by the stop predicts, in percent of its peak."""
-    derivatives = knowledge(flown, plan).belief.shared.theta
+    """Return the largest error of the response that the model left by the stop predicts, in percent of its
+    peak."""
+    derivatives = knowledge(flown, plan).posterior.shared.theta
     worst = 0.0
     for one, flight in zip(flown, flights, strict=True):
         predicted = response_to(one, derivatives, None)

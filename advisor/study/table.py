@@ -1,4 +1,4 @@
-"""Table 1 as this study finds it, beside the paper's: medians, spread, and where the paper lies."""
+"""Table 1 of this study with the paper's: medians, spread, and the paper's place within them."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -18,15 +18,15 @@ class Row:
     rule: Rule
     noise_percent: float
     needed: tuple[int | None, ...]
-    """Per campaign; None: never."""
+    """Manoeuvres needed in each campaign. None: never."""
     error_percent: FloatArray
     """(campaigns, 8) |error| at the stop, or at the end, in percent of the true value."""
     outside_tolerance_percent: FloatArray | None
-    """(8,) share of stops with the parameter outside its tolerance; only for ``information``."""
+    """(8,) share of stops with the parameter outside its tolerance, for ``information`` only."""
 
     @property
     def paper(self) -> PaperRow | None:
-        """The paper's row, for the paper's rules."""
+        """Row of the paper, for the paper's rules."""
         return TABLE_1.get((self.rule, self.noise_percent))
 
     @property
@@ -35,20 +35,21 @@ class Row:
         return 100.0 * float(np.mean([n is None for n in self.needed]))
 
     def needed_quantile(self, share: float) -> int | None:
-        """Manoeuvres within which ``share`` of the campaigns stopped; None when fewer did."""
+        """Return the number of manoeuvres within which ``share`` of the campaigns stopped; None for fewer
+        stops."""
         order = sorted(np.inf if n is None else n for n in self.needed)
         value = order[max(0, int(np.ceil(share * len(order))) - 1)]
         return None if np.isinf(value) else int(value)
 
     def needed_percentile_of_paper(self) -> float | None:
-        """Share of our campaigns that stopped no later than the paper's."""
+        """Return the share of our campaigns that stopped no later than the paper's."""
         if self.paper is None:
             return None
         limit = np.inf if self.paper.needed is None else self.paper.needed
         return 100.0 * float(np.mean([(np.inf if n is None else n) <= limit for n in self.needed]))
 
     def percentile_of_paper(self) -> Mapping[str, float]:
-        """Share of our campaigns with a smaller error than the paper's, per parameter."""
+        """Return the share of our campaigns with a smaller error than the paper's, per parameter."""
         if self.paper is None:
             return {}
         return {
@@ -75,7 +76,7 @@ def row(rule: Rule, noise_percent: float, outcomes: Sequence[Outcome], truth: Fl
 
 
 def as_document(rows: Sequence[Row], campaigns: int) -> dict[str, object]:
-    """The rows as ``advisor.study/1``."""
+    """Return the rows as ``advisor.study/1``."""
     return {"schema": "advisor.study/1", "campaigns": campaigns, "rows": [_entry(r) for r in rows]}
 
 

@@ -1,7 +1,7 @@
-"""Write the pages that are made, or add a scored run to the data of the results.
+"""Write what the documentation shows of the code, or add a scored run to the data of the results.
 
-    python -m benchmarks.pages                  # the effects, the decisions, the table of results
-    python -m benchmarks.pages --examples       # the worked examples and the figure of docs/gap.md, too
+    python -m benchmarks.pages                  # the blocks of README.md, from docs/data
+    python -m benchmarks.pages --examples       # before that run the worked examples, and draw the figures
     python -m benchmarks.pages add score.json --own --set SS --seed 7 --generator NAME --commit 1a2b3c4
 
 ``python -m sim reveal --json`` and ``python -m benchmarks.second_generator score --json`` print such scores.
@@ -10,31 +10,26 @@
 import argparse
 import json
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from datetime import date
 from pathlib import Path
 
-from benchmarks.pages import decisions, effects, results
+from benchmarks.pages import readme, results
 
-DOCS = Path(__file__).parents[2] / "docs"
-DATA = Path("data") / "gap-results.json"
-PAGES: Mapping[str, Callable[[], str]] = {
-    "effects.md": effects.page,
-    "decisions-of-the-gap.md": decisions.page,
-}
-"""Pages that are made as a whole."""
+ROOT = Path(__file__).parents[2]
+DATA = Path("docs") / "data"
 
 
-def main(arguments: Sequence[str] | None = None, docs: Path = DOCS) -> int:
+def main(arguments: Sequence[str] | None = None, root: Path = ROOT) -> int:
     """Exit code 0; 2 where the run cannot be added, after a sentence."""
     given = _parser().parse_args(arguments)
     try:
         if given.command == "add":
-            add(docs / DATA, given)
-        for path, text in made(docs).items():
-            path.write_text(text, encoding="utf-8")
+            add(root / DATA / "gap-results.json", given)
+            return 0
         if given.examples:
-            write_examples(docs)
+            write_examples(root)
+        readme.write(root / "README.md")
     except OSError as error:
         print(f"error: {error.filename}: {error.strerror}; give a file that is there", file=sys.stderr)
         return 2
@@ -44,32 +39,14 @@ def main(arguments: Sequence[str] | None = None, docs: Path = DOCS) -> int:
     return 0
 
 
-def made(docs: Path = DOCS) -> dict[Path, str]:
-    """Every made page, as it should be."""
-    table = results.table(results.read(docs / DATA))
-    page = docs / "gap-results.md"
-    pages = {docs / name: page() for name, page in PAGES.items()}
-    return {**pages, page: within(page.read_text(encoding="utf-8"), "results", table)}
+def write_examples(root: Path) -> None:
+    """Run the worked examples, and write their outputs and the figures."""
+    from benchmarks.pages import example
 
-
-def write_examples(docs: Path) -> None:
-    """Run the worked examples, and write their outputs and the figure."""
-    from benchmarks.pages import example, figure
-
-    for name, mark, told in (
-        ("gap.md", "example", example.transcript),
-        ("foresee.md", "plan", example.foresight),
-    ):
-        page = docs / name
-        page.write_text(within(page.read_text(encoding="utf-8"), mark, told()), encoding="utf-8")
-    (docs / "gap.svg").write_text(figure.figure(example.diagnosis()), encoding="utf-8")
-
-
-def within(page: str, name: str, text: str) -> str:
-    """A page with the text between its two marks exchanged."""
-    begin, end = f"<!-- {name}: begin -->", f"<!-- {name}: end -->"
-    before, rest = page.split(begin)
-    return f"{before}{begin}\n{text}\n{end}{rest.split(end)[1]}"
+    for name, text in example.transcripts():
+        (root / DATA / "examples" / name).write_text(text, encoding="utf-8")
+    for name, drawn in example.figures():
+        (root / "docs" / "explanation" / name).write_text(drawn, encoding="utf-8")
 
 
 def add(data: Path, given: argparse.Namespace) -> None:
@@ -98,11 +75,9 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="python -m benchmarks.pages", description=__doc__, formatter_class=argparse.RawTextHelpFormatter
     )
-    parser.add_argument(
-        "--examples", action="store_true", help="run the worked examples, too (half a minute)"
-    )
+    parser.add_argument("--examples", action="store_true", help="run the worked examples, too (a minute)")
     commands = parser.add_subparsers(dest="command")
-    run = commands.add_parser("add", help="add a scored run, then write the pages")
+    run = commands.add_parser("add", help="add a scored run to the data")
     run.add_argument("score", type=Path, help="output of `score --json` or of `reveal --json`")
     run.add_argument("--set", required=True, help="name of the set; several draws of one set have the same")
     run.add_argument("--generator", required=True, help="what made the flights")

@@ -1,4 +1,4 @@
-"""``docs/decisions-of-the-gap.md``: the numbers of ``advisor/gap`` that decide something, from its source."""
+"""``reference/gap-decisions.md``: the numbers of ``advisor/gap`` that decide something, from its source."""
 
 import ast
 from collections.abc import Iterator, Sequence
@@ -10,12 +10,13 @@ from benchmarks.pages.constants import Constant, constants_in
 
 _HEAD = """# The decisions of the gap diagnosis
 
-Made by `make pages` from the source of `advisor/gap`; edit the docstrings there, not this page.
+This page is made from the source of `advisor/gap`.
 
 {count} constants decide something. A constant is a name in capitals for numbers at the top of a module.
 Left out are indices of arrays, and the descriptions of effects, whose bounds stand in
 [the table of effects](effects.md). Units are SI, unless the meaning says otherwise. Neighbours without a
-docstring stand with the next one that has one. [The method](gap.md) says how the folders work together.
+docstring stand with the next one that has one. [The method](../explanation/gap.md) says how the folders work
+together.
 """
 _FOLDERS = {
     "records": "what is usable of a log",
@@ -23,7 +24,7 @@ _FOLDERS = {
     "fitting": "the fit, the hold-out, the prior of the aircraft file",
     "noise": "the noise of the flight",
     "search": "which effects are added",
-    "unnamed": "what is left over",
+    "uncatalogued": "what no effect of the catalogue explains",
     "verdict": "the answer and its probabilities",
     "foresight": "what a planned flight could show",
     "simulator": "the simulator under diagnosis",

@@ -1,79 +1,152 @@
-"""The worked examples: a shipped log against a simulator without a servo lag, and a planned flight."""
+"""The worked examples of the documentation: commands that are really run, and what they print.
+
+Each example is a text file in ``docs/data/examples``; pages and the README show it from there.
+"""
 
 import os
 import subprocess
 import sys
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from advisor.config import load_aircraft
 from advisor.diagnosis import diagnose_logs
-from advisor.gap.result import Diagnosis
+from advisor.library import estimate, read
+from advisor.oem.estimate import Estimate
+from benchmarks.pages.figure import errors, residuals, response, stages, svg
 
-LOG = Path(__file__).parents[2] / "logs" / "arduplane-calm.tlog"
-AIRCRAFT = """name: arduplane
-elevator: {output: 2, calibration: [[1000, 25.0], [1500, 0.0], [2000, -25.0]], lag_s: 0.0}
-reference_airspeed_m_s: 26.1
-model: {Z_0: 0.0, Z_alpha: -8.01, Z_q: -0.03, Z_delta_e: 0.79,
-        M_0: 0.0, M_alpha: -48.3, M_q: -4.23, M_delta_e: -101.8}
-"""
-"""The derivatives of ``logs/README.md``, and a servo that follows at once."""
+ROOT = Path(__file__).parents[2]
+LOG = ROOT / "logs" / "arduplane-calm.tlog"
+AIRCRAFT = LOG.with_suffix(".yaml")
 UAV = """name: uav
 reference_airspeed_m_s: 22.0
 model: {Z_0: 0.04, Z_alpha: -4.3, Z_q: -0.03, Z_delta_e: -0.28,
         M_0: 0.0, M_alpha: -37.0, M_q: -4.8, M_delta_e: -52.0}
 """
-"""An aircraft that has not flown yet, for ``docs/foresee.md``."""
+"""An aircraft that has not flown yet."""
+_SHOWN = 1
+"""Index of the manoeuvre that the figures show."""
+FILES: Mapping[str, str] = {"uav.yaml": UAV}
+"""Aircraft files in the folder in which the examples run."""
 
 
-def diagnosis() -> Diagnosis:
-    """The diagnosis of the example."""
+@dataclass(frozen=True)
+class Part:
+    """Lines of an output that an example shows."""
+
+    begins: str = ""
+    """Start of the first line; empty: the first line of all."""
+    until: str = ""
+    """Start of the first line that is not shown; empty: to the end."""
+
+
+@dataclass(frozen=True)
+class Example:
+    """A command line, and the parts of its output that pages show."""
+
+    words: str
+    """What follows ``advisor`` on the command line."""
+    parts: Mapping[str, Sequence[Part]]
+    """Name of the text file to the parts in it; "[...]" stands between parts."""
+
+
+EXAMPLES: Sequence[Example] = (
+    Example(
+        "doctor logs/arduplane-default-rates.tlog", {"doctor-refuses": [Part(until="  ! AOA_SSA arrives")]}
+    ),
+    Example(
+        "doctor logs/arduplane-calm.tlog", {"doctor": [Part()], "doctor-short": [Part(until="vehicle ")]}
+    ),
+    Example("aircraft new --from logs/arduplane-calm.tlog -o mine.yaml", {"aircraft-new": [Part()]}),
+    Example("aircraft check mine.yaml", {"aircraft-check": [Part(until="  accelerometer.arm_m")]}),
+    Example(
+        "analyze logs/arduplane-calm.tlog --aircraft logs/arduplane-calm.yaml",
+        {
+            "analyze-maneuvers": [Part(" 1 ", "[1-7] angle of attack")],
+            "analyze-estimate": [Part("Joint estimate", "note:")],
+            "analyze-qualities": [Part("Flying qualities", "  static margin")],
+            "analyze-rules": [Part("rule continuous")],
+            "analyze-short": [Part(" 1 ", " 3 "), Part("Joint estimate", "note:"), Part("■")],
+        },
+    ),
+    Example(
+        "gap logs/arduplane-calm.tlog --aircraft logs/arduplane-calm.yaml",
+        {
+            "gap": [Part(until="╭─ where in the flight"), Part("cause ", "● part of")],
+            "gap-course": [Part("╭─ where in the flight", "cause ")],
+            "gap-unseen": [Part("This flight could not show")],
+        },
+    ),
+    Example(
+        "gap logs/arduplane-calm.tlog --aircraft logs/arduplane-calm.yaml --why",
+        {"gap-why": [Part("╭─ why", "╭─ error in")]},
+    ),
+    Example(
+        "gap logs/arduplane-calm.tlog --aircraft arduplane-calm-with-actuator-lag.yaml",
+        {"gap-again": [Part(until="╭─ where in the flight")]},
+    ),
+    Example("gap --foresee --aircraft uav.yaml", {"foresee": [Part()]}),
+)
+"""In the order in which they run: a later one reads what an earlier one wrote."""
+
+
+def transcripts() -> Iterator[tuple[str, str]]:
+    """Yield the name and the text of every example, after running its command."""
+    for name, text in FILES.items():
+        yield name, text
     with TemporaryDirectory() as place:
-        return diagnose_logs([LOG], load_aircraft(_written(Path(place), AIRCRAFT)))
+        room = Path(place)
+        (room / "logs").symlink_to(LOG.parent)
+        for name, text in FILES.items():
+            (room / name).write_text(text, encoding="utf-8")
+        for example in EXAMPLES:
+            lines = _printed(example.words, room)
+            for name, parts in example.parts.items():
+                yield f"{name}.txt", shown(example.words, lines, parts)
 
 
-def transcript() -> str:
-    """File, command and output as Markdown; of the output the verdict, the place and the causes."""
-    told = excerpt(_told(AIRCRAFT, "gap", str(LOG), "--aircraft", "aircraft.yaml"))
-    return _shown(AIRCRAFT, f"advisor gap logs/{LOG.name} --aircraft aircraft.yaml", told)
+def shown(words: str, lines: Sequence[str], parts: Sequence[Part]) -> str:
+    """The command line, and the parts of its output."""
+    told = "\n[...]\n".join("\n".join(_cut(lines, part)).strip("\n") for part in parts)
+    lead = "[...]\n" if parts[0].begins else ""
+    trail = "\n[...]" if parts[-1].until else ""
+    return f"$ advisor {words}\n{lead}{told}{trail}\n"
 
 
-def foresight() -> str:
-    """The worked example of ``advisor gap --foresee``: command and whole output."""
-    options = ("gap", "--foresee", "--aircraft", "aircraft.yaml")
-    return _shown(UAV, f"advisor {' '.join(options)}", _told(UAV, *options).strip())
+def _cut(lines: Sequence[str], part: Part) -> Sequence[str]:
+    """The lines of a part.
 
-
-def _told(aircraft: str, *options: str) -> str:
-    with TemporaryDirectory() as place:
-        _written(Path(place), aircraft)
-        command = [sys.executable, "-m", "advisor", *options]
-        inside = {
-            **os.environ,
-            "COLUMNS": "80",
-            "PYTHONIOENCODING": "utf-8",
-            "PYTHONPATH": str(LOG.parents[1]),
-        }
-        done = subprocess.run(
-            command, cwd=place, env=inside, capture_output=True, encoding="utf-8", check=True
+    Raises
+    ------
+    ValueError
+        The output has no such line.
+    """
+    places = [n for n, line in enumerate(lines) if line.startswith(part.begins)]
+    if not places:
+        raise ValueError(
+            f"no line begins with {part.begins!r}: name another one in benchmarks/pages/example.py"
         )
-    return "\n".join(line.rstrip() for line in done.stdout.splitlines())
+    ends = [n for n, line in enumerate(lines) if n > places[0] and part.until and line.startswith(part.until)]
+    return lines[places[0] : ends[0] if ends else len(lines)]
 
 
-def _shown(aircraft: str, command: str, told: str) -> str:
-    return f"```yaml\n{aircraft}```\n\n```text\n$ {command}\n{told}\n```"
+def _printed(words: str, room: Path) -> Sequence[str]:
+    """What a command prints on 80 columns, line by line."""
+    command = [sys.executable, "-m", "advisor", *words.split()]
+    inside = {**os.environ, "COLUMNS": "80", "PYTHONIOENCODING": "utf-8", "PYTHONPATH": str(ROOT)}
+    done = subprocess.run(command, cwd=room, env=inside, capture_output=True, encoding="utf-8", check=False)
+    return [line.rstrip() for line in done.stdout.splitlines()]
 
 
-def excerpt(output: str) -> str:
-    """The first boxes of the output, up to the place of the gap, and the table of causes."""
-    lines = output.splitlines()
-    until = next(n for n, line in enumerate(lines) if "where in the flight" in line)
-    begins = next(n for n, line in enumerate(lines) if line.startswith("cause "))
-    ends = next(n for n, line in enumerate(lines) if n > begins and line.startswith("● part of"))
-    return "\n".join([*lines[:until], "[...]", *lines[begins:ends]])
-
-
-def _written(place: Path, aircraft: str) -> Path:
-    path = place / "aircraft.yaml"
-    path.write_text(aircraft, encoding="utf-8")
-    return path
+def figures() -> Iterator[tuple[str, str]]:
+    """Yield the name and the SVG of every figure, after estimating and diagnosing."""
+    aircraft = load_aircraft(AIRCRAFT)
+    maneuver = read(LOG, aircraft).maneuvers[_SHOWN]
+    found = estimate(maneuver, aircraft)
+    assert isinstance(found, Estimate), found.text
+    yield "maneuver.svg", svg(stages(maneuver))
+    yield "model.svg", svg(response(maneuver, found))
+    yield "output-error.svg", svg(residuals(maneuver, found))
+    yield "gap.svg", svg(errors(diagnose_logs([LOG], aircraft)))

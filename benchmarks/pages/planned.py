@@ -1,4 +1,4 @@
-"""Flights that are made up for ``docs/effects.md``: every channel moves, so that no effect is left out."""
+"""Flights that are made up for ``reference/effects.md``: every channel moves, so that none is left out."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Scored runs of the gap diagnosis: their data file, and its table in ``docs/gap-results.md``."""
+"""Scored runs of the gap diagnosis: their data file, and the page ``validation/gap-results.md``."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -144,27 +144,23 @@ def added(runs: Sequence[Run], run: Run) -> list[Run]:
     return [run, *runs]
 
 
-def table(runs: Sequence[Run]) -> str:
-    """Both tables as Markdown: every figure outside and own, and every set."""
+def figures_table(runs: Sequence[Run]) -> str:
+    """Every figure over all outside runs and over all own runs, as Markdown."""
     lines = ["| figure | outside generators | own sets | goal |", "|---|---|---|---|"]
     for name, kind in FIGURES.items():
         outside, own = (_of_all([r for r in runs if r.own is is_own], name) for is_own in (False, True))
         if outside or own:
             lines.append(f"| {kind.title} | {outside or '–'} | {own or '–'} | {kind.goal or '–'} |")
-    heads = [
-        "set",
-        "flights",
-        "commit, date",
-        "one cause",
-        "alarms",
-        "numbers",
-        "unknown",
-        "block",
-        "two",
-        "sizes",
-        "5 s",
-    ]
-    lines += ["", f"| {' | '.join(heads)} |", "|" + "---|" * len(heads)]
+    return "\n".join(lines)
+
+
+def sets_table(runs: Sequence[Run]) -> str:
+    """Every set of flights with its hits and trials, the outside ones first, as Markdown."""
+    heads = (
+        "set", "flights", "commit, date", "one cause", "alarms", "numbers", "unknown", "block", "two",
+        "sizes", "5 s",
+    )  # fmt: skip
+    lines = [f"| {' | '.join(heads)} |", "|" + "---|" * len(heads)]
     for is_own in (False, True):
         names = dict.fromkeys(r.set for r in runs if r.own is is_own)
         lines += [_row([r for r in runs if r.set == name and r.own is is_own]) for name in names]

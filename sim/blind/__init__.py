@@ -1,1 +1,1 @@
-"""Sealed cases: flights whose effect is withheld, and the score of a diagnosis of them."""
+"""Sealed cases: flights whose effect is withheld, and the score of their diagnosis."""

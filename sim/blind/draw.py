@@ -1,67 +1,69 @@
-"""Draw a case: aircraft, manoeuvres, air, noise, and what is withheld."""
+"""Draw a case: aircraft, manoeuvres, air, noise, and the withheld effect."""
 
 from dataclasses import asdict, dataclass, field, replace
 from typing import Literal, get_args
 
 import numpy as np
 
-from sim import hangar
-from sim.blind.sizes import INSIDE, ON_ANY_ENGINE, OUTSIDE, Scale
-from sim.blind.visibility import structural_gap
-from sim.effects.fitting import KINDS, flight_of, without_effects
-from sim.flight import Sample, noise_sigma
-from sim.linear import ShortPeriod
-from sim.loading import DepartureError
-from sim.scenario import Air, Clock, Instruments, Maneuver, Noise, Scenario
-from sim.trim import TrimError
+from .. import hangar
+from ..effects.fitting import KINDS, flight_of, without_effects
+from ..flight import Sample, noise_sigma
+from ..linear import ShortPeriod
+from ..loading import DepartureError
+from ..scenario import Air, Clock, Instruments, Maneuver, Noise, Scenario
+from ..trim import TrimError
+from .sizes import INSIDE, ON_ANY_ENGINE, OUTSIDE, Scale
+from .visibility import structural_gap
 
 Group = Literal["clean", "hard", "jsbsim", "none", "parameters", "outside", "two", "simulator"]
 GROUPS: tuple[Group, ...] = get_args(Group)
 SHARES = (0.34, 0.20, 0.08, 0.18, 0.04, 0.10, 0.06, 0.0)
-"""How often each group is drawn unless told otherwise; ``simulator`` only where the call asks for it."""
+"""Share of each group among the cases by default. ``simulator`` is drawn on request only."""
 
 SMALLEST_GAP = 0.05
-"""An effect that leaves less above the noise is drawn again: nobody could be asked to see it."""
+"""Least structural gap above the noise. A case with a smaller gap is drawn again, because nobody could see
+its effect."""
 
 IN_TURNS, STEEPEST_DEG = 0.3, 25.0
-"""Share of the flights whose manoeuvres are flown in turns, and the steepest bank."""
+"""Share of the flights with manoeuvres in turns, and the steepest bank, deg."""
 
 ATTEMPTS = 10
 OFFSETS = ("alpha_bias", "pitch_rate_bias")
-"""Offsets hide among a manoeuvre's own unknowns; only kinematics show them, so their size alone counts."""
+"""Offsets that hide among a manoeuvre's nuisance parameters. Only kinematics show them, so that their size
+alone counts."""
 
 
 @dataclass(frozen=True)
 class Case:
-    """One sealed case: what was flown, and what the answer should be."""
+    """One sealed case: the flight, and the right answer."""
 
     group: Group
     scenario: Scenario
-    belief: ShortPeriod
-    """The ``model`` of the aircraft file: what the simulator believes."""
+    prior: ShortPeriod
+    """Prior model of the simulator, for ``model`` in the aircraft file."""
     effects: dict[str, dict[str, float]]
     blocks: list[str]
     gap: float
     """Structural gap above the noise."""
     hard: bool
     background: list[str] = field(default_factory=list)
-    """What the hard conditions hold beside the effect."""
+    """Further disturbances of a hard case, in addition to the effect."""
 
     def key(self) -> dict[str, object]:
-        """What the sealed key says of the case."""
+        """Return the content of the sealed key for this case."""
         said = asdict(self)
-        del said["scenario"], said["belief"]
+        del said["scenario"], said["prior"]
         said["aircraft"] = self.scenario.aircraft
         return said
 
 
 def draw_case(group: Group, generator: np.random.Generator) -> Case:
-    """Draw until an effect is visible above the noise.
+    """Draw a case until its effect is visible above the noise.
 
     Raises
     ------
     RuntimeError
-        No draw of the group was visible, which would mean that sizes and noise do not go together.
+        No draw of the group was visible, which would mean that sizes and noise do not match.
     """
     hard = group == "hard" or (group in ("none", "outside", "two") and generator.random() < 0.3)
     for _ in range(40):
@@ -70,7 +72,7 @@ def draw_case(group: Group, generator: np.random.Generator) -> Case:
         try:
             case = sized(group, scenario, names, hard, background, generator)
         except TrimError:
-            # An airframe, a speed and an effect that do not go together are drawn again.
+            # An airframe, a speed and an effect that do not match are drawn again.
             continue
         if case is not None:
             return case
@@ -95,7 +97,7 @@ def _names(group: Group, generator: np.random.Generator) -> list[str]:
 def scenario_of(
     group: Group, names: list[str], hard: bool, generator: np.random.Generator
 ) -> tuple[Scenario, list[str]]:
-    """Draw everything but the sizes."""
+    """Draw everything except the sizes."""
     uniform = generator.uniform
     engine: Literal["bundled", "jsbsim"] = "jsbsim" if group == "jsbsim" else "bundled"
     aircraft = "c172p" if engine == "jsbsim" else ("uav" if generator.random() < 0.55 else "light")
@@ -153,7 +155,7 @@ def scenario_of(
 
 
 def _noise(generator: np.random.Generator, colour: float) -> Noise:
-    """White noise of good flight-test instruments up to that of a hobby autopilot."""
+    """Return white noise, from good flight-test instruments to a hobby autopilot."""
     level = float(np.exp(generator.uniform(np.log(0.4), np.log(2.0))))
 
     def about(value: float) -> float:
@@ -171,7 +173,7 @@ def _noise(generator: np.random.Generator, colour: float) -> Noise:
 
 
 def _airframe(aircraft: str, generator: np.random.Generator) -> dict[str, float]:
-    """Another aircraft of the same class: its main figures moved by up to a fifth."""
+    """Return another aircraft of one class, with its main figures changed by up to a fifth."""
     base = hangar.AIRFRAMES[aircraft][0]
     names = ("mass", "iyy", "cl_alpha", "cl_q", "cl_delta_e", "cm_alpha", "cm_q", "cm_delta_e")
     return {name: getattr(base, name) * float(generator.uniform(0.82, 1.2)) for name in names}
@@ -185,13 +187,13 @@ def sized(
     background: list[str],
     generator: np.random.Generator,
 ) -> Case | None:
-    """Draw sizes until the effect shows; None: this flight cannot show it."""
+    """Draw sizes until the effect is visible; return None for a flight that cannot show it."""
     quiet = replace(scenario, noise=Noise(), air=Air(), clock=replace(scenario.clock, jitter_s=0.0))
     flight = flight_of(without_effects(quiet))
     truth = flight.engine.truth
-    belief = _believed(truth, generator) if group == "parameters" else truth
+    prior = _prior_of(truth, generator) if group == "parameters" else truth
     if not names:
-        return Case(group, scenario, belief, {}, [], 0.0, hard, background)
+        return Case(group, scenario, prior, {}, [], 0.0, hard, background)
     plain = list(flight.samples())
     scale = _scale(scenario, plain)
     sigma = noise_sigma(scenario)
@@ -206,7 +208,7 @@ def sized(
             return Case(
                 group,
                 replace(scenario, effects=effects),
-                belief,
+                prior,
                 effects,
                 blocks,
                 min(gaps),
@@ -244,8 +246,8 @@ def _scale(scenario: Scenario, plain: list[Sample]) -> Scale:
     return Scale(1.0 if scenario.aircraft == "uav" else 4.0, base.chord, amplitude, swing, speed, **fields)
 
 
-def _believed(truth: ShortPeriod, generator: np.random.Generator) -> ShortPeriod:
-    """A simulator whose structure is right and whose derivatives are off by 10 to 30 percent."""
+def _prior_of(truth: ShortPeriod, generator: np.random.Generator) -> ShortPeriod:
+    """Return a simulator with the right structure, and with derivatives off by 10 to 30 percent."""
     values = truth.as_dict()
     for name in ("Z_alpha", "M_alpha", "M_q", "M_delta_e"):
         values[name] *= 1.0 + float(generator.choice([-1, 1]) * generator.uniform(0.1, 0.3))

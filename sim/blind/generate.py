@@ -1,4 +1,4 @@
-"""Write sealed cases: logs and aircraft files under names that mean nothing."""
+"""Write sealed cases: logs and aircraft files under meaningless names."""
 
 import os
 from collections.abc import Callable, Sequence
@@ -8,20 +8,20 @@ from typing import Any
 import numpy as np
 import yaml
 
-from sim.blind.draw import GROUPS, SHARES, Case, Group, draw_case
-from sim.blind.seal import seal
-from sim.blind.simulated import SimulatedCase, draw_simulated
-from sim.effects.fitting import flight_of
-from sim.record import record
-from sim.servo import Calibration
+from ..effects.fitting import flight_of
+from ..record import record
+from ..servo import Calibration
+from .draw import GROUPS, SHARES, Case, Group, draw_case
+from .seal import seal
+from .simulated import SimulatedCase, draw_simulated
 
 LOG, AIRCRAFT = "flight.tlog", "aircraft.yaml"
 MADE_AT = 1_790_000_000
-"""Every file carries this time: the order of making says nothing."""
+"""Time stamp of every file, s since 1970, so that the order of making is hidden."""
 
 
 def key_beside(folder: Path) -> Path:
-    """Where the key of a folder of cases is kept: beside it, not in it."""
+    """Return the path of the key of a folder of cases, next to the folder."""
     return folder.with_name(folder.name + ".key.json")
 
 
@@ -65,7 +65,7 @@ def write_case(case: Case, folder: Path) -> None:
 
 
 def aircraft_file(case: Case) -> dict[str, Any]:
-    """What the crew believes of the aircraft: the same keys for every case of a group."""
+    """Return the crew's aircraft file, with equal keys for every case of a group."""
     elevator: dict[str, Any] = {
         "output": "auto",
         "calibration": [list(point) for point in Calibration().points],
@@ -84,5 +84,5 @@ def aircraft_file(case: Case) -> dict[str, Any]:
         "elevator": elevator,
         "accelerometer": {"arm_m": round(case.scenario.instruments.accelerometer_arm_m, 4)},
         "reference_airspeed_m_s": round(case.scenario.airspeed_m_s or 0.0, 3),
-        "model": {name: float(f"{value:.6g}") for name, value in case.belief.as_dict().items()},
+        "model": {name: float(f"{value:.6g}") for name, value in case.prior.as_dict().items()},
     }

@@ -1,4 +1,4 @@
-"""Open the key of sealed cases and tell how well they were answered."""
+"""Open the key of sealed cases, and print the score of the answers."""
 
 import hashlib
 import json
@@ -6,17 +6,17 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from sim.blind.score import Rate, by_effect, in_time, judge, score
-from sim.blind.seal import SealError, unseal
+from .score import Rate, by_effect, in_time, judge, score
+from .seal import SealError, unseal
 
 
 def read_answers(path: Path) -> dict[str, dict[str, Any]]:
-    """Read answers, one JSON object a line: ``case`` and ``answer`` (or ``document``).
+    """Read answers, one JSON object on each line: ``case`` and ``answer`` (or ``document``).
 
     Raises
     ------
     SealError
-        A line is no such object.
+        A line is no object with these keys.
     """
     answers: dict[str, dict[str, Any]] = {}
     for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), start=1):
@@ -61,9 +61,9 @@ def report(folder: Path, answers: Path, key_file: Path, details: bool = False) -
 
 
 def score_document(folder: Path, answers: Path, key_file: Path) -> dict[str, Any]:
-    """The score table as one JSON document, with the hash of the answers.
+    """Return the score table as one JSON document, with the hash of the answers.
 
-    Each figure has ``trials``, and ``hits`` where it is a share, else ``value`` in percent.
+    Each figure has ``trials``. A share has ``hits``, any other figure ``value`` in percent.
 
     Raises
     ------
@@ -91,6 +91,6 @@ def _figure(rate: Rate) -> dict[str, Any]:
 
 
 def _seconds_of(answers: Path) -> list[float]:
-    """Processor time of each answer that says it."""
+    """Return the processor time of each answer that states one, s."""
     lines = (json.loads(line) for line in answers.read_text(encoding="utf-8").splitlines() if line.strip())
     return [float(line["cpu_s"]) for line in lines if line.get("cpu_s") is not None]

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 MODERATE_GAP = 0.2
-"""Structural gap above the noise from which an effect counts as moderate."""
+"""Least structural gap above the noise of a moderate effect."""
 
 FAST_S = 5.0
-"""Processor time that one diagnosis may take."""
+"""Largest processor time of a fast diagnosis, s."""
 Z95 = 1.959964
 BINS = 10
 _FINE = ("none", "parameters")
@@ -29,10 +29,10 @@ class Rate:
     count: int
     goal: str
     hits: int | None = None
-    """Cases of a share that are right; None of a median or an error."""
+    """Number of right cases, for a share. None for a median or an error."""
 
     def line(self) -> str:
-        """One row of the table; values in percent unless the goal speaks otherwise."""
+        """Return one row of the table. Values are in percent unless the goal has another unit."""
         if not self.count:
             return f"{self.name:52s}       no case              goal {self.goal}"
         figures = f"{self.value:7.1f} [{self.low:5.1f}, {self.high:5.1f}]  n={self.count:<5d}"
@@ -41,7 +41,7 @@ class Rate:
 
 @dataclass(frozen=True)
 class Judged:
-    """A case's truth beside the answer to it."""
+    """A case's truth, with the answer to it."""
 
     group: str
     truth: tuple[str, ...]
@@ -54,40 +54,42 @@ class Judged:
     named: tuple[str, ...]
     """Effects of ``causes``, best first."""
     added: tuple[str, ...]
-    """Effects of the waterfall."""
+    """Effects of the answer's waterfall."""
     probability: float
     parameters: Mapping[str, Mapping[str, float]]
-    """Of the first cause."""
-    ties: tuple[str, ...]
+    """Parameters of the first cause."""
+    confusions: tuple[str, ...]
     block: str
     shrink_percent: float
     simulator_percent: float
-    """Shrink in the user's own simulator; NaN without one."""
+    """Shrinkage of the gap in the user's own simulator, percent. NaN without one."""
 
     @property
     def right(self) -> bool:
-        """The first cause is the true one; in the hard conditions' air without an effect, that air."""
+        """Whether the first cause is the true one. Without an effect in a hard case, the air is the true
+        cause."""
         truth = self.truth or self.background
         return self.verdict == "effect" and bool(truth) and self.named[:1] == truth[:1]
 
     @property
     def is_there(self) -> bool:
-        """The first cause acted on the flight: the effect that was drawn, or the air it was flown in."""
+        """Whether the first cause acted on the flight: the drawn effect, or the air."""
         return self.right or (self.verdict == "effect" and set(self.named[:1]) <= set(self.background))
 
     @property
     def is_left_alone(self) -> bool:
-        """A simulator without an effect too little or too much is called right, or wrong in numbers only."""
+        """Whether a simulator with a right structure is called right, or wrong in numbers only."""
         return self.group == "simulator" and not self.truth and self.verdict in _FINE
 
     @property
-    def right_or_tie(self) -> bool:
-        """The true cause is first or among those the answer says it cannot tell from it."""
-        return self.right or (self.verdict == "effect" and self.truth[0] in self.ties)
+    def right_or_confused(self) -> bool:
+        """Whether the true cause is first, or is stated as indistinguishable from the first."""
+        return self.right or (self.verdict == "effect" and self.truth[0] in self.confusions)
 
 
 def judge(key: Mapping[str, Any], answers: Mapping[str, Mapping[str, Any]]) -> list[Judged]:
-    """Lay answers (``advisor gap --json`` documents by case) beside the key; no answer counts as unknown."""
+    """Compare answers (``advisor gap --json`` documents by case) with the key. A missing answer counts as
+    unknown."""
     judged = []
     for name, truth in key.items():
         answer = answers.get(name, {})
@@ -109,7 +111,7 @@ def judge(key: Mapping[str, Any], answers: Mapping[str, Mapping[str, Any]]) -> l
                 added=tuple(str(step.get("effect")) for step in answer.get("waterfall") or []),
                 probability=float(first.get("probability") or 0.0),
                 parameters=first.get("parameters") or {},
-                ties=tuple(first.get("cannot_be_told_from") or ()),
+                confusions=tuple(first.get("cannot_be_told_from") or ()),
                 block=str((answer.get("where") or {}).get("block", "")),
                 shrink_percent=math.nan if shrink is None else float(shrink),
                 simulator_percent=math.nan if simulated is None else float(simulated),
@@ -133,9 +135,9 @@ def score(judged: Sequence[Judged]) -> list[Rate]:
     covered = [inside for j in single if j.right for inside in _covered(j)]
     return [
         _share("right cause first, clean", [j.right for j in clean], ">= 98"),
-        _share("  the same, or a tie that is stated", [j.right_or_tie for j in clean], ""),
+        _share("  the first cause, or a stated confusion", [j.right_or_confused for j in clean], ""),
         _share("right cause first, hard, moderate or stronger", [j.right for j in moderate], ">= 95"),
-        _share("  the same, or a tie that is stated", [j.right_or_tie for j in moderate], ""),
+        _share("  the first cause, or a stated confusion", [j.right_or_confused for j in moderate], ""),
         _share("right cause first, hard, all", [j.right for j in hard], ""),
         _share("a named cause is right (hard)", [j.right for j in named_in_hard], ">= 98"),
         _share("  the same, or the air it was flown in", [j.is_there for j in named_in_hard], ""),
@@ -161,7 +163,7 @@ def score(judged: Sequence[Judged]) -> list[Rate]:
 
 
 def _own_simulator(judged: Sequence[Judged]) -> list[Rate]:
-    """Figures of the cases that name a simulator of the user's own."""
+    """Return the figures of the cases that name a user's own simulator."""
     withheld, none = [j for j in judged if j.truth], [j for j in judged if not j.truth]
     shrunk = [replace(j, shrink_percent=j.simulator_percent) for j in withheld if j.right and _adds(j)]
     return [
@@ -172,12 +174,12 @@ def _own_simulator(judged: Sequence[Judged]) -> list[Rate]:
 
 
 def _adds(j: Judged) -> bool:
-    """Whether the truth adds to the simulator, and does not take a servo away from it."""
+    """Return whether the truth adds an effect to the simulator, instead of removing a servo from it."""
     return all(value >= 0.0 for name, value in j.sizes[j.truth[0]].items() if name in ("lag_s", "delay_s"))
 
 
 def by_effect(judged: Sequence[Judged]) -> list[Rate]:
-    """Right cause first, effect by effect, over clean, hard and JSBSim cases."""
+    """Return the share of right first causes for each effect, over clean, hard and JSBSim cases."""
     single = [j for j in judged if j.group in ("clean", "hard", "jsbsim")]
     return [
         _share(f"  {name}", [j.right for j in single if j.truth[0] == name], "")
@@ -186,12 +188,12 @@ def by_effect(judged: Sequence[Judged]) -> list[Rate]:
 
 
 def in_time(seconds: Sequence[float]) -> Rate:
-    """How many answers took no more processor time than they may."""
+    """Return the share of answers within the allowed processor time."""
     return _share(f"CPU seconds at most {FAST_S:g}", [s <= FAST_S for s in seconds], "all")
 
 
 def is_right(j: Judged) -> bool:
-    """Whether an answer is what its group asks for: a cause, both, the block, numbers, or nothing."""
+    """Return whether an answer fits its group's question: a cause, both, the block, numbers, or nothing."""
     if j.group == "none":
         return not _alarm(j)
     if j.group == "parameters":
@@ -202,7 +204,8 @@ def is_right(j: Judged) -> bool:
 
 
 def _alarm(j: Judged) -> bool:
-    """An effect, a change or an unknown claimed where nothing was; background turbulence may be named."""
+    """Return whether an effect, a change or an unknown was claimed without one. Background turbulence may be
+    named."""
     return j.verdict != "none" and not j.is_there
 
 
@@ -211,7 +214,8 @@ def _both(j: Judged) -> bool:
 
 
 def _covered(j: Judged) -> list[bool]:
-    """For each size of the key that the answer gives by the same name: does its 95 % interval hold it?"""
+    """Return, for each size of the key that the answer also gives, whether its 95 % interval holds the
+    size."""
     found = []
     for name, true in j.sizes[j.truth[0]].items():
         said = j.parameters.get(name)
@@ -241,7 +245,8 @@ def _median(name: str, judged: Sequence[Judged], goal: str) -> Rate:
 
 
 def _calibration_error(judged: Sequence[Judged]) -> Rate:
-    """Expected calibration error of the first cause's probability, in percent, ten equal bins."""
+    """Return the expected calibration error of the first cause's probability, in percent, over ten equal
+    bins."""
     name, goal = "expected calibration error of probabilities", "<= 5"
     if not judged:
         return Rate(name, math.nan, math.nan, math.nan, 0, goal)
@@ -265,7 +270,7 @@ def _calibration_error(judged: Sequence[Judged]) -> Rate:
 
 
 def _shuffled(judged: Sequence[Judged]) -> Rate:
-    """Right cause first with the labels shuffled: what chance gives."""
+    """Return the share of right first causes with shuffled labels, which is chance."""
     generator = np.random.default_rng(0)
     hits: list[bool] = []
     for _ in range(20 if judged else 0):

@@ -1,4 +1,5 @@
-"""Seals: a key published as a salted hash first, answers committed by hash before the key is opened."""
+"""Seals: the key's salted hash is published first, and answers are committed by hash before the key is
+opened."""
 
 import hashlib
 import json
@@ -7,20 +8,20 @@ from pathlib import Path
 from typing import Any
 
 SEAL = "SEAL"
-"""File in the cases' folder that holds the hash of salt and key."""
+"""File in the cases' folder with the hash of salt and key."""
 
 COMMITMENT = "COMMITMENT"
-"""File in the cases' folder that holds the hash of the answers."""
+"""File in the cases' folder with the hash of the answers."""
 
 
 class SealError(ValueError):
-    """A seal is missing or broken; the sentence says which."""
+    """A seal is missing or broken. The sentence names the seal."""
 
 
 def seal(key: dict[str, Any], key_file: Path, folder: Path) -> str:
     """Write the key outside the folder and its salted hash inside; return the hash.
 
-    The salt keeps anybody from guessing the key and checking the guess against the hash.
+    The salt prevents a guess of the key that is checked against the hash.
     """
     text = json.dumps({"salt": secrets.token_hex(32), "key": key}, sort_keys=True)
     digest = hashlib.sha256(text.encode()).hexdigest()
@@ -31,12 +32,12 @@ def seal(key: dict[str, Any], key_file: Path, folder: Path) -> str:
 
 
 def commit(folder: Path, answers: Path) -> str:
-    """Commit answers by their hash; return it.
+    """Commit answers by their hash, and return the hash.
 
     Raises
     ------
     SealError
-        Other answers were committed before.
+        Other answers were committed earlier.
     """
     digest = hashlib.sha256(answers.read_bytes()).hexdigest()
     place = folder / COMMITMENT
@@ -47,16 +48,17 @@ def commit(folder: Path, answers: Path) -> str:
 
 
 def unseal(folder: Path, answers: Path, key_file: Path) -> dict[str, Any]:
-    """Open the key, once the answers are those committed and the key is the one sealed.
+    """Open the key, after a check of the committed answers and of the sealed key.
 
     Raises
     ------
     SealError
-        No commitment, other answers, or another key.
+        There is no commitment, or the answers or the key differ from the sealed ones.
     """
     place = folder / COMMITMENT
     if not place.exists():
-        raise SealError(f"answers are not committed: run python -m sim commit {folder} {answers} first")
+        program = f"python -m {__package__.split('.')[0]}"
+        raise SealError(f"answers are not committed: run {program} commit {folder} {answers} first")
     if place.read_text(encoding="utf-8").strip() != hashlib.sha256(answers.read_bytes()).hexdigest():
         raise SealError(f"{answers}: not the answers that were committed")
     text = key_file.read_text(encoding="utf-8")

@@ -1,30 +1,30 @@
-"""Cases of the user's own simulator: an aircraft of JSBSim flies, and its model is named as the simulator.
+"""Cases with a user's own simulator: an aircraft of JSBSim flies, and its model is named as the simulator.
 
-The effect is withheld from the model, or, the other way round, stands in the servo that the aircraft file
-gives the simulator and is not in the aircraft.
+Either the effect is in the aircraft and missing in the model. Or the effect is in the simulator's servo, by
+the aircraft file, and missing in the aircraft.
 """
 
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sim.blind.draw import Case, scenario_of, sized
-from sim.blind.sizes import ON_ANY_ENGINE
-from sim.hangar import Habits
-from sim.trim import TrimError
+from ..hangar import Habits
+from ..trim import TrimError
+from .draw import Case, scenario_of, sized
+from .sizes import ON_ANY_ENGINE
 
 FLEET = {
     "c172p": Habits(53.0, 2.5, 0.4),
     "T37": Habits(110.0, 1.5, 0.5),
     "737": Habits(140.0, 1.5, 0.6),
 }
-"""Aircraft of 1 t, 3 t and 50 t by JSBSim's name."""
+"""Aircraft of 1 t, 3 t and 50 t, by their names in JSBSim."""
 WITHOUT, MIRRORED = 0.2, 0.15
-"""Shares of the cases without an effect, and of those with an effect in the simulator alone."""
+"""Share of the cases without an effect, and share with an effect in the simulator alone."""
 SERVO = {"actuator_lag": "lag_s", "transport_delay": "delay_s"}
-"""Effects that an aircraft file can give a simulator's servo, and their key."""
+"""Effects that an aircraft file can give to a simulator's servo, with their keys."""
 AIR = ("turbulence", "gust")
-"""Effects of no simulator."""
+"""Effects that no simulator can contain."""
 TRIALS = 40
 
 
@@ -34,11 +34,11 @@ class SimulatedCase(Case):
 
     simulator: str = ""
     servo: tuple[tuple[str, float], ...] = ()
-    """Lag or delay of the elevator that the aircraft file states."""
+    """Lag or delay of the elevator in the aircraft file."""
 
 
 def draw_simulated(generator: np.random.Generator) -> SimulatedCase:
-    """Draw until the effect is visible above the noise.
+    """Draw a case until its effect is visible above the noise.
 
     Raises
     ------
@@ -75,7 +75,8 @@ def draw_simulated(generator: np.random.Generator) -> SimulatedCase:
 
 
 def _named(case: Case, mirrored: bool) -> SimulatedCase:
-    """The case with its simulator; mirrored, the effect goes from the aircraft into the simulator's servo."""
+    """Return the case with its simulator. A mirrored case has the effect in the simulator's servo, not in the
+    aircraft."""
     scenario, effects, servo = case.scenario, case.effects, []
     if mirrored:
         scenario = replace(scenario, effects={})
@@ -84,6 +85,6 @@ def _named(case: Case, mirrored: bool) -> SimulatedCase:
             servo.append((key, round(sizes[key], 5)))
             effects = {effect: {key: -round(sizes[key], 5)}}
     return SimulatedCase(
-        "simulator", scenario, case.belief, effects, case.blocks, case.gap, case.hard, case.background,
+        "simulator", scenario, case.prior, effects, case.blocks, case.gap, case.hard, case.background,
         f"jsbsim:{scenario.aircraft}", tuple(servo),
     )  # fmt: skip

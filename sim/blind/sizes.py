@@ -1,4 +1,4 @@
-"""How large an effect is drawn: from hardly visible to gross, for each aircraft's own scale."""
+"""Sizes of effects: from hardly visible to gross, on each aircraft's own scale."""
 
 import math
 from collections.abc import Callable
@@ -11,17 +11,17 @@ Draw = Callable[["Scale", np.random.Generator], dict[str, float]]
 
 @dataclass(frozen=True)
 class Scale:
-    """What is large and what is small for one aircraft."""
+    """Scale of large and small sizes for one aircraft."""
 
     length: float
-    """1 for the small UAV; arms and gust lengths grow with it."""
+    """Length relative to the small UAV. Arms and gust lengths grow with it."""
     chord: float
     amplitude: float
     """Elevator amplitude of the test inputs, rad."""
     swing: float
     """Angle-of-attack amplitude of their response, rad."""
     speed: float
-    """1 at 25 m/s; gusts are as large as the angle they make."""
+    """Speed relative to 25 m/s. Gusts are as large as their angle."""
     cl_alpha: float = 4.9
     cm_alpha: float = -0.75
     cm_delta_e: float = -1.15
@@ -117,7 +117,7 @@ INSIDE: dict[str, Draw] = {
     "accelerometer_skew": _SKEW,
     "attitude_skew": _SKEW,
 }
-"""Named effects."""
+"""Effects of the gap diagnosis, by name."""
 
 OUTSIDE: dict[str, Draw] = {
     "servo_hunting": _pair(_one("amplitude_rad", 0.1, 0.4, by="amplitude"), _one("frequency_hz", 0.8, 3.0)),
@@ -140,7 +140,7 @@ OUTSIDE: dict[str, Draw] = {
     "propeller_buzz": _pair(_one("cm", 0.0015, 0.008), _one("frequency_hz", 0.7, 3.0)),
     "slipstream_beat": _pair(_one("share", 0.15, 0.6), _one("frequency_hz", 0.3, 1.5)),
 }
-"""Effects without a name in the gap analysis."""
+"""Effects without a name in the gap diagnosis."""
 
 ON_ANY_ENGINE = (
     "actuator_lag",
@@ -161,4 +161,4 @@ ON_ANY_ENGINE = (
     "accelerometer_skew",
     "attitude_skew",
 )
-"""Effects outside the airframe, which JSBSim's aircraft can have too."""
+"""Effects outside the airframe, which JSBSim's aircraft can have as well."""

@@ -1,9 +1,9 @@
-"""How much of an effect no choice of the eight parameters can hide.
+"""Structural gap: the part of an effect that no choice of the eight parameters can hide.
 
-Compared are two flights without noise, with and without the effect. What a short-period model could still
-explain of their difference (its eight parameters, and in every manoeuvre its own initial states, trim
-and offsets) is taken out by least squares, and so is the answer to commands that differ, since those are
-recorded; the rest, over the noise, is the structural gap.
+Two flights without noise are compared, with and without the effect. Least squares remove the part of their
+difference that a short-period model could explain. That model has the eight parameters, and in each manoeuvre
+its own initial states, trim and offsets. The answer to differing commands is removed as well, because
+commands are recorded. The rest, over the noise, is the structural gap.
 """
 
 from collections.abc import Sequence
@@ -11,9 +11,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.flight import Sample
-from sim.linear import ShortPeriod
-from sim.servo import Calibration
+from ..flight import Sample
+from ..linear import ShortPeriod
+from ..servo import Calibration
 
 FloatArray = NDArray[np.float64]
 CHANNELS = ("alpha", "q", "a_z", "theta")
@@ -28,7 +28,7 @@ def structural_gap(
     sigma: dict[str, float],
     tick_s: float,
 ) -> float:
-    """Mean over the channels of (remaining difference)² / (noise)², over all manoeuvres.
+    """Return the mean over the channels of (residual difference)² / (noise)², over all manoeuvres.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ def structural_gap(
     tick_s
         Time between samples.
     """
-    # Fifty samples a second are plenty, however fast the loop is.
+    # Fifty samples a second suffice for any rate of the loop.
     every = max(1, round(SAMPLING_S / tick_s))
     plain, changed, tick_s = plain[::every], changed[::every], every * tick_s
     blocks = _maneuvers(plain)
@@ -71,7 +71,7 @@ def structural_gap(
 
 
 def _maneuvers(samples: Sequence[Sample]) -> list[list[int]]:
-    """Indices of the samples of each manoeuvre, from shortly before its first step on."""
+    """Return the indices of the samples of each manoeuvre, beginning shortly before its first step."""
     found: dict[float, list[int]] = {}
     for i, sample in enumerate(samples):
         if sample.flying and sample.time_s >= sample.flying.start_s - LEAD_IN_S:
@@ -82,11 +82,11 @@ def _maneuvers(samples: Sequence[Sample]) -> list[list[int]]:
 def _sensitivities(
     flown: Sequence[Sample], changed: Sequence[Sample], model: ShortPeriod, tick_s: float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Responses of (α, q, a_z, θ), stacked: to the six derivatives, to a manoeuvre's own eight unknowns,
-    and to what the second flight's command differs by.
+    """Return stacked responses of (α, q, a_z, θ): to the six derivatives, to a manoeuvre's eight nuisance
+    parameters, and to the difference of the commands.
 
-    Each is the same second-order system driven by another input: α, q or δe into one of the equations
-    (derivatives), a constant (trim), an initial state, or a plain offset of a channel.
+    Each response is that of one second-order system to another input. The input is α, q or δe in one of the
+    equations (derivatives), a constant (trim), an initial state, or an offset of a channel.
     """
     speed = flown[0].motion.airspeed
     matrix = np.array([[model.Z_alpha, 1 + model.Z_q], [model.M_alpha, model.M_q]])
@@ -128,7 +128,7 @@ def _sensitivities(
 def _respond(
     matrix: FloatArray, into_z: FloatArray, into_m: FloatArray, start: tuple[float, float], tick_s: float
 ) -> tuple[FloatArray, FloatArray]:
-    """Solve ẋ = A x + u on the ticks by the trapezium rule: second order, plenty here."""
+    """Solve ẋ = A x + u on the ticks by the trapezium rule, whose second order suffices here."""
     forward = np.eye(2) + 0.5 * tick_s * matrix
     backward = np.linalg.inv(np.eye(2) - 0.5 * tick_s * matrix)
     transition = backward @ forward

@@ -1,13 +1,13 @@
-"""What keeps a surface from following its command: speed, play, friction."""
+"""Defects between command and surface: rate limit, backlash, dead band, friction."""
 
 import math
 
 _TRIMMED_S = 2.0
-"""A command that has rested for so long is a trim: few steps of a test input last that long."""
+"""Time for which a command must rest to be a trim, s. Few steps of a test input last so long."""
 
 
 class RateLimit:
-    """The surface moves at most so fast."""
+    """A surface with a limited rate."""
 
     def __init__(self, rate_rad_s: float) -> None:
         self.rate = rate_rad_s
@@ -25,7 +25,7 @@ class RateLimit:
 
 
 class Backlash:
-    """Play in the linkage: the surface moves only when pushed by one flank or the other."""
+    """Backlash in the linkage: the surface moves only when one flank or the other pushes."""
 
     def __init__(self, half_width_rad: float) -> None:
         self.half_width = half_width_rad
@@ -42,14 +42,14 @@ class Backlash:
 
 
 class Deadband:
-    """Commands near neutral move nothing; beyond, the surface follows short of the band.
+    """Dead band: commands near neutral move nothing, and beyond it the surface follows short of the band.
 
     Parameters
     ----------
     half_width_rad, neutral_rad
-        The band.
+        Half of the band's width, and its centre.
     above_trim_rad
-        Given: the band moves with the trim, and lies that far above wherever the command rests.
+        Where given, the band moves with the trim, and lies so far above the resting command.
     """
 
     def __init__(
@@ -61,7 +61,7 @@ class Deadband:
         self._last, self._resting_s = math.nan, 0.0
 
     def reset(self, value: float) -> None:
-        """There is no memory to reset."""
+        """Do nothing, because a dead band has no memory."""
 
     def step(self, value: float, dt: float) -> float:
         """Return the deflection for ``value``."""
@@ -75,7 +75,7 @@ class Deadband:
 
 
 class Stiction:
-    """Dry friction: the surface sticks until the error breaks it loose, then jumps all the way."""
+    """Dry friction: the surface sticks until the error breaks it loose, then jumps to the command."""
 
     def __init__(self, breakaway_rad: float) -> None:
         self.breakaway = breakaway_rad

@@ -1,11 +1,11 @@
-"""Air that moves."""
+"""Moving air."""
 
-from sim.atmosphere import gust_1_minus_cos
-from sim.motion import Motion
+from ..atmosphere import gust_1_minus_cos
+from ..motion import Motion
 
 
 class Gusts:
-    """A 1 − cos gust met at each of several times."""
+    """A 1 − cos gust at each of several times."""
 
     def __init__(self, amplitude_m_s: float, length_m: float, times_s: tuple[float, ...]) -> None:
         self.amplitude, self.length, self.times_s = amplitude_m_s, length_m, times_s
@@ -20,7 +20,7 @@ class Gusts:
 
 
 class WindShear:
-    """Head wind that grows with height through a layer, and is steady above and below it."""
+    """Head wind that grows with height through a layer, and is constant above and below."""
 
     def __init__(self, gradient_1_s: float, height_m: float, most_m_s: float = 3.0) -> None:
         self.gradient, self.height, self.most = gradient_1_s, height_m, most_m_s

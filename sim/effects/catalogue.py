@@ -1,7 +1,7 @@
 """Every named effect as a physical component of the aircraft.
 
-Signs: a positive skew means late data. Changes between manoeuvres set in halfway through the flight
-unless ``at_s`` (seconds since the log began) says when; ``ramp_s`` is how long they take.
+Signs: a positive skew means late data. A change between manoeuvres begins halfway through the flight, unless
+``at_s`` (seconds since the log began) gives the time. ``ramp_s`` is its duration.
 """
 
 import math
@@ -9,14 +9,14 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from sim.atmosphere import DrydenTurbulence
-from sim.effects.actuator import Backlash, Deadband, RateLimit
-from sim.effects.air import Gusts
-from sim.effects.changes import EngineSurge, FieldChange, Onset
-from sim.effects.instruments import BendingMode, Lagging, Leading, Scaled, VaneAhead
-from sim.effects.kit import Kind, Kit, Sizes
-from sim.fittings import Turbulent
-from sim.servo import FirstOrderServo, Mechanism, SecondOrderServo, TransportDelay
+from ..atmosphere import DrydenTurbulence
+from ..fittings import Turbulent
+from ..servo import FirstOrderServo, Mechanism, SecondOrderServo, TransportDelay
+from .actuator import Backlash, Deadband, RateLimit
+from .air import Gusts
+from .changes import EngineSurge, FieldChange, Onset
+from .instruments import BendingMode, Lagging, Leading, Scaled, VaneAhead
+from .kit import Kind, Kit, Sizes
 
 
 def _delay(kit: Kit, sizes: Sizes) -> None:
@@ -26,7 +26,7 @@ def _delay(kit: Kit, sizes: Sizes) -> None:
 def _lag(kit: Kit, sizes: Sizes) -> None:
     lag_s, damping = sizes["lag_s"], sizes["damping"]
     if damping > 0.0 and lag_s > 0.0:
-        # Both trail a ramp by the same time.
+        # Both lag equally behind a ramp.
         servo: Mechanism = SecondOrderServo(damping / (math.pi * lag_s), damping)
     elif lag_s > 0.0:
         servo = FirstOrderServo(lag_s)
@@ -65,7 +65,7 @@ def _mass(kit: Kit, sizes: Sizes) -> None:
 
 
 def _ice(kit: Kit, sizes: Sizes) -> None:
-    """Ice takes lift slope, stability and control power, and adds drag (shares after Bragg's η model)."""
+    """Reduce lift slope, stability and control power, and add drag (shares after Bragg's η model)."""
     severity = sizes["severity"]
     change = {"cl_alpha": -0.5, "cl_delta_e": -0.5, "cm_alpha": -0.5, "cm_delta_e": -0.5, "cd_0": 2.0}
     factors = {name: share * severity for name, share in change.items()}
@@ -146,7 +146,7 @@ def _late(kit: Kit, channels: Iterable[str], skew_s: float) -> None:
 
 
 def _attitude_late(kit: Kit, sizes: Sizes) -> None:
-    """The attitude alone, or the message that brings it together with the pitch rate."""
+    """Delay the attitude alone, or the message with attitude and pitch rate."""
     _late(kit, ("theta", "q") if sizes["with_pitch_rate"] else ("theta",), sizes["skew_s"])
 
 
@@ -223,4 +223,4 @@ CATALOGUE: dict[str, Kind] = {
     "accelerometer_skew": _skew("a_z", "a_x"),
     "attitude_skew": Kind("timing", {"skew_s": 0.04, "with_pitch_rate": 0.0}, _attitude_late),
 }
-"""Effect name of the gap analysis to its component."""
+"""Effect name of the gap diagnosis to its component."""

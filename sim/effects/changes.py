@@ -3,11 +3,11 @@
 import math
 from typing import Any
 
-from sim.motion import Motion
+from ..motion import Motion
 
 
 class Onset:
-    """How far a change has gone: 0 before ``at_s``, 1 from ``ramp_s`` later on."""
+    """Progress of a change: 0 before ``at_s``, 1 after ``ramp_s`` more."""
 
     def __init__(self, at_s: float, ramp_s: float) -> None:
         self.at_s, self.ramp_s = at_s, ramp_s
@@ -20,14 +20,14 @@ class Onset:
 
 
 class FieldChange:
-    """Fields of the aircraft's record that go to new values as an onset says."""
+    """Fields of the aircraft's record that change to new values with an onset."""
 
     def __init__(self, onset: Onset, factors: dict[str, float], offsets: dict[str, float]) -> None:
         self.onset, self.factors, self.offsets = onset, factors, offsets
         self._plain: dict[str, float] | None = None
 
     def apply(self, time_s: float, motion: Motion, engine: Any) -> None:
-        """Set the fields for ``time_s``; ``factors`` are relative changes, ``offsets`` absolute ones."""
+        """Set the fields for ``time_s``: ``factors`` are relative changes, ``offsets`` absolute ones."""
         record = engine.record
         if self._plain is None:
             self._plain = {name: float(record[name][0]) for name in (*self.factors, *self.offsets)}
@@ -39,7 +39,7 @@ class FieldChange:
 
 
 class EngineSurge:
-    """An engine whose thrust swings slowly, so that the airspeed does."""
+    """An engine whose thrust oscillates slowly, and with it the airspeed."""
 
     def __init__(self, share: float, period_s: float) -> None:
         self.share, self.period_s = share, period_s

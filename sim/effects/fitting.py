@@ -3,23 +3,23 @@
 from collections.abc import Mapping
 from dataclasses import replace
 
-from sim import hangar
-from sim.autopilot import plan
-from sim.effects.catalogue import CATALOGUE
-from sim.effects.kit import Kind, Kit, Sizes
-from sim.effects.outside import OUTSIDE
-from sim.fittings import Fittings
-from sim.flight import Flight
-from sim.loading import ScenarioError
-from sim.nonlinear_aircraft import NonlinearAircraft
-from sim.scenario import Scenario
+from .. import hangar
+from ..autopilot import plan
+from ..fittings import Fittings
+from ..flight import Flight
+from ..loading import ScenarioError
+from ..nonlinear_aircraft import NonlinearAircraft
+from ..scenario import Scenario
+from .catalogue import CATALOGUE
+from .kit import Kind, Kit, Sizes
+from .outside import OUTSIDE
 
 KINDS: Mapping[str, Kind] = {**CATALOGUE, **OUTSIDE}
 """Every effect that a scenario may name."""
 
 
 def sizes_of(name: str, given: Sizes) -> dict[str, float]:
-    """Return the effect's parameters: its defaults with the given ones in place.
+    """Return the effect's parameters: its defaults, replaced by the given values.
 
     Raises
     ------
@@ -40,7 +40,7 @@ def sizes_of(name: str, given: Sizes) -> dict[str, float]:
 
 
 def flight_of(scenario: Scenario) -> Flight:
-    """Build the flight of a scenario with its effects fitted, trimmed with them present.
+    """Build the flight of a scenario with its effects, trimmed together with them.
 
     Raises
     ------
@@ -82,5 +82,5 @@ def flight_of(scenario: Scenario) -> Flight:
 
 
 def without_effects(scenario: Scenario) -> Scenario:
-    """Return the twin of a scenario that has none of its effects."""
+    """Return the scenario without its effects."""
     return replace(scenario, effects={})

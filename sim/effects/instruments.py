@@ -3,9 +3,9 @@
 import math
 from collections.abc import Callable
 
-from sim.motion import Motion
-from sim.sensors import Reading
-from sim.servo import FirstOrderServo
+from ..motion import Motion
+from ..sensors import Reading
+from ..servo import FirstOrderServo
 
 
 class Lagging:
@@ -25,14 +25,14 @@ class Lagging:
 
 
 class Leading:
-    """An angle of attack that is ahead, the other channels' filters being the slower ones: α + T α̇."""
+    """An angle of attack that leads the other channels, because they are filtered more slowly: α + T α̇."""
 
     def __init__(self, lead_s: float) -> None:
         self.lead_s = lead_s
         self._before: float | None = None
 
     def apply(self, motion: Motion, reading: Reading, dt: float) -> None:
-        """Show where the angle of attack will be if it goes on as it does."""
+        """Show the extrapolated angle of attack."""
         now, before = reading.alpha, self._before
         self._before = now
         if before is not None and dt > 0.0:
@@ -52,7 +52,7 @@ class Scaled:
 
 
 class VaneAhead:
-    """A vane ahead of the centre of gravity meets the air that pitching adds: α − x q / V."""
+    """A vane ahead of the centre of gravity, which meets the air due to pitching: α − x q / V."""
 
     def __init__(self, arm_m: float) -> None:
         self.arm_m = arm_m
@@ -63,11 +63,11 @@ class VaneAhead:
 
 
 class BendingMode:
-    """The gyro sits on a fuselage that bends when the elevator pushes the tail.
+    """A gyro on a fuselage that bends when the elevator loads the tail.
 
-    η̈ + 2ζω η̇ + ω² η = ω² (δ − δ_trim); the gyro turns with the local slope's rate, q + gain η̇/ω,
-    and whatever it feels of the bend itself, ``displacement_gain`` η. An attitude that is integrated from the
-    gyro has the local slope in it, gain η/ω.
+    η̈ + 2ζω η̇ + ω² η = ω² (δ − δ_trim). The gyro turns with the rate of the local slope, q + gain η̇/ω. It
+    also feels ``displacement_gain`` η of the bend itself. An attitude integrated from the gyro contains the
+    local slope, gain η/ω.
     """
 
     def __init__(
@@ -85,7 +85,7 @@ class BendingMode:
         self._bend = self._rate = 0.0
 
     def apply(self, motion: Motion, reading: Reading, dt: float) -> None:
-        """Add what the bending fuselage does to the pitch rate."""
+        """Add the bending fuselage's contribution to the pitch rate."""
         if self._trim is None:
             self._trim = motion.elevator
         push = self.omega**2 * (motion.elevator - self._trim - self._bend)
@@ -97,11 +97,11 @@ class BendingMode:
 
 
 class Transformed:
-    """A channel seen through a function of (its value, the motion)."""
+    """A channel shown as a function of its value and the motion."""
 
     def __init__(self, channel: str, shown: Callable[[float, Motion], float]) -> None:
         self.channel, self.shown = channel, shown
 
     def apply(self, motion: Motion, reading: Reading, dt: float) -> None:
-        """Show what the function makes of the value."""
+        """Show the function of the value."""
         setattr(reading, self.channel, self.shown(getattr(reading, self.channel), motion))

@@ -1,18 +1,18 @@
-"""What an effect may be fitted to, and the description every effect gives of itself."""
+"""Parts that an effect may be fitted to, and the form of an effect."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from sim.autopilot import Planned
-from sim.fittings import Fittings
-from sim.motion import Controls
+from ..autopilot import Planned
+from ..fittings import Fittings
+from ..motion import Controls
 
 Sizes = Mapping[str, float]
 
 
 @dataclass
 class Kit:
-    """An aircraft on the ground, open for fitting."""
+    """An aircraft on the ground, ready for fitting effects."""
 
     fittings: Fittings
     trim: Controls
@@ -22,16 +22,16 @@ class Kit:
     height_m: float
     trim_alpha: float
     recorded_s: float = 0.0
-    """When the first recorded command is flown, where a log is flown again instead of a plan."""
+    """Time of the first recorded command, s, where a log is flown again instead of a plan."""
 
     @property
     def first_s(self) -> float:
-        """When the first manoeuvre begins, from which on slow changes count."""
+        """Begin of the first manoeuvre, s, at which slow changes begin."""
         return self.planned[0].start_s if self.planned else self.recorded_s
 
     @property
     def middle_s(self) -> float:
-        """A time between two manoeuvres about halfway, when changes set in unless told otherwise."""
+        """A time between two manoeuvres about halfway, s, at which changes begin by default."""
         if len(self.planned) < 2:
             return 0.5 * self.duration_s
         half = len(self.planned) // 2
@@ -43,12 +43,13 @@ class Kind:
     """One kind of effect."""
 
     block: str
-    """Where it enters, by the names of the gap analysis."""
+    """Block in which the effect acts, by the names of the gap diagnosis."""
     sizes: dict[str, float]
-    """Its parameters with a moderate default each; SI units, angles in rad."""
+    """Parameters with a moderate default each, in SI units, angles in rad."""
     fit: Callable[[Kit, Sizes], None] | None = None
-    """Fits a component to any engine."""
+    """Function that fits a component to any engine."""
     airframe: Callable[[Sizes], dict[str, float]] | None = None
-    """Fields of the nonlinear airframe that express it; trimmed with them in place."""
+    """Fields of the nonlinear airframe that express the effect. The trim includes them."""
     nonlinear_only: bool = False
-    """Its component changes the nonlinear airframe's own fields in flight, or adds to its coefficients."""
+    """Whether the component changes the nonlinear airframe's own fields in flight, or adds to its
+    coefficients."""

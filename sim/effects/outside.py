@@ -1,20 +1,20 @@
-"""Effects that carry no name in the gap analysis: what an honest diagnosis calls unknown."""
+"""Effects without a name in the gap diagnosis, whose right verdict is unknown."""
 
 import math
 
 import numpy as np
 
-from sim.airframe import GRAVITY_M_S2
-from sim.effects.actuator import Stiction
-from sim.effects.air import WindShear
-from sim.effects.instruments import Transformed
-from sim.effects.kit import Kind, Kit, Sizes
-from sim.motion import Motion
-from sim.sensors import Reading
+from ..airframe import GRAVITY_M_S2
+from ..motion import Motion
+from ..sensors import Reading
+from .actuator import Stiction
+from .air import WindShear
+from .instruments import Transformed
+from .kit import Kind, Kit, Sizes
 
 
 class _LimitCycle:
-    """A servo that hunts around its command."""
+    """A servo that oscillates around its command."""
 
     def __init__(self, amplitude_rad: float, frequency_hz: float) -> None:
         self.amplitude, self.omega = amplitude_rad, 2 * math.pi * frequency_hz
@@ -29,7 +29,7 @@ class _LimitCycle:
 
 
 class _StickyVane:
-    """A vane with dry friction: it stays until the air has turned by more than it holds."""
+    """A vane with dry friction, which stays until the air has turned by more than a threshold."""
 
     def __init__(self, hold_rad: float) -> None:
         self.hold = hold_rad
@@ -42,7 +42,7 @@ class _StickyVane:
 
 
 class _Spikes:
-    """An angle-of-attack channel that jumps now and then for a tenth of a second."""
+    """An angle-of-attack channel with occasional jumps of a tenth of a second."""
 
     def __init__(self, height_rad: float, each_s: float, generator: np.random.Generator) -> None:
         self.height, self.each_s, self._generator = height_rad, each_s, generator
@@ -59,7 +59,7 @@ class _Spikes:
 
 
 class _AgeingVane:
-    """Angle of attack filtered more and more as the flight goes on: an ageing, freezing vane."""
+    """Angle of attack from an ageing or freezing vane, whose filter grows during the flight."""
 
     def __init__(self, growth: float) -> None:
         self.growth = growth
@@ -76,7 +76,7 @@ class _AgeingVane:
 
 
 class _Slosh:
-    """Fuel that swings to and fro and pulls at the nose: a lightly damped mass driven by pitching."""
+    """Sloshing fuel that loads the nose: a lightly damped mass driven by pitching."""
 
     def __init__(self, moment: float, frequency_hz: float, damping: float) -> None:
         self.moment, self.omega, self.damping = moment, 2 * math.pi * frequency_hz, damping
@@ -90,7 +90,7 @@ class _Slosh:
 
 
 class _AsymmetricDamping:
-    """Pitch damping that differs between nose up and nose down: a tail in the wing's wake."""
+    """Pitch damping that differs between nose up and nose down, as from a tail in the wing's wake."""
 
     def __init__(self, moment: float) -> None:
         self.moment = moment
@@ -100,7 +100,7 @@ class _AsymmetricDamping:
 
 
 class _StallHysteresis:
-    """Flow that separates late and attaches late: lift missing on the way down only."""
+    """Flow that separates late and attaches late, so that lift is missing on the way down only."""
 
     def __init__(self, loss: float, band_rad: float) -> None:
         self.loss, self.band = loss, band_rad
@@ -121,7 +121,7 @@ class _StallHysteresis:
 
 
 class _Buzz:
-    """A moment that swings by itself, whatever is flown."""
+    """A moment that oscillates by itself, whatever is flown."""
 
     def __init__(self, moment: float, frequency_hz: float) -> None:
         self.moment, self.omega = moment, 2 * math.pi * frequency_hz
@@ -131,7 +131,7 @@ class _Buzz:
 
 
 class _SpiralSlipstream:
-    """Elevator power that comes and goes with a beat of two propellers."""
+    """Elevator effectiveness that varies with a beat of two propellers."""
 
     def __init__(self, share: float, frequency_hz: float, trim: float) -> None:
         self.share, self.omega, self.trim = share, 2 * math.pi * frequency_hz, trim
@@ -245,4 +245,4 @@ OUTSIDE: dict[str, Kind] = {
         "moment_equation", {"share": 0.4, "frequency_hz": 0.9}, _slipstream, nonlinear_only=True
     ),
 }
-"""Name to component; none of these names means anything to the diagnosis."""
+"""Effect name to its component. The diagnosis knows none of these names."""

@@ -1,31 +1,32 @@
-"""Effects of an aircraft file: the linear aircraft with the terms and components a diagnosis added.
+"""Effects of an aircraft file: terms and components that a diagnosis added to the linear aircraft.
 
-Components (actuators, instruments, timing, air) are those of :mod:`sim.effects.catalogue`;
-aerodynamic effects are terms of the linear equations.
+Components (actuators, instruments, timing, air) are those of :mod:`sim.effects.catalogue`. Aerodynamic
+effects are terms of the linear equations.
 """
 
 import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from sim.airframe import GRAVITY_M_S2
-from sim.effects.air import Gusts
-from sim.effects.catalogue import CATALOGUE
-from sim.effects.changes import FieldChange, Onset
-from sim.effects.kit import Kit, Sizes
-from sim.linear import ShortPeriod
-from sim.motion import Motion
+from ..airframe import GRAVITY_M_S2
+from ..linear import ShortPeriod
+from ..motion import Motion
+from .air import Gusts
+from .catalogue import CATALOGUE
+from .changes import FieldChange, Onset
+from .kit import Kit, Sizes
 
 Term = Callable[[Kit, Any, Sizes, float], None]
-"""Fits a term: kit, linear aircraft, parameters, and the boot time at which the log begins (s)."""
+"""Function that fits a term. Arguments: kit, linear aircraft, parameters, and the boot time at which the log
+begins (s)."""
 
 
 class MoreMass:
-    """Mass and inertia that change: they divide the forces, all but the weight's own part, and moments."""
+    """Mass and inertia that change. They divide the moments and all forces except the weight."""
 
     def __init__(self, mass: Callable[[float], float], inertia: Callable[[float], float]) -> None:
         self.mass, self.inertia = mass, inertia
-        """Relative growth of each at a time."""
+        """Relative growth of each, as an onset."""
         self._plain: dict[str, float] | None = None
 
     def apply(self, time_s: float, motion: Motion, engine: Any) -> None:
@@ -39,19 +40,19 @@ class MoreMass:
 
 
 def _weight(engine: Any) -> float:
-    """The weight's part of Z_0, 1/s: the rest of it is aerodynamic."""
+    """Return the weight's part of Z_0, 1/s. The rest of Z_0 is aerodynamic."""
     return GRAVITY_M_S2 / float(engine.record["speed_ref"][0])
 
 
 def _onset(kit: Kit, sizes: Sizes, boot_s: float) -> Onset:
-    """When a change comes, in the middle of the flight unless said, and how long it takes."""
+    """Return the onset of a change: by default in the middle of the flight."""
     return Onset(sizes.get("at_s", boot_s + kit.middle_s) - boot_s, sizes.get("over_s", 0.0))
 
 
 def _fields(none_at: str = "", **names: str) -> Term:
-    """A term whose parameters (keys) are fields of the linear aircraft's record (values).
+    """Return a term whose parameters (keys) are fields of the linear aircraft's record (values).
 
-    ``none_at`` is one of them at whose zero there is no term: a lag, a length.
+    ``none_at`` is the parameter whose zero means no term, such as a lag or a length.
     """
 
     def fit(kit: Kit, engine: Any, sizes: Sizes, boot_s: float) -> None:
@@ -80,16 +81,16 @@ def _more_mass(kit: Kit, engine: Any, sizes: Sizes, boot_s: float) -> None:
 
 
 def _moved_weight(kit: Kit, engine: Any, sizes: Sizes, boot_s: float) -> None:
-    """A centre of gravity that moves: all aerodynamic force gets a further arm, what carries the weight, too.
+    """Move the centre of gravity: all aerodynamic force, including the weight's support, gets a further arm.
 
-    Sizes are relative changes of M_α; with ``stability_only`` nothing else changes, as textbooks have it.
+    Sizes are relative changes of M_α. With ``stability_only`` nothing else changes, as in textbooks.
     """
     model = {name: float(engine.record[name][0]) for name in ShortPeriod.__dataclass_fields__}
     arm = model["M_alpha"] / model["Z_alpha"] if model["Z_alpha"] else 0.0
     carried = model["Z_0"] - _weight(engine)
     further = {"M_0": arm * carried, "M_q": arm * model["Z_q"], "M_delta_e": arm * model["Z_delta_e"]}
     if sizes.get("stability_only", 0.0) > 0.0:
-        # The aircraft is trimmed anew: the moment of the trimmed angle goes with the stability.
+        # The aircraft is trimmed anew: the moment of the trimmed angle changes with the stability.
         further = {"M_0": -model["M_alpha"] * float(engine.record["alpha_ref"][0])}
 
     def change(onset: Onset, by: float) -> None:
@@ -117,7 +118,7 @@ def _speed(kit: Kit, engine: Any, sizes: Sizes, boot_s: float) -> None:
 
 
 def _gust(kit: Kit, engine: Any, sizes: Sizes, boot_s: float) -> None:
-    """A gust that is strongest at ``at_s``, as long as gusts usually are unless said."""
+    """Add a gust that is strongest at ``at_s``, with the usual length by default."""
     length = sizes.get("length_m", 0.0) or CATALOGUE["gust"].sizes["length_m"]
     peak_s = sizes.get("at_s", boot_s + kit.middle_s) - boot_s
     speed = float(engine.record["speed_ref"][0])
@@ -171,11 +172,11 @@ TERMS: Mapping[str, tuple[frozenset[str], Term]] = {
     "gust": (frozenset({"amplitude_m_s", "length_m", "at_s"}), _gust),
     "icing": (frozenset({"Z_alpha", "Z_delta_e", "M_alpha", "M_delta_e", "at_s", "over_s"}), _ice),
 }
-"""Effects that are terms of the equations: their parameters, and how they are fitted."""
+"""Effects that are terms of the equations, with their parameters and their fitting functions."""
 
 
 def problems_with(effects: Mapping[str, Sizes]) -> list[str]:
-    """Say what in an aircraft file's ``effects`` cannot be flown."""
+    """Return the mistakes in an aircraft file's ``effects``."""
     problems = []
     for name, sizes in effects.items():
         if name in TERMS:
@@ -202,7 +203,7 @@ def fit_terms(kit: Kit, engine: Any, effects: Mapping[str, Sizes], boot_s: float
         kind = CATALOGUE[name]
         if kind.fit is None:
             continue
-        # What is not sized is none; but air that moves is as long as it usually is.
+        # A size that is not given is zero, except for the length of moving air, which has its usual value.
         whole = {**dict.fromkeys(kind.sizes, 0.0), **sizes}
         if "length_m" in whole:
             whole["length_m"] = whole["length_m"] or kind.sizes["length_m"]

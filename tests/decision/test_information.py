@@ -54,7 +54,7 @@ def test_two_manoeuvres_that_agree_and_are_narrow_stop_the_test() -> None:
 
 def test_an_interval_narrows_with_the_root_of_the_number_of_manoeuvres() -> None:
     one, four = (knowledge([estimate(std_percent=4.0)] * n, PLAN) for n in (1, 4))
-    np.testing.assert_allclose(four.belief.std, one.belief.std / 2.0)
+    np.testing.assert_allclose(four.posterior.std, one.posterior.std / 2.0)
     assert four.percent < one.percent
 
 
@@ -138,7 +138,7 @@ def test_one_gentle_manoeuvre_first_locks_nobody_out() -> None:
 def test_contradicting_manoeuvres_widen_the_intervals() -> None:
     agreeing = knowledge([estimate()] * 4, PLAN)
     contradicting = knowledge([estimate(with_change("M_alpha", k)) for k in (0.9, 1.1, 0.92, 1.08)], PLAN)
-    assert (contradicting.belief.std > 2.0 * agreeing.belief.std).all()
+    assert (contradicting.posterior.std > 2.0 * agreeing.posterior.std).all()
 
 
 def test_good_manoeuvres_are_predicted_in_all_but_about_one_case_in_a_hundred() -> None:
@@ -151,8 +151,8 @@ def test_the_interval_holds_the_truth_as_often_as_it_says() -> None:
     rng = np.random.default_rng(10)
     inside = []
     for _ in range(300):
-        belief = knowledge([drawn(rng) for _ in range(3)], PLAN).belief
-        inside.append(np.abs(belief.theta - THETA) < Z95 * belief.std)
+        posterior = knowledge([drawn(rng) for _ in range(3)], PLAN).posterior
+        inside.append(np.abs(posterior.theta - THETA) < Z95 * posterior.std)
     np.testing.assert_allclose(np.mean(inside, axis=0), 0.95, atol=0.04)
 
 
@@ -180,7 +180,7 @@ def test_one_estimate_in_a_wrong_minimum_does_not_spoil_the_others() -> None:
     wrong = estimate(THETA * [1.0, -0.2, -15.0, -15.0, 0.4, -0.1, 2.0, 1.2])
     known = knowledge([wrong, *good], PLAN)
     assert known.left_out == (0,)
-    np.testing.assert_allclose(known.belief.theta, knowledge(good, PLAN).belief.theta)
+    np.testing.assert_allclose(known.posterior.theta, knowledge(good, PLAN).posterior.theta)
     assert known.predicted
 
 

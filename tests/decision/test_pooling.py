@@ -9,57 +9,57 @@ from advisor.aircraft import PARAMETERS
 from advisor.decision.pooling import (
     DERIVATIVES,
     INTERCEPTS,
-    Belief,
     Pooled,
-    beliefs_at_one_speed,
+    Posterior,
     disagreement,
     pool,
     pooled,
     pooled_on_both_sides,
     pooled_without_each,
+    posteriors_at_one_speed,
 )
 from advisor.flight.messages import FloatArray
 from tests.decision.campaigns import THETA, estimate
 
 
-def random_belief(rng: np.random.Generator, theta: FloatArray = THETA) -> Belief:
+def random_posterior(rng: np.random.Generator, theta: FloatArray = THETA) -> Posterior:
     root = rng.standard_normal((8, 8)) * np.abs(THETA)[:, None] * 0.05
     covariance = root @ root.T
-    return Belief(rng.multivariate_normal(theta, covariance), covariance)
+    return Posterior(rng.multivariate_normal(theta, covariance), covariance)
 
 
 def test_pooling_equals_generalised_least_squares_with_shared_derivatives_and_own_intercepts() -> None:
     rng = np.random.default_rng(4)
-    beliefs = [random_belief(rng) for _ in range(4)]
+    posteriors = [random_posterior(rng) for _ in range(4)]
     # Unknowns: six derivatives, then (Z_0, M_0) of each manoeuvre.
-    columns = 6 + 2 * len(beliefs)
-    design = np.zeros((8 * len(beliefs), columns))
-    weight = np.zeros((8 * len(beliefs), 8 * len(beliefs)))
-    for m, belief in enumerate(beliefs):
+    columns = 6 + 2 * len(posteriors)
+    design = np.zeros((8 * len(posteriors), columns))
+    weight = np.zeros((8 * len(posteriors), 8 * len(posteriors)))
+    for m, posterior in enumerate(posteriors):
         rows = slice(8 * m, 8 * m + 8)
         for j, k in enumerate(DERIVATIVES):
             design[8 * m + k, j] = 1.0
         for j, k in enumerate(INTERCEPTS):
             design[8 * m + k, 6 + 2 * m + j] = 1.0
-        weight[rows, rows] = np.linalg.inv(belief.covariance)
+        weight[rows, rows] = np.linalg.inv(posterior.covariance)
     normal = design.T @ weight @ design
-    solution = np.linalg.solve(normal, design.T @ weight @ np.concatenate([b.theta for b in beliefs]))
+    solution = np.linalg.solve(normal, design.T @ weight @ np.concatenate([b.theta for b in posteriors]))
     covariance = np.linalg.inv(normal)
     mean = np.zeros((8, columns))
     mean[list(DERIVATIVES), range(6)] = 1.0
     for j, k in enumerate(INTERCEPTS):
-        mean[k, 6 + j :: 2] = 1.0 / len(beliefs)
+        mean[k, 6 + j :: 2] = 1.0 / len(posteriors)
 
-    pooled = pool(beliefs)
+    pooled = pool(posteriors)
     np.testing.assert_allclose(pooled.theta, mean @ solution, rtol=1e-6)
     np.testing.assert_allclose(pooled.covariance, mean @ covariance @ mean.T, rtol=1e-5, atol=1e-12)
 
 
 def test_one_manoeuvre_pools_to_itself() -> None:
-    belief = random_belief(np.random.default_rng(5))
-    pooled = pool([belief])
-    np.testing.assert_allclose(pooled.theta, belief.theta, rtol=1e-6)
-    np.testing.assert_allclose(pooled.covariance, belief.covariance, rtol=1e-5, atol=1e-12)
+    posterior = random_posterior(np.random.default_rng(5))
+    pooled = pool([posterior])
+    np.testing.assert_allclose(pooled.theta, posterior.theta, rtol=1e-6)
+    np.testing.assert_allclose(pooled.covariance, posterior.covariance, rtol=1e-5, atol=1e-12)
 
 
 def test_a_manoeuvre_that_cannot_know_a_parameter_leaves_it_to_the_others() -> None:
@@ -67,8 +67,8 @@ def test_a_manoeuvre_that_cannot_know_a_parameter_leaves_it_to_the_others() -> N
     blind[2, 2] = np.inf
     theta = THETA.copy()
     theta[2] = np.nan
-    seeing = Belief(THETA, np.diag((0.01 * THETA) ** 2))
-    pooled = pool([Belief(theta, blind), seeing])
+    seeing = Posterior(THETA, np.diag((0.01 * THETA) ** 2))
+    pooled = pool([Posterior(theta, blind), seeing])
     assert pooled.theta[2] == pytest.approx(THETA[2])
     assert pooled.std[2] == pytest.approx(seeing.std[2])
     assert pooled.std[1] == pytest.approx(seeing.std[1] / np.sqrt(2.0))
@@ -77,17 +77,17 @@ def test_a_manoeuvre_that_cannot_know_a_parameter_leaves_it_to_the_others() -> N
 def test_what_no_manoeuvre_knows_stays_unknown() -> None:
     covariance = np.diag((0.01 * THETA) ** 2)
     covariance[2, 2] = np.inf
-    pooled = pool([Belief(THETA, covariance)] * 2)
+    pooled = pool([Posterior(THETA, covariance)] * 2)
     assert np.isnan(pooled.theta[2])
     assert np.isinf(pooled.std[2])
 
 
 def test_distances_between_estimates_are_chi_square_distributed() -> None:
     rng = np.random.default_rng(6)
-    pairs = [disagreement(random_belief(rng).shared, random_belief(rng).shared) for _ in range(800)]
+    pairs = [disagreement(random_posterior(rng).shared, random_posterior(rng).shared) for _ in range(800)]
     assert {dof for _, dof in pairs} == {6}
     assert np.mean([d for d, _ in pairs]) == pytest.approx(6.0, rel=0.08)
-    groups = [pooled([random_belief(rng) for _ in range(4)]) for _ in range(400)]
+    groups = [pooled([random_posterior(rng) for _ in range(4)]) for _ in range(400)]
     assert {group.dof for group in groups} == {18}
     assert np.mean([group.inconsistency for group in groups]) == pytest.approx(18.0, rel=0.05)
 
@@ -110,8 +110,8 @@ def test_estimates_at_different_speeds_are_brought_to_their_mean_speed() -> None
             ]
         )
     both = [estimate(at_25[v], airspeed_m_s=v) for v in (20.0, 30.0)]
-    for belief in beliefs_at_one_speed(both):
-        np.testing.assert_allclose(belief.theta, at_25[25.0], rtol=1e-12)
+    for posterior in posteriors_at_one_speed(both):
+        np.testing.assert_allclose(posterior.theta, at_25[25.0], rtol=1e-12)
 
 
 def test_the_colour_of_the_residuals_is_shared_by_the_manoeuvres() -> None:
@@ -119,35 +119,35 @@ def test_the_colour_of_the_residuals_is_shared_by_the_manoeuvres() -> None:
     white = estimate().covariance_cr
     colours = [1.0, 6.0, 6.5, 5.5, 6.0]
     coloured = [replace(estimate(), covariance=k**2 * white) for k in colours]
-    for belief in beliefs_at_one_speed(coloured):
-        np.testing.assert_allclose(belief.covariance, 36.0 * white)
+    for posterior in posteriors_at_one_speed(coloured):
+        np.testing.assert_allclose(posterior.covariance, 36.0 * white)
 
 
 def test_without_every_air_speed_nothing_is_scaled() -> None:
     mixed = [estimate(airspeed_m_s=20.0), estimate(airspeed_m_s=None)]
-    assert all(np.array_equal(b.theta, THETA) for b in beliefs_at_one_speed(mixed))
+    assert all(np.array_equal(b.theta, THETA) for b in posteriors_at_one_speed(mixed))
 
 
 def test_the_order_of_parameters_is_that_of_the_house() -> None:
     assert [PARAMETERS[k] for k in INTERCEPTS] == ["Z_0", "M_0"]
 
 
-def partly_known(rng: np.random.Generator) -> list[Belief]:
-    """Five beliefs: one derivative that a single one alone knows, another that one does not know."""
-    beliefs = [random_belief(rng) for _ in range(5)]
-    for belief, k in [*((belief, 2) for belief in beliefs[1:]), (beliefs[3], 6)]:
-        belief.covariance[k, :] = belief.covariance[:, k] = 0.0
-        belief.covariance[k, k] = np.inf
-    return beliefs
+def partly_known(rng: np.random.Generator) -> list[Posterior]:
+    """Five posteriors: one derivative that a single one alone knows, another that one does not know."""
+    posteriors = [random_posterior(rng) for _ in range(5)]
+    for posterior, k in [*((posterior, 2) for posterior in posteriors[1:]), (posteriors[3], 6)]:
+        posterior.covariance[k, :] = posterior.covariance[:, k] = 0.0
+        posterior.covariance[k, k] = np.inf
+    return posteriors
 
 
 def test_inconsistency_is_chi_square_about_the_pooled_value() -> None:
-    beliefs = partly_known(np.random.default_rng(6))
-    whole = pooled(beliefs)
+    posteriors = partly_known(np.random.default_rng(6))
+    whole = pooled(posteriors)
     direct = 0.0
-    for belief in beliefs:
-        apart = belief.shared.theta - whole.shared.theta
-        direct += float(apart @ belief.information @ apart)
+    for posterior in posteriors:
+        apart = posterior.shared.theta - whole.shared.theta
+        direct += float(apart @ posterior.information @ apart)
     assert whole.inconsistency == pytest.approx(direct)
     assert whole.dof == 5 * 6 - 4 - 1 - 6
 
@@ -159,13 +159,13 @@ def assert_alike(one: Pooled, other: Pooled) -> None:
 
 
 def test_leaving_out_each_in_turn_equals_pooling_the_others() -> None:
-    beliefs = partly_known(np.random.default_rng(6))
-    for k, others in enumerate(pooled_without_each(beliefs)):
-        assert_alike(others, pooled([b for i, b in enumerate(beliefs) if i != k]))
+    posteriors = partly_known(np.random.default_rng(6))
+    for k, others in enumerate(pooled_without_each(posteriors)):
+        assert_alike(others, pooled([b for i, b in enumerate(posteriors) if i != k]))
 
 
 def test_both_sides_of_every_split_equal_pooling_each_side() -> None:
-    beliefs = partly_known(np.random.default_rng(7))
-    for k, (before, after) in enumerate(pooled_on_both_sides(beliefs), start=1):
-        assert_alike(before, pooled(beliefs[:k]))
-        assert_alike(after, pooled(beliefs[k:]))
+    posteriors = partly_known(np.random.default_rng(7))
+    for k, (before, after) in enumerate(pooled_on_both_sides(posteriors), start=1):
+        assert_alike(before, pooled(posteriors[:k]))
+        assert_alike(after, pooled(posteriors[k:]))

@@ -90,7 +90,7 @@ def test_whether_a_rate_is_enough_depends_on_the_aircraft() -> None:
     assert "rate" in limits(examined(slow))
     of_the_jet = examined(slow, replace(WELL_KNOWN, model=jet))
     assert "rate" not in limits(of_the_jet)
-    assert of_the_jet.belief.source == "the model in the aircraft file"
+    assert of_the_jet.assumed.source == "the model in the aircraft file"
     twitchy = {"Z_alpha": -8.0, "M_alpha": -300.0, "M_q": -8.0, "M_delta_e": -300.0}
     assert examined(slow, replace(WELL_KNOWN, model=twitchy)).verdict == "not usable"
 
@@ -208,7 +208,7 @@ def test_a_recorded_calm_flight_is_usable_with_limits() -> None:
     assert "renewal" in limits(found)
     assert found.alpha is not None
     assert found.alpha.renewed_hz == pytest.approx(20.0, abs=0.5)
-    assert "manoeuvres flown" in found.belief.source
+    assert "manoeuvres flown" in found.assumed.source
     messages = {message.name: message for message in found.messages}
     assert messages["ATTITUDE"].rate_hz == pytest.approx(50.0, abs=0.5)
 
@@ -227,7 +227,7 @@ def test_a_model_is_believed_only_when_the_motion_bears_it_out() -> None:
     for begin, end, pulse in ((20.0, 21.2, 1450), (21.2, 22.0, 1550), (22.0, 22.4, 1450), (22.4, 22.8, 1550)):
         servo.fields["servo2_raw"][(t >= begin) & (t < end)] = pulse
     found = examined(columns)
-    assert "a typical aircraft" in found.belief.source
+    assert "a typical aircraft" in found.assumed.source
     assert found.expectation is not None
     assert found.expectation.amplitude_deg < 25.0
 

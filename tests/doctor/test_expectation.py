@@ -10,7 +10,7 @@ from advisor.doctor.expectation import (
     RESPONSE_ALPHA_DEG,
     TYPICAL,
     UNITS_OF_TIME,
-    Belief,
+    Assumed,
     edge_error_s,
     expect,
     frequency,
@@ -19,7 +19,7 @@ from advisor.model.short_period import ShortPeriod
 from advisor.oem.problem import Problem, Record, Signal
 from advisor.oem.solution import Solution, solve
 
-BELIEF = Belief(TYPICAL, NOISE, "a test")
+ASSUMED = Assumed(TYPICAL, NOISE, "a test")
 JET = ShortPeriod.from_mapping(
     {"Z_alpha": -0.483, "Z_q": 0.104, "Z_delta_e": 0.676, "M_alpha": -4.93, "M_q": -2.01, "M_delta_e": -7.21}
 )
@@ -48,7 +48,7 @@ def flown(model: ShortPeriod, unit_s: float, amplitude: float, dice: np.random.G
 
 
 def test_many_noisy_fits_scatter_as_expected() -> None:
-    expected = expect(BELIEF, {"elevator": 500.0, "alpha": 50.0, "q": 50.0}, None)
+    expected = expect(ASSUMED, {"elevator": 500.0, "alpha": 50.0, "q": 50.0}, None)
     dice = np.random.default_rng(11)
     estimates = []
     for _ in range(40):
@@ -63,7 +63,7 @@ def test_many_noisy_fits_scatter_as_expected() -> None:
 
 
 def test_the_manoeuvre_moves_the_angle_of_attack_as_far_as_it_says() -> None:
-    expected = expect(BELIEF, {"elevator": 50.0, "alpha": 50.0, "q": 50.0}, None)
+    expected = expect(ASSUMED, {"elevator": 50.0, "alpha": 50.0, "q": 50.0}, None)
     quiet = np.random.default_rng(0)
     record = flown(TYPICAL, expected.unit_s, np.radians(expected.amplitude_deg), quiet)
     peak = np.degrees(np.max(np.abs(record.outputs["alpha"].y)))
@@ -74,7 +74,7 @@ def test_the_manoeuvre_moves_the_angle_of_attack_as_far_as_it_says() -> None:
 def test_a_slower_channel_never_helps_and_costs_something(channel: str) -> None:
     rates = {"elevator": 50.0, "alpha": 50.0, "q": 50.0}
     errors = [
-        np.array(list(expect(BELIEF, {**rates, channel: rate}, None).std.values()))
+        np.array(list(expect(ASSUMED, {**rates, channel: rate}, None).std.values()))
         for rate in (50.0, 20.0, 10.0, 4.0)
     ]
     for faster, slower in pairwise(errors):
@@ -83,23 +83,23 @@ def test_a_slower_channel_never_helps_and_costs_something(channel: str) -> None:
 
 
 def test_the_information_of_four_times_the_samples_halves_the_error() -> None:
-    slow = expect(BELIEF, {"elevator": 1000.0, "alpha": 50.0, "q": 50.0}, None)
-    fast = expect(BELIEF, {"elevator": 1000.0, "alpha": 200.0, "q": 200.0}, None)
+    slow = expect(ASSUMED, {"elevator": 1000.0, "alpha": 50.0, "q": 50.0}, None)
+    fast = expect(ASSUMED, {"elevator": 1000.0, "alpha": 200.0, "q": 200.0}, None)
     for name in PARAMETERS:
         assert slow.std[name] / fast.std[name] == pytest.approx(2.0, rel=0.1)
 
 
 def test_more_outputs_teach_more() -> None:
-    few = expect(BELIEF, {"elevator": 50.0, "alpha": 20.0, "q": 50.0}, 25.0)
-    more = expect(BELIEF, {"elevator": 50.0, "alpha": 20.0, "q": 50.0, "a_z": 50.0, "theta": 50.0}, 25.0)
+    few = expect(ASSUMED, {"elevator": 50.0, "alpha": 20.0, "q": 50.0}, 25.0)
+    more = expect(ASSUMED, {"elevator": 50.0, "alpha": 20.0, "q": 50.0, "a_z": 50.0, "theta": 50.0}, 25.0)
     assert more.std["Z_alpha"] < few.std["Z_alpha"]
     assert more.std["Z_delta_e"] < few.std["Z_delta_e"]
 
 
 def test_four_hertz_serves_no_small_aircraft_but_ten_serve_a_jet() -> None:
     """Error of the stiffness beside the stiffness."""
-    small = expect(BELIEF, {"elevator": 4.0, "alpha": 4.0, "q": 4.0}, None)
-    jet = expect(Belief(JET, NOISE, ""), {"elevator": 10.0, "alpha": 10.0, "q": 10.0}, None)
+    small = expect(ASSUMED, {"elevator": 4.0, "alpha": 4.0, "q": 4.0}, None)
+    jet = expect(Assumed(JET, NOISE, ""), {"elevator": 10.0, "alpha": 10.0, "q": 10.0}, None)
     assert small.std["M_alpha"] > 0.2 * 40.0
     assert jet.std["M_alpha"] < 0.05 * 4.93
 

@@ -7,7 +7,7 @@ import pytest
 
 from advisor.aircraft import Elevator
 from advisor.doctor.examination import ElevatorFound, Limit
-from advisor.doctor.expectation import NOISE, TYPICAL, Belief, frequency
+from advisor.doctor.expectation import NOISE, TYPICAL, Assumed, frequency
 from advisor.doctor.instruments import COARSE_DEG, LOSSY_PERCENT, elevator_limits, loss_limits, path_limits
 from advisor.doctor.pace import ENOUGH_PER_PERIOD, FEWEST_PER_PERIOD, Paced, rate_limits
 from advisor.flight.suitability import SLOWEST_HZ
@@ -23,11 +23,11 @@ def numbers(limit: Limit) -> list[str]:
 
 @pytest.mark.parametrize("per_period", [FEWEST_PER_PERIOD, ENOUGH_PER_PERIOD])
 def test_a_rate_just_too_low_reads_lower_than_what_is_asked_for(per_period: float) -> None:
-    belief = Belief(TYPICAL, NOISE, "a typical aircraft")
+    assumed = Assumed(TYPICAL, NOISE, "a typical aircraft")
     too_slow_hz = (1.0 - HAIR) * max(SLOWEST_HZ, per_period * frequency(TYPICAL) / (2.0 * np.pi))
     paced = {name: Paced(name, "ATTITUDE", 50.0, 50.0) for name in ("elevator", "alpha")}
     paced["q"] = Paced("q", "ATTITUDE", too_slow_hz, too_slow_hz)
-    (limit,) = rate_limits(paced, belief, Vehicle(1, 1, "ardupilot", 1), 25.0)
+    (limit,) = rate_limits(paced, assumed, Vehicle(1, 1, "ardupilot", 1), 25.0)
     samples = re.search(r"([\d.]+) samples", limit.text)
     asked = re.search(r"at least ([\d.]+), better ([\d.]+)", limit.text)
     assert samples

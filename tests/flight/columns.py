@@ -101,7 +101,7 @@ STEPS = ((3.0, 1), (2.0, -1), (1.0, 1), (1.0, -1))
 
 
 def pull(since_s: float, unit_s: float = 0.4) -> int:
-    """Sense of a 3-2-1-1 at a time after its onset: 1 nose up, -1 nose down."""
+    """ElevatorSign of a 3-2-1-1 at a time after its onset: 1 nose up, -1 nose down."""
     for units, sense in STEPS:
         if 0.0 <= since_s < units * unit_s:
             return sense

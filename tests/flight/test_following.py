@@ -49,7 +49,7 @@ def silent_first():
 def test_a_vehicle_that_falls_silent_is_left_for_the_only_other_that_has_an_elevator_and_sends():
     systems, said, _, stream = followed(silent_first())
     assert systems == [1, 2]
-    assert any("Vehicle 2 is followed from here on in place of vehicle 1" in s for s in said)
+    assert any("Vehicle 2 is now followed in place of vehicle 1" in s for s in said)
     assert any("--target-system 1" in s for s in said)
     assert stream.vehicle is not None
     assert stream.vehicle.system == 2

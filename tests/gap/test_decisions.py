@@ -11,7 +11,7 @@ from advisor.gap.decision import Decision
 from advisor.gap.fitting.fit import fit
 from advisor.gap.fitting.holdout import held_out, hold_out
 from advisor.gap.fitting.step import bounds_of
-from advisor.gap.fitting.uncertainty import worth
+from advisor.gap.fitting.uncertainty import effective_samples
 from advisor.gap.records.prepare import prepare
 from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.search.score import addition, log_likelihood_gained, support_of
@@ -27,19 +27,19 @@ def late():
     problem, plain = fit_baseline(flights, Aircraft())
     variant = next(v for v in variants_for(flights) if v.effect == "accelerometer_skew")
     fitted = fit(problem, plain.point.with_effect(variant, variant.starts[0]), plain.noise, 25)
-    independent = worth(problem, fitted.innovations)
-    return problem, addition(problem, plain, hold_out(problem, plain), fitted, variant.effect, independent)
+    effective = effective_samples(problem, fitted.innovations)
+    return problem, addition(problem, plain, hold_out(problem, plain), fitted, variant.effect, effective)
 
 
 def leaving(problem, *sizes):
     """What a model leaves that misses every channel of each manoeuvre by so many times the noise."""
-    lefts = []
+    residuals = []
     for flight, size in zip(problem.flights.flights, sizes, strict=True):
-        left = np.empty(len(flight.stamps))
+        residual = np.empty(len(flight.stamps))
         for rows, noise in zip(problem.rows(flight), problem.instruments, strict=True):
-            left[rows] = size * noise
-        lefts.append(left)
-    return held_out(problem, lefts)
+            residual[rows] = size * noise
+        residuals.append(residual)
+    return held_out(problem, residuals)
 
 
 def test_an_effect_that_helps_every_manoeuvre_is_supported(late):
@@ -60,15 +60,15 @@ def test_an_effect_that_harms_manoeuvres_kept_out_has_less_than_no_support(late)
 @pytest.mark.parametrize(("support", "named"), [(0.9, False), (1.1, True)])
 def test_a_name_needs_more_than_the_standard_error_of_the_gap_that_it_removes(late, support, named):
     _, judged = late
-    assert replace(judged, support=support).worth_naming == named
+    assert replace(judged, support=support).is_accepted == named
 
 
-@pytest.mark.parametrize("otherwise", [{"witness": 1}, {"belief": 20.0}])
+@pytest.mark.parametrize("otherwise", [{"sole_maneuver": 1}, {"prior_gain": 20.0}])
 def test_what_no_other_manoeuvre_can_foretell_needs_no_support_of_theirs(late, otherwise):
     _, judged = late
     unsupported = replace(judged, gain=500.0, support=0.0)
-    assert not unsupported.worth_naming
-    assert replace(unsupported, **otherwise).worth_naming
+    assert not unsupported.is_accepted
+    assert replace(unsupported, **otherwise).is_accepted
 
 
 def test_a_loss_within_the_standard_error_of_the_hold_out_is_none(late):
@@ -84,7 +84,7 @@ def test_each_decision_about_a_name_holds_where_it_is_named(late):
     _, judged = late
     questions = [decision.name for decision in judged.decisions]
     assert questions == ["likelihood", "change", "significance", "size", "range", "hold-out"]
-    assert all(decision.holds for decision in judged.decisions) == judged.worth_naming
+    assert all(decision.holds for decision in judged.decisions) == judged.is_accepted
 
 
 def test_a_decision_says_its_number_its_limit_and_its_margin():

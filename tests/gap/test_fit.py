@@ -18,7 +18,7 @@ from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.search.score import price_of_edges
 from advisor.gap.search.screen import Screen
 from advisor.gap.simulator.layout import ENTRIES, INDEX, OUTPUTS
-from advisor.gap.verdict.causes import with_doubt
+from advisor.gap.verdict.causes import with_model_errors
 from tests.gap.generator import Setup, fly
 
 
@@ -152,7 +152,7 @@ def test_only_a_time_has_the_error_of_a_grid_of_time_in_its_size(settled):
 
     def doubted(effect, name, value):
         cause = Cause(effect, "timing", 0.9, {name: Value(value, 1e-5)}, (), "", 0.0, True)
-        return with_doubt(cause, problem).parameters[name].std
+        return with_model_errors(cause, problem).parameters[name].std
 
     assert doubted("pitch_rate_bias", "bias_rad_s", 0.004) == pytest.approx(0.03 * 0.004, rel=0.01)
     assert doubted("alpha_skew", "skew_s", 0.004) > 3.0 * 0.03 * 0.004

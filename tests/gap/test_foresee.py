@@ -16,11 +16,12 @@ from advisor.gap.diagnose import diagnose
 from advisor.gap.foresight.needs import need_of
 from advisor.gap.foresight.plan import foresee_flights, foresee_plan
 from advisor.gap.records.prepare import prepare
-from advisor.gap.search.baseline import believed_derivatives
-from advisor.gap.search.merit import LEAST_OFFSET_RAD
+from advisor.gap.search.acceptance import LEAST_OFFSET_RAD
+from advisor.gap.search.baseline import prior_derivatives
 from advisor.problems import ConfigurationError
 from advisor.report.gap_plan import ForesightScreen, size_of
 from tests.gap.generator import UAV, Setup, fly
+from tests.schemas import breaches
 
 MODEL = dict(zip(PARAMETERS, (0.04, -4.3, -0.03, -0.28, 0.0, -37.0, -4.8, -52.0), strict=True))
 PLANE = Aircraft(model=MODEL, reference_airspeed_m_s=22.0)
@@ -158,6 +159,7 @@ def test_json_has_every_effect_in_si_and_null_for_what_cannot_be_seen(tmp_path):
     arguments = ["gap", "--foresee", "--aircraft", str(path), "--plan", "3211,rev,rev", "--json"]
     result = CliRunner().invoke(advisor, arguments)
     document = json.loads(result.stdout)
+    assert breaches("foresee", document) == []
     effects = {e["effect"]: e for e in document["effects"]}
     assert set(effects) == set(TRAITS)
     assert effects["ground_effect"]["smallest"] is None
@@ -238,7 +240,7 @@ def test_an_elevator_that_pitches_up_when_it_goes_down_is_foreseen_with_a_note(t
 )
 def test_flown_by_another_generator_twice_the_foreseen_size_is_named_and_a_third_is_not(effect, changes):
     flown = prepare(fly(Setup(maneuvers=7, seed=21)), PLANE)
-    found = foresee_flights(PLANE, believed_derivatives(PLANE), flown, flown.white, UAV.unit_s)
+    found = foresee_flights(PLANE, prior_derivatives(PLANE), flown, flown.white, UAV.unit_s)
     smallest = {f.effect: f.smallest for f in found}[effect]
     twice, third = (
         diagnose(fly(Setup(maneuvers=7, seed=22, **changes(share * smallest))), Aircraft())

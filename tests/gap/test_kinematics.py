@@ -13,8 +13,8 @@ from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.records.prepare import prepare
 from advisor.gap.simulator.layout import ENTRIES
-from advisor.gap.unnamed.wind import blows_along, wind_shear
-from advisor.gap.verdict.apart import alpha_bias_cause
+from advisor.gap.uncatalogued.wind_shear import moves_along_path, wind_shear
+from advisor.gap.verdict.outside_fit import alpha_bias_cause
 from tests.gap.generator import LIGHT_AIRCRAFT, Setup, fly
 
 
@@ -200,8 +200,8 @@ def late(maneuver, by_s):
 
 def test_no_wind_changes_by_most_of_its_own_speed_in_a_metre():
     still = fly(Setup(maneuvers=5, seed=51))
-    assert not wind_shear([blown(m, 0.4) for m in still]).is_feigned
-    assert wind_shear([blown(m, 0.7) for m in still]).is_feigned
+    assert not wind_shear([blown(m, 0.4) for m in still]).is_implausible
+    assert wind_shear([blown(m, 0.7) for m in still]).is_implausible
 
 
 @pytest.mark.study
@@ -266,8 +266,8 @@ def test_a_wind_that_all_manoeuvres_agree_on_is_plain_though_the_air_speed_is_ro
         rough.append(replace(sheared, channels={**sheared.channels, "airspeed": replace(speed, y=y)}))
     every, few = wind_shear(rough), wind_shear(rough[:5])
     assert every.share < 0.25
-    assert every.is_plain
-    assert few is None or not few.is_plain
+    assert every.exceeds_gusts
+    assert few is None or not few.exceeds_gusts
 
 
 def test_a_rough_beginning_of_the_records_makes_no_air_speed_late():
@@ -314,7 +314,7 @@ def test_a_layer_of_wind_is_told_by_two_manoeuvres_that_cross_its_edge():
         wind = 0.4 * np.clip(np.interp(speed.t, height.t, height.y) - 150.0, -10.0, 10.0)
         sheared.append(replace(m, channels={**m.channels, "airspeed": replace(speed, y=speed.y + wind)}))
     found = wind_shear(sheared)
-    assert found.is_plain
+    assert found.exceeds_gusts
     assert abs(found.gradient_per_s - 0.4) < 0.1
     # One that was flown in it agrees with no other.
     assert wind_shear([m for k, m in enumerate(sheared) if k != 4]) is None
@@ -327,6 +327,6 @@ def test_air_that_moves_along_the_path_shows_in_the_air_speed_and_a_late_engine_
         return replace(m, channels={**m.channels, "airspeed": replace(speed, y=y)})
 
     still = fly(Setup(maneuvers=5, thrust_amplitude=0.5, engine_lag_s=0.8, seed=61))
-    assert not blows_along(still)
-    assert not blows_along([gusty(m, 0.2) for m in still])
-    assert blows_along([gusty(m, 2.0) for m in still])
+    assert not moves_along_path(still)
+    assert not moves_along_path([gusty(m, 0.2) for m in still])
+    assert moves_along_path([gusty(m, 2.0) for m in still])

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from advisor.gap.simulator.layout import DISTURBED, ENTRIES, LAYOUT, READ, SLOW, TRIM, key_of, places
-from advisor.gap.simulator.simulate import LANES, simulate
+from advisor.gap.simulator.pack import LANES
+from advisor.gap.simulator.simulate import simulate
 from advisor.gap.simulator.surface import surfaces
 
 ROOT = Path(__file__).parents[2]
@@ -21,7 +22,8 @@ MOVED = key_of(places((*ENTRIES[1:], ENTRIES[0])), READ, SLOW, DISTURBED, TRIM)
 _FLY = """
 import numpy as np
 from advisor.gap.simulator.layout import ENTRIES, INDEX, LAYOUT
-from advisor.gap.simulator.simulate import LANES, simulate
+from advisor.gap.simulator.pack import LANES
+from advisor.gap.simulator.simulate import simulate
 from advisor.gap.simulator.surface import surfaces
 
 p = np.zeros((1, len(ENTRIES)))

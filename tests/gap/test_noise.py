@@ -11,7 +11,7 @@ from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.fit import fit
 from advisor.gap.fitting.whitening import Filters
-from advisor.gap.noise.quiet import only
+from advisor.gap.noise.quiet import in_one_maneuver
 from advisor.gap.noise.stamps import rates_of, stamp_jitter
 from advisor.gap.records.prepare import prepare
 from advisor.gap.search.air import moving_air
@@ -133,7 +133,7 @@ def test_one_manoeuvre_seen_alone_keeps_what_changes_between_manoeuvres():
     drift = next(v for v in variants_for(problem.flights) if v.effect == "cg_shift")
     point = fitted.point.with_effect(drift, (0.004,))
     whole = problem.fly(problem.flights.flights[3], problem.driving(point)[3])
-    alone, seen = only(problem, replace(fitted, point=point), 3)
+    alone, seen = in_one_maneuver(problem, replace(fitted, point=point), 3)
     assert alone.fly(alone.flights.flights[0], alone.driving(seen.point)[0]) == pytest.approx(whole)
 
 

@@ -6,7 +6,7 @@ import pytest
 from advisor.aircraft import Aircraft
 from advisor.gap.fitting.linear import unit_pulse
 from advisor.gap.noise.probes import DYNAMIC, probe_blocks
-from advisor.gap.noise.quiet import instrument_noise, only, unfiltered
+from advisor.gap.noise.quiet import in_one_maneuver, instrument_noise, unfiltered
 from advisor.gap.records.prepare import prepare
 from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.simulator.layout import INDEX, OUTPUTS
@@ -49,6 +49,6 @@ def test_a_gust_is_the_airs_and_not_the_vanes_though_it_is_largest_there():
     problem, fitted = unfiltered(problem, fitted)
     noise = instrument_noise(problem)
     for i in (1, 4):
-        best, *others = probe_blocks(*only(problem, fitted, i), noise)
+        best, *others = probe_blocks(*in_one_maneuver(problem, fitted, i), noise)
         assert best.block == "air"
         assert best.gain > 1.1 * others[0].gain

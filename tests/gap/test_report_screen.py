@@ -9,7 +9,7 @@ from rich.console import Console
 
 from advisor.flight.kinematics import KinematicCheck
 from advisor.gap.result import Cause, Diagnosis, Gap, Shrink, Trace, Unseen, Value, Where, Yardsticks
-from advisor.report.gap_causes import tie_sentence
+from advisor.report.gap_causes import confusion_sentence
 from advisor.report.gap_screen import GapScreen
 from advisor.report.gap_sizes import in_units, short, sizes_of, with_error
 
@@ -136,7 +136,7 @@ def test_a_cause_takes_a_line_with_its_size_in_units_people_use():
 
 
 def test_what_a_cause_is_tied_with_is_a_sentence():
-    assert tie_sentence(DELAY) == (
+    assert confusion_sentence(DELAY) == (
         "Transport delay cannot be told from actuator lag here. "
         "To tell them apart, log the measured surface position."
     )
@@ -156,9 +156,9 @@ def test_a_block_as_good_as_the_marked_one_is_explained():
     where = Where("input", 0.97, (("input", 1.0), ("timing", 0.999), ("moment_equation", 0.4)))
     lines = printed(diagnosis(where=where), 80)
     assert any("[time stamps] 100 %" in line for line in lines)
-    assert any("can hardly tell the two apart" in line for line in lines)
+    assert any("can hardly distinguish the two" in line for line in lines)
     assert any("how well a block would explain the gap on its own" in line for line in lines)
-    assert not any("hardly tell" in line for line in printed(diagnosis(), 80))
+    assert not any("hardly distinguish" in line for line in printed(diagnosis(), 80))
 
 
 def test_another_block_with_a_cause_is_marked_and_has_no_per_cent():

@@ -10,12 +10,12 @@ from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.fit import fit
 from advisor.gap.fitting.holdout import hold_out
-from advisor.gap.fitting.uncertainty import worth
+from advisor.gap.fitting.uncertainty import effective_samples
 from advisor.gap.records.prepare import prepare
 from advisor.gap.search.baseline import fit_baseline
+from advisor.gap.search.indistinguishable import indistinguishable_from
 from advisor.gap.search.ranking import evened
 from advisor.gap.search.score import addition, predict_alike
-from advisor.gap.search.ties import tied_with
 from tests.gap.generator import LIGHT_AIRCRAFT, UAV, Setup, fly
 
 
@@ -26,9 +26,9 @@ def late():
     problem, plain = fit_baseline(flights, Aircraft())
     variant = next(v for v in variants_for(flights) if v.effect == "accelerometer_skew")
     fitted = fit(problem, plain.point.with_effect(variant, variant.starts[0]), plain.noise, 25)
-    independent = worth(problem, fitted.innovations)
+    effective = effective_samples(problem, fitted.innovations)
     held = hold_out(problem, plain)
-    return problem, held, addition(problem, plain, held, fitted, variant.effect, independent)
+    return problem, held, addition(problem, plain, held, fitted, variant.effect, effective)
 
 
 def test_stamps_that_jitter_hide_a_time_unless_it_is_plain(late):
@@ -52,7 +52,7 @@ def test_ice_takes_lift_and_what_leaves_the_lift_alone_is_none(late):
 
 def test_a_late_channel_may_be_a_filtered_one_and_how_to_tell_is_said(late):
     _, _, judged = late
-    names, ways = tied_with(judged, [judged], ("alpha", "q", "a_z", "theta"))
+    names, ways = indistinguishable_from(judged, [judged], ("alpha", "q", "a_z", "theta"))
     assert names == ("a filter of that channel that delays as much",)
     assert "before any filter" in ways
 
@@ -60,7 +60,9 @@ def test_a_late_channel_may_be_a_filtered_one_and_how_to_tell_is_said(late):
 def test_what_other_derivatives_imitate_exactly_is_tied_with_them_whatever_the_file_says(late):
     problem, _, judged = late
     m_alpha_dot = next(v for v in variants_for(problem.flights) if v.effect == "alpha_dot")
-    names, ways = tied_with(replace(judged, variant=m_alpha_dot), [judged], ("alpha", "q", "a_z", "theta"))
+    names, ways = indistinguishable_from(
+        replace(judged, variant=m_alpha_dot), [judged], ("alpha", "q", "a_z", "theta")
+    )
     assert "other derivatives of the pitching moment" in names
     assert "trims level flight" in ways
 
@@ -72,7 +74,7 @@ def test_ice_that_explains_nearly_as_much_as_more_mass_is_tied_with_it(late, les
         replace(judged, variant=next(v for v in variants_for(problem.flights) if v.effect == name), gain=gain)
         for name, gain in (("mass_change", 1000.0), ("icing", 1000.0 * (1.0 - less)))
     )
-    names, ways = tied_with(mass, [mass, ice], ("alpha", "q", "a_z", "theta"))
+    names, ways = indistinguishable_from(mass, [mass, ice], ("alpha", "q", "a_z", "theta"))
     assert names == (("icing",) if tied else ())
     assert ("fuel" in ways) == tied
 
@@ -80,18 +82,18 @@ def test_ice_that_explains_nearly_as_much_as_more_mass_is_tied_with_it(late, les
 def test_what_moves_with_the_air_is_named_beside_it_where_it_is_certain_or_plain_and_alone(late):
     *_, judged = late
     plain = replace(judged, with_the_air=True, gain=18.0, removed=20.0 * judged.least)
-    assert plain.worth_naming
-    assert replace(plain, alone=False, gain=35.0).worth_naming
-    assert not replace(plain, alone=False).worth_naming
-    assert not replace(plain, removed=2.0 * judged.least).worth_naming
-    assert not replace(plain, sigmas=4.0).worth_naming
-    assert not replace(plain, witness=2).worth_naming
+    assert plain.is_accepted
+    assert replace(plain, alone=False, gain=35.0).is_accepted
+    assert not replace(plain, alone=False).is_accepted
+    assert not replace(plain, removed=2.0 * judged.least).is_accepted
+    assert not replace(plain, sigmas=4.0).is_accepted
+    assert not replace(plain, sole_maneuver=2).is_accepted
 
 
 def test_predictions_are_alike_where_they_differ_by_less_than_any_description_errs(late):
     problem, plain, judged = late
     assert not predict_alike(problem, plain, judged.held_out)
-    nudged = replace(plain, left=(plain.left[0] + 1e-6, *plain.left[1:]))
+    nudged = replace(plain, residuals=(plain.residuals[0] + 1e-6, *plain.residuals[1:]))
     assert predict_alike(problem, plain, nudged)
 
 
@@ -100,16 +102,16 @@ def test_of_two_that_predict_the_same_motion_the_one_likelier_beforehand_comes_f
     late, likelier_by, first
 ):
     problem, _, judged = late
-    rival = replace(judged, gain=judged.gain - 20.0, beforehand=judged.beforehand + likelier_by)
+    rival = replace(judged, gain=judged.gain - 20.0, prior_terms=judged.prior_terms + likelier_by)
     ranked = evened(problem, [judged, rival])
-    assert ranked[0].beforehand == (judged, rival)[first].beforehand
+    assert ranked[0].prior_terms == (judged, rival)[first].prior_terms
     if first:
         assert ranked[0].gain == pytest.approx(judged.gain + likelier_by)
 
 
 def test_what_predicts_another_motion_keeps_its_own_likelihood(late):
     problem, plain, judged = late
-    other = replace(judged, gain=judged.gain - 20.0, beforehand=judged.beforehand + 9.0, held_out=plain)
+    other = replace(judged, gain=judged.gain - 20.0, prior_terms=judged.prior_terms + 9.0, held_out=plain)
     assert evened(problem, [judged, other])[0] is judged
 
 
@@ -189,8 +191,8 @@ def gained_by_a_gyros_scale(thrust_arm):
     )
     before = fit(problem, plain.point.with_effect(thrust, thrust.starts[0]), plain.noise, 25)
     after = fit(problem, before.point.with_effect(scale, (0.0,)), before.noise, 25)
-    independent = worth(problem, after.innovations)
-    return addition(problem, before, hold_out(problem, before), after, scale.effect, independent).gain
+    effective = effective_samples(problem, after.innovations)
+    return addition(problem, before, hold_out(problem, before), after, scale.effect, effective).gain
 
 
 def test_what_one_manoeuvre_alone_tells_of_one_effect_is_not_held_against_another():

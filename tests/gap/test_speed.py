@@ -13,12 +13,12 @@ from advisor.gap.fitting.holdout import hold_out
 from advisor.gap.records.airspeed import measures_speed
 from advisor.gap.records.prepare import prepare
 from advisor.gap.records.unmeasured_speed import speed_of_the_motion
+from advisor.gap.search.acceptance import LEAST_GAIN
 from advisor.gap.search.baseline import fit_baseline
-from advisor.gap.search.merit import LEAST_GAIN
+from advisor.gap.search.path_energy import energy_swing, uncommanded_thrust
 from advisor.gap.search.ranking import judge
 from advisor.gap.search.screen import Screen
 from advisor.gap.search.speed import swings
-from advisor.gap.search.work import unasked, work
 from advisor.gap.simulator.layout import HEIGHT, SPEED, THRUST
 from advisor.oem.airspeed import airspeed
 from advisor.oem.recursion import accumulated
@@ -76,12 +76,12 @@ def test_a_manoeuvre_flown_in_a_climb_makes_no_work_of_the_others():
 
 def test_work_is_what_an_engine_does_and_not_what_drag_takes():
     glided = prepare(fly(Setup(maneuvers=6, heights_m=HEIGHTS, seed=8)), Aircraft())
-    assert work(glided) < 0.3 * swings(glided)[0]
+    assert energy_swing(glided) < 0.3 * swings(glided)[0]
     excess, swept = 0.05, 6.0 * np.pi
     for flight in glided.flights:
         flight.slow[THRUST] += excess * np.sin(swept * np.linspace(0.0, 1.0, flight.n))
     rate = swept / glided.flights[0].duration_s
-    assert work(glided) == pytest.approx(excess * GRAVITY_M_S2 / rate / np.sqrt(2.0) / 22.0, rel=0.1)
+    assert energy_swing(glided) == pytest.approx(excess * GRAVITY_M_S2 / rate / np.sqrt(2.0) / 22.0, rel=0.1)
 
 
 @pytest.mark.study
@@ -112,10 +112,10 @@ def test_a_speed_that_follows_the_throttle_is_no_cause(engine_lag_s):
 
 
 def test_thrust_that_nobody_asked_for_is_what_neither_the_throttle_nor_drag_explains():
-    asked = unasked(prepare(throttled(thrust_amplitude=0.8, engine_lag_s=0.6), Aircraft()))
+    asked = uncommanded_thrust(prepare(throttled(thrust_amplitude=0.8, engine_lag_s=0.6), Aircraft()))
     surging = prepare(throttled(surge=0.8, surge_hz=0.1), Aircraft())
-    assert unasked(surging) > 5.0 * asked
-    assert unasked(replace(surging, has=surging.has - {"a_x"})) is None
+    assert uncommanded_thrust(surging) > 5.0 * asked
+    assert uncommanded_thrust(replace(surging, has=surging.has - {"a_x"})) is None
 
 
 def test_a_thrust_that_swings_slowly_does_not_pass_for_drag():
@@ -127,16 +127,16 @@ def test_a_thrust_that_swings_slowly_does_not_pass_for_drag():
         flight.slow[SPEED] = 22.0 + GRAVITY_M_S2 * np.cumsum(flight.slow[THRUST]) * flight.h
         flight.slow[HEIGHT] = 80.0
     swung = np.median([np.std(flight.slow[THRUST]) for flight in swinging.flights])
-    assert unasked(swinging) > 0.7 * GRAVITY_M_S2 * swung
+    assert uncommanded_thrust(swinging) > 0.7 * GRAVITY_M_S2 * swung
 
 
 def test_thrust_that_changes_before_the_first_step_only_is_the_pilots():
     settled = prepare(throttled(), Aircraft())
-    quiet = unasked(settled)
+    quiet = uncommanded_thrust(settled)
     for flight in settled.flights:
         t = np.arange(flight.n) * flight.h
         flight.slow[THRUST] += 0.05 * np.maximum(1.0 - t / flight.first_step_s, 0.0)
-    assert unasked(settled) == pytest.approx(quiet, abs=1e-4)
+    assert uncommanded_thrust(settled) == pytest.approx(quiet, abs=1e-4)
 
 
 def test_noise_of_an_accelerometer_is_no_thrust_though_the_speed_swings():
@@ -147,7 +147,7 @@ def test_noise_of_an_accelerometer_is_no_thrust_though_the_speed_swings():
         for flight in noisy.flights:
             wandering = accumulated(rng.standard_normal(flight.n), np.exp(-flight.h / 0.5))
             flight.slow[THRUST] += noise * wandering / np.std(wandering)
-        found.append(unasked(noisy))
+        found.append(uncommanded_thrust(noisy))
     assert abs(np.mean(found)) < 0.1 * noise * GRAVITY_M_S2
 
 

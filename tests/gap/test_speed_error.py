@@ -9,7 +9,7 @@ from advisor.aircraft import Aircraft
 from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.linear import linearise
 from advisor.gap.fitting.problem import Point, Problem
-from advisor.gap.records.airspeed import speed_doubts
+from advisor.gap.records.airspeed import speed_error_factors
 from advisor.gap.records.prepare import prepare
 from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, INDEX, SPEED
 from tests.gap.generator import UAV, Setup, fly
@@ -34,14 +34,14 @@ def test_a_speed_is_doubted_by_what_noise_makes_of_a_parabola(memory, tolerance)
     noise = np.array([0.3 * remembering(rng, len(t), memory) for _ in range(400)])
     fitted = noise @ np.linalg.pinv(parabola).T
     left = [e - parabola @ c for e, c in zip(noise, fitted, strict=True)]
-    doubt = speed_doubts([t] * len(left), left, [6.0] * len(left))[0]
+    doubt = speed_error_factors([t] * len(left), left, [6.0] * len(left))[0]
     std = np.sqrt(np.diag(doubt @ doubt.T))
     assert std == pytest.approx(np.std(fitted, axis=0), rel=tolerance)
 
 
 def test_a_few_samples_tell_nothing_of_the_instrument():
     t = np.arange(0.0, 1.0, 0.25)
-    assert speed_doubts([t], [np.ones(len(t))], [1.0])[0].shape == (0, 0)
+    assert speed_error_factors([t], [np.ones(len(t))], [1.0])[0].shape == (0, 0)
 
 
 def test_an_error_of_the_speed_is_flown_as_a_parabola_added_to_it():
@@ -95,4 +95,4 @@ def test_noise_of_the_air_speed_is_neither_turbulence_nor_a_change_of_mass():
 def test_readings_with_one_stamp_for_many_are_no_obstacle():
     t = np.repeat([0.5, 2.0], 6)
     left = np.random.default_rng(2).standard_normal(len(t))
-    assert np.all(np.isfinite(speed_doubts([t, t], [left, left], [6.0, 6.0])[0]))
+    assert np.all(np.isfinite(speed_error_factors([t, t], [left, left], [6.0, 6.0])[0]))

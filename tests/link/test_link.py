@@ -184,7 +184,7 @@ def test_a_local_socket_is_a_link_too(tmp_path: Path) -> None:
 def test_silence_is_told_once_and_so_is_its_end(
     port: int, vehicle: UdpVehicle, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("advisor.mavlink.watch.SILENCE_S", 0.3)
+    monkeypatch.setattr("advisor.mavlink.link_watch.SILENCE_S", 0.3)
     with Link(f"udpin:127.0.0.1:{port}") as link:
         vehicle.send(heartbeat(), attitude(0))
         read_all(link)
@@ -200,7 +200,7 @@ def test_silence_is_told_once_and_so_is_its_end(
 def test_another_station_talking_on_does_not_hide_that_the_vehicle_is_silent(
     port: int, vehicle: UdpVehicle, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("advisor.mavlink.watch.SILENCE_S", 0.3)
+    monkeypatch.setattr("advisor.mavlink.link_watch.SILENCE_S", 0.3)
     station = UdpVehicle(port, system=255)
     with Link(f"udpin:127.0.0.1:{port}") as link:
         vehicle.send(heartbeat(), attitude(0))

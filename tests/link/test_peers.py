@@ -17,11 +17,11 @@ from advisor.flight.events import ManeuverFlown
 from advisor.flight.messages import Columns
 from advisor.flight.stream import FlightStream
 from advisor.mavlink.announce import Announcer
-from advisor.mavlink.aside import Aside
 from advisor.mavlink.inquiry import Inquiry
 from advisor.mavlink.link import Link
 from advisor.mavlink.logs import open_log
 from advisor.mavlink.rates import RateRequest
+from advisor.mavlink.separate_connection import SeparateConnection
 from tests.link.builders import free_port, wait_until
 
 TOOLS = Path(sys.executable).parent
@@ -145,7 +145,7 @@ def test_mavproxy_shows_whole_an_announcement_that_comes_in_by_its_master(tmp_pa
         f"--logfile={tmp_path / 'proxy.tlog'}",
     )
     sentence = "REPEAT: too gentle, pitch rate 3 deg/s (at least 5); use about 1.5 times the stick"
-    aside = Aside(announcer, f"udpout:127.0.0.1:{vehicle_port}")
+    aside = SeparateConnection(announcer, f"udpout:127.0.0.1:{vehicle_port}")
     with (
         Link(f"udpin:127.0.0.1:{advisor_port}", talkers=[aside]) as link,
         running(*proxy, folder=tmp_path),

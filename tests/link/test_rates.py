@@ -8,9 +8,9 @@ from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 from advisor.mavlink.framing import Frame, FrameCutter
 from advisor.mavlink.link import UNREACHABLE_S, Link
+from advisor.mavlink.message_request import AT_ONCE, LONGEST_REST_S, MOST_TRIES, SHORTEST_REST_S
 from advisor.mavlink.rates import ANSWER_WITHIN_S, MEASURE_S, RateRequest
 from advisor.mavlink.ratewatch import RateWatch
-from advisor.mavlink.wish import AT_ONCE, LONGEST_REST_S, MOST_TRIES, SHORTEST_REST_S
 from tests.link.builders import Sender, UdpVehicle, attitude, free_port, heartbeat, wait_until
 
 VEHICLE = (1, 1)

@@ -9,7 +9,7 @@ import pytest
 
 from advisor.aircraft import PARAMETERS, CampaignPlan
 from advisor.decision.history import Flown
-from advisor.decision.pooling import beliefs_at_one_speed, pool
+from advisor.decision.pooling import pool, posteriors_at_one_speed
 from advisor.decision.stopping import progress
 from advisor.oem.estimate import Estimate
 from advisor.oem.problem import Problem, Record, Signal
@@ -134,7 +134,7 @@ def test_pooled_estimates_equal_the_joint_output_error_estimate() -> None:
     assert isinstance(joint, Solution)
     template = estimate_copies(fly_named(SCENE, "3211"), np.array([1e-4, 1e-4]), 1, rng)[0]
     estimates = [_with(template, s) for s in singles]
-    pooled = pool(beliefs_at_one_speed(estimates))
+    pooled = pool(posteriors_at_one_speed(estimates))
     # Within a tenth of its own error of the joint fit, and equally sure.
     joint_std = np.sqrt(np.diag(joint.covariance_cr))
     assert np.all(np.abs(pooled.theta - joint.theta) < 0.1 * joint_std)

@@ -14,6 +14,7 @@ from advisor.commands.study import command
 from advisor.problems import ConfigurationError
 from advisor.study import advised
 from advisor.study.figure import Curve, draw
+from tests.schemas import breaches
 
 # The study runs once for each figure.
 pytestmark = pytest.mark.xdist_group("study")
@@ -42,7 +43,7 @@ def test_json_is_one_document_and_nothing_else(pictured: dict[Path, Result]) -> 
     result = next(iter(pictured.values()))
     assert result.exit_code == 0
     document = json.loads(result.stdout)
-    assert document["schema"] == "advisor.study/1"
+    assert breaches("study", document) == []
     assert {(r["rule"], r["noise_percent"]) for r in document["rows"] if "paper" in r} == {
         (rule, noise) for rule in ("continuous", "separate") for noise in (1.0, 2.5, 5.0)
     }
@@ -79,6 +80,7 @@ def test_without_json_it_is_told_in_lines() -> None:
     assert "continuous" in result.stdout
     assert "schema" not in result.stdout
     assert "40 of 40 campaigns, " in result.stderr
+    assert max(map(len, result.stdout.split("\n"))) <= 80
 
 
 @pytest.mark.parametrize(
@@ -134,7 +136,7 @@ def test_a_changed_aircraft_is_noticed_within_two_manoeuvres() -> None:
     ("options", "rule", "said"),
     [
         ([], "continuous", "rule continuous decides: the paper's rule of continuous improvement"),
-        (["--rule", "information"], "information", "rule information decides: the rule of real flights"),
+        (["--rule", "information"], "information", "rule information decides: the rule for real flights"),
     ],
 )
 def test_the_demonstration_decides_by_the_papers_rule_unless_told_otherwise_and_says_so(

@@ -1,1 +1,1 @@
-"""The effects that may be missing, each a few numbers in the simulator."""
+"""The candidate effects, each described by a few parameters of the simulation."""

@@ -1,7 +1,7 @@
-"""What bends with an angle: about the trim of each manoeuvre, or about one angle for all of them.
+"""Nonlinear curves over an angle, either about the trim of each manoeuvre or about one common angle.
 
-Linear models know deviations from trim only. A wing or an elevator knows its angle: where speeds differ, so
-do the trims, and each manoeuvre is flown on another part of the same curve.
+A linear model knows deviations from trim only, a wing or an elevator its angle. Where speeds differ, trims
+differ too, and each manoeuvre is flown on another part of the same curve.
 """
 
 from collections.abc import Mapping, Sequence
@@ -14,14 +14,16 @@ from advisor.gap.candidates.variant import Values, Variant
 from advisor.gap.records.flights import Flights
 from advisor.gap.simulator.layout import INDEX
 
-_APART = 0.1
-"""Share of the largest deviation from trim by which trims must differ to tell the two apart."""
+_TRIMS_DIFFER = 0.1
+"""Least difference of the trims, as a share of the largest deviation from trim, that distinguishes the two
+kinds of curve."""
 _SLOPES = {"Z_alpha2": "Z_alpha", "M_alpha2": "M_alpha", "M_delta2": "M_delta_e"}
-"""The square of an angle, and the derivative that is linear in it."""
+"""The square of an angle, and the derivative of the linear term in that angle."""
 
 
 def bent(variant: Variant, flights: Flights) -> Variant:
-    """With ``variant``, a square and a cube of an angle about each trim, the same about one angle."""
+    """Return ``variant``, a square and a cube about each trim, with a curve about one common angle as
+    alternative."""
     if variant.entries[0] == "M_delta2":
         moved = [f.u - f.u_trim for f in flights.flights]
     elif "alpha" in flights.channels:
@@ -30,13 +32,13 @@ def bent(variant: Variant, flights: Flights) -> Variant:
         return variant
     trims = _trims_of(variant, flights)
     usual = float(np.median(trims))
-    if np.max(np.abs(np.array(trims) - usual)) < _APART * max(float(np.max(np.abs(m))) for m in moved):
+    if np.max(np.abs(np.array(trims) - usual)) < _TRIMS_DIFFER * max(float(np.max(np.abs(m))) for m in moved):
         return variant
     return replace(variant, likewise=(_about(usual, variant, trims),))
 
 
 def as_in_file(variant: Variant, parameters: Mapping[str, float], flights: Flights) -> Variant:
-    """A curve about the angle that an aircraft file states for it, whatever these flights are trimmed at."""
+    """Return a curve about the angle that an aircraft file states, whatever the trims of these flights."""
     if "about_rad" not in parameters or not _SLOPES.keys() & set(variant.entries):
         return variant
     return _about(parameters["about_rad"], variant, _trims_of(variant, flights))
@@ -48,16 +50,17 @@ def _trims_of(variant: Variant, flights: Flights) -> list[float]:
 
 
 def _about(angle_rad: float, variant: Variant, trims: Sequence[float]) -> Variant:
-    """(x + D)² and (x + D)³ written out in x, D being a manoeuvre's trim less the angle."""
+    """Return a variant with (x + D)² and (x + D)³ expanded in x, where D is a manoeuvre's trim minus the
+    angle."""
     slope, (square, cube) = INDEX[_SLOPES[variant.entries[0]]], (INDEX[entry] for entry in variant.entries)
-    apart = np.array(trims) - angle_rad
+    offset = np.array(trims) - angle_rad
 
     def bend(p: FloatArray, values: Values, _: Flights) -> None:
-        p[:, slope] += (2.0 * values[0] + 3.0 * values[1] * apart) * apart
-        p[:, square] += values[0] + 3.0 * values[1] * apart
+        p[:, slope] += (2.0 * values[0] + 3.0 * values[1] * offset) * offset
+        p[:, square] += values[0] + 3.0 * values[1] * offset
         p[:, cube] += values[1]
 
-    # A cube about each trim may be far too much about one angle; the square's is of the right size.
+    # A cube about each trim may be far too large about one common angle; the square has the right size.
     return replace(
         variant, entries=(), apply_with=bend, carried=_square_alone, fixed={"about_rad": angle_rad}
     )

@@ -1,4 +1,4 @@
-"""Changes from one manoeuvre to the next: a drift, a step at a time nobody noted, or what took a while."""
+"""Changes between manoeuvres: a drift, a step at an unknown time, or a gradual change."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -11,19 +11,22 @@ from advisor.gap.records.flights import Flights
 from advisor.gap.simulator.layout import INDEX
 
 Change = Callable[[FloatArray, FloatArray], None]
-"""Change driving numbers (manoeuvres, entries), given the relative change of each manoeuvre."""
+"""Function that changes driving numbers (manoeuvres, entries), given the relative change of each
+manoeuvre."""
 
 Course = Callable[[FloatArray, Values, FloatArray], None]
-"""Change driving numbers, given an effect's own numbers and the share of it that each manoeuvre has."""
+"""Function that changes driving numbers, given an effect's parameters and each manoeuvre's share of the
+effect."""
 
 _FOR_GRADUAL = 4
-"""Manoeuvres that a change needs which begins and ends in flight: with fewer it is a step or a drift."""
+"""Least number of manoeuvres for a change that begins and ends in flight. With fewer, a step or a drift
+describes it."""
 _TIME_STEP = 0.02
-"""Finite-difference step of when it begins and how long it takes, of the flight."""
+"""Finite-difference step of begin and duration of a gradual change, as a share of the flight's duration."""
 
 
 def shift_moments(p: FloatArray, by: FloatArray) -> None:
-    """Move the centre of gravity: every force of Eq. (1) gets the same further arm in Eq. (2).
+    """Move the centre of gravity: every force of Eq. (1) gets the same additional arm in Eq. (2).
 
     ``by`` is the relative change of M_α.
     """
@@ -33,12 +36,13 @@ def shift_moments(p: FloatArray, by: FloatArray) -> None:
 
 
 def shift_stability(p: FloatArray, by: FloatArray) -> None:
-    """The same as textbooks have it: far behind the wing, tail and elevator hardly notice."""
+    """Change M_α alone, as textbooks describe a shift: tail and elevator are far behind the wing and hardly
+    notice."""
     p[:, INDEX["M_alpha"]] *= 1.0 + by
 
 
 def divide(*entries: str) -> Change:
-    """Divide these derivatives by 1 + change, as more mass does."""
+    """Return a function that divides these derivatives by 1 + change, as additional mass does."""
     columns = [INDEX[name] for name in entries]
 
     def change(p: FloatArray, by: FloatArray) -> None:
@@ -48,19 +52,19 @@ def divide(*entries: str) -> Change:
 
 
 def starts_of(flights: Flights) -> FloatArray:
-    """Shape (manoeuvres,): vehicle time of each record's start."""
+    """Return the vehicle time of the start of each record in s, shape (manoeuvres,)."""
     return np.array([f.started_s for f in flights.flights])
 
 
 def breaks(flights: Flights) -> list[tuple[int, float]]:
-    """Every place a step may hide: index of the first manoeuvre after it, and a time between the two."""
+    """Return every possible place of a step: index of the next manoeuvre, and a time in s between the two."""
     t = starts_of(flights)
     ends = t + np.array([f.duration_s for f in flights.flights])
     return [(j, float((ends[j - 1] + t[j]) / 2.0)) for j in range(1, len(t))]
 
 
 def ramps_and_steps(effect: str, block: str, flights: Flights, change: Change) -> list[Variant]:
-    """One variant for a steady drift, one for a step at each place between two manoeuvres."""
+    """Return one variant for a steady drift, and one for a step at each place between two manoeuvres."""
     if len(flights) < 3:
         return []
     t, span = starts_of(flights), _span_of(flights)
@@ -87,9 +91,9 @@ def ramps_and_steps(effect: str, block: str, flights: Flights, change: Change) -
 
 
 def steps_in(flights: Flights, one: Variant, course: Course) -> list[Variant]:
-    """A step at each place between two manoeuvres; ``one`` has the names, starts and bounds of the change.
+    """Return a step at each place between two manoeuvres; ``one`` has names, starts and bounds of the change.
 
-    Beside each stands what takes a while, fitted where the step has led: a tank that is pumped over, people
+    Every step has a gradual change as alternative, fitted from the step's result: fuel that is pumped, people
     who move, ice that grows.
     """
     lasts_s = _span_of(flights) / 3.0
@@ -109,7 +113,7 @@ def steps_in(flights: Flights, one: Variant, course: Course) -> list[Variant]:
 def _longer(
     flights: Flights, one: Variant, course: Course, carried: Callable[[FloatArray], Values]
 ) -> tuple[Variant, ...]:
-    """The change as one that begins in mid-flight and takes a while; none where manoeuvres are too few."""
+    """Return the change as a gradual one that begins in flight; none where manoeuvres are too few."""
     if len(flights) < _FOR_GRADUAL:
         return ()
     t, span = starts_of(flights), _span_of(flights)
@@ -122,13 +126,13 @@ def _longer(
         apply_with=lambda p, v, _: course(p, v[:-2], np.clip((t - v[-2]) / v[-1], 0.0, 1.0)),
         carried=carried,
         places=("at_s", "over_s"),
-        # One that outlasts the flight is told by its rate alone, whatever the size and however long.
+        # A change that outlasts the flight is determined by its rate alone, whatever its size and duration.
         one_sided=True,
     )
     return (gradual,)
 
 
 def _span_of(flights: Flights) -> float:
-    """Time from the first manoeuvre to the last, in s."""
+    """Return the time from the first manoeuvre to the last, in s."""
     t = starts_of(flights)
     return max(float(t[-1] - t[0]), 1.0)

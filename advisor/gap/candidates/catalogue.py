@@ -1,4 +1,4 @@
-"""All variants that these data allow."""
+"""All variants of the effects that the recorded channels allow."""
 
 import numpy as np
 
@@ -10,16 +10,18 @@ from advisor.gap.simulator.layout import HEIGHT, THROTTLE
 
 _LEAST_S = 0.004
 _FILTERED_S = 0.02
-"""Least delay of a sensor worth a name: of a sensor itself, and of a channel an autopilot has filtered."""
+"""Least delay that is named, s: of a raw sensor (4 ms), and of a channel that an autopilot filtered (20
+ms)."""
 _THROTTLE_MOVES, _HEIGHT_MOVES_M = 0.02, 0.2
-"""Change within a manoeuvre, of the throttle's range and in m, without which neither tells anything."""
+"""Least change within a manoeuvre that makes the channel informative: of the throttle as a share of its
+range, and of the height in m."""
 _TWO_POWERS = 0.1
-"""Relative change of the air speed without which moments and lift have one power of it between them."""
+"""Relative change of the air speed above which moments and lift can have separate powers of the speed."""
 
 
 def variants_for(flights: Flights) -> list[Variant]:
-    """Everything that can be tried: the channels it acts on are there, and its input moved."""
-    # An autopilot's own estimates have passed its filters: what those delay is nobody's fault.
+    """Return all variants whose channels were recorded and whose input varied."""
+    # An autopilot's own estimates have passed its filters, and the delay of a filter is no fault.
     least_s = _FILTERED_S if flights.alpha_is_derived else _LEAST_S
     instruments = sensors.variants(least_s, flights.reference_m_s)
     within = [*input.variants(flights), *instruments, *timing.variants(flights, least_s)]

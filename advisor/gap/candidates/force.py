@@ -1,4 +1,4 @@
-"""The force equation: curved and unsteady lift, mass, ice, the ground."""
+"""The force equation: nonlinear and unsteady lift, mass, ice, the ground."""
 
 from dataclasses import replace
 
@@ -13,7 +13,8 @@ from advisor.gap.simulator.layout import DERIVATIVES, HEIGHT, INDEX
 
 BLOCK = "force_equation"
 _DECAYS_M = (0.1, 50.0)
-"""Height over which the ground's influence may decay, m: a fraction of any span to more than a span."""
+"""Range of the height over which ground effect decays, m: from a fraction of a small span to more than a
+large one."""
 _ICED = ("Z_alpha", "Z_delta_e", "M_alpha", "M_delta_e")
 CURVED_LIFT = Variant(
     "nonlinear_lift",
@@ -44,7 +45,7 @@ _UNSTEADY = Variant(
 
 
 def _with_moment(p: FloatArray, values: Values, _: Flights) -> None:
-    """Of a wing alone the lift acts where it always does, and the moment builds up with it."""
+    """Let the pitching moment build up with the lift, as on a wing without tail."""
     p[:, INDEX["lift_share"]] += values[0]
     p[:, INDEX["lift_lag_s"]] += values[1]
     p[:, INDEX["moment_share"]] += values[0]
@@ -54,21 +55,22 @@ _UNSTEADY_WITH_MOMENT = replace(_UNSTEADY, apply_with=_with_moment, fixed={"with
 
 
 def _powers(p: FloatArray, values: Values, _: Flights) -> None:
-    """Of the moments and of the lift, which what the simulation has of both is part of."""
+    """Set the powers of the air speed of the moments and of the lift; the simulation's moments include the
+    lift's."""
     of_moments, of_lift = values
     p[:, INDEX["speed_power"]] += of_lift
     p[:, INDEX["moment_power"]] += of_moments - of_lift
 
 
 def variants(flights: Flights) -> list[Variant]:
-    """Effects of the block; those between manoeuvres depend on how many were flown."""
+    """Return the effects of the block; those between manoeuvres depend on how many were flown."""
     return [
         bent(CURVED_LIFT, flights),
         replace(_UNSTEADY, likewise=(_UNSTEADY_WITH_MOMENT,)),
         *_stall(flights),
         *_mass(flights),
         *_icing(flights),
-        # Mach number, elastic wings, a slipstream: forces go with another power of the speed than V².
+        # Mach number, elastic wings or a slipstream: forces grow with another power of the speed than V².
         Variant(
             "airspeed_variation",
             BLOCK,
@@ -80,7 +82,7 @@ def variants(flights: Flights) -> list[Variant]:
             entries=("speed_power",),
             needs=frozenset({"airspeed"}),
         ),
-        # A tail in the wing's wake, or in a propeller's: moments with another power than the lift.
+        # A tail in the wake of the wing or of a propeller: moments grow with another power than the lift.
         Variant(
             "airspeed_variation",
             BLOCK,
@@ -92,7 +94,7 @@ def variants(flights: Flights) -> list[Variant]:
             apply_with=_powers,
             needs=frozenset({"airspeed"}),
         ),
-        # Near the ground all lift grows by a share of it, or the trim alone changes.
+        # Near the ground all lift grows by a share, or the trim alone changes.
         *(
             Variant(
                 "ground_effect",
@@ -112,7 +114,8 @@ def variants(flights: Flights) -> list[Variant]:
 
 
 def _heights_of_decay(flights: Flights) -> list[float]:
-    """Heights over which the ground's lift may fade, in m: a fifth of what was flown over, and two thirds."""
+    """Return two heights in m over which ground effect may decay: a fifth and two thirds of the height
+    flown."""
     if "height" not in flights.has:
         return []
     flown = float(np.median([np.median(f.slow[HEIGHT]) for f in flights.flights]))
@@ -120,14 +123,15 @@ def _heights_of_decay(flights: Flights) -> list[float]:
 
 
 def _mass(flights: Flights) -> list[Variant]:
-    """A mass whose inertia grows as it does; at once, one also that is added elsewhere than all the rest.
+    """Return a change of mass with equal change of inertia; a step also has an inertia of its own as
+    alternative.
 
-    What is carried far from the centre of gravity adds more to the inertia, what is carried there nothing.
+    Mass far from the centre of gravity adds more inertia than mass near it.
     """
     together = ramps_and_steps("mass_change", BLOCK, flights, divide(*DERIVATIVES))
     inertia = {
         variant.fixed["at_s"]: replace(variant, starts=(), likewise=(), carried=lambda v: (v[0], v[0]))
-        for variant in steps_in(flights, _MASS_AND_INERTIA, _divided_apart)
+        for variant in steps_in(flights, _MASS_AND_INERTIA, _divided_separately)
     }
     return [
         replace(v, likewise=(*v.likewise, inertia[v.fixed["at_s"]])) if "at_s" in v.fixed else v
@@ -135,14 +139,15 @@ def _mass(flights: Flights) -> list[Variant]:
     ]
 
 
-def _divided_apart(p: FloatArray, values: Values, share: FloatArray) -> None:
-    """Forces by the mass, moments by the inertia, which grow by so much in manoeuvres that have it."""
+def _divided_separately(p: FloatArray, values: Values, share: FloatArray) -> None:
+    """Divide forces by the growth of mass and moments by the growth of inertia, in manoeuvres that have the
+    change."""
     for change, growth in zip((divide(*_FORCES), divide(*_MOMENTS)), values, strict=True):
         change(p, growth * share)
 
 
 def _stall(flights: Flights) -> list[Variant]:
-    """Flow that separates about some angle of attack (Kirchhoff's flow): a kink, which no parabola is."""
+    """Return flow separation about an angle of attack (Kirchhoff's flow): a kink, unlike any parabola."""
     if "alpha" not in flights.channels:
         return []
     trim = float(np.median([f.alpha_trim for f in flights.flights]))
@@ -157,14 +162,15 @@ def _stall(flights: Flights) -> list[Variant]:
             ((0.0, 1.0), (2.0, 200.0)),
             0.0,
             entries=("stall_rad", "stall_sharpness"),
-            # A wing that has stalled already where the aircraft is trimmed.
-            beside_the_file=(0.65 * trim, 25.0) if trim > 0.0 else None,
+            # A wing that is already stalled where the aircraft is trimmed.
+            start_at_prior=(0.65 * trim, 25.0) if trim > 0.0 else None,
         )
     ]
 
 
 def _icing(flights: Flights) -> list[Variant]:
-    """Lift slope and controls weaken at once, each by its own share, somewhere between two manoeuvres."""
+    """Return a loss of lift slope and control power at once, each by its own share, between two
+    manoeuvres."""
     if len(flights) < 3:
         return []
 

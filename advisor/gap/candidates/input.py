@@ -1,4 +1,4 @@
-"""Between command and surface: delay, lag, rate limit, play, dead-band."""
+"""Between command and surface: delay, lag, rate limit, play, dead band."""
 
 from dataclasses import replace
 
@@ -11,11 +11,13 @@ from advisor.gap.simulator.layout import INDEX
 
 BLOCK = "input"
 _SMALL_ANGLE = 0.00175
-"""0.1 deg: no linkage is free of less ..."""
+"""Least angle that is named, rad (0.1 deg): no linkage has less play."""
 _IF_BEYOND_DOUBT = 0.4
-"""... worth a word, but that share of it, as a pulse of 1 us moves a surface, shows in a quiet record."""
+"""Share of the least angle that is enough for an effect beyond doubt. In a quiet record such an angle shows,
+being that of a servo pulse 1 us longer."""
 _DAMPING = 0.7
-"""Of a servo of second order: that of position loops tuned to be quick without overshoot."""
+"""Damping ratio of the second-order servo, as in position loops that are tuned to be quick without
+overshoot."""
 
 
 LATENCY = Variant(
@@ -27,27 +29,28 @@ LATENCY = Variant(
     ((-0.004, 0.005),),
     0.0,
     entries=("latency_s",),
-    always=True,
+    is_nuisance=True,
 )
-"""Part of every model: stamps have a resolution, and a command takes effect a few milliseconds after."""
+"""Nuisance parameter of every model: stamps have a resolution, and a command takes effect after a few
+milliseconds."""
 
 
 def _delay(p: FloatArray, values: Values, _: Flights) -> None:
-    """The whole delay: where it is free, the few milliseconds of latency are part of it."""
+    """Set the whole delay: where the delay is free, it includes the few milliseconds of latency."""
     p[:, INDEX["delay_s"]] += values[0]
     p[:, INDEX["latency_s"]] = 0.0
 
 
 def _second_order(p: FloatArray, values: Values, _: Flights) -> None:
-    """Trails a ramp as the lag of first order does, but begins to move more gently."""
+    """Set a second-order servo, which trails a ramp like a first-order lag but begins to move more gently."""
     p[:, INDEX["lag_s"]] += values[0]
     p[:, INDEX["lag_damping"]] = _DAMPING
 
 
 def _deadband(p: FloatArray, values: Values, flights: Flights) -> None:
-    """A band about one neutral deflection of the aircraft, wherever each manoeuvre was trimmed.
+    """Set a dead band about one neutral deflection of the aircraft, whatever the trim of each manoeuvre.
 
-    It need not lie about the trim: whoever trims, pilot or autopilot, ends up on one edge of the band.
+    The band need not lie about the trim, because pilots and autopilots trim to one edge of the band.
     """
     trims = np.array([flight.u_trim for flight in flights.flights])
     p[:, INDEX["half_deadband_rad"]] += values[0]
@@ -55,15 +58,15 @@ def _deadband(p: FloatArray, values: Values, flights: Flights) -> None:
 
 
 def _deadband_about_trim(p: FloatArray, values: Values, _: Flights) -> None:
-    """A band that moves with the trim: about wherever the command rested before each manoeuvre."""
+    """Set a dead band that moves with the trim, about the command before each manoeuvre."""
     p[:, INDEX["half_deadband_rad"]] += values[0]
     p[:, INDEX["neutral_rad"]] = values[1]
 
 
 def _limited_from_midway(p: FloatArray, values: Values, flights: Flights) -> None:
-    """A step between two stamps, wherever it was, happened midway on average: from then on the servo runs.
+    """Set a rate limit, with each step of the command halfway between its two stamps.
 
-    Read as linear it would run from the first stamp on, at its limit before the step was there.
+    A command read as linear would let the servo run at its limit before the step had happened.
     """
     intervals = np.concatenate([np.diff(flight.t_u) for flight in flights.flights])
     p[:, INDEX["slowness_s_rad"]] += values[0]
@@ -91,7 +94,7 @@ LAG = Variant(
     entries=("lag_s",),
 )
 
-# Searched as slowness 1/ρ: zero is "no limit", and the cost is smooth there.
+# The search uses the slowness 1/ρ: zero means no limit, and the cost is smooth there.
 _RATE_LIMIT = Variant(
     "actuator_rate_limit",
     BLOCK,
@@ -121,13 +124,13 @@ _DEADBAND_ABOUT_TRIM = replace(
     apply_with=_deadband_about_trim,
     fixed={"about_trim": 1.0},
 )
-_TRIMS_APART_RAD = 0.005
-"""Between manoeuvres, from which on a band that moves with the trim is another than one that does not."""
+_TRIMS_DIFFER_RAD = 0.005
+"""Least range of the trims in rad that distinguishes a dead band moving with the trim from a fixed one."""
 
 
 def variants(flights: Flights) -> list[Variant]:
-    """Effects of the block, described to first order, and the lag to second order, too."""
-    moves = float(np.ptp([f.u_trim for f in flights.flights])) > _TRIMS_APART_RAD
+    """Return the effects of the block to first order, and the lag also to second order."""
+    moves = float(np.ptp([f.u_trim for f in flights.flights])) > _TRIMS_DIFFER_RAD
     return [
         DELAY,
         LAG,

@@ -1,7 +1,7 @@
-"""What the simulator under diagnosis has already: the effects that stand in its aircraft file.
+"""Effects that the simulator under diagnosis has already, as its aircraft file states.
 
-They are in every model from the start, so that a file which ``advisor gap`` improved is judged as it flies,
-and what is found is what is missing beyond it.
+They are part of every model. A file that ``advisor gap`` improved is therefore judged as it flies, and a
+diagnosis finds the rest of the gap.
 """
 
 from collections.abc import Mapping, Sequence
@@ -19,13 +19,14 @@ from advisor.gap.candidates.variant import Values, Variant
 from advisor.gap.records.flights import Flights
 
 Effects = Mapping[str, Mapping[str, float]]
-"""Effect name to its parameters, as the aircraft file has them."""
+"""Effect name to its parameters, in the units of the aircraft file."""
 
 
 def with_known(
     base: FloatArray, effects: Effects, flights: Flights, variants: Sequence[Variant]
 ) -> FloatArray:
-    """Shape (manoeuvres, entries): the simulation's numbers, ``base`` (entries,), with the file's effects."""
+    """Return the driving numbers, shape (manoeuvres, entries): ``base``, shape (entries,), with the file's
+    effects."""
     numbers = np.tile(base, (len(flights), 1))
     for effect, parameters in effects.items():
         if effect in OF_ONE_FLIGHT:
@@ -39,7 +40,8 @@ def with_known(
 
 
 def beyond_known(effects: Effects, variants: Sequence[Variant]) -> list[Variant]:
-    """The candidates left: a single number may be more or less than the file says, a shape is what it is."""
+    """Return the remaining candidates. A single parameter may differ from the file's; a shape is kept as it
+    is."""
     left = []
     for variant in variants:
         known = effects.get(variant.effect, {}) if variant.effect not in OF_ONE_FLIGHT else {}
@@ -51,9 +53,9 @@ def beyond_known(effects: Effects, variants: Sequence[Variant]) -> list[Variant]
 
 
 def beyond_servo(aircraft: Aircraft, variants: Sequence[Variant]) -> list[Variant]:
-    """The candidates, a lag or a delay of the servo counted from what the aircraft file states of it.
+    """Return the candidates with a servo's lag or delay counted from the value that the aircraft file states.
 
-    A servo may be quicker than the file says, and a stated delay may not be there.
+    A servo may be quicker than the file states, and a stated delay may not exist.
     """
     found = []
     for variant in variants:
@@ -65,9 +67,10 @@ def beyond_servo(aircraft: Aircraft, variants: Sequence[Variant]) -> list[Varian
 def less_of_the_servo(
     aircraft: Aircraft, effects: Effects
 ) -> tuple[Aircraft, dict[str, Mapping[str, float]]]:
-    """The aircraft whose servo is quicker than its file says, and the effects without what made it so.
+    """Return the aircraft with a quicker servo than its file states, and the effects without the negative
+    ones.
 
-    No simulator flies an effect of less than nothing: that is taken off the number that the file states.
+    No simulator flies a negative lag or delay, so such a value is subtracted from the file's.
     """
     rest = dict(effects)
     changed: dict[str, Any] = {}
@@ -81,22 +84,22 @@ def less_of_the_servo(
 
 
 def stated_in(aircraft: Aircraft, effect: str) -> float | None:
-    """What the aircraft file states of an effect as a number of its own; None where that is nothing."""
+    """Return the number that the aircraft file states of an effect; None where it states nothing."""
     where = TRAITS[effect].stated
     stated: float | None = None if where is None else getattr(getattr(aircraft, where[0]), where[1])
     return stated
 
 
 def left_aside(effects: Effects) -> tuple[str, ...]:
-    """Effects of the file that belong to the flight in which they were found."""
+    """Return the file's effects that belong to one flight alone."""
     return tuple(effect for effect in effects if effect in OF_ONE_FLIGHT)
 
 
 def together(known: Effects, found: Effects) -> dict[str, dict[str, float]]:
-    """The file's effects and what was found beyond them.
+    """Return the file's effects combined with those that were found beyond them.
 
-    Beyond a known effect one number was searched for, its first: that adds. What else is said of it (the
-    damping of a servo) replaces, as does the propeller's share, which counts from nothing; the rest stays.
+    The first parameter of a known effect adds to the file's. Other parameters, such as the damping of a
+    servo, replace the file's, as does the propeller's share, which counts from zero.
     """
     both = {effect: dict(values) for effect, values in known.items()}
     for effect, values in found.items():
@@ -108,7 +111,7 @@ def together(known: Effects, found: Effects) -> dict[str, dict[str, float]]:
 
 
 def _beyond(variant: Variant, known: float) -> Variant:
-    """The candidate counted from what the file has of it; it may take that away, where none is below zero."""
+    """Return the candidate counted from the file's value; the range includes the removal of that value."""
     (lowest, highest), starts = variant.bounds[0], variant.starts
     if known > 0.0 and lowest >= 0.0:
         lowest, starts = -known, (*starts, (-0.5 * known,))
@@ -132,13 +135,14 @@ def _says(variant: Variant, parameters: Mapping[str, float]) -> bool:
 
 
 def _is_meant(variant: Variant, parameters: Mapping[str, float], variants: Sequence[Variant]) -> bool:
-    """Whether it says what the file has, and none of its effect says more of what is not searched for."""
+    """Return whether the variant describes what the file states, and no other of the effect describes more of
+    it."""
     same = [v for v in variants if v.effect == variant.effect and _says(v, parameters)]
     return _says(variant, parameters) and all(len(v.fixed) <= len(variant.fixed) for v in same)
 
 
 def _values(variant: Variant, parameters: Mapping[str, float]) -> list[float]:
-    """Of the variant's numbers, from the file's: the reverse of ``causes.parameters_of``."""
+    """Return the variant's parameters from the file's: the inverse of ``causes.parameters_of``."""
     if variant.effect == "structural_mode":
         return [
             parameters.get("displacement_gain", 0.0), parameters.get("gain", 0.0),

@@ -1,4 +1,4 @@
-"""The moment equation: curved moments, thrust line, rate of α, a wandering centre of gravity."""
+"""The moment equation: nonlinear moments, thrust line, rate of α, a moving centre of gravity."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -24,13 +24,13 @@ PROPELLER = Variant(
     ((-100.0, 100.0), (-1.0, 2.0), (-10.0, 10.0)),
     0.0,
     entries=("M_thrust", "washed_share", "blown_share"),
-    spread=(5.0, 0.5, 3.0),
-    always=True,
+    prior_std=(5.0, 0.5, 3.0),
+    is_nuisance=True,
 )
-"""Part of every model where the speed is measured. The thrust's share of the trim does not grow with V². An
-elevator in the propeller's wake meets more than the stream's dynamic pressure, by thrust over disk area
-(Glauert's momentum theory); thrust is drag, which grows with V², plus what the accelerations show along the
-path. For a light single the wake's share of the elevator's power is about a fifth."""
+"""Nuisance parameters of every model with a measured air speed. The thrust's share of the trim does not grow
+with V². An elevator in the propeller's wake meets more than the dynamic pressure of the stream, by thrust
+over disk area (Glauert's momentum theory). Thrust is drag, which grows with V², plus the acceleration along
+the path. In a light single the wake adds about a fifth of the elevator's power."""
 
 
 _CURVED_ELEVATOR = Variant(
@@ -58,9 +58,11 @@ _CURVED_MOMENT = Variant(
 def _without_rate_of_alpha(
     derivatives: FloatArray, effects: Sequence[Variant], speed_m_s: float
 ) -> FloatArray:
-    """M_α̇ α̇ written out by Eq. (1): what M_α, M_q, M_δe and the thrust's moment lose for each unit of M_α̇.
+    """Return the change of M_α, M_q, M_δe and the thrust's moment per unit of M_α̇, with M_α̇ α̇ expanded by
+    Eq. (1).
 
-    The weight's part of α̇ goes with 1/V, the trimmed lift's with V: together with 1 − V², as the thrust's.
+    The weight's part of α̇ grows with 1/V, the trimmed lift's with V: together with 1 − V², like the thrust's
+    moment.
     """
     z_alpha, z_q, z_delta = derivatives[:3]
     change = [0.0, 0.0, 0.0, -z_alpha, -(1.0 + z_q), -z_delta]
@@ -70,7 +72,7 @@ def _without_rate_of_alpha(
 
 
 def variants(flights: Flights) -> list[Variant]:
-    """Effects of the block; those between manoeuvres depend on how many were flown."""
+    """Return the effects of the block; those between manoeuvres depend on how many were flown."""
     return [
         bent(_CURVED_ELEVATOR, flights),
         bent(_CURVED_MOMENT, flights),
@@ -113,7 +115,7 @@ def variants(flights: Flights) -> list[Variant]:
 
 
 def _moved_weight(flights: Flights) -> list[Variant]:
-    """A centre of gravity that moves: what it does to all moments, and to the stability alone."""
+    """Return a moving centre of gravity, with its effect on all moments or on the stability alone."""
     of_all = ramps_and_steps("cg_shift", BLOCK, flights, shift_moments)
     alone = ramps_and_steps("cg_shift", BLOCK, flights, shift_stability)
     return [

@@ -1,4 +1,4 @@
-"""The instruments: the α channel, the rate gyro, the place of the accelerometer."""
+"""The instruments: the α channel, the rate gyro, and the position of the accelerometer."""
 
 from dataclasses import replace
 
@@ -10,11 +10,11 @@ from advisor.gap.records.flights import Flights
 from advisor.gap.simulator.layout import INDEX
 
 _MODES_HZ = (2.5, 4.0, 6.0, 8.5)
-"""Where the search for a structural mode begins; it ends between them."""
+"""Frequencies in Hz at which the search for a structural mode starts."""
 _LEAST_BIAS_RAD_S = 0.00175
-"""0.1 deg/s: what a rate gyro keeps after it was set to zero on the ground."""
+"""Least bias that is named, rad/s (0.1 deg/s): the rest after a gyro was set to zero on the ground."""
 _LEAST_ARM_M, _OF_A_DELAY = 0.02, 0.75
-"""Arm below which none has a name, and over the speed beside the least delay."""
+"""Least arm that is named, m; and the least arm over the air speed, as a share of the least delay."""
 
 _MODE = Variant(
     "structural_mode",
@@ -30,7 +30,7 @@ _MODE = Variant(
 
 
 def _with_attitude(p: FloatArray, values: Values, flights: Flights) -> None:
-    """An attitude that is integrated from the gyro swings with it."""
+    """Add the structural mode to the attitude too, which an autopilot integrates from the gyro."""
     _MODE.apply(p, values, flights)
     p[:, INDEX["mode_attitude"]] = 1.0
 
@@ -46,20 +46,21 @@ TRUE_AIR_SPEED = Variant(
     ((-0.7, 3.0),),
     0.0,
     entries=("speed_scale",),
-    spread=(0.02,),
-    always=True,
+    prior_std=(0.02,),
+    is_nuisance=True,
 )
-"""Part of every model with α and a_z: by how much the true air speed is above the one that is read. An
-indicated air speed is not the true one, and a static port reads what the wing makes of the pressure there."""
+"""Nuisance parameter of every model with α and a_z: the relative excess of the true over the read air speed.
+The read speed may be an indicated one, and a static port reads a pressure that the wing changes."""
 
 
 def variants(least_s: float, speed_m_s: float) -> list[Variant]:
-    """Effects of the three sensors, none later than ``least_s`` being worth a name.
+    """Return the effects of the three sensors; a delay below ``least_s`` seconds is not named.
 
-    Where the aircraft turns, the α of a vane ahead of the centre of gravity comes late by arm over speed, and
-    an accelerometer's place is its twin: a gyro's own filter makes three quarters of what is worth a name.
+    In a turning flight path, a vane ahead of the centre of gravity makes α late by arm over speed. The
+    accelerometer's position has an equal effect, and the gyro's filter adds three quarters of the least
+    delay.
 
-    A constant offset of α is judged apart, from the climb rate.
+    A constant offset of α is judged outside the fits, from the climb rate.
     """
     least_arm_m = max(_LEAST_ARM_M, _OF_A_DELAY * least_s * speed_m_s)
     return [

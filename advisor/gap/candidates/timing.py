@@ -18,13 +18,14 @@ _STREAMS = (
     ("attitude_skew", "theta"),
 )
 _MESSAGE_S = 0.012
-"""Least delay of a message worth a name: what is shorter resembles too much else."""
+"""Least skew of a whole message that is named, s: a smaller one resembles too many other effects."""
 _FILTERS_S = {"alpha": 0.02, "a_z": 0.01, "theta": 0.01}
-"""By what an autopilot's filters make its channels later than its pitch rate, give or take."""
+"""Prior standard deviation, by channel, of the delay of an autopilot's filters relative to the pitch rate,
+s."""
 
 
 def filters(flights: Flights) -> Variant:
-    """What an autopilot's filters delay, beside its pitch rate; part of every model of such a flight."""
+    """Return the delays of an autopilot's filters relative to its pitch rate, as nuisance parameters."""
     channels = [c for c in flights.channels if c in _FILTERS_S]
     return Variant(
         "filters",
@@ -35,24 +36,25 @@ def filters(flights: Flights) -> Variant:
         tuple((-2.0 * _FILTERS_S[c], 2.0 * _FILTERS_S[c]) for c in channels),
         0.0,
         entries=tuple(SKEWS[OUTPUTS.index(c)] for c in channels),
-        spread=tuple(_FILTERS_S[c] for c in channels),
-        always=True,
+        prior_std=tuple(_FILTERS_S[c] for c in channels),
+        is_nuisance=True,
     )
 
 
 def _whole_skew(entry: str, p: FloatArray, values: Values, _: Flights) -> None:
-    """All that a stream is late by, what a filter does included."""
+    """Set the whole skew of a stream, including the delay of a filter."""
     p[:, INDEX[entry]] = values[0]
 
 
 def _whole_message(p: FloatArray, values: Values, _: Flights) -> None:
-    """Attitude and pitch rate together."""
+    """Shift attitude and pitch rate together."""
     for channel in ("q", "theta"):
         p[:, INDEX[SKEWS[OUTPUTS.index(channel)]]] += values[0]
 
 
 def variants(flights: Flights, least_s: float) -> list[Variant]:
-    """One skew a stream, positive is late; and of a message that brings attitude and pitch rate together."""
+    """Return one skew for each stream, positive is late, and one for a message with attitude and pitch
+    rate."""
     found = [
         Variant(
             effect,
@@ -78,7 +80,7 @@ def variants(flights: Flights, least_s: float) -> list[Variant]:
 
 
 def _in_one_message(flights: Flights) -> bool:
-    """Whether attitude and pitch rate have the same stamps throughout."""
+    """Return whether attitude and pitch rate have equal stamps throughout."""
     return "theta" in flights.channels and all(
         np.array_equal(f.outputs["q"].t, f.outputs["theta"].t) for f in flights.flights
     )

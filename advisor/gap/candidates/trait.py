@@ -1,60 +1,63 @@
-"""What the table of effects says of each effect beside the numbers that a fit frees."""
+"""Properties of an effect in the table of effects, apart from its parameters in a fit."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 Said = str | tuple[str, str]
-"""How an effect is put. Of two ways the second is for a first number below zero, sizes without their sign.
-Sizes are written as ``{parameter:.0f}``; ``_ms``, ``_deg``, ``_percent``, ``_power`` may follow a name."""
+"""Sentence about an effect. A second sentence holds for a negative first parameter, and shows sizes
+without sign. Sizes are written as ``{parameter:.0f}``; ``_ms``, ``_deg``, ``_percent``, ``_power`` may
+follow a name."""
 
 
 @dataclass(frozen=True, slots=True)
 class Need:
-    """Why an effect cannot be seen, and what would change that."""
+    """Why an effect cannot be seen, and what would make it visible."""
 
     parameter: str
-    """Its size, as the aircraft file spells it."""
+    """The effect's first parameter, in the spelling of the aircraft file."""
     because: str
     add: str
 
 
 @dataclass(frozen=True, slots=True)
 class Trait:
-    """An effect of the catalogue, without its numbers."""
+    """An effect of the catalogue, without its parameters."""
 
     block: str
-    """Part of the simulator that it belongs to."""
+    """Block of the simulator that the effect belongs to."""
     said: Said = ""
     said_with: Mapping[str, Said] = field(default_factory=dict)
-    """The same by a parameter that makes it a particular one ..."""
+    """Sentence by a parameter that only some variants of the effect have."""
     said_beyond: Said = ""
-    """... and where the simulator has some of it already; empty: no different."""
+    """Sentence where the simulator has some of the effect already; empty: ``said`` serves."""
     channel: str = ""
-    """Output without which it cannot be tried; empty where any will do."""
+    """Output without which the effect cannot be tried; empty where any will do."""
     stated: tuple[str, str] | None = None
-    """Section and key of the aircraft file that state how much of it the simulator has."""
+    """Section and key of the aircraft file that state the effect's size in the simulator."""
     of_one_flight: bool = False
-    """Came at some time of one flight, and says nothing of another."""
+    """Whether the effect belongs to one flight and says nothing about another."""
     by_nature: bool = False
-    """What every aircraft has to some degree, or what takes its shape: faint, it is no finding."""
+    """Whether every aircraft has some of the effect, or an effect of similar shape: a small amount is no
+    finding."""
     of_one_imu: bool = False
-    """Goes with an angle of attack that an autopilot makes of its own pitch rate and accelerations, which
-    cannot show it; or is the nature of one."""
+    """Whether an α that an autopilot computes from its own pitch rate and accelerations cannot show the
+    effect."""
     of_the_stick: bool = True
-    """The elevator alone can show it; else something else must vary."""
+    """Whether the elevator alone can show the effect; if not, another input must vary."""
     takes: bool = False
-    """Its size is what it takes away: more of it is none."""
+    """Whether the size states a loss: a gain of the same size is no such effect."""
     left_open: bool = False
-    """Something to measure rather, where the aircraft file does not state it: it comes last."""
+    """Whether the effect is a position to be measured. Where the aircraft file does not state it, it is named
+    last."""
     need: Need | None = None
-    """What it takes to be seen, where its channel or its cause may be missing ..."""
+    """Requirement for seeing the effect, where its channel or its cause may be missing."""
     unrecorded: tuple[str, str, str] | None = None
-    """... and the slow channel that tells of it, with what to say where that was not recorded."""
+    """Slow channel that shows the effect, and reason and remedy where that channel was not recorded."""
     imitated_by: tuple[str, str] | None = None
-    """What is no effect and looks the same, and what tells the two apart ..."""
+    """Cause outside the catalogue that looks the same, and what distinguishes the two."""
     imitated_without: tuple[str, str, str] | None = None
-    """... and the same where an output is missing, which comes first."""
-    apart: Mapping[str, str] = field(default_factory=dict)
-    """Effects further down the table that look alike: what tells each of them apart."""
+    """Output, cause that looks the same where that output is missing, and what distinguishes the two."""
+    distinguished_by: Mapping[str, str] = field(default_factory=dict)
+    """Effects further down the table that look alike, each with what distinguishes it."""
     twin: str = ""
-    """The one of them that differs by a rest only."""
+    """The one of these effects that differs by a small rest only."""

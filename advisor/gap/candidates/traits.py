@@ -1,7 +1,7 @@
-"""The table of effects: what is known of each beforehand, however it is described.
+"""The table of effects: the prior knowledge of each effect, independent of its description in a fit.
 
-Its numbers (parameters, bounds, steps, the smallest size worth a name) are in the variants of its block. What
-an aircraft file may say of it is in ``advisor.aircraft_effects``.
+Parameters, bounds, steps and least sizes are in the variants of each block. Keys of the aircraft file are in
+``advisor.aircraft_effects``.
 """
 
 from advisor.gap.candidates.trait import Need, Trait
@@ -31,12 +31,12 @@ TRAITS = {
             "The simulator's elevator is too slow: its servo lags by {lag_s_ms:.0f} ms too much",
         ),
         said_beyond="The simulator's elevator is too quick: the real servo lags by {lag_s_ms:.0f} ms more",
-        apart={"transport_delay": _SURFACE, "actuator_rate_limit": _AMPLITUDES},
+        distinguished_by={"transport_delay": _SURFACE, "actuator_rate_limit": _AMPLITUDES},
         stated=("elevator", "lag_s"),
     ),
     "actuator_rate_limit": Trait(
         "input", said="The real elevator moves no faster than {rate_rad_s_deg:.0f} deg/s",
-        apart={"transport_delay": _AMPLITUDES},
+        distinguished_by={"transport_delay": _AMPLITUDES},
     ),
     "actuator_backlash": Trait(
         "input",
@@ -44,7 +44,7 @@ TRAITS = {
             "The real elevator has play of {half_width_rad_deg:.2f} deg to either side",
             "The simulator's elevator has {half_width_rad_deg:.2f} deg too much play to either side",
         ),
-        apart={"actuator_deadband": "fly two amplitudes, and steps short of neutral"},
+        distinguished_by={"actuator_deadband": "fly two amplitudes, and steps short of neutral"},
     ),
     "actuator_deadband": Trait(
         "input",
@@ -71,7 +71,7 @@ TRAITS = {
         "moment_equation", by_nature=True,
         said="The real elevator's moment is not proportional to its deflection",
         said_beyond="The real elevator's moment bends with its deflection otherwise than the simulator's",
-        apart={"nonlinear_pitching_moment": "fly slow and fast steps of equal size"},
+        distinguished_by={"nonlinear_pitching_moment": "fly slow and fast steps of equal size"},
     ),
     "nonlinear_pitching_moment": Trait(
         "moment_equation", by_nature=True,
@@ -88,14 +88,14 @@ TRAITS = {
     "cg_shift": Trait(
         "moment_equation", of_one_flight=True,
         said="The centre of gravity moved during the flight", need=Need("step", *_FEW),
-        apart={"mass_change": _WEIGHT, "icing": _WEIGHT, "airspeed_variation": _REPEAT},
+        distinguished_by={"mass_change": _WEIGHT, "icing": _WEIGHT, "airspeed_variation": _REPEAT},
     ),
     "alpha_dot": Trait(
         "moment_equation", by_nature=True, of_the_stick=False,
         said="The rate of the angle of attack makes a pitching moment that the simulator lacks",
         need=Need("M_alpha_dot", "the derivatives mimic it", "pulses of a flap, which move α and not q"),
         imitated_by=("other derivatives of the pitching moment", _TRIM),
-        apart={"unsteady_lift": "log the accelerometer at a higher rate"},
+        distinguished_by={"unsteady_lift": "log the accelerometer at a higher rate"},
     ),
     "nonlinear_lift": Trait(
         "force_equation", by_nature=True,
@@ -108,12 +108,12 @@ TRAITS = {
     "mass_change": Trait(
         "force_equation", of_one_flight=True,
         said="The mass changed during the flight", need=Need("step", *_FEW),
-        apart={"icing": _WEIGHT, "airspeed_variation": _REPEAT}, twin="icing",
+        distinguished_by={"icing": _WEIGHT, "airspeed_variation": _REPEAT}, twin="icing",
     ),
     "icing": Trait(
         "force_equation", of_one_flight=True, by_nature=True,
         said="Lift and control weakened during the flight, as ice does", need=Need("Z_alpha", *_FEW),
-        apart={"airspeed_variation": _REPEAT}, takes=True,
+        distinguished_by={"airspeed_variation": _REPEAT}, takes=True,
     ),
     "airspeed_variation": Trait(
         "force_equation", by_nature=True, of_the_stick=False,
@@ -135,7 +135,7 @@ TRAITS = {
     "turbulence": Trait(
         "air", of_one_flight=True, said="The air was not still: gusts of about {sigma_w_m_s:.2g} m/s",
         need=Need("sigma_w_m_s", *_NO_ALPHA),
-        apart={"gust": "fly more manoeuvres: a gust does not come back, turbulence does"},
+        distinguished_by={"gust": "fly more manoeuvres: a gust does not come back, turbulence does"},
     ),
     "gust": Trait(
         "air", of_one_flight=True,
@@ -152,7 +152,7 @@ TRAITS = {
             "The angle of attack channel is {lag_s_ms:.0f} ms ahead",
         ),
         need=Need("lag_s", *_NO_ALPHA),
-        apart={
+        distinguished_by={
             "alpha_skew": "fly faster steps, or compare the channel's stamps with the vane's",
             "alpha_vane_offset": _SPEEDS,
         },
@@ -185,7 +185,8 @@ TRAITS = {
             "The vane sits {arm_m:.2f} m further ahead than in the simulator",
             "The vane sits {arm_m:.2f} m further back than in the simulator",
         ),
-        need=Need("arm_m", *_NO_ALPHA), apart={"accelerometer_offset": _ARMS, "alpha_skew": _SPEEDS},
+        need=Need("arm_m", *_NO_ALPHA),
+        distinguished_by={"accelerometer_offset": _ARMS, "alpha_skew": _SPEEDS},
         twin="accelerometer_offset", stated=("alpha", "vane_arm_m"),
     ),
     "pitch_rate_bias": Trait(

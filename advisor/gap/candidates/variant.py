@@ -1,4 +1,4 @@
-"""What a candidate effect is to the fit: numbers to free, where they enter, and how small is nothing."""
+"""A candidate effect in a fit: its free parameters, the entries they change, and the least size."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -9,62 +9,64 @@ from advisor.gap.simulator.layout import INDEX
 
 Values = Sequence[float] | FloatArray
 Apply = Callable[[FloatArray, Values, Flights], None]
-"""Write parameter values into the driving numbers, shape (manoeuvres, entries), in place."""
+"""Function that writes parameter values into the driving numbers, shape (manoeuvres, entries), in place."""
 
 
 @dataclass(frozen=True)
 class Variant:
-    """One way an effect may act. An effect of the catalogue has one or several."""
+    """One description of an effect. An effect of the catalogue has one or several."""
 
     effect: str
-    """Name in the catalogue."""
+    """Name of the effect in the catalogue."""
     block: str
     names: tuple[str, ...]
-    """Parameters, as the aircraft file spells them."""
+    """Parameters, in the spelling of the aircraft file."""
     starts: tuple[tuple[float, ...], ...]
-    """Where the search begins; several where the cost has local minima."""
+    """Starting values of the search; several where the cost has local minima."""
     steps: tuple[float, ...]
     """Finite-difference step of each parameter."""
     bounds: tuple[tuple[float, float], ...]
     smallest: float
-    """Size of the first parameter below which the effect is not worth a name: 4 ms, 1 %, 0.1 deg."""
+    """Least size of the first parameter for which the effect is named: 4 ms, 1 %, 0.1 deg."""
     if_beyond_doubt: float = 1.0
-    """Share of it that is enough of what is there beyond doubt."""
+    """Share of the least size that is enough for an effect beyond doubt."""
     entries: tuple[str, ...] = ()
-    """Entries of the simulation the parameters are, one to one; empty when ``apply_with`` says otherwise."""
+    """Entries of the simulation that equal the parameters one to one; empty where ``apply_with`` is given."""
     apply_with: Apply | None = None
     sides: tuple[str, tuple[float, ...]] | None = None
-    """An entry that may take any of some values in each manoeuvre: which side the play rests on."""
+    """An entry with a choice of values in each manoeuvre, such as the side on which the play rests."""
     needs: frozenset[str] = field(default_factory=frozenset)
     """Slow channels without which the effect cannot be tried."""
     fixed: Mapping[str, float] = field(default_factory=dict)
-    """Parameters of the aircraft file that are not searched for: the time of a step."""
+    """Parameters of the aircraft file that are not searched for, such as the time of a step."""
     one_sided: bool = False
-    """Its bounds are physics, not the range of the search: a parameter may well lie there."""
+    """Whether the bounds are physical limits, at which a parameter may well lie."""
     places: tuple[str, ...] = ()
-    """Parameters that say where, when or how fast, not how much: at zero they are no "no effect"."""
-    spread: tuple[float, ...] = ()
-    """Standard deviation about zero that each parameter has beforehand; none: anything goes."""
-    always: bool = False
-    """Part of every model and never named: nobody's fault."""
+    """Parameters of position, time or rate instead of size. Their zero does not mean that the effect is
+    absent."""
+    prior_std: tuple[float, ...] = ()
+    """Prior standard deviation of each parameter about zero; empty for a flat prior."""
+    is_nuisance: bool = False
+    """Whether the parameters are nuisance parameters, which are part of every model and never named."""
     twin: Callable[[FloatArray, Sequence["Variant"], float], FloatArray] | None = None
-    """For what derivatives imitate exactly: how all shared numbers, shape (k,), change per unit of the size
-    while the motion stays the same, given the derivatives, the effects in the model and the reference speed.
-    It is fitted with the aircraft file's derivatives trusted."""
-    beside_the_file: Values | None = None
-    """For what fitted derivatives hide altogether: where the search begins beside the aircraft file's."""
+    """For an effect that derivatives imitate exactly: the change of all shared parameters, shape (k,), per
+    unit of size at equal motion. Arguments are derivatives, effects in the model and reference speed. Such an
+    effect is fitted with the aircraft file's derivatives held within their tolerance."""
+    start_at_prior: Values | None = None
+    """Starting values at the aircraft file's derivatives, for an effect that fitted derivatives hide."""
     likewise: "tuple[Variant, ...]" = ()
-    """Other descriptions, so near to this one that the full fit alone decides ..."""
+    """Alternative descriptions, so similar that the full fit alone decides."""
     carried: Callable[[FloatArray], Values] | None = None
-    """... and, for one of those, its numbers from those it stands beside; None: the same numbers."""
+    """For an alternative: function from the parameters of the main description to its own; None: equal
+    parameters."""
     sets: bool = False
-    """Its number is all there is of it, whatever the simulation had: not what is added."""
+    """Whether the parameter replaces the value of the simulation instead of adding to it."""
     inverted: bool = False
-    """The aircraft file has the reciprocal of the first parameter (a rate limit, searched as slowness)."""
+    """Whether the aircraft file holds the reciprocal of the first parameter, as for a rate limit."""
 
     @property
     def comes_at_any_time(self) -> bool:
-        """Whether it is a change that may have come at any time of the flight."""
+        """Whether the effect is a change that may have come at any time of the flight."""
         return "at_s" in self.fixed or "at_s" in self.names
 
     def apply(self, p: FloatArray, values: Values, flights: Flights) -> None:

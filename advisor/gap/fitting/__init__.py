@@ -1,1 +1,1 @@
-"""The joint estimate over all manoeuvres: search, covariance, and what it is worth on those kept out."""
+"""The joint estimate over all manoeuvres: search, covariance, and hold-out."""

@@ -1,9 +1,9 @@
-"""Output error over several manoeuvres with any effects in the model: Gauss-Newton by blocks.
+"""Output error over several manoeuvres with any effects in the model: block-wise Gauss-Newton.
 
-Shared numbers (derivatives, parameters of effects) are few; every manoeuvre adds its own initial
-state, trim, offsets and uncertain edges of the command, which are eliminated manoeuvre by manoeuvre
-(a Schur complement), so the cost is linear in manoeuvres. The noise of each channel is re-estimated
-at every step, which minimises det R of Eqs. (7)-(8) for a diagonal R.
+Shared parameters (derivatives and parameters of effects) are few. Every manoeuvre adds nuisance parameters:
+initial state, trim, offsets and uncertain edges of the command. A Schur complement eliminates them manoeuvre
+by manoeuvre, so the cost is linear in manoeuvres. The noise of each channel is re-estimated at every step,
+which minimises det R of Eqs. (7)-(8) for a diagonal R.
 """
 
 from collections.abc import Collection, Sequence
@@ -17,53 +17,56 @@ from advisor.gap.fitting.problem import Point, Problem, counts, row_weights
 from advisor.gap.fitting.step import Step, solve_blocks
 
 _SETTLED = 0.02
-"""Relative change of the weights below which they and the own numbers have settled together."""
+"""Relative change of the weights below which weights and nuisance parameters have converged at one
+linearisation."""
 _SHORTER = 0.3
-"""A step that led uphill is shortened by this ..."""
+"""Factor by which a step that raises the cost is shortened."""
 _SHORTEST = 0.05
-"""... but not below this: the cost is rough at the grid of the simulation."""
+"""Least length of a step, relative to the full step. Below it the roughness of the cost, from the
+simulation's grid, decides."""
 _FURTHER = 5.0
-"""How many times what a step promises the rest of a search may still bring."""
-_APART = 0.05
-"""Of an interval, root mean square: where edges are found so far from where they were, the model is made
-linear about there before a search ends."""
+"""Further decrease of the cost that a search can bring at most, in multiples of the decrease promised by the
+next step."""
+_EDGES_DIFFER = 0.05
+"""Root mean square shift of the command's edges, in intervals between stamps, above which the model is
+linearised again before a search ends."""
 
 
 @dataclass(frozen=True)
 class Fitted:
-    """Where the search ended."""
+    """The result of a search."""
 
     point: Point
     noise: FloatArray
     """Shape (channels,): standard deviation of the innovations."""
     cost: float
-    """-2 log likelihood, profiled over the noise, priors included."""
+    """-2 log likelihood, profiled over the noise, plus the priors."""
     innovations: tuple[FloatArray, ...]
-    """Per manoeuvre, what is left after offsets and edges, freed of what neighbours have in common."""
-    left: tuple[FloatArray, ...]
-    """The same in the units of the channels."""
+    """Per manoeuvre: residuals without offsets and edges, whitened by the filter of the noise."""
+    residuals: tuple[FloatArray, ...]
+    """Per manoeuvre: residuals without offsets and edges, in the units of the channels."""
     information: FloatArray
-    """Shape (k, k): of the shared numbers, own numbers eliminated."""
+    """Shape (k, k): information on the shared parameters, with nuisance parameters eliminated."""
     linear: tuple[Linear, ...]
     iterations: int
 
 
-def noise_of(problem: Problem, lefts: Sequence[FloatArray]) -> FloatArray:
-    """Shape (channels,): RMS of what is left, not below the smallest noise."""
-    return above_floor(problem, rms_of(problem, lefts))
+def residual_noise(problem: Problem, residuals: Sequence[FloatArray]) -> FloatArray:
+    """Return the root mean square of the residuals, at least the smallest noise, shape (channels,)."""
+    return above_floor(problem, rms_of(problem, residuals))
 
 
 def above_floor(problem: Problem, noise: FloatArray) -> FloatArray:
-    """Noise not below the smallest, shape (channels,) or (k, channels)."""
+    """Return the noise, at least the smallest noise, shape (channels,) or (k, channels)."""
     return np.maximum(noise, 1e-7 if problem.smallest_noise is None else problem.smallest_noise)
 
 
-def rms_of(problem: Problem, lefts: Sequence[FloatArray]) -> FloatArray:
-    """Shape (channels,): root mean square over all manoeuvres."""
+def rms_of(problem: Problem, residuals: Sequence[FloatArray]) -> FloatArray:
+    """Return the root mean square of the residuals over all manoeuvres, shape (channels,)."""
     power, count = np.zeros(len(problem.channels)), np.zeros(len(problem.channels))
-    for flight, left in zip(problem.flights.flights, lefts, strict=True):
+    for flight, residual in zip(problem.flights.flights, residuals, strict=True):
         for c, rows in enumerate(problem.rows(flight)):
-            power[c] += float(left[rows] @ left[rows])
+            power[c] += float(residual[rows] @ residual[rows])
             count[c] += rows.stop - rows.start
     return np.asarray(np.sqrt(power / np.maximum(count, 1.0)))
 
@@ -71,13 +74,13 @@ def rms_of(problem: Problem, lefts: Sequence[FloatArray]) -> FloatArray:
 def cost_of(
     problem: Problem,
     point: Point,
-    lefts: Sequence[FloatArray],
+    residuals: Sequence[FloatArray],
     owns: Sequence[FloatArray],
     linear: Sequence[Linear],
 ) -> float:
-    """-2 log likelihood profiled over the noise, Σ_c N_c log σ_c², plus the priors."""
-    noise = noise_of(problem, lefts)
-    power = problem.disbelief(point) + sum(
+    """Return -2 log likelihood profiled over the noise, Σ_c N_c log σ_c², plus the priors."""
+    noise = residual_noise(problem, residuals)
+    power = problem.prior_cost(point) + sum(
         float(np.sum(b.prior * o**2)) for b, o in zip(linear, owns, strict=True)
     )
     return float(np.sum(counts(problem) * 2.0 * np.log(noise))) + power
@@ -92,17 +95,17 @@ def fit(
     beaten_by: float = np.inf,
     aside: Collection[int] = (),
 ) -> Fitted:
-    """Minimise det R from a start. The first noise decides the weights of the first step.
+    """Minimise det R from a start. ``noise`` sets the weights of the first step.
 
     Parameters
     ----------
     beaten_by
-        A cost that this search is given up for as soon as it is out of reach.
+        Cost of a rival: the search is given up as soon as that cost is out of reach.
     aside
-        Manoeuvres that have no say: the cost is that of the others.
+        Manoeuvres that are left out of the cost.
     """
     linear = _without(linearise(problem, start), aside)
-    weights = 1.0 / (noise_of(problem, [b.left for b in linear]) if noise is None else noise)
+    weights = 1.0 / (residual_noise(problem, [b.residual for b in linear]) if noise is None else noise)
     kept = _settled(problem, start, linear, weights)
     length, done, answered_at = 1.0, 1, start
     while done < iterations and length > _SHORTEST:
@@ -125,19 +128,20 @@ def fit(
         block.measured.after(still, own) for block, own in zip(kept.linear, kept.step.free, strict=True)
     )
     information = solve_blocks(problem, kept.linear, 1.0 / kept.noise, kept.point).information
-    return Fitted(kept.point, kept.noise, kept.cost, kept.left, measured, information, kept.linear, done)
+    return Fitted(kept.point, kept.noise, kept.cost, kept.residuals, measured, information, kept.linear, done)
 
 
-def _are_apart(one: Point, other: Point) -> bool:
-    """Whether edges of two points differ, those that are not known being at their stamps."""
+def _edges_differ(one: Point, other: Point) -> bool:
+    """Return whether the edges of two points differ. Unknown edges lie at their stamps."""
     assert other.edges is not None
     there = np.concatenate(other.edges)
-    apart = there if one.edges is None else there - np.concatenate(one.edges)
-    return float(np.sum(apart**2)) > _APART**2 * len(apart)
+    shift = there if one.edges is None else there - np.concatenate(one.edges)
+    return float(np.sum(shift**2)) > _EDGES_DIFFER**2 * len(shift)
 
 
 def _without(linear: tuple[Linear, ...], aside: Collection[int]) -> tuple[Linear, ...]:
-    """The same with nothing left, and nothing that depends on the shared numbers, in some manoeuvres."""
+    """Return the linear model with zero residual and zero sensitivities to shared parameters in some
+    manoeuvres."""
     return tuple(
         replace(block, columns=block.columns * (np.arange(block.columns.shape[1]) < block.m))
         if i in aside
@@ -148,43 +152,50 @@ def _without(linear: tuple[Linear, ...], aside: Collection[int]) -> tuple[Linear
 
 @dataclass(frozen=True)
 class _Place:
-    """A point that was flown, with the step from there."""
+    """A point that was simulated, with the step from there."""
 
     point: Point
-    """With the edges where they are found from there."""
+    """Point with its edges at their estimates."""
     has_its_edges: bool
-    """Whether they are about where the model was made linear."""
+    """Whether the estimated edges are near those of the linearisation."""
     linear: tuple[Linear, ...]
     weights: FloatArray
-    """Shape (channels,): of the model after the step."""
+    """Shape (channels,): weights of the model after the step."""
     step: Step
-    left: tuple[FloatArray, ...]
-    """Per manoeuvre, own numbers refitted."""
+    residuals: tuple[FloatArray, ...]
+    """Per manoeuvre: residuals with nuisance parameters refitted."""
     noise: FloatArray
     cost: float
 
 
 def _settled(problem: Problem, point: Point, linear: tuple[Linear, ...], weights: FloatArray) -> _Place:
-    """Weights and own numbers settle together at a fixed linearisation: cheap, no simulation."""
+    """Let weights and nuisance parameters converge at a fixed linearisation, which needs no simulation."""
     samples = np.maximum(counts(problem), 1.0)
     for _ in range(4):
         step = solve_blocks(problem, linear, weights, point)
         before, weights = weights, 1.0 / above_floor(problem, np.sqrt(step.squares_ahead(linear) / samples))
         if np.max(np.abs(np.log(weights / before))) < _SETTLED:
             break
-    left = tuple(block.left - block.own @ own for block, own in zip(linear, step.free, strict=True))
-    cost = cost_of(problem, point, left, step.free, linear)
+    residuals = tuple(block.residual - block.own @ own for block, own in zip(linear, step.free, strict=True))
+    cost = cost_of(problem, point, residuals, step.free, linear)
     there = replace(point, edges=problem.with_own(point, step.free).edges)
     return _Place(
-        there, not _are_apart(point, there), linear, weights, step, left, noise_of(problem, left), cost
+        there,
+        not _edges_differ(point, there),
+        linear,
+        weights,
+        step,
+        residuals,
+        residual_noise(problem, residuals),
+        cost,
     )
 
 
 def evidence_of(problem: Problem, fitted: Fitted) -> float:
-    """-2 log marginal likelihood, up to what two ways of reading the command have in common.
+    """Return -2 log marginal likelihood, up to a constant common to both readings of the command.
 
-    The cost, plus the price of the freedom that edges and air speeds have within their priors:
-    log det(I + Λ A_eᵀ W A_e), flat numbers eliminated.
+    The cost is increased by the freedom that edges and air speeds have within their priors, log det(I + Λ
+    A_eᵀ W A_e). Parameters with a flat prior are eliminated.
     """
     total = fitted.cost
     for i, block in enumerate(fitted.linear):
@@ -194,6 +205,6 @@ def evidence_of(problem: Problem, fitted: Fitted) -> float:
             continue
         flat, edges = block.own[:, free] * w, block.own[:, ~free] * w
         q = np.linalg.qr(flat)[0]
-        left = (edges - q @ (q.T @ edges)) / np.sqrt(block.prior[~free])
-        total += float(np.linalg.slogdet(np.eye(left.shape[1]) + left.T @ left)[1])
+        freed = (edges - q @ (q.T @ edges)) / np.sqrt(block.prior[~free])
+        total += float(np.linalg.slogdet(np.eye(freed.shape[1]) + freed.T @ freed)[1])
     return total

@@ -1,8 +1,8 @@
-"""What a model is worth on manoeuvres it has not seen.
+"""Hold-out: how a model predicts manoeuvres that were left out of its fit.
 
-About the optimum the fit is linear, so leaving a fold out moves the shared numbers by
-(H − H_f)⁻¹ g_f and needs no simulation. Of a manoeuvre kept out only its own numbers are refitted.
-Folds are interleaved and rotated, because a gust or a change may fall into any one of them.
+The fit is linear about the optimum. Leaving out a fold moves the shared parameters by (H − H_f)⁻¹ g_f,
+without a simulation. Only the nuisance parameters of a held-out manoeuvre are refitted. Folds are interleaved
+and rotated, because a gust or a change may fall into any one of them.
 """
 
 from collections.abc import Collection, Iterator, Sequence
@@ -19,37 +19,37 @@ from advisor.gap.records.flights import Flights
 from advisor.gap.simulator.layout import DERIVATIVES, HEIGHT, SPEED, THROTTLE
 
 _INDIFFERENT = 3e-4
-"""Directions the data say relatively less about stay put: they change no prediction, but a long step along
-them leaves the range in which the model is linear."""
+"""Relative information below which a direction of the shared parameters is not moved. Such a direction
+changes no prediction, but a long step leaves the range in which the model is linear."""
 _ANCHOR = 1e-3
-"""Weight of "no effect" beside what all manoeuvres say of an effect's parameter; but not more than that of a
-guess as far off as the parameter is large."""
-_LONE = 0.9
-"""Share of the information on a number from which on a single manoeuvre tells of it."""
+"""Weight of the prior "no effect" relative to the information of all manoeuvres on a parameter. The prior is
+no stronger than a guess with the parameter's own size as standard deviation."""
+_SOLE_SHARE = 0.9
+"""Share of the information on a parameter above which a single manoeuvre counts as its only source."""
 _NEEDED = (SPEED, THROTTLE, HEIGHT)
-"""Slow inputs that effects need."""
+"""Rows of the slow inputs that some effects need."""
 
 
 @dataclass(frozen=True)
 class HeldOut:
-    """Residuals of every manoeuvre as predicted by a fit of the others."""
+    """Residuals of every manoeuvre as predicted by a fit of the other folds."""
 
-    left: tuple[FloatArray, ...]
-    """Per manoeuvre, stacked channels, in their units."""
+    residuals: tuple[FloatArray, ...]
+    """Per manoeuvre: residuals of the stacked channels, in the channels' units."""
     innovations: tuple[FloatArray, ...]
-    """The same after the filter."""
+    """Per manoeuvre: whitened residuals."""
     mean_square: FloatArray
-    """Shape (channels,)."""
+    """Shape (channels,): mean square of the residuals."""
     innovation_square: FloatArray
-    """Shape (channels,): mean square after the filter."""
+    """Shape (channels,): mean square of the innovations."""
     by_maneuver: FloatArray
-    """Shape (manoeuvres, channels): mean squares."""
+    """Shape (manoeuvres, channels): mean squares of the residuals."""
 
 
 def folds_of(n: int, shifted: bool = False) -> list[list[int]]:
-    """Three interleaved folds; as many as there are manoeuvres when fewer.
+    """Return three interleaved folds, or one per manoeuvre where there are fewer than three.
 
-    ``shifted``: those that lie three apart, which come into one fold otherwise, come into different ones.
+    ``shifted`` distributes manoeuvres that lie three apart over different folds.
     """
     k = min(3, n)
     fold = [(i + shifted * (i // k)) % k for i in range(n)]
@@ -57,39 +57,41 @@ def folds_of(n: int, shifted: bool = False) -> list[list[int]]:
 
 
 def folds_for(flights: Flights) -> list[list[int]]:
-    """Folds in which what few manoeuvres tell can be confirmed: they do not all come into the same.
+    """Return folds that keep rare sources of information apart, so that each can be confirmed.
 
-    Throttle, height or air speed may move in two manoeuvres only; kept out together, the others know nothing.
+    Throttle, height or air speed may vary in two manoeuvres only. If one fold held both, the others would
+    know nothing.
     """
     power = np.array([np.var(f.slow[list(_NEEDED)], axis=1) for f in flights.flights])
     shares = power / np.maximum(np.sum(power, axis=0), 1e-300)
-    confirmable = shares[:, np.max(shares, axis=0) < _LONE]
+    confirmable = shares[:, np.max(shares, axis=0) < _SOLE_SHARE]
 
     def together(folds: list[list[int]]) -> float:
         return max(float(np.max(np.sum(confirmable[fold], axis=0), initial=0.0)) for fold in folds)
 
     n = len(flights)
     interleaved, shifted = folds_of(n), folds_of(n, shifted=True)
-    return shifted if together(interleaved) > _LONE > together(shifted) else interleaved
+    return shifted if together(interleaved) > _SOLE_SHARE > together(shifted) else interleaved
 
 
 def hold_out(problem: Problem, fitted: Fitted, folds: Sequence[Sequence[int]] | None = None) -> HeldOut:
-    """Rotate every fold out. With a single manoeuvre the fit itself is returned: nothing can be kept out."""
+    """Predict every fold from a fit of the others. A single manoeuvre keeps the residuals of its own fit."""
     n = len(problem.flights)
-    lefts: list[FloatArray] = [np.empty(0)] * n
+    residuals: list[FloatArray] = [np.empty(0)] * n
     innovations: list[FloatArray] = [np.empty(0)] * n
     for fold, step, moved in _without_each(problem, fitted, folds):
         for i in fold:
             own = moved[i] @ np.append(-step, 1.0)
             innovations[i] = fitted.linear[i].after(step, own)
-            lefts[i] = fitted.linear[i].measured.after(step, own)
-    return held_out(problem, lefts, innovations)
+            residuals[i] = fitted.linear[i].measured.after(step, own)
+    return held_out(problem, residuals, innovations)
 
 
 def points_without(
     problem: Problem, fitted: Fitted, folds: Sequence[Sequence[int]] | None = None
 ) -> tuple[Point, ...]:
-    """For every manoeuvre the model whose shared numbers are fitted without the manoeuvre's fold."""
+    """Return for every manoeuvre the model whose shared parameters are fitted without the manoeuvre's
+    fold."""
     points = [fitted.point] * len(problem.flights)
     for fold, step, _ in _without_each(problem, fitted, folds):
         without = fitted.point.moved(fitted.point.shared + step, fitted.point.own)
@@ -101,7 +103,8 @@ def points_without(
 def _without_each(
     problem: Problem, fitted: Fitted, folds: Sequence[Sequence[int]] | None
 ) -> Iterator[tuple[Sequence[int], FloatArray, Sequence[FloatArray]]]:
-    """Yield each fold, the step of the shared numbers without that fold, and how own numbers follow."""
+    """Yield each fold, the step of the shared parameters without it, and the response of the nuisance
+    parameters."""
     n = len(problem.flights)
     chosen = folds_for(problem.flights) if folds is None else folds
     weights = 1.0 / fitted.noise
@@ -110,20 +113,20 @@ def _without_each(
     information, gradients = inner[:, :-1, :-1], inner[:, :-1, -1]
     total_H, total_g = np.sum(information, axis=0), np.sum(gradients, axis=0)
     k = len(DERIVATIVES)
-    pull, missed = problem.pull(fitted.point)
-    total_H += np.diag(pull)
-    total_g += pull * missed
+    precision, departure = problem.prior_of(fitted.point)
+    total_H += np.diag(precision)
+    total_g += precision * departure
     lower, upper = bounds_of(fitted.point)
     far = fitted.point.shared - _without_effect(fitted.point)
-    anchor = np.minimum(_ANCHOR * told_beside_others(total_H), 1.0 / np.maximum(far**2, 1e-300))
+    anchor = np.minimum(_ANCHOR * marginal_information(total_H), 1.0 / np.maximum(far**2, 1e-300))
     anchor[:k] = 0.0
-    # Where a response has kinks, the search refuses what the linear model proposes: it is no part of the fit.
+    # Where a response has kinks, the search rejected this step of the linear model, so it is subtracted.
     least, most = lower - fitted.point.shared, upper - fitted.point.shared
     refused = solved_within(total_H, total_g, least, most, _INDIFFERENT)
     for fold in chosen:
         step = np.zeros(len(total_g))
         if len(fold) < n:
-            # What only the manoeuvres kept out could tell of an effect stays at "no effect", or where it is.
+            # A parameter that only the held-out manoeuvres determine stays at "no effect", or where it is.
             H = total_H - np.sum(information[list(fold)], axis=0) + np.diag(anchor)
             g = total_g - np.sum(gradients[list(fold)], axis=0) - anchor * far
             step = solved_within(H, g, least, most, _INDIFFERENT) - refused
@@ -132,54 +135,57 @@ def _without_each(
 
 
 def _without_effect(point: Point) -> FloatArray:
-    """Shared numbers, shape (k,), without the effects; those that say where an effect is stay."""
+    """Return the shared parameters, shape (k,), with the size of every effect set to zero."""
     names = [[name in effect.places for name in effect.names] for effect in point.effects]
     stays = np.concatenate([np.ones(len(DERIVATIVES), dtype=bool), *(np.array(n, dtype=bool) for n in names)])
     return np.where(stays, point.shared, 0.0)
 
 
-def measured_in(problem: Problem, held: HeldOut, fitted: Fitted, witnesses: Collection[int]) -> HeldOut:
-    """The same, but of some manoeuvres what the fit itself leaves: what they alone tell no other predicts."""
+def measured_in(problem: Problem, held: HeldOut, fitted: Fitted, sole_maneuvers: Collection[int]) -> HeldOut:
+    """Return the hold-out with the residuals of the fit in some manoeuvres.
+
+    These manoeuvres alone determine some parameter, so no other manoeuvre predicts them.
+    """
 
     def chosen(inside: Sequence[FloatArray], kept_out: Sequence[FloatArray]) -> list[FloatArray]:
         pairs = enumerate(zip(inside, kept_out, strict=True))
-        return [seen if i in witnesses else unseen for i, (seen, unseen) in pairs]
+        return [seen if i in sole_maneuvers else unseen for i, (seen, unseen) in pairs]
 
     innovations = chosen(fitted.innovations, held.innovations)
-    return held_out(problem, chosen(fitted.left, held.left), innovations)
+    return held_out(problem, chosen(fitted.residuals, held.residuals), innovations)
 
 
-def lone_witness(fitted: Fitted, index: int) -> int | None:
-    """The one manoeuvre that tells of a shared number, if no other could confirm it."""
+def sole_informative_maneuver(fitted: Fitted, index: int) -> int | None:
+    """Return the one manoeuvre that determines a shared parameter; None where another could confirm it."""
     weights = 1.0 / fitted.noise
     told = [own_eliminated(block, weights)[0][index, index] for block in fitted.linear]
-    return int(np.argmax(told)) if max(told) > _LONE * sum(told) else None
+    return int(np.argmax(told)) if max(told) > _SOLE_SHARE * sum(told) else None
 
 
 def held_out(
-    problem: Problem, lefts: Sequence[FloatArray], innovations: Sequence[FloatArray] | None = None
+    problem: Problem, residuals: Sequence[FloatArray], innovations: Sequence[FloatArray] | None = None
 ) -> HeldOut:
-    """Residuals with their mean squares; without innovations they are their own."""
-    whitened = tuple(lefts if innovations is None else innovations)
+    """Return residuals with their mean squares. Without ``innovations`` the residuals serve as such."""
+    whitened = tuple(residuals if innovations is None else innovations)
     return HeldOut(
-        tuple(lefts), whitened,
-        rms_of(problem, lefts) ** 2, rms_of(problem, whitened) ** 2, mean_squares(problem, lefts),
+        tuple(residuals), whitened,
+        rms_of(problem, residuals) ** 2, rms_of(problem, whitened) ** 2, mean_squares(problem, residuals),
     )  # fmt: skip
 
 
-def mean_squares(problem: Problem, lefts: Sequence[FloatArray]) -> FloatArray:
-    """Shape (manoeuvres, channels)."""
+def mean_squares(problem: Problem, residuals: Sequence[FloatArray]) -> FloatArray:
+    """Return the mean squares of residuals, shape (manoeuvres, channels)."""
     return np.array(
         [
-            [float(np.mean(left[rows] ** 2)) for rows in problem.rows(f)]
-            for f, left in zip(problem.flights.flights, lefts, strict=True)
+            [float(np.mean(residual[rows] ** 2)) for rows in problem.rows(f)]
+            for f, residual in zip(problem.flights.flights, residuals, strict=True)
         ]
     )
 
 
-def told_beside_others(H: FloatArray) -> FloatArray:
-    """Shape (k,): information on each number with all others unknown, 1 / (H⁻¹)_jj."""
+def marginal_information(H: FloatArray) -> FloatArray:
+    """Return the information on each parameter with all others unknown, 1 / (H⁻¹)_jj, shape (k,)."""
     scale = np.sqrt(np.maximum(np.diag(H), 1e-300))
     widened = np.diag(np.linalg.pinv(H / np.outer(scale, scale), hermitian=True))
-    # Never less than one; it reads as less only where the data say nothing at all.
+    # At least one by definition; a smaller value means that the data say nothing at all.
     return np.asarray(scale**2 / np.maximum(widened, 1.0))

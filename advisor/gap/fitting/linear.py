@@ -1,4 +1,5 @@
-"""The model about a point: sensitivities to shared numbers and to each manoeuvre's own."""
+"""The linear model about a point: sensitivities to shared parameters and to each manoeuvre's nuisance
+parameters."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -15,109 +16,114 @@ from advisor.gap.simulator.reading import differences, lane, packed, superposed
 _DERIVATIVE_STEP = 1e-3
 """Finite-difference step of a derivative, relative to its size: far above rounding, far below curvature."""
 _LEAST_SCALE = np.array([0.5, 0.05, 0.1, 1.0, 0.5, 1.0])
-"""Least size that a derivative is taken to have."""
+"""Least size of each derivative for its finite-difference step, in the units of ``DERIVATIVES``."""
 _NEAR, _STEPS = 0.02, 2.0
-"""Change of each derivative, relative to its size, and of an effect's numbers, in steps of theirs, over which
-answers to a manoeuvre's own numbers stay what they are."""
+"""Largest change within which sensitivities to nuisance parameters are reused. Derivatives count relative to
+their size, parameters of effects in finite-difference steps."""
 _OWN_STEPS = np.array([1e-4, 1e-4, 1e-3, 1e-3])
-"""Of initial states (rad, rad/s) and trim terms (1/s, 1/s²)."""
+"""Finite-difference steps of initial states (rad, rad/s) and trim terms (1/s, 1/s²)."""
 _SPEEDS = ("speed_level_m_s", "speed_slope_m_s", "speed_bow_m_s")
 _SPEED_STEP = 1e-3
-"""Of the air speed, relative."""
+"""Finite-difference step of the air speed, relative."""
 _TIMES = frozenset({"latency_s", "delay_s", "skew_s"})
-"""Numbers that shift the answer to an edge as a whole."""
+"""Parameters that shift the response to an edge as a whole."""
 _PULSE = 1e-4
-"""Area of the disturbance by which a response to a pulse is found."""
+"""Area of the disturbance that measures a pulse response: small enough for a linear response."""
 _EDGE_VARIANCE = 1.0 / 12.0
-"""An edge of a linear command lies anywhere between two stamps: uniform over the interval."""
+"""Variance of the place of an edge between two stamps, in squared intervals: uniform over the interval."""
 _SHARES = (1.0 / 6.0, 0.5, 5.0 / 6.0)
-"""Where in the time that a servo runs on its lateness is put: at the middles of thirds."""
+"""Places of three pulses that replace one pulse while a servo runs at its limit: the middles of thirds of
+that time."""
 _HELD_JITTER_S = 0.0015
-"""A held command changes at its stamp, give or take the stamp's resolution."""
+"""Standard deviation in s of the time at which a held command changes, relative to its stamp: the stamp's
+resolution."""
 
 
 @dataclass(frozen=True)
 class Columns:
-    """Residual and sensitivities of one manoeuvre, side by side: what is done to them is done at once."""
+    """Residual and sensitivities of one manoeuvre as columns of one array, so that operations apply to all at
+    once."""
 
     columns: FloatArray
-    """Shape (rows, m + k + 1): own, shared, left."""
+    """Shape (rows, m + k + 1): sensitivities to m nuisance and k shared parameters, and the residual."""
     m: int
 
     @property
     def own(self) -> FloatArray:
-        """Shape (rows, m): initial states, trim, offsets (flat priors), then errors of the speed, edges."""
+        """Shape (rows, m): sensitivities to initial states, trim and offsets (flat priors), then speed errors
+        and edges."""
         return self.columns[:, : self.m]
 
     @property
     def shared(self) -> FloatArray:
-        """Shape (rows, k)."""
+        """Shape (rows, k): sensitivities to the shared parameters."""
         return self.columns[:, self.m : -1]
 
     @property
-    def left(self) -> FloatArray:
+    def residual(self) -> FloatArray:
         """Shape (rows,): measured minus simulated."""
         return self.columns[:, -1]
 
     def after(self, step: FloatArray, own: FloatArray) -> FloatArray:
-        """Residual after a step of the shared and the own numbers."""
+        """Return the residual after a step of the shared and the nuisance parameters."""
         return np.asarray(self.columns @ _stepped(step, own))
 
 
 @dataclass(frozen=True)
 class Linear(Columns):
-    """The model of one manoeuvre made linear about a point, as innovations, before weighting."""
+    """The linear model of one manoeuvre about a point, as innovations without weights."""
 
     prior: FloatArray
-    """Shape (m,): inverse prior variances, 0 for flat."""
+    """Shape (m,): inverse prior variances of the nuisance parameters, 0 for flat priors."""
     measured: Columns
-    """The same in the units of the channels, as it was before the filter."""
+    """Residual and sensitivities in the units of the channels, before the filter."""
     channels: tuple[slice, ...]
-    """The rows of each channel."""
+    """Rows of each channel."""
 
     @cached_property
     def products(self) -> FloatArray:
-        """Shape (channels, m + k + 1, m + k + 1): of own, shared and left with one another, by channel.
+        """Shape (channels, m + k + 1, m + k + 1): inner products of all columns, by channel.
 
-        Every normal equation is a weighted sum of them: weights may change without a look at the rows.
+        Every normal equation is a weighted sum of these products, so new weights need no pass over the rows.
         """
         return np.stack([self.columns[rows].T @ self.columns[rows] for rows in self.channels])
 
     def squares_after(self, step: FloatArray, own: FloatArray) -> FloatArray:
-        """Shape (channels,): of the residual after a step of the shared and the own numbers."""
+        """Return the sum of squares of the residual after a step of shared and nuisance parameters, shape
+        (channels,)."""
         after = _stepped(step, own)
         return np.asarray(np.maximum(self.products @ after @ after, 0.0))
 
 
 def _stepped(step: FloatArray, own: FloatArray) -> FloatArray:
-    """What the columns are summed with to give the residual after a step."""
+    """Return the weights with which the columns sum to the residual after a step."""
     return np.concatenate([-own, -step, [1.0]])
 
 
 def as_measured(block: Linear) -> Linear:
-    """The same without a filter: in the units of the channels."""
+    """Return the linear model without a filter, in the units of the channels."""
     raw = block.measured
     return Linear(raw.columns, raw.m, block.prior, raw, block.channels)
 
 
 def shared_steps(point: Point) -> FloatArray:
-    """Finite-difference steps of the shared numbers."""
+    """Return the finite-difference steps of the shared parameters."""
     return np.concatenate([_DERIVATIVE_STEP * _scale(point), *[np.array(e.steps) for e in point.effects]])
 
 
 def _scale(point: Point) -> FloatArray:
-    """Of each derivative, shape (6,)."""
+    """Return the size of each derivative for its finite-difference step, shape (6,)."""
     return np.asarray(np.maximum(np.abs(point.derivatives), _LEAST_SCALE))
 
 
 def are_near(one: Point, other: Point) -> bool:
-    """Whether initial states, trims and air speeds have nearly the same answers at two points of a model."""
+    """Return whether sensitivities to nuisance parameters are nearly equal at two points of a model."""
     reach = np.concatenate([_NEAR * _scale(one), *[_STEPS * np.array(e.steps) for e in one.effects]])
     return bool(np.all(np.abs(other.shared - one.shared) <= reach))
 
 
 def shifted_points(point: Point, which: range) -> list[Point]:
-    """The point with one of the shared numbers after the other moved by its step."""
+    """Return the point with one shared parameter after the other moved by its step."""
     shifts = np.diag(shared_steps(point))[which]
     return [point.moved(point.shared + shift, point.own) for shift in shifts]
 
@@ -132,28 +138,29 @@ def measured_columns(
     times: Sequence[int],
     answers: FloatArray | None = None,
 ) -> Columns:
-    """Manoeuvre ``i`` in the units of its channels; sensitivities are one-sided differences.
+    """Return residual and sensitivities of manoeuvre ``i`` in the units of its channels, by one-sided
+    differences.
 
-    Of its own numbers all but the edges are simulated, which are shifted responses to an impulse at the start
-    (the model is nearly linear and nearly time-invariant over a manoeuvre).
+    Sensitivities to edges are shifted responses to an impulse at the start, because the model is nearly
+    linear and nearly time-invariant over a manoeuvre. All others are simulated.
 
     Parameters
     ----------
     p
-        Shape (entries,): where.
+        Shape (entries,): driving numbers of the point.
     shifted
-        Shape (k, entries): the same with each of the shared numbers moved by its step ...
+        Shape (k, entries): driving numbers with each of the shared parameters moved by its step.
     steps
-        ... shape (k,).
+        Shape (k,): steps of the shared parameters.
     edges
-        Shape (edges,): where the command's are, or None if their answers are not looked at ...
+        Shape (edges,): places of the command's edges; None if their sensitivities are not needed.
     times
-        ... which of the shared numbers shift them.
+        Indices of the shared parameters that shift the edges.
     answers
-        Shape (rows, m - edges): to own numbers other than edges, where they are known.
+        Shape (rows, m - edges): known sensitivities to nuisance parameters other than edges, or None.
     """
     flight, k = problem.flights.flights[i], len(steps)
-    names = () if answers is not None else (*NUISANCES, *_SPEEDS[: len(flight.speed_doubt)])
+    names = () if answers is not None else (*NUISANCES, *_SPEEDS[: len(flight.speed_error_factor)])
     moves = np.array([*_OWN_STEPS, *[_SPEED_STEP * flight.slow[SPEED, 0]] * len(_SPEEDS)])[: len(names)]
     others = np.tile(p, (len(names), 1))
     others[range(len(names)), [INDEX[name] for name in names]] += moves
@@ -164,29 +171,30 @@ def measured_columns(
     read = problem.read_all(flight, packs, rows[:-1])
     moved = np.concatenate([[0.0], steps, moves])
     seen = differences(read, problem.measured(flight), np.zeros(len(moved), dtype=np.int64), moved)
-    left, shared = seen[:, :1], seen[:, 1 : k + 1]
+    residual, shared = seen[:, :1], seen[:, 1 : k + 1]
     if answers is None:
         own, speeds = seen[:, k + 1 :][:, : len(NUISANCES)], seen[:, k + 1 + len(NUISANCES) :]
-        answers = np.hstack([own, _offsets(problem, flight), speeds @ flight.speed_doubt])
+        answers = np.hstack([own, _offsets(problem, flight), speeds @ flight.speed_error_factor])
     pulse = (lane(packs, len(rows) - 1) - lane(packs, 0)) / _PULSE
     if edges is not None:
         with_them = rows[[0, *(1 + k for k in times)]]
         shared[:, times] += _turned(problem, flight, pulse, edges, with_them) / steps[times]
-    columns = np.hstack([answers, _answers_to_edges(problem, flight, pulse, p), shared, left])
+    columns = np.hstack([answers, _answers_to_edges(problem, flight, pulse, p), shared, residual])
     return Columns(columns, columns.shape[1] - k - 1)
 
 
 def _answers_to_edges(problem: Problem, flight: Flight, pulse: FloatArray, p: FloatArray) -> FloatArray:
-    """Shape (rows, edges): what a shift of each edge by its interval changes."""
+    """Return the change of the outputs by a shift of each edge by its interval, shape (rows, edges)."""
     delays, areas = _pulses(problem, flight, p)
     parts = [problem.read_delayed(flight, pulse, begin, p) * areas for begin in delays]
     return np.asarray(sum(parts))
 
 
 def _pulses(problem: Problem, flight: Flight, p: FloatArray) -> tuple[list[FloatArray], FloatArray]:
-    """Where the pulses are that a shift of each edge by its interval is like, and the area of each.
+    """Return the delays and the areas of the pulses that equal a shift of each edge by its interval.
 
-    That is one pulse at the edge. A servo at its limit runs on after it, and is later all that time.
+    In general that is one pulse at the edge. A servo at its limit runs on after the edge, and is late all
+    that time.
     """
     begin = flight.edges[:, 0] + p[INDEX["delay_s"]] + p[INDEX["latency_s"]]
     if problem.held:
@@ -199,7 +207,7 @@ def _pulses(problem: Problem, flight: Flight, p: FloatArray) -> tuple[list[Float
 
 
 def _offsets(problem: Problem, flight: Flight) -> FloatArray:
-    """Shape (rows, offsets): constants of the accelerometer and of the attitude."""
+    """Return the constant offsets of accelerometer and attitude, shape (rows, offsets)."""
     return np.column_stack(
         [flight.output == OUTPUTS.index(c) for c in ("a_z", "theta") if c in problem.channels]
         or [np.empty((len(flight.stamps), 0))]
@@ -207,22 +215,24 @@ def _offsets(problem: Problem, flight: Flight) -> FloatArray:
 
 
 def _own_prior(problem: Problem, flight: Flight, own: int) -> FloatArray:
-    """Shape (own,): inverse prior variances of a manoeuvre's own numbers, 0 for flat.
+    """Return the inverse prior variances of a manoeuvre's nuisance parameters, 0 for flat priors, shape
+    (own,).
 
-    Its edges come last, before them the errors of the air speed, which are in units of their own size.
+    Edges come last. Errors of the air speed come before them, in units of their own standard deviation.
     """
     prior = np.zeros(own)
     intervals, lost = flight.edges[:, 2], flight.edges[:, 3]
     # Where stamps were lost, a held command may have changed at any of them.
     held = (_HELD_JITTER_S**2 + problem.jitter_s**2 + _EDGE_VARIANCE * lost**2) / intervals**2
     edges = own - len(intervals)
-    prior[edges - len(flight.speed_doubt) : edges] = 1.0
+    prior[edges - len(flight.speed_error_factor) : edges] = 1.0
     prior[edges:] = 1.0 / (held if problem.held else _EDGE_VARIANCE)
     return prior
 
 
 def pulse_response(problem: Problem, flight: Flight, p: FloatArray, where: int) -> FloatArray:
-    """Response on the grid, shape (4, n + 1), to a disturbance of unit area at the start of the record.
+    """Return the response on the grid, shape (4, n + 1), to a disturbance of unit area at the start of the
+    record.
 
     ``where`` is a row of the disturbances of ``advisor.gap.simulator.simulate``.
     """
@@ -231,9 +241,9 @@ def pulse_response(problem: Problem, flight: Flight, p: FloatArray, where: int) 
 
 
 def unit_pulse(flight: Flight, where: int, lag_s: float = 0.0) -> FloatArray:
-    """A disturbance of unit area at the start of the record, shape (4, n).
+    """Return a disturbance of unit area at the start of the record, shape (4, n).
 
-    ``lag_s`` passes it through a first-order lag first, as a servo would.
+    With ``lag_s`` above zero the disturbance passes a first-order lag, like that of a servo.
     """
     disturbance = np.zeros((4, flight.n))
     if lag_s > 1e-3:
@@ -245,14 +255,14 @@ def unit_pulse(flight: Flight, where: int, lag_s: float = 0.0) -> FloatArray:
 
 
 def linearise(problem: Problem, point: Point, near: Sequence[Linear] | None = None) -> tuple[Linear, ...]:
-    """The whole model made linear about a point.
+    """Return the linear model of all manoeuvres about a point.
 
-    ``near`` is the same model about a point that is near, whose answers to own numbers other than edges it
-    takes over.
+    ``near`` is a linear model about a nearby point, whose sensitivities to nuisance parameters other than
+    edges are reused.
 
-    Where edges lie far from their stamps (a command that is logged 25 times a second), a search that took the
-    answers to them to stay while a delay or a skew changes would go astray, and end where its gradient
-    vanishes and the cost's does not.
+    Edges may lie far from their stamps, as in a command logged 25 times per second. A search that kept their
+    sensitivities while a delay changes would go astray. It would end where its gradient vanishes and that of
+    the cost does not.
     """
     p, steps = problem.driving(point), shared_steps(point)
     shifted = np.stack([problem.driving(moved) for moved in shifted_points(point, range(len(steps)))], axis=1)
@@ -271,10 +281,11 @@ def linearise(problem: Problem, point: Point, near: Sequence[Linear] | None = No
 def _turned(
     problem: Problem, flight: Flight, pulse: FloatArray, edges: FloatArray, rows: FloatArray
 ) -> FloatArray:
-    """Shape (channel rows, k - 1): what the answers to moved edges change from the first of ``rows`` on.
+    """Return how the response to moved edges changes from the first of ``rows`` to each other, shape (rows, k
+    - 1).
 
-    ``rows`` has shape (k, entries): with what the simulation is driven, and with a time moved by its step.
-    Delay and latency are one to the answers, and a skew is to their reading only.
+    ``rows`` has shape (k, entries): driving numbers, first of the point, then with one time moved by its
+    step. Delay and latency shift the response, a skew only shifts its reading.
     """
     late = np.round(rows[:, INDEX["delay_s"]] + rows[:, INDEX["latency_s"]], 9).tolist()
     places = {seconds: k for k, seconds in enumerate(dict.fromkeys(late))}

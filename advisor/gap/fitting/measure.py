@@ -1,4 +1,4 @@
-"""The gap in numbers: per channel, manoeuvre, phase and frequency band."""
+"""The gap in numbers: by channel, manoeuvre, phase and frequency band."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -14,31 +14,32 @@ from advisor.gap.fitting.step import solve_blocks
 from advisor.gap.records.flights import Flight
 
 _BANDS_HZ = ((0.0, 0.5), (0.5, 1.0), (1.0, 2.0), (2.0, 4.0), (4.0, 10.0))
-"""A short period lies in the middle ones; below is the drift of trim, above structure and noise."""
+"""Limits of the frequency bands in Hz. The short period lies in the middle bands, drift of the trim below,
+structure and noise above."""
 _EDGE_S = 0.2
-"""After each step: what lies between command and surface shows there."""
+"""Time in s after a step that counts as the step's edge, where faults between command and surface show."""
 PHASES = ("step edge", "plateau", "free response")
 
 
 def gap_of(mean_square: FloatArray, floor: FloatArray) -> FloatArray:
-    """Mean square over the floor's square, minus 1; never negative: less than the floor is no gap."""
+    """Return the mean square over the floor's square, minus 1, but never less than 0."""
     return np.maximum(mean_square / floor**2 - 1.0, 0.0)
 
 
 def whole_gap(mean_square: FloatArray, floor: FloatArray) -> float:
-    """The gap over all channels: their mean."""
+    """Return the mean of the gap over the channels."""
     return float(np.mean(gap_of(mean_square, floor)))
 
 
-def by_phase(problem: Problem, lefts: Sequence[FloatArray], floor: FloatArray) -> Mapping[str, float]:
-    """Gap just after the steps, between them, and after the last one."""
+def by_phase(problem: Problem, residuals: Sequence[FloatArray], floor: FloatArray) -> Mapping[str, float]:
+    """Return the gap just after the steps, between them, and after the last one."""
     sums = {phase: np.zeros(len(problem.channels)) for phase in PHASES}
     counts = {phase: np.zeros(len(problem.channels)) for phase in PHASES}
-    for flight, left in zip(problem.flights.flights, lefts, strict=True):
+    for flight, residual in zip(problem.flights.flights, residuals, strict=True):
         for c, (name, rows) in enumerate(zip(problem.channels, problem.rows(flight), strict=True)):
             t = flight.outputs[name].t
             for phase, inside in _phases(flight, t).items():
-                sums[phase][c] += float(np.sum(left[rows][inside] ** 2))
+                sums[phase][c] += float(np.sum(residual[rows][inside] ** 2))
                 counts[phase][c] += np.count_nonzero(inside)
     return {
         phase: whole_gap(sums[phase] / np.maximum(counts[phase], 1.0), floor)
@@ -60,14 +61,14 @@ def _phases(flight: Flight, t: FloatArray) -> Mapping[str, FloatArray]:
     }
 
 
-def by_band(problem: Problem, lefts: Sequence[FloatArray]) -> tuple[tuple[float, float, float], ...]:
-    """From, to, share of the power of the pitch-rate error."""
+def by_band(problem: Problem, residuals: Sequence[FloatArray]) -> tuple[tuple[float, float, float], ...]:
+    """Return for each band its limits in Hz and its share of the power of the pitch-rate error."""
     if "q" not in problem.channels:
         return ()
     power = np.zeros(len(_BANDS_HZ))
     c = problem.channels.index("q")
-    for flight, left in zip(problem.flights.flights, lefts, strict=True):
-        t, y = flight.outputs["q"].t, left[problem.rows(flight)[c]]
+    for flight, residual in zip(problem.flights.flights, residuals, strict=True):
+        t, y = flight.outputs["q"].t, residual[problem.rows(flight)[c]]
         step = float(np.median(np.diff(t)))
         even = np.interp(np.arange(t[0], t[-1], step), t, y)
         spectrum = np.abs(np.fft.rfft(even * np.hanning(len(even)))) ** 2
@@ -80,41 +81,44 @@ def by_band(problem: Problem, lefts: Sequence[FloatArray]) -> tuple[tuple[float,
 
 
 def shrink_interval(before: FloatArray, after: FloatArray, floor: FloatArray) -> tuple[float, float]:
-    """95 % interval of the shrink in per cent, by resampling manoeuvres.
+    """Return the 95 % interval of the shrink in per cent, by resampling manoeuvres.
 
     Parameters
     ----------
     before, after
-        Shape (manoeuvres, channels): mean squares of what is left.
+        Shape (manoeuvres, channels): mean squares of the residuals.
     floor
-        Shape (channels,).
+        Shape (channels,): standard deviation of the noise.
     """
     rng = np.random.default_rng(20)
     n = len(before)
     drawn = rng.integers(0, n, (2000, n))
-    was, now = (np.mean(gap_of(np.mean(left[drawn], axis=1), floor), axis=1) for left in (before, after))
+    was, now = (
+        np.mean(gap_of(np.mean(residual[drawn], axis=1), floor), axis=1) for residual in (before, after)
+    )
     percent = 100.0 * (1.0 - now / np.maximum(was, 1e-12))
     low, high = np.percentile(percent, [2.5, 97.5])
     return float(max(low, -100.0)), float(min(high, 100.0))
 
 
 def file_model_of(problem: Problem, fitted: Fitted) -> HeldOut | None:
-    """How the aircraft file's own parameters do, only initial states, trim and offsets refitted."""
-    if problem.believed is None:
+    """Return the residuals of the aircraft file's derivatives, with only initial states, trim and offsets
+    refitted."""
+    if problem.prior_derivatives is None:
         return None
-    return own_refitted(problem, replace(fitted.point, derivatives=problem.believed), fitted.noise)
+    return own_refitted(problem, replace(fitted.point, derivatives=problem.prior_derivatives), fitted.noise)
 
 
 def own_refitted(problem: Problem, point: Point, noise: FloatArray) -> HeldOut:
-    """How a model with these shared numbers does, only initial states, trim and offsets refitted.
+    """Return the residuals of a model with given shared parameters, with only nuisance parameters refitted.
 
     ``noise``, shape (channels,), weighs the channels.
     """
-    lefts: list[FloatArray] = []
+    residuals: list[FloatArray] = []
     for _ in range(3):
         linear = linearise(problem, point)
         owns = solve_blocks(problem, linear, 1.0 / noise, point).free
         still = np.zeros(len(point.shared))
-        lefts = [block.measured.after(still, own) for block, own in zip(linear, owns, strict=True)]
+        residuals = [block.measured.after(still, own) for block, own in zip(linear, owns, strict=True)]
         point = replace(point, own=point.own + np.array([o[:4] for o in owns]))
-    return held_out(problem, lefts)
+    return held_out(problem, residuals)

@@ -1,8 +1,8 @@
-"""Around a fitted model: places flown fast, with the fit's own sensitivities, and the way on from each.
+"""Fast evaluation of many points around a fitted model, with the sensitivities of the fit.
 
-Only the sensitivities to the effect that was added last are computed anew. Many places are flown together,
-so that their simulations share packs (``advisor.gap.simulator.simulate``) and their columns the filter. What
-counts is how they differ from the fitted model: for that a coarser grid will do.
+Only the sensitivities to the effect added last are computed anew. Many points are simulated together, so that
+their simulations share packs (``advisor.gap.simulator.simulate``) and their columns share the filter. Only
+differences to the fitted model matter, so a coarser grid suffices.
 """
 
 from collections.abc import Sequence
@@ -21,24 +21,25 @@ from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.gap.simulator.reading import differences
 
 _INDIFFERENT = 1e-9
-"""Directions that the data say relatively less about stay put in a quick fit."""
+"""Relative information below which a direction of the shared parameters is not moved in a quick fit."""
 
 
 @dataclass(frozen=True)
 class Place:
-    """A point that was flown."""
+    """A point that was simulated."""
 
     point: Point
-    """With the manoeuvres' own numbers refitted."""
+    """Point with the nuisance parameters refitted."""
     cost: float
     noise: FloatArray
     information: FloatArray
-    """Shape (k, k): of all shared numbers, own numbers eliminated ..."""
+    """Shape (k, k): information on all shared parameters, with nuisance parameters eliminated."""
     gradient: FloatArray
-    """... and shape (k,), half the decrease of the cost per unit of each."""
+    """Shape (k,): half the decrease of the cost per unit of each shared parameter."""
 
     def step(self) -> tuple[FloatArray, float]:
-        """Step of all shared numbers within their bounds, and the decrease of the cost that it promises."""
+        """Return the step of all shared parameters within their bounds, and the decrease of the cost that it
+        promises."""
         lower, upper = bounds_of(self.point)
         shared, H, g = self.point.shared, self.information, self.gradient
         step = solved_within(H, g, lower - shared, upper - shared, _INDIFFERENT)
@@ -47,74 +48,77 @@ class Place:
 
 @dataclass(frozen=True)
 class _Kept:
-    """Of one manoeuvre, weighted: what never changes between places."""
+    """Weighted quantities of one manoeuvre that are equal at all points."""
 
     flight: Flight
-    """On the coarser grid ..."""
+    """The manoeuvre on the coarser grid."""
     measured: FloatArray
-    """... and what would have been measured, were the fitted model right but for what it leaves."""
+    """Simulated outputs of the fitted model on the coarser grid, plus the residuals of the fit."""
     weights: FloatArray
-    """Shape (rows,)."""
+    """Shape (rows,): weights of the rows."""
     columns: FloatArray
-    """Shape (rows, m + k + 1): own, shared, and what the fit left, own numbers not refitted ..."""
+    """Shape (rows, m + k + 1): sensitivities to nuisance and shared parameters, and the residual of the
+    fit."""
     products: FloatArray
-    """... shape (channels, m + k + 1, m + k + 1): their inner products, by channel ..."""
+    """Shape (channels, m + k + 1, m + k + 1): inner products of the columns, by channel."""
     inner: FloatArray
-    """... and over all."""
+    """Shape (m + k + 1, m + k + 1): inner products of the columns over all channels."""
     m: int
     chol: FloatArray
 
     @property
     def own(self) -> FloatArray:
-        """Shape (rows, m)."""
+        """Shape (rows, m): sensitivities to the nuisance parameters."""
         return self.columns[:, : self.m]
 
     @property
     def still(self) -> list[int]:
-        """Columns that are known without a flight: of the derivatives, and what was left."""
+        """Indices of the columns that need no simulation: sensitivities to the derivatives, and the
+        residual."""
         return [*range(self.m, self.m + len(DERIVATIVES)), self.columns.shape[1] - 1]
 
 
 @dataclass(frozen=True)
 class _Flown:
-    """Of one manoeuvre, of many points: the columns that had to be flown."""
+    """Columns of one manoeuvre that had to be simulated, for many points."""
 
     columns: FloatArray
-    """Shape (rows, flown): weighted innovations and their sensitivities ..."""
+    """Shape (rows, columns): weighted innovations and their sensitivities."""
     at: list[int]
-    """... and where they stand among all."""
+    """Index of each column among the columns of all points."""
     points: list[tuple[int, slice]]
-    """Which point each run of them belongs to: first what is left, then sensitivities."""
+    """Index of each point, and its columns: the innovation first, then sensitivities."""
 
 
 @dataclass(frozen=True)
 class _Asked:
-    """A point to be flown, and where its columns stand among those of all that are flown with it."""
+    """A point to be simulated, and the place of its columns among those of all points."""
 
     point: Point
     p: FloatArray
-    """Shape (manoeuvres, entries)."""
+    """Shape (manoeuvres, entries): driving numbers."""
     shifted: FloatArray
-    """Shape (numbers, manoeuvres, entries): with each number of its last effect moved by its step."""
+    """Shape (parameters, manoeuvres, entries): driving numbers with each parameter of the last effect moved
+    by its step."""
     steps: FloatArray
-    """Shape (numbers,)."""
+    """Shape (parameters,): finite-difference steps."""
     changes: FloatArray
-    """Shape (numbers, manoeuvres, 6): what each step does to the derivatives, per unit."""
+    """Shape (parameters, manoeuvres, 6): change of the derivatives per unit of each parameter."""
     flown: np.ndarray
-    """Shape (numbers, manoeuvres), bool: whether it does more than that ..."""
+    """Shape (parameters, manoeuvres), bool: whether the parameter changes more than derivatives."""
     moved: np.ndarray
-    """... and shape (manoeuvres,): whether there is anything to fly at all."""
+    """Shape (manoeuvres,), bool: whether the manoeuvre needs any simulation."""
     first: int
-    """Column of what is left; those of the numbers come next."""
+    """Index of the innovation's column; those of the parameters follow."""
 
     @property
     def columns(self) -> slice:
-        """All of its columns."""
+        """Range of all columns of the point."""
         return slice(self.first, self.first + 1 + len(self.steps))
 
 
 class Neighbourhood:
-    """A fitted model made ready for many places."""
+    """A fitted model prepared for the evaluation of many points."""
 
     def __init__(self, problem: Problem, fitted: Fitted) -> None:
         self.problem, self.fitted = problem, fitted
@@ -126,7 +130,7 @@ class Neighbourhood:
         self.information = np.zeros((k, k))
         for i, (flight, block) in enumerate(zip(problem.flights.flights, fitted.linear, strict=True)):
             coarser, by_row, m = flight.coarser(), row_weights(problem, i, weights), block.m
-            measured = problem.fly_and_read(coarser, self.p[i : i + 1])[:, 0] + block.measured.left
+            measured = problem.fly_and_read(coarser, self.p[i : i + 1])[:, 0] + block.measured.residual
             products = block.products * weights[:, None, None] ** 2
             inner = np.sum(products, axis=0)
             chol = factor_of(inner[:m, :m].copy(), block.prior)
@@ -136,7 +140,7 @@ class Neighbourhood:
             self.kept.append(_Kept(coarser, measured, by_row, columns, products, inner, m, chol))
 
     def at_all(self, points: Sequence[Point]) -> list[Place | None]:
-        """Fly to every point, the manoeuvres' own numbers refitted; None where a simulation fails."""
+        """Evaluate every point with refitted nuisance parameters; None where a simulation fails."""
         problem = self.problem
         asked: list[_Asked] = []
         for point in points:
@@ -153,7 +157,7 @@ class Neighbourhood:
             along = np.array(
                 [kept.columns[rows].T @ flown.columns[rows] for rows in problem.rows(kept.flight)]
             )
-            # Of what is known without a flight inner products with all columns are known, too.
+            # Columns without a simulation are sums of known columns, so their inner products are known too.
             CX = kept.inner[:, kept.still] @ still
             CX[:, flown.at] = np.sum(along, axis=0)
             m, shared = kept.m, slice(kept.m, kept.m + len(JX))
@@ -177,9 +181,10 @@ class Neighbourhood:
         ]
 
     def _squares(self, kept: _Kept, flown: _Flown, along: FloatArray, own: FloatArray) -> FloatArray:
-        """Shape (channels, points): sums of squares of what is left in one manoeuvre, own numbers refitted.
+        """Return sums of squares of one manoeuvre's residuals, nuisance parameters refitted, shape (channels,
+        points).
 
-        ``along`` has the inner products of the kept columns with those that were flown, by channel.
+        ``along`` has the inner products of the kept columns with the simulated ones, by channel.
         """
         m, points = kept.m, own.shape[1]
         Ar = np.repeat(kept.products[:, :m, -1:], points, axis=2)
@@ -187,8 +192,8 @@ class Neighbourhood:
         of, begin = [j for j, _ in flown.points], [run.start for _, run in flown.points]
         Ar[:, :, of] = along[:, :m, begin]
         rows = self.problem.rows(kept.flight)
-        left = flown.columns[:, begin]
-        rr[:, of] = [np.einsum("ij,ij->j", left[r], left[r]) for r in rows]
+        residual = flown.columns[:, begin]
+        rr[:, of] = [np.einsum("ij,ij->j", residual[r], residual[r]) for r in rows]
         after = rr + np.sum(own * (kept.products[:, :m, :m] @ own - 2.0 * Ar), axis=1)
         return np.asarray(np.maximum(after, 0.0) * self.fitted.noise[:, None] ** 2)
 
@@ -212,22 +217,22 @@ class Neighbourhood:
         JX: FloatArray,
         XX: FloatArray,
     ) -> Place:
-        pull, missed = self.problem.pull(a.point)
+        precision, departure = self.problem.prior_of(a.point)
         known = len(self.information)
-        H, g = np.diag(pull), pull * missed
+        H, g = np.diag(precision), precision * departure
         H[:known, :known] += self.information
         H[:known, known:] += JX[:, 1:]
         H[known:, :known] += JX[:, 1:].T
         H[known:, known:] += XX[1:, 1:]
         g += np.concatenate([JX[:, 0], XX[1:, 0]])
         there = self.problem.with_own(a.point, owns)
-        return Place(there, float(cost + pull @ missed**2), noise, H, g)
+        return Place(there, float(cost + precision @ departure**2), noise, H, g)
 
     def _flown(self, i: int, asked: Sequence[_Asked], failed: np.ndarray) -> _Flown:
-        """What of manoeuvre ``i`` must be flown.
+        """Simulate manoeuvre ``i`` at those points where that is needed.
 
-        A change of derivatives from one manoeuvre to the next is a sum of sensitivities known already,
-        and none at all in manoeuvres it does not touch: nothing is flown for it.
+        A change of derivatives between manoeuvres is a sum of known sensitivities, and zero in manoeuvres
+        without the change, so it needs no simulation.
         """
         problem, kept = self.problem, self.kept[i]
         rows: list[FloatArray] = []
@@ -252,23 +257,24 @@ class Neighbourhood:
         return _Flown(problem.innovations(i, raw) * kept.weights[:, None], at, points)
 
     def choose_sides(self, point: Point, entries: Sequence[float]) -> Point:
-        """In every manoeuvre the side that leaves least, own numbers refitted."""
+        """Return the point with the side of least residual in every manoeuvre, nuisance parameters
+        refitted."""
         problem = self.problem
         p = [problem.driving(replace(point, sides=np.full(len(self.kept), side))) for side in entries]
         best = []
         for i, kept in enumerate(self.kept):
             rows = np.stack([q[i] for q in p])
-            left = kept.measured[:, None] - problem.fly_and_read(kept.flight, rows)
-            r = problem.innovations(i, left) * kept.weights[:, None]
+            residual = kept.measured[:, None] - problem.fly_and_read(kept.flight, rows)
+            r = problem.innovations(i, residual) * kept.weights[:, None]
             Ar = kept.own.T @ r
             costs = np.sum(r * r, axis=0) - np.sum(Ar * solved(kept.chol, Ar), axis=0)
-            # Without play all sides are alike but for rounding: the first is taken.
+            # Without play all sides are equal but for rounding, and the first is taken.
             best.append(entries[int(np.argmax(costs <= np.min(costs) * (1.0 + 1e-9)))])
         return replace(point, sides=np.array(best))
 
 
 def _still(i: int, asked: Sequence[_Asked], width: int) -> FloatArray:
-    """Shape (7, width): every column of manoeuvre ``i`` as a sum of those that are known without a flight."""
+    """Return every column of manoeuvre ``i`` as a sum of those that need no simulation, shape (7, width)."""
     k = len(DERIVATIVES)
     still = np.zeros((k + 1, width))
     for a in asked:
@@ -278,9 +284,10 @@ def _still(i: int, asked: Sequence[_Asked], width: int) -> FloatArray:
 
 
 def _with_one_another(still: FloatArray, known: FloatArray, flown: _Flown) -> FloatArray:
-    """Shape (width, width): inner products of the columns of each point with one another, and no others.
+    """Return inner products of the columns within each point, shape (width, width).
 
-    ``still`` has the columns as sums of what is known, ``known`` the products of that with all columns.
+    ``still`` has the columns as sums of the known ones, ``known`` the inner products of the known ones with
+    all.
     """
     XX = still.T @ known
     XX[flown.at] = XX[:, flown.at].T

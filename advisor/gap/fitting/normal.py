@@ -1,4 +1,5 @@
-"""Normal equations: of a manoeuvre's own numbers, factored once; of the shared ones, within their bounds."""
+"""Normal equations: of the nuisance parameters, factored once; of the shared parameters, within their
+bounds."""
 
 import numpy as np
 from scipy.linalg.lapack import dpotrf, dpotrs
@@ -6,16 +7,17 @@ from scipy.linalg.lapack import dpotrf, dpotrs
 from advisor.flight.messages import FloatArray
 
 _SOUND = 1e-2
-"""Least pivot of a matrix with a unit diagonal that leaves no doubt: no direction is below its square."""
+"""Least pivot of a matrix with unit diagonal that shows it to be well conditioned: no singular value is below
+its square."""
 
 
 def factored(normal: FloatArray) -> FloatArray:
-    """Lower Cholesky factor of a symmetric positive definite matrix, shape (m, m).
+    """Return the lower Cholesky factor of a symmetric positive definite matrix, shape (m, m).
 
     Raises
     ------
     np.linalg.LinAlgError
-        The matrix is not positive definite, or holds something that is no number.
+        The matrix is not positive definite, or contains a NaN or an infinity.
     """
     factor, info = dpotrf(normal, lower=1, clean=0)
     if info != 0 or not np.isfinite(factor[-1, -1]):
@@ -24,18 +26,19 @@ def factored(normal: FloatArray) -> FloatArray:
 
 
 def solved(factor: FloatArray, right: FloatArray) -> FloatArray:
-    """Solution for a right-hand side, shape (m,) or (m, k)."""
+    """Return the solution for a right-hand side, shape (m,) or (m, k)."""
     return np.asarray(dpotrs(factor, right, lower=1)[0])
 
 
 def solved_within(
     H: FloatArray, g: FloatArray, least: FloatArray, most: FloatArray, indifferent: float = 1e-12
 ) -> FloatArray:
-    """The x of least ½ xᵀHx − gᵀx with ``least`` ≤ x ≤ ``most``, all of shape (k,).
+    """Return the x that minimises ½ xᵀHx − gᵀx with ``least`` ≤ x ≤ ``most``, all of shape (k,).
 
-    What would leave its range stays at the end of it, and the others are solved for with that: to clip a
-    solution instead leads away from the optimum, where numbers trade against one another. H is scaled to a
-    unit diagonal; directions in which it is relatively below ``indifferent`` stay put.
+    A component that would leave its range is fixed at the end of the range, and the others are solved for
+    again. Clipping the solution instead would lead away from the optimum where parameters are correlated. H
+    is scaled to a unit diagonal. Directions with relative singular values below ``indifferent`` are not
+    moved.
     """
     scale = np.sqrt(np.maximum(np.diag(H), 1e-300))
     normal, right = H / np.outer(scale, scale), g / scale
@@ -52,7 +55,8 @@ def solved_within(
 
 
 def _solution(normal: FloatArray, right: FloatArray, indifferent: float) -> FloatArray:
-    """Of a matrix with a unit diagonal; its singular values are asked for only where some may be tiny."""
+    """Return the solution for a matrix with unit diagonal; singular values are computed only where some may
+    be tiny."""
     factor, info = dpotrf(normal, lower=1, clean=0)
     if info == 0 and np.min(np.diag(factor)) > _SOUND:
         return solved(factor, right)

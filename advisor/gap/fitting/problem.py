@@ -1,4 +1,4 @@
-"""What is fitted to what: the data with the simulation, and a point of its numbers."""
+"""The estimation problem: data, simulation, and a point in the space of the parameters."""
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
@@ -8,12 +8,13 @@ import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.variant import Variant
-from advisor.gap.fitting.belief import HELD, NARROW, WIDE, pull_of
+from advisor.gap.fitting.prior import ERROR_IF_FIXED, ERROR_IF_RIGHT, ERROR_IF_WRONG, prior_precision
 from advisor.gap.fitting.whitening import Filters, Whitening
 from advisor.gap.records.flights import Flight, Flights
 from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, FILTER, INDEX, LAYOUT, NUISANCES, SKEWS
+from advisor.gap.simulator.pack import LANES
 from advisor.gap.simulator.reading import delayed, filtered, lane, packed, read_rows
-from advisor.gap.simulator.simulate import LANES, simulate
+from advisor.gap.simulator.simulate import simulate
 from advisor.gap.simulator.surface import surfaces
 
 _NO_DISTURBANCE = np.zeros((4, 0))
@@ -24,56 +25,56 @@ _FLOWN_ENTRIES = np.array([i for i, name in enumerate(ENTRIES) if name not in (*
 
 @dataclass(frozen=True)
 class Point:
-    """Where the search stands: everything the simulation is driven by."""
+    """A point of the search: all parameters that drive the simulation."""
 
     derivatives: FloatArray
-    """Shape (6,)."""
+    """Shape (6,): the derivatives of Eqs. (1)-(2)."""
     own: FloatArray
     """Shape (manoeuvres, 4): initial states and trim terms."""
     effects: tuple[Variant, ...] = ()
     values: tuple[FloatArray, ...] = ()
     """Parameters of each effect."""
     sides: FloatArray | None = None
-    """Shape (manoeuvres,): the side chosen in each manoeuvre, for an effect that has sides."""
+    """Shape (manoeuvres,): the chosen side in each manoeuvre, for an effect that has sides."""
     edges: tuple[FloatArray, ...] | None = None
-    """Per manoeuvre, shape (edges,): where each edge of the command is, in intervals from its stamps. What
-    that changes is linear, and not simulated; but times shift the answers to edges, too."""
+    """Per manoeuvre, shape (edges,): shift of each edge of the command from its stamps, in intervals. The
+    outputs are linear in these shifts, so they are not simulated; delays and skews move that response."""
 
     @property
     def shared(self) -> FloatArray:
-        """All shared numbers as one vector: derivatives, then parameters of effects."""
+        """All shared parameters as one vector: derivatives, then parameters of effects."""
         return np.concatenate([self.derivatives, *self.values])
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Of the shared numbers, in their order."""
+        """Names of the shared parameters, in their order."""
         return (*DERIVATIVES, *(name for effect in self.effects for name in effect.names))
 
     def moved(self, shared: FloatArray, own: FloatArray) -> "Point":
-        """The same model elsewhere."""
+        """Return the model with other shared and nuisance parameters."""
         ends = accumulate((len(effect.names) for effect in self.effects), initial=len(self.derivatives))
         values = tuple(shared[begin:end] for begin, end in pairwise(ends))
         return replace(self, derivatives=shared[: len(DERIVATIVES)], own=own, values=values)
 
     def place(self, k: int) -> slice:
-        """Where the parameters of the ``k``-th effect stand among the shared numbers."""
+        """Return the place of the ``k``-th effect's parameters among the shared parameters."""
         begin = len(self.derivatives) + sum(len(effect.names) for effect in self.effects[:k])
         return slice(begin, begin + len(self.effects[k].names))
 
     def index_of(self, name: str) -> int:
-        """Which of the effects has this name.
+        """Return the index of the effect with this name.
 
         Raises
         ------
         ValueError
-            None has.
+            No effect has the name.
         """
         return [effect.effect for effect in self.effects].index(name)
 
     def with_effect(
         self, effect: Variant, values: Sequence[float] | FloatArray, sides: FloatArray | None = None
     ) -> "Point":
-        """The model with one more effect in it."""
+        """Return the model with one more effect in it."""
         return replace(
             self,
             effects=(*self.effects, effect),
@@ -82,8 +83,8 @@ class Point:
         )
 
     def with_only(self, names: Collection[str]) -> "Point":
-        """The model with some of its effects; what is part of every model stays."""
-        keep = [k for k, v in enumerate(self.effects) if v.always or v.effect in names]
+        """Return the model with some of its effects and with all nuisance parameters."""
+        keep = [k for k, v in enumerate(self.effects) if v.is_nuisance or v.effect in names]
         return replace(
             self, effects=tuple(self.effects[k] for k in keep), values=tuple(self.values[k] for k in keep)
         )
@@ -91,27 +92,29 @@ class Point:
 
 @dataclass(frozen=True)
 class Problem:
-    """The data, the fixed part of the simulation, and how the command moved between its stamps."""
+    """The data, the fixed part of the simulation, the prior, and the motion of the command between its
+    stamps."""
 
     flights: Flights
     base: FloatArray
-    """Shape (entries,), or (manoeuvres, entries) where those differ: what the aircraft file has already."""
+    """Driving numbers from the aircraft file, shape (entries,), or (manoeuvres, entries) where they
+    differ."""
     held: bool = False
-    """Command held between stamps instead of linear."""
+    """Whether the command is held between its stamps; if not, it moves linearly."""
     instruments: FloatArray | None = None
-    """Shape (channels,): noise of the instruments alone, without what the air adds."""
+    """Shape (channels,): noise of the instruments alone, without moving air."""
     smallest_noise: FloatArray | None = None
-    """Shape (channels,): noise of the innovations is never taken to be below this."""
-    believed: FloatArray | None = None
-    """Shape (6,): derivatives of the aircraft file, when it has all ..."""
-    holds_the_file: bool = False
-    """... and whether fitted ones are held there."""
+    """Shape (channels,): lower bound of the innovations' noise."""
+    prior_derivatives: FloatArray | None = None
+    """Shape (6,): derivatives of the aircraft file; None where the file lacks one."""
+    derivatives_fixed: bool = False
+    """Whether fitted derivatives are held at the aircraft file's."""
     arms_in_file: frozenset[str] = frozenset()
-    """Effects whose size the aircraft file states: arms of the vane and the accelerometer."""
+    """Effects whose arm the aircraft file states: of the vane and of the accelerometer."""
     jitter_s: float = 0.0
-    """Standard deviation of the stamps, the command's like all others."""
+    """Standard deviation of all stamps, including the command's, s."""
     whitening: Whitening | None = None
-    """Filter of moving air and coloured instruments; None where white noise describes what is left."""
+    """Filter of moving air and coloured instruments; None where the residual is white."""
 
     @property
     def knows_the_noise(self) -> bool:
@@ -124,45 +127,51 @@ class Problem:
         return self.flights.channels
 
     def with_own(self, point: Point, owns: Sequence[FloatArray]) -> Point:
-        """The point after a step of the manoeuvres' own numbers, each of shape (m,).
+        """Return the point after a step of the nuisance parameters, each of shape (m,).
 
-        Initial states and trim terms come first; the edges, where they are rather than by how much they move,
-        last.
+        Initial states and trim terms come first. Edges come last, as places instead of steps.
         """
         n = point.own.shape[1]
         found = zip(owns, self.flights.flights, strict=True)
         edges = tuple(own[len(own) - len(flight.edges) :] for own, flight in found)
         return replace(point, own=point.own + np.array([own[:n] for own in owns]), edges=edges)
 
-    def pull(self, point: Point) -> tuple[FloatArray, FloatArray]:
-        """Inverse variances with which shared numbers are drawn to what is expected, and what they lack.
+    def prior_of(self, point: Point) -> tuple[FloatArray, FloatArray]:
+        """Return inverse prior variances of the shared parameters, and the prior mean minus their values,
+        shapes (k,).
 
-        Both shape (k,). The derivatives are drawn to the file's, what is part of every model to nothing; far
-        more weakly than by any data that say something: it decides only what the data leave open. With an
-        effect in the model that derivatives imitate exactly, the file's are right within their tolerance.
+        The prior mean is the file's for derivatives and zero for nuisance parameters. The prior is weak and
+        decides only what the data leave open. With an effect that derivatives imitate exactly, the file's
+        derivatives hold within their tolerance.
         """
         inverse, expected = [np.zeros(len(DERIVATIVES))], [point.derivatives]
-        if self.believed is not None:
+        if self.prior_derivatives is not None:
             trusted = any(effect.twin is not None for effect in point.effects)
-            tolerance = HELD if self.holds_the_file else NARROW if trusted else WIDE
-            inverse, expected = [pull_of(self.believed, tolerance)], [self.believed]
+            tolerance = (
+                ERROR_IF_FIXED if self.derivatives_fixed else ERROR_IF_RIGHT if trusted else ERROR_IF_WRONG
+            )
+            inverse, expected = [prior_precision(self.prior_derivatives, tolerance)], [self.prior_derivatives]
         for effect, values in zip(point.effects, point.values, strict=True):
-            inverse.append(1.0 / np.array(effect.spread) ** 2 if effect.spread else np.zeros(len(values)))
+            inverse.append(
+                1.0 / np.array(effect.prior_std) ** 2 if effect.prior_std else np.zeros(len(values))
+            )
             expected.append(np.zeros(len(values)))
         return np.concatenate(inverse), np.concatenate(expected) - point.shared
 
-    def disbelief(self, point: Point) -> float:
-        """What the pull adds to the cost."""
-        inverse, missed = self.pull(point)
-        return float(inverse @ missed**2)
+    def prior_cost(self, point: Point) -> float:
+        """Return the prior's contribution to the cost."""
+        inverse, departure = self.prior_of(point)
+        return float(inverse @ departure**2)
 
-    def strangeness(self, point: Point) -> float:
-        """The part of it that numbers have which are part of every model, beside what they usually are."""
-        with_spread = (pair for pair in zip(point.effects, point.values, strict=True) if pair[0].spread)
-        return float(sum(np.sum((values / np.array(effect.spread)) ** 2) for effect, values in with_spread))
+    def nuisance_cost(self, point: Point) -> float:
+        """Return the contribution of nuisance parameters to the cost of the prior."""
+        with_spread = (pair for pair in zip(point.effects, point.values, strict=True) if pair[0].prior_std)
+        return float(
+            sum(np.sum((values / np.array(effect.prior_std)) ** 2) for effect, values in with_spread)
+        )
 
     def driving(self, point: Point) -> FloatArray:
-        """Shape (manoeuvres, entries): the numbers each manoeuvre is simulated with."""
+        """Return the driving numbers of each manoeuvre's simulation, shape (manoeuvres, entries)."""
         p = np.empty((len(self.flights), self.base.shape[-1]))
         p[:] = self.base
         p[:, : len(DERIVATIVES)] = point.derivatives
@@ -180,9 +189,10 @@ class Problem:
         disturbance: FloatArray = _NO_DISTURBANCE,
         doses: FloatArray | None = None,
     ) -> FloatArray:
-        """One manoeuvre simulated with every row of ``p``, shape (k, entries), in packs for ``read_all``.
+        """Return one manoeuvre simulated with every row of ``p``, shape (k, entries), in packs for
+        ``read_all``.
 
-        The disturbance, shape (4, n), enters each simulation by its dose, shape (k,).
+        The disturbance, shape (4, n), enters each simulation with its factor ``doses``, shape (k,).
         """
         stamps = flight.t_held if self.held else flight.t_u
         command = (flight.h, flight.n, stamps, flight.u, self.held, flight.u_trim)
@@ -193,16 +203,18 @@ class Problem:
     def read_all(
         self, flight: Flight, packs: FloatArray, p: FloatArray, flown: np.ndarray | None = None
     ) -> FloatArray:
-        """Shape (rows, k): all channels at their own stamps, one after another, as ``p`` has them by row.
+        """Return all channels at their own stamps, stacked, shape (rows, k), with the instruments of each row
+        of ``p``.
 
-        ``flown``, shape (k,), says which simulation each reads; each its own where it is not given.
+        ``flown``, shape (k,), has the index of the simulation that each column reads; by default its own.
         """
         return self._read(flight, packs, np.arange(len(p)) if flown is None else flown, p)
 
     def fly_and_read(self, flight: Flight, p: FloatArray) -> FloatArray:
-        """Shape (rows, k): one manoeuvre as every row of ``p``, shape (k, entries), says it was measured.
+        """Return one manoeuvre simulated and read with every row of ``p``, shape (k, entries), as shape
+        (rows, k).
 
-        Rows that differ in what instruments do to the motion's stamps or course alone are flown once.
+        Rows that differ in stamps or filters of instruments alone share a simulation.
         """
         alike = [row.tobytes() for row in p[:, _FLOWN_ENTRIES]]
         places = {row: k for k, row in enumerate(dict.fromkeys(alike))}
@@ -216,25 +228,26 @@ class Problem:
         return np.asarray(read_rows(packs, flight.h, flight.stamps, flight.output, flown, skews))
 
     def fly(self, flight: Flight, p: FloatArray) -> FloatArray:
-        """Simulated outputs of one manoeuvre on the grid, shape (4, n + 1)."""
+        """Return the simulated outputs of one manoeuvre on the grid, shape (4, n + 1)."""
         return lane(self.fly_all(flight, p[None]), 0)
 
     def read_grids(self, flight: Flight, grids: Sequence[FloatArray], p: FloatArray) -> FloatArray:
-        """Shape (rows, k): of series on the grid, each of shape (4, n + 1), the same."""
+        """Return series on the grid, each of shape (4, n + 1), read at the channels' stamps, shape (rows,
+        k)."""
         return self.read_all(flight, packed(grids), np.tile(p, (len(grids), 1)))
 
     def read_delayed(
         self, flight: Flight, response: FloatArray, delays: FloatArray, p: FloatArray
     ) -> FloatArray:
-        """Shape (rows, k): of one series that starts later by each of the delays."""
+        """Return one series delayed by each of ``delays``, read at the channels' stamps, shape (rows, k)."""
         return self.read_all(flight, delayed(response, flight.h, delays), np.tile(p, (len(delays), 1)))
 
     def read(self, flight: Flight, grid: FloatArray, p: FloatArray) -> FloatArray:
-        """The same of one series as it is."""
+        """Return one series on the grid, read at the channels' stamps, shape (rows,)."""
         return self.read_grids(flight, [grid], p)[:, 0]
 
     def rows(self, flight: Flight) -> list[slice]:
-        """Where each channel sits in the stacked vector of one manoeuvre."""
+        """Return the rows of each channel in the stacked vector of one manoeuvre."""
         out, at = [], 0
         for c in self.channels:
             out.append(slice(at, at + len(flight.outputs[c].t)))
@@ -242,16 +255,16 @@ class Problem:
         return out
 
     def measured(self, flight: Flight) -> FloatArray:
-        """All channels of one manoeuvre, stacked."""
+        """Return all measured channels of one manoeuvre, stacked."""
         return np.concatenate([flight.outputs[c].y for c in self.channels])
 
     def innovations(self, i: int, columns: FloatArray) -> FloatArray:
-        """Columns of manoeuvre ``i``, shape (rows, k), freed of what neighbouring rows have in common."""
+        """Return the columns of manoeuvre ``i``, shape (rows, k), whitened where the noise is coloured."""
         return columns if self.whitening is None else self.whitening.innovations(i, columns)
 
 
 def row_weights(problem: Problem, i: int, weights: FloatArray) -> FloatArray:
-    """One weight a row of manoeuvre ``i``."""
+    """Return one weight for each row of manoeuvre ``i``."""
     flight = problem.flights.flights[i]
     return np.concatenate(
         [np.full(len(flight.outputs[c].t), w) for c, w in zip(problem.channels, weights, strict=True)]
@@ -259,7 +272,7 @@ def row_weights(problem: Problem, i: int, weights: FloatArray) -> FloatArray:
 
 
 def counts(problem: Problem) -> FloatArray:
-    """Shape (channels,): samples of each channel over all manoeuvres."""
+    """Return the number of samples of each channel over all manoeuvres, shape (channels,)."""
     return np.array(
         [sum(len(f.outputs[c].t) for f in problem.flights.flights) for c in problem.channels], float
     )

@@ -1,4 +1,4 @@
-"""A first guess of the derivatives by equation error: rates regressed on angle, pitch rate and command."""
+"""First estimates of the derivatives by equation error: rates regressed on angle, pitch rate and command."""
 
 from typing import NamedTuple
 
@@ -9,28 +9,31 @@ from advisor.flight.motion import integrated
 from advisor.gap.records.flights import Flight, Flights
 
 _STEP_S = 0.02
-"""Grid of the regression, s."""
+"""Step of the regression's grid, s."""
 _SPAN = 10
-"""Steps over which the equations are integrated, to spare derivatives of the data."""
+"""Number of steps over which the equations are integrated, so that no data need be differentiated."""
 _RIDGE = 1e-6
-"""Keeps directions that a flight does not excite from running away."""
-_PLAIN = 0.01
-"""Share of the rates' power that is left, both equations' together, where the channels belong together ..."""
+"""Ridge of the regression, relative to the mean square of a regressor: bounds directions that a flight does
+not excite."""
+_IN_STEP = 0.01
+"""Product of the residual shares of both equations below which the channels are in step, and no shift is
+tried."""
 _BETTER = 0.5
-"""... and the share of that which one of them shifted must leave at most."""
+"""Residual share with one channel shifted, relative to that without, below which the shifted regression is a
+start too."""
 
 
 class Late(NamedTuple):
-    """By how many seconds the channels are late."""
+    """Delay of each channel in s."""
 
     alpha_s: float = 0.0
     q_s: float = 0.0
     surface_s: float = 0.0
-    """Behind the command."""
+    """Delay of the surface behind the command, s."""
 
 
 _SHIFTS_S = (-0.12, -0.08, -0.04, 0.04, 0.08, 0.12)
-"""Up to about a radian of a fast short period."""
+"""Shifts of a channel that are tried, s: up to about one radian of a fast short period."""
 _ONE_LATE = (
     *(Late(q_s=shift) for shift in _SHIFTS_S),
     *(Late(alpha_s=shift) for shift in _SHIFTS_S),
@@ -39,31 +42,31 @@ _ONE_LATE = (
 
 
 def regressions(flights: Flights) -> list[FloatArray]:
-    """Derivatives to begin from, each of shape (6,).
+    """Return starting values of the derivatives, each of shape (6,).
 
-    Where a channel is late by a good part of a radian of the short period, the regression goes astray, even
-    in sign, and no search comes back from there: then the one with a channel shifted is a start, too.
+    A channel that is late by a large part of a radian of the short period leads the regression astray, even
+    in sign. No search recovers from that. The regression with that channel shifted is then a start too.
     """
-    plain, left = _regressed(flights, Late())
-    if left < _PLAIN:
-        return [plain]
+    as_stamped, left_share = _regressed(flights, Late())
+    if left_share < _IN_STEP:
+        return [as_stamped]
     shifted, less = min((_regressed(flights, late) for late in _ONE_LATE), key=lambda found: found[1])
-    return [plain, shifted] if less < _BETTER * left else [plain]
+    return [as_stamped, shifted] if less < _BETTER * left_share else [as_stamped]
 
 
 def _regressed(flights: Flights, late: Late) -> tuple[FloatArray, float]:
-    """Derivatives, shape (6,), and the product of the shares of power that the two equations leave."""
+    """Return derivatives, shape (6,), and the product of the residual shares of the two equations."""
     systems = [_system(flight, late) for flight in flights.flights]
-    moment, left = _solved([s[0] for s in systems], [s[1] for s in systems])
+    moment, left_share = _solved([s[0] for s in systems], [s[1] for s in systems])
     force, left_of_lift = np.zeros(2), 1.0
     if "alpha" in flights.channels:
         force, left_of_lift = _solved([s[2] for s in systems], [s[3] for s in systems])
     damped = min(force[0], -0.1), min(moment[1], -0.05)
-    return np.array([damped[0], 0.0, force[1], moment[0], damped[1], moment[2]]), left * left_of_lift
+    return np.array([damped[0], 0.0, force[1], moment[0], damped[1], moment[2]]), left_share * left_of_lift
 
 
 def _system(f: Flight, late: Late) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Rows and rates of the moment's and the force's equation, in integral form."""
+    """Return regressors and rates of the moment equation and of the force equation, in integral form."""
     t = np.arange(0.0, f.duration_s, _STEP_S)
     q = np.interp(t + late.q_s, f.outputs["q"].t, f.outputs["q"].y)
     d = np.interp(t - late.surface_s, f.t_u, f.u) - f.u_trim
@@ -82,10 +85,10 @@ def _system(f: Flight, late: Late) -> tuple[FloatArray, FloatArray, FloatArray, 
 
 
 def _solved(rows: list[FloatArray], rates: list[FloatArray]) -> tuple[FloatArray, float]:
-    """Ridge regression, and the share of the power that it leaves."""
+    """Return the ridge regression, and the share of the power in its residual."""
     X, y = np.vstack(rows), np.concatenate(rates)
     scale = np.sqrt(np.mean(X**2, axis=0)) + 1e-12
     Xs = X / scale
     found = np.linalg.solve(Xs.T @ Xs + _RIDGE * len(X) * np.eye(X.shape[1]), Xs.T @ y)
-    left = y - Xs @ found
-    return found / scale, float(left @ left) / max(float(y @ y), 1e-300)
+    residual = y - Xs @ found
+    return found / scale, float(residual @ residual) / max(float(y @ y), 1e-300)

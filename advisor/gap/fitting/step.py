@@ -1,6 +1,6 @@
-"""One Gauss-Newton step: own numbers eliminated manoeuvre by manoeuvre, shared ones kept within their bounds.
+"""One Gauss-Newton step: nuisance parameters are eliminated, shared parameters stay within their bounds.
 
-With the inner products of the columns at hand a step for other weights is cheap.
+The inner products of the columns are known, so a step for other weights is cheap.
 """
 
 from collections.abc import Sequence
@@ -15,20 +15,20 @@ from advisor.gap.fitting.problem import Point, Problem
 from advisor.gap.simulator.layout import DERIVATIVES
 
 _FASTEST_GROWTH = 5.0
-"""Rate in 1/s at which a motion may grow of itself: a double amplitude in 0.14 s, as of the most unstable
-aircraft that computers fly. A fit that grows faster has lost the motion."""
+"""Largest growth rate of an unstable motion, 1/s: the amplitude doubles in 0.14 s, as on the most unstable
+aircraft with computer control. A fit with faster growth has lost the motion."""
 _GROWS = {"Z_alpha": _FASTEST_GROWTH, "M_q": _FASTEST_GROWTH, "M_alpha": _FASTEST_GROWTH**2}
 _MOST = np.array([_GROWS.get(name, np.inf) for name in DERIVATIVES])
-"""Shape (6,): largest derivatives of an aircraft that grows no faster by any of them alone."""
+"""Shape (6,): largest derivatives with which the motion grows no faster, by any of them alone."""
 
 
 def factor(A: FloatArray, prior: FloatArray) -> FloatArray:
-    """Cholesky factor of AᵀA + Λ⁻¹ for one manoeuvre's own columns, weighted."""
+    """Return the Cholesky factor of AᵀA + Λ⁻¹ for the weighted nuisance columns of one manoeuvre."""
     return factor_of(A.T @ A, prior)
 
 
 def factor_of(normal: FloatArray, prior: FloatArray) -> FloatArray:
-    """The same of the product AᵀA, shape (m, m), which is overwritten."""
+    """Return the Cholesky factor of AᵀA + Λ⁻¹ from the product AᵀA, shape (m, m), which is overwritten."""
     diagonal = normal.diagonal() + prior
     np.fill_diagonal(normal, diagonal * (1.0 + 1e-10) + 1e-12 * diagonal.sum() / len(diagonal))
     return factored(normal)
@@ -36,41 +36,44 @@ def factor_of(normal: FloatArray, prior: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True)
 class Step:
-    """A Gauss-Newton step from where the model was made linear."""
+    """A Gauss-Newton step from the point of linearisation."""
 
     shared: FloatArray
-    """Shape (k,), within the numbers' bounds."""
+    """Shape (k,): step of the shared parameters, within their bounds."""
     free: list[FloatArray]
-    """Per manoeuvre, shape (m,): own numbers' solution at the old shared numbers ..."""
+    """Per manoeuvre, shape (m,): solution of the nuisance parameters without a step of the shared ones."""
     follow: list[FloatArray]
-    """... and shape (m, k), what they lose per unit of the shared ones."""
+    """Per manoeuvre, shape (m, k): decrease of the nuisance parameters per unit of the shared ones."""
     information: FloatArray
-    """Shape (k, k)."""
+    """Shape (k, k): information on the shared parameters."""
     gradient: FloatArray
-    """Shape (k,): half the decrease of the cost per unit of each shared number."""
+    """Shape (k,): half the decrease of the cost per unit of each shared parameter."""
 
     def promised(self, shared: FloatArray) -> float:
-        """Decrease of the cost by a step of the shared numbers, were the model linear."""
+        """Return the decrease of the cost that the linear model promises for a step of the shared
+        parameters."""
         return float(2.0 * self.gradient @ shared - shared @ self.information @ shared)
 
     def owns(self, shared: FloatArray) -> list[FloatArray]:
-        """Per manoeuvre the own numbers' solution after some step of the shared ones."""
+        """Return per manoeuvre the solution of the nuisance parameters after a step of the shared ones."""
         return [free - follow @ shared for free, follow in zip(self.free, self.follow, strict=True)]
 
     def squares_ahead(self, linear: Sequence[Linear]) -> FloatArray:
-        """Shape (channels,): sums of squares of the residuals that the whole step should leave."""
+        """Return the sums of squares of the residuals that the linear model promises after the step, shape
+        (channels,)."""
         owns = self.owns(self.shared)
         each = [b.squares_after(self.shared, own) for b, own in zip(linear, owns, strict=True)]
         return np.asarray(np.sum(each, axis=0))
 
 
 def own_eliminated(block: Linear, weights: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Normal equations of the shared numbers from one manoeuvre, its own eliminated (Schur complement).
+    """Return the normal equations of one manoeuvre with its nuisance parameters eliminated (Schur
+    complement).
 
     Returns
     -------
-    Shape (k + 1, k + 1), the residual's as the last row and column; and how the own numbers follow, shape
-    (m, k + 1).
+    Shape (k + 1, k + 1), with the residual as last row and column; and the response of the nuisance
+    parameters, shape (m, k + 1).
     """
     m = len(block.prior)
     q = block.products.shape[1]
@@ -82,10 +85,10 @@ def own_eliminated(block: Linear, weights: FloatArray) -> tuple[FloatArray, Floa
 
 
 def solve_blocks(problem: Problem, linear: Sequence[Linear], weights: FloatArray, point: Point) -> Step:
-    """One Gauss-Newton step, own numbers eliminated manoeuvre by manoeuvre."""
+    """Return one Gauss-Newton step, with nuisance parameters eliminated manoeuvre by manoeuvre."""
     k = linear[0].shared.shape[1]
-    pull, missed = problem.pull(point)
-    H, g = np.diag(pull), pull * missed
+    precision, departure = problem.prior_of(point)
+    H, g = np.diag(precision), precision * departure
     free, follow = [], []
     for block in linear:
         inner, eliminated = own_eliminated(block, weights)
@@ -98,7 +101,8 @@ def solve_blocks(problem: Problem, linear: Sequence[Linear], weights: FloatArray
 
 
 def bounds_of(point: Point) -> tuple[FloatArray, FloatArray]:
-    """Lower and upper bounds of the shared numbers; no derivative makes an aircraft that nobody can fly."""
+    """Return lower and upper bounds of the shared parameters, with derivatives of an aircraft that can be
+    flown."""
     free = np.full(len(point.derivatives), np.inf)
     lower = np.concatenate([-free, *[np.array([b[0] for b in e.bounds]) for e in point.effects]])
     upper = np.concatenate([_MOST, *[np.array([b[1] for b in e.bounds]) for e in point.effects]])

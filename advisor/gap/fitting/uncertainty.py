@@ -1,70 +1,71 @@
-"""How well a fit knows its shared numbers, and what that says of the aircraft file's."""
+"""Uncertainty of the shared parameters, and the distance of the fit from the aircraft file."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
 from advisor.flight.messages import FloatArray
-from advisor.gap.fitting.belief import NARROW, Distance, distance_of, log_belief, pull_of
 from advisor.gap.fitting.fit import Fitted
+from advisor.gap.fitting.prior import ERROR_IF_RIGHT, Distance, distance_of, log_prior, prior_precision
 from advisor.gap.fitting.problem import Problem, counts
-from advisor.gap.records.floor import independent_samples
+from advisor.gap.records.floor import effective_sample_size
 
-PLAIN = 0.5
-"""Gap of the file's own derivatives beside fitted ones from which on it takes less to call them wrong."""
+CLEAR_GAP = 0.5
+"""Gap that fitted derivatives remove from the file's, above which a smaller distance is enough to reject the
+file's derivatives."""
 
 
-def worth(problem: Problem, lefts: Sequence[FloatArray]) -> FloatArray:
-    """Shape (channels,): independent samples of each channel over all manoeuvres."""
+def effective_samples(problem: Problem, residuals: Sequence[FloatArray]) -> FloatArray:
+    """Return the effective sample size of each channel over all manoeuvres, shape (channels,)."""
     total = np.zeros(len(problem.channels))
-    for flight, left in zip(problem.flights.flights, lefts, strict=True):
+    for flight, residual in zip(problem.flights.flights, residuals, strict=True):
         for c, rows in enumerate(problem.rows(flight)):
-            total[c] += independent_samples(left[rows])
+            total[c] += effective_sample_size(residual[rows])
     return total
 
 
-def belief_in(problem: Problem, fitted: Fitted, independent: FloatArray) -> float:
-    """Log probability of the derivatives, given the aircraft file; 0 without one."""
-    if problem.believed is None:
+def log_prior_of(problem: Problem, fitted: Fitted, effective: FloatArray) -> float:
+    """Return the log prior density of the fitted derivatives, given the aircraft file; 0 without a file."""
+    if problem.prior_derivatives is None:
         return 0.0
-    n = len(problem.believed)
-    known = covariance(problem, fitted, independent)[:n, :n]
-    return log_belief(fitted.point.derivatives, known, problem.believed)
+    n = len(problem.prior_derivatives)
+    known = covariance(problem, fitted, effective)[:n, :n]
+    return log_prior(fitted.point.derivatives, known, problem.prior_derivatives)
 
 
-def file_is_off(problem: Problem, fitted: Fitted, plainly: bool) -> bool:
-    """Whether what was fitted says that the aircraft file's derivatives are wrong; see ``distance_of``."""
-    return distance_from_file(problem, fitted, plainly).is_off
+def file_is_off(problem: Problem, fitted: Fitted, clear_gap: bool) -> bool:
+    """Return whether the fit rejects the aircraft file's derivatives; ``distance_of`` explains
+    ``clear_gap``."""
+    return distance_from_file(problem, fitted, clear_gap).is_off
 
 
-def distance_from_file(problem: Problem, fitted: Fitted, plainly: bool) -> Distance:
-    """How far the fitted derivatives are from the aircraft file's; none without a file."""
-    if problem.believed is None:
+def distance_from_file(problem: Problem, fitted: Fitted, clear_gap: bool) -> Distance:
+    """Return the distance of the fitted derivatives from the aircraft file's, or zero without a file."""
+    if problem.prior_derivatives is None:
         return Distance(0.0, np.inf)
-    n = len(problem.believed)
-    known = covariance(problem, fitted, worth(problem, fitted.innovations))[:n, :n]
-    return distance_of(fitted.point.derivatives, known, problem.believed, plainly)
+    n = len(problem.prior_derivatives)
+    known = covariance(problem, fitted, effective_samples(problem, fitted.innovations))[:n, :n]
+    return distance_of(fitted.point.derivatives, known, problem.prior_derivatives, clear_gap)
 
 
-def shared_std(
-    problem: Problem, fitted: Fitted, independent: FloatArray, trusted: bool = False
-) -> FloatArray:
-    """Shape (k,): standard deviations of the shared numbers; arguments as ``covariance``."""
-    return np.asarray(np.sqrt(np.maximum(np.diag(covariance(problem, fitted, independent, trusted)), 0.0)))
+def shared_std(problem: Problem, fitted: Fitted, effective: FloatArray, trusted: bool = False) -> FloatArray:
+    """Return the standard deviations of the shared parameters, shape (k,); arguments are those of
+    ``covariance``."""
+    return np.asarray(np.sqrt(np.maximum(np.diag(covariance(problem, fitted, effective, trusted)), 0.0)))
 
 
 def sigmas_of(values: FloatArray, known: FloatArray, places: Sequence[bool]) -> float:
-    """Standard deviations by which the size of an effect differs from nothing, the largest of its numbers.
+    """Return the largest number of standard deviations by which a parameter of an effect differs from zero.
 
     Parameters
     ----------
     values
-        Shape (k,): numbers of an effect.
+        Shape (k,): parameters of an effect.
     known
-        Shape (k, k): their covariance.
+        Shape (k, k): covariance of the parameters.
     places
-        Which of them say where, when or how fast, not how much. They count as known: a step that a single
-        manoeuvre shows has no size of its own if it may have come gradually, and is there all the same.
+        Whether each parameter is a position, time or rate instead of a size. Such parameters count as known:
+        a step in a single manoeuvre has no certain size if it may be gradual, and exists all the same.
     """
     at = np.array(places)
     size, place = known[np.ix_(~at, ~at)], known[np.ix_(at, at)]
@@ -74,20 +75,18 @@ def sigmas_of(values: FloatArray, known: FloatArray, places: Sequence[bool]) -> 
     return float(np.max(np.abs(values[~at]) / std))
 
 
-def covariance(
-    problem: Problem, fitted: Fitted, independent: FloatArray, trusted: bool = False
-) -> FloatArray:
-    """Shape (k, k): covariance of the shared numbers, widened for coloured residuals.
+def covariance(problem: Problem, fitted: Fitted, effective: FloatArray, trusted: bool = False) -> FloatArray:
+    """Return the covariance of the shared parameters, widened for coloured residuals, shape (k, k).
 
-    What is expected beforehand is not. Where the file's derivatives are trusted, they count as measured
-    within their tolerance: that is how well an effect is known that trades against them.
+    The prior is not widened. With ``trusted`` the file's derivatives count as measured within their
+    tolerance, for an effect that is correlated with them.
     """
-    widened = float(np.mean(counts(problem) / np.maximum(independent, 1.0)))
-    expected = problem.pull(fitted.point)[0]
+    widened = float(np.mean(counts(problem) / np.maximum(effective, 1.0)))
+    expected = problem.prior_of(fitted.point)[0]
     information = (fitted.information - np.diag(expected)) / widened + np.diag(expected)
-    if trusted and problem.believed is not None:
-        n = len(problem.believed)
-        tolerance = pull_of(problem.believed, NARROW)
+    if trusted and problem.prior_derivatives is not None:
+        n = len(problem.prior_derivatives)
+        tolerance = prior_precision(problem.prior_derivatives, ERROR_IF_RIGHT)
         information[:n, :n] += np.diag(np.maximum(tolerance - expected[:n], 0.0))
     scale = np.sqrt(np.maximum(np.diag(information), 1e-300))
     normal = information / np.outer(scale, scale)

@@ -1,1 +1,1 @@
-"""What a plan of manoeuvres could show, and what a flight could not."""
+"""Foresight: effects that a plan of manoeuvres could show, and effects that a flight could not show."""

@@ -1,7 +1,7 @@
-"""What a plan can detect, before it is flown; and what a flight could not have shown.
+"""Effects that a plan can detect before it is flown, and effects that a flight could not have shown.
 
-The smallest size of an effect is where its mark (``marks``) has the power that the diagnosis
-asks for before it names one: enough likelihood, and enough of a change to matter.
+An effect has its smallest detectable size where its signature (``signatures``) has the power that the
+diagnosis requires: enough likelihood, and enough change to matter.
 """
 
 from collections.abc import Mapping, Sequence
@@ -14,63 +14,65 @@ from advisor.gap.candidates.traits import OF_ONE_IMU
 from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.problem import Problem
-from advisor.gap.foresight.marks import Marks
 from advisor.gap.foresight.needs import NEEDS, ONE_IMU, OTHERWISE, hidden_from, need_of
+from advisor.gap.foresight.signatures import Signatures
 from advisor.gap.records.flights import SPEED_CHANGE
-from advisor.gap.records.floor import doubts
+from advisor.gap.records.floor import floor_margins
 from advisor.gap.result import Unseen, spelled
-from advisor.gap.search.merit import LEAST_GAIN
+from advisor.gap.search.acceptance import LEAST_GAIN
+from advisor.gap.search.indistinguishable import way_to_distinguish
 from advisor.gap.search.score import least_change
-from advisor.gap.search.ties import breaking
 from advisor.gap.simulator.layout import INDEX
 
 CONFUSED_AT = 0.95
-"""Cosine of two marks from which on one effect passes for the other."""
-_WORTH_TELLING = 0.8
+"""Cosine between two signatures above which one effect passes for the other."""
+_LISTED_AT = 0.8
 _MOST_CONFUSIONS = 3
-"""Cosine from which on a likeness is listed, and how many are."""
+"""Cosine above which a similar effect is listed, and the most effects listed."""
 _DETECTED_AT = 5.0
-"""Standard deviations a size must have to be found in nearly every flight, not only in half of them."""
+"""Number of standard deviations of a size that is found in nearly every flight, instead of in half of
+them."""
 _GROWTH = 3.0
 _CLOSE = 0.02
-"""A size that does not show is tried so many times larger, until two in a row are as close as this."""
+"""Factor on a size without a signature, and relative difference of two sizes in a row at which the refinement
+ends."""
 _CURVES = {
     "M_alpha2": ("M_alpha", "alpha"),
     "Z_alpha2": ("Z_alpha", "alpha"),
     "M_delta2": ("M_delta_e", "elevator"),
 }
-"""Curved terms: the linear term they bend, and over what."""
+"""Nonlinear terms: the linear term that they modify, and the channel of their argument."""
 
 
 @dataclass(frozen=True, slots=True)
 class Foreseen:
-    """What a plan can do for one effect."""
+    """Detectability of one effect by a plan."""
 
     effect: str
     parameter: str
     smallest: float
-    """Smallest size that can be told from nothing, in the parameter's unit; infinite when invisible."""
+    """Smallest detectable size, in the parameter's unit; infinite for an invisible effect."""
     confused_with: tuple[tuple[str, float], ...]
-    """Other effects and the cosine between their marks in the data."""
+    """Similar effects, each with the cosine between the signatures."""
     add: str = ""
-    """Channel or manoeuvre that would tell it apart, or show it at all."""
+    """Channel or manoeuvre that would distinguish the effect, or make it visible."""
     share: float | None = None
-    """Of a curved term: its smallest size as a share of the linear term at the plan's amplitude."""
+    """Smallest size of a nonlinear term as a share of the linear term, at the plan's amplitude."""
 
 
 @dataclass(frozen=True)
-class Mark:
-    """One effect's mark at unit size."""
+class Signature:
+    """The signature of one effect at unit size."""
 
     effect: str
     parameter: str
     vector: FloatArray
     least: float
-    """Size below which the effect is not worth a name."""
+    """Least size for which the effect is named."""
     most: float = float("inf")
-    """Size beyond which nobody looks for it."""
+    """Largest size for which the effect is sought."""
     numbers: int = 1
-    """Parameters, each at the price of ½ ln N."""
+    """Number of parameters, each at the price of ½ ln N."""
     inverted: bool = False
 
 
@@ -79,39 +81,39 @@ def foresee(
     fitted: Fitted,
     variants: Sequence[Variant],
     noise: FloatArray,
-    others: Sequence[Mark] = (),
+    others: Sequence[Signature] = (),
     rounds: int = 4,
 ) -> list[Foreseen]:
-    """Smallest detectable size and confusions of every effect, at the fitted (or believed) model.
+    """Return the smallest detectable size and the similar effects of every effect, at the fitted model.
 
     Parameters
     ----------
     noise
-        Shape (channels,): standard deviation of each channel; where a filter knows the noise, its own counts.
+        Shape (channels,): noise of each channel; where a filter knows the noise, that of the filter is used.
     others
-        Marks of effects that are no variant of the model.
+        Signatures of effects that are no variant of the model.
     rounds
-        How often a size is refined where the response is not in proportion to it.
+        Number of refinements of a size where the response is not proportional to it.
     """
-    marks = Marks(problem, fitted, fitted.noise if problem.knows_the_noise else noise)
+    signatures = Signatures(problem, fitted, fitted.noise if problem.knows_the_noise else noise)
     present = {e.effect for e in fitted.point.effects}
-    apart = present | {mark.effect for mark in others}
-    wanted = [v for v in _one_each(variants) if v.effect not in apart]
+    excluded = present | {signature.effect for signature in others}
+    wanted = [v for v in _one_each(variants) if v.effect not in excluded]
     sizes = [_first_size(v) for v in wanted]
     seen = _responses(problem, fitted, list(zip(wanted, sizes, strict=True)))
     found = [
-        _mark_of(problem, fitted, marks, variant, size, marks.of(response), rounds)
+        _signature_of(problem, fitted, signatures, variant, size, signatures.of(response), rounds)
         for variant, size, response in zip(wanted, sizes, seen, strict=True)
     ]
     found += others
     shares = _shares(problem, fitted)
-    return [_foreseen(mark, found, marks, shares) for mark in found]
+    return [_foreseen(signature, found, signatures, shares) for signature in found]
 
 
 def unseen_effects(
     problem: Problem, fitted: Fitted, variants: Sequence[Variant], noise: FloatArray, present: set[str]
 ) -> tuple[Unseen, ...]:
-    """Effects this flight could not have shown, and why."""
+    """Return the effects that this flight could not have shown, each with the reason."""
     tried = {v.effect for v in variants} | {"alpha_bias", "airspeed_variation", "turbulence", "gust"}
     if "climb_rate" not in problem.flights.has:
         tried.discard("alpha_bias")
@@ -134,7 +136,7 @@ def unseen_effects(
 
 
 def _one_each(variants: Sequence[Variant]) -> list[Variant]:
-    """One variant an effect: the first, or of steps at several places the middle one."""
+    """Return one variant of each effect: the first, or the middle one of steps at several places."""
     groups: dict[str, list[Variant]] = {}
     for v in variants:
         groups.setdefault(v.effect, []).append(v)
@@ -146,49 +148,49 @@ def _one_each(variants: Sequence[Variant]) -> list[Variant]:
 
 
 def _reach(variant: Variant) -> float:
-    """The size, with its sign, beyond which nobody looks for an effect."""
+    """Return the largest size, with its sign, for which an effect is sought."""
     low, high = variant.bounds[0]
     return high if high >= -low or variant.starts[0][0] > 0.0 else low
 
 
 def _first_size(variant: Variant) -> float:
-    """The size, with its sign, at which an effect's response is taken first."""
+    """Return the size, with its sign, at which an effect's response is evaluated first."""
     return float(np.copysign(abs(variant.starts[0][0]) or variant.steps[0], _reach(variant)))
 
 
-def _mark_of(
+def _signature_of(
     problem: Problem,
     fitted: Fitted,
-    marks: Marks,
+    signatures: Signatures,
     variant: Variant,
     size: float,
     vector: FloatArray,
     rounds: int,
-) -> Mark:
-    """The model's response to an effect, per unit of its first parameter.
+) -> Signature:
+    """Return the model's response to an effect, per unit of its first parameter.
 
-    An effect whose search starts at nothing is linear there, and its derivative serves. The others bend: a
-    limit that no command reaches leaves no mark at all. Their response is taken at the size that just shows.
-    ``vector`` is the mark at the first size.
+    An effect whose search starts at zero is linear there, and its derivative is used. Others are nonlinear: a
+    limit that no command reaches leaves no signature. Their response is evaluated at the size that just
+    shows. ``vector`` is the signature at the first size.
     """
     reach = _reach(variant)
     numbers = len(variant.names)
-    needed = _needed(marks, numbers)
+    needed = _needed(signatures, numbers)
     for _ in range(rounds - 1 if variant.starts[0][0] else 0):
-        just = max(marks.smallest(vector, needed), variant.smallest)
+        just = max(signatures.smallest(vector, needed), variant.smallest)
         wanted = min(just if np.isfinite(just) else _GROWTH * abs(size), abs(reach))
         if abs(wanted - abs(size)) < _CLOSE * abs(size):
             break
         size = float(np.copysign(wanted, reach))
-        vector = marks.of(_responses(problem, fitted, [(variant, size)])[0])
+        vector = signatures.of(_responses(problem, fitted, [(variant, size)])[0])
     least, most = variant.smallest, abs(reach)
-    return Mark(variant.effect, variant.names[0], vector, least, most, numbers, variant.inverted)
+    return Signature(variant.effect, variant.names[0], vector, least, most, numbers, variant.inverted)
 
 
 def _responses(
     problem: Problem, fitted: Fitted, sized: Sequence[tuple[Variant, float]]
 ) -> list[list[FloatArray]]:
-    """Per effect: change of every manoeuvre's channels, shape (rows,), per unit of the effect's size."""
+    """Return per effect the change of every manoeuvre's channels, shape (rows,), per unit of size."""
     driving = []
     for variant, size in sized:
         sides = np.zeros(len(problem.flights)) if variant.sides is not None else None
@@ -198,47 +200,62 @@ def _responses(
         ]
     changes: list[list[FloatArray]] = [[] for _ in sized]
     for i, flight in enumerate(problem.flights.flights):
-        # All effects at once: the simulations of a manoeuvre share packs.
+        # All effects at once, because the simulations of a manoeuvre share packs.
         seen = problem.fly_and_read(flight, np.stack([p[i] for p in driving]))
         for k, (_, size) in enumerate(sized):
             changes[k].append((seen[:, 2 * k] - seen[:, 2 * k + 1]) / size)
     return changes
 
 
-def _needed(marks: Marks, numbers: int) -> float:
-    """Power a mark must have: found in nearly every flight, worth its numbers, enough of a change."""
-    price = numbers * float(np.log(marks.rows))
-    # A filter of moving air leaves of a change far less than the outputs show of it.
-    doubted = least_change(marks.problem) * float(np.mean(doubts(marks.problem.flights) ** 2))
-    change = 0.0 if marks.filtered else doubted * marks.rows
+def _needed(signatures: Signatures, numbers: int) -> float:
+    """Return the least power of a signature: detection in nearly every flight, the parameters' price, enough
+    change."""
+    price = numbers * float(np.log(signatures.rows))
+    # A filter of moving air leaves far less of a change than the outputs show.
+    doubted = least_change(signatures.problem) * float(
+        np.mean(floor_margins(signatures.problem.flights) ** 2)
+    )
+    change = 0.0 if signatures.filtered else doubted * signatures.rows
     return max(_DETECTED_AT**2, 2.0 * LEAST_GAIN + price, change)
 
 
-def _foreseen(mark: Mark, all_marks: Sequence[Mark], marks: Marks, shares: Mapping[str, float]) -> Foreseen:
-    smallest = max(marks.smallest(mark.vector, _needed(marks, mark.numbers)), mark.least)
-    if smallest > mark.most:
+def _foreseen(
+    signature: Signature,
+    all_signatures: Sequence[Signature],
+    signatures: Signatures,
+    shares: Mapping[str, float],
+) -> Foreseen:
+    smallest = max(
+        signatures.smallest(signature.vector, _needed(signatures, signature.numbers)), signature.least
+    )
+    if smallest > signature.most:
         smallest = float("inf")
     confused = sorted(
-        ((other.effect, _cosine(mark.vector, other.vector)) for other in all_marks if other is not mark),
+        (
+            (other.effect, _cosine(signature.vector, other.vector))
+            for other in all_signatures
+            if other is not signature
+        ),
         key=lambda pair: -pair[1],
     )
-    confused = [pair for pair in confused if pair[1] > _WORTH_TELLING][:_MOST_CONFUSIONS]
+    confused = [pair for pair in confused if pair[1] > _LISTED_AT][:_MOST_CONFUSIONS]
     twins = [other for other, cosine in confused if cosine > CONFUSED_AT]
-    ways = [way for way in (breaking(mark.effect, other) for other in twins) if way]
+    ways = [way for way in (way_to_distinguish(signature.effect, other) for other in twins) if way]
     add = "; ".join(dict.fromkeys(ways)) or (OTHERWISE if twins else "")
     if not np.isfinite(smallest):
-        add = "; ".join(dict.fromkeys([hidden_from(mark.effect, marks.problem.flights)[1], *ways]))
+        add = "; ".join(dict.fromkeys([hidden_from(signature.effect, signatures.problem.flights)[1], *ways]))
     share = None
-    if mark.parameter in shares and np.isfinite(smallest):
-        share = smallest * shares[mark.parameter]
-    size = 1.0 / smallest if mark.inverted and np.isfinite(smallest) else smallest
-    return Foreseen(mark.effect, mark.parameter, size, tuple(confused), add, share)
+    if signature.parameter in shares and np.isfinite(smallest):
+        share = smallest * shares[signature.parameter]
+    size = 1.0 / smallest if signature.inverted and np.isfinite(smallest) else smallest
+    return Foreseen(signature.effect, signature.parameter, size, tuple(confused), add, share)
 
 
 def _shares(problem: Problem, fitted: Fitted) -> Mapping[str, float]:
-    """Curved terms to their share of the linear one, per unit, at the largest motion there is.
+    """Return nonlinear terms as shares of the linear one, per unit of size, at the largest motion of the
+    plan.
 
-    A linear term of nothing has no shares.
+    A linear term of zero has no shares.
     """
     p = problem.driving(fitted.point)
     flights = problem.flights.flights

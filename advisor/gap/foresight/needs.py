@@ -1,4 +1,4 @@
-"""What it takes to see an effect: channels, and a flight in which its cause varies."""
+"""Requirements for seeing an effect: channels, and a flight in which its cause varies."""
 
 from dataclasses import replace
 
@@ -8,14 +8,14 @@ from advisor.gap.records.flights import Flights
 
 NEEDS = {effect: trait.need for effect, trait in TRAITS.items() if trait.need is not None}
 OTHERWISE = "fly another time unit and another amplitude"
-"""When nothing particular is known that would tell two effects apart."""
+"""Advice where nothing particular is known that would distinguish two effects."""
 _CHANNELS = {"alpha": "AOA_SSA at 50 Hz", "a_z": "RAW_IMU at 50 Hz", "theta": "ATTITUDE at 50 Hz"}
 ONE_IMU = ("the angle of attack is made of the same inertial sensors", "a vane")
-"""Why an autopilot's own angle of attack cannot show what goes with it, and what would."""
+"""Why an autopilot's own angle of attack cannot show some effects, and what would show them."""
 
 
 def need_of(effect: str, flights: Flights) -> Need:
-    """Why these flights cannot show an effect: its channel was not recorded, or did not vary."""
+    """Return why these flights cannot show an effect: its channel was not recorded, or did not vary."""
     need = NEEDS[effect]
     if (unrecorded := TRAITS[effect].unrecorded) is not None:
         channel, because, add = unrecorded
@@ -27,7 +27,7 @@ def need_of(effect: str, flights: Flights) -> Need:
 
 
 def hidden_from(effect: str, flights: Flights) -> tuple[str, str]:
-    """Why an effect that was looked for leaves no mark of its own, and what to add."""
+    """Return why an effect that was sought has no signature of its own, and what to add."""
     if not TRAITS[effect].of_the_stick:
         need = need_of(effect, flights)
         return need.because, need.add

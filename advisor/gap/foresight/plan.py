@@ -1,4 +1,4 @@
-"""A flight that was not flown: manoeuvres made up from the aircraft file, to foresee what they can show."""
+"""A planned flight: manoeuvres made from the aircraft file, to foresee which effects they can show."""
 
 from collections.abc import Sequence
 
@@ -16,12 +16,12 @@ from advisor.gap.fitting.linear import linearise
 from advisor.gap.fitting.problem import Point, Problem
 from advisor.gap.fitting.step import solve_blocks
 from advisor.gap.foresight.foresee import Foreseen, foresee
-from advisor.gap.foresight.foresee_apart import foresee_air, foresee_offset, impossible, speed_mark
-from advisor.gap.foresight.marks import Marks
+from advisor.gap.foresight.foresee_outside_fit import foresee_air, foresee_offset, impossible, speed_signature
+from advisor.gap.foresight.signatures import Signatures
 from advisor.gap.records.flights import Flights
 from advisor.gap.records.prepare import prepare
 from advisor.gap.records.usable import LEAST_SAMPLES
-from advisor.gap.search.baseline import base_entries, believed_derivatives, everywhere
+from advisor.gap.search.baseline import base_entries, everywhere, prior_derivatives
 from advisor.gap.simulator.layout import NUISANCES, OUTPUTS, natural_frequency
 from advisor.problems import ConfigurationError
 
@@ -31,23 +31,24 @@ STEPS = {
     "doublet": ((1, -1.0), (1, 1.0)),
     "pulse": ((1, -1.0),),
 }
-"""Steps of each input: units of time and share of the amplitude, trailing edge down. The areas of all but a
-pulse sum to zero, so that the aircraft returns to trim; the first step of a ``3211`` raises the nose."""
+"""Steps of each input: units of time, and share of the amplitude with trailing edge down. The areas of all
+but a pulse sum to zero, so that the aircraft returns to trim. The first step of a ``3211`` raises the
+nose."""
 TYPICAL_NOISE = {"alpha": np.radians(0.1), "q": np.radians(0.2), "a_z": 0.1, "theta": np.radians(0.1)}
-"""Standard deviations taken for instruments nobody has measured yet."""
+"""Standard deviations assumed for unmeasured instruments, in SI units of the channel."""
 SPARED = ("alpha", "a_z", "theta", "airspeed", "climb_rate", "throttle")
 """Channels that a plan may do without."""
 _IN_FILE = "it is in the aircraft file, and taken as it stands there"
-"""Of an effect with a shape: more or less of it is not looked for."""
-_APART_S = 30.0
+"""Remark about an effect with a shape in the aircraft file, of which no other amount is sought."""
+_SPACING_S = 30.0
 _HIGHEST_RATE_HZ, _LARGEST_STEP_DEG = 1000.0, 60.0
-"""No telemetry is faster, and no elevator moves further."""
+"""Highest rate of any telemetry, Hz, and largest deflection of any elevator, deg."""
 
 
 def foresee_plan(
     aircraft: Aircraft, plan: Sequence[str], rate_hz: float, amplitude_deg: float, without: Sequence[str] = ()
 ) -> list[Foreseen]:
-    """For every effect the smallest size this plan could detect, and what it would be confused with.
+    """Return for every effect the smallest size that this plan could detect, and the similar effects.
 
     Returns
     -------
@@ -56,13 +57,15 @@ def foresee_plan(
     Raises
     ------
     ConfigurationError
-        The aircraft file has no complete ``model``, or one without an elevator; or the plan cannot be flown
-        or sampled as it says.
+        The aircraft file has no complete ``model``, or an elevator without effect; or the plan cannot be
+        flown or sampled.
     """
-    derivatives = believed_derivatives(aircraft)
+    derivatives = prior_derivatives(aircraft)
     if derivatives is None:
         missing = ", ".join(name for name in PARAMETERS if name not in aircraft.model)
-        raise ConfigurationError(f"foresee needs the aircraft file's model: {missing} missing.")
+        raise ConfigurationError(
+            f"foresee needs the aircraft file's model: {missing} missing; write what is missing under model."
+        )
     if aircraft.model["M_delta_e"] == 0.0:
         raise ConfigurationError(
             "model.M_delta_e: an elevator of no effect (0) shows nothing; give the moment it makes, in 1/s²."
@@ -88,34 +91,36 @@ def foresee_plan(
 def foresee_flights(
     aircraft: Aircraft, derivatives: FloatArray, flights: Flights, noise: FloatArray, unit_s: float
 ) -> list[Foreseen]:
-    """The same for manoeuvres made ready, of which only stamps, commands and slow channels count.
+    """Return for every effect the smallest size that prepared manoeuvres could detect.
+
+    Only stamps, commands and slow channels of these manoeuvres count.
 
     Parameters
     ----------
     derivatives
-        Shape (6,): at which the model is made linear.
+        Shape (6,): derivatives about which the model is linearised.
     noise
         Shape (channels,): standard deviation of each channel's noise.
     unit_s
-        Time unit of the input; a gust is taken to last two of them.
+        Time unit of the input in s; a gust lasts two of them.
     """
     variants = variants_for(flights)
     known = with_known(base_entries(aircraft), aircraft.effects, flights, variants)
-    problem = Problem(flights, known, believed=derivatives)
+    problem = Problem(flights, known, prior_derivatives=derivatives)
     own = np.zeros((len(flights), len(NUISANCES)))
     own[:, NUISANCES.index("Z_trim")] = [f.level_lift for f in flights.flights]
     point = everywhere(Point(derivatives, own), flights)
     linear = linearise(problem, point)
     step = solve_blocks(problem, linear, 1.0 / noise, point)
     owns = step.owns(step.shared)
-    left = tuple(b.after(step.shared, own) for b, own in zip(linear, owns, strict=True))
-    fitted = Fitted(point, noise, 0.0, left, left, step.information, linear, 0)
-    marks = Marks(problem, fitted, noise)
-    apart = [speed_mark(problem, fitted, marks)] if flights.speed_measured else []
+    residuals = tuple(b.after(step.shared, own) for b, own in zip(linear, owns, strict=True))
+    fitted = Fitted(point, noise, 0.0, residuals, residuals, step.information, linear, 0)
+    signatures = Signatures(problem, fitted, noise)
+    speed_signatures = [speed_signature(problem, fitted, signatures)] if flights.speed_measured else []
     wanted = beyond_known(aircraft.effects, variants)
     found = [
-        *foresee(problem, fitted, wanted, noise, apart),
-        *foresee_air(problem, fitted, marks, unit_s),
+        *foresee(problem, fitted, wanted, noise, speed_signatures),
+        *foresee_air(problem, fitted, signatures, unit_s),
         foresee_offset(problem, noise),
     ]
     sought = {v.effect for v in wanted}
@@ -147,12 +152,12 @@ def _refuse(plan: Sequence[str], rate_hz: float, amplitude_deg: float, without: 
 def _maneuver(
     n: int, name: str, unit: float, amplitude: float, rate_hz: float, speed: float, without: Sequence[str]
 ) -> Maneuver:
-    """Stamps and command of a planned manoeuvre; its outputs are there only for their stamps."""
+    """Return stamps and command of a planned manoeuvre; its outputs provide stamps only."""
     start, length = 1.0, 1.0 + unit * sum(width for width, _ in STEPS[name])
     end = length + max(10.0 * unit, 3.0)
-    t = np.arange(0.0, end, 1.0 / rate_hz) + _APART_S * n
+    t = np.arange(0.0, end, 1.0 / rate_hz) + _SPACING_S * n
     command = np.zeros(len(t))
-    at = _APART_S * n + start
+    at = _SPACING_S * n + start
     for width, level in STEPS[name]:
         command[(t >= at) & (t < at + width * unit)] = amplitude * level
         at += width * unit
@@ -165,7 +170,7 @@ def _maneuver(
 
     for channel in OUTPUTS:
         add(channel, 1e-6 * rng.standard_normal(len(t)))
-    # The throttle is closed once after every input: what thrust does to the moment shows then.
+    # The throttle is closed once after every input, which shows the pitching moment of thrust.
     add("airspeed", np.full(len(t), speed * (1.0 + 0.02 * (-1) ** n)))
     add("climb_rate", np.zeros(len(t)))
     add("throttle", np.where(t > t[0] + length, 0.1, 0.0))

@@ -1,1 +1,1 @@
-"""What is there besides the simulator: noise with a memory, air that moves, stamps that jitter."""
+"""The noise of a flight: coloured instruments, moving air, and jitter of the stamps."""

@@ -1,9 +1,9 @@
-"""Where: an unknown disturbance is let into one block at a time, and the data say which explains them.
+"""The place of an unknown disturbance: one block of the simulator after another is tried.
 
-A disturbance of unknown course (first-order Gauss-Markov in time) is added to the input, to either
-equation, to the air or to one sensor of the fitted model. Its response in *all* channels is known, so
-a disturbance in the wrong block cannot explain what a disturbance in the right one does. Compared by
-marginal likelihood, which is what a Kalman filter's innovations would give, here as linear algebra.
+A first-order Gauss-Markov disturbance is added to the input, to either equation, to the air or to one sensor
+of the fitted model. Its response in *all* channels is known, so a disturbance in the wrong block cannot
+explain that in the right one. Marginal likelihoods are compared; a Kalman filter's innovations would give the
+same values, here obtained by linear algebra.
 """
 
 from collections.abc import Sequence
@@ -29,7 +29,8 @@ from advisor.gap.simulator.layout import (
 
 KNOTS_S = 0.1
 MEMORY_S = 0.6
-"""Distance of a disturbance's knots, and the memory it has: quicker and slower ones are combinations."""
+"""Distance between the knots of a disturbance, s; and its correlation time, s. Faster and slower disturbances
+are combinations of such ones."""
 SENSOR_CHANNELS = {
     "alpha_sensor": "alpha",
     "pitch_rate_sensor": "q",
@@ -43,36 +44,36 @@ DYNAMIC = {
     "air": DISTURB_AIR,
 }
 _SIZES = np.geomspace(1e-3, 30.0, 24)
-"""Candidate sizes of the disturbance, in units in which 1 gives a response as large as the noise."""
+"""Candidate sizes of the disturbance: 1 gives a response as large as the noise."""
 
 
 @dataclass(frozen=True)
 class Probe:
-    """One block's disturbance at its likeliest size."""
+    """A disturbance in one block at its likeliest size."""
 
     block: str
     gain: float
-    """Log likelihood above white noise alone."""
+    """Log likelihood above that of white noise alone."""
     size: float
     """Standard deviation of the disturbance in its own unit (rad of elevator, 1/s², rad/s², rad of air)."""
     explained: float
-    """Share of the weighted residual power that the disturbance takes up."""
+    """Share of the weighted residual power that the disturbance explains."""
 
 
 def probe_blocks(
     problem: Problem, fitted: Fitted, noise: FloatArray, blocks: Sequence[str] | None = None
 ) -> list[Probe]:
-    """Every block, likeliest first.
+    """Return the disturbance of every block, likeliest first.
 
-    With a filter in the problem, what is asked for is a disturbance beyond the noise it knows.
+    With a filter in the problem, the disturbance is one beyond the noise that the filter knows.
 
     Parameters
     ----------
     noise
-        Shape (channels,): of the innovations, or, without a filter, what the instruments alone leave.
+        Shape (channels,): noise of the innovations, or without a filter that of the instruments alone.
     """
     wanted = [*DYNAMIC, *SENSOR_CHANNELS] if blocks is None else list(blocks)
-    # Of the air's motion it is α that tells.
+    # Only α identifies moving air.
     needed = {**SENSOR_CHANNELS, "air": "alpha"}
     there = [block for block in wanted if needed.get(block, "q") in problem.channels]
     return sorted((_probe(problem, fitted, noise, block) for block in there), key=lambda p: -p.gain)
@@ -111,7 +112,7 @@ def _probe(problem: Problem, fitted: Fitted, noise: FloatArray, block: str) -> P
 
 
 def disturbance_columns(problem: Problem, flight: Flight, p: FloatArray, block: str) -> FloatArray:
-    """Response of all channels to a disturbance of unit variance with memory, shape (rows, k).
+    """Return the response of all channels to a Gauss-Markov disturbance of unit variance, shape (rows, k).
 
     A gust is read by a vane, not by an estimate of α from inertial sensors.
     """
@@ -128,28 +129,28 @@ def disturbance_columns(problem: Problem, flight: Flight, p: FloatArray, block: 
             response[c] = np.convolve(pulse[c], shape)[:n] * flight.h
         if block == "air" and problem.flights.alpha_is_derived:
             response[OUTPUTS.index("alpha"), : len(shape)] -= shape * (1.0 + p[INDEX["alpha_scale"]])
-    # The hat's rising side lies before its knot.
+    # The rising side of the hat function lies before its knot.
     columns = problem.read_delayed(flight, response, knots[1:] - KNOTS_S, p)
     return np.asarray(columns @ _colour(flight))
 
 
 @dataclass(frozen=True)
 class Course:
-    """The likeliest course of a block's disturbance."""
+    """The likeliest time course of a block's disturbance."""
 
     knots: tuple[FloatArray, ...]
-    """Per manoeuvre: its value at each knot."""
-    lefts: tuple[FloatArray, ...]
-    """Per manoeuvre, stacked channels, in their units: what it leaves."""
+    """Per manoeuvre: value of the disturbance at each knot."""
+    residuals: tuple[FloatArray, ...]
+    """Per manoeuvre: residuals of the stacked channels without the disturbance, in the channels' units."""
 
 
 def disturbance_courses(
     problem: Problem, fitted: Fitted, noise: FloatArray, block: str, sizes: Sequence[float]
 ) -> list[Course]:
-    """The likeliest course of a block's disturbance for each size that it may have beforehand."""
+    """Return the likeliest course of a block's disturbance for each prior standard deviation in ``sizes``."""
     p = problem.driving(fitted.point)
     courses: list[list[FloatArray]] = [[] for _ in sizes]
-    lefts: list[list[FloatArray]] = [[] for _ in sizes]
+    residuals: list[list[FloatArray]] = [[] for _ in sizes]
     for i, flight in enumerate(problem.flights.flights):
         w = row_weights(problem, i, 1.0 / noise)
         own, prior = fitted.linear[i].measured.own, fitted.linear[i].prior
@@ -158,14 +159,14 @@ def disturbance_courses(
         free = len(colour)
         for k, size in enumerate(sizes):
             chol = factor(A, np.concatenate([prior, np.full(free, 1.0 / size**2)]))
-            found = solved(chol, A.T @ (fitted.left[i] * w))
+            found = solved(chol, A.T @ (fitted.residuals[i] * w))
             courses[k].append(np.asarray(colour @ found[-free:]))
-            lefts[k].append(np.asarray(fitted.left[i] - both @ found))
-    return [Course(tuple(knots), tuple(left)) for knots, left in zip(courses, lefts, strict=True)]
+            residuals[k].append(np.asarray(fitted.residuals[i] - both @ found))
+    return [Course(tuple(knots), tuple(residual)) for knots, residual in zip(courses, residuals, strict=True)]
 
 
 def _colour(flight: Flight) -> FloatArray:
-    """Cholesky factor of the disturbance's correlation between its knots."""
+    """Return the Cholesky factor of the correlation between the knots of a disturbance."""
     knots = np.arange(0.0, flight.duration_s, KNOTS_S)[1:]
-    apart = np.abs(knots[:, None] - knots[None, :])
-    return np.asarray(np.linalg.cholesky(np.exp(-apart / MEMORY_S) + 1e-9 * np.eye(len(knots))))
+    lags = np.abs(knots[:, None] - knots[None, :])
+    return np.asarray(np.linalg.cholesky(np.exp(-lags / MEMORY_S) + 1e-9 * np.eye(len(knots))))

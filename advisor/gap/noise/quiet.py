@@ -1,8 +1,7 @@
 """The noise of a flight, from the stretches in which nothing was flown.
 
-Before the first step and late in the free response the elevator rests: whatever moves there is
-instruments and air, not an effect that the stick excites. What is learnt there is the noise that every
-explanation of the rest is judged against.
+Before the first step and late in the free response the elevator rests. Motion there is noise of instruments
+and air, not an effect that the stick excites. Every explanation of the rest is judged against that noise.
 """
 
 from collections.abc import Sequence
@@ -25,30 +24,32 @@ from advisor.oem.innovations import AirModel
 from advisor.oem.turbulence import Rows, cost_of, find_turbulence, spread_of
 
 _LEAST_SAMPLES = 50
-"""Of a channel in quiet stretches, from which on they tell its noise."""
+"""Least number of a channel's samples in quiet stretches for an estimate of its noise."""
 _LEAST_QUIET_S = 4.0
-"""Over all manoeuvres; less tells nothing of slow air."""
+"""Least length of all quiet stretches together for a model of slow air, s."""
 _LONE = 8.0
-"""Power of a stretch, over that of its likes, from which on a gust may have hit it ..."""
+"""Ratio of powers above which a gust may be the cause: a stretch over the median of all, or a manoeuvre over
+the quietest quarter."""
 _MARGIN = 1.03
-"""... if the air explains it by this much better than any other place ..."""
+"""Least ratio of the log likelihood that moving air explains to that of any other block, for a gust."""
 _FAINT, _FAINT_MARGIN = 3.0, 1.2
-"""... and the same of a manoeuvre that is less loud: a mass that changes looks like the air, too."""
+"""Power of a less loud manoeuvre over the quietest quarter, and the higher ratio of likelihoods that a gust
+there needs. A change of mass looks like moving air too."""
 ANY_GUST = 0.2
-"""Gust angle of air of which nothing is assumed, rad: a bump is nothing like the noise of a filter."""
+"""Prior standard deviation of the gust angle where no size is assumed, rad: far above any gust."""
 _NO_LESS = 0.98
-"""Weight of a sample from which on it is as good as any."""
+"""Least weight of a sample with which its stamp counts as exact."""
 _LEAST_GAIN = 15.0
-"""Log likelihood by which colour or air must beat white noise before a filter is worth it."""
+"""Log likelihood by which coloured noise or moving air must beat white noise before a filter is used."""
 _NONE_OF_PEAK = 1e-9
-"""Share of a channel's peak that stands for no noise at all."""
+"""White noise over the channel's peak that stands for no noise at all; avoids a division by zero."""
 
 
 def whitening_of(problem: Problem, fitted: Fitted, first_look: bool = False) -> Whitening | None:
-    """What this flight's noise asks for; None where it is white and alike in every sample.
+    """Return the filter or the weights that the noise of this flight requires; None where it is white.
 
-    At a first look, with derivatives that a gust has spoilt, manoeuvres under suspicion are set aside
-    all together; whether it was a gust is seen in the fit of the others.
+    At a first look a gust has spoilt the derivatives. Every suspect manoeuvre is then set aside, and the fit
+    of the others shows whether a gust was in it.
     """
     extra = stamp_variance(problem, fitted)
     air = noise_in_quiet(problem, fitted)
@@ -65,7 +66,8 @@ def whitening_of(problem: Problem, fitted: Fitted, first_look: bool = False) -> 
 
 
 def noise_in_quiet(problem: Problem, fitted: Fitted) -> AirModel | None:
-    """Coloured instruments or moving air, where nothing was flown; None where white noise describes it."""
+    """Return coloured instruments or moving air where nothing was flown; None where white noise describes
+    it."""
     if not {"alpha", "q"} <= set(problem.channels):
         return None
     parts = [part for i in range(len(problem.flights)) for part in _quiet_parts(problem, fitted, i)]
@@ -74,8 +76,8 @@ def noise_in_quiet(problem: Problem, fitted: Fitted) -> AirModel | None:
         return None
     white = instrument_noise(problem)
     system = system_of(problem, fitted)
-    # A gust that happens to fall into a quiet stretch is not what the flight's noise is like.
-    loud = np.array([float(np.mean((r.left / white[r.channel]) ** 2)) for r in rows])
+    # A gust in a quiet stretch does not represent the noise of the flight.
+    loud = np.array([float(np.mean((r.residual / white[r.channel]) ** 2)) for r in rows])
     rows = [r for r, power in zip(rows, loud, strict=True) if power <= _LONE * np.median(loud)]
     found = find_turbulence(rows, system, white, bool(_seen(problem)))
     plain = cost_of(rows, system, AirModel.still(spread_of(rows)))
@@ -84,18 +86,19 @@ def noise_in_quiet(problem: Problem, fitted: Fitted) -> AirModel | None:
 
 
 def loudness(problem: Problem, fitted: Fitted) -> float:
-    """Power of what is left in quiet stretches beside the instruments' noise: the median of the stretches."""
+    """Return the median power of the residual in quiet stretches, relative to the noise of the
+    instruments."""
     white = instrument_noise(problem)
     parts = [part for i in range(len(problem.flights)) for part in _quiet_parts(problem, fitted, i)]
-    powers = [float(np.mean((r.left / white[r.channel]) ** 2)) for r in _without_offsets(parts)]
+    powers = [float(np.mean((r.residual / white[r.channel]) ** 2)) for r in _without_offsets(parts)]
     return float(np.median(powers)) if powers else 0.0
 
 
 def gusts_in(problem: Problem, fitted: Fitted, still: AirModel, first_look: bool) -> dict[int, AirModel]:
-    """The air of those manoeuvres that a gust fell into: far worse explained than the quietest quarter.
+    """Return the air of the manoeuvres with a gust, whose residual far exceeds that of the quietest quarter.
 
-    An effect of the stick may show in some manoeuvres only, too; but then an unknown disturbance of the air
-    does not explain its residual better than one in any other place.
+    An effect of the stick may appear in some manoeuvres only, but then moving air explains the residual no
+    better than a disturbance elsewhere.
     """
     noise = np.array([float(np.hypot(still.white[c], still.coloured[c]))
                       for c in (OUTPUTS.index(name) for name in problem.channels)])  # fmt: skip
@@ -108,9 +111,11 @@ def gusts_in(problem: Problem, fitted: Fitted, still: AirModel, first_look: bool
 
 
 def _begun_anew(problem: Problem, fitted: Fitted, noise: FloatArray) -> list[FloatArray]:
-    """Per manoeuvre, stacked channels: what is left with its own numbers as the instruments have them.
+    """Return per manoeuvre the stacked residuals, with nuisance parameters refitted to the instruments'
+    noise.
 
-    To a filter that allows for any gust an initial state is worth nothing: it may be anywhere after a fit.
+    A filter that allows for any gust gives no information on an initial state, which may be anywhere after a
+    fit.
     """
     problem, fitted = unfiltered(problem, fitted)
     owns = solve_blocks(problem, fitted.linear, 1.0 / noise, fitted.point).free
@@ -119,45 +124,46 @@ def _begun_anew(problem: Problem, fitted: Fitted, noise: FloatArray) -> list[Flo
 
 
 def _likelier(problem: Problem, fitted: Fitted, i: int, noise: FloatArray) -> float:
-    """How much better the air explains a manoeuvre's residual than any other place; 0 where it does not."""
-    best, second, *_ = probe_blocks(*only(problem, fitted, i), noise)
+    """Return how much better moving air explains a manoeuvre's residual than any other block; 0 where it does
+    not."""
+    best, second, *_ = probe_blocks(*in_one_maneuver(problem, fitted, i), noise)
     return best.gain / max(second.gain, 1e-9) if best.block == "air" else 0.0
 
 
-def only(problem: Problem, fitted: Fitted, i: int) -> tuple[Problem, Fitted]:
-    """The same fit, seen through one of its manoeuvres."""
+def in_one_maneuver(problem: Problem, fitted: Fitted, i: int) -> tuple[Problem, Fitted]:
+    """Return the problem and its fit, restricted to one manoeuvre."""
     problem, fitted = unfiltered(problem, fitted)
     flights = replace(problem.flights, flights=(problem.flights.flights[i],))
-    # Effects between manoeuvres need them all: what they amount to in this one becomes part of its base.
+    # An effect between manoeuvres needs all of them, so its value here becomes part of the base.
     p = problem.driving(fitted.point)[i]
     return (
         replace(problem, flights=flights, base=p),
         replace(
             fitted,
             point=Point(p[: len(DERIVATIVES)], fitted.point.own[i : i + 1]),
-            innovations=(fitted.left[i],),
-            left=(fitted.left[i],),
+            innovations=(fitted.residuals[i],),
+            residuals=(fitted.residuals[i],),
             linear=(fitted.linear[i],),
         ),
     )
 
 
 def unfiltered(problem: Problem, fitted: Fitted) -> tuple[Problem, Fitted]:
-    """The same fit with its residual as the instruments have it."""
+    """Return the problem and its fit without a filter of the noise."""
     linear = tuple(as_measured(block) for block in fitted.linear)
-    return replace(problem, whitening=None), replace(fitted, innovations=fitted.left, linear=linear)
+    return replace(problem, whitening=None), replace(fitted, innovations=fitted.residuals, linear=linear)
 
 
 def _seen(problem: Problem) -> float:
-    """1 where the α channel reads the air, 0 where it is made from inertial sensors."""
+    """Return 1 where the α channel reads the air, 0 where it is computed from inertial sensors."""
     return 0.0 if problem.flights.alpha_is_derived else 1.0
 
 
 def with_floor(problem: Problem, air: AirModel) -> AirModel:
-    """The model with white noise not below half of what may be called noise at all.
+    """Return the model of the air with white noise of at least half the stated floor.
 
-    A record that was filtered before it was stored has next to no white noise; whitened by that, the
-    errors of a simplified model would count for a thousandfold.
+    A record that was filtered before storage has almost no white noise. Whitened by so little noise, the
+    errors of a simplified model would count a thousandfold.
     """
     white = air.white.copy()
     for c, least in zip(problem.channels, 0.5 * stated_floor(problem.flights), strict=True):
@@ -166,22 +172,23 @@ def with_floor(problem: Problem, air: AirModel) -> AirModel:
 
 
 def quiet_rms(problem: Problem, fitted: Fitted) -> FloatArray:
-    """Shape (channels,): root mean square of the residual where nothing was flown; the floor, as measured."""
+    """Return the root mean square of the residual where nothing was flown, shape (channels,)."""
     power, count = np.zeros(len(problem.channels)), np.zeros(len(problem.channels))
-    for flight, left in zip(problem.flights.flights, fitted.left, strict=True):
+    for flight, residual in zip(problem.flights.flights, fitted.residuals, strict=True):
         for c, (name, rows) in enumerate(zip(problem.channels, problem.rows(flight), strict=True)):
             inside = flight.is_quiet(flight.outputs[name].t)
-            power[c] += float(np.sum(left[rows][inside] ** 2))
+            power[c] += float(np.sum(residual[rows][inside] ** 2))
             count[c] += np.count_nonzero(inside)
-    whole = rms_of(problem, fitted.left)
-    # A few samples say nothing; the residual itself, coherent or not, is then the best there is.
+    whole = rms_of(problem, fitted.residuals)
+    # A few samples say nothing; the root mean square of the whole residual is then the best estimate.
     return np.where(count > _LEAST_SAMPLES, np.sqrt(power / np.maximum(count, 1.0)), whole)
 
 
 def instrument_noise(problem: Problem) -> FloatArray:
-    """Shape (4,): white noise of each channel from differences of its samples; 1 for one that is missing.
+    """Return the white noise of each channel from differences of its samples, shape (4,); 1 for a missing
+    channel.
 
-    A channel that reads in steps coarser than its noise does not differ at all where nothing is flown.
+    A channel with a resolution coarser than its noise shows no differences where nothing is flown.
     """
     least = _NONE_OF_PEAK * problem.flights.peaks
     white = dict(zip(problem.channels, np.maximum(problem.flights.white, least), strict=True))
@@ -189,34 +196,36 @@ def instrument_noise(problem: Problem) -> FloatArray:
 
 
 def system_of(problem: Problem, fitted: Fitted) -> FloatArray:
-    """Z_α, Z_q, M_α, M_q by which the aircraft answers the air."""
+    """Return Z_α, Z_q, M_α, M_q of the response to moving air."""
     return short_period(problem.driving(fitted.point)[0])
 
 
 def rows_of(problem: Problem, fitted: Fitted, i: int) -> Rows:
-    """What a fit leaves of manoeuvre ``i``, in order of time."""
+    """Return the residual of manoeuvre ``i`` in order of time."""
     t, channel, order = rows_in_time(problem.flights, i, problem.driving(fitted.point)[i])
-    return Rows(t, channel, fitted.left[i][order], float(np.mean(problem.flights.flights[i].slow[SPEED])))
+    return Rows(
+        t, channel, fitted.residuals[i][order], float(np.mean(problem.flights.flights[i].slow[SPEED]))
+    )
 
 
 def _quiet_parts(problem: Problem, fitted: Fitted, i: int) -> list[Rows]:
-    """The quiet stretches before and after, each a record of its own."""
+    """Return the quiet stretches before the first and after the last step, each as a record of its own."""
     flight = problem.flights.flights[i]
     whole = rows_of(problem, fitted, i)
     quiet = flight.is_quiet(whole.t)
     before = whole.t < flight.first_step_s
     return [
-        Rows(whole.t[inside], whole.channel[inside], whole.left[inside], whole.speed)
+        Rows(whole.t[inside], whole.channel[inside], whole.residual[inside], whole.speed)
         for inside in (quiet & before, quiet & ~before)
         if np.count_nonzero(inside) > 10 * len(problem.channels)
     ]
 
 
 def _without_offsets(rows: Sequence[Rows]) -> list[Rows]:
-    """The same less what a channel has in every stretch: an offset is an effect, no noise with a memory."""
+    """Return the stretches without the mean of each channel: an offset is an effect, not coloured noise."""
     offset = np.zeros(len(OUTPUTS))
     for c in range(len(OUTPUTS)):
-        picked = [r.left[r.channel == c] for r in rows]
+        picked = [r.residual[r.channel == c] for r in rows]
         if sum(len(p) for p in picked):
             offset[c] = float(np.mean(np.concatenate(picked)))
-    return [replace(r, left=r.left - offset[r.channel]) for r in rows]
+    return [replace(r, residual=r.residual - offset[r.channel]) for r in rows]

@@ -1,9 +1,9 @@
-"""Uncertain stamps: how well the time of a sample is known, and what that does to its value.
+"""Uncertain stamps: how exactly the time of a sample is known, and the error of its value that follows.
 
-A sample whose stamp is off by δt is off by δt times the rate at which its channel moves. That error is
-white however smooth the motion, so it is read from the differences of the residual: the part of their
-mean square that goes with the rate's square. Where a step of the command jerks the accelerometer, the time
-is known no better than the simulation's grid.
+A stamp with an error δt makes an error of δt times the rate of the channel. That error is white however
+smooth the motion is. Differences of the residual show it as the part of their mean square that grows with the
+square of the rate. Where a step of the command jerks the accelerometer, time is known no better than the
+simulation's grid.
 """
 
 import numpy as np
@@ -15,19 +15,20 @@ from advisor.gap.records.grid import STEP_S
 from advisor.gap.simulator.layout import ENTRIES
 
 _LEAST = {"q": 0.3, "a_z": 0.45}
-"""Channels that move quickly and are measured well; for each, from which error through its stamps on, beside
-its noise, that error counts. The accelerometer is rough at every step of the command, stamps or not."""
+"""By channel, least error through its stamps, relative to its noise, that counts. Only channels that move
+quickly and are measured well are used. The accelerometer's limit is higher, because it is rough at every step
+of the command."""
 _THIRD = np.array([1.0, -3.0, 3.0, -1.0])
 _BINS = 12
-"""Of the channel's rate, over which roughness is followed."""
+"""Number of bins of a channel's rate over which the roughness is followed."""
 _MEDIAN = 0.455
-"""Of the square of a standard normal number."""
+"""Median of the square of a standard normal number."""
 _FAR = 2.0
-"""Standard deviations of a stamp within which a sample may have been taken on the other side of a step."""
+"""Number of standard deviations of a stamp within which a sample may lie on the other side of a step."""
 
 
 def stamp_variance(problem: Problem, fitted: Fitted) -> list[FloatArray]:
-    """Per manoeuvre, shape (rows,): variance of each sample for not knowing quite when it was taken."""
+    """Return per manoeuvre, shape (rows,): variance of each sample for the uncertainty of its stamp."""
     return [
         (problem.jitter_s * rate) ** 2 + 0.25 * jerk**2
         for rate, jerk in zip(rates_of(problem, fitted), _jerks_of(problem, fitted), strict=True)
@@ -35,7 +36,8 @@ def stamp_variance(problem: Problem, fitted: Fitted) -> list[FloatArray]:
 
 
 def stamp_power(problem: Problem, fitted: Fitted) -> FloatArray:
-    """Shape (channels,): mean square that stamps which jitter add to each channel, whatever the model."""
+    """Return the mean square that jitter of the stamps adds to each channel, whatever the model, shape
+    (channels,)."""
     power = np.zeros(len(problem.channels))
     if problem.jitter_s == 0.0:
         return power
@@ -45,7 +47,7 @@ def stamp_power(problem: Problem, fitted: Fitted) -> FloatArray:
 
 
 def rates_of(problem: Problem, fitted: Fitted) -> list[FloatArray]:
-    """Per manoeuvre, shape (rows,): how fast each channel moves in the simulation at each stamp."""
+    """Return per manoeuvre, shape (rows,): rate of each channel in the simulation at each stamp."""
     flights = problem.flights.flights
     return [
         _read(problem, i, [np.gradient(y, flights[i].h) for y in grid])
@@ -54,7 +56,8 @@ def rates_of(problem: Problem, fitted: Fitted) -> list[FloatArray]:
 
 
 def _jerks_of(problem: Problem, fitted: Fitted) -> list[FloatArray]:
-    """The same: by how much it departs from a straight line, as far as the stamps are uncertain."""
+    """Return per manoeuvre, shape (rows,): largest deviation from a straight line within the stamps'
+    uncertainty."""
     reach = 0 if problem.jitter_s == 0.0 else 1 + int(_FAR * problem.jitter_s / STEP_S)
     return [
         _read(
@@ -67,7 +70,7 @@ def _jerks_of(problem: Problem, fitted: Fitted) -> list[FloatArray]:
 
 
 def _largest_near(y: FloatArray, reach: int) -> FloatArray:
-    """Running maximum over ``reach`` steps to either side."""
+    """Return the running maximum over ``reach`` steps to either side."""
     padded = np.pad(y, reach)
     return np.asarray(np.max([padded[k : k + len(y)] for k in range(2 * reach + 1)], axis=0))
 
@@ -78,9 +81,10 @@ def _flown(problem: Problem, fitted: Fitted) -> list[FloatArray]:
 
 
 def stamp_jitter(problem: Problem, fitted: Fitted, rates: list[FloatArray]) -> float:
-    """Standard deviation of the stamps in s; 0 where no residual is rougher when its channel moves.
+    """Return the standard deviation of the stamps in s; 0 where no residual gets rougher with the channel's
+    rate.
 
-    Of several channels the one counts that is disturbed most beside its noise.
+    The channel with the largest error relative to its noise decides.
     """
     found = [_jitter_in(problem, fitted, rates, c) for c in _LEAST if c in problem.channels]
     exceeded, jitter_s = max(found)
@@ -90,16 +94,17 @@ def stamp_jitter(problem: Problem, fitted: Fitted, rates: list[FloatArray]) -> f
 def _jitter_in(
     problem: Problem, fitted: Fitted, rates: list[FloatArray], channel: str
 ) -> tuple[float, float]:
-    """Power of what uncertain stamps do to a channel over the least that counts, and their deviation in s."""
+    """Return the power of the stamps' errors in a channel over its limit, and the standard deviation in s."""
     c = problem.channels.index(channel)
     power = float(np.sum(_THIRD**2))
     rough, moving = [], []
     for i, flight in enumerate(problem.flights.flights):
         rows = problem.rows(flight)[c]
-        rough.append(np.convolve(fitted.left[i][rows], _THIRD, mode="valid") ** 2 / power)
+        rough.append(np.convolve(fitted.residuals[i][rows], _THIRD, mode="valid") ** 2 / power)
         moving.append(np.convolve(rates[i][rows] ** 2, _THIRD**2, mode="valid") / power)
     y, x = np.concatenate(rough), np.concatenate(moving)
-    # Medians over bins of equal count: a few differences are large for another reason, a step of the command.
+    # Medians over bins of equal count: a step of the command makes a few differences large for another
+    # reason.
     bins = np.array_split(np.argsort(x), _BINS)
     level = np.array([np.median(y[k]) for k in bins]) / _MEDIAN
     X = np.column_stack([np.ones(_BINS), [np.mean(x[k]) for k in bins]]) / level[:, None]
@@ -109,5 +114,5 @@ def _jitter_in(
 
 
 def _read(problem: Problem, i: int, series: list[FloatArray]) -> FloatArray:
-    """Series on the grid, one an output, at the stamps of each channel, stacked."""
+    """Return series on the grid, one for each output, at the stamps of each channel, stacked."""
     return problem.read(problem.flights.flights[i], np.stack(series), np.zeros(len(ENTRIES)))

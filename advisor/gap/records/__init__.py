@@ -1,1 +1,1 @@
-"""Manoeuvres made ready for the comparison: what was measured, by what, and how well."""
+"""Manoeuvres prepared for the comparison: which channels were measured, by which instrument, and how well."""

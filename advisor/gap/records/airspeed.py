@@ -1,7 +1,7 @@
-"""The air speed during a manoeuvre: the slow, noisy instrument made smooth by the accelerometers.
+"""The air speed during a manoeuvre: a slow, noisy instrument, smoothed by the accelerometers.
 
-V̇ = a_x cos α + a_z sin α − g sin γ is integrated; a parabola in time, fitted to the measured
-air speed, takes the integral's drift out. The instrument gives the level, the accelerometers the shape.
+V̇ = a_x cos α + a_z sin α − g sin γ is integrated. A parabola in time, fitted to the measured air speed,
+removes the drift of the integral. The instrument gives the level, the accelerometers the shape.
 """
 
 from collections.abc import Sequence
@@ -16,19 +16,24 @@ from advisor.gap.records.grid import smooth
 from advisor.oem.airspeed import LARGEST_DISAGREEMENT
 
 _LEAST_SAMPLES = 6
-"""Of the instrument in a manoeuvre, from which on a parabola may be fitted to them ..."""
+"""Least number of air speed samples in a manoeuvre for the fit of a parabola. With fewer samples the smoothed
+reading is used."""
 _LEAST_SPARE = 10
-"""... and in all, beyond three a manoeuvre, for its noise to be known."""
+"""Least number of samples in all manoeuvres, minus three for each manoeuvre's parabola, for an estimate of
+the instrument's noise."""
 _LONGEST_MEMORY = 0.95
-"""Correlation from one sample to the next that is taken for the instrument's: beyond it is the aircraft's."""
+"""Largest correlation between neighbouring samples that is ascribed to the instrument. A higher correlation
+is motion of the aircraft."""
 _READ_OVER_S = 0.5
-"""Over which an air speed is averaged, where the motion does not say how it changed between readings."""
+"""Length in s of the average over the air speed where no accelerometer shows the change between two
+readings."""
 _SLOW_S = 1.0
-"""Over which the thrust's excess is averaged: quicker than the speed it changes, slower than the noise."""
+"""Length in s of the average over thrust minus drag: shorter than the speed changes, longer than
+accelerometer noise."""
 
 
 def measures_speed(maneuver: Maneuver) -> bool:
-    """Whether it has an air speed that is one of flight: a tube may be missing, or still plugged."""
+    """Return whether the manoeuvre has a plausible air speed; a tube may be missing, or still plugged."""
     speed = maneuver.channels.get("airspeed")
     if speed is None or speed.provenance == "given":
         return False
@@ -38,9 +43,10 @@ def measures_speed(maneuver: Maneuver) -> bool:
 def airspeed_on(
     grid: FloatArray, maneuver: Maneuver, start_s: float, true_over_read: float = 1.0
 ) -> FloatArray:
-    """Speed in m/s at ``grid`` seconds after ``start_s``, shape (n,), as it is read.
+    """Return the air speed as it is read, in m/s, shape (n,), at ``grid`` seconds after ``start_s``.
 
-    Accelerometers show how the true one changes: ``true_over_read`` times as much as one that is indicated.
+    Accelerometers show the change of the true air speed, which is ``true_over_read`` times that of the
+    reading.
     """
     found = maneuver.channels
     t, y = found["airspeed"].t - start_s, found["airspeed"].y
@@ -53,45 +59,47 @@ def airspeed_on(
         return as_read
     drift = np.polyfit(t[inside], y[inside] - np.interp(t[inside], grid, shape), 2)
     rebuilt = shape + np.polyval(drift, grid)
-    apart = np.std(y[inside] - np.interp(t[inside], grid, rebuilt))
-    # An instrument that disagrees with the motion (gusts, wind shear) is believed over the motion.
-    return rebuilt if apart < LARGEST_DISAGREEMENT * float(np.mean(y[inside])) else as_read
+    disagreement = np.std(y[inside] - np.interp(t[inside], grid, rebuilt))
+    # An instrument that disagrees with the motion (gusts, wind shear) is preferred to the motion.
+    return rebuilt if disagreement < LARGEST_DISAGREEMENT * float(np.mean(y[inside])) else as_read
 
 
-def speed_doubts(
-    stamps: Sequence[FloatArray], left: Sequence[FloatArray], durations_s: Sequence[float]
+def speed_error_factors(
+    stamps: Sequence[FloatArray], residuals: Sequence[FloatArray], durations_s: Sequence[float]
 ) -> list[FloatArray]:
-    """By how much level, slope and bow of each manoeuvre's speed may be wrong for the instrument's noise.
+    """Return how uncertain level, slope and curvature of each manoeuvre's air speed are for the instrument's
+    noise.
 
     Parameters
     ----------
-    stamps, left
-        Per manoeuvre, shape (n,): seconds since the record's start, and what the instrument reads there
-        beyond the speed that was made of it. Its size and its memory are taken from all manoeuvres.
+    stamps, residuals
+        Per manoeuvre, shape (n,): seconds since the start of the record, and the instrument's reading minus
+        the smoothed air speed. Size and correlation of the noise are estimated over all manoeuvres.
     durations_s
         Lengths of the records.
 
     Returns
     -------
-    Per manoeuvre a factor of the covariance of the three, shape (3, 3), m/s: of a parabola in time from -1 at
-    the record's start to 1 at its end. Shape (0, 0) where too few samples were taken to tell.
+    Per manoeuvre a factor of the covariance of the three coefficients, shape (3, 3), m/s. Time runs from -1
+    at the start of the record to 1 at its end. Shape (0, 0) where the samples are too few.
     """
-    spare = sum(max(len(e) - 3, 0) for e in left)
-    power = sum(float(e @ e) for e in left)
+    spare = sum(max(len(e) - 3, 0) for e in residuals)
+    power = sum(float(e @ e) for e in residuals)
     if spare < _LEAST_SPARE or power == 0.0:
-        return [np.empty((0, 0))] * len(left)
-    memory = np.clip(sum(float(e[1:] @ e[:-1]) for e in left) / power, 0.0, _LONGEST_MEMORY)
+        return [np.empty((0, 0))] * len(residuals)
+    memory = np.clip(sum(float(e[1:] @ e[:-1]) for e in residuals) / power, 0.0, _LONGEST_MEMORY)
     sigma = float(np.sqrt(power / spare * (1.0 + memory) / (1.0 - memory)))
-    doubts = []
+    factors = []
     for t, duration in zip(stamps, durations_s, strict=True):
         parabola = np.vander(2.0 * t / duration - 1.0, 3, increasing=True)
         enough = len(t) >= _LEAST_SAMPLES
-        doubts.append(sigma * np.linalg.pinv(np.linalg.qr(parabola)[1]) if enough else np.empty((0, 0)))
-    return doubts
+        factors.append(sigma * np.linalg.pinv(np.linalg.qr(parabola)[1]) if enough else np.empty((0, 0)))
+    return factors
 
 
 def along_the_path(grid: FloatArray, maneuver: Maneuver, start_s: float) -> FloatArray:
-    """Thrust less drag over mass, m/s², shape (n,): a_x cos α + a_z sin α; 0 where it was not measured."""
+    """Return thrust minus drag over mass, a_x cos α + a_z sin α, m/s², shape (n,); 0 where it was not
+    measured."""
     found = maneuver.channels
     if not all(name in found and len(found[name]) > 10 for name in ("a_x", "a_z", "alpha")):
         return np.zeros(len(grid))

@@ -1,4 +1,4 @@
-"""Jumps of the command: where between two stamps they happened, and which stamps were lost on the way."""
+"""Jumps of the command between two stamps, and the stamps that were lost."""
 
 import numpy as np
 
@@ -6,18 +6,18 @@ from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
 
 _STEEP, _SHORT_S = 0.15, 0.02
-"""Share of the command's range by which it must jump between two stamps no further apart than this; where
-they are, what matters is the jump times the interval."""
+"""Least jump between two stamps that counts as an edge, as a share of the command's range. The share holds
+for intervals of the second number, s; for others the product of jump and interval is compared."""
 _LOST = 1.5
-"""Intervals of the usual length from which on a stamp was lost."""
+"""Interval between two stamps, in usual intervals, above which a stamp counts as lost."""
 _HOLE_S, _HOLE = 0.15, 3.5
-"""A hole of the command's log: this long, and so many of its usual intervals."""
+"""Least length of a hole in the command's log, in s, and in usual intervals. A longer of the two counts."""
 _PULSE_S = 0.25
-"""A hole in which a pulse may have come and gone: those of a fast short period are no longer."""
+"""Length in s of a hole that may hide a whole pulse. Pulses for a fast short period are shorter."""
 
 
 def edges_of(t: FloatArray, u: FloatArray) -> FloatArray:
-    """Shape (m, 4), as ``Flight.edges``: where between two stamps a jump happened is not in the log.
+    """Return the edges of the command, shape (m, 4), with the columns of ``Flight.edges``.
 
     ``t`` and ``u`` are the command's stamps and values, both shape (n,).
     """
@@ -25,7 +25,7 @@ def edges_of(t: FloatArray, u: FloatArray) -> FloatArray:
     size = np.ptp(u)
     if size <= 0.0:
         return np.empty((0, 4))
-    # A jump may be spread over two intervals; each is uncertain by its own length.
+    # A jump may spread over two intervals; each has the uncertainty of its own length.
     interval = np.diff(t)
     least = _STEEP * size * min(float(np.median(interval)), _SHORT_S)
     steep = np.flatnonzero(np.abs(jump) * interval > least)
@@ -35,15 +35,16 @@ def edges_of(t: FloatArray, u: FloatArray) -> FloatArray:
 
 
 def held_from(t: FloatArray) -> FloatArray:
-    """From when on each value was held, shape (n,): its stamp, or the middle of those that were lost."""
+    """Return the time after which each value was held, shape (n,): its stamp, or the middle of the lost
+    stamps."""
     return np.asarray(t - np.append(0.0, 0.5 * _lost(t)))
 
 
 def step_unseen(maneuver: Maneuver) -> bool:
-    """Whether the command changed, or may have, while so many of its stamps were lost that nobody knows when.
+    """Return whether a step of the command may lie in a hole of the log, so that its time is unknown.
 
-    Between the first and the last step a whole pulse may lie in a hole: before and after it the command is
-    the same.
+    A whole pulse may lie in a hole between the first and the last step: the command is equal before and
+    after.
     """
     t, span = maneuver.channels["elevator"].t, maneuver.span
     interval = np.diff(t)
@@ -55,7 +56,8 @@ def step_unseen(maneuver: Maneuver) -> bool:
 
 
 def _lost(t: FloatArray) -> FloatArray:
-    """Shape (n - 1,): by how much each interval between stamps is longer than usual, if a stamp was lost."""
+    """Return by how much each interval exceeds the usual one where a stamp was lost, else 0, shape (n -
+    1,)."""
     interval = np.diff(t)
     usual = float(np.median(interval))
     return np.where(interval > _LOST * usual, interval - usual, 0.0)

@@ -1,4 +1,5 @@
-"""Manoeuvres as the diagnosis compares them: the command, slow inputs on a grid, outputs untouched."""
+"""Manoeuvres as the diagnosis compares them: the command, slow inputs on a grid, and outputs at their own
+stamps."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -10,54 +11,57 @@ from advisor.gap.simulator.layout import ALPHA_TRIM, REFERENCE, SCALED, SPEED
 from advisor.standard_gravity import GRAVITY_M_S2
 
 SPEED_CHANGE = 0.03
-"""Relative change of air speed from which on it is looked at."""
+"""Relative change of air speed, over all manoeuvres, above which its effect is examined."""
 _QUIET_AFTER = 0.6
-"""Share of the free response after which the motion has died down ..."""
+"""Share of the free response after which the motion counts as decayed."""
 _QUIET_AFTER_S = 1.5
-"""... but not before this: a mode change may have cut the response short."""
+"""Time in s after the last step before which the motion never counts as decayed. A mode change may cut the
+free response short."""
 
 
 @dataclass(frozen=True, slots=True)
 class Measured:
-    """One output channel of one manoeuvre."""
+    """Measurements of one output channel in one manoeuvre."""
 
     t: FloatArray
-    """Shape (n,). Seconds since the record's start."""
+    """Shape (n,). Seconds since the start of the record."""
     y: FloatArray
 
 
 @dataclass(frozen=True, slots=True)
 class Flight:
-    """One manoeuvre made ready. Times count from the start of its record."""
+    """One prepared manoeuvre. Times count from the start of its record."""
 
     number: int
     started_s: float
-    """Vehicle time of the record's start."""
+    """Vehicle time of the start of the record, s."""
     first_step_s: float
     last_step_s: float
     h: float
     n: int
     t_u: FloatArray
     t_held: FloatArray
-    """From when on each value was held: its stamp, or in the middle of those that were lost before it."""
+    """Time after which each value was held: its stamp, or the middle of the stamps that were lost before
+    it."""
     u: FloatArray
-    """The elevator command at its stamps, rad."""
+    """Elevator command at its stamps, rad."""
     u_trim: float
     slow: FloatArray
-    """Shape (7, n) on the grid: speed, a_x, bank, throttle, height, thrust less drag over weight, r sin φ."""
+    """Shape (7, n) on the grid: speed, a_x, bank, throttle, height, thrust minus drag over weight, r sin
+    φ."""
     trim: FloatArray
-    """Shape (4,): α and θ at the start, reference speed, 1 when derivatives scale with speed."""
+    """Shape (4,): α and θ at the start, reference speed, and 1 where derivatives scale with speed."""
     outputs: Mapping[str, Measured]
     edges: FloatArray
-    """Shape (m, 4). Jumps of the command: middle of the interval between stamps, jump × length, length, and
-    how much of that is for stamps that were lost."""
+    """Shape (m, 4). Edges of the command: middle of the interval between stamps (s), jump times length (rad
+    s), length (s), lost part (s)."""
     stamps: FloatArray = field(default_factory=lambda: np.empty(0))
-    """Shape (rows,): times of all outputs that are compared, one channel after another."""
+    """Shape (rows,): stamps of all compared outputs, one channel after another."""
     output: np.ndarray = field(default_factory=lambda: np.empty(0, dtype=np.int64))
     """Shape (rows,), int64: index into ``OUTPUTS`` of each row."""
-    speed_doubt: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
-    """Shape (3, 3), m/s, as ``airspeed.speed_doubts`` gives it, or (1, 1) of the level alone; (0, 0) where
-    nothing is known of it."""
+    speed_error_factor: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
+    """Factor of the covariance of the air speed's error, m/s: shape (3, 3) from
+    ``airspeed.speed_error_factors``, (1, 1) for the level alone, (0, 0) where unknown."""
 
     roll_rate: FloatArray | None = None
     """Shape (n,) on the grid, rad/s; None where the log has none."""
@@ -73,30 +77,31 @@ class Flight:
         return -GRAVITY_M_S2 * float(self.trim[REFERENCE]) / float(np.mean(self.slow[SPEED])) ** 2
 
     def at_constant_speed(self) -> "Flight":
-        """The same with derivatives that do not move with the air speed."""
+        """Return the manoeuvre with derivatives that do not scale with the air speed."""
         trim = self.trim.copy()
         trim[SCALED] = 0.0
         return replace(self, trim=trim)
 
     def coarser(self) -> "Flight":
-        """The same on a grid of twice the step."""
+        """Return the manoeuvre on a grid of twice the step."""
         n = (self.n + 1) // 2
         even = np.pad(self.slow, ((0, 0), (0, 2 * n - self.n)), mode="edge")
         return replace(self, h=2.0 * self.h, n=n, slow=even.reshape(len(even), n, 2).mean(axis=2))
 
     @property
     def duration_s(self) -> float:
-        """Length of the record."""
+        """Length of the record, s."""
         return self.n * self.h
 
     def is_quiet(self, t: FloatArray) -> np.ndarray:
-        """Shape (n,), bool: which times lie before the first step or late in the free response."""
+        """Return which of the times ``t`` lie before the first step or late in the free response, shape (n,),
+        bool."""
         free = self.duration_s - self.last_step_s
         died_down = self.last_step_s + max(_QUIET_AFTER * free, _QUIET_AFTER_S)
         return np.asarray((t < self.first_step_s) | (t > died_down))
 
     def quiet_stretches(self, channel: str) -> list[FloatArray]:
-        """What a channel measured before the first step, and late in the free response."""
+        """Return the measurements of a channel before the first step, and those late in the free response."""
         t, y = self.outputs[channel].t, self.outputs[channel].y
         quiet, before = self.is_quiet(t), t < self.first_step_s
         return [y[quiet & before], y[quiet & ~before]]
@@ -104,34 +109,35 @@ class Flight:
 
 @dataclass(frozen=True, slots=True)
 class Flights:
-    """All manoeuvres of a diagnosis with what they have in common."""
+    """All manoeuvres of a diagnosis, with their common properties."""
 
     flights: tuple[Flight, ...]
     channels: tuple[str, ...]
-    """Outputs every manoeuvre has."""
+    """Outputs that every manoeuvre has."""
     speed_measured: bool
     reference_m_s: float
     speed_moves: float
     """Largest relative departure of the speed from its mean over all manoeuvres."""
     alpha_is_derived: bool
-    """α is an autopilot's estimate from inertial sensors, blind to gusts, not a vane."""
+    """Whether α is an autopilot's estimate from inertial sensors, which sees no gust, instead of a vane's
+    reading."""
     alpha_is_smoothed: bool
-    """α was filtered before it was stored, as an estimate is: its roughness is no measure of its errors."""
+    """Whether α was filtered before it was stored. Its roughness then says nothing about its errors."""
     has: frozenset[str]
-    """Slow channels that were measured: airspeed (or an instrument that reads nothing), a_x, bank, throttle,
-    height, climb_rate."""
+    """Slow channels of all manoeuvres: airspeed (which may read nothing), a_x, bank, throttle, height,
+    climb_rate."""
     white: FloatArray
-    """Shape (channels,): standard deviation of the white part, robust against edges of the motion."""
+    """Shape (channels,): standard deviation of the white noise, robust against steps of the motion."""
     peaks: FloatArray
-    """Shape (channels,): the largest departure from the starting value, the median over all manoeuvres."""
+    """Shape (channels,): median over the manoeuvres of the largest departure from the starting value."""
 
     def __len__(self) -> int:
         return len(self.flights)
 
     @property
     def telling(self) -> list[int]:
-        """Which of the channels tell a cause by themselves: those that an instrument measured.
+        """Indices of the channels that identify a cause: those measured by an instrument.
 
-        An autopilot's estimate of α is off by what its filter makes of the motion.
+        The error of an autopilot's estimate of α depends on the motion, so that estimate identifies no cause.
         """
         return [c for c, name in enumerate(self.channels) if name != "alpha" or not self.alpha_is_derived]

@@ -1,8 +1,7 @@
-"""How much of what is left is only noise.
+"""How much of a residual is noise.
 
-Beside the instrument's white noise, which differences of the raw samples show (``Flights.white``): whether a
-record has been filtered before it was stored (then those differences say nothing), and how many
-independent samples a coloured residual is worth.
+Differences of raw samples show the white noise of an instrument (``Flights.white``), unless the record was
+filtered before storage. A coloured residual has a smaller effective sample size.
 """
 
 import numpy as np
@@ -11,41 +10,45 @@ from advisor.flight.messages import FloatArray
 from advisor.gap.records.flights import Flights
 
 TOLERANCE = 0.02
-"""Of the channel's peak: what is called noise in a record that was filtered before it was stored."""
-DOUBT = 2.5
-"""How many times a floor that is stated, not measured, must be exceeded to count."""
+"""Noise that is assumed in a record filtered before storage, as a share of the channel's peak."""
+STATED_FLOOR_MARGIN = 2.5
+"""Factor by which a residual must exceed a stated floor to count. A stated floor is an assumption, not a
+measurement."""
 _SMOOTH = 1e-3
-"""Share of its peak below which a channel has less white noise than any instrument."""
+"""White noise over the channel's peak below which a channel was filtered: no instrument is so quiet."""
 _RAW = 1e-2
-"""Share from which on a channel has its instrument's noise, though the angle of attack was filtered."""
+"""White noise over the channel's peak above which a channel still has its instrument's noise, although α was
+filtered."""
 
 
 def prefiltered(flights: Flights) -> dict[str, bool]:
-    """Channels of a record that was filtered, or that are smoother than white noise can be."""
+    """Return by channel whether it was filtered, or is smoother than an instrument's white noise."""
     smooth = flights.white < (_RAW if flights.alpha_is_smoothed else _SMOOTH) * flights.peaks
     smooth |= flights.alpha_is_smoothed & (np.array(flights.channels) == "alpha")
     return dict(zip(flights.channels, smooth.tolist(), strict=True))
 
 
-def doubts(flights: Flights) -> FloatArray:
-    """Shape (channels,): how many times its floor a channel must show."""
-    return np.where(list(prefiltered(flights).values()), DOUBT, 1.0)
+def floor_margins(flights: Flights) -> FloatArray:
+    """Return the factor by which each channel must exceed its floor, shape (channels,)."""
+    return np.where(list(prefiltered(flights).values()), STATED_FLOOR_MARGIN, 1.0)
 
 
 def stated_floor(flights: Flights) -> FloatArray:
-    """Shape (channels,): the least ever called noise; 2 % of peak where the record was filtered before."""
+    """Return the least noise of each channel, shape (channels,): 2 % of the peak where it was filtered before
+    storage."""
     smooth = np.array(list(prefiltered(flights).values()))
     return np.maximum(flights.white, np.where(smooth, TOLERANCE * flights.peaks, 0.0))
 
 
 def tolerance_of(flights: Flights) -> FloatArray:
-    """Shape (channels,): what is called noise where a channel was filtered before it was recorded, else 0."""
+    """Return the assumed noise of channels that were filtered before storage, else 0, shape (channels,)."""
     return np.where(list(prefiltered(flights).values()), stated_floor(flights), 0.0)
 
 
-def independent_samples(left: FloatArray) -> float:
-    """How many independent samples a residual is worth: N/(1 + 2 Σ ρ_k), summed to its first zero."""
-    v = left - np.mean(left)
+def effective_sample_size(residual: FloatArray) -> float:
+    """Return the effective sample size N/(1 + 2 Σ ρ_k) of a residual, with the sum up to the first zero of
+    ρ."""
+    v = residual - np.mean(residual)
     n = len(v)
     power = float(v @ v)
     if n < 8 or power <= 0.0:

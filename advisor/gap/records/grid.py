@@ -1,15 +1,15 @@
-"""The even grid of time on which a manoeuvre is simulated."""
+"""The even time grid on which a manoeuvre is simulated."""
 
 import numpy as np
 
 from advisor.flight.messages import FloatArray
 
 STEP_S = 0.005
-"""A hundredth of the fastest short period, as fine as stamps are known."""
+"""Step of the grid in s: a hundredth of the fastest short period, and as fine as stamps are known."""
 
 
 def smooth(y: FloatArray, seconds: float) -> FloatArray:
-    """Centred moving average over ``seconds`` of a series on the grid, shape (n,)."""
+    """Return the centred moving average over ``seconds`` of a series on the grid, shape (n,)."""
     width = max(1, round(seconds / STEP_S)) | 1
     padded = np.pad(y, width // 2, mode="edge")
     return np.convolve(padded, np.full(width, 1.0 / width), mode="valid")

@@ -1,4 +1,4 @@
-"""Manoeuvres made ready: what of them is put on the grid, and what is known of their instruments."""
+"""Preparation of the manoeuvres: slow inputs on the grid, and the properties of the instruments."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
@@ -12,7 +12,7 @@ from advisor.gap.records.airspeed import (
     airspeed_on,
     along_the_path,
     measures_speed,
-    speed_doubts,
+    speed_error_factors,
 )
 from advisor.gap.records.edges import edges_of, held_from
 from advisor.gap.records.flights import Flight, Flights
@@ -27,9 +27,10 @@ from advisor.standard_gravity import GRAVITY_M_S2
 
 
 def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft, true_over_read: float = 1.0) -> Flights:
-    """Make the manoeuvres ready; those that cannot be used are left out (``usable_of``).
+    """Prepare the manoeuvres for the comparison, without those that ``usable_of`` rejects.
 
-    ``true_over_read``: how many times the air speed that is read the true one is, where that is known.
+    ``true_over_read`` is the ratio of the true air speed to the air speed that is read, 1 where it is
+    unknown.
     """
     usable = usable_of(maneuvers)
     speeds = [m.channels["airspeed"].y for m in usable if measures_speed(m)]
@@ -46,12 +47,12 @@ def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft, true_over_read: f
     )
     if shown is None:
         moves = _largest_departure(flights)
-        flights = _with_doubt(flights, usable)
+        flights = _with_speed_errors(flights, usable)
     else:
         moves = shown.moves
         flights = tuple(
-            replace(f, speed_doubt=np.array([[doubt]]))
-            for f, doubt in zip(flights, shown.doubt_m_s, strict=True)
+            replace(f, speed_error_factor=np.array([[factor]]))
+            for f, factor in zip(flights, shown.std_m_s, strict=True)
         )
     common = set.intersection(*(set(f.outputs) for f in flights)) if flights else set()
     channels = tuple(name for name in OUTPUTS if name in common)
@@ -66,7 +67,7 @@ def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft, true_over_read: f
         return [y for f in flights for y in f.quiet_stretches(channel)]
 
     smoothed = "alpha" in channels and is_smoothed(quiet("alpha"))
-    # Where a whole record went through a filter on the ground, a smooth α is no sign of an estimator.
+    # Where the whole record was filtered on the ground, a smooth α does not indicate an estimator.
     rough = "alpha" in channels and is_rough(quiet("alpha"))
     derived = any(is_estimate(m, smoothed and not is_filtered(quiet("q")), rough) for m in usable)
     whole = [[f.outputs[c].y for f in flights] for c in channels]
@@ -78,12 +79,12 @@ def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft, true_over_read: f
 
 
 def _departure(y: FloatArray) -> float:
-    """The largest departure of a series from its starting value."""
+    """Return the largest departure of a series from its starting value."""
     return float(np.max(np.abs(y - np.median(y[: max(5, len(y) // 50)]))))
 
 
 def _about_their_mean(flights: Iterable[Flight]) -> tuple[Flight, ...]:
-    """The same with the thrust's excess counted from its mean over all manoeuvres."""
+    """Return the manoeuvres with thrust minus drag relative to its mean over all manoeuvres."""
     found = tuple(flights)
     if found:
         mean = float(np.mean(np.concatenate([f.slow[THRUST] for f in found])))
@@ -92,21 +93,22 @@ def _about_their_mean(flights: Iterable[Flight]) -> tuple[Flight, ...]:
     return found
 
 
-def _with_doubt(flights: Sequence[Flight], maneuvers: Sequence[Maneuver]) -> tuple[Flight, ...]:
-    """The same with what is to be doubted of their air speed."""
-    stamps, left = [], []
+def _with_speed_errors(flights: Sequence[Flight], maneuvers: Sequence[Maneuver]) -> tuple[Flight, ...]:
+    """Return the manoeuvres with the uncertainty of their air speeds."""
+    stamps, residuals = [], []
     for flight, maneuver in zip(flights, maneuvers, strict=True):
         read = maneuver.channels["airspeed"].cut(flight.started_s, flight.started_s + flight.duration_s)
         t = read.t - flight.started_s
         grid = (np.arange(flight.n) + 0.5) * flight.h
         stamps.append(t)
-        left.append(read.y - np.interp(t, grid, flight.slow[SPEED]))
-    doubts = speed_doubts(stamps, left, [flight.duration_s for flight in flights])
-    return tuple(replace(f, speed_doubt=doubt) for f, doubt in zip(flights, doubts, strict=True))
+        residuals.append(read.y - np.interp(t, grid, flight.slow[SPEED]))
+    factors = speed_error_factors(stamps, residuals, [flight.duration_s for flight in flights])
+    return tuple(replace(f, speed_error_factor=factor) for f, factor in zip(flights, factors, strict=True))
 
 
 def _largest_departure(flights: Sequence[Flight]) -> float:
-    """Of the smoothed air speed from its mean over all manoeuvres, relative; 0 without a manoeuvre."""
+    """Return the largest relative departure of the air speed from its mean over all manoeuvres; 0 without
+    any."""
     if not flights:
         return 0.0
     speeds = np.concatenate([flight.slow[SPEED] for flight in flights])
@@ -114,7 +116,10 @@ def _largest_departure(flights: Sequence[Flight]) -> float:
 
 
 def _ready(m: Maneuver, reference: float, level: float | None, true_over_read: float) -> Flight:
-    """On the grid; ``level`` is its speed in m/s before the first step, None where the log has the speed."""
+    """Return a manoeuvre on the grid.
+
+    ``level`` is the air speed in m/s before the first step; None where the log has an air speed.
+    """
     start, end = recorded(m)
     n = int(np.ceil((end - start) / STEP_S)) + 1
     grid: FloatArray = (np.arange(n, dtype=np.float64) + 0.5) * STEP_S
@@ -137,7 +142,7 @@ def _ready(m: Maneuver, reference: float, level: float | None, true_over_read: f
     throttle = on_grid("throttle", 0.0)
     height = on_grid("height", 1e3)
     along = along_the_path(grid, m, start) / GRAVITY_M_S2
-    # Without a yaw rate in the log a bank is a coordinated turn.
+    # Without a yaw rate in the log, a bank is taken as a coordinated turn.
     yaw_rate = smooth(on_grid("r", 0.0), 0.1) if "r" in m.channels else GRAVITY_M_S2 / speed * np.sin(bank)
     turn = yaw_rate * np.sin(bank)
     slow = np.vstack(SLOW._replace(speed=speed, a_x=a_x, bank=bank, height=height, thrust=along, turn=turn,
@@ -164,7 +169,7 @@ def _ready(m: Maneuver, reference: float, level: float | None, true_over_read: f
 
 
 def _with_rows(flight: Flight, channels: Sequence[str]) -> Flight:
-    """The same with the stamps of its channels laid end to end."""
+    """Return the manoeuvre with the stamps of its channels one after another."""
     times = [flight.outputs[c].t for c in channels]
     output = np.repeat([OUTPUTS.index(c) for c in channels], [len(t) for t in times])
     return replace(flight, stamps=np.concatenate(times), output=output.astype(np.int64))

@@ -1,19 +1,21 @@
-"""Where the angle of attack comes from: an instrument or an estimator."""
+"""The source of the angle of attack: an instrument or an estimator."""
 
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.renewal import renewed
 
 _ESTIMATED_HZ = 22.0
-"""ArduPilot renews its estimate of α 20 times a second at most ..."""
+"""Rate in Hz below which α may be ArduPilot's estimate, which is renewed at most 20 times per second."""
 _TELLING_HZ = 15.0
-"""... and its ``.bin`` logs hold ten of these: so far apart an estimate is as rough as an instrument."""
+"""Rate in Hz above which roughness identifies an instrument. ArduPilot's ``.bin`` logs hold ten estimates per
+second, which look as rough as a vane."""
 
 
 def is_estimate(m: Maneuver, smoothed: bool, rough: bool) -> bool:
-    """Whether α is made from inertial sensors, as it says of itself.
+    """Return whether α is an estimate from inertial sensors.
 
-    ArduPilot says so of whatever it sends. What is renewed too fast for its estimator, or as rough as the
-    noise of an instrument where that tells the two apart, is a vane's, unless it is smooth.
+    ArduPilot marks every α as derived. An α that is renewed faster than its estimator is a vane's. So is one
+    as rough as an instrument, where the rate makes roughness informative. A smooth record is an estimate all
+    the same.
     """
     alpha = m.channels.get("alpha")
     if alpha is None or alpha.provenance != "derived":

@@ -1,8 +1,8 @@
-"""Is noise white, or was a record filtered before it was stored? Told by differences of raw samples.
+"""Smoothness of a record: white noise, or a filter before storage, identified by differences of raw samples.
 
-Where nothing is flown, differences of white noise are as large over two samples as over one. Moving air is a
-process of first order at short times, whose differences grow by at most √2; what a filter or an
-autopilot's estimator has smoothed grows by more.
+Where nothing is flown, differences of white noise are equally large over one and over two samples. Moving air
+is a first-order process at short times, and its differences grow by at most √2. Differences of filtered
+records grow by more.
 """
 
 from collections.abc import Sequence
@@ -14,18 +14,19 @@ from advisor.flight.robust import robust_std
 
 _WEIGHTS = np.array([1.0, -4.0, 6.0, -4.0, 1.0])
 _ROUGH = 1.6
-"""Growth of differences over two samples up to which noise is an instrument's; ArduPilot's estimates have
-2.4 and more ..."""
+"""Largest growth of the differences from one to two samples that is ascribed to an instrument. ArduPilot's
+estimates show 2.4 and more."""
 _SMOOTHED = 2.0
-"""... from which on something has been filtered ..."""
+"""Growth of the differences above which the record was filtered."""
 _FILTERED = 6.0
-"""... and from which on next to nothing is left above its edge: no estimator on board is so thorough."""
+"""Growth of the differences above which a filter left almost nothing above its edge. No estimator on board
+does that."""
 
 
 def white_part(series: Sequence[FloatArray], stride: int = 1) -> float:
-    """Standard deviation of the white noise in stretches of one channel, from fourth differences.
+    """Return the standard deviation of the white noise in stretches of one channel, from fourth differences.
 
-    The median of |d| instead of the mean square: steps of the motion are few and large.
+    The median of |d| replaces the mean square, because steps of the motion are few and large.
     """
     differences = []
     for y in series:
@@ -38,21 +39,21 @@ def white_part(series: Sequence[FloatArray], stride: int = 1) -> float:
 
 
 def is_rough(quiet: Sequence[FloatArray]) -> bool:
-    """Whether stretches in which nothing was flown are as rough as white noise."""
+    """Return whether quiet stretches are as rough as white noise."""
     return white_part(quiet) > 0.0 and _growth(quiet) < _ROUGH
 
 
 def is_smoothed(quiet: Sequence[FloatArray]) -> bool:
-    """Whether stretches in which nothing was flown are smoother than instruments and air can be."""
+    """Return whether quiet stretches are smoother than instruments and moving air can be."""
     return _growth(quiet) > _SMOOTHED
 
 
 def is_filtered(quiet: Sequence[FloatArray]) -> bool:
-    """Whether they are as smooth as a low-pass on the ground leaves them, before a record is stored."""
+    """Return whether quiet stretches are as smooth as after a low-pass filter on the ground."""
     return _growth(quiet) > _FILTERED
 
 
 def _growth(quiet: Sequence[FloatArray]) -> float:
-    """By how much differences grow with the stride; 0 where nothing moves at all."""
+    """Return the ratio of the differences over two samples to those over one; 0 where nothing moves."""
     white = white_part(quiet)
     return white_part(quiet, stride=2) / white if white > 0.0 else 0.0

@@ -1,7 +1,7 @@
-"""The air speed of a flight that has no instrument for it: its level and changes, as the motion shows them.
+"""The air speed of a flight without an air speed sensor: level and changes, from the motion.
 
-What turns specific force into rate of α is 1/V: α̇ − q = (a_z cos α − a_x sin α + g cos(θ − α))/V. From there
-the accelerometers show the change.
+The factor 1/V turns specific force into rate of α, α̇ − q = (a_z cos α − a_x sin α + g cos(θ − α))/V. The
+accelerometers show how V changes.
 """
 
 from collections.abc import Sequence
@@ -14,40 +14,42 @@ from advisor.flight.messages import FloatArray
 from advisor.flight.motion import bank_at, integrated, path_turning, speed_rate_at
 
 _BLOCK_S = 1.0
-"""Over which errors of the motion are one and the same: an offset's remainder, a gust."""
+"""Length in s of the blocks over which errors of the motion are fully correlated, such as a gust or the rest
+of an offset."""
 _LARGER = 3.0
-"""Errors are up to so many times what blocks of a second show: α sees gusts, the integral does not."""
-_APART = 6.0
-"""Scatter of the manoeuvres' speeds over what blocks show from which on they differ ..."""
-_LEAST_APART = 0.02
-"""... and the scatter itself, relative."""
+"""Factor by which errors may exceed the scatter between blocks: α sees gusts, the integral of the force does
+not."""
+_SPEEDS_DIFFER = 6.0
+"""Scatter of the manoeuvres' speeds over the error from blocks, above which the speeds differ."""
+_LEAST_DIFFERENCE = 0.02
+"""Least relative scatter of the manoeuvres' speeds that counts as a difference."""
 _FLOWN = 0.05
-"""Standard deviation of the speed that was flown about the one that was meant, relative ..."""
-_LEAST_DOUBT = 0.01
-"""... and of the best that the motion shows."""
+"""Prior standard deviation of a manoeuvre's speed about the intended speed, relative."""
+_LEAST_STD = 0.01
+"""Least standard deviation of a speed from the motion, relative."""
 
 
 @dataclass(frozen=True)
 class Speeds:
-    """What is known of the speeds of manoeuvres that were flown without an instrument for them."""
+    """Speeds of manoeuvres that were flown without an air speed sensor."""
 
     before_m_s: FloatArray
-    """Shape (manoeuvres,): before the first step."""
-    doubt_m_s: FloatArray
-    """Shape (manoeuvres,): standard deviation of that."""
-    apart: bool
-    """Whether the motion shows beyond doubt that they differ."""
+    """Shape (manoeuvres,): speed before the first step, m/s."""
+    std_m_s: FloatArray
+    """Shape (manoeuvres,): standard deviation of the speed before the first step, m/s."""
+    differ: bool
+    """Whether the motion shows that the speeds of the manoeuvres differ."""
 
     @property
     def moves(self) -> float:
-        """Largest relative departure from the mean; 0 where none is certain."""
-        return float(np.max(np.abs(self.before_m_s / np.mean(self.before_m_s) - 1.0))) if self.apart else 0.0
+        """Largest relative departure from the mean speed; 0 where the speeds do not certainly differ."""
+        return float(np.max(np.abs(self.before_m_s / np.mean(self.before_m_s) - 1.0))) if self.differ else 0.0
 
 
 def speed_of_the_motion(maneuvers: Sequence[Maneuver]) -> float | None:
-    """The air speed in m/s without an instrument for it: what turns specific force into rate of α.
+    """Return the air speed in m/s that relates specific force to the rate of α; no sensor is needed.
 
-    None where a channel is missing, or the flight shows no force.
+    None where a channel is missing, or where the flight shows no force.
     """
     seen = [_turned_and_pushed(m) for m in maneuvers]
     product, square = 0.0, 0.0
@@ -61,10 +63,10 @@ def speed_of_the_motion(maneuvers: Sequence[Maneuver]) -> float | None:
 
 
 def speeds_about(maneuvers: Sequence[Maneuver], level_m_s: float) -> Speeds:
-    """Speeds about the one that was meant, as far as the motion of each manoeuvre shows them.
+    """Return the speed of each manoeuvre about the intended speed, as far as its motion shows a difference.
 
-    What the motion shows may be off by some per cent in all of them alike, for a scale of α or of an
-    accelerometer: their mean is left where it is.
+    A scale error of α or of an accelerometer shifts all speeds alike by some per cent. The mean therefore
+    stays at the intended speed.
     """
     meant = np.full(len(maneuvers), level_m_s)
     unknown = Speeds(meant, _FLOWN * meant, False)
@@ -84,20 +86,20 @@ def speeds_about(maneuvers: Sequence[Maneuver], level_m_s: float) -> Speeds:
         return unknown
     scatter = float(np.std(shown, ddof=1) / np.mean(shown))
     known = errors / shown
-    off, doubt = np.mean(shown) / shown - 1.0, np.maximum(_LARGER * known, _LEAST_DOUBT)
+    off, std = np.mean(shown) / shown - 1.0, np.maximum(_LARGER * known, _LEAST_STD)
     # Gusts spoil what one manoeuvre shows: then it is nearer to what was meant than that.
-    weight = _FLOWN**2 / (_FLOWN**2 + doubt**2)
-    apart = scatter > max(_LEAST_APART, _APART * float(np.sqrt(np.mean(known**2))))
-    return Speeds(meant * (1.0 + weight * off), level_m_s * np.sqrt(weight) * doubt, apart)
+    weight = _FLOWN**2 / (_FLOWN**2 + std**2)
+    differ = scatter > max(_LEAST_DIFFERENCE, _SPEEDS_DIFFER * float(np.sqrt(np.mean(known**2))))
+    return Speeds(meant * (1.0 + weight * off), level_m_s * np.sqrt(weight) * std, differ)
 
 
 def speed_without_instrument(
     grid: FloatArray, maneuver: Maneuver, start_s: float, level_m_s: float
 ) -> FloatArray:
-    """Speed in m/s at ``grid`` seconds after ``start_s``, shape (n,), as the accelerometers show its change.
+    """Return the air speed in m/s at ``grid`` seconds after ``start_s``, shape (n,), from the accelerometers.
 
-    Before the first step the aircraft is trimmed and its speed steady, at ``level_m_s``: what is read there
-    is an offset of the accelerometers or the attitude. Constant where a channel is missing.
+    Before the first step the aircraft is trimmed at the steady speed ``level_m_s``: an acceleration there is
+    an offset of accelerometers or attitude. The speed is constant where a channel is missing.
     """
     found = maneuver.channels
     level = np.full(len(grid), level_m_s)
@@ -113,10 +115,12 @@ def speed_without_instrument(
 def _turned_and_pushed(
     maneuver: Maneuver, level_m_s: float | None = None
 ) -> tuple[FloatArray, FloatArray, FloatArray] | None:
-    """Stamps, and both sides of the equation in integral form, the second times V; None without a channel.
+    """Return stamps, and both sides of the equation in integral form, the second times V; None without a
+    channel.
 
-    A straight line in time is taken out of both, which offsets of gyro and accelerometer make. With a level
-    the second is times the speed before the first step: what changes from there is made out.
+    Offsets of gyro and accelerometer make a straight line in time, which is removed from both sides. With
+    ``level_m_s`` the second side is multiplied by the speed before the first step, and the change of speed
+    since is known.
     """
     found = maneuver.channels
     if not all(name in found and len(found[name]) > 10 for name in ("alpha", "q", "a_z", "theta")):

@@ -1,4 +1,4 @@
-"""Which manoeuvres can be used, and what of each was recorded while command and pitch rate both were."""
+"""Which manoeuvres can be used, and the part of each in which command and pitch rate were both recorded."""
 
 from collections.abc import Sequence
 
@@ -12,26 +12,27 @@ from advisor.gap.records.flights import Measured
 from advisor.gap.simulator.layout import OUTPUTS
 
 LEAST_SAMPLES = 15
-"""Of a channel in a manoeuvre: what a derived α of 8 Hz brings in the shortest."""
+"""Least number of samples of a channel in a manoeuvre. A derived α at 8 Hz has as many in the shortest
+manoeuvre."""
 _LEAST_RENEWED = 30
-"""Renewals below which a channel that repeats itself is taken as it is: a vane may stick."""
+"""Least number of renewals below which a repeated value is kept, because a vane may stick."""
 _MANY_HZ, _ENOUGH_HZ = 80.0, 50.0
-"""Rate from which on neighbours are averaged, and the one that is enough: six samples a period of the fastest
-structure that is sought, fifteen of the fastest short period."""
+"""Rate in Hz above which neighbouring samples are averaged, and the rate that remains. The rest gives six
+samples per period of the fastest structural mode, and fifteen of the fastest short period."""
 _PAIR = 2
 _NEIGHBOURS = 1.5
-"""Times the usual interval between stamps that are next to each other."""
+"""Longest distance between neighbouring stamps, in usual intervals."""
 DEPARTED_RAD = 1.0
-"""Swing of the angle of attack that no equation about a trim describes any more."""
+"""Range of the angle of attack in rad at which the aircraft departed: no equation about a trim applies."""
 _ENOUGH = 4
-"""Manoeuvres with all that is needed that are enough to leave the others out."""
+"""Least number of complete manoeuvres that allows incomplete ones to be left out."""
 
 
 def usable_of(maneuvers: Sequence[Maneuver]) -> list[Maneuver]:
-    """The manoeuvres that can be used, in their order.
+    """Return the usable manoeuvres in their order.
 
-    Left out are those without elevator or pitch rate, those that departed, and, where enough others are
-    left, those in which a step of the command fell into a hole of the log or without an angle of attack.
+    A manoeuvre without elevator or pitch rate, or with a departure, is left out. Where enough others remain,
+    so is one without angle of attack, or with a step of the command in a hole of the log.
     """
     usable = [m for m in maneuvers if _is_recorded(m) and not _departed(m)]
     for is_whole in (_steps_seen, _has_alpha):
@@ -42,7 +43,7 @@ def usable_of(maneuvers: Sequence[Maneuver]) -> list[Maneuver]:
 
 
 def why_left_out(m: Maneuver) -> str:
-    """Say of a manoeuvre that ``usable_of`` left out what it lacks."""
+    """Return what a manoeuvre lacks that ``usable_of`` left out."""
     if not _is_recorded(m):
         return "elevator or pitch rate were not recorded throughout"
     if _departed(m):
@@ -53,13 +54,13 @@ def why_left_out(m: Maneuver) -> str:
 
 
 def recorded(m: Maneuver) -> tuple[float, float]:
-    """Vehicle times in s between which both elevator and pitch rate were recorded."""
+    """Return the vehicle times in s between which both elevator and pitch rate were recorded."""
     both = m.channels["elevator"].t, m.channels["q"].t
     return max(float(t[0]) for t in both), min(float(t[-1]) for t in both)
 
 
 def outputs_of(m: Maneuver) -> dict[str, Measured]:
-    """Channels that are compared, as far as they were renewed meanwhile; times from its beginning."""
+    """Return the compared channels with their renewed samples, in seconds since the manoeuvre's beginning."""
     start, end = recorded(m)
     outputs = {}
     for name in OUTPUTS:
@@ -74,9 +75,10 @@ def outputs_of(m: Maneuver) -> dict[str, Measured]:
 
 
 def condensed(t: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Means of neighbours in time, ``t`` and ``y`` of shape (n,), where a channel comes faster than it need.
+    """Return the means of neighbouring samples where a channel comes faster than needed, shapes (n,).
 
-    None of what is sought changes within them, and noise weighs the same: every step takes less time.
+    Effects change little between neighbours, and the noise keeps its weight, so every step of a fit takes
+    less time.
     """
     interval = float(np.median(np.diff(t))) if len(t) > 1 else 1.0
     together = int(1.0 / (_ENOUGH_HZ * interval) + 1e-3) if interval < 1.0 / _MANY_HZ else 1

@@ -1,1 +1,1 @@
-"""Which effects are there: screened, fitted, judged on manoeuvres kept out, added one after another."""
+"""The search for effects: screening, fits, judgement on held-out manoeuvres, and addition one by one."""

@@ -1,4 +1,5 @@
-"""Which: every effect is screened, the few worth it are fitted fully, and the best judgement comes first."""
+"""The ranking of effects: all are screened, the promising ones are fitted fully, and the best judgement comes
+first."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -6,107 +7,106 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.gap.candidates.variant import Variant
-from advisor.gap.fitting.belief import log_belief
 from advisor.gap.fitting.fit import Fitted, fit
 from advisor.gap.fitting.holdout import HeldOut
+from advisor.gap.fitting.prior import log_prior
 from advisor.gap.fitting.problem import Point, Problem, counts
-from advisor.gap.fitting.uncertainty import belief_in, covariance, worth
-from advisor.gap.search.merit import LEAST_BELIEF, LEAST_GAIN, Judged, size_of
-from advisor.gap.search.score import addition, is_plain, predict_alike, smallest_of
+from advisor.gap.fitting.uncertainty import covariance, effective_samples, log_prior_of
+from advisor.gap.search.acceptance import LEAST_GAIN, LEAST_PRIOR_GAIN, Judged, size_of
+from advisor.gap.search.score import addition, is_baseline, predict_alike, smallest_of
 from advisor.gap.search.screen import Screen, Screened, likeliest_first
 from advisor.gap.simulator.layout import DERIVATIVES
 
 _PROMISE = 0.7
-"""Share of the least that the screening must promise before a full fit is spent on a candidate."""
+"""Share of the least gain that the screening must promise before a full fit."""
 _ITERATIONS = 8
 _TO_THE_END = 25
-"""Of a full fit of a candidate, and of the one that comes out first."""
+"""Most iterations of the best candidate's fit; other candidates get ``_ITERATIONS``."""
 _FITS = 5
-"""Candidates that get a full fit after the screening."""
+"""Most candidates with a full fit after the screening."""
 _RIVAL = 0.3
-"""Share of the best promise below which a candidate is no rival."""
+"""Least promise of a candidate for a full fit, as a share of the best promise."""
 _LACKING = 0.2
-"""Share of what the best explains that a candidate may lack and still be followed to its end."""
+"""Share of the best decrease of the cost that a candidate may lack and still be fitted to the end."""
 _GROSS = 300.0
-"""Log likelihood promised by the best from which on the right model is far from where the screening looks."""
+"""Promised log likelihood above which the right model is far from the range of the screening."""
 _GROSS_FITS = 8
 _GROSS_RIVAL = 0.05
-"""Full fits then, and the share of the best promise that earns one."""
+"""Most full fits in that case, and the least share of the best promise that earns one."""
 _TELLS = 3.0
-"""Log probability beforehand by which one effect must be likelier than another to be believed for that."""
+"""Least difference of the prior terms for which one effect is preferred to another with equal motion."""
 
 
 def candidates_for(problem: Problem, fitted: Fitted, variants: Sequence[Variant]) -> list[Screened]:
-    """The screening, without the effects the model has already."""
+    """Return the screened effects that the model does not have yet."""
     present = {e.effect for e in fitted.point.effects}
-    independent = counts(problem)
-    known = covariance(problem, fitted, independent)[: len(DERIVATIVES), : len(DERIVATIVES)]
-    plain = belief_in(problem, fitted, independent)
+    effective = counts(problem)
+    known = covariance(problem, fitted, effective)[: len(DERIVATIVES), : len(DERIVATIVES)]
+    baseline = log_prior_of(problem, fitted, effective)
 
-    def believed(point: Point) -> float:
-        if problem.believed is None:
+    def prior_gain(point: Point) -> float:
+        if problem.prior_derivatives is None:
             return 0.0
-        return log_belief(point.derivatives, known, problem.believed) - plain
+        return log_prior(point.derivatives, known, problem.prior_derivatives) - baseline
 
     others = [v for v in variants if v.effect not in present]
-    found = Screen(problem, fitted).try_all(others, believed)
-    hidden = _beside_the_file(problem, fitted, others, believed)
-    return likeliest_first([*found, *hidden], float(np.sum(independent))) if hidden else found
+    found = Screen(problem, fitted).try_all(others, prior_gain)
+    hidden = _from_the_prior(problem, fitted, others, prior_gain)
+    return likeliest_first([*found, *hidden], float(np.sum(effective))) if hidden else found
 
 
-def _beside_the_file(
-    problem: Problem, plain: Fitted, variants: Sequence[Variant], believed: Callable[[Point], float]
+def _from_the_prior(
+    problem: Problem, baseline: Fitted, variants: Sequence[Variant], prior_gain: Callable[[Point], float]
 ) -> list[Screened]:
-    """Effects that fitted numbers hide, from where the aircraft file's are right; none where those are near.
+    """Return fits of hidden effects from the aircraft file's derivatives; none where the fitted ones are near
+    these.
 
-    A wing that is stalled throughout has another lift slope, and next to nothing else to show for it.
+    A wing that is stalled throughout has another lift slope, and hardly any other symptom.
     """
-    if problem.believed is None or not is_plain(plain):
+    if problem.prior_derivatives is None or not is_baseline(baseline):
         return []
-    file = replace(plain.point, derivatives=problem.believed)
-    if believed(file) < LEAST_BELIEF:
+    file = replace(baseline.point, derivatives=problem.prior_derivatives)
+    if prior_gain(file) < LEAST_PRIOR_GAIN:
         return []
-    points = [file.with_effect(v, v.beside_the_file) for v in variants if v.beside_the_file is not None]
-    fits = [fit(problem, point, plain.noise, _TO_THE_END, 0.5) for point in points]
-    return [Screened(f.point.effects[-1], f.point, f.cost, f.noise, believed(f.point)) for f in fits]
+    points = [file.with_effect(v, v.start_at_prior) for v in variants if v.start_at_prior is not None]
+    fits = [fit(problem, point, baseline.noise, _TO_THE_END, 0.5) for point in points]
+    return [Screened(f.point.effects[-1], f.point, f.cost, f.noise, prior_gain(f.point)) for f in fits]
 
 
 def judge(
     problem: Problem, before: Fitted, held_before: HeldOut, candidates: Sequence[Screened]
 ) -> list[Judged]:
-    """Full fits of the best variants of the best effects; the best judgement first."""
+    """Return full fits of the best variants of the best effects, best judgement first."""
     fits: list[Fitted] = []
     for s in shortlist(problem, before, candidates):
-        plainly, *otherwise = (
+        first_description, *otherwise = (
             fit(problem, point, s.noise, _ITERATIONS, 0.5, beaten_by=_no_rival(before, fits))
             for point in _described(s.point)
         )
-        fits += [plainly, *(other for other in otherwise if other.cost < plainly.cost)]
+        fits += [first_description, *(other for other in otherwise if other.cost < first_description.cost)]
     if not fits:
         return []
-    independent = worth(problem, min(fits, key=lambda f: f.cost).innovations)
-    judged = [
-        addition(problem, before, held_before, f, f.point.effects[-1].effect, independent) for f in fits
-    ]
+    effective = effective_samples(problem, min(fits, key=lambda f: f.cost).innovations)
+    judged = [addition(problem, before, held_before, f, f.point.effects[-1].effect, effective) for f in fits]
     best: dict[str, Judged] = {}
     for one in evened(problem, judged):
         best.setdefault(one.effect, one)
     first, *rest = best.values()
     if first.fitted.iterations == _ITERATIONS:
-        # Far from the plain model the search is long; only what comes out first is followed to its end.
+        # Far from the baseline model the search is long, so only the best candidate is fitted to the end.
         ended = fit(problem, first.fitted.point, first.fitted.noise, _TO_THE_END, tolerance=0.5)
-        first = addition(problem, before, held_before, ended, first.effect, independent)
+        first = addition(problem, before, held_before, ended, first.effect, effective)
     return [first, *rest]
 
 
 def _no_rival(before: Fitted, fits: Sequence[Fitted]) -> float:
-    """Cost of one that explains a fraction of what another does: no rival, wherever its search would end."""
+    """Return the cost above which a candidate is no rival, wherever its search would end."""
     best = min((before.cost, *(f.cost for f in fits)))
     return best + _LACKING * (before.cost - best)
 
 
 def _described(point: Point) -> list[Point]:
-    """The point, and the same with its last effect described in other ways, where there are any."""
+    """Return the point, and those with the alternative descriptions of its last effect."""
     last, values = point.effects[-1], point.values[-1]
     before = replace(point, effects=point.effects[:-1], values=point.values[:-1])
     return [
@@ -119,35 +119,36 @@ def _described(point: Point) -> list[Point]:
 
 
 def evened(problem: Problem, judged: Sequence[Judged]) -> list[Judged]:
-    """The best judgement first; what predicts the same motion has its likelihood, if likelier beforehand.
+    """Return the judgements, best first. An effect with equal motion and better prior terms gets the best
+    likelihood.
 
-    No description to low order is better than some share of the motion: where two differ by less, what the
-    likelihood prefers is which of them takes up more of the description's own error. What is known
-    beforehand decides: above all, which of them leaves the aircraft file's derivatives alone.
+    A low-order description misses a share of the motion. Where two descriptions differ by less, the
+    likelihood prefers the one that absorbs more of its own error. The prior decides instead: above all, which
+    of them keeps the aircraft file's derivatives.
     """
     best = max(judged, key=lambda j: j.gain)
 
     def at_its_worth(j: Judged) -> Judged:
-        likelier = j.beforehand > best.beforehand + _TELLS
-        if not (likelier and j.worth_naming and predict_alike(problem, best.held_out, j.held_out)):
+        likelier = j.prior_terms > best.prior_terms + _TELLS
+        if not (likelier and j.is_accepted and predict_alike(problem, best.held_out, j.held_out)):
             return j
-        return replace(j, gain=best.gain - best.beforehand + j.beforehand)
+        return replace(j, gain=best.gain - best.prior_terms + j.prior_terms)
 
     return sorted((at_its_worth(j) for j in judged), key=lambda j: -j.gain)
 
 
 def shortlist(problem: Problem, before: Fitted, candidates: Sequence[Screened]) -> list[Screened]:
-    """Candidates worth a full fit; ``candidates`` come best first.
+    """Return the candidates for a full fit; ``candidates`` come best first.
 
-    One too small to be named is no rival of the others. Where the gap is gross the order and the sizes that
-    the screening finds are worth less: more effects are fitted then, and two variants of each.
+    An effect too small to be named is no rival of others. Where the gap is large, order and sizes of the
+    screening are less reliable: more effects are fitted then, and two variants of each.
     """
 
     def promise(c: Screened) -> float:
         return 0.5 * (before.cost - c.cost)
 
     def best_of(some: Sequence[Screened]) -> float:
-        return max((promise(c) + c.belief for c in some), default=0.0)
+        return max((promise(c) + c.prior_gain for c in some), default=0.0)
 
     gross = best_of(candidates) > _GROSS
     if not gross:
@@ -158,12 +159,12 @@ def shortlist(problem: Problem, before: Fitted, candidates: Sequence[Screened]) 
     least = (_GROSS_RIVAL if gross else _RIVAL) * best_of(candidates)
     chosen: list[Screened] = []
     for c in candidates:
-        worth_it = promise(c) >= _PROMISE * LEAST_GAIN or c.belief >= _PROMISE * LEAST_BELIEF
+        promises = promise(c) >= _PROMISE * LEAST_GAIN or c.prior_gain >= _PROMISE * LEAST_PRIOR_GAIN
         same = sum(c.variant.effect == other.variant.effect for other in chosen)
-        if worth_it and promise(c) + c.belief >= least and same < (2 if gross else 1):
+        if promises and promise(c) + c.prior_gain >= least and same < (2 if gross else 1):
             chosen.append(c)
     chosen = chosen[: _GROSS_FITS if gross else _FITS]
-    # A twin of wrong numbers is as far from the plain model as they are: there the screening's sensitivities
-    # are another model's, and say little of how well it fits.
-    twins = [c for c in candidates if c.variant.twin is not None and c.belief >= LEAST_BELIEF]
+    # A twin of wrong derivatives is as far from the baseline model as these are. The screening's
+    # sensitivities are those of another model and say little about such a fit.
+    twins = [c for c in candidates if c.variant.twin is not None and c.prior_gain >= LEAST_PRIOR_GAIN]
     return [*chosen, *(c for c in twins if c not in chosen)]

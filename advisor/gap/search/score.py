@@ -1,46 +1,53 @@
-"""What an effect adds to a model, judged on manoeuvres that the fit has not seen."""
+"""The addition of an effect to a model, judged on held-out manoeuvres."""
 
 import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.traits import BY_NATURE
 from advisor.gap.candidates.variant import Variant
-from advisor.gap.fitting.belief import odds_of_arm
 from advisor.gap.fitting.fit import Fitted, rms_of
-from advisor.gap.fitting.holdout import HeldOut, hold_out, lone_witness, mean_squares, measured_in
+from advisor.gap.fitting.holdout import (
+    HeldOut,
+    hold_out,
+    mean_squares,
+    measured_in,
+    sole_informative_maneuver,
+)
+from advisor.gap.fitting.prior import log_odds_of_arm
 from advisor.gap.fitting.problem import Problem, counts
-from advisor.gap.fitting.uncertainty import belief_in, covariance, sigmas_of
-from advisor.gap.records.floor import doubts
-from advisor.gap.search.merit import BEYOND_DOUBT, LEAST_BELIEF, LEAST_SUPPORT, Judged, size_of
+from advisor.gap.fitting.uncertainty import covariance, log_prior_of, sigmas_of
+from advisor.gap.records.floor import floor_margins
+from advisor.gap.search.acceptance import BEYOND_DOUBT, LEAST_PRIOR_GAIN, LEAST_SUPPORT, Judged, size_of
 
 LEAST_GAP = 0.05
-"""What it must change there, mean square over the noise of the instruments, averaged over channels."""
+"""Least mean square change of the outputs for a named effect, relative to the instruments' noise, averaged
+over channels."""
 _FAINT = 0.15
-"""Share of it that is enough of what is certain, where the air is still and nothing else there, but for what
-every aircraft has to some degree; and times must be twice the least, and steps that may have come between
-any two manoeuvres."""
+"""Share of the least change that is enough for an effect that is certain, in still air and without another
+effect. Effects that every aircraft has are excepted. A time must be twice its least size then, and so must a
+step that may lie between any two manoeuvres."""
 _OF_PEAK = 0.003
-"""Share of each channel's peak that an effect must change."""
+"""Least change of the outputs by an effect, as a share of each channel's peak."""
 TIMES = frozenset({"delay_s", "lag_s", "skew_s"})
 """Parameters that are times."""
-TIME_DOUBT_S = 0.0006
-"""Error of a delay, lag or skew for the simulation's grid and the stamps' resolution."""
+TIME_ERROR_S = 0.0006
+"""Error of a delay, lag or skew in s, for the simulation's grid and the resolution of the stamps."""
 _ANY_TIME = 1.5
-"""Physical minima that a step must reach which may have come between any two manoeuvres."""
+"""Factor on the physical minimum for a step that may lie between any two manoeuvres."""
 _JITTERS = 3.0
-"""Standard deviations of the stamps by which a time must exceed its physical minimum, besides."""
+"""Number of standard deviations of the stamps that are added to the physical minimum of a time."""
 _NOT_SEEN = 0.005
-"""Difference of two predictions, mean square beside the instruments' noise, that no flight shows."""
+"""Mean square difference of two predictions, relative to the instruments' noise, that no flight shows."""
 
 
 def smallest_of(problem: Problem, variant: Variant, gain: float = 0.0) -> float:
-    """Size of an effect's first parameter below which it is not worth a name, the stamps as they are.
+    """Return the least size of an effect's first parameter for acceptance, given the jitter of the stamps.
 
-    ``gain`` is the log likelihood that it brings.
+    ``gain`` is the log likelihood that the effect brings.
     """
     smallest = variant.smallest * (variant.if_beyond_doubt if gain >= BEYOND_DOUBT else 1.0)
     if variant.names[0] in TIMES:
-        return smallest + TIME_DOUBT_S + _JITTERS * problem.jitter_s
+        return smallest + TIME_ERROR_S + _JITTERS * problem.jitter_s
     return smallest * (_ANY_TIME if variant.comes_at_any_time else 1.0)
 
 
@@ -50,64 +57,66 @@ def addition(
     held_before: HeldOut,
     fitted: Fitted,
     effect: str,
-    independent: FloatArray,
+    effective: FloatArray,
 ) -> Judged:
-    """What an effect of a fitted model adds to the model without it."""
+    """Judge an effect of a fitted model as an addition to the model without it."""
     point = fitted.point
     k = point.index_of(effect)
     variant, value, place = point.effects[k], point.values[k], point.place(k)
     held = hold_out(problem, fitted)
-    # Throttle or height may have moved in one manoeuvre only: kept out, the others know nothing of it.
-    witness = lone_witness(fitted, place.start) if variant.needs else None
-    lone = witness is not None
+    # Throttle or height may have moved in one manoeuvre only: without it, the others know nothing.
+    sole_maneuver = sole_informative_maneuver(fitted, place.start) if variant.needs else None
+    lone = sole_maneuver is not None
     known_before, known = held_before, held
     if others := _told_alone(fitted, but=k):
-        # What the others predict of that manoeuvre is anyone's guess, with this effect or without.
+        # The others cannot predict that manoeuvre, with or without this effect.
         known_before = measured_in(problem, held_before, before, others)
         known = measured_in(problem, held, fitted, others)
     seen_before, seen_after = (before, fitted) if lone else (known_before, known)
     support = support_of(problem, known_before, known)
     likelihood = log_likelihood_gained(
-        before, known_before, fitted, known, independent, None if lone else support
+        before, known_before, fitted, known, effective, None if lone else support
     )
     likelihood += 0.5 * (price_of_edges(problem, before) - price_of_edges(problem, fitted))
-    likelihood += 0.5 * (problem.strangeness(before.point) - problem.strangeness(point))
-    belief = belief_in(problem, fitted, independent) - belief_in(problem, before, independent)
-    odds = odds_in(problem, variant.effect, float(value[0]))
-    least, beforehand = least_change(problem), belief + odds - price_of(variant, independent)
-    gain = likelihood + beforehand
-    known_numbers = covariance(problem, fitted, independent, trusted=belief >= LEAST_BELIEF)[place, place]
-    placed = [name in variant.places for name in variant.names]
+    likelihood += 0.5 * (problem.nuisance_cost(before.point) - problem.nuisance_cost(point))
+    prior_gain = log_prior_of(problem, fitted, effective) - log_prior_of(problem, before, effective)
+    odds = log_odds_in(problem, variant.effect, float(value[0]))
+    least, prior_terms = least_change(problem), prior_gain + odds - price_of(variant, effective)
+    gain = likelihood + prior_terms
+    known_numbers = covariance(problem, fitted, effective, trusted=prior_gain >= LEAST_PRIOR_GAIN)[
+        place, place
+    ]
+    located = [name in variant.places for name in variant.names]
     return Judged(
         variant=variant, fitted=fitted, held_out=held,
         gain=gain,
-        removed=difference(problem, seen_before, seen_after, witness),
+        removed=difference(problem, seen_before, seen_after, sole_maneuver),
         support=support,
         least=least, least_certain=least * _share_enough(problem, before, variant, value),
         smallest=smallest_of(problem, variant, gain),
-        belief=belief, beforehand=beforehand, value=value, witness=witness,
-        with_the_air=bool(variant.needs) and problem.knows_the_noise, alone=is_plain(before),
-        std=np.sqrt(np.maximum(np.diag(known_numbers), 0.0)), sigmas=sigmas_of(value, known_numbers, placed),
+        prior_gain=prior_gain, prior_terms=prior_terms, value=value, sole_maneuver=sole_maneuver,
+        with_the_air=bool(variant.needs) and problem.knows_the_noise, alone=is_baseline(before),
+        std=np.sqrt(np.maximum(np.diag(known_numbers), 0.0)), sigmas=sigmas_of(value, known_numbers, located),
     )  # fmt: skip
 
 
 def _told_alone(fitted: Fitted, but: int) -> set[int]:
-    """Manoeuvres that alone tell of some effect of the model, other than the ``but``-th."""
+    """Return the manoeuvres that alone determine some effect of the model, other than the ``but``-th."""
     point = fitted.point
-    others = [k for k, v in enumerate(point.effects) if v.needs and not v.always and k != but]
-    told = (lone_witness(fitted, point.place(k).start) for k in others)
+    others = [k for k, v in enumerate(point.effects) if v.needs and not v.is_nuisance and k != but]
+    told = (sole_informative_maneuver(fitted, point.place(k).start) for k in others)
     return {number for number in told if number is not None}
 
 
-def price_of(variant: Variant, independent: FloatArray) -> float:
-    """k/2 ln N of an effect's k numbers, one of them for the choice of what is fixed in it (Schwarz)."""
+def price_of(variant: Variant, effective: FloatArray) -> float:
+    """Return k/2 ln N for the k parameters of an effect, plus one for a choice among variants (Schwarz)."""
     numbers = len(variant.names) + (1 if variant.fixed else 0)
-    return 0.5 * numbers * float(np.log(np.sum(independent)))
+    return 0.5 * numbers * float(np.log(np.sum(effective)))
 
 
-def odds_in(problem: Problem, effect: str, size: float) -> float:
-    """Log odds beforehand of an arm of that size, 0 for other effects."""
-    return odds_of_arm(effect, size, problem.arms_in_file, problem.flights.alpha_is_derived)
+def log_odds_in(problem: Problem, effect: str, size: float) -> float:
+    """Return the log prior odds of an arm of that size; 0 for other effects."""
+    return log_odds_of_arm(effect, size, problem.arms_in_file, problem.flights.alpha_is_derived)
 
 
 def log_likelihood_gained(
@@ -115,16 +124,16 @@ def log_likelihood_gained(
     held_before: HeldOut,
     after: Fitted,
     held_after: HeldOut,
-    independent: FloatArray,
+    effective: FloatArray,
     support: float | None = -np.inf,
 ) -> float:
-    """What was gained on manoeuvres kept out, but by luck not more than in the fit itself.
+    """Return the gain in log likelihood on held-out manoeuvres, but at most that of the fit.
 
-    ``support``: see ``support_of``; a loss within its standard error is none. None: no other manoeuvre could
-    confirm it, so the fit is asked alone.
+    A loss within the standard error of ``support`` counts as none. With a support of None no other manoeuvre
+    can confirm the effect, so the fit alone decides.
     """
     fitted, kept_out = (
-        float(np.sum(independent / 2.0 * np.log(ratio)))
+        float(np.sum(effective / 2.0 * np.log(ratio)))
         for ratio in (
             (before.noise / after.noise) ** 2, held_before.innovation_square / held_after.innovation_square,
         )
@@ -135,32 +144,33 @@ def log_likelihood_gained(
 
 
 def _share_enough(problem: Problem, before: Fitted, variant: Variant, value: FloatArray) -> float:
-    """Of the least change: what is enough where an effect is certain."""
-    if not is_plain(before) or problem.knows_the_noise or variant.effect in BY_NATURE:
+    """Return the share of the least change that is enough where an effect is certain."""
+    if not is_baseline(before) or problem.knows_the_noise or variant.effect in BY_NATURE:
         return 1.0
     times = 2.0 if variant.names[0] in TIMES or variant.comes_at_any_time else 1.0
     return _FAINT if size_of(variant, value) >= times * smallest_of(problem, variant) else 1.0
 
 
-def is_plain(before: Fitted) -> bool:
-    """Whether the model has nothing yet that is anyone's fault."""
-    return all(effect.always for effect in before.point.effects)
+def is_baseline(before: Fitted) -> bool:
+    """Return whether the model has only nuisance parameters, and no effect yet."""
+    return all(effect.is_nuisance for effect in before.point.effects)
 
 
 def price_of_edges(problem: Problem, fitted: Fitted) -> float:
-    """What the cost has beside noise and belief: edges and air speeds off where they likely were.
+    """Return the cost of edges and air speeds away from their likely values: all but noise and prior.
 
     A wrong model buys some of its fit by shifting them.
     """
     noise = float(np.sum(counts(problem) * 2.0 * np.log(fitted.noise)))
-    return fitted.cost - noise - problem.disbelief(fitted.point)
+    return fitted.cost - noise - problem.prior_cost(fitted.point)
 
 
 def least_change(problem: Problem) -> float:
-    """Mean square change of the outputs, beside the instruments' noise, from which an effect is worth a name.
+    """Return the least mean square change of the outputs for a named effect, relative to the instruments'
+    noise.
 
-    Where instruments are very good, what matters is no longer their noise: a description to low order is
-    itself no better than a share of each channel's peak.
+    With very good instruments their noise does not limit. A low-order description is itself no better than a
+    share of each channel's peak.
     """
     if problem.instruments is None:
         return LEAST_GAP
@@ -168,17 +178,19 @@ def least_change(problem: Problem) -> float:
 
 
 def predict_alike(problem: Problem, one: HeldOut, other: HeldOut) -> bool:
-    """Whether two predictions differ by next to nothing, or by what a description to low order may err."""
-    apart = rms_of(problem, [a - b for a, b in zip(one.left, other.left, strict=True)])
+    """Return whether two predictions are equal but for the error of a low-order description."""
+    differences = rms_of(problem, [a - b for a, b in zip(one.residuals, other.residuals, strict=True)])
     return (
-        bool(np.all(apart < _OF_PEAK * problem.flights.peaks)) or difference(problem, one, other) < _NOT_SEEN
+        bool(np.all(differences < _OF_PEAK * problem.flights.peaks))
+        or difference(problem, one, other) < _NOT_SEEN
     )
 
 
 def support_of(problem: Problem, before: HeldOut, after: HeldOut) -> float:
-    """Standard errors over manoeuvres by which the second leaves less of those kept out than the first.
+    """Return by how many standard errors over manoeuvres the second model lowers the held-out gap of the
+    first.
 
-    Only what tells a cause by itself counts; see ``Flights.telling``. 0 for a single manoeuvre.
+    Only channels that identify a cause count (``Flights.telling``). 0 for a single manoeuvre.
     """
     noise = np.ones(len(problem.channels)) if problem.instruments is None else problem.instruments
     removed = (before.by_maneuver - after.by_maneuver) / noise**2
@@ -191,13 +203,13 @@ def support_of(problem: Problem, before: HeldOut, after: HeldOut) -> float:
 
 
 def difference(
-    problem: Problem, before: HeldOut | Fitted, after: HeldOut | Fitted, only: int | None = None
+    problem: Problem, before: HeldOut | Fitted, after: HeldOut | Fitted, maneuver: int | None = None
 ) -> float:
-    """Mean over channels of the squared change of the prediction, beside the noise that may be doubted.
+    """Return the squared change of the prediction relative to noise and floor margin, mean over channels.
 
-    ``only``: in this manoeuvre, where no other tells of it.
+    ``maneuver`` restricts the mean to one manoeuvre, where no other determines the effect.
     """
-    changed = mean_squares(problem, [a - b for a, b in zip(before.left, after.left, strict=True)])
-    noise = 1.0 if problem.instruments is None else problem.instruments * doubts(problem.flights)
-    power = np.mean(changed, axis=0) if only is None else changed[only]
+    changed = mean_squares(problem, [a - b for a, b in zip(before.residuals, after.residuals, strict=True)])
+    noise = 1.0 if problem.instruments is None else problem.instruments * floor_margins(problem.flights)
+    power = np.mean(changed, axis=0) if maneuver is None else changed[maneuver]
     return float(np.mean(power / noise**2))

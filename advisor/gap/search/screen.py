@@ -1,4 +1,5 @@
-"""Every candidate once, fast: the baseline's sensitivities are kept, only the effect's own are computed."""
+"""Fast screening of all candidates: the baseline's sensitivities are kept, only the effect's own are
+computed."""
 
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass, replace
@@ -7,19 +8,20 @@ import numpy as np
 
 from advisor.flight.messages import FloatArray
 from advisor.gap.candidates.variant import Variant
-from advisor.gap.fitting.belief import scale_of
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.neighbourhood import Neighbourhood, Place
+from advisor.gap.fitting.prior import derivative_scale
 from advisor.gap.fitting.problem import Point, Problem
 
 _STEPS = 4
-"""Gauss-Newton steps of a quick fit."""
+"""Most Gauss-Newton steps of a quick fit."""
 _AT_ONCE = 16
-"""Points that are flown together: enough to fill the packs, few enough for the cache."""
+"""Points that are simulated together: enough to fill the packs, few enough for the cache."""
 _HARDLY = 6.0
-"""Decrease of the cost (twice the log likelihood) below which a description is not followed further ..."""
+"""Decrease of the cost (twice the log likelihood) below which a description is not followed further."""
 _HOPELESS = 0.05
-"""... nor below this share of what the best has brought by then: it would be no rival (``ranking``)."""
+"""Share of the best decrease so far below which a description is not followed further, being no rival
+(``ranking``)."""
 
 
 @dataclass(frozen=True)
@@ -29,36 +31,37 @@ class Screened:
     variant: Variant
     point: Point
     cost: float
-    """As ``Fitted.cost``, to compare with the baseline's."""
+    """Cost of the quick fit, comparable with ``Fitted.cost``."""
     noise: FloatArray
-    belief: float = 0.0
-    """Log probability gained because the derivatives agree better with the aircraft file's."""
+    prior_gain: float = 0.0
+    """Gain in log prior probability, because the derivatives agree better with the aircraft file's."""
 
 
 _Descent = Generator[Point, tuple[Place | None, float], Screened | None]
-"""A search that asks for one point after another and is told of each, and of the best decrease by then."""
+"""A search that asks for one point after another, and receives its evaluation and the best decrease so
+far."""
 
 
 class Screen:
-    """The baseline made ready for many candidates, each of which is followed for at most some steps."""
+    """A baseline model prepared for many candidates, each of which is followed for a few steps."""
 
     def __init__(self, problem: Problem, fitted: Fitted, steps: int = _STEPS) -> None:
         self.problem, self.fitted, self.steps = problem, fitted, steps
         self.around = Neighbourhood(problem, fitted)
 
-    def try_all(self, variants: Sequence[Variant], believed: Callable[[Point], float]) -> list[Screened]:
-        """Quick fits of all, the likeliest description of the data first.
+    def try_all(self, variants: Sequence[Variant], prior: Callable[[Point], float]) -> list[Screened]:
+        """Return quick fits of all variants, the likeliest description of the data first.
 
-        ``believed`` gives the log probability that a point gains from what the aircraft file says.
+        ``prior`` returns the gain in log prior probability at a point.
         """
-        found = [replace(s, belief=believed(s.point)) for s in self.quick_fits(variants)]
+        found = [replace(s, prior_gain=prior(s.point)) for s in self.quick_fits(variants)]
         return likeliest_first(found, float(np.sum(self.around.count)))
 
     def quick_fits(self, variants: Sequence[Variant], most: float = 0.0) -> list[Screened]:
-        """The best of each variant's starts, where one of them leads anywhere.
+        """Return the best quick fit of each variant over its starts, where one of them leads anywhere.
 
-        ``most`` is a decrease of the cost that something else brings: what promises next to nothing beside it
-        is not followed.
+        ``most`` is a decrease of the cost by something else; variants that promise next to nothing relative
+        to it are not followed.
         """
         began = [(n, start) for n, variant in enumerate(variants) for start in variant.starts]
         ended = self._together([self._descend(variants[n], start) for n, start in began], most)
@@ -69,7 +72,7 @@ class Screen:
         return list(best.values())
 
     def _together(self, descents: Sequence[_Descent], most: float) -> list[Screened | None]:
-        """All descents side by side: the next points of many are flown at once."""
+        """Follow all descents side by side, so that the next points of many are simulated at once."""
         ended: list[Screened | None] = [None] * len(descents)
         asked = {n: next(descent) for n, descent in enumerate(descents)}
         while asked:
@@ -86,7 +89,7 @@ class Screen:
     def _descend(self, variant: Variant, start: tuple[float, ...]) -> _Descent:
         problem = self.problem
         sides = None if variant.sides is None else variant.sides[1]
-        if variant.twin is not None and problem.believed is not None:
+        if variant.twin is not None and problem.prior_derivatives is not None:
             point = self._at_the_files(variant)
         else:
             resting = None if sides is None else np.zeros(len(problem.flights))
@@ -99,10 +102,10 @@ class Screen:
         for n in range(self.steps):
             step, promised = here.step()
             if self.fitted.cost - here.cost + promised < max(_HARDLY, _HOPELESS * most):
-                # Not worth a flight: what the model says of the step is answer enough.
+                # Not worth a simulation: the prediction of the step is enough.
                 there = here.point.moved(here.point.shared + step, here.point.own)
                 return Screened(variant, there, here.cost - promised, here.noise)
-            # A first step along numbers that nearly mimic each other may be too long for a linear model.
+            # A first step along strongly correlated parameters may be too long for a linear model.
             for length in (1.0, 0.5, 0.25) if n == 0 else (1.0,):
                 point = here.point.moved(here.point.shared + length * step, here.point.own)
                 if sides is not None:
@@ -118,23 +121,23 @@ class Screen:
         return Screened(here.point.effects[-1], here.point, here.cost, here.noise)
 
     def _at_the_files(self, variant: Variant) -> Point:
-        """The same motion with the effect in it, as near to the file's derivatives as it comes."""
-        plain, believed = self.fitted.point, self.problem.believed
+        """Return the point of equal motion with the effect, as near to the file's derivatives as possible."""
+        plain, prior = self.fitted.point, self.problem.prior_derivatives
         assert variant.twin is not None
-        assert believed is not None
+        assert prior is not None
         per_unit = variant.twin(plain.derivatives, plain.effects, self.problem.flights.reference_m_s)
-        scale = scale_of(believed)
-        change, missed = per_unit[: len(believed)] / scale, (believed - plain.derivatives) / scale
+        scale = derivative_scale(prior)
+        change, missed = per_unit[: len(prior)] / scale, (prior - plain.derivatives) / scale
         value = float(np.clip(change @ missed / (change @ change), *variant.bounds[0]))
         return plain.moved(plain.shared + value * per_unit, plain.own).with_effect(variant, (value,))
 
 
 def likeliest_first(found: Sequence[Screened], samples: float) -> list[Screened]:
-    """In order of what they explain, what the aircraft file says and how many numbers they take."""
-    return sorted(found, key=lambda s: s.cost - 2.0 * s.belief + penalty(s.variant, samples))
+    """Return the candidates in the order of likelihood, prior gain and number of parameters."""
+    return sorted(found, key=lambda s: s.cost - 2.0 * s.prior_gain + penalty(s.variant, samples))
 
 
 def penalty(variant: Variant, samples: float) -> float:
-    """k ln N: what a description must gain per number it adds (Schwarz)."""
+    """Return k ln N, the decrease of the cost that a description with k parameters must bring (Schwarz)."""
     steps = 1 if variant.fixed else 0
     return (len(variant.names) + steps) * float(np.log(max(samples, 2.0)))

@@ -1,11 +1,10 @@
-"""The change of air speed: what ignoring it costs, and when it is the cause of a gap.
+"""Variation of the air speed: the cost of ignoring it, and when it is the cause of a gap.
 
-The air speed swings in every flight, for a manoeuvre exchanges it for height. A simulator that is given the
-measured speed knows that; so it is a cause only where work was done on the aircraft that nobody asked for,
-by a thrust that swings while the throttle rests: accelerations along the path show it. Where these or the
-throttle were not logged, the energy V²/2 + g h must have moved as much as the speed, and accelerations that
-were measured must show that work, too, beyond what drag takes. Where it moved by little, they must have been
-measured, and the air must be still.
+The air speed varies in every flight, because a manoeuvre exchanges it for height. A simulator with the
+measured speed knows that. The variation is a cause only where thrust did uncommanded work: it varies while
+the throttle rests, as accelerations along the path show. Without these or the throttle in the log, the energy
+V²/2 + g h must have varied as much as the speed. Measured accelerations must then show that work too, beyond
+drag. For a small variation they must be measured, and the air must be still.
 """
 
 from collections.abc import Sequence
@@ -21,42 +20,50 @@ from advisor.gap.fitting.problem import Problem
 from advisor.gap.records.flights import SPEED_CHANGE, Flights
 from advisor.gap.result import Cause, Value
 from advisor.gap.search.air import Air
-from advisor.gap.search.work import energy_speed, felt_along, mean_speed, unasked, work
+from advisor.gap.search.path_energy import (
+    energy_speed,
+    energy_swing,
+    mean_speed,
+    measures_path_acceleration,
+    uncommanded_thrust,
+)
 from advisor.gap.simulator.layout import SPEED
 from advisor.standard_gravity import GRAVITY_M_S2
 
 _COSTS = 0.05
-"""Gap of a simulator at constant speed from which on it is worth a step of the waterfall ..."""
+"""Least gap of a simulator at constant speed for a step of the waterfall."""
 _IS_CAUSE = 1.0
-"""... and from which on it may be the cause."""
+"""Least gap of a simulator at constant speed for which the variation may be the cause."""
 _WORK = 0.02
-"""Standard deviation of the speed that the energy alone would make, relative, that is work ..."""
+"""Least standard deviation of the speed from energy alone, relative to the mean speed, that shows work."""
 _LITTLE_WORK = 0.009
-"""... or this, if accelerations were measured and the air is still ..."""
-_PLAIN_WORK = 0.03
-"""What the accelerations must show of it at most: thrust that swings for long passes for drag in part."""
+"""Least such standard deviation where accelerations were measured and the air is still."""
+_CLEAR_WORK = 0.03
+"""Most work that the accelerations must show, as relative standard deviation of the speed: a thrust that
+varies for long passes for drag in part."""
 _EXCHANGED = 0.9
-"""... and if it is at least this share of the speed's own: else most was exchanged for height ..."""
-_UNASKED = 0.002 * GRAVITY_M_S2
-"""Thrust that nobody asked for, m/s²: what drag and engines do beyond simple laws stays below it (0.012 in
-270 flights of nine simulators without an effect) ..."""
-_UNASKED_SWING = 0.006
-"""... if the speed swings by more than this, relative ..."""
-_UNASKED_GUSTS = 1.5
-"""... and than this many times the air's own motion ..."""
-_UNASKED_COSTS = 0.3
-"""... and a simulator at constant speed leaves this much: the cause is plain."""
+"""Least ratio of the energy's standard deviation to the speed's. Below it most speed was exchanged for
+height."""
+_UNCOMMANDED = 0.002 * GRAVITY_M_S2
+"""Least uncommanded thrust that is a cause, m/s². Drag and engines beyond simple laws stay below it: 0.012
+m/s² in 270 flights of nine simulators without an effect."""
+_UNCOMMANDED_SWING = 0.006
+"""Least relative standard deviation of the speed for an uncommanded thrust."""
+_UNCOMMANDED_GUSTS = 1.5
+"""Least ratio of the speed's standard deviation to that of the gust angle, for an uncommanded thrust."""
+_UNCOMMANDED_COSTS = 0.3
+"""Least gap of a simulator at constant speed for an uncommanded thrust."""
 _GUSTS = 4.0
-"""... and both, or energy and what the accelerations show, exceed this many times the air's own motion: an
-air speed indicator reads that, too."""
+"""Least ratio of the variation of speed, or of the work felt, and of energy to the gust angle. An air speed
+indicator reads gusts too."""
 
 
 def at_constant_speed(
     problem: Problem, fitted: Fitted, folds: Sequence[Sequence[int]] | None = None
 ) -> HeldOut | None:
-    """What the model leaves when derivatives do not move with the air speed, everything refitted.
+    """Return the hold-out of the model with derivatives that do not scale with the air speed, refitted.
 
-    None where the speed hardly moves, or nothing shows it. ``folds`` as ``hold_out`` has them.
+    None where the speed hardly varies, or was not measured. ``folds`` are those of ``hold_out``.
     """
     flights = problem.flights
     if flights.speed_moves < SPEED_CHANGE:
@@ -69,7 +76,7 @@ def at_constant_speed(
 def airspeed_cause(
     problem: Problem, constant: HeldOut | None, last: HeldOut, floor: FloatArray
 ) -> Cause | None:
-    """The change of air speed, when ignoring it would cost; its probability is decided beside the others."""
+    """Return the variation of air speed as a cause where ignoring it costs; its probability is set later."""
     if constant is None or speed_costs(constant, last, floor) < _COSTS:
         return None
     return Cause(
@@ -80,54 +87,57 @@ def airspeed_cause(
 
 
 def speed_costs(constant: HeldOut, last: HeldOut, floor: FloatArray) -> float:
-    """What a simulator leaves at constant speed beyond one that knows it, mean square over the floor's."""
+    """Return the gap of a simulator at constant speed beyond that at the measured speed."""
     return float(np.mean((constant.mean_square - last.mean_square) / floor**2))
 
 
 def speed_is_a_cause(
     problem: Problem, constant: HeldOut | None, last: HeldOut, floor: FloatArray, air: Air | None
 ) -> bool:
-    """Whether work was done on the aircraft, beyond what gusts may feign, and it matters.
+    """Return whether work that gusts cannot explain varied the speed, and whether it matters.
 
-    A speed that was not logged is the cause wherever it matters: no simulator was given it.
+    A speed that was not logged is a cause wherever it matters, because no simulator was given it.
     """
     if constant is not None and not problem.flights.speed_measured:
         return speed_costs(constant, last, floor) > _COSTS
     if constant is None or "height" not in problem.flights.has or (air is not None and air.gust):
         return False
-    if "throttle" in problem.flights.has and felt_along(problem.flights):
-        return speed_is_unasked(problem, constant, last, floor, air)
+    if "throttle" in problem.flights.has and measures_path_acceleration(problem.flights):
+        return thrust_is_uncommanded(problem, constant, last, floor, air)
     speed, energy = swings(problem.flights)
     gusts = 0.0 if air is None else air.angle_std
     least = max(_EXCHANGED * speed, _LITTLE_WORK)
-    felt = work(problem.flights)
-    worked = energy > least and (felt is None or felt > min(least, _PLAIN_WORK))
-    plain = energy > _WORK or (felt is not None and air is None)
+    energy_felt = energy_swing(problem.flights)
+    worked = energy > least and (energy_felt is None or energy_felt > min(least, _CLEAR_WORK))
+    clear = energy > _WORK or (energy_felt is not None and air is None)
     # An air speed indicator reads gusts; accelerometers along the path do not.
-    felt_more = min(max(speed, felt or 0.0), energy) > _GUSTS * gusts
-    return worked and plain and felt_more and speed_costs(constant, last, floor) > _IS_CAUSE
+    felt_more = min(max(speed, energy_felt or 0.0), energy) > _GUSTS * gusts
+    return worked and clear and felt_more and speed_costs(constant, last, floor) > _IS_CAUSE
 
 
-def speed_is_unasked(
+def thrust_is_uncommanded(
     problem: Problem, constant: HeldOut | None, last: HeldOut, floor: FloatArray, air: Air | None
 ) -> bool:
-    """Whether a thrust that neither throttle nor drag accounts for swings the speed, and it matters."""
+    """Return whether a thrust that neither throttle nor drag explains varies the speed, and whether it
+    matters."""
     flights = problem.flights
     if constant is None or not flights.speed_measured or (air is not None and air.gust):
         return False
-    if "throttle" not in flights.has or speed_costs(constant, last, floor) < _UNASKED_COSTS:
+    if "throttle" not in flights.has or speed_costs(constant, last, floor) < _UNCOMMANDED_COSTS:
         return False
-    thrust = unasked(flights)
-    if thrust is None or thrust < _UNASKED:
+    thrust = uncommanded_thrust(flights)
+    if thrust is None or thrust < _UNCOMMANDED:
         return False
     gusts = 0.0 if air is None else air.angle_std
-    return swings(flights)[0] > max(_UNASKED_SWING, _UNASKED_GUSTS * gusts)
+    return swings(flights)[0] > max(_UNCOMMANDED_SWING, _UNCOMMANDED_GUSTS * gusts)
 
 
 def swings(flights: Flights) -> tuple[float, float]:
-    """How much the speed swings within a manoeuvre, and √(V² + 2 g h), both relative to the mean speed.
+    """Return the standard deviations of the speed and of √(V² + 2 g h) in a manoeuvre, relative to the mean
+    speed.
 
-    Medians over the manoeuvres: one that climbs or sinks all the while is no change of speed.
+    Medians over the manoeuvres: a manoeuvre with a steady climb or descent does not count as a change of
+    speed.
     """
     speeds, energies = [], []
     for flight in flights.flights:

@@ -1,4 +1,4 @@
-"""One stage of the waterfall: a model, what was thought of adding to it, and what was added."""
+"""One stage of the waterfall: a model, the candidates for an addition, and the addition."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -6,37 +6,37 @@ from dataclasses import dataclass
 from advisor.gap.fitting.fit import Fitted, fit
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.problem import Problem
-from advisor.gap.fitting.uncertainty import worth
-from advisor.gap.search.merit import BEYOND_DOUBT, Judged
+from advisor.gap.fitting.uncertainty import effective_samples
+from advisor.gap.search.acceptance import BEYOND_DOUBT, Judged
 from advisor.gap.search.score import addition
 
 
 @dataclass(frozen=True)
 class Stage:
-    """The model at one stage, and what was thought of adding to it."""
+    """The model at one stage, with the candidates for its next addition."""
 
     fitted: Fitted
     held_out: HeldOut
     considered: tuple[Judged, ...]
-    """Candidates for the next addition, best first; of a stage that was put elsewhere, those of its addition,
-    and none where no more names were asked for."""
+    """Candidates for the next addition, best first. A reordered stage has those of its own addition. The last
+    of ``MOST_EFFECTS`` stages has none."""
     added: Judged | None
-    """What was added to this stage's model to reach the next one."""
+    """Effect whose addition leads to the next stage; None at the last stage."""
 
     @property
     def disputed(self) -> Judged | None:
-        """The likeliest candidate, where nothing was added and manoeuvres kept out alone refuse it."""
+        """The likeliest candidate, where nothing was added and held-out manoeuvres alone reject it."""
         first = next(iter(self.considered), None)
         return first if first is not None and self.added is None and first.is_disputed else None
 
     def slight_in(self, block: str) -> Judged | None:
-        """What is beyond doubt in a block, and too small for a name only."""
+        """Return the effect of a block that is beyond doubt and only too small to be named."""
         found = (j for j in self.considered if j.block == block and j.gain >= BEYOND_DOUBT)
         return next((j for j in found if not j.large_enough and not j.at_its_bounds), None)
 
 
 def added_in(stages: Sequence[Stage]) -> list[Judged]:
-    """What was added, stage by stage."""
+    """Return the added effects, stage by stage."""
     return [stage.added for stage in stages if stage.added is not None]
 
 
@@ -48,18 +48,18 @@ def rebuilt(
     considered: Mapping[str, tuple[Judged, ...]],
     last: tuple[Judged, ...],
 ) -> list[Stage]:
-    """Stages of the effects in another order."""
-    independent = worth(problem, full.innovations)
+    """Return the stages with the effects in another order."""
+    effective = effective_samples(problem, full.innovations)
     before, held = first.fitted, first.held_out
     stages = []
     for n, name in enumerate(names, 1):
-        fitted = full if n == len(names) else only(problem, full, names[:n])
-        added = addition(problem, before, held, fitted, name, independent)
+        fitted = full if n == len(names) else fit_with_effects(problem, full, names[:n])
+        added = addition(problem, before, held, fitted, name, effective)
         stages.append(Stage(before, held, considered[name], added))
         before, held = fitted, added.held_out
     return [*stages, Stage(before, held, last, None)]
 
 
-def only(problem: Problem, full: Fitted, names: Sequence[str]) -> Fitted:
-    """The model with some of its effects, fitted."""
+def fit_with_effects(problem: Problem, full: Fitted, names: Sequence[str]) -> Fitted:
+    """Return the fitted model with some of the effects."""
     return fit(problem, full.point.with_only(names), full.noise, iterations=8, tolerance=0.5)

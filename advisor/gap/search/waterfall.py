@@ -1,4 +1,4 @@
-"""One effect after another, until nothing more helps on manoeuvres kept out of the fit."""
+"""The waterfall: effects are added one by one until no other helps on held-out manoeuvres."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -8,32 +8,33 @@ from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.holdout import HeldOut, hold_out, measured_in
 from advisor.gap.fitting.problem import Problem
-from advisor.gap.fitting.uncertainty import shared_std, worth
-from advisor.gap.search.merit import BEYOND_DOUBT, LEAST_BELIEF, MOST_EFFECTS, Judged
+from advisor.gap.fitting.uncertainty import effective_samples, shared_std
+from advisor.gap.search.acceptance import BEYOND_DOUBT, LEAST_PRIOR_GAIN, MOST_EFFECTS, Judged
 from advisor.gap.search.ranking import candidates_for, judge
 from advisor.gap.search.score import addition
-from advisor.gap.search.stage import Stage, added_in, only, rebuilt
+from advisor.gap.search.stage import Stage, added_in, fit_with_effects, rebuilt
 
 _OPEN = 0.1
-"""What counts of an effect that is something to measure rather; see ``_rank_of``."""
+"""Factor on the gain of an effect that is a position to be measured, when effects are ordered; see
+``_rank_of``."""
 
 Progress = Callable[[str, float], None]
-"""Called with what is being done and the share done, 0 to 1."""
+"""Function that receives a sentence about the work and the share done, 0 to 1."""
 
 
 def one_after_another(
     problem: Problem, baseline: Fitted, variants: Sequence[Variant], progress: Progress = lambda *_: None
 ) -> list[Stage]:
-    """Stages from the plain model to the last addition; the last stage adds nothing."""
+    """Return the stages from the baseline model to the last addition; the last stage adds nothing."""
     stages: list[Stage] = []
     fitted, held, ahead = baseline, hold_out(problem, baseline), None
     for n in range(MOST_EFFECTS + 1):
-        progress(f"trying {len(variants)} ways to explain what is left", 0.2 + 0.15 * n)
+        progress(f"trying {len(variants)} ways to explain the residual", 0.2 + 0.15 * n)
         if n == MOST_EFFECTS:
             stages.append(Stage(fitted, held, (), None))
             break
         considered = ahead or _judged(problem, fitted, held, variants)
-        added, ahead = next((j for j in considered if j.worth_naming), None), None
+        added, ahead = next((j for j in considered if j.is_accepted), None), None
         if added is None and n < MOST_EFFECTS - 1:
             added, ahead = _leading_on(problem, considered, variants)
         stages.append(Stage(fitted, held, tuple(considered), added))
@@ -46,73 +47,75 @@ def one_after_another(
 def _leading_on(
     problem: Problem, considered: Sequence[Judged], variants: Sequence[Variant]
 ) -> tuple[Judged | None, list[Judged] | None]:
-    """An effect too small for a name that is certain all the same, where another shows beside it.
+    """Return a certain effect that is too small to be named, where it reveals another effect.
 
-    Two effects may hide each other: with one of them in the model derivatives make up for the other. Also
-    returned is what was thought of adding to it. Whether both stay is decided when all have been found.
+    Two effects may hide each other, because derivatives compensate for one of them. The candidates for the
+    next addition are returned too. Whether both stay is decided after the last addition.
     """
     if not considered or considered[0].gain < BEYOND_DOUBT:
         return None, None
     first = considered[0]
     beside = _judged(problem, first.fitted, first.held_out, variants)
-    return (first, beside) if any(j.worth_naming for j in beside) else (None, None)
+    return (first, beside) if any(j.is_accepted for j in beside) else (None, None)
 
 
 def _judged(problem: Problem, fitted: Fitted, held: HeldOut, variants: Sequence[Variant]) -> list[Judged]:
-    """What may be added to a model, best first."""
+    """Return the candidates for an addition to a model, best first."""
     return judge(problem, fitted, held, candidates_for(problem, fitted, variants))
 
 
 def as_measured(problem: Problem, stages: Sequence[Stage]) -> list[Stage]:
-    """The same for its numbers: what a single manoeuvre tells is measured in that manoeuvre."""
-    witnesses: set[int] = set()
+    """Return the stages with the residuals of the fit in manoeuvres that alone determine an effect."""
+    sole_maneuvers: set[int] = set()
     measured = []
     for stage in stages:
         held = stage.held_out
-        if witnesses:
-            held = measured_in(problem, held, stage.fitted, witnesses)
+        if sole_maneuvers:
+            held = measured_in(problem, held, stage.fitted, sole_maneuvers)
         measured.append(replace(stage, held_out=held))
-        if stage.added is not None and stage.added.witness is not None:
-            witnesses.add(stage.added.witness)
+        if stage.added is not None and stage.added.sole_maneuver is not None:
+            sole_maneuvers.add(stage.added.sole_maneuver)
     return measured
 
 
 def in_full(problem: Problem, stages: list[Stage]) -> list[Stage]:
-    """The same with sizes from the last model: in earlier ones an effect stood for others, too."""
+    """Return the stages with sizes from the last model. In earlier models an effect also represented
+    others."""
     full = stages[-1].fitted
     if len(added_in(stages)) < 2:
         return stages
-    independent = worth(problem, full.innovations)
+    effective = effective_samples(problem, full.innovations)
 
     def restated(added: Judged) -> Judged:
         point = full.point
         k = point.index_of(added.effect)
-        std = shared_std(problem, full, independent, trusted=added.belief >= LEAST_BELIEF)[point.place(k)]
+        std = shared_std(problem, full, effective, trusted=added.prior_gain >= LEAST_PRIOR_GAIN)[
+            point.place(k)
+        ]
         return replace(added, variant=point.effects[k], value=point.values[k], std=std)
 
     return [s if s.added is None else replace(s, added=restated(s.added)) for s in stages]
 
 
 def settled(problem: Problem, stages: list[Stage]) -> list[Stage]:
-    """Effects in the order of what the full model loses without each; those it does not miss are dropped.
+    """Return the stages in the order of the loss without each effect. Effects without a loss are dropped.
 
-    The first addition had to explain everything alone, and may be nothing but a poor likeness of what
-    was found after it.
+    The first addition had to explain everything alone, and may be a poor likeness of effects found after it.
     """
     considered = {s.added.effect: s.considered for s in stages if s.added is not None}
     full = stages[-1].fitted
     names = list(considered)
     while len(names) > 1:
-        independent = worth(problem, full.innovations)
-        without = {name: only(problem, full, [n for n in names if n != name]) for name in names}
-        missed = {
-            name: addition(problem, fewer, hold_out(problem, fewer), full, name, independent)
+        effective = effective_samples(problem, full.innovations)
+        without = {name: fit_with_effects(problem, full, [n for n in names if n != name]) for name in names}
+        lost_without = {
+            name: addition(problem, fewer, hold_out(problem, fewer), full, name, effective)
             for name, fewer in without.items()
         }
-        # What manoeuvres kept out do not support goes first, whatever it gains.
-        weakest = min(names, key=lambda name: (missed[name].is_supported, missed[name].gain))
-        if missed[weakest].worth_naming:
-            names.sort(key=lambda name: -missed[name].gain * _rank_of(problem, name))
+        # An effect that held-out manoeuvres do not support goes first, whatever its gain.
+        weakest = min(names, key=lambda name: (lost_without[name].is_supported, lost_without[name].gain))
+        if lost_without[weakest].is_accepted:
+            names.sort(key=lambda name: -lost_without[name].gain * _rank_of(problem, name))
             break
         names.remove(weakest)
         full = without[weakest]
@@ -124,26 +127,26 @@ def settled(problem: Problem, stages: list[Stage]) -> list[Stage]:
 
 
 def _stands_alone(problem: Problem, first: Stage, full: Fitted, name: str) -> bool:
-    """Whether the last effect left is worth its name: it may have only led on to one that was dropped."""
-    independent = worth(problem, full.innovations)
-    return addition(problem, first.fitted, first.held_out, full, name, independent).worth_naming
+    """Return whether the only remaining effect is accepted alone; it may have led to one that was dropped."""
+    effective = effective_samples(problem, full.innovations)
+    return addition(problem, first.fitted, first.held_out, full, name, effective).is_accepted
 
 
 def _rank_of(problem: Problem, effect: str) -> float:
-    """What an effect's gain counts when effects are put in order.
+    """Return the factor on an effect's gain when effects are ordered.
 
-    An accelerometer's place that the file leaves open is something to measure rather: it comes last, unless
-    next to nothing else is there.
+    An accelerometer's position that the file leaves open is to be measured. It comes last, unless other
+    effects are tiny.
     """
     return _OPEN if effect in LEFT_OPEN and effect not in problem.arms_in_file else 1.0
 
 
 def reduced_to(problem: Problem, stages: Sequence[Stage], names: Sequence[str]) -> list[Stage]:
-    """The waterfall with some of its effects only, in their order."""
+    """Return the waterfall with some of its effects, in their order."""
     considered = {s.added.effect: s.considered for s in stages if s.added is not None}
     if list(names) == list(considered):
         return list(stages)
     if not names:
         return [replace(stages[0], added=None)]
-    full = only(problem, stages[-1].fitted, names)
+    full = fit_with_effects(problem, stages[-1].fitted, names)
     return in_full(problem, rebuilt(problem, stages[0], names, full, considered, stages[-1].considered))

@@ -1,1 +1,1 @@
-"""The simulator under diagnosis: the short period with every effect in it, and how its outputs are read."""
+"""The simulator under diagnosis: the short period with every effect, and the reading of its outputs."""

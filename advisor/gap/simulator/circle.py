@@ -1,7 +1,7 @@
-"""Cosine and sine as sums of their series.
+"""Cosine and sine as sums of their power series.
 
-A library's functions are called for one number after the other; a polynomial the compiler works out for all
-lanes of a pack at once (``advisor.gap.simulator.simulate``).
+A library function takes one number at a time. The compiler evaluates a polynomial for all lanes of a pack at
+once (``advisor.gap.simulator.simulate``).
 """
 
 import numpy as np
@@ -11,7 +11,7 @@ from advisor.compiled import kernel
 
 @kernel(error_model="numpy", fastmath={"contract"})
 def cos_sin(x: float) -> tuple[float, float]:
-    """Cosine and sine of an angle in rad, to the last digit but one."""
+    """Return cosine and sine of an angle in rad, exact but for the last digit."""
     half_turns = np.floor(x * (1.0 / np.pi) + 0.5)
     sign = 1.0 - 2.0 * (half_turns - 2.0 * np.floor(0.5 * half_turns))
     y = x - half_turns * np.pi

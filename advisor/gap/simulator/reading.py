@@ -1,4 +1,4 @@
-"""Simulated channels at their measurements' own stamps: the model is interpolated, never the data."""
+"""Simulated channels at the stamps of their measurements. The model is interpolated, never the data."""
 
 from collections.abc import Sequence
 
@@ -13,22 +13,22 @@ from advisor.gap.simulator.layout import FILTERED
 def read_rows(
     packs: FloatArray, h: float, stamps: FloatArray, output: np.ndarray, flown: np.ndarray, skews: FloatArray
 ) -> FloatArray:
-    """All channels of one manoeuvre, of all its simulations at once.
+    """Return all channels of one manoeuvre for many simulations at once.
 
     Parameters
     ----------
     packs
-        As ``advisor.gap.simulator.simulate.simulate`` returns them, with any number of lanes in a pack.
+        Result of ``advisor.gap.simulator.simulate.simulate``, with any number of lanes in a pack.
     h
         Step in s.
     stamps
         Shape (rows,).
     output
-        Shape (rows,), int64: which output each stamp reads.
+        Shape (rows,), int64: index of the output that each stamp reads.
     flown
-        Shape (k,), int64: which simulation each column reads; several may read one.
+        Shape (k,), int64: index of the simulation that each column reads. Columns may share a simulation.
     skews
-        Shape (k, 4): of each column and output, in s; > 0: the channel is late.
+        Shape (k, 4): time shift of each column and output in s; a positive shift makes the channel late.
 
     Returns
     -------
@@ -53,7 +53,7 @@ def read_rows(
 
 @kernel(error_model="numpy")
 def differences(read: FloatArray, measured: FloatArray, base: np.ndarray, step: FloatArray) -> FloatArray:
-    """Residuals and sensitivities from readings, shape (rows, k) like them.
+    """Return residuals and sensitivities, shape (rows, k), from readings of simulations.
 
     Parameters
     ----------
@@ -62,9 +62,10 @@ def differences(read: FloatArray, measured: FloatArray, base: np.ndarray, step: 
     measured
         Shape (rows,).
     base
-        Shape (k,), int64: the column from which a column was moved ...
+        Shape (k,), int64: index of the column with the unperturbed simulation.
     step
-        ... shape (k,), by how much; 0: the column is a base itself, of which stays what it leaves.
+        Shape (k,): finite-difference step of the column. A step of 0 marks an unperturbed simulation, whose
+        residual is returned.
     """
     out = np.empty_like(read)
     for i in range(read.shape[0]):
@@ -78,9 +79,9 @@ def differences(read: FloatArray, measured: FloatArray, base: np.ndarray, step: 
 
 @kernel(error_model="numpy")
 def delayed(response: FloatArray, h: float, delays: FloatArray) -> FloatArray:
-    """The same response, shape (4, n + 1), starting later by each of some delays, as one pack to read.
+    """Return a response, shape (4, n + 1), delayed by each of ``delays`` in s, as one pack for ``read_rows``.
 
-    Between two points of the grid it is mixed from both.
+    Between two points of the grid the response is interpolated linearly.
     """
     n = response.shape[1]
     out = np.zeros((1, n, 4, len(delays)))
@@ -99,7 +100,7 @@ def delayed(response: FloatArray, h: float, delays: FloatArray) -> FloatArray:
 
 @kernel(error_model="numpy")
 def superposed(response: FloatArray, h: float, delays: FloatArray, weights: FloatArray) -> FloatArray:
-    """The sum of the responses that ``delayed`` gives, each by its weight, shape (4, n + 1)."""
+    """Return the weighted sum of a response delayed by each of ``delays``, shape (4, n + 1)."""
     n = response.shape[1]
     out = np.zeros((4, n))
     for j in range(len(delays)):
@@ -115,22 +116,23 @@ def superposed(response: FloatArray, h: float, delays: FloatArray, weights: Floa
 
 @kernel(error_model="numpy")
 def _passed(out: complex, before: complex, here: complex, steps: complex, decay: complex) -> complex:
-    """What a pole passes on at the end of a step in which its input moves linearly."""
+    """Return the output of a first-order pole at the end of a step in which its input moves linearly."""
     trail = steps * (here - before)
     return here - trail + decay * (out - before + trail)
 
 
 @kernel(error_model="numpy")
 def filtered(packs: FloatArray, h: float, flown: np.ndarray, filters: FloatArray) -> FloatArray:
-    """Simulations with one output of each behind a filter 1/(1 + T p + c T² p²), as one pack to read.
+    """Return simulations with a filter 1/(1 + T p + c T² p²) in one output of each, as one pack for
+    ``read_rows``.
 
     Parameters
     ----------
     packs, h, flown
-        As ``read_rows`` takes them.
+        Arguments of ``read_rows``.
     filters
-        Shape (k, 3), as ``layout.FILTER``: of each column T in s, by which a ramp is late, c (0: first order,
-        1/2: Butterworth's), and the place of the output. No T: no filter.
+        Shape (k, 3), in the order of ``layout.FILTER``: T in s, the delay of a ramp; c, 0 for first order and
+        1/2 for Butterworth; and the index of the output. A T of 0 means no filter.
     """
     k, n = len(flown), packs.shape[1]
     out = np.empty((1, n, 4, k))
@@ -143,9 +145,9 @@ def filtered(packs: FloatArray, h: float, flown: np.ndarray, filters: FloatArray
         c = int(filters[j, FILTERED.filter_output])
         if late <= 0.0:
             continue
-        # Two poles, one behind the other: a pair of conjugates below critical damping.
-        apart = np.sqrt(complex(1.0 - 4.0 * shape))
-        one, other = late * (1.0 + apart) / 2.0, late * (1.0 - apart) / 2.0
+        # Two poles in series; below critical damping the poles are complex conjugates.
+        split = np.sqrt(complex(1.0 - 4.0 * shape))
+        one, other = late * (1.0 + split) / 2.0, late * (1.0 - split) / 2.0
         first, second = np.exp(-h / one), np.exp(-h / other)
         before = complex(out[0, 0, c, j])
         middle = last = before
@@ -159,11 +161,11 @@ def filtered(packs: FloatArray, h: float, flown: np.ndarray, filters: FloatArray
 
 
 def packed(grids: Sequence[FloatArray]) -> FloatArray:
-    """Series on the grid, each of shape (4, n + 1), as one pack to read."""
+    """Return series on the grid, each of shape (4, n + 1), as one pack for ``read_rows``."""
     return np.ascontiguousarray(np.stack(grids, axis=-1).transpose(1, 0, 2))[None]
 
 
 def lane(packs: FloatArray, k: int) -> FloatArray:
-    """One simulation of many on its grid, shape (4, n + 1)."""
+    """Return one simulation of a pack on its grid, shape (4, n + 1)."""
     pack, at = divmod(k, packs.shape[3])
     return np.ascontiguousarray(packs[pack, :, :, at].T)

@@ -5,20 +5,17 @@ import numpy as np
 from advisor.compiled import kernel
 from advisor.flight.messages import FloatArray
 from advisor.gap.simulator.layout import AT, LAYOUT, OTHER_LAYOUT
+from advisor.gap.simulator.servo import ARRIVED_RAD, through_friction, through_servo
 
 _READ = (
     AT.delay_s, AT.latency_s, AT.lag_s, AT.lag_damping, AT.slowness_s_rad,
     AT.half_play_rad, AT.play_side, AT.half_deadband_rad, AT.neutral_rad, AT.stop_up_rad, AT.stop_down_rad,
     AT.breakaway_rad, AT.sliding_share, AT.loop_s,
 )  # fmt: skip
-"""Entries on which a deflection depends."""
+"""Entries that change a deflection."""
 
 _UNLIMITED = 1e6
-"""Rate of a servo without a limit, rad/s: a jump takes no time."""
-_HERE = 1e-9
-"""Deflection, rad, below which the servo has arrived."""
-_PARTS = 8
-"""Of a piece of the command, at most: at its limit, lagging, and at its limit the other way."""
+"""Rate of a servo without a rate limit, rad/s: fast enough for a step to take no time."""
 
 
 @kernel()
@@ -26,11 +23,12 @@ def surfaces(
     layout: int, h: float, n: int, t_u: FloatArray, u: FloatArray, held: bool, trim: float, p: FloatArray,
     lanes: int,
 ) -> tuple[FloatArray, FloatArray]:  # fmt: skip
-    """Deflections for every row of ``p``, shape (k, entries), in lanes as ``simulate`` takes them.
+    """Return the deflections for every row of ``p``, shape (k, entries), in the lanes of ``simulate``.
 
-    Each of shape (packs, n, lanes): the mean over each step, and what that is above the step's start. Most
-    rows differ in numbers of which the surface knows nothing: those share a deflection. Lanes to spare repeat
-    the last one. Raises ValueError where the surface was compiled for another ``layout`` (``layout.LAYOUT``).
+    Both arrays have shape (packs, n, lanes): the mean over each step, and that mean minus the deflection at
+    the start of the step. Rows that differ in no entry of the surface share a deflection. Spare lanes repeat
+    the last row. Raises ValueError where the function was compiled for another ``layout``
+    (``layout.LAYOUT``).
     """
     if layout != LAYOUT or p.shape[1] != len(AT):
         raise ValueError(OTHER_LAYOUT)
@@ -67,10 +65,10 @@ def _differ(one: FloatArray, other: FloatArray) -> bool:
 
 @kernel()
 def above_start(mean: FloatArray) -> FloatArray:
-    """What the mean over each step is above the value at its start.
+    """Return the mean over each step minus the value at the start of the step, shape (n,).
 
-    Of the two steps that meet there the flatter one tells: a jump within the other leaves the value as it
-    was, or already is.
+    Two steps meet at that point, and the flatter one decides: a jump within the other leaves the value
+    unchanged, or has happened already.
     """
     n = len(mean)
     out = np.empty(n)
@@ -85,7 +83,7 @@ def above_start(mean: FloatArray) -> FloatArray:
 
 @kernel()
 def _lesser(one: float, other: float) -> float:
-    """The smaller of two differences of one sign; zero where they differ in sign."""
+    """Return the smaller of two differences of equal sign; zero where their signs differ."""
     if one * other <= 0.0:
         return 0.0
     return one if abs(one) < abs(other) else other
@@ -95,20 +93,20 @@ def _lesser(one: float, other: float) -> float:
 def surface(
     h: float, n: int, t_u: FloatArray, u: FloatArray, held: bool, trim: float, p: FloatArray
 ) -> FloatArray:
-    """Mean deflection over each step, relative to trim, after everything between stick and surface.
+    """Return the mean deflection over each step, relative to trim, behind all parts between stick and
+    surface.
 
-    The command comes in pieces that end at its stamps. What is not linear takes every piece by itself, so
-    that an edge inside a step keeps its area; all else is solved for the command's mean over the step.
-    The result is smooth in the delay.
+    The command consists of pieces that end at its stamps. Nonlinear parts take every piece separately, so
+    that an edge inside a step keeps its area. Linear parts are solved for the mean of the command over the
+    step. The result is smooth in the delay.
     """
     out = np.empty(n)
     k = 0
     late = p[AT.delay_s] + p[AT.latency_s]
-    tau, slow, neutral = p[AT.lag_s], p[AT.slowness_s_rad], p[AT.neutral_rad]
-    play, dead = max(p[AT.half_play_rad], 0.0), max(p[AT.half_deadband_rad], 0.0)
-    up, down = p[AT.stop_up_rad], p[AT.stop_down_rad]
+    tau, slow = p[AT.lag_s], p[AT.slowness_s_rad]
+    play = max(p[AT.half_play_rad], 0.0)
     decay = np.exp(-h / tau) if tau > 1e-6 else 0.0
-    # A servo of second order that trails a ramp by τ = 2 ζ/ω, solved exactly for what it is told in a step.
+    # A second-order servo that trails a ramp by τ = 2 ζ/ω, solved exactly for the mean command of a step.
     zeta = p[AT.lag_damping] if tau > 1e-3 else 0.0
     omega = 2.0 * zeta / max(tau, 1e-3)
     damped = np.sqrt(max(1.0 - zeta * zeta, 1e-6))
@@ -137,27 +135,17 @@ def surface(
                 slope = 0.0 if held or k == last else (u[k + 1] - u[k]) / (t_u[k + 1] - t_u[k])
                 begin = u[k] + slope * (at - t_u[k]) - trim
                 end = begin + slope * (upto - at)
-            mean = 0.5 * (begin + end)
-            if dead > 0.0:
-                mean = _mean_beyond(begin - neutral, end - neutral, dead) - _beyond(-neutral, dead)
-                begin = _beyond(begin - neutral, dead) - _beyond(-neutral, dead)
-                end = _beyond(end - neutral, dead) - _beyond(-neutral, dead)
-            if up > 0.0:
-                mean -= _mean_over(begin, end, up)
-                begin, end = min(begin, up), min(end, up)
-            if down > 0.0:
-                mean += _mean_over(-begin, -end, down)
-                begin, end = max(begin, -down), max(end, -down)
+            begin, end, mean = _limited(begin, end, p)
             if np.isnan(servo):
                 servo = begin
                 link = begin + p[AT.play_side] * max(play, holds)
             if holds > 0.0:
-                link, way, swept = _broken_away(
+                link, way, swept = through_friction(
                     link, way, begin, end, upto - at, holds, p[AT.sliding_share] * holds, p[AT.loop_s]
                 )
                 area += swept
             elif by_pieces:
-                servo, link, swept = _through(servo, link, begin, end, upto - at, tau, most, play)
+                servo, link, swept = through_servo(servo, link, begin, end, upto - at, tau, most, play)
                 area += swept
             total += mean * (upto - at)
             at = upto
@@ -170,12 +158,8 @@ def surface(
             to = want + fade * ((swing_cos + zeta * swing_sin) * off + swing_sin * rate / omega)
             rate = fade * ((swing_cos - zeta * swing_sin) * rate - omega * swing_sin * off)
             mean = 0.5 * (servo + to) + h * (before_rate - rate) / 12.0
-        elif tau > 1e-6:
-            to = decay * servo + (1.0 - decay) * want
-            mean = want + (servo - want) * (tau / h) * (1.0 - decay)
         else:
-            # First order in τ, so that the sensitivity to a lag exists at no lag at all.
-            to, mean = want, want + (servo - want) * tau / h
+            to, mean = _first_order(servo, want, h, tau, decay)
         if slow > 0.0 and abs(to - servo) * slow > h:
             to = servo + np.sign(to - servo) * h / slow
             mean = 0.5 * (servo + to)
@@ -189,86 +173,37 @@ def surface(
 
 
 @kernel()
-def _through(
-    servo: float, link: float, begin: float, end: float, dt: float, tau: float, most: float, play: float
-) -> tuple[float, float, float]:
-    """Servo and linkage after a piece in which the command moves linearly, and the deflection's integral.
+def _limited(begin: float, end: float, p: FloatArray) -> tuple[float, float, float]:
+    """Return the ends and the mean of a linear piece of the command behind the dead band and the stops.
 
-    The servo moves by (command − servo)/τ, but no faster than ``most``: it lags by an exponential or runs at
-    its limit, and a piece holds a few such parts. The linkage rests until the servo has crossed its play.
+    ``begin`` and ``end`` are relative to trim, rad; ``p`` has shape (entries,).
     """
-    slope, left, command, area = (end - begin) / dt, dt, begin, 0.0
-    way, limit = np.sign(slope), most * tau
-    for _ in range(_PARTS):
-        error = command - servo
-        outrun = abs(slope) > most and way * error >= limit - _HERE
-        if outrun or abs(error) > limit + _HERE:
-            side = way if outrun else np.sign(error)
-            closing = most - side * slope
-            time = left if closing <= 0.0 else min(left, max(side * error - limit, 0.0) / closing)
-            to = servo + side * most * time
-            swept = 0.5 * (servo + to) * time
-        else:
-            settled, time = slope * tau, left
-            if abs(slope) > most and tau > 0.0:
-                time = min(left, -tau * np.log((way * limit - settled) / (error - settled)))
-            trail = (error - settled) * np.exp(-time / tau) if tau > 0.0 else 0.0
-            to = command + slope * time - settled - trail
-            swept = (command + 0.5 * slope * time) * time - tau * (to - servo)
-        if play > 0.0:
-            before, link = link, min(max(link, to - play), to + play)
-            share = (link - before) / (to - servo) if link != before else 0.0
-            swept = (before + 0.5 * (link - before) * share) * time
-        area += swept
-        servo, command, left = to, command + slope * time, left - time
-        if left <= 0.0:
-            break
-    return servo, link, area
+    dead, neutral = max(p[AT.half_deadband_rad], 0.0), p[AT.neutral_rad]
+    up, down = p[AT.stop_up_rad], p[AT.stop_down_rad]
+    mean = 0.5 * (begin + end)
+    if dead > 0.0:
+        mean = _mean_beyond(begin - neutral, end - neutral, dead) - _beyond(-neutral, dead)
+        begin = _beyond(begin - neutral, dead) - _beyond(-neutral, dead)
+        end = _beyond(end - neutral, dead) - _beyond(-neutral, dead)
+    if up > 0.0:
+        mean -= _mean_over(begin, end, up)
+        begin, end = min(begin, up), min(end, up)
+    if down > 0.0:
+        mean += _mean_over(-begin, -end, down)
+        begin, end = max(begin, -down), max(end, -down)
+    return begin, end, mean
 
 
 @kernel()
-def _broken_away(
-    link: float, way: float, begin: float, end: float, dt: float, holds: float, drags: float, tau: float
-) -> tuple[float, float, float]:
-    """Surface, which way it slides, and its integral, after a piece in which the command moves linearly.
+def _first_order(servo: float, want: float, h: float, tau: float, decay: float) -> tuple[float, float]:
+    """Return the deflection of a servo with a lag of ``tau`` s at the end of a step, and its mean over that.
 
-    A position loop against dry friction: at rest it holds until the command is ``holds`` away. While it
-    slides friction drags: it lags by ``tau`` behind what is ``drags`` short of the command, and rests again
-    where that would turn it round.
+    ``want`` is the mean of the command over the step of ``h`` s, ``decay`` is exp(-h/tau).
     """
-    slope, left, command, area = (end - begin) / dt, dt, begin, 0.0
-    tau = max(tau, 1e-3)
-    for _ in range(_PARTS):
-        if way == 0.0:
-            side = np.sign(command - link)
-            if abs(command - link) > holds:
-                way, time = side, 0.0
-            elif slope == 0.0:
-                time = left
-            else:
-                time = (link + np.sign(slope) * holds - command) / slope
-                way = np.sign(slope) if time < left else 0.0
-                time = min(time, left)
-            area += link * time
-        else:
-            error, settled = command - way * drags - link, slope * tau
-            way_at, time = way, left
-            if way * error <= 0.0:
-                way, time = 0.0, 0.0
-            elif way * settled < 0.0:
-                time = tau * np.log((settled - error) / settled)
-                way = way if time > left else 0.0
-                time = min(time, left)
-            if time > 0.0:
-                to = link + settled * time / tau + (error - settled) * (1.0 - np.exp(-time / tau))
-                area += (command - way_at * drags + 0.5 * slope * time) * time - tau * (to - link)
-                link = to
-        command, left = command + slope * time, left - time
-        if left <= 0.0:
-            break
-    if left > 0.0:
-        area += link * left
-    return link, way, area
+    if tau > 1e-6:
+        return decay * servo + (1.0 - decay) * want, want + (servo - want) * (tau / h) * (1.0 - decay)
+    # First order in τ, so that the sensitivity to a lag exists at no lag at all.
+    return want, want + (servo - want) * tau / h
 
 
 @kernel()
@@ -278,8 +213,9 @@ def _beyond(x: float, dead: float) -> float:
 
 @kernel()
 def _mean_beyond(begin: float, end: float, dead: float) -> float:
-    """Mean of what lies beyond the dead band while its argument moves linearly from begin to end."""
-    if abs(end - begin) < _HERE:
+    """Return the mean of the part beyond the dead band while the argument moves linearly from begin to
+    end."""
+    if abs(end - begin) < ARRIVED_RAD:
         return float(_beyond(begin, dead))
     squares = max(abs(end) - dead, 0.0) ** 2 - max(abs(begin) - dead, 0.0) ** 2
     return float(0.5 * squares / (end - begin))
@@ -287,8 +223,8 @@ def _mean_beyond(begin: float, end: float, dead: float) -> float:
 
 @kernel()
 def _mean_over(begin: float, end: float, top: float) -> float:
-    """Mean of what lies above a stop while its argument moves linearly from begin to end."""
-    if abs(end - begin) < _HERE:
+    """Return the mean of the part above a stop while the argument moves linearly from begin to end."""
+    if abs(end - begin) < ARRIVED_RAD:
         return float(max(begin - top, 0.0))
     squares = max(end - top, 0.0) ** 2 - max(begin - top, 0.0) ** 2
     return float(0.5 * squares / (end - begin))

@@ -1,1 +1,1 @@
-"""From evidence to the answer: verdict, causes, numbers, sentence."""
+"""From the evidence to the verdict, its causes, its numbers and its sentence."""

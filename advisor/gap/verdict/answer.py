@@ -1,4 +1,4 @@
-"""From evidence to the answer: the numbers beside the judgement, and the sentence."""
+"""From the evidence to the diagnosis: verdict, causes, numbers and sentence."""
 
 from dataclasses import replace
 
@@ -12,16 +12,16 @@ from advisor.gap.candidates.moment import PROPELLER
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.fitting.problem import Problem
-from advisor.gap.fitting.uncertainty import covariance, worth
+from advisor.gap.fitting.uncertainty import covariance, effective_samples
 from advisor.gap.foresight.foresee import unseen_effects
 from advisor.gap.records.floor import tolerance_of
 from advisor.gap.result import Cause, Diagnosis, Gap, Verdict, Where
-from advisor.gap.search.merit import LEAST_SIGMA
+from advisor.gap.search.acceptance import LEAST_SIGMA
 from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.gap.verdict.causes import block_ranking
 from advisor.gap.verdict.evidence import Evidence
+from advisor.gap.verdict.holdout_numbers import as_read, on_holdout, over_maneuvers, with_offset, without_air
 from advisor.gap.verdict.judgement import judgement
-from advisor.gap.verdict.kept_out import as_read, keep_out, over_maneuvers, with_offset, without_air
 from advisor.gap.verdict.notes import notes_of
 from advisor.gap.verdict.numbers import (
     fidelity_of,
@@ -33,7 +33,7 @@ from advisor.gap.verdict.numbers import (
     waterfall_of,
 )
 from advisor.gap.verdict.statements import in_simulator
-from advisor.gap.verdict.text import sentence_of, where_of_one
+from advisor.gap.verdict.text import sentence_of, sentence_of_one_maneuver
 
 
 def answer(
@@ -42,8 +42,8 @@ def answer(
     kinematics: KinematicCheck,
     holdout: int | None,
 ) -> Diagnosis:
-    """Turn the evidence into the diagnosis."""
-    e, kept = keep_out(e, holdout)
+    """Return the diagnosis that follows from the evidence."""
+    e, kept = on_holdout(e, holdout)
     problem, stages = e.problem, e.stages
     judged = judgement(e, kinematics)
     verdict, causes = judged.verdict, judged.causes
@@ -55,29 +55,29 @@ def answer(
     before = over_maneuvers(problem, before, kept)
     with_air = last.mean_square
     if e.air is not None:
-        # From here on the air is one of the causes: the floor is the instruments' noise without its motion.
+        # Moving air counts as a cause here, so the floor is the instruments' noise alone.
         least = np.maximum(e.air.instruments, tolerance_of(problem.flights))
         last, e = without_air(last, e.air), replace(e, floor=np.minimum(e.floor, least))
     gap = gap_numbers(problem, e.floor, before, last)
     shrink = None
     if verdict in ("effect", "parameters"):
-        shrink = shrink_of(e, kept, gap, before, last, judged.wrong_numbers)
+        shrink = shrink_of(e, kept, gap, before, last, judged.wrong_derivatives)
     fitted = stages[-1].fitted
-    known = covariance(problem, fitted, worth(problem, fitted.innovations))
+    known = covariance(problem, fitted, effective_samples(problem, fitted.innovations))
     where = (
-        _of_the_numbers(problem, fitted, known, gap)
+        _of_the_derivatives(problem, fitted, known, gap)
         if verdict == "parameters"
         else _where(e, verdict, causes)
     )
-    waterfall = waterfall_of(stages, e.floor, judged.apart, judged.speed, gap.before)
+    waterfall = waterfall_of(stages, e.floor, judged.outside_fit, judged.speed, gap.before)
     present = {c.effect for c in causes if c.present}
     effects = _improvements(fitted, np.sqrt(np.maximum(np.diag(known), 0.0)), causes)
-    nobodys_fault = effects.keys() - present if shrink is not None else ()
-    seen_once = len(problem.flights) == 1 and verdict == "unknown"
+    nuisances = effects.keys() - present if shrink is not None else ()
+    is_single = len(problem.flights) == 1 and verdict == "unknown"
     sentence = sentence_of(verdict, gap, where, causes, shrink, in_simulator(aircraft))
     return Diagnosis(
         verdict=verdict,
-        sentence=where_of_one(where) if seen_once else sentence,
+        sentence=sentence_of_one_maneuver(where) if is_single else sentence,
         gap=gap, where=where,
         causes=causes, shrink=shrink, waterfall=waterfall,
         cannot_see=unseen_effects(problem, fitted, variants_for(problem.flights), e.floor, present),
@@ -85,18 +85,20 @@ def answer(
         reference_airspeed_m_s=problem.flights.reference_m_s if _speed_is_known(problem, aircraft) else None,
         effects=effects, share_irreducible=irreducible(with_air, e.floor, gap), decisions=judged.decisions,
         yardsticks=fidelity_of(problem, before, last), traces=traces_of(problem, before, last),
-        notes=notes_of(e, aircraft, holdout, verdict, nobodys_fault),
+        notes=notes_of(e, aircraft, holdout, verdict, nuisances),
         maneuvers=tuple(f.number for f in problem.flights.flights),
     )  # fmt: skip
 
 
 def _speed_is_known(problem: Problem, aircraft: Aircraft) -> bool:
-    """Whether the derivatives' speed was measured, is the file's, or what the motion shows."""
+    """Return whether the air speed of the derivatives was measured, stated in the file, or derived from the
+    motion."""
     return problem.flights.speed_measured or aircraft.stated_airspeed_m_s is not None
 
 
 def _improvements(fitted: Fitted, std: FloatArray, causes: tuple[Cause, ...]) -> dict[str, dict[str, float]]:
-    """What the improved simulator gets: the named effects, and the propeller's share where it shows."""
+    """Return the effects of the improved simulator: the named ones, and the propeller's terms where
+    significant."""
     effects = {c.effect: {k: v.value for k, v in c.parameters.items()} for c in causes if c.present}
     point = fitted.point
     if PROPELLER in point.effects:
@@ -108,19 +110,20 @@ def _improvements(fitted: Fitted, std: FloatArray, causes: tuple[Cause, ...]) ->
 
 
 def _where(e: Evidence, verdict: Verdict, causes: tuple[Cause, ...]) -> Where:
-    if verdict == "unknown" and e.leftover is not None:
-        return Where(e.leftover.block, e.leftover.share, e.leftover.ranking)
+    if verdict == "unknown" and e.unexplained is not None:
+        return Where(e.unexplained.block, e.unexplained.share, e.unexplained.ranking)
     ranking = block_ranking(e.stages[0], causes)
     total = max(whole_gap(e.stages[0].held_out.mean_square, e.floor), 1e-12)
-    left = whole_gap(e.stages[-1].held_out.mean_square, e.floor)
+    remaining = whole_gap(e.stages[-1].held_out.mean_square, e.floor)
     block = next((c.block for c in causes if c.present), ranking[0][0] if ranking else "force_equation")
-    return Where(block, float(np.clip(1.0 - left / total, 0.0, 1.0)) if causes else 0.0, ranking)
+    return Where(block, float(np.clip(1.0 - remaining / total, 0.0, 1.0)) if causes else 0.0, ranking)
 
 
-def _of_the_numbers(problem: Problem, fitted: Fitted, known: FloatArray, gap: Gap) -> Where:
-    """The equation whose derivatives in the aircraft file are further off, beside what is known of them."""
-    assert problem.believed is not None
-    off = fitted.point.derivatives - problem.believed
+def _of_the_derivatives(problem: Problem, fitted: Fitted, known: FloatArray, gap: Gap) -> Where:
+    """Return the equation whose derivatives in the aircraft file are further off, relative to their
+    uncertainty."""
+    assert problem.prior_derivatives is not None
+    off = fitted.point.derivatives - problem.prior_derivatives
     scores = {}
     for block, letter in (("force_equation", "Z"), ("moment_equation", "M")):
         its = [k for k, name in enumerate(DERIVATIVES) if name.startswith(letter)]

@@ -1,4 +1,4 @@
-"""From judged candidates to causes people can read: probability, parameters, ties."""
+"""From judged candidates to readable causes: probability, parameters, and indistinguishable effects."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -10,28 +10,29 @@ from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.result import Cause, Value
-from advisor.gap.search.merit import Judged
-from advisor.gap.search.score import TIME_DOUBT_S, TIMES
+from advisor.gap.search.acceptance import Judged
+from advisor.gap.search.indistinguishable import indistinguishable_from
+from advisor.gap.search.score import TIME_ERROR_S, TIMES
 from advisor.gap.search.stage import Stage, added_in
-from advisor.gap.search.ties import tied_with
 
 TEMPERATURE = 3.0
-"""Log likelihoods of a model that is itself approximate count for less: divided by this before they
-become probabilities. Set on development data so that stated and observed frequencies agree."""
-_SHAPE_DOUBT = 0.03
-"""Relative error of a size for describing its effect to low order only."""
+"""Divisor of log likelihoods before they become probabilities, because the model is an approximation. Set on
+development flights, so that stated probabilities equal observed frequencies."""
+_SHAPE_ERROR = 0.03
+"""Relative error of a size for the low-order description of its effect."""
 _TIMING = {"transport_delay": "delay_s", "actuator_lag": "lag_s"}
 """Effects that a common shift of all steps of the command would imitate, and their parameter."""
 _TOLD_LATER = 0.5
-"""Confidence in an effect that was not worth a name until another was found beside it."""
+"""Probability of an effect that was accepted only after another was found."""
 _THE_FIRST = 0.5
-"""Of all named effects' probability what the first has ahead; the rest they share by what they change."""
+"""Share of the probability that the first effect has in advance; all effects share the rest by their
+change."""
 
 
 def causes_of(
     stages: Sequence[Stage], floor: FloatArray, unexplained: float, channels: Sequence[str]
 ) -> tuple[Cause, ...]:
-    """What was added, in order, then the alternatives to the first addition."""
+    """Return the added effects in their order, then the alternatives to the first one."""
     added = added_in(stages)
     first = stages[0].considered
     shares = probabilities(first, unexplained)
@@ -39,7 +40,7 @@ def causes_of(
     removed = [max(j.removed, 1e-6) for j in added]
     for n, (stage, judged) in enumerate(zip(stages, added, strict=False)):
         confidence = probabilities(stage.considered, unexplained).get(judged.effect, _TOLD_LATER)
-        if any(j.effect == judged.effect and not j.worth_naming for j in stage.considered):
+        if any(j.effect == judged.effect and not j.is_accepted for j in stage.considered):
             confidence = _TOLD_LATER
         share = _THE_FIRST * (n == 0) + (1.0 - _THE_FIRST) * removed[n] / sum(removed)
         causes.append(_cause(judged, stage.considered, confidence * share, floor, channels, True))
@@ -54,11 +55,12 @@ def causes_of(
 
 
 def probabilities(considered: Sequence[Judged], unexplained: float) -> dict[str, float]:
-    """Effect to probability; what is missing to 1 is for no effect and for one without a name."""
+    """Return the probability of each effect; the rest to 1 is for no effect, or for one outside the
+    catalogue."""
     if not considered:
         return {}
-    # What is not worth a name is no rival, whatever it gains.
-    gains = [(j.gain if j.worth_naming else min(j.gain, 0.0)) - j.least_gain for j in considered]
+    # An effect that is not accepted is no rival, whatever its gain.
+    gains = [(j.gain if j.is_accepted else min(j.gain, 0.0)) - j.least_gain for j in considered]
     scores = np.array([*gains, 0.0]) / TEMPERATURE
     weights = np.exp(scores - np.max(scores))
     weights = (1.0 - 0.9 * unexplained) * weights / np.sum(weights)
@@ -66,7 +68,8 @@ def probabilities(considered: Sequence[Judged], unexplained: float) -> dict[str,
 
 
 def parameters_of(v: Variant, values: FloatArray, std: FloatArray) -> dict[str, Value]:
-    """Parameters with their errors as the aircraft file spells them; both arrays have shape (names,)."""
+    """Return the parameters and their errors as the aircraft file spells them; both arrays have shape
+    (names,)."""
     found = {n: Value(float(x), float(s)) for n, x, s in zip(v.names, values, std, strict=True)}
     if v.inverted:
         x = max(float(values[0]), 1e-9)
@@ -82,23 +85,25 @@ def parameters_of(v: Variant, values: FloatArray, std: FloatArray) -> dict[str, 
     return found
 
 
-def with_doubt(cause: Cause, problem: Problem) -> Cause:
-    """Sizes with the errors that no fit shows: effects are described to low order, on a grid of time."""
+def with_model_errors(cause: Cause, problem: Problem) -> Cause:
+    """Return the cause with errors that no fit shows: of the low-order description and of the time grid."""
     doubted = {
-        name: Value(v.value, float(np.hypot(v.std, _doubt(name, v.value))))
+        name: Value(v.value, float(np.hypot(v.std, _model_error(name, v.value))))
         for name, v in cause.parameters.items()
         if v.std > 0.0
     }
-    return _with_edge_doubt(replace(cause, parameters={**cause.parameters, **doubted}), problem)
+    return _with_edge_error(replace(cause, parameters={**cause.parameters, **doubted}), problem)
 
 
-def _doubt(name: str, value: float) -> float:
-    """Standard deviation of a size beyond its fit's: a share of it, and for times part of a step."""
-    return float(np.hypot(_SHAPE_DOUBT * value, TIME_DOUBT_S if name in TIMES else 0.0))
+def _model_error(name: str, value: float) -> float:
+    """Return the standard deviation of a size for model errors: a share of it, and for times part of a
+    step."""
+    return float(np.hypot(_SHAPE_ERROR * value, TIME_ERROR_S if name in TIMES else 0.0))
 
 
-def _with_edge_doubt(cause: Cause, problem: Problem) -> Cause:
-    """A delay or lag with the error that comes of steps lying anywhere between two stamps of the command."""
+def _with_edge_error(cause: Cause, problem: Problem) -> Cause:
+    """Return a delay or lag with the error of steps that may lie anywhere between two stamps of the
+    command."""
     intervals = [flight.edges[:, 2] for flight in problem.flights.flights if len(flight.edges)]
     if problem.held or not intervals or cause.effect not in _TIMING:
         return cause
@@ -117,14 +122,14 @@ def _cause(
     channels: Sequence[str],
     present: bool,
 ) -> Cause:
-    ties, way = tied_with(judged, considered, channels)
-    left = whole_gap(judged.held_out.mean_square, floor)
+    alike, way = indistinguishable_from(judged, considered, channels)
+    gap_after = whole_gap(judged.held_out.mean_square, floor)
     sizes = parameters_of(judged.variant, judged.value, judged.std)
-    return Cause(judged.effect, judged.block, probability, sizes, ties, way, left, present)
+    return Cause(judged.effect, judged.block, probability, sizes, alike, way, gap_after, present)
 
 
 def block_ranking(first: Stage, causes: Sequence[Cause]) -> tuple[tuple[str, float], ...]:
-    """Blocks by the best any of their effects does, 1 for the best."""
+    """Return the blocks with the score of their best effect; the best block scores 1."""
     scores: dict[str, float] = {}
     for cause in causes:
         if cause.present:

@@ -1,4 +1,4 @@
-"""What an answer is made from: stages, what is left, the air, the floor."""
+"""The evidence of a diagnosis: stages, unexplained residual, moving air and noise floor."""
 
 from dataclasses import dataclass
 
@@ -7,32 +7,32 @@ from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.search.air import Air
 from advisor.gap.search.stage import Stage
-from advisor.gap.unnamed.leftover import Leftover
-from advisor.gap.unnamed.true_speed import TrueSpeed
-from advisor.gap.unnamed.weight import Weight
-from advisor.gap.unnamed.wind import Shear
+from advisor.gap.uncatalogued.airspeed_scale import AirspeedScale
+from advisor.gap.uncatalogued.unexplained import Unexplained
+from advisor.gap.uncatalogued.weight_check import WeightReading
+from advisor.gap.uncatalogued.wind_shear import Shear
 
 
 @dataclass(frozen=True)
 class Evidence:
-    """Everything the answer is made from."""
+    """Everything that a diagnosis is made from."""
 
     problem: Problem
     stages: list[Stage]
-    leftover: Leftover | None
-    """Something without a name that is still there."""
+    unexplained: Unexplained | None
+    """Residual that no named effect explains."""
     air: Air | None
     floor: FloatArray
-    """Shape (channels,): noise as it is where nothing was flown."""
+    """Shape (channels,): noise where nothing was flown."""
     file_model: HeldOut | None
-    """The aircraft file's own parameters, unfitted ..."""
-    file_and_names: HeldOut | None
-    """... and the same with everything that was named; None where nothing was."""
+    """Hold-out of the aircraft file's own derivatives, not fitted."""
+    file_model_with_effects: HeldOut | None
+    """Hold-out of the aircraft file's own derivatives with all named effects; None without effects."""
     constant_speed: HeldOut | None
-    """The final model without the change of air speed."""
-    true_speed: TrueSpeed | None = None
-    """By how much the true air speed is off the one in use, where it is worth saying."""
+    """Hold-out of the final model at constant air speed."""
+    airspeed_scale: AirspeedScale | None = None
+    """Relative excess of the true over the used air speed, where significant."""
     shear: Shear | None = None
-    """Wind that changes with height: it has no name in the catalogue."""
-    weight: Weight | None = None
-    """What the accelerometer reads of the weight, where it is not all of it."""
+    """Wind that changes with height, which is outside the catalogue."""
+    weight: WeightReading | None = None
+    """The accelerometer's reading of the weight, where it is wrong."""

@@ -1,27 +1,28 @@
-"""The ledger: every number that was held against a limit on the way to a verdict, in the order of asking."""
+"""The ledger: every statistic that was compared with a limit on the way to a verdict, in order."""
 
 from advisor.gap.decision import Decision
-from advisor.gap.fitting.uncertainty import PLAIN
+from advisor.gap.fitting.uncertainty import CLEAR_GAP
 from advisor.gap.result import VISIBLE
+from advisor.gap.search.acceptance import Judged
 from advisor.gap.search.air import AIR_GAIN
-from advisor.gap.search.merit import Judged
 from advisor.gap.search.stage import Stage
 from advisor.gap.verdict.evidence import Evidence
-from advisor.gap.verdict.wrong_numbers import WrongNumbers
+from advisor.gap.verdict.wrong_derivatives import WrongDerivatives
 
 
-def decisions_of(e: Evidence, numbers: WrongNumbers) -> tuple[Decision, ...]:
-    """What was asked of the names, the air, what has no name, and the aircraft file's numbers."""
+def decisions_of(e: Evidence, derivatives: WrongDerivatives) -> tuple[Decision, ...]:
+    """Return the decisions on effects, moving air, unexplained residual and the aircraft file's
+    derivatives."""
     return (
         *(decision for stage in e.stages for decision in _of_stage(stage)),
         *_of_the_air(e),
-        *(() if e.leftover is None else e.leftover.decisions),
-        *_of_the_numbers(e, numbers),
+        *(() if e.unexplained is None else e.unexplained.decisions),
+        *_of_the_derivatives(e, derivatives),
     )
 
 
 def in_words(decision: Decision) -> str:
-    """One decision as a line for people."""
+    """Return one decision as a line for people."""
     said = "yes" if decision.holds else "no"
     about = decision.about.replace("_", " ")
     return (
@@ -31,8 +32,8 @@ def in_words(decision: Decision) -> str:
 
 
 def _of_stage(stage: Stage) -> list[Decision]:
-    """Why an effect was added, and what refused the others that bring any likelihood."""
-    refused = [judged for judged in stage.considered if judged.gain > 0.0 and not judged.worth_naming]
+    """Return why an effect was added, and why others with a positive gain were rejected."""
+    refused = [judged for judged in stage.considered if judged.gain > 0.0 and not judged.is_accepted]
     told = [decision for judged in refused for decision in _against(judged)]
     return [*told, *(() if stage.added is None else stage.added.decisions)]
 
@@ -48,13 +49,17 @@ def _of_the_air(e: Evidence) -> list[Decision]:
     return [Decision(about, "likelihood", e.air.gain, AIR_GAIN, "log likelihood gained")]
 
 
-def _of_the_numbers(e: Evidence, numbers: WrongNumbers) -> list[Decision]:
+def _of_the_derivatives(e: Evidence, derivatives: WrongDerivatives) -> list[Decision]:
     if e.file_model is None:
         return []
     unit = "mean square over the noise, beyond fitted numbers"
-    gap = Decision("parameters", "gap", numbers.gap, VISIBLE, unit)
+    gap = Decision("parameters", "gap", derivatives.gap, VISIBLE, unit)
     distance = Decision(
-        "parameters", "distance", numbers.distance.statistic, numbers.distance.limit, "chi square of six"
+        "parameters",
+        "distance",
+        derivatives.distance.statistic,
+        derivatives.distance.limit,
+        "chi square of six",
     )
-    plainly = Decision("parameters", "plain gap", numbers.gap, PLAIN, unit)
-    return [gap, plainly, distance]
+    clear = Decision("parameters", "clear gap", derivatives.gap, CLEAR_GAP, unit)
+    return [gap, clear, distance]

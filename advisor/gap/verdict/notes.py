@@ -1,4 +1,4 @@
-"""What a reader should know beside the answer: what was assumed, missing, unusual, or could not be done."""
+"""Notes on a diagnosis: assumptions, missing channels, unusual values, and manoeuvres left out."""
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
@@ -11,25 +11,25 @@ from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.records.flights import Flights
 from advisor.gap.records.usable import why_left_out
 from advisor.gap.result import Verdict, spelled
+from advisor.gap.search.path_energy import mean_speed
 from advisor.gap.search.stage import added_in
-from advisor.gap.search.work import mean_speed
 from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.text import place
 
 _ANOTHER_SPEED = 0.005
-"""Relative: by less two ways of taking the mean differ."""
+"""Least relative difference between two means of the air speed that is reported."""
 _MATTERS = 0.3
-"""Gap that a simulator at constant speed must leave besides, to be worth a word."""
+"""Least gap of a simulator at constant speed that is reported."""
 _FEW = 6
-"""Manoeuvres below which little can be told of what changes between them."""
+"""Number of manoeuvres below which changes between them can hardly be seen."""
 
 
 def notes_of(
-    e: Evidence, aircraft: Aircraft, holdout: int | None, verdict: Verdict, nobodys_fault: Collection[str]
+    e: Evidence, aircraft: Aircraft, holdout: int | None, verdict: Verdict, nuisances: Collection[str]
 ) -> tuple[str, ...]:
-    """Every note that these flights and their aircraft file call for, a sentence each.
+    """Return all notes that these flights and their aircraft file require, a sentence each.
 
-    ``nobodys_fault`` are effects that the improved simulator gets though they are no cause.
+    ``nuisances`` are effects that the improved simulator gets although they are no cause.
     """
     return (
         *_of_the_hold_out(holdout, len(e.problem.flights)),
@@ -39,7 +39,7 @@ def notes_of(
         *_of_the_unexplained(e),
         *_of_single_witnesses(e),
         *_of_the_air(e),
-        *_of_the_file(aircraft, nobodys_fault),
+        *_of_the_file(aircraft, nuisances),
         *_of_what_is_missing(e, aircraft),
     )
 
@@ -48,12 +48,12 @@ def _of_the_hold_out(holdout: int | None, flown: int) -> Iterator[str]:
     if holdout is not None and holdout >= flown:
         yield (
             f"{holdout} manoeuvres cannot be kept out of {flown}: each was kept out in turn instead. "
-            f"Keep out {flown - 1} at most."
+            f"Give --holdout {flown - 1} at most."
         )
 
 
 def _of_the_speed(e: Evidence, aircraft: Aircraft) -> Iterator[str]:
-    """Where the air speed is from, and what is off about it."""
+    """Yield the source of the air speed, and its errors."""
     flights = e.problem.flights
     flown, reference = mean_speed(flights), flights.reference_m_s
     is_stated = aircraft.reference_airspeed_m_s is not None
@@ -61,31 +61,31 @@ def _of_the_speed(e: Evidence, aircraft: Aircraft) -> Iterator[str]:
         yield _without_air_speed(flights, bool(aircraft.stated_airspeed_m_s))
     elif not is_stated and abs(reference / flown - 1.0) > _ANOTHER_SPEED:
         yield (
-            f"The aircraft file's numbers are right at {reference:.1f} m/s; the manoeuvres' mean is "
-            f"{flown:.1f}: state reference_airspeed_m_s."
+            f"The aircraft file's derivatives are right at {reference:.1f} m/s. The mean of the manoeuvres "
+            f"is {flown:.1f} m/s: state reference_airspeed_m_s."
         )
     if e.shear is not None:
         per_metre = f"{abs(e.shear.gradient_per_s):.2f} ± {e.shear.std:.2f} m/s"
-        if e.shear.is_feigned:
-            yield f"The air speed's error grows by {per_metre} a metre climbed: more than any wind changes."
+        if e.shear.is_implausible:
+            yield f"The air speed's error grows by {per_metre} per metre climbed, which no wind explains."
         else:
-            yield f"The wind changed with height, by {per_metre} a metre."
-    if e.true_speed is not None:
-        yield e.true_speed.sentence
+            yield f"The wind changed with height, by {per_metre} per metre."
+    if e.airspeed_scale is not None:
+        yield e.airspeed_scale.sentence
     if e.weight is not None:
         yield e.weight.sentence
 
 
 def _of_a_constant_speed(e: Evidence, verdict: Verdict) -> Iterator[str]:
-    """What "like the aircraft" takes for granted where the speed moved."""
+    """Yield the gap of a simulator at constant speed, where the verdict is none and the air speed varied."""
     if verdict != "none" or e.constant_speed is None or not e.problem.flights.speed_measured:
         return
     constant, given = (whole_gap(h.mean_square, e.floor) for h in (e.constant_speed, e.stages[-1].held_out))
     if constant - given > _MATTERS:
         percent = 100.0 * e.problem.flights.speed_moves
         yield (
-            f"The simulator was given the air speed of the log, which moved by up to {percent:.0f} %: "
-            f"one at constant speed would leave a gap of {constant:.1f}."
+            f"The simulator was given the air speed of the log, which varied by up to {percent:.0f} %. "
+            f"At constant speed it would leave a gap of {constant:.1f}."
         )
 
 
@@ -93,21 +93,21 @@ def _without_air_speed(flights: Flights, is_known: bool) -> str:
     whence = "from the aircraft file, or from the motion where the file has none" if is_known else "assumed"
     moves = flights.speed_moves > 0.0
     level = "on average" if moves else "before each manoeuvre"
-    differs = f", up to {100.0 * flights.speed_moves:.0f} % off by the motion" if moves else ""
+    differs = f", with differences up to {100.0 * flights.speed_moves:.0f} % by the motion" if moves else ""
     shown = "a_x" in flights.has and {"alpha", "a_z", "theta"} <= set(flights.channels)
-    later = "from there it is what the accelerometers make of it" if shown else "it stays there"
+    later = "its changes come from the accelerometers" if shown else "it stays constant"
     return f"No air speed in the log: {flights.reference_m_s:.1f} m/s {level}, {whence}{differs}; {later}."
 
 
 def _of_the_unexplained(e: Evidence) -> Iterator[str]:
-    if e.leftover is not None and e.leftover.note:
-        yield f"Unexplained {place(e.leftover.block)}: {e.leftover.note}"
+    if e.unexplained is not None and e.unexplained.note:
+        yield f"Unexplained {place(e.unexplained.block)}: {e.unexplained.note}"
 
 
 def _of_single_witnesses(e: Evidence) -> Iterator[str]:
     for judged in added_in(e.stages):
-        if judged.witness is not None:
-            number = e.problem.flights.flights[judged.witness].number
+        if judged.sole_maneuver is not None:
+            number = e.problem.flights.flights[judged.sole_maneuver].number
             yield (
                 f"Manoeuvre {number} alone shows the {spelled(judged.effect)}: "
                 "it is measured there, and no other manoeuvre could confirm it."
@@ -118,30 +118,30 @@ def _of_the_air(e: Evidence) -> Iterator[str]:
     if e.air is None:
         return
     yield (
-        "What is given as 'after' includes this flight's gusts as estimated from the same samples: that "
-        "flatters the model, and no aircraft file can hold them."
+        "The gap 'after' includes this flight's gusts, estimated from the same samples. That flatters the "
+        "model, and no aircraft file can hold gusts."
     )
     if e.air.gust:
         yield f"The gust shows most in manoeuvre {e.air.gust_number}."
     if e.problem.flights.alpha_is_derived:
         yield (
-            "The angle of attack is an estimate that sees no gust: this flight's derivatives are rough, "
-            "and the strength of the gusts is overestimated."
+            "The angle of attack is an estimate that sees no gust. This flight's derivatives are rough, and "
+            "the strength of the gusts is overestimated."
         )
 
 
-def _of_the_file(aircraft: Aircraft, nobodys_fault: Collection[str]) -> Iterator[str]:
-    """What the improved simulator gets besides, and what was made of the effects that the file has."""
-    if nobodys_fault:
+def _of_the_file(aircraft: Aircraft, nuisances: Collection[str]) -> Iterator[str]:
+    """Yield the additional terms of the improved simulator, and the treatment of the file's effects."""
+    if nuisances:
         yield (
-            f"The improved simulator has a propeller's terms, too ({_listed(sorted(nobodys_fault))}): "
-            "every aircraft with a propeller has them, and they are not counted as a cause."
+            f"The improved simulator also has a propeller's terms ({_listed(sorted(nuisances))}). Every "
+            "aircraft with a propeller has them, so they do not count as a cause."
         )
     aside = left_aside(aircraft.effects)
     if had := [effect for effect in aircraft.effects if effect not in aside]:
-        yield f"The simulator has the file's {_listed(had)}; what is found here is beyond that."
+        yield f"The simulator already has {_listed(had)} from the file; sizes found here add to that."
     if aside:
-        yield f"The file's {_listed(aside)} belongs to the flight that showed it: left aside."
+        yield f"The file's {_listed(aside)} belongs to another flight and is left aside."
 
 
 def _of_what_is_missing(e: Evidence, aircraft: Aircraft) -> Iterator[str]:
@@ -150,27 +150,27 @@ def _of_what_is_missing(e: Evidence, aircraft: Aircraft) -> Iterator[str]:
     if missing:
         yield f"Without {' and '.join(missing)} several instrument effects cannot be seen."
     if len(flights) == 1:
-        yield "Only one manoeuvre: none is left to keep out of the fit, so no cause is sought."
+        yield "Only one manoeuvre: none is left for the hold-out, so no cause is sought."
     elif len(flights) < _FEW:
-        yield f"Only {len(flights)} manoeuvres: intervals are wide, changes between manoeuvres hard to see."
+        yield f"Only {len(flights)} manoeuvres: intervals are wide, and changes in flight are hard to see."
     yield from unusual_signs(aircraft.model)
     if aircraft.elevator.lag_s is None:
-        yield "The servo's lag is not in the aircraft file: a lag found here may simply be the servo's."
+        yield "The aircraft file does not state the servo's lag: a lag found here may be the servo's."
 
 
 def _command(e: Evidence) -> str:
-    """How the command was taken to move between its stamps, and what looks the same."""
+    """Return how the command moved between its stamps, and what looks the same."""
     if not e.problem.held:
-        return "The command was taken as linear between its stamps, its edges anywhere between two."
+        return "The command was taken as linear between its stamps, with edges anywhere between two."
     half = 0.5 * float(np.median(np.diff(e.problem.flights.flights[0].t_u)))
     return (
-        "The command was held between its stamps. Had it moved linearly instead, the aircraft would answer "
-        f"{1e3 * half:.0f} ms late: the two look the same."
+        "The command was taken as held between its stamps. A linear command with a delay of "
+        f"{1e3 * half:.0f} ms looks the same."
     )
 
 
 def left_out(maneuvers: Sequence[Maneuver]) -> tuple[str, ...]:
-    """Which manoeuvres were not used, and why."""
+    """Return the manoeuvres that were not used, each with the reason."""
     return tuple(f"Left out: manoeuvre {m.number}: {why_left_out(m)}." for m in maneuvers)
 
 
@@ -179,10 +179,10 @@ def _listed(effects: Sequence[str]) -> str:
 
 
 def unusual_signs(model: Mapping[str, float]) -> tuple[str, ...]:
-    """What of an aircraft file's model is right for few aircraft only."""
+    """Return a note on a sign of the aircraft file's model that is right for few aircraft only."""
     if model.get("M_delta_e", 0.0) <= 0.0:
         return ()
     return (
-        f"The aircraft file's M_delta_e is {model['M_delta_e']:g}, above zero: unusual, for an elevator is "
-        "positive trailing edge down and pitches the nose down; right for a canard.",
+        f"The aircraft file's M_delta_e is {model['M_delta_e']:g}, above zero. That is right for a canard "
+        "only: an elevator trailing edge down is positive and pitches the nose down.",
     )

@@ -1,4 +1,4 @@
-"""The numbers of a diagnosis: gap, shrink, waterfall, model, yardsticks, traces."""
+"""The numbers of a diagnosis: gap, shrink, waterfall, model, fidelity and traces."""
 
 from collections.abc import Sequence
 from itertools import pairwise
@@ -7,26 +7,26 @@ import numpy as np
 
 from advisor.aircraft import PARAMETERS
 from advisor.flight.messages import FloatArray
-from advisor.gap.fitting.belief import scale_of
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.measure import by_band, by_phase, gap_of, shrink_interval, whole_gap
+from advisor.gap.fitting.prior import derivative_scale
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.records.floor import prefiltered
 from advisor.gap.result import Cause, Gap, Shrink, Trace, Value, Yardsticks
 from advisor.gap.search.stage import Stage
 from advisor.gap.simulator.layout import DERIVATIVES
-from advisor.gap.unnamed.remainder import removed_beyond_air
+from advisor.gap.uncatalogued.beyond_air import removed_beyond_air
 from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.yardsticks import yardsticks
 from advisor.standard_gravity import GRAVITY_M_S2
 
 _UNCHANGED = 0.1
-"""Share of the change of the derivatives that a manoeuvre may have and count as flown before it."""
+"""Share of the change of the derivatives below which a manoeuvre counts as flown before the change."""
 
 
 def gap_numbers(problem: Problem, floor: FloatArray, before: HeldOut, last: HeldOut) -> Gap:
-    """The gap of the plain and of the final model, as numbers."""
+    """Return the gap of the simulator as given and of the final model, as numbers."""
     here, there = gap_of(before.mean_square, floor), gap_of(last.mean_square, floor)
     smooth = [c for c, yes in prefiltered(problem.flights).items() if yes]
     note = "measured where nothing was flown, before the first step and late in the free response"
@@ -41,30 +41,30 @@ def gap_numbers(problem: Problem, floor: FloatArray, before: HeldOut, last: Held
             (f.number, whole_gap(b, floor), whole_gap(a, floor))
             for f, b, a in zip(problem.flights.flights, before.by_maneuver, last.by_maneuver, strict=True)
         ),
-        by_phase=by_phase(problem, before.left, floor), by_band_hz=by_band(problem, before.left),
+        by_phase=by_phase(problem, before.residuals, floor), by_band_hz=by_band(problem, before.residuals),
     )  # fmt: skip
 
 
-def irreducible(left: FloatArray, floor: FloatArray, gap: Gap) -> float:
-    """Of what the final model leaves on manoeuvres kept out, the share that is noise and air.
+def irreducible(mean_square: FloatArray, floor: FloatArray, gap: Gap) -> float:
+    """Return the share of the final model's error, on held-out manoeuvres, that is noise and moving air.
 
-    ``left``, shape (channels,), is its mean square with the air's motion in it, which the gap is without.
+    ``mean_square``, shape (channels,), is that of the error with moving air, which the gap excludes.
     """
-    whole = float(np.mean(np.maximum(left / floor**2, 1.0)))
+    whole = float(np.mean(np.maximum(mean_square / floor**2, 1.0)))
     return float(np.clip(1.0 - gap.after / whole, 0.0, 1.0))
 
 
 def shrink_of(
-    e: Evidence, kept: Sequence[int], gap: Gap, before: HeldOut, last: HeldOut, wrong_numbers: bool
+    e: Evidence, kept: Sequence[int], gap: Gap, before: HeldOut, last: HeldOut, wrong_derivatives: bool
 ) -> Shrink:
-    """How far the gap shrinks on the manoeuvres kept out, with an interval from resampling them.
+    """Return the shrink of the gap on held-out manoeuvres, with an interval from resampling.
 
-    ``wrong_numbers``: the file's derivatives were found wrong.
+    ``wrong_derivatives``: the file's derivatives were found wrong.
     """
     beyond_air = by_numbers = None
-    if wrong_numbers and e.air is None and len(e.stages) > 1:
+    if wrong_derivatives and e.air is None and len(e.stages) > 1:
         by_numbers = _by_numbers(e)
-    elif e.air is not None and (len(e.stages) > 1 or wrong_numbers):
+    elif e.air is not None and (len(e.stages) > 1 or wrong_derivatives):
         beyond_air = _by_effects(e) if len(e.stages) > 1 else _by_numbers(e)
     which = list(kept)
     percent = 100.0 * (1.0 - gap.after / gap.before) if gap.before > 1e-9 else 0.0
@@ -76,7 +76,8 @@ def shrink_of(
 
 
 def _by_numbers(e: Evidence) -> float | None:
-    """What fitted derivatives remove of the gap, per cent, the air in it; None without a file's."""
+    """Return the share of the gap that fitted derivatives remove, per cent, with moving air; None without a
+    file's."""
     if e.file_model is None:
         return None
     was, now = (whole_gap(held.mean_square, e.floor) for held in (e.file_model, e.stages[0].held_out))
@@ -84,7 +85,7 @@ def _by_numbers(e: Evidence) -> float | None:
 
 
 def _by_effects(e: Evidence) -> float | None:
-    """Shrink of the innovations, per cent; see ``Shrink``."""
+    """Return the shrink of the innovations, per cent, as defined in ``Shrink``."""
     removed = removed_beyond_air(e.stages)
     return None if removed is None else float(np.clip(100.0 * removed, 0.0, 100.0))
 
@@ -96,10 +97,10 @@ def waterfall_of(
     speed: Cause | None,
     start: float,
 ) -> tuple[tuple[str, float], ...]:
-    """Effect and gap after adding it, in order.
+    """Return the effects with the gap after their addition, in order.
 
-    Every stage is given the air speed. Where its change is no cause, so is the simulator, and ``start`` is
-    what it leaves.
+    Every stage has the measured air speed. Where its variation is no cause, so does the simulator, and
+    ``start`` is the simulator's gap.
     """
     steps: list[tuple[str, float]] = []
     if speed is not None:
@@ -116,14 +117,14 @@ def waterfall_of(
 
 
 def model_of(problem: Problem, fitted: Fitted, known: FloatArray) -> dict[str, Value]:
-    """The eight parameters about zero angles, from the trimmed ones of each manoeuvre.
+    """Return the eight parameters about zero angles, from the trimmed ones of each manoeuvre.
 
-    ``known``, shape (k, k), is the covariance of the shared numbers: what the derivatives are off by moves
-    the terms at zero angles of all manoeuvres together, through the angles at which they are trimmed.
+    ``known``, shape (k, k), is the covariance of the shared parameters. An error of the derivatives moves the
+    terms at zero angles of all manoeuvres together, through the trim angles.
     """
     d, own = fitted.point.derivatives, fitted.point.own
     trims = np.array([[f.alpha_trim, f.u_trim] for f in problem.flights.flights])
-    # Trim terms are given at the reference speed, and so is the weight they carry there.
+    # Trim terms are given at the reference speed, and so is the weight that they carry there.
     gravity = GRAVITY_M_S2 / problem.flights.reference_m_s
     slopes = {"Z_0": (0, 2), "M_0": (3, 5)}
     terms = {"Z_0": own[:, 2] + gravity, "M_0": own[:, 3]}
@@ -134,40 +135,43 @@ def model_of(problem: Problem, fitted: Fitted, known: FloatArray) -> dict[str, V
         mean_trim = np.mean(trims, axis=0)
         together = mean_trim @ known[np.ix_(pair, pair)] @ mean_trim
         several = each[began] if np.count_nonzero(began) > 1 else each
-        apart = np.var(several, ddof=min(1, len(several) - 1)) / np.count_nonzero(began)
-        values[name] = Value(float(np.mean(each[began])), float(np.sqrt(apart + max(together, 0.0))))
+        scatter = np.var(several, ddof=min(1, len(several) - 1)) / np.count_nonzero(began)
+        values[name] = Value(float(np.mean(each[began])), float(np.sqrt(scatter + max(together, 0.0))))
     for k, name in enumerate(DERIVATIVES):
         values[name] = Value(float(d[k]), float(np.sqrt(max(known[k, k], 0.0))))
     return {name: values[name] for name in PARAMETERS}
 
 
 def _as_it_began(problem: Problem, fitted: Fitted) -> FloatArray:
-    """Shape (manoeuvres,), bool: those flown before a change in flight; all where nothing changed.
+    """Return which manoeuvres were flown before a change in flight, shape (manoeuvres,), bool; all without
+    one.
 
-    A mass or a centre of gravity that changed has changed the trim, too: the file begins without it.
+    A change of mass or centre of gravity changes the trim too, so the file holds the state before it.
     """
     derivatives = problem.driving(fitted.point)[:, : len(DERIVATIVES)]
-    off = np.max(np.abs(derivatives - fitted.point.derivatives) / scale_of(fitted.point.derivatives), axis=1)
+    off = np.max(
+        np.abs(derivatives - fitted.point.derivatives) / derivative_scale(fitted.point.derivatives), axis=1
+    )
     return np.asarray(off - np.min(off) <= _UNCHANGED * np.ptp(off))
 
 
 def fidelity_of(problem: Problem, before: HeldOut, last: HeldOut) -> dict[str, tuple[Yardsticks, Yardsticks]]:
-    """Accepted yardsticks of every channel, before and after."""
+    """Return the published measures of fidelity of every channel, before and after."""
     found = {}
     for c, name in enumerate(problem.channels):
         measured = np.concatenate([f.outputs[name].y for f in problem.flights.flights])
         pair = []
         for held in (before, last):
-            left = np.concatenate([
-                x[problem.rows(f)[c]] for f, x in zip(problem.flights.flights, held.left, strict=True)
+            residual = np.concatenate([
+                x[problem.rows(f)[c]] for f, x in zip(problem.flights.flights, held.residuals, strict=True)
             ])  # fmt: skip
-            pair.append(yardsticks(name, measured, measured - left))
+            pair.append(yardsticks(name, measured, measured - residual))
         found[name] = (pair[0], pair[1])
     return found
 
 
 def traces_of(problem: Problem, before: HeldOut, last: HeldOut) -> tuple[Trace, ...]:
-    """Measured and simulated courses, for plotting."""
+    """Return measured and simulated values for plotting."""
     traces = []
     for i, flight in enumerate(problem.flights.flights):
         for name, rows in zip(problem.channels, problem.rows(flight), strict=True):
@@ -178,8 +182,8 @@ def traces_of(problem: Problem, before: HeldOut, last: HeldOut) -> tuple[Trace, 
                     name,
                     out.t,
                     out.y,
-                    out.y - before.left[i][rows],
-                    out.y - last.left[i][rows],
+                    out.y - before.residuals[i][rows],
+                    out.y - last.residuals[i][rows],
                 )
             )
     return tuple(traces)

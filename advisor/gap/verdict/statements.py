@@ -1,4 +1,4 @@
-"""What an effect is, in words a pilot knows, with its size."""
+"""Statements about effects in a pilot's words, with their sizes."""
 
 import math
 
@@ -6,16 +6,16 @@ from advisor.aircraft import Aircraft
 from advisor.gap.candidates.known import stated_in
 from advisor.gap.candidates.traits import TRAITS
 from advisor.gap.result import Cause
-from advisor.gap.search.merit import LEAST_SIGMA
+from advisor.gap.search.acceptance import LEAST_SIGMA
 
 _CURVES = frozenset({"elevator_nonlinearity", "nonlinear_pitching_moment", "nonlinear_lift"})
-"""What a simulator beyond eight numbers may have of its own."""
+"""Curves that a simulator beyond eight parameters may have."""
 
 
 def what(cause: Cause, in_simulator: frozenset[str] = frozenset()) -> str:
-    """The effect as a statement with its size.
+    """Return the statement about an effect with its size.
 
-    ``in_simulator`` are effects that the aircraft file has some of: the size is what it lacks.
+    ``in_simulator`` has the effects that the simulator has some of; the size is then the difference.
     """
     sizes = {}
     for name, value in cause.parameters.items():
@@ -25,7 +25,7 @@ def what(cause: Cause, in_simulator: frozenset[str] = frozenset()) -> str:
         sizes[f"{name}_percent"] = 100.0 * value.value
         sizes[f"{name}_power"] = 2.0 + value.value
     trait = TRAITS[cause.effect]
-    # A lag that may as well be none is not worth telling.
+    # A lag that is not significant is not mentioned.
     telling = (
         name
         for name, value in cause.parameters.items()
@@ -42,6 +42,7 @@ def what(cause: Cause, in_simulator: frozenset[str] = frozenset()) -> str:
 
 
 def in_simulator(aircraft: Aircraft) -> frozenset[str]:
-    """Effects that the simulator has some of: in ``effects``, as a number, or as curves of its own."""
+    """Return the effects that the simulator has some of: from ``effects``, as a parameter, or as its own
+    curves."""
     curves = _CURVES if aircraft.simulator is not None else frozenset()
     return curves | frozenset(aircraft.effects) | {effect for effect in TRAITS if stated_in(aircraft, effect)}

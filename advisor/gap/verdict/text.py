@@ -1,4 +1,4 @@
-"""The diagnosis in a sentence, as a pilot hears it."""
+"""The sentence of a diagnosis for pilots."""
 
 from collections.abc import Sequence
 
@@ -6,7 +6,7 @@ from advisor.gap.result import VISIBLE, Cause, Gap, Shrink, Verdict, Where, spel
 from advisor.gap.verdict.statements import what
 
 _AS_LIKELY = 0.99
-"""Score beside the best from which on another block is as likely a place."""
+"""Score relative to the best block at which another block is equally likely."""
 _BLOCK = {
     "input": "between the command and the surface",
     "force_equation": "in the lift",
@@ -21,12 +21,12 @@ _BLOCK = {
 
 
 def place(block: str) -> str:
-    """Where a block is, in words."""
+    """Return the place of a block in words."""
     return _BLOCK[block]
 
 
-def where_of_one(where: Where) -> str:
-    """The sentence of a single manoeuvre, which shows where a gap lies and proves no cause of it."""
+def sentence_of_one_maneuver(where: Where) -> str:
+    """Return the sentence of a single manoeuvre, which shows where a gap lies and proves no cause."""
     return (
         f"Something acts {place(where.block)} that the simulator does not have; one manoeuvre cannot prove "
         "what: fly two more."
@@ -41,31 +41,34 @@ def sentence_of(
     shrink: Shrink | None,
     in_simulator: frozenset[str] = frozenset(),
 ) -> str:
-    """One sentence for the crew; ``in_simulator`` are effects that the aircraft file has some of."""
+    """Return one sentence for the crew; ``in_simulator`` has the effects that the aircraft file has some
+    of."""
     present = [c for c in causes if c.present]
     if verdict == "none":
         if gap.before < VISIBLE:
-            left = "nothing is left above the noise"
+            left = "the gap is within the noise"
         elif gap.after < 0.5 * gap.before:
             percent = 100.0 * (1.0 - gap.after / gap.before)
-            left = f"its numbers are right to a few per cent; fitted ones remove {percent:.0f} % of the gap"
+            left = (
+                f"its parameters are right to a few per cent; fitted ones remove {percent:.0f} % of the gap"
+            )
         else:
-            left = "what is left above the noise is too little for a name"
+            left = "the residual above the noise is too small to name a cause"
         return f"The simulator flies like the aircraft: {left}."
     removed = f"{max(shrink.percent, 0.0):.0f} % of the gap" if shrink is not None else "the gap"
     if verdict == "parameters":
         if shrink is not None and shrink.beyond_air_percent is not None:
             removed = f"{shrink.beyond_air_percent:.0f} % of the gap, and the air makes the rest"
-        of_the_numbers = f"wrong numbers: the fitted eight remove {removed}"
+        wrong = f"wrong parameters: the eight fitted ones remove {removed}"
         if shrink is not None and shrink.by_numbers_percent is not None and present:
             besides = ", ".join(spelled(c.effect) for c in present)
-            return f"The simulator has {of_the_numbers}; {besides} explains little of it."
-        return f"The simulator has the right structure and {of_the_numbers}."
+            return f"The simulator has {wrong}; {besides} explains little of it."
+        return f"The simulator has the right structure and {wrong}."
     if verdict == "unknown":
         tried = next((c for c in causes if c.probability > 0.02), None)
         near = f"; the closest, {spelled(tried.effect)}, is not enough" if tried is not None else ""
         if present:
-            near = f", beside what looks like {', '.join(spelled(c.effect) for c in present)}"
+            near = f", in addition to what looks like {', '.join(spelled(c.effect) for c in present)}"
         alike = [place(b) for b, score in where.ranking if b != where.block and score >= _AS_LIKELY]
         places = " or ".join([place(where.block), *alike])
         return f"Something acts {places} that no known effect explains{near}."
@@ -73,17 +76,17 @@ def sentence_of(
     if len(present) > 1:
         also = "; also " + ", ".join(spelled(c.effect) for c in present[1:])
     if present[0].block == "air" and len(present) == 1:
-        numbers = ""
+        also_wrong = ""
         if shrink is not None and shrink.beyond_air_percent is not None:
-            numbers = (
-                f"; its numbers are off besides, which makes {shrink.beyond_air_percent:.0f} % of the gap"
+            also_wrong = (
+                f"; its parameters are wrong too, which makes {shrink.beyond_air_percent:.0f} % of the gap"
             )
-        return f"{named}: that is the air, not the simulator{numbers}."
+        return f"{named}: that is the air, not the simulator{also_wrong}."
     if shrink is not None and shrink.beyond_air_percent is not None:
         removed = f"{shrink.beyond_air_percent:.0f} % of the gap that is not the air's"
     added = "adding it"
     if shrink is not None and shrink.by_numbers_percent is not None:
-        # What the numbers do must not pass for the effect's work.
-        added = "adding it and fitting the eight numbers anew"
-        removed += f" (the numbers alone {shrink.by_numbers_percent:.0f} %)"
+        # The share of fitted derivatives must not pass for the effect's.
+        added = "adding it and refitting the eight parameters"
+        removed += f" (the parameters alone {shrink.by_numbers_percent:.0f} %)"
     return f"{named}; {added} removes {removed}{also}."

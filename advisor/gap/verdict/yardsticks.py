@@ -1,9 +1,9 @@
-"""Accepted measures of a simulator's fidelity, beside our own.
+"""Published measures of a simulator's fidelity, in addition to the gap.
 
-Theil's inequality coefficient with its split into bias, variance and covariance (Theil 1966; Jategaonkar,
-*Flight Vehicle System Identification*, section 11.3), R², and the band that qualification of training
-simulators allows the short period: ±1.5° of pitch or ±2 °/s, ±0.10 g (14 CFR Part 60, Appendix A, and EASA
-CS-FSTD(A), test 2.c.10).
+The measures are Theil's inequality coefficient (Theil 1966), R², and the tolerance of simulator
+qualification. The coefficient is split into bias, variance and covariance (Jategaonkar, *Flight Vehicle
+System Identification*, section 11.3). For the short period the tolerance is ±1.5° of pitch or ±2 °/s, and
+±0.10 g. The source is 14 CFR Part 60, Appendix A, and EASA CS-FSTD(A), test 2.c.10.
 """
 
 import numpy as np
@@ -13,11 +13,11 @@ from advisor.gap.result import Yardsticks
 from advisor.standard_gravity import GRAVITY_M_S2
 
 BAND = {"theta": np.radians(1.5), "q": np.radians(2.0), "a_z": 0.10 * GRAVITY_M_S2}
-"""Tolerance of the short period by channel, SI."""
+"""Tolerance of simulator qualification for the short period, by channel, SI."""
 
 
 def yardsticks(channel: str, measured: FloatArray, simulated: FloatArray) -> Yardsticks:
-    """All measures of one channel; both arrays shape (n,)."""
+    """Return all measures of fidelity of one channel; both arrays have shape (n,)."""
     error = measured - simulated
     power = float(np.mean(error**2))
     size = float(np.sqrt(np.mean(measured**2)) + np.sqrt(np.mean(simulated**2)))

@@ -1,1 +1,1 @@
-"""The improvement that a diagnosis found, in the formats of other simulators."""
+"""The improvement from a diagnosis, in the formats of other simulators."""

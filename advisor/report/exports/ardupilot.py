@@ -19,14 +19,14 @@ from advisor.report.exports.exported import Exported, commented, effects_beside
 from advisor.report.exports.improvement import Improvement
 
 MASS_KG = 2.0
-"""Of ArduPilot's plane; ``-heavy`` has 8 kg and ``-jet`` 22 kg."""
+"""Mass of ArduPilot's plane, kg. The frame ``-heavy`` has 8 kg and ``-jet`` 22 kg."""
 NEUTRAL_US, HALF_TRAVEL_US = 1500.0, 500.0
 SERVO_TRAVEL_DEG = 45.0
-"""Deflection that ArduPilot's servo model takes full travel for."""
+"""Deflection that ArduPilot's servo model takes for full travel, deg."""
 
 
 def model_text(improvement: Improvement) -> Exported:
-    """The plane's coefficients as JSON with comments.
+    """Return the plane's coefficients as JSON with comments.
 
     Raises
     ------
@@ -67,10 +67,10 @@ def model_text(improvement: Improvement) -> Exported:
 
 
 def servo_text(improvement: Improvement) -> Exported:
-    """Parameters of ArduPilot's servo model, one a line.
+    """Return parameters of ArduPilot's servo model, one on each line.
 
     Alone, ``SIM_SERVO_SPEED`` is the time constant of a first-order lag. With a delay or a filter, it becomes
-    a rate limit, and the lag becomes a Butterworth filter of two poles that trails a ramp by the same time.
+    a rate limit. The lag then becomes a Butterworth filter of two poles with an equal delay of a ramp.
     """
     servo = improvement.servo
     lag_s = max(servo.lag_s, 0.0)
@@ -81,7 +81,7 @@ def servo_text(improvement: Improvement) -> Exported:
     if servo.rate_rad_s:
         _, travel = elevator_line(improvement.elevator)
         speed = 60.0 * abs(travel) / (SERVO_TRAVEL_DEG * servo.rate_rad_s)
-        # Without either, the speed would be read as a lag; one step is the least delay there is.
+        # Without a delay or filter, the speed would be read as a lag. One step is the least delay.
         delay = delay if delay > 0.0 or cutoff > 0.0 else 0.001
     head = [
         f"{improvement.name}: the elevator's servo by `advisor gap`, for ArduPilot's simulation.",
@@ -96,7 +96,8 @@ def servo_text(improvement: Improvement) -> Exported:
 
 
 def elevator_line(elevator: Elevator) -> tuple[float, float]:
-    """Deflection at 1500 us, and its change over 500 us more, rad: the line through the calibration's ends.
+    """Return the deflection at 1500 us, and its change per 500 us, rad, by the line through the calibration's
+    ends.
 
     Raises
     ------

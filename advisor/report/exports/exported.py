@@ -1,4 +1,4 @@
-"""A file's text, and what of the improvement its format cannot say."""
+"""Text of a file, with the parts of the improvement that its format cannot carry."""
 
 import re
 from dataclasses import dataclass
@@ -17,15 +17,15 @@ class Exported:
 
 
 def effects_beside(improvement: Improvement, *carried: str) -> tuple[str, ...]:
-    """Effects other than those of the servo and those that a format carries."""
+    """Return the effects other than those of the servo and those that a format carries."""
     return tuple(spelled(effect) for effect in improvement.effects if effect not in carried)
 
 
 def commented(lines: list[str], mark: str) -> str:
-    """Lines of a comment, each behind the mark of a language."""
+    """Return lines as a comment, each behind the mark of a language."""
     return "".join(f"{mark} {line}".rstrip() + "\n" for line in lines)
 
 
 def xml_comment(text: str) -> str:
-    """A comment of XML, in which no two hyphens may meet."""
+    """Return a comment of XML, in which no two hyphens may meet."""
     return f"<!-- {re.sub('-(?=-)', '- ', text)} -->"

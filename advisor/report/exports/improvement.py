@@ -1,4 +1,4 @@
-"""What every format is made from: the model found, what was believed before, the servo, other effects."""
+"""Basis of every format: the model found, the prior model, the servo, and other effects."""
 
 import math
 from collections.abc import Mapping
@@ -14,7 +14,7 @@ from advisor.report.exports.servo import OF_THE_SERVO, Servo, servo_of
 from advisor.standard_gravity import GRAVITY_M_S2
 
 NORMAL_95 = 1.96
-"""Half a 95 % interval of a normal distribution, in standard deviations."""
+"""Half of a 95 % interval of a normal distribution, in standard deviations."""
 SLOPES = ("Z_alpha", "Z_q", "Z_delta_e", "M_alpha", "M_q", "M_delta_e")
 """The derivatives among the eight parameters."""
 REFERENCE_KEYS = ("mass_kg", "wing_area_m2", "chord_m", "iyy_kg_m2")
@@ -27,50 +27,50 @@ class Improvement:
     name: str
     model: Mapping[str, Value]
     """The eight parameters at ``airspeed_m_s``, SI."""
-    believed: Mapping[str, float]
-    """What the simulator believed before: any of the eight, none where it is not known."""
+    prior: Mapping[str, float]
+    """Prior model of the simulator: any of the eight parameters, none where unknown."""
     airspeed_m_s: float
     servo: Servo
-    """All that lies between command and surface."""
+    """Delay, lag and limits between command and surface."""
     effects: Mapping[str, Mapping[str, float]]
-    """Effects other than those of the servo, as the aircraft file has them."""
+    """Effects other than those of the servo, by the keys of the aircraft file."""
     reference: Reference = field(default_factory=Reference)
     elevator: Elevator = field(default_factory=Elevator)
     height_m: float | None = None
-    """Height of the manoeuvres, as recorded; None: not known."""
+    """Recorded height of the manoeuvres, m. None: unknown."""
 
     @property
     def density_note(self) -> str:
-        """Which density the coefficients are given for, as a sentence."""
+        """Sentence on the air density of the coefficients."""
         unknown = "sea level, as the log has no height"
         where = unknown if self.height_m is None else f"{self.height_m:.0f} m, the height recorded"
         return f"Air density {self.density_kg_m3:.4f} kg/m3, of the standard atmosphere at {where}."
 
     @property
     def density_kg_m3(self) -> float:
-        """Of the International Standard Atmosphere's troposphere."""
+        """Air density of the International Standard Atmosphere's troposphere, kg/m³."""
         warmth = 1.0 - 0.0065 * (self.height_m or 0.0) / 288.15
         return SEA_LEVEL_DENSITY_KG_M3 * math.pow(warmth, 4.2559)
 
     def interval95(self, parameter: str) -> tuple[float, float]:
-        """The 95 % interval of one of the eight parameters."""
+        """Return the 95 % interval of one of the eight parameters."""
         found = self.model[parameter]
         return found.value - NORMAL_95 * found.std, found.value + NORMAL_95 * found.std
 
-    def differs(self, parameter: str, believed: float) -> bool:
-        """Whether the flight contradicts a believed value: it lies outside the 95 % interval."""
+    def differs(self, parameter: str, prior: float) -> bool:
+        """Return whether the flight contradicts a prior value, which then lies outside the 95 % interval."""
         low, high = self.interval95(parameter)
-        return not low <= believed <= high
+        return not low <= prior <= high
 
     def coefficients(self) -> Mapping[str, Coefficient]:
-        """The eight non-dimensional coefficients, per radian: C_L_0 and C_m_0 are those at zero angles.
+        """Return the eight non-dimensional coefficients, per radian. C_L_0 and C_m_0 hold at zero angles.
 
         C_L_0 follows from Z_0 = g/V - q̄·S·C_L0/(m·V), without the part of the thrust in the lift direction.
 
         Raises
         ------
         ConfigurationError
-            A quantity of ``reference`` is missing; the message says which.
+            A quantity of ``reference`` is missing. The message names the quantity.
         """
         require_reference(self.reference, REFERENCE_KEYS)
         scale = scales(self.airspeed_m_s, self.reference, self.density_kg_m3)
@@ -88,12 +88,12 @@ class Improvement:
 
 
 def improvement_of(diagnosis: Diagnosis, aircraft: Aircraft) -> Improvement:
-    """Gather what a diagnosis says of the simulator.
+    """Return the improvement of the simulator by a diagnosis.
 
     Raises
     ------
     ConfigurationError
-        The diagnosis has no air speed: no derivative can be given to another program.
+        The diagnosis has no air speed, without which no derivative can be exported.
     """
     if diagnosis.reference_airspeed_m_s is None:
         raise ConfigurationError(
@@ -103,7 +103,7 @@ def improvement_of(diagnosis: Diagnosis, aircraft: Aircraft) -> Improvement:
     return Improvement(
         name=aircraft.name,
         model=diagnosis.model,
-        believed=aircraft.model,
+        prior=aircraft.model,
         airspeed_m_s=diagnosis.reference_airspeed_m_s,
         servo=servo_of(flown.elevator, effects),
         effects={name: values for name, values in effects.items() if name not in OF_THE_SERVO},
@@ -119,7 +119,7 @@ def require_reference(reference: Reference, keys: tuple[str, ...]) -> None:
     Raises
     ------
     ConfigurationError
-        Names the missing keys of ``reference``.
+        Keys of ``reference`` are missing. The message names them.
     """
     missing = [key for key in keys if getattr(reference, key) is None]
     if missing:

@@ -1,8 +1,8 @@
-"""A script for MATLAB and Octave: A, B, C, D about the trim, the eight parameters with their intervals.
+"""A script for MATLAB and Octave: A, B, C, D about the trim, and the eight parameters with their intervals.
 
     x = [α; q],  u = δe,  y = [α; q; a_z],  all departures from trim
 
-With N = α̇ - q, the specific force along body z at the centre of gravity is V·N to first order: its rows are
+With N = α̇ - q, the specific force along body z at the centre of gravity is V·N to first order. Its rows are
 V times (Z_α, Z_q) and V·Z_δe.
 """
 
@@ -17,7 +17,7 @@ UNITS = {
 
 
 def script_text(improvement: Improvement) -> Exported:
-    """The script; it needs no toolbox, and leaves all it defines in the workspace."""
+    """Return the script. The script needs no toolbox, and leaves its variables in the workspace."""
     m = {name: improvement.model[name].value for name in PARAMETERS}
     speed, servo = improvement.airspeed_m_s, improvement.servo
     head = commented(

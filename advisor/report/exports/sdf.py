@@ -1,14 +1,15 @@
-"""Gazebo: two ``gz::sim::systems::LiftDrag`` plugins, a wing and a tail, that have the derivatives found.
+"""Gazebo: two ``gz::sim::systems::LiftDrag`` plugins, a wing and a tail, with the derivatives found.
 
-A LiftDrag surface has lift C = cla·(a0 + α) + control_joint_rad_to_cl·δ at its centre of pressure, where it
-meets the air that the rotation moves. A surface has no damping of its own, and Gazebo's source resets the
-moment of ``cma`` to zero. Two surfaces of the wing's area S need neither: the wing (w) lies at the centre of
-gravity, the tail (t) at the distance x ahead of the centre of gravity (x is below zero).
+A LiftDrag surface has lift C = cla·(a0 + α) + control_joint_rad_to_cl·δ at its centre of pressure. There the
+surface meets the air that the rotation moves. A surface has no damping of its own, and Gazebo's source resets
+the moment of ``cma`` to zero. Two surfaces of the wing's area S need neither. The wing (w) lies at the centre
+of gravity, and the tail (t) at the distance x ahead of it (x is negative).
 
     C_Lα = a_w + a_t        C_mα = a_t·x/c        C_mq = -2·a_t·x²/c²        C_mδe = e·x/c
 
 So x = -c·C_mq/(2·C_mα), a_t = C_mα·c/x, a_w = C_Lα - a_t and e = C_mδe·c/x. The zero-lift angles follow from
-C_L0 = a_w·a0_w + a_t·a0_t and C_m0 = a_t·a0_t·x/c. C_Lδe = e and C_Lq = -2·C_mα are what this leaves of both.
+C_L0 = a_w·a0_w + a_t·a0_t and C_m0 = a_t·a0_t·x/c. The resulting C_Lδe = e and C_Lq = -2·C_mα may differ from
+the estimates.
 """
 
 from advisor.problems import ConfigurationError
@@ -17,7 +18,7 @@ from advisor.report.exports.improvement import Improvement
 
 
 def block_text(improvement: Improvement) -> Exported:
-    """The two plugins, to be put into a ``<model>``.
+    """Return the two plugins, to be put into a ``<model>``.
 
     Raises
     ------
@@ -64,7 +65,7 @@ def block_text(improvement: Improvement) -> Exported:
 
 
 def _plugin(numbers: dict[str, float], ahead_m: float, joint: dict[str, str]) -> str:
-    """One surface, with what drives its control."""
+    """Return the plugin of one surface, with its control joint."""
     texts = {name: f"{value:.8g}" for name, value in numbers.items()} | joint
     inside = "".join(f" <{name}>{text}</{name}>\n" for name, text in texts.items())
     return (

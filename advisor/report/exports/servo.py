@@ -1,4 +1,4 @@
-"""What lies between the elevator's command and its surface, as numbers that simulators ask for."""
+"""Servo between the elevator's command and its surface, as numbers that simulators need."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -8,23 +8,24 @@ from advisor.aircraft import Elevator
 OF_THE_SERVO = (
     "transport_delay", "actuator_lag", "actuator_rate_limit", "actuator_backlash", "actuator_deadband",
 )  # fmt: skip
-"""Effects that a servo with its linkage carries."""
+"""Effects that belong to the servo and its linkage."""
 
 
 @dataclass(frozen=True)
 class Servo:
-    """Delay, then lag, then what limits the surface; zero or None: there is none."""
+    """Delay, then lag, then limits of the surface; zero or None for an absent one."""
 
     delay_s: float = 0.0
     lag_s: float = 0.0
-    """By which the surface trails a ramp of the command; below zero: quicker than the simulator's own."""
+    """Delay with which the surface follows a ramp of the command, s. Negative: quicker than the simulator's
+    own servo."""
     damping: float | None = None
-    """Given: the lag is of second order, with ω = 2·damping/lag_s."""
+    """Damping of a second-order lag with ω = 2·damping/lag_s. None: a first-order lag."""
     rate_rad_s: float | None = None
     play_rad: float = 0.0
     """Whole width of the linkage's backlash."""
     deadband_rad: float = 0.0
-    """Whole width."""
+    """Whole width of the dead band."""
     neutral_rad: float = 0.0
     """Deflection in the middle of the dead band."""
 
@@ -34,7 +35,7 @@ class Servo:
         return self == Servo()
 
     def lines(self) -> list[str]:
-        """Each property with its number and unit, for people."""
+        """Return each property with its number and unit, for people."""
         said = {
             f"delay {self.delay_s:.4g} s": self.delay_s,
             f"lag {self.lag_s:.4g} s": self.lag_s,
@@ -47,7 +48,7 @@ class Servo:
 
 
 def servo_of(elevator: Elevator, effects: Mapping[str, Mapping[str, float]]) -> Servo:
-    """The servo that the aircraft file states, with the effects found beyond the statement."""
+    """Return the servo of the aircraft file, with the further effects found."""
     lag = effects.get("actuator_lag", {})
     band = effects.get("actuator_deadband", {})
     return Servo(

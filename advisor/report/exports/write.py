@@ -1,4 +1,4 @@
-"""From an order for a file to the file: which format, what it needs, and the one place that writes."""
+"""From an order for a file to the file: its format, its needs, and the one place that writes."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -22,13 +22,13 @@ from advisor.report.improved import write_improved
 
 FORMATS = ("jsbsim", "ardupilot", "sdf", "matlab", "aircraft")
 SERVO_FILES = (".parm", ".param")
-"""Endings of ArduPilot's files of parameters."""
+"""Endings of ArduPilot's parameter files."""
 NOTHING = "no cause was named and no number found wrong"
 
 
 @dataclass(frozen=True)
 class Order:
-    """One file asked for."""
+    """One requested file."""
 
     format: str
     file: Path
@@ -36,13 +36,13 @@ class Order:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of an order."""
+    """Result of an order."""
 
     order: Order
     left_out: tuple[str, ...] = ()
-    """What of the improvement the format does not carry."""
+    """Parts of the improvement that the format does not carry."""
     problem: str = ""
-    """Why the file was not written; empty where it was."""
+    """Reason for which the file was not written; empty for a written file."""
 
 
 def order_of(text: str) -> Order:
@@ -62,7 +62,7 @@ def order_of(text: str) -> Order:
 
 
 def refuse(order: Order, aircraft: Aircraft) -> None:
-    """Refuse before the diagnosis what cannot be written after it.
+    """Refuse, before the diagnosis, an order that could not be carried out after it.
 
     Raises
     ------
@@ -87,7 +87,7 @@ def refuse(order: Order, aircraft: Aircraft) -> None:
 
 
 def carry_out(orders: Sequence[Order], diagnosis: Diagnosis, aircraft: Aircraft) -> list[Outcome]:
-    """Write each file whole; what stands in the way of one is no obstacle to the others."""
+    """Write each file as a whole. The failure of one file does not hinder the others."""
     found = []
     for order in orders:
         try:
@@ -125,7 +125,7 @@ def _maker(order: Order) -> Callable[[Improvement], Exported]:
 
 
 def _model(aircraft: Aircraft) -> Model:
-    """The user's JSBSim aircraft, from the specification of the simulator."""
+    """Return the user's JSBSim aircraft, from the specification of the simulator."""
     kind, _, what = (aircraft.simulator or "").partition(":")
     if kind != "jsbsim" or not what:
         raise ConfigurationError(

@@ -1,4 +1,4 @@
-"""What was assumed: of the elevator, the instruments, the log, and where each channel came from."""
+"""Assumptions about the elevator, the instruments and the log, and the source of each channel."""
 
 from collections.abc import Iterator
 
@@ -7,7 +7,7 @@ from advisor.report.page.content import Content
 
 
 def assumptions(content: Content) -> Section:
-    """Notes of the reading and of the estimate, then the sources of the channels."""
+    """Return notes on reading and estimate, then the sources of the channels."""
     return Section("assumptions", "What was assumed", tuple(_blocks(content)))
 
 

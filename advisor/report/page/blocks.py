@@ -1,4 +1,4 @@
-"""What a page is made of: sections of paragraphs, lists, tables and figures, whatever the format."""
+"""Parts of a page in any format: sections of paragraphs, lists, tables and figures."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -15,32 +15,32 @@ class Paragraph:
 
 @dataclass(frozen=True, slots=True)
 class Listing:
-    """Sentences, one an item."""
+    """List of sentences, one for each item."""
 
     items: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """Cells as they are read; the first row names the columns."""
+    """Table of cells as text. The first row names the columns."""
 
     name: str
-    """Its anchor in the page."""
+    """Anchor of the table in the page."""
     caption: str
     head: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
     numbers: frozenset[int] = frozenset()
-    """Columns that hold numbers, from 0."""
+    """Columns with numbers, counted from 0."""
 
 
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """A picture with its words."""
+    """A picture with its caption."""
 
     svg: Callable[[], str]
-    """Draws the picture, where the format shows one."""
+    """Function that draws the picture, for formats that show one."""
     caption: str
-    """What the picture shows, for those who cannot see it too."""
+    """Description of the picture, also for readers who cannot see it."""
     size: Literal["wide", "half", "third", "quarter"] = "wide"
     narrow: Callable[[], str] | None = None
     """Draws the picture for a phone, where the broad one would be too small to read."""
@@ -55,7 +55,7 @@ class Gallery:
 
 @dataclass(frozen=True, slots=True)
 class Verbatim:
-    """Text to be copied as it stands."""
+    """Text to be copied literally."""
 
     text: str
 
@@ -68,11 +68,11 @@ class Section:
     """A part of the page under one heading."""
 
     name: str
-    """Its anchor in the page."""
+    """Anchor of the section in the page."""
     title: str
     blocks: tuple[Block, ...]
 
 
 def listing(items: Sequence[str]) -> tuple[Listing, ...]:
-    """A list, or nothing where it would be empty."""
+    """Return a list, or nothing without items."""
     return (Listing(tuple(items)),) if items else ()

@@ -1,4 +1,4 @@
-"""Drawing that gives the same bytes for the same numbers: SVG without date, foreign font or script."""
+"""Reproducible drawing: SVG without date, foreign font or script."""
 
 import io
 import re
@@ -10,7 +10,7 @@ from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure as Drawing
 
 BLUE, ORANGE, GREY, BLACK = "#0b5394", "#b45f06", "#9a9a9a", "#222222"
-"""Differ in lightness, too; every line that differs in colour differs in style."""
+"""Colours that also differ in lightness. Lines that differ in colour also differ in style."""
 _STYLE: Any = {
     "svg.fonttype": "none",
     "font.family": "sans-serif",
@@ -44,7 +44,7 @@ def picture(
     paint: Callable[[Drawing, *Shown], None],
     *shown: *Shown,
 ) -> Callable[[], str]:
-    """A picture that is drawn when it is asked for; parameters as those of :func:`draw`."""
+    """Return a picture that is drawn on demand, with the parameters of :func:`draw`."""
     return lambda: draw(name, width_in, height_in, paint, *shown)
 
 
@@ -60,11 +60,11 @@ def draw(
     Parameters
     ----------
     name
-        Of the figure in its page: makes the ids within the picture the page's only ones.
+        Name of the figure in its page, which makes the ids within the picture unique.
     paint
-        Puts axes and lines on the empty figure.
+        Draws axes and lines on the empty figure.
     shown
-        What ``paint`` needs besides the figure.
+        Further arguments of ``paint``.
     """
     with mpl.rc_context(_STYLE), mpl.rc_context({"svg.hashsalt": name}):
         figure = Drawing(figsize=(width_in, height_in), layout="constrained")
@@ -76,7 +76,7 @@ def draw(
 
 
 def _inline(svg: str, width_in: float) -> str:
-    """The element alone, as wide as its place allows, with only those ids that are referred to."""
+    """Return the SVG element alone, as wide as its place allows, with only the ids that are referred to."""
     element = svg[svg.index("<svg") :].strip()
     element = re.sub(r' (width|height)="[\d.]+pt"', "", element, count=2)
     element = re.sub(r"<!--.*?-->\s*", "", element, flags=re.DOTALL)

@@ -1,4 +1,4 @@
-"""Measured against fitted of each accepted manoeuvre, with the residual and its 95 % band."""
+"""Measured and fitted response of each accepted manoeuvre, with the residual and its 95 % band."""
 
 from collections.abc import Iterator
 
@@ -17,12 +17,12 @@ _EXPLAINED = (
     "Grey: measured. Dark dashes: the short-period model fitted to this manoeuvre alone. "
     "Below: the residual, measured minus fitted. "
     "The band of ±1.96 σ holds 95 % of the residuals if they are white noise. "
-    "A pattern in the residual is something the model does not know."
+    "A pattern in the residual shows an effect that the model lacks."
 )
 
 
 def fits(content: Content) -> Section:
-    """A gallery for each accepted manoeuvre."""
+    """Return a gallery for each accepted manoeuvre."""
     return Section("fits", "Measured against fitted", tuple(_blocks(content)))
 
 

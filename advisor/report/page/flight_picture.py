@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
+from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from advisor.campaign.state import JudgedManeuver
 from advisor.flight.power_on import PowerOn
@@ -14,6 +15,7 @@ from advisor.report.page.content import Content
 from advisor.report.page.drawing import BLUE, ORANGE, picture
 from advisor.report.page.thinned import thinned
 from advisor.report.quantities import CHANNELS
+from advisor.vehicle_time import CLOCK, clock
 
 _SHOWN = ("elevator", "alpha", "q", "airspeed", "height")
 _BINS = 500
@@ -25,7 +27,7 @@ _EXPLAINED = (
 
 
 def flight_picture(content: Content) -> Section:
-    """A picture of each power-on that holds a manoeuvre."""
+    """Return a picture of each power-on that holds a manoeuvre."""
     return Section("flight", "The flight in one picture", tuple(_blocks(content)))
 
 
@@ -58,7 +60,9 @@ def _paint(drawing: Drawing, power_on: PowerOn, judged: Sequence[JudgedManeuver]
         axes.set_ylabel(quantity.label)
         _mark(axes, judged)
     drawing.align_ylabels(list(rows))
-    rows[-1].set_xlabel("time since boot [s]")
+    rows[-1].set_xlabel(f"time ({CLOCK})")
+    rows[-1].xaxis.set_major_locator(MaxNLocator(8, steps=[1, 1.5, 2, 3, 6, 10]))
+    rows[-1].xaxis.set_major_formatter(FuncFormatter(lambda t, _: clock(t)))
     for one in judged:
         middle = 0.5 * (one.maneuver.span.start_s + one.maneuver.span.end_s)
         sign = "✓" if one.verdict.accepted else "✗"
@@ -78,7 +82,7 @@ def _mark(axes: Axes, judged: Sequence[JudgedManeuver]) -> None:
 
 
 def _as_judged(channel: Channel, judged: Sequence[JudgedManeuver]) -> Channel:
-    """The elevator turned the way the manoeuvres have it, where the sense was found only from them."""
+    """Return the elevator with the sign of the manoeuvres, where only they showed the sign."""
     flown = [j.maneuver.channels["elevator"] for j in judged if "elevator" in j.maneuver.channels]
     if channel.name != "elevator" or not flown:
         return channel

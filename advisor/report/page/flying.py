@@ -1,4 +1,4 @@
-"""Flying qualities and coefficients, with the air and the conventions they are given for."""
+"""Flying qualities and coefficients, with their air and conventions."""
 
 from collections.abc import Iterator
 
@@ -10,7 +10,7 @@ from advisor.report.qualities import NAMES
 
 
 def flying(content: Content) -> Section:
-    """Numbers, levels, coefficients, air."""
+    """Return the section on flying qualities: numbers, levels, coefficients, air."""
     return Section("flying-qualities", "Flying qualities", tuple(_blocks(content)))
 
 

@@ -1,4 +1,4 @@
-"""The sim-to-real gap, where it was asked for: verdict, size, steps, causes."""
+"""The sim-to-real gap, where requested: verdict, size, steps, causes."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -16,13 +16,13 @@ from advisor.report.page.drawing import BLUE, picture
 from advisor.report.quantities import CHANNELS
 
 _ROUNDING = 1e-9
-"""Smaller gaps are 0."""
+"""Gap below which a number is only rounding and is shown as 0."""
 _LINEAR = 10.0
 """Largest gap on a linear axis."""
 
 
 def gap(content: Content) -> Section | None:
-    """The diagnosis; None where it was not asked for."""
+    """Return the diagnosis; None where none was requested."""
     if content.gap is None:
         return None
     return Section("gap", "Sim-to-real gap", tuple(_blocks(content.gap)))
@@ -68,7 +68,7 @@ def _size(size: Mapping[str, Any], untested: bool) -> str:
 
 
 def _short(value: float) -> str:
-    """Three digits; what is only rounding is 0."""
+    """Return a number with three digits; 0 for a value that is only rounding."""
     return f"{value:.3g}" if abs(value) > _ROUNDING else "0"
 
 

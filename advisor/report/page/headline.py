@@ -1,4 +1,4 @@
-"""The first thing on the page: stop or continue, and how much it stands on."""
+"""The first lines of the page: stop or continue, and the evidence."""
 
 from collections.abc import Iterator
 
@@ -7,7 +7,7 @@ from advisor.report.page.content import Content
 
 
 def headline(content: Content) -> Section:
-    """Decision, counts, what to fly next, warnings."""
+    """Return decision, counts, next input, warnings."""
     return Section("verdict", "Verdict", tuple(_blocks(content)))
 
 

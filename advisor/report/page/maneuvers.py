@@ -6,17 +6,18 @@ from typing import Any
 from advisor.report.page.blocks import Section, Table, listing
 from advisor.report.page.content import Content
 from advisor.report.text import caution_lines
+from advisor.vehicle_time import CLOCK, clock
 
 _HYPHEN, _SPACE = "\N{NON-BREAKING HYPHEN}", "\N{NO-BREAK SPACE}"
-_HEAD = ("no.", "start [s]", "input", "mode", "verdict", "why")
+_HEAD = ("no.", "start", "input", "mode", "verdict", "why")
 
 
 def maneuvers(content: Content) -> Section:
-    """One row a manoeuvre, then what does not reject one but belongs on its verdict."""
+    """Return a table with a row for each manoeuvre, then cautions that do not reject a manoeuvre."""
     found = content.analysis["maneuvers"]
     rows = tuple(_row(maneuver, len(content.names) > 1) for maneuver in found)
     table = Table(
-        "maneuver-list", "Every manoeuvre in the order flown; times are seconds since boot.", _HEAD, rows,
+        "maneuver-list", f"Every manoeuvre in the order flown; times are {CLOCK}.", _HEAD, rows,
         frozenset({0, 1}),
     )  # fmt: skip
     return Section("maneuvers", "Manoeuvres", (table, *listing(caution_lines(content.state.maneuvers))))
@@ -31,7 +32,7 @@ def _row(maneuver: Mapping[str, Any], several: bool) -> tuple[str, ...]:
         why.append(f"({maneuver['log']})")
     return (
         str(maneuver["number"]),
-        f"{maneuver['start_boot_s']:.2f}",
+        clock(maneuver["start_boot_s"]),
         maneuver["input"].replace("-", _HYPHEN).replace(" ", _SPACE),
         maneuver["mode"],
         f"✓{_SPACE}accepted" if accepted else f"✗{_SPACE}rejected",

@@ -1,11 +1,11 @@
-"""Where the page came from: files with their hashes, versions, and the command that repeats the page."""
+"""Origin of the page: files with their hashes, versions, and the command that repeats the page."""
 
 from advisor.report.page.blocks import Paragraph, Section, Table, Verbatim
 from advisor.report.page.content import Content
 
 
 def provenance(content: Content) -> Section:
-    """Hashes, versions, command."""
+    """Return the section on hashes, versions and the command."""
     origin = content.origin
     return Section(
         "origin",

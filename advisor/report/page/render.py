@@ -1,4 +1,4 @@
-"""From what is known of a flight to the page, as HTML or Markdown."""
+"""From the data of a flight to the page, as HTML or Markdown."""
 
 from importlib.resources import files
 from typing import Literal
@@ -29,13 +29,13 @@ _PARTS = (
 
 
 def sections(content: Content) -> list[Section]:
-    """All sections in the order of the page."""
+    """Return all sections in the order of the page."""
     found = (part(content) for part in _PARTS)
     return [section for section in found if section is not None]
 
 
 def page(content: Content, form: PageFormat) -> str:
-    """The whole page as text."""
+    """Return the whole page as text."""
     environment = Environment(
         autoescape=form == "html", trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True,
         undefined=StrictUndefined, loader=FunctionLoader(_read),
@@ -57,5 +57,5 @@ def _kind(block: Block) -> str:
 
 
 def _cell(text: str) -> str:
-    """A cell of a Markdown table."""
+    """Return a cell of a Markdown table."""
     return text.replace("|", "\\|").replace("\n", " ")

@@ -1,4 +1,4 @@
-"""The quality of the telemetry: what ``advisor doctor`` says of each log."""
+"""Quality of the telemetry: the verdict of ``advisor doctor`` on each log."""
 
 from collections.abc import Iterator
 
@@ -9,7 +9,7 @@ _HEAD = ("message", "rate [Hz]", "lowest [Hz]", "renewed [Hz]", "jitter [ms]", "
 
 
 def telemetry(content: Content) -> Section:
-    """Verdict, limits with their mends, rates of the messages, log by log."""
+    """Return the verdict, limits with their remedies, and rates of the messages, log by log."""
     return Section("telemetry", "Telemetry", tuple(_blocks(content)))
 
 

@@ -1,8 +1,9 @@
-"""A copy of the user's JSBSim aircraft that has the derivatives, the servo and the curves found.
+"""Copy of the user's JSBSim aircraft with the derivatives, the servo and the curves found.
 
-A derivative is corrected where its 95 % interval excludes what the simulator believed: what the aircraft
-file's ``model`` says, else what the JSBSim aircraft itself does. Its own terms are multiplied. A function is
-added where it has none, where the factor would turn their sign, or where the terms do not lead to the value.
+A derivative is corrected where its 95 % interval excludes the prior value. The prior is the aircraft file's
+``model``, else the JSBSim aircraft itself. The aircraft's own terms are multiplied by a factor. A function is
+added where there is no term or where the terms do not reach the value. A function also replaces a factor that
+would turn the sign.
 """
 
 import math
@@ -21,7 +22,8 @@ from advisor.report.exports.servo import Servo
 
 
 def aircraft_text(improvement: Improvement, model: Model) -> Exported:
-    """The corrected aircraft, measured at the speed and height flown; at sea level where that is not known.
+    """Return the corrected aircraft, measured at the speed and height flown, or at sea level for an unknown
+    height.
 
     Raises
     ------
@@ -35,20 +37,20 @@ def aircraft_text(improvement: Improvement, model: Model) -> Exported:
     asked = Request(names, surface, improvement.airspeed_m_s, improvement.height_m or 0.0)
 
     def measured(knobs: Sequence[Knob]) -> Slopes:
-        # Without the servo: play and dead band would hide a small deflection.
+        # Measured without the servo, because backlash and dead band would hide a small deflection.
         changed = corrected(content, name, [knob.change for knob in knobs], Servo(), "")
         return measure(changed.encode(), model, asked)
 
     first = measure(content, model, asked)
     if not first.powered:
-        # A trim that failed leaves the engines anywhere, and takes its time.
+        # A failed trim leaves the engines in any state, and costs time.
         asked = replace(asked, powered=False)
         first = measure(content, model, asked)
     targets = _targets(improvement, first, terms, SURFACES.get(surface))
     knobs = [knob_for(parameter, terms.get(parameter, ()), first, surface) for parameter in targets]
     knobs, now = settled(knobs, first, targets, surface, measured)
     if off := missed(now, targets):
-        # A term bends where the trim moved to: what is added about the trim leaves the trim alone.
+        # Curves count from the trim, so that an added function about the trim leaves the trim alone.
         knobs = [knob_for(p, () if p in off else terms.get(p, ()), first, surface) for p in targets]
         knobs, now = settled(knobs, first, targets, surface, measured)
     if off := missed(now, targets):
@@ -56,7 +58,7 @@ def aircraft_text(improvement: Improvement, model: Model) -> Exported:
             f"--export jsbsim: {name} cannot be given {off[0]} = {targets[off[0]]:.4g}; "
             "use --export matlab or aircraft."
         )
-    # Effects come last: what they add to the derivatives at the trim was found in addition to these.
+    # Effects come last, because their contributions at the trim were found in addition to these.
     added, carried = functions_of(improvement.effects, now, surface)
     servo = replace(improvement.servo, lag_s=max(improvement.servo.lag_s, 0.0))
     changes = [*(knob.change for knob in knobs), *added]
@@ -65,14 +67,14 @@ def aircraft_text(improvement: Improvement, model: Model) -> Exported:
 
 
 def _left_out(improvement: Improvement, surface: str) -> list[str]:
-    """What of servo and derivatives the aircraft cannot be given."""
+    """Return the parts of servo and derivatives that the aircraft cannot carry."""
     servo = improvement.servo
     left = ["a lag below the model's own"] if servo.lag_s < 0.0 else []
     if servo.damping and servo.lag_s > 0.0:
         left.append(f"the servo's damping of {servo.damping:.2g}, which is 1 here")
     if surface not in SURFACES:
-        # Per radian as flown, per full travel in the aircraft.
-        unknown = [p for p in SLOPES if p.endswith("delta_e") and p not in improvement.believed]
+        # Per radian in flight, per full travel in the aircraft.
+        unknown = [p for p in SLOPES if p.endswith("delta_e") and p not in improvement.prior]
         left += [f"{p}: the elevator's position is no angle" for p in unknown]
     return left
 
@@ -80,26 +82,27 @@ def _left_out(improvement: Improvement, surface: str) -> list[str]:
 def _targets(
     improvement: Improvement, first: Slopes, terms: Mapping[str, Sequence[str]], per_rad: float | None
 ) -> dict[str, float]:
-    """Derivative to the value that the aircraft shall have: those contradicted, and moments that lift moves.
+    """Return the derivative to its target value: contradicted derivatives, and moments that a change of lift
+    moves.
 
-    ``per_rad`` is how many units of the elevator's property are a radian; None: the property is no angle.
+    ``per_rad`` is the number of units of the elevator's property in a radian. None: the property is no angle.
     """
     found = {}
     for parameter in SLOPES:
         own = first.derivatives[parameter]
         unit = (per_rad or math.nan) if parameter.endswith("delta_e") else 1.0
-        believed = improvement.believed.get(parameter, own * unit)
+        prior = improvement.prior.get(parameter, own * unit)
         value = improvement.model[parameter].value
-        if improvement.differs(parameter, believed) and not math.isnan(believed):
-            # A term is changed by the ratio: the file's numbers may belong to another density of the air.
-            by_difference = own + (value - believed) / unit
-            found[parameter] = own * value / believed if believed and parameter in terms else by_difference
+        if improvement.differs(parameter, prior) and not math.isnan(prior):
+            # A term is changed by the ratio, because the file's numbers may belong to another air density.
+            by_difference = own + (value - prior) / unit
+            found[parameter] = own * value / prior if prior and parameter in terms else by_difference
     moved = ["M" + parameter[1:] for parameter in found if parameter[0] == "Z"]
     return found | {parameter: first.derivatives[parameter] for parameter in moved if parameter not in found}
 
 
 def _note(improvement: Improvement, first: Slopes, targets: Mapping[str, float]) -> str:
-    """The comment on top: what changed, in the condition in which that holds."""
+    """Return the comment at the top: the changes, and the condition in which they hold."""
     changed = [f"{p} {first.derivatives[p]:.4g} becomes {target:.4g}" for p, target in targets.items()]
     servo = improvement.servo.lines() or ["as it was"]
     return (

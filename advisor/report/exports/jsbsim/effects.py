@@ -1,7 +1,8 @@
 """Effects of force and pitching moment as functions of a JSBSim aircraft.
 
-The curves are those of the aircraft file's ``effects``: squares and cubes of α or of the elevator, counted
-from ``about_rad`` or else from the trim, and a moment by the rate of α. All go with the dynamic pressure.
+The curves are those of the aircraft file's ``effects``. Squares and cubes are of α or of the elevator; a
+moment is by the rate of α. They count from ``about_rad`` or else from the trim. All are proportional to the
+dynamic pressure.
 """
 
 from collections.abc import Mapping
@@ -14,20 +15,20 @@ CURVES = {
     "nonlinear_lift": ("alpha", {"Z_alpha2": 2, "Z_alpha3": 3}),
     "elevator_nonlinearity": ("delta_e", {"M_delta2": 2, "M_delta3": 3}),
 }
-"""Effect to its variable, and its parameters with their powers of that variable."""
+"""Effect to its variable, and to its parameters with their powers of that variable."""
 
 
 def functions_of(
     effects: Mapping[str, Mapping[str, float]], slopes: Slopes, surface: str
 ) -> tuple[list[Added], list[str]]:
-    """The functions, and the names of the effects that they carry whole.
+    """Return the functions, and the names of the effects that the functions carry completely.
 
     Parameters
     ----------
     effects
-        As the aircraft file has them.
+        Effects of the aircraft file.
     slopes
-        Of the aircraft that the functions are added to.
+        Slopes of the aircraft that receives the functions.
     surface
         Property of the elevator's position.
     """
@@ -41,7 +42,7 @@ def functions_of(
             functions.append(Added(effect, "PITCH", strength, "aero/alphadot-rad_sec", further="aero/ci2vel"))
             carried.append(effect)
         elif powers and values.keys() <= {*powers, "about_rad"} and unit is not None:
-            # A separated flow has further parameters: no square and no cube says that.
+            # A separated flow has further parameters, which no square and no cube expresses.
             about = unit * values["about_rad"] if "about_rad" in values else slopes.trim[variable]
             functions += [
                 Added(

@@ -1,7 +1,7 @@
-"""The numbers in a corrected aircraft that give a derivative its value, and how they are found.
+"""Numbers in a corrected aircraft that set its derivatives, and their search.
 
 Lift acts on the pitching moment by its arm, and a term moves the trim. So the aircraft is corrected and
-measured in turn until each derivative is the one asked for.
+measured in turn until each derivative has its target value.
 """
 
 import math
@@ -12,9 +12,9 @@ from advisor.report.exports.jsbsim.slopes import COLUMNS, Slopes
 from advisor.report.exports.jsbsim.source import AXES, PLAIN, Added, Factor
 
 ROUNDS = 8
-"""In which the numbers settle; each divides what is left by ten or more."""
+"""Number of rounds in which the numbers settle. Each round divides the error by ten or more."""
 WITHIN = 1e-3
-"""Relative error of a derivative at which the corrected aircraft is as asked for."""
+"""Relative error of a derivative at which the corrected aircraft counts as settled."""
 
 
 @dataclass(frozen=True)
@@ -24,15 +24,15 @@ class Knob:
     parameter: str
     change: Factor | Added
     gain: float
-    """Of the derivative by the number."""
+    """Change of the derivative by the number."""
 
     def turned(self, missing: float) -> "Knob":
-        """The knob with the number that makes up for what is missing of the derivative."""
+        """Return the knob with the number that adds the missing part of the derivative."""
         return replace(self, change=replace(self.change, value=self.change.value + missing / self.gain))
 
 
 def knob_for(parameter: str, terms: Sequence[str], first: Slopes, surface: str) -> Knob:
-    """A knob that changes nothing yet."""
+    """Return a knob that changes nothing yet."""
     axis, variable = AXES[parameter[0]], parameter[2:]
     per_force = first.per_force(parameter[0])
     share = per_force * sum(first.shares[name][COLUMNS.index(variable)] for name in terms)
@@ -44,7 +44,7 @@ def knob_for(parameter: str, terms: Sequence[str], first: Slopes, surface: str) 
 
 
 def _turned(knob: Knob, missing: float, first: Slopes, surface: str) -> Knob:
-    """The knob turned by what is missing; a factor below zero becomes an added function."""
+    """Return the knob turned by the missing part. A factor below zero becomes an added function."""
     turned = knob.turned(missing)
     if isinstance(turned.change, Added) or turned.change.value > 0.0:
         return turned
@@ -59,18 +59,18 @@ def settled(
     surface: str,
     measured: Callable[[Sequence[Knob]], Slopes],
 ) -> tuple[list[Knob], Slopes]:
-    """Turn the knobs until the aircraft has the derivatives asked for, or ``ROUNDS`` are over.
+    """Turn the knobs until the aircraft has its target derivatives, or ``ROUNDS`` are over.
 
     Parameters
     ----------
     first
-        The aircraft before any correction, as it is with the knobs given.
+        Slopes of the aircraft before any correction, measured with the given knobs.
     targets
         Derivative to its value, one for each knob.
     surface
         Property of the elevator's position.
     measured
-        Measures the aircraft with the knobs as they stand.
+        Measures the aircraft with given knobs.
     """
     now, turned = first, list(knobs)
     for _ in range(ROUNDS):
@@ -83,7 +83,7 @@ def settled(
 
 
 def missed(now: Slopes, targets: Mapping[str, float]) -> list[str]:
-    """Derivatives that are not as asked for."""
+    """Return the derivatives that miss their target values."""
     return [
         p for p, target in targets.items()
         if not math.isclose(now.derivatives[p], target, rel_tol=WITHIN, abs_tol=1e-6)

@@ -1,4 +1,4 @@
-"""Where a JSBSim aircraft lies, and measuring it in a process of its own."""
+"""Location of a JSBSim aircraft, and its measurement in a separate process."""
 
 import json
 import os
@@ -15,12 +15,12 @@ from advisor.report.exports.jsbsim.source import parse
 from advisor.simulators.jsbsim_model import find_model
 
 TIME_LIMIT_S = 60.0
-"""For loading and measuring one aircraft once, which takes less than a second."""
+"""Time limit for loading and measuring one aircraft, s. Normally less than a second is needed."""
 
 
 @dataclass(frozen=True)
 class Model:
-    """Where a JSBSim aircraft and what it needs lie."""
+    """Location of a JSBSim aircraft and of the files that it needs."""
 
     file: Path
     engine: Path
@@ -28,12 +28,13 @@ class Model:
 
     @property
     def name(self) -> str:
-        """JSBSim's name of the aircraft: that of its file."""
+        """Name of the aircraft in JSBSim, which is that of its file."""
         return self.file.stem
 
 
 def model_of(what: str) -> Model:
-    """The aircraft that ``jsbsim:`` names, with the engines and systems of its own JSBSim tree, if any.
+    """Return the aircraft that ``jsbsim:`` names, with the engines and systems of its own JSBSim tree, if
+    any.
 
     Raises
     ------
@@ -53,16 +54,16 @@ def model_of(what: str) -> Model:
 
 
 def measure(content: bytes, model: Model, asked: Request) -> Slopes:
-    """Load a content as the aircraft of that name, with the files that it includes, and measure it.
+    """Load a content as the aircraft, with the files that it includes, and measure it.
 
     Raises
     ------
     ConfigurationError
-        JSBSim does not load the aircraft, or the aircraft has no trim in the condition asked for.
+        JSBSim does not load the aircraft, or the aircraft has no trim in the requested condition.
     """
     root = parse(content, model.file.name)
     for tag in ("input", "output"):
-        # What the aircraft would open: sockets and files.
+        # Sockets and files that the aircraft would open.
         for element in root.findall(tag):
             root.remove(element)
     with tempfile.TemporaryDirectory() as folder:

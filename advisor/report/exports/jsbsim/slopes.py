@@ -1,8 +1,9 @@
-"""The derivatives of a JSBSim aircraft, and the share of each of its terms, by small perturbations.
+"""Derivatives of a JSBSim aircraft, and the share of each of its terms, by small perturbations.
 
-Runs in a process of its own (``python -m``), for JSBSim writes on stdout, and may end its process. The states
-are held while the forces settle, so no derivative is mixed with motion. α̇ and q̇ respond to α, q and elevator
-with all that hangs on them: the terms of α̇ count into the derivatives of α and q, as in a flight.
+The module runs in a separate process (``python -m``), because JSBSim writes on stdout and may end its
+process. The states are held while the forces settle, so that no derivative is mixed with motion. α̇ and q̇
+respond to α, q and elevator with all dependent terms. So the terms of α̇ count into the derivatives of α and
+q, as in a flight.
 """
 
 import json
@@ -15,18 +16,18 @@ import numpy as np
 
 FOOT_M = 0.3048
 SEA_FLOOR_FT = -10000.0
-"""Height of the ground: far from ground effect."""
+"""Height of the ground, ft: so low that there is no ground effect."""
 GUESS = 0.6
-"""Throttle from which JSBSim's trim begins."""
+"""Throttle with which JSBSim's trim begins."""
 FULL_TRIM = 1
 """JSBSim's number for trimming all axes in straight flight."""
 STEPS = 300
-"""Calls in which forces, and a servo that the model has, come to rest."""
+"""Number of calls in which forces, and a servo of the model, come to rest."""
 SIZES = (0.004, 0.01, 0.02)
 """Perturbations of α (rad), q (rad/s) and the elevator's command (-1 to 1)."""
 _ROUNDS, _AT_REST = 30, 1e-7
 _FLAT = 1e-6
-"""Z_alpha of no lift at all, which comes out as rounding, 1/s."""
+"""Z_alpha without any lift, 1/s, which is only rounding."""
 
 
 COLUMNS = ("alpha", "q", "delta_e")
@@ -35,24 +36,24 @@ COLUMNS = ("alpha", "q", "delta_e")
 
 @dataclass(frozen=True)
 class Request:
-    """What is asked of a JSBSim aircraft."""
+    """Condition and quantities to measure on a JSBSim aircraft."""
 
     names: list[str]
-    """Functions whose shares are asked for."""
+    """Functions whose shares are requested."""
     surface: str
     """Property of the elevator's position."""
     airspeed_m_s: float
     height_m: float
     powered: bool = True
-    """Whether JSBSim's trim finds the throttle; False: the throttle is shut."""
+    """Whether JSBSim's trim finds the throttle. False: the throttle is closed."""
 
 
 @dataclass(frozen=True)
 class Slopes:
-    """What a JSBSim aircraft does at one condition."""
+    """Measured slopes of a JSBSim aircraft in one condition."""
 
     derivatives: dict[str, float]
-    """The six derivatives, SI, the elevator's by the unit of its property."""
+    """The six derivatives in SI. Those of the elevator are per unit of its property."""
     shares: dict[str, list[float]]
     """Function of the model to its slopes by α, q and elevator, lbs or lbs·ft."""
     trim: dict[str, float]
@@ -68,7 +69,7 @@ class Slopes:
     """Whether JSBSim's trim found a throttle that holds the speed."""
 
     def per_force(self, letter: str) -> float:
-        """Change of α̇ (``Z``) by a lift of 1 lb, or of q̇ (``M``) by a moment of 1 lb·ft."""
+        """Return the change of α̇ (``Z``) by a lift of 1 lb, or of q̇ (``M``) by a moment of 1 lb·ft."""
         return -1.0 / self.momentum if letter == "Z" else 1.0 / self.inertia
 
 
@@ -92,7 +93,7 @@ def measured(fdm: Any, asked: Request) -> Slopes:
     fdm.suspend_integration()
 
     def respond(alpha: float, q: float, command: float) -> tuple[Any, Any]:
-        """The variables as they came out, and α̇, q̇ and every term."""
+        """Return the variables as they came out, and α̇, q̇ and every term."""
         fdm["ic/alpha-rad"], fdm["ic/q-rad_sec"] = alpha, q
         fdm["fcs/elevator-cmd-norm"] = command
         fdm.run_ic()

@@ -1,7 +1,7 @@
-"""A JSBSim aircraft as text in, and with corrected coefficients and a servo as text out.
+"""Text of a JSBSim aircraft: parsed, and written with corrected coefficients and a servo.
 
-The terms of the axes LIFT and PITCH are told apart by the properties that they depend on. A term with a pitch
-rate belongs to the pitch rate, then one with the rate of α, then one with the elevator, then one with α.
+The terms of the axes LIFT and PITCH are classified by the properties that they depend on. The first property
+found decides, in the order of pitch rate, rate of α, elevator, α.
 """
 
 import re
@@ -19,10 +19,10 @@ VARIABLES = {
     "delta_e": re.compile(r"fcs/elevator-pos-(rad|deg|norm)"),
     "alpha": re.compile(r"aero/alpha-(rad|deg)"),
 }
-"""Variable of the short period to the properties that stand for it, in the order of asking."""
+"""Variable of the short period to the properties that represent it, in the order of testing."""
 AXES = {"Z": "LIFT", "M": "PITCH"}
 SURFACES = {"fcs/elevator-pos-rad": 1.0, "fcs/elevator-pos-deg": 57.29577951308232}
-"""Properties of the surface to their units in a radian; the position from -1 to 1 has none."""
+"""Property of the surface to its number of units in a radian. The position from -1 to 1 has none."""
 PLAIN = {"alpha": "aero/alpha-rad", "q": "velocities/q-aero-rad_sec", "delta_e": "fcs/elevator-pos-rad"}
 
 
@@ -33,18 +33,18 @@ class Added:
     name: str
     axis: str
     value: float
-    """lbs or lbs·ft for the dynamic pressure of 1 psf and the variable's power of 1."""
+    """Value of the function for a dynamic pressure of 1 psf and a power of 1, lbs or lbs·ft."""
     property: str
     about: float = 0.0
     """Value of the property from which the variable counts."""
     power: int = 1
     further: str = ""
-    """A property that multiplies as well."""
+    """Further property that multiplies the function."""
 
 
 @dataclass(frozen=True)
 class Factor:
-    """A number that terms of an axis are multiplied by."""
+    """A factor on terms of an axis."""
 
     parameter: str
     axis: str
@@ -76,7 +76,8 @@ def parse(content: bytes, name: str) -> ET.Element:
 
 
 def terms_of(root: ET.Element) -> Mapping[str, tuple[str, ...]]:
-    """Derivative to the names of the model's functions that make it, in the order of the file."""
+    """Return each derivative with the names of the model's functions that make it, in the order of the
+    file."""
     found: dict[str, tuple[str, ...]] = {}
     for letter, axis in AXES.items():
         for function in _functions(root, axis):
@@ -89,7 +90,7 @@ def terms_of(root: ET.Element) -> Mapping[str, tuple[str, ...]]:
 
 
 def surface_of(root: ET.Element) -> str:
-    """The property of the elevator's position that the pitching moment depends on."""
+    """Return the property of the elevator's position that the pitching moment depends on."""
     for function in _functions(root, "PITCH"):
         for text in _properties(function):
             if VARIABLES["delta_e"].fullmatch(text):
@@ -98,12 +99,12 @@ def surface_of(root: ET.Element) -> str:
 
 
 def corrected(content: bytes, name: str, changes: Sequence[Factor | Added], servo: Servo, note: str) -> str:
-    """The aircraft's text with all changes made and the servo behind the elevator's command.
+    """Return the aircraft's text with all changes made and the servo behind the elevator's command.
 
     Raises
     ------
     ConfigurationError
-        As from ``parse``; or the model gives the elevator's position without an angle.
+        The content is no aircraft (see ``parse``), or the model's elevator position is no angle.
     """
     root = parse(content, name)
     for change in changes:
@@ -142,7 +143,7 @@ def _variable(function: ET.Element) -> str | None:
 
 
 def _multiply(function: ET.Element, factor: Factor) -> None:
-    """Wrap what a function computes into a product with the factor."""
+    """Multiply a function's result by the factor."""
     said = ("description", "documentation", "notes")
     computed = [e for e in function if e.tag not in said and isinstance(e.tag, str)]
     product = ET.Element("product")
@@ -171,7 +172,8 @@ def _function(added: Added) -> ET.Element:
 
 
 def _insert(servo: Servo, root: ET.Element) -> None:
-    """A channel of its own, last of all that moves the elevator: JSBSim's actuator, in and out the same."""
+    """Add JSBSim's actuator in a channel of its own, after everything that moves the elevator, from and to
+    one property."""
     surface = surface_of(root)
     unit = SURFACES.get(surface)
     bounded = servo.rate_rad_s or servo.play_rad or servo.deadband_rad
@@ -187,7 +189,8 @@ def _insert(servo: Servo, root: ET.Element) -> None:
     scale, commanded = unit or 1.0, surface
     lag_s = servo.lag_s
     if servo.damping and lag_s > 0.0:
-        # JSBSim's trim passes through actuators but not through filters of second order: two lags in a row.
+        # JSBSim's trim passes through actuators but not through filters of second order, hence two lags in a
+        # row.
         lag_s *= 0.5
         commanded = "fcs/advisor/elevator-lagged"
         first = ET.SubElement(channel, "actuator", {"name": commanded})

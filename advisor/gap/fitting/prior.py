@@ -1,0 +1,121 @@
+"""The aircraft file as prior of the derivatives.
+
+Either the simulator's derivatives are right and an effect is missing, or they are off by tens of per cent.
+Both cases have equal prior probability. Where the data leave a choice, such as a dead band or less elevator
+power, the explanation that keeps the file's derivatives is likelier.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+
+ERROR_IF_RIGHT = 0.03
+"""Relative standard deviation of derivatives that are right: they are linearised, at a nearby speed."""
+ERROR_IF_WRONG = 0.3
+"""Relative standard deviation of derivatives that are wrong."""
+ERROR_IF_FIXED = 0.003
+"""Relative standard deviation of derivatives that are fixed at the file's, in the search for another
+explanation."""
+_LEAST = 0.1
+"""Least size of a derivative for a relative error, 1/s or 1/s². A smaller derivative counts as zero."""
+_CHI_SQUARE_999, _CHI_SQUARE_500 = 22.46, 5.35
+"""Limits of chi square with six degrees of freedom, for probabilities of 99.9 % and 50 %."""
+
+_LOG_ODDS_OTHER_STATED = -4.0
+"""Log prior odds of an arm that the aircraft file states, relative to an equivalent arm that it leaves open.
+They also hold for a vane's arm where α is an estimate."""
+_LOG_ODDS_BACKWARD = {"alpha_vane_offset": -5.0, "accelerometer_offset": -2.5}
+"""Log prior odds of an arm that points backwards. The two arms are equivalent in the data. A vane behind the
+centre of gravity is hardly ever found, an accelerometer there less often than a vane ahead."""
+
+
+def derivative_scale(prior: FloatArray) -> FloatArray:
+    """Return the size of each derivative, shape (6,): 1 for Z_q, and a share of the large derivatives for
+    small ones."""
+    z_alpha, _, z_delta, m_alpha, m_q, m_delta = np.abs(prior)
+    z_alpha = max(z_alpha, _LEAST)
+    return np.array(
+        [
+            z_alpha,
+            1.0,
+            max(z_delta, 0.3 * z_alpha),
+            max(m_alpha, 0.1 * m_delta, _LEAST),
+            max(m_q, 0.3 * np.sqrt(max(m_alpha, _LEAST))),
+            max(m_delta, 0.3 * m_alpha, _LEAST),
+        ]
+    )
+
+
+def prior_precision(prior: FloatArray, tolerance: float) -> FloatArray:
+    """Return the inverse variances of the file's derivatives, given their relative error, shape (6,)."""
+    return np.asarray(1.0 / (tolerance * derivative_scale(prior)) ** 2)
+
+
+def log_prior(derivatives: FloatArray, covariance: FloatArray, prior: FloatArray) -> float:
+    """Return the log probability density of fitted derivatives, given the aircraft file, up to a constant.
+
+    Parameters
+    ----------
+    derivatives, covariance
+        Shapes (6,) and (6, 6): fitted derivatives and their covariance.
+    prior
+        Shape (6,): derivatives of the aircraft file.
+    """
+    scale = derivative_scale(prior)
+    densities = []
+    for width in (ERROR_IF_RIGHT, ERROR_IF_WRONG):
+        covariance_of_error = covariance / np.outer(scale, scale) + width**2 * np.eye(6)
+        distance = _distance((derivatives - prior) / scale, covariance_of_error)
+        densities.append(-0.5 * (distance + float(np.linalg.slogdet(covariance_of_error)[1])))
+    return float(np.logaddexp(densities[0], densities[1]) - np.log(2.0))
+
+
+ARMS = frozenset(_LOG_ODDS_BACKWARD)
+"""Effects that are an arm."""
+
+
+@dataclass(frozen=True, slots=True)
+class Distance:
+    """Distance of fitted derivatives from the aircraft file's, relative to prior error and covariance."""
+
+    statistic: float
+    """Squared distance; chi square with six degrees of freedom."""
+    limit: float
+
+    @property
+    def is_off(self) -> bool:
+        """Whether the file's derivatives cannot be right."""
+        return self.statistic > self.limit
+
+
+def distance_of(
+    derivatives: FloatArray, covariance: FloatArray, prior: FloatArray, clear_gap: bool
+) -> Distance:
+    """Return the distance of fitted derivatives from the file's; ``log_prior`` has the other arguments.
+
+    ``clear_gap``: the file's derivatives leave a clear gap, so that a smaller distance is enough.
+    """
+    scale = derivative_scale(prior)
+    covariance_of_error = covariance / np.outer(scale, scale) + ERROR_IF_RIGHT**2 * np.eye(6)
+    least = _CHI_SQUARE_500 if clear_gap else _CHI_SQUARE_999
+    return Distance(_distance((derivatives - prior) / scale, covariance_of_error), least)
+
+
+def _distance(off: FloatArray, covariance_of_error: FloatArray) -> float:
+    return float(off @ np.linalg.solve(covariance_of_error, off))
+
+
+def log_odds_of_arm(effect: str, arm_m: float, in_file: frozenset[str], alpha_is_derived: bool) -> float:
+    """Return the log prior odds between the two arms that are equivalent in the data; 0 for other effects.
+
+    ``in_file`` has the effects whose arm the aircraft file states.
+    """
+    if effect not in _LOG_ODDS_BACKWARD:
+        return 0.0
+    only_one_stated = len(in_file) == 1 and effect in in_file
+    no_vane = effect == "alpha_vane_offset" and alpha_is_derived
+    return (_LOG_ODDS_BACKWARD[effect] if arm_m < 0.0 else 0.0) + (
+        _LOG_ODDS_OTHER_STATED if only_one_stated or no_vane else 0.0
+    )

@@ -1,0 +1,41 @@
+"""The air speed at which the aircraft file's derivatives hold, where the file states none.
+
+The mean speed of the manoeuvres is the default. A manoeuvre costs speed, and pilots begin one slower than the
+last. Derivatives of the trim speed can then be off by some per cent, all by their power of the speed.
+"""
+
+import numpy as np
+
+from advisor.gap.fitting.fit import Fitted
+from advisor.gap.fitting.prior import distance_of, log_prior
+from advisor.gap.fitting.problem import Problem
+from advisor.gap.fitting.uncertainty import covariance, effective_samples, file_is_off
+from advisor.gap.simulator.layout import DERIVATIVES, SPEED
+from advisor.model.short_period import SPEED_EXPONENTS
+
+_POWERS = np.array([float(SPEED_EXPONENTS[name]) for name in DERIVATIVES])
+"""Power of the air speed with which each derivative grows."""
+_FARTHEST = 0.06
+"""Largest relative distance of the speed from the mean. Derivatives that hold at no speed within it are wrong
+ones."""
+_TRIED = 25
+
+
+def prior_speed(problem: Problem, baseline: Fitted) -> float | None:
+    """Return the speed in m/s, within those flown, at which the file's derivatives are right.
+
+    None where they may be right at the mean speed of the manoeuvres, or are wrong at every speed.
+    """
+    flights, prior = problem.flights, problem.prior_derivatives
+    if prior is None or not flights.speed_measured or not file_is_off(problem, baseline, clear_gap=True):
+        return None
+    flown = np.concatenate([flight.slow[SPEED] for flight in flights.flights]) / flights.reference_m_s
+    lowest, highest = max(np.min(flown), 1.0 - _FARTHEST), min(np.max(flown), 1.0 + _FARTHEST)
+    n = len(prior)
+    known = covariance(problem, baseline, effective_samples(problem, baseline.innovations))[:n, :n]
+    shares = np.linspace(lowest, highest, _TRIED)
+    at_speeds = [prior * share**-_POWERS for share in shares]
+    best = int(np.argmax([log_prior(baseline.point.derivatives, known, there) for there in at_speeds]))
+    if distance_of(baseline.point.derivatives, known, at_speeds[best], clear_gap=True).is_off:
+        return None
+    return float(shares[best] * flights.reference_m_s)

@@ -1,0 +1,88 @@
+"""The signature of an effect in the data: its response without the part that other parameters imitate.
+
+The length of a signature, in standard deviations of the noise, gives the smallest detectable size. The angle
+between two signatures tells how easily one effect is taken for the other. Parameters with a prior, such as
+the edges of the command, are eliminated with it as additional rows. Lengths and angles are therefore those of
+the marginal likelihood. Latency may absorb an effect too, but only within its bounds.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.candidates.input import LATENCY
+from advisor.gap.fitting.fit import Fitted
+from advisor.gap.fitting.problem import Problem, row_weights
+
+_RANK = 1e-7
+"""Relative singular value of a direction of the shared parameters below which the direction is ignored."""
+
+
+class Signatures:
+    """Signatures about a point of the model: responses with the effect of all parameters removed."""
+
+    def __init__(self, problem: Problem, fitted: Fitted, noise: FloatArray) -> None:
+        self.problem = problem
+        self.filtered = problem.knows_the_noise
+        self.rows = 0
+        self._weights, self._own, shared = [], [], []
+        for i, block in enumerate(fitted.linear):
+            w = row_weights(problem, i, 1.0 / noise)
+            self._weights.append(w)
+            self.rows += len(w)
+            both = np.vstack([block.own * w[:, None], np.diag(np.sqrt(block.prior))])
+            self._own.append(np.linalg.qr(both / (np.linalg.norm(both, axis=0) + 1e-300))[0])
+            shared.append(self._freed_of_own(i, block.shared * w[:, None]))
+        stacked = np.concatenate(shared)
+        late = _latency_at(fitted)
+        rest = np.delete(stacked, [] if late is None else late, axis=1)
+        U, size, _ = np.linalg.svd(rest / (np.linalg.norm(rest, axis=0) + 1e-300), full_matrices=False)
+        self._shared = U[:, size > _RANK * size[0]]
+        self._latency = np.zeros(len(stacked)) if late is None else self._freed_of_shared(stacked[:, late])
+        now = 0.0 if late is None else float(fitted.point.shared[late])
+        self._latency_bounds = LATENCY.bounds[0][0] - now, LATENCY.bounds[0][1] - now
+
+    def of(self, columns: Sequence[FloatArray]) -> FloatArray:
+        """Return the signature of a response, given per manoeuvre with shape (rows,), in the units of the
+        channels."""
+        parts = [self.within(i, column[:, None])[:, 0] for i, column in enumerate(columns)]
+        return self._freed_of_shared(np.concatenate(parts))
+
+    def within(self, i: int, columns: FloatArray) -> FloatArray:
+        """Return weighted responses of manoeuvre ``i``, shape (rows, k), without the effect of its nuisance
+        parameters."""
+        weighted = self.problem.innovations(i, columns) * self._weights[i][:, None]
+        return self._freed_of_own(i, weighted)
+
+    def smallest(self, signature: FloatArray, power: float) -> float:
+        """Return the size at which a signature has this power, whatever latency absorbs; infinite where none
+        has.
+
+        That is the smallest s with min |s·x − λ·l|² = power over the latencies λ within their bounds.
+        """
+        x, latency = signature, self._latency
+        own, ll = float(x @ x), float(latency @ latency)
+        share = float(latency @ x) / ll if ll > 0.0 else 0.0
+        remaining = own - share**2 * ll
+        free = np.sqrt(power / remaining) if remaining > 1e-12 * own and own > 0.0 else np.inf
+        low, high = self._latency_bounds
+        bound = high if share > 0.0 else low
+        if own <= 1e-18 or free * abs(share) <= abs(bound):
+            return float(free) if own > 1e-18 else float("inf")
+        along = bound * share * ll
+        return float((along + np.sqrt(along**2 - own * (bound**2 * ll - power))) / own)
+
+    def _freed_of_own(self, i: int, weighted: FloatArray) -> FloatArray:
+        Q = self._own[i]
+        padded = np.vstack([weighted, np.zeros((len(Q) - len(weighted), weighted.shape[1]))])
+        return np.asarray(padded - Q @ (Q.T @ padded))
+
+    def _freed_of_shared(self, stacked: FloatArray) -> FloatArray:
+        return np.asarray(stacked - self._shared @ (self._shared.T @ stacked))
+
+
+def _latency_at(fitted: Fitted) -> int | None:
+    """Return the index of the latency among the shared parameters."""
+    point = fitted.point
+    return point.place(point.effects.index(LATENCY)).start if LATENCY in point.effects else None

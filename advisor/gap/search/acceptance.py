@@ -1,0 +1,202 @@
+"""Acceptance of an effect: better on held-out manoeuvres, significant, and large enough to matter."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.candidates.traits import TAKES
+from advisor.gap.candidates.variant import Variant
+from advisor.gap.decision import Decision
+from advisor.gap.fitting.fit import Fitted
+from advisor.gap.fitting.holdout import HeldOut
+
+MOST_EFFECTS = 3
+"""Most effects named in one flight. More names in one flight are hardly ever right."""
+LEAST_GAIN = 6.0
+"""Least gain in log likelihood on held-out manoeuvres, after the price of the effect's parameters."""
+_UNCONFIRMED = 20.0
+"""Least gain in log likelihood where one manoeuvre alone determines the effect, and no other can confirm
+it."""
+_WITH_THE_AIR = 30.0
+"""Least gain in log likelihood, in moving air, of an effect that air speed, throttle or height determine.
+These channels move with the air too."""
+_CLEAR_GAIN, _CLEAR_SIGMAS = 15.0, 5.0
+"""Least gain in log likelihood, and least significance in standard deviations, of the first effect in moving
+air. Its change must be clear too."""
+LEAST_SIGMA = 3.0
+"""Least significance of an effect: number of standard deviations by which some parameter differs from
+zero."""
+CERTAIN = 30.0
+"""Gain in log likelihood above which something like the effect is certainly present."""
+BEYOND_DOUBT, _VISIBLE_CHANGE, _CLEAR_CHANGE = 100.0, 5.0, 10.0
+"""Gain in log likelihood beyond doubt; and two changes, in multiples of the least change. Above the first,
+jitter of the stamps hides no time. Above the second, moving air cannot imitate the effect."""
+LEAST_OFFSET_RAD = 0.003
+"""Least offset of α that is removed before the fit, and that is named, rad."""
+_SET_WITHIN_RAD = 0.007
+"""Least offset of α that is named in addition to other effects, rad. The zero of a vane, and the attitude
+reference behind the flight path, are hardly ever set within 0.4 deg."""
+_ESTIMATED_WITHIN_RAD = 0.0087
+"""Least offset of an autopilot's estimate of α that is named, rad. Such an estimate is off by up to half a
+degree without a fault."""
+OFFSET_SIGMAS, _SMALL_OFFSET_SIGMAS = 5.0, 7.0
+"""Number of standard deviations by which an offset of α must differ from zero; the second number is for a
+small offset."""
+LEAST_PRIOR_GAIN = 8.0
+"""Least gain in log prior probability for which an effect is named on that ground alone."""
+_PRIOR_GAIN_IF_CERTAIN = 4.0
+"""Least gain in log prior probability on whose ground an effect is named that is certain for its
+likelihood."""
+_HOLD_OUT = "hold-out"
+LEAST_SUPPORT = 1.0
+"""Least reduction of the gap on held-out manoeuvres, in standard errors over the manoeuvres. Of two
+manoeuvres both must improve."""
+
+
+@dataclass(frozen=True)
+class Judged:
+    """An effect that is judged as an addition to a model."""
+
+    variant: Variant
+    fitted: Fitted
+    held_out: HeldOut
+    gain: float
+    """Gain in log likelihood on held-out manoeuvres, with effective sample sizes, minus k/2 ln N, plus the
+    prior terms."""
+    removed: float
+    """Mean square change of the outputs of held-out manoeuvres, relative to the noise of the instruments."""
+    least: float
+    """Least value of ``removed`` for acceptance."""
+    least_certain: float
+    """Least value of ``removed`` where ``gain`` leaves no doubt."""
+    smallest: float
+    """Least size of the first parameter for acceptance."""
+    prior_gain: float
+    """Gain in log prior probability, because the derivatives agree better with the aircraft file's."""
+    prior_terms: float
+    """Part of ``gain`` that does not come from the motion: prior gain and log odds of an arm, minus the price
+    of the parameters."""
+    support: float
+    """Reduction of the gap on held-out manoeuvres, mean over standard error over the manoeuvres."""
+    value: FloatArray
+    std: FloatArray
+    sigmas: float
+    """Number of standard deviations by which the size differs from zero (``uncertainty.sigmas_of``)."""
+    sole_maneuver: int | None = None
+    """Index of the only manoeuvre that determines the effect; ``gain`` and ``removed`` are then those of the
+    fit."""
+    with_the_air: bool = False
+    """Whether the air moves, and with it the channel that determines the effect."""
+    alone: bool = True
+    """Whether no other effect was added before."""
+
+    @property
+    def effect(self) -> str:
+        """Name of the effect in the catalogue."""
+        return self.variant.effect
+
+    @property
+    def block(self) -> str:
+        """Block of the simulator that the effect belongs to."""
+        return self.variant.block
+
+    @property
+    def is_accepted(self) -> bool:
+        """Whether the effect is better on held-out manoeuvres, significant, and large enough to matter."""
+        return all(decision.holds for decision in self.decisions)
+
+    @property
+    def decisions(self) -> tuple[Decision, ...]:
+        """Questions that decide on acceptance; all must hold."""
+        certain = self.gain >= CERTAIN
+        of_the_file = self.prior_gain >= (_PRIOR_GAIN_IF_CERTAIN if certain else LEAST_PRIOR_GAIN)
+        change = 0.0 if of_the_file else self.least_certain if certain else self.least
+        asked = [
+            ("likelihood", self.gain, self.least_gain, "log likelihood gained"),
+            ("change", self.removed, change, "mean square change over the noise"),
+            ("significance", self.sigmas, LEAST_SIGMA, "standard deviations"),
+            ("size", size_of(self.variant, self.value), self.least_size, f"of {self.variant.names[0]}"),
+            ("range", 0.0 if self.at_its_bounds else 1.0, 1.0, "inside the searched range"),
+        ]
+        if self.is_predictable:
+            asked.append((_HOLD_OUT, self.support, LEAST_SUPPORT, "standard errors of the gap removed"))
+        return tuple(Decision(self.effect, *question) for question in asked)
+
+    @property
+    def is_predictable(self) -> bool:
+        """Whether other manoeuvres can predict the effect: neither one manoeuvre nor the aircraft file alone
+        shows it."""
+        return self.sole_maneuver is None and self.prior_gain < LEAST_PRIOR_GAIN
+
+    @property
+    def is_supported(self) -> bool:
+        """Whether held-out manoeuvres support the effect, as far as they can predict it."""
+        return not self.is_predictable or self.support >= LEAST_SUPPORT
+
+    @property
+    def is_disputed(self) -> bool:
+        """Whether held-out manoeuvres alone reject the effect. Each of them may have another size of it."""
+        return all(decision.holds != (decision.name == _HOLD_OUT) for decision in self.decisions)
+
+    @property
+    def least_gain(self) -> float:
+        """Least value of ``gain``. Where the data leave a choice and the file decides, a positive gain is
+        enough."""
+        confirmed = LEAST_GAIN if self.sole_maneuver is None else _UNCONFIRMED
+        if self.with_the_air:
+            return max(confirmed, _CLEAR_GAIN) if self.alone and self.changes_clearly else _WITH_THE_AIR
+        if self.sole_maneuver is not None:
+            return confirmed
+        return 0.0 if self.variant.twin is not None and self.prior_gain >= LEAST_PRIOR_GAIN else LEAST_GAIN
+
+    @property
+    def changes_clearly(self) -> bool:
+        """Whether the change is ten times the least one, by a parameter that differs clearly from zero."""
+        return self.removed >= _CLEAR_CHANGE * self.least and self.sigmas > _CLEAR_SIGMAS
+
+    @property
+    def at_its_bounds(self) -> bool:
+        """Whether a parameter lies at the end of its range: the shape then only resembles the effect.
+
+        A bound of zero does not count, because the effect exists without that parameter. Nor does a bound of
+        the first parameter, its size: an effect larger than the searched range keeps its name.
+        """
+        ends = np.array(self.variant.bounds[1:]).reshape(-1, 2)
+        near = np.abs(ends - self.value[1:, None]) < 1e-3 * np.ptp(ends, axis=1, keepdims=True)
+        near &= ends != 0.0
+        return bool(np.any(near)) and not self.variant.one_sided
+
+    @property
+    def large_enough(self) -> bool:
+        """Whether the size is at least the physical minimum."""
+        return size_of(self.variant, self.value) >= self.least_size
+
+    @property
+    def least_size(self) -> float:
+        """The physical minimum. Jitter of the stamps does not raise it much where the effect is beyond
+        doubt."""
+        clear = self.gain >= BEYOND_DOUBT and self.removed >= _VISIBLE_CHANGE * self.least
+        return min(self.smallest, 2.0 * self.variant.smallest) if clear else self.smallest
+
+
+def least_offset_rad(std_rad: float, derived: bool = False, alone: bool = True) -> float:
+    """Return the least offset of α in rad that is named, given its standard deviation.
+
+    Parameters
+    ----------
+    derived
+        Whether α is an autopilot's estimate.
+    alone
+        Whether no cause other than moving air was found.
+    """
+    least = max(_ESTIMATED_WITHIN_RAD if derived else _SET_WITHIN_RAD, OFFSET_SIGMAS * std_rad)
+    if derived or not alone:
+        return least
+    return min(least, max(LEAST_OFFSET_RAD, _SMALL_OFFSET_SIGMAS * std_rad))
+
+
+def size_of(variant: Variant, value: FloatArray) -> float:
+    """Return the size of an effect that is compared with its physical minimum."""
+    # Ice reduces lift: a change that keeps the lift slope is another effect.
+    return float(-value[0] if variant.effect in TAKES else abs(value[0]))

@@ -1,0 +1,44 @@
+"""Effects that the data cannot distinguish, exactly or nearly, and what would distinguish them."""
+
+from collections.abc import Sequence
+
+from advisor.gap.candidates.traits import TRAITS
+from advisor.gap.search.acceptance import Judged
+
+NEAR = 5.0
+"""Difference of the gain in log likelihood below which two explanations are indistinguishable."""
+_LITTLE = 0.1
+"""Difference of the gain below which twin effects are indistinguishable, as a share of the gain."""
+
+
+def way_to_distinguish(effect: str, other: str) -> str:
+    """Return what would distinguish two effects; empty when nothing particular is known."""
+    return TRAITS[effect].distinguished_by.get(other) or TRAITS[other].distinguished_by.get(effect, "")
+
+
+def _is_as_good(a: Judged, b: Judged) -> bool:
+    """Return whether two effects are equally good; twins may differ by a share of their gain."""
+    twins = TRAITS[a.effect].twin == b.effect or TRAITS[b.effect].twin == a.effect
+    return abs(a.gain - b.gain) < (max(NEAR, _LITTLE * abs(b.gain)) if twins else NEAR)
+
+
+def indistinguishable_from(
+    best: Judged, others: Sequence[Judged], channels: Sequence[str]
+) -> tuple[tuple[str, ...], str]:
+    """Return the effects that explain the data as well as ``best``, and what would distinguish them."""
+    names = [j.effect for j in others if j.effect != best.effect and _is_as_good(j, best) and j.gain > 0.0]
+    ways = []
+    for name in names:
+        found = way_to_distinguish(best.effect, name)
+        if found:
+            ways.append(found)
+    trait = TRAITS[best.effect]
+    alike = [] if trait.imitated_by is None else [trait.imitated_by]
+    if trait.imitated_without is not None and trait.imitated_without[0] not in channels:
+        alike.append(trait.imitated_without[1:])
+    for looks, way in alike:
+        names.append(looks)
+        ways.append(way)
+    if names and not ways:
+        ways.append("fly more manoeuvres, with another time unit and another amplitude")
+    return tuple(names), "; ".join(dict.fromkeys(ways))

@@ -1,0 +1,1 @@
+"""Residuals that no effect of the catalogue explains, and the blocks in which they arise."""

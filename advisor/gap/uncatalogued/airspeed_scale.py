@@ -1,0 +1,87 @@
+"""Consistency of air speed and accelerometer: both determine the curvature of the flight path.
+
+Every model has a nuisance parameter for their difference. A difference of a few per cent is normal, because a
+static port reads a pressure that the wing changes. With a larger difference one of the two is wrong, unless
+the air speed is an indicated one in thin air.
+"""
+
+from dataclasses import dataclass
+
+from advisor.gap.candidates.sensors import TRUE_AIR_SPEED
+from advisor.gap.fitting.fit import Fitted
+from advisor.gap.fitting.problem import Problem
+from advisor.gap.fitting.uncertainty import effective_samples, shared_std
+from advisor.gap.uncatalogued.weight_check import WeightReading
+
+_REPORTED, _WRONG = 0.02, 0.06
+"""Least relative difference that is reported, and least difference that shows an error."""
+_FELT = 0.03
+"""Least relative difference for which an indicated air speed is assumed, because its changes are too
+small."""
+_INDICATED = 0.25
+"""Largest relative difference that thin air explains, at 4,000 m and above."""
+_ITS_OWN = 0.5
+"""Largest error of the weight that the accelerometer reads, as a share of the difference, for an indicated
+air speed."""
+_AS_MUCH = 0.05
+"""Largest difference between the errors of curvature and weight for which both are the accelerometer's. An
+offset of the accelerometer contributes to one of them."""
+_SIGMAS = 5.0
+"""Least number of standard deviations of a difference that is reported."""
+_SIGMAS_IN_GUSTS = 8.0
+"""Least number of standard deviations of a difference that shows an error in moving air. A wave in every
+manoeuvre looks like a wrong air speed."""
+
+
+@dataclass(frozen=True)
+class AirspeedScale:
+    """Relative excess of the air speed in the motion over the one in use; an accelerometer scale error looks
+    the same."""
+
+    scale: float
+    std: float
+
+    def is_wrong(self, moving_air: bool, weight: WeightReading | None) -> bool:
+        """Return whether the difference exceeds the error of any air speed indicator.
+
+        ``weight`` is the accelerometer's reading of the weight, where that is known.
+        """
+        least = _INDICATED if self.is_indicated(weight) else _WRONG
+        return abs(self.scale) > max(least, _SIGMAS_IN_GUSTS * self.std if moving_air else 0.0)
+
+    def is_indicated(self, weight: WeightReading | None) -> bool:
+        """Return whether the air speed may be an indicated one in thin air: the accelerometer reads the
+        weight right."""
+        return weight is not None and self.scale > max(_FELT, (weight.share - 1.0) / _ITS_OWN)
+
+    def is_the_accelerometers(self, weight: WeightReading | None) -> bool:
+        """Return whether weight and curvature lack an equal share, which no air speed error causes."""
+        return weight is not None and weight.is_off and abs(self.scale - (weight.share - 1.0)) < _AS_MUCH
+
+    @property
+    def sentence(self) -> str:
+        """Sentence for the reader of the diagnosis."""
+        too = "too high" if self.scale > 0.0 else "too low"
+        off = f"{100.0 * self.scale:+.1f} ± {100.0 * self.std:.1f} %"
+        return (
+            f"The motion shows a true air speed {off} off the one in use. An accelerometer that reads as "
+            f"much {too} looks the same: compare air speed and ground speed on opposite headings."
+        )
+
+
+def true_over_read(found: AirspeedScale | None, weight: WeightReading | None) -> float:
+    """Return the ratio of true to read air speed where the latter may be an indicated one; otherwise 1."""
+    return 1.0 + found.scale if found is not None and found.is_indicated(weight) else 1.0
+
+
+def airspeed_scale_of(problem: Problem, fitted: Fitted) -> AirspeedScale | None:
+    """Return the difference that the fitted model shows; None where it is insignificant, or not measured."""
+    point = fitted.point
+    if TRUE_AIR_SPEED not in point.effects:
+        return None
+    k = point.effects.index(TRUE_AIR_SPEED)
+    std = float(
+        shared_std(problem, fitted, effective_samples(problem, fitted.innovations))[point.place(k)][0]
+    )
+    scale = float(point.values[k][0])
+    return AirspeedScale(scale, std) if abs(scale) > max(_REPORTED, _SIGMAS * std) else None

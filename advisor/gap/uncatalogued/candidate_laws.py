@@ -1,0 +1,178 @@
+"""Simple laws outside the catalogue: nonlinear readings, nonlinear damping, losses, friction and stops.
+
+The catalogue scales α and q, but not a_z and θ. It has no nonlinear reading, and no gyro that is sensitive to
+acceleration. Its moments are nonlinear in deflection and α, but not in pitch rate. Its servo may lag or reach
+a rate limit, but neither overshoots nor meets a stop. Its α may lag, but no vane has friction or a stop. Its
+channels may be late, but not filtered. Its lift may be nonlinear and delayed, but has no hysteresis. Ice
+reduces lift and elevator power, but no effect reduces elevator power alone.
+"""
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.candidates.between import steps_in
+from advisor.gap.candidates.variant import Values, Variant
+from advisor.gap.records.flights import Flights
+from advisor.gap.search.acceptance import Judged
+from advisor.gap.simulator.layout import FILTER, INDEX, OUTPUTS
+from advisor.gap.uncatalogued.lift_hysteresis import FLOW_LETS_GO, LIFT_MEMORY, flow_lets_go, lift_memory
+from advisor.gap.uncatalogued.mechanical_stops import SURFACE_STOP, VANE_STOP, surface_stops, vane_stops
+
+
+def _scale(name: str, block: str, channel: str) -> Variant:
+    """Return a scale error of a reading."""
+    entries = (f"{channel}_scale",)
+    return Variant(name, block, ("scale",), ((0.0,),), (0.002,), ((-0.8, 3.0),), 0.03, entries=entries)
+
+
+def _curve(name: str, block: str, channel: str, unit: float) -> Variant:
+    """Return a reading with linear, quadratic and cubic errors (IEEE Std 1293); ``unit`` is a typical
+    change."""
+    return Variant(
+        name, block, ("scale", "square", "cube"), ((0.0, 0.0, 0.0),),
+        (0.002, 0.002 / unit, 0.002 / unit**2),
+        ((-0.8, 3.0), (-10.0 / unit, 10.0 / unit), (-100.0 / unit**2, 100.0 / unit**2)), 0.0,
+        entries=tuple(f"{channel}_{order}" for order in ("scale", "read2", "read3")),
+    )  # fmt: skip
+
+
+def _filter(block: str, channel: str) -> Variant:
+    """Return a filter of first or second order in a reading, which nothing compensates."""
+
+    def pass_through(p: FloatArray, values: Values, _: Flights) -> None:
+        p[:, [INDEX[name] for name in FILTER]] = (*values, OUTPUTS.index(channel))
+
+    return Variant(
+        f"{channel}{_FILTERED}", block, ("lag_s", "shape"), ((0.03, 0.5), (0.08, 0.5), (0.08, 0.05)),
+        (5e-4, 0.01), ((0.005, 0.6), (0.0, 1.0)), 0.0, apply_with=pass_through,
+    )  # fmt: skip
+
+
+_PULLED, _RINGS, _RUBS, _FILTERED = "gyro_pulled", "servo_rings", "vane_friction", "_filtered"
+_STICKS = "servo_sticks"
+_WEAKER = "elevator_loss"
+MUST_LEAVE_LITTLE = frozenset({_PULLED, SURFACE_STOP, _RINGS})
+"""Laws that leave a small residual where they are true. Faults that resemble them leave more."""
+_READINGS = {
+    "a_z": (
+        _curve("accelerometer_curve", "accelerometer", "a_z", 5.0),
+        _filter("accelerometer", "a_z"),
+    ),
+    "alpha": (
+        _curve("alpha_curve", "alpha_sensor", "alpha", 0.05),
+        # Dry friction in the vane's bearing, modelled as a play like that of the elevator's linkage.
+        Variant(
+            _RUBS,
+            "alpha_sensor",
+            ("half_play_rad",),
+            ((0.002,), (0.006,), (0.02,)),
+            (1e-4,),
+            ((0.0, 0.1),),
+            0.00087,
+            entries=("vane_play_rad",),
+        ),
+    ),
+    "theta": (_scale("attitude_scale", "attitude_sensor", "theta"), _filter("attitude_sensor", "theta")),
+    "q": (
+        _filter("pitch_rate_sensor", "q"),
+        # IEEE Std 1431: drift proportional to acceleration, and to its square.
+        Variant(
+            _PULLED,
+            "pitch_rate_sensor",
+            ("per_m_s2", "per_m_s2_squared"),
+            ((0.0, 0.0),),
+            (1e-4, 1e-5),
+            ((-0.1, 0.1), (-0.02, 0.02)),
+            0.0,
+            entries=("q_pull", "q_pull2"),
+        ),
+    ),
+}
+_MOMENTS = (
+    Variant(
+        "damping_curve", "moment_equation", ("M_q_abs", "M_q_q"), ((0.0, 0.0),), (0.05, 0.1),
+        ((-50.0, 50.0), (-200.0, 200.0)), 0.0, entries=("M_q_abs", "M_q_q"),
+    ),
+    Variant(
+        "crossed_moment", "moment_equation", ("M_alpha_q", "M_alpha_delta_e"), ((0.0, 0.0),), (0.5, 1.0),
+        ((-300.0, 300.0), (-2000.0, 2000.0)), 0.0, entries=("M_alpha_q", "M_alpha_delta_e"),
+    ),
+)  # fmt: skip
+
+
+def _rings(p: FloatArray, values: Values, _: Flights) -> None:
+    """Replace the file's servo lag by a second-order servo, which is late by 2ζ/ω."""
+    omega, damping = values
+    p[:, INDEX["lag_s"]], p[:, INDEX["lag_damping"]] = 2.0 * damping / omega, damping
+
+
+RINGING = Variant(
+    _RINGS, "input", ("omega_rad_s", "damping"),
+    tuple((2.0 * np.pi * hz, 0.2) for hz in (1.5, 2.1, 3.0, 4.2, 6.0)),
+    (0.05, 0.01), ((4.0, 80.0), (0.02, 0.45)), 0.0, apply_with=_rings,
+)  # fmt: skip
+_SENTENCES = {
+    "accelerometer_curve": "The accelerometer does not read in proportion: it clips, rectifies or bends.",
+    "alpha_curve": "The angle of attack does not read in proportion: its vane bends, rubs or meets a stop.",
+    "attitude_scale": "The attitude reads {percent:+.1f} % against what the pitch rate says.",
+    _RUBS: "The vane's bearing rubs: the air turns by {degrees} deg before it follows.",
+    VANE_STOP: "The vane turns {degrees} deg from its trim and no further: it meets a stop.",
+    SURFACE_STOP: "The surface stops before the command does: it moves {degrees} deg from its trim and no "
+    "further.",
+    _STICKS: "The surface sticks till the command is {degrees_first} deg away, then breaks loose: friction.",
+    _RINGS: "The surface overshoots its command: a servo of second order that is hardly damped.",
+    FLOW_LETS_GO: "The flow lets go at one angle and comes back at a lower one: a stall with a memory.",
+    LIFT_MEMORY: "The lift is another on the way up than on the way down: a stall that lets go late.",
+    _WEAKER: "In flight the elevator's power changed by {percent:+.0f} %: a horn slipped, or a part is gone.",
+    _PULLED: "The pitch rate feels the acceleration.",
+    **{
+        f"{channel}{_FILTERED}": f"{what} passes a filter: it is {{ms:.0f}} ms late, and rounded."
+        for channel, what in (("q", "The pitch rate"), ("a_z", "The acceleration"), ("theta", "The attitude"))
+    },
+    "damping_curve": "The damping in pitch is not the same up and down, or fast and slow.",
+    "crossed_moment": "The damping in pitch or the power of the elevator changes with the angle of attack.",
+}
+
+
+def _sticking(flights: Flights) -> Variant:
+    """Return a surface that dry friction holds until the command is far enough away."""
+    most = float(np.median([np.max(np.abs(flight.u - flight.u_trim)) for flight in flights.flights]))
+    return Variant(
+        _STICKS, "input", ("breakaway_rad", "sliding_share", "loop_s"),
+        tuple((share * most, 0.3, 0.03) for share in (0.15, 0.3, 0.45, 0.6)), (0.01 * most, 0.02, 2e-3),
+        ((0.02 * most, 1.2 * most), (0.0, 0.8), (0.001, 0.3)), 0.00175,
+        entries=("breakaway_rad", "sliding_share", "loop_s"),
+        sides=("play_side", tuple(np.linspace(-1.0, 1.0, 8))), places=("sliding_share", "loop_s"),
+    )  # fmt: skip
+
+
+def _weaker(flights: Flights) -> list[Variant]:
+    """Return an elevator that loses power after some manoeuvre, with all else unchanged."""
+    if len(flights) < 3:
+        return []
+    columns = [INDEX["Z_delta_e"], INDEX["M_delta_e"]]
+
+    def lose(p: FloatArray, values: Values, share: FloatArray) -> None:
+        p[:, columns] *= (1.0 + values[0] * share)[:, None]
+
+    one = Variant(_WEAKER, "input", ("step",), ((0.0,),), (0.005,), ((-0.9, 2.0),), 0.02)
+    return steps_in(flights, one, lose)
+
+
+def laws_for(flights: Flights) -> list[Variant]:
+    """Return all laws of the identifying readings, of the moment, of the surface and of the lift."""
+    readings = [flights.channels[c] for c in flights.telling]
+    of_readings = [variant for channel in readings for variant in _READINGS.get(channel, ())]
+    of_readings += vane_stops(flights) if "alpha" in readings else []
+    of_lift = [lift_memory(flights), flow_lets_go(flights)]
+    of_input = [*surface_stops(flights), RINGING, _sticking(flights), *_weaker(flights)]
+    return [*of_readings, *_MOMENTS, *of_input, *of_lift]
+
+
+def sentence_of(law: Judged) -> str:
+    """Return a sentence about the law, with its size."""
+    degrees = " and ".join(f"{np.degrees(value):.1f}" for value in law.value)
+    first = float(law.value[0])
+    return _SENTENCES[law.effect].format(
+        percent=100.0 * first, ms=1e3 * first, degrees=degrees, degrees_first=f"{np.degrees(first):.1f}"
+    )

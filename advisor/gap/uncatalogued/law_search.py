@@ -1,0 +1,170 @@
+"""The search for a simple law outside the catalogue that explains more than all named effects.
+
+Two or three effects together imitate such a law well. A single law that explains more than all of them is
+likelier.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.candidates.variant import Variant
+from advisor.gap.fitting.fit import Fitted, fit
+from advisor.gap.fitting.holdout import HeldOut, hold_out, mean_squares
+from advisor.gap.fitting.problem import Problem
+from advisor.gap.fitting.uncertainty import effective_samples, log_prior_of
+from advisor.gap.search.acceptance import CERTAIN, Judged
+from advisor.gap.search.score import (
+    addition,
+    difference,
+    log_likelihood_gained,
+    log_odds_in,
+    price_of,
+    price_of_edges,
+)
+from advisor.gap.search.screen import Screen, penalty
+from advisor.gap.search.stage import Stage, added_in
+from advisor.gap.uncatalogued.candidate_laws import MUST_LEAVE_LITTLE, RINGING, laws_for, sentence_of
+from advisor.gap.uncatalogued.unexplained import Unexplained
+
+_FITTED_SHARE = 0.2
+"""Least share of the likeliest law's gain in the screening for a full fit of another."""
+_OUT_OF_REACH = 200.0
+"""Cost above that of the best law, or of all effects together, at which the fit of a law is given up."""
+_LIKELIER = 10.0
+"""Least gain in log likelihood of a law over all effects together."""
+_LEAVES = 0.3
+"""Largest residual share of some channel's power for a law of ``MUST_LEAVE_LITTLE``. A tilted attitude
+resembles a gyro that is sensitive to acceleration, and a vibrating propeller resembles a surface stop."""
+_IN_MOST = 0.6
+"""Least share of manoeuvres in which a law reduces the residual. An improvement in fewer is a gust, or a
+fault that comes and goes."""
+_LITTLE = 0.004
+"""Least change by a law as a share of a channel's peak. A smaller one may be a catalogued effect too small to
+be named."""
+_SEVERAL = 2
+"""Number of effects that may imitate a law together."""
+_SEPARATE_SHARE = 0.5
+"""Least gain of the effects in addition to the law, relative to their gain without it, for separate causes; a
+certain gain is enough. They must also change the outputs by that share of the law's change. A wrong air speed
+has side effects."""
+
+_MISSING = 0.03
+"""Residual of all effects beyond noise, as a share of some channel's peak, above which a ringing servo is
+tried from every start."""
+
+
+@dataclass(frozen=True)
+class Law:
+    """A law that was found, with its fit."""
+
+    unexplained: Unexplained
+    fitted: Fitted
+    """The baseline model with the law."""
+
+
+def search_law(problem: Problem, stages: list[Stage]) -> Law | None:
+    """Return the law that explains more than all named effects; None where there is none."""
+    baseline, held = stages[0].fitted, stages[0].held_out
+    named_cost = stages[-1].fitted.cost
+    found = Screen(problem, baseline).quick_fits(laws_for(problem.flights), baseline.cost - named_cost)
+    samples = float(np.sum(effective_samples(problem, baseline.innovations)))
+    best = min((s.cost for s in found), default=baseline.cost)
+    most = baseline.cost - 2.0 * max(CERTAIN, 0.5 * _FITTED_SHARE * (baseline.cost - best))
+    # A law that changes the derivatives takes more steps than a screening makes.
+    fits: list[tuple[Variant, Fitted]] = []
+    lost = named_cost + _OUT_OF_REACH
+    for s in sorted(found, key=lambda s: s.cost):
+        if s.cost <= most:
+            fits.append((s.variant, fit(problem, s.point, s.noise, tolerance=0.5, beaten_by=lost)))
+            lost = min(lost, fits[-1][1].cost + _OUT_OF_REACH)
+    noise = 0.0 if problem.instruments is None else problem.instruments
+    missing = np.sqrt(np.maximum(stages[-1].held_out.mean_square - noise**2, 0.0))
+    if np.any(missing > _MISSING * problem.flights.peaks):
+        # No small change leads to a servo that rings for the whole record: the search begins at every
+        # frequency.
+        points = [baseline.point.with_effect(RINGING, start) for start in RINGING.starts]
+        fits += [(RINGING, fit(problem, p, baseline.noise, tolerance=0.5, beaten_by=lost)) for p in points]
+    if not fits:
+        return None
+    law, fitted = min(fits, key=lambda pair: pair[1].cost + penalty(pair[0], samples))
+    effective = effective_samples(problem, fitted.innovations)
+    judged = addition(problem, baseline, held, fitted, law.effect, effective)
+    # Effective sample sizes depend on the fit that gives them: both are compared with the same ones.
+    disputed = stages[-1].disputed
+    named = max(_gain_of_all(problem, stages, effective), 0.0 if disputed is None else disputed.gain)
+    if not judged.is_accepted or judged.gain < max(CERTAIN, named + _LIKELIER):
+        return None
+    after, before = (np.sum(h.by_maneuver / held.mean_square, axis=1) for h in (judged.held_out, held))
+    if np.mean(after < before) < _IN_MOST or not _changes_visibly(problem, held, judged.held_out):
+        return None
+    alike = difference(problem, stages[-1].held_out, judged.held_out) < judged.least
+    if alike and len(added_in(stages)) < _SEVERAL:
+        # The motion nearly equals that of the effects: a single effect stays; several in concert are less
+        # likely.
+        return None
+    if len(stages) > 1 and _are_separate_causes(problem, stages, judged, effective):
+        return None
+    remaining_shares = judged.held_out.mean_square / held.mean_square
+    if law.effect in MUST_LEAVE_LITTLE and np.min(remaining_shares) > _LEAVES:
+        return None
+    block = law.block
+    rivals = {j.block: _share(j, judged) for j in reversed(stages[0].considered)}
+    ranking = sorted(((b, s) for b, s in rivals.items() if b != block), key=lambda pair: -pair[1])
+    share = float(np.clip(1.0 - np.mean(remaining_shares), 0.0, 1.0))
+    unexplained = Unexplained(block, share, ((block, 1.0), *ranking), note=sentence_of(judged))
+    return Law(unexplained, fitted)
+
+
+def _changes_visibly(problem: Problem, before: HeldOut, after: HeldOut) -> bool:
+    """Return whether a law changes some channel of some manoeuvre by more than the accuracy of a
+    simulator."""
+    changes = [a - b for a, b in zip(before.residuals, after.residuals, strict=True)]
+    return bool(np.any(np.sqrt(mean_squares(problem, changes)) > _LITTLE * problem.flights.peaks))
+
+
+def _gain_of_all(problem: Problem, stages: list[Stage], effective: FloatArray) -> float:
+    """Return the gain of all effects together, by the definition of ``Judged.gain``; 0 without any."""
+    first, last = stages[0], stages[-1]
+    named = added_in(stages)
+    if not named:
+        return 0.0
+    likelihood = log_likelihood_gained(first.fitted, first.held_out, last.fitted, last.held_out, effective)
+    likelihood += 0.5 * (problem.nuisance_cost(first.fitted.point) - problem.nuisance_cost(last.fitted.point))
+    likelihood += 0.5 * (price_of_edges(problem, first.fitted) - price_of_edges(problem, last.fitted))
+    prior_gain = log_prior_of(problem, last.fitted, effective) - log_prior_of(
+        problem, first.fitted, effective
+    )
+    price = sum(price_of(j.variant, effective) for j in named)
+    odds = sum(log_odds_in(problem, j.effect, float(j.value[0])) for j in named)
+    return likelihood + prior_gain + odds - price
+
+
+def _are_separate_causes(
+    problem: Problem, stages: list[Stage], judged: Judged, effective: FloatArray
+) -> bool:
+    """Return whether the effects explain much in addition to the law, and change the outputs enough."""
+    first, last = stages[0], stages[-1]
+    law = set(judged.variant.entries)
+    others = [v.effect for v in last.fitted.point.effects if not law & set(v.entries)]
+    both = fit(
+        problem,
+        last.fitted.point.with_only(others).with_effect(judged.variant, tuple(judged.value)),
+        judged.fitted.noise,
+        tolerance=0.5,
+    )
+
+    def gained(before: Fitted, held_before: HeldOut, after: Fitted, held_after: HeldOut) -> float:
+        return log_likelihood_gained(before, held_before, after, held_after, effective)
+
+    held = hold_out(problem, both)
+    alone = gained(first.fitted, first.held_out, last.fitted, last.held_out)
+    in_addition = gained(judged.fitted, judged.held_out, both, held)
+    matters = difference(problem, judged.held_out, held) > _SEPARATE_SHARE * judged.removed
+    return matters and in_addition > min(_SEPARATE_SHARE * alone, CERTAIN)
+
+
+def _share(judged: Judged, best: Judged) -> float:
+    """Return the gain relative to the best one, 0 to 1."""
+    return round(float(np.clip(judged.gain / best.gain, 0.0, 1.0)), 4)

@@ -1,0 +1,62 @@
+"""A sustained oscillation as unexplained residual, and the block in which it arises."""
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+from advisor.gap.fitting.fit import Fitted, rms_of
+from advisor.gap.fitting.problem import Problem
+from advisor.gap.noise.probes import SENSOR_CHANNELS
+from advisor.gap.uncatalogued.spectral_line import SpectralLine, spectral_line_in
+from advisor.gap.uncatalogued.unexplained import (
+    LEAST_GAIN,
+    LEAST_OF_GAP,
+    OF_PEAK,
+    Unexplained,
+    innovation_noise,
+    instruments_of,
+    ranking_of,
+)
+
+_OF_PEAK_SWINGING = 0.005
+"""Least amplitude of an aircraft's oscillation, as a share of a channel's peak. No model error oscillates."""
+_VISIBLE = 0.05
+"""Least power of an oscillation relative to the instruments' noise, for an unexplained residual."""
+_SHAKEN = 4.0
+"""Least power of an oscillation in the accelerometer alone, relative to its noise. An engine shakes every
+accelerometer, and sampling turns that into a slow oscillation."""
+
+
+def sustained_oscillation(
+    problem: Problem, first: Fitted, last: Fitted, tolerance: FloatArray
+) -> Unexplained | None:
+    """Return a sustained oscillation that exceeds the instruments' noise, or None.
+
+    The arguments are those of ``unexplained_residual``.
+    """
+    noise, instruments = innovation_noise(problem), np.maximum(instruments_of(problem), 1e-12)
+    line = spectral_line_in(problem, last, noise)
+    if line is None or line.probes[0].gain < LEAST_GAIN or line.probes[0].block == "air":
+        return None
+    best = line.probes[0]
+    least = OF_PEAK if best.block in SENSOR_CHANNELS else _OF_PEAK_SWINGING
+    if not np.any(line.power > np.maximum(least * problem.flights.peaks, tolerance) ** 2):
+        return None
+    beside = line.power / instruments**2
+    if float(np.mean(beside)) < _VISIBLE or (_may_be_vibration(line) and np.max(beside) < _SHAKEN):
+        return None
+    powers = (rms_of(problem, last.innovations) / noise) ** 2
+    taken = float(np.sum((rms_of(problem, first.innovations) / noise) ** 2 - powers))
+    if best.explained * float(np.sum(powers)) < LEAST_OF_GAP * taken:
+        return None
+    note = f"It swings by itself, {line.hz:.2g} times a second."
+    return Unexplained(best.block, best.explained, ranking_of(line.probes, best.block), line.power, note)
+
+
+def _may_be_vibration(line: SpectralLine) -> bool:
+    """Return whether the oscillation may be vibration of the accelerometer.
+
+    A force that varies too fast for other channels looks the same.
+    """
+    best = line.probes[0]
+    accelerometer = next((p.gain for p in line.probes if p.block == "accelerometer"), 0.0)
+    return best.block in ("accelerometer", "force_equation") and accelerometer > best.gain - LEAST_GAIN

@@ -1,0 +1,105 @@
+"""The manoeuvres on which the numbers of a diagnosis are measured: held out of the fit, with channels as
+read."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from advisor.gap.fitting.holdout import HeldOut, folds_for, held_out, hold_out, mean_squares
+from advisor.gap.fitting.problem import Problem
+from advisor.gap.records.flights import Measured
+from advisor.gap.search.acceptance import Judged
+from advisor.gap.search.air import Air
+from advisor.gap.search.speed import at_constant_speed
+from advisor.gap.search.stage import Stage
+from advisor.gap.search.waterfall import as_measured
+from advisor.gap.verdict.evidence import Evidence
+
+
+def on_holdout(e: Evidence, holdout: int | None) -> tuple[Evidence, list[int]]:
+    """Return the evidence on the last ``holdout`` manoeuvres, from fits without them, and their indices.
+
+    With None, or with as many as there are, every manoeuvre is held out in turn.
+    """
+    kept, folds = kept_and_folds(e.problem, holdout)
+    if len(kept) == len(e.problem.flights):
+        return e, kept
+
+    def judged(one: Judged) -> Judged:
+        held = hold_out(e.problem, one.fitted, folds)
+        return replace(one, held_out=over_maneuvers(e.problem, held, kept))
+
+    predicted = as_measured(
+        e.problem, [replace(s, held_out=hold_out(e.problem, s.fitted, folds)) for s in e.stages]
+    )
+    stages = [
+        Stage(
+            s.fitted, over_maneuvers(e.problem, s.held_out, kept),
+            tuple(map(judged, s.considered)), s.added and judged(s.added),
+        )
+        for s in predicted
+    ]  # fmt: skip
+    speed = at_constant_speed(e.problem, e.stages[-1].fitted, folds)
+    return replace(
+        e,
+        stages=stages,
+        constant_speed=speed and over_maneuvers(e.problem, speed, kept),
+        file_model=e.file_model and over_maneuvers(e.problem, e.file_model, kept),
+        file_model_with_effects=e.file_model_with_effects
+        and over_maneuvers(e.problem, e.file_model_with_effects, kept),
+    ), kept
+
+
+def kept_and_folds(problem: Problem, holdout: int | None) -> tuple[list[int], list[list[int]]]:
+    """Return the indices of the manoeuvres for the numbers, and the folds that are held out in turn.
+
+    ``holdout`` is the number of manoeuvres, the last ones; None, or as many as there are, means all.
+    """
+    n, folds = len(problem.flights), folds_for(problem.flights)
+    if holdout is None or not 0 < holdout < n:
+        return list(range(n)), folds
+    kept = list(range(n - holdout, n))
+    return kept, [kept, *[[i for i in fold if i not in kept] for fold in folds]]
+
+
+def over_maneuvers(problem: Problem, held: HeldOut, kept: Sequence[int]) -> HeldOut:
+    """Return the hold-out with mean squares over some manoeuvres only; every sample counts alike."""
+    flights = [problem.flights.flights[i] for i in kept]
+    samples = np.array([[len(f.outputs[c].t) for c in problem.channels] for f in flights], float)
+    shares = samples / np.sum(samples, axis=0)
+    innovations = mean_squares(problem, held.innovations)
+    squares, seen = (np.sum(shares * by[list(kept)], axis=0) for by in (held.by_maneuver, innovations))
+    return replace(held, mean_square=squares, innovation_square=seen)
+
+
+def as_read(problem: Problem, offset_rad: float) -> Problem:
+    """Return the flights with the offset of α that was removed before the fit."""
+    flights = tuple(
+        replace(
+            f,
+            outputs={**f.outputs, "alpha": Measured(f.outputs["alpha"].t, f.outputs["alpha"].y + offset_rad)},
+        )
+        for f in problem.flights.flights
+    )
+    return replace(problem, flights=replace(problem.flights, flights=flights))
+
+
+def with_offset(problem: Problem, held: HeldOut, offset_rad: float) -> HeldOut:
+    """Return the residuals of a simulator that does not know the offset of α."""
+    c = problem.channels.index("alpha")
+    residuals = []
+    for flight, residual in zip(problem.flights.flights, held.residuals, strict=True):
+        residuals.append(residual.copy())
+        residuals[-1][problem.rows(flight)[c]] += offset_rad
+    return held_out(problem, residuals)
+
+
+def without_air(held: HeldOut, air: Air) -> HeldOut:
+    """Return the hold-out without the share of moving air, equally in every manoeuvre.
+
+    The residuals are those without the likeliest course of the air.
+    """
+    share = np.minimum(air.mean_square_beyond_air / held.mean_square, 1.0)
+    powers = held.by_maneuver * share
+    return replace(held, residuals=air.residuals, mean_square=held.mean_square * share, by_maneuver=powers)

@@ -1,0 +1,102 @@
+"""Access to the pages: the password, the names of the server, and the pages that may speak to it."""
+
+import hmac
+import secrets
+from dataclasses import dataclass, field
+from hashlib import sha256
+from ipaddress import ip_address
+from urllib.parse import urlsplit
+
+from advisor.problems import ConfigurationError
+
+_HERE = frozenset({"localhost", "127.0.0.1", "::1"})
+
+
+def on_this_computer(host: str) -> bool:
+    """Return whether only programs of this computer reach an address."""
+    try:
+        return ip_address(host).is_loopback
+    except ValueError:
+        return host == "localhost"
+
+
+def checked_origin(address: str) -> str:
+    """Bring the address of a proxy into the form that browsers send as ``Origin``.
+
+    Parameters
+    ----------
+    address
+        As a user writes it: ``https://flight.example`` or ``https://flight.example:8443/``.
+
+    Raises
+    ------
+    ConfigurationError
+        The address is no ``http`` or ``https`` address, or names a place below the root.
+    """
+    parts = urlsplit(address)
+    if parts.scheme not in ("http", "https") or not parts.netloc or parts.path.strip("/") or parts.query:
+        raise ConfigurationError(
+            f"--origin {address}: give the address that browsers see, without a path, "
+            "e.g. https://flight.example."
+        )
+    return f"{parts.scheme}://{parts.netloc}".lower()
+
+
+@dataclass(frozen=True, slots=True)
+class Access:
+    """Decides on every request. One password lets all viewers in."""
+
+    password: str | None = field(default=None, repr=False)
+    """Password of the pages. None: every program that reaches the server is let in, so that only this
+    computer may reach it."""
+    origin: str | None = None
+    """Address that browsers see, where a proxy stands before the server. None: no proxy."""
+    token: str = field(default_factory=lambda: secrets.token_urlsafe(32), repr=False)
+    """Cookie of a browser that has given the password. Each start of the server has another one."""
+
+    @property
+    def cookie(self) -> str:
+        """Name of the cookie, different for each server: browsers share cookies among the ports of a host."""
+        return f"advisor-{sha256(self.token.encode()).hexdigest()[:8]}"
+
+    def is_called_properly(self, host: str) -> bool:
+        """Return whether a browser calls the server by a name that the server has.
+
+        Without a password only the names of this computer count. A foreign page can give its own name the
+        address 127.0.0.1 (DNS rebinding), and would read the screens otherwise.
+
+        Parameters
+        ----------
+        host
+            The request's ``Host``, with or without a port.
+        """
+        try:
+            return self.password is not None or urlsplit(f"//{host}").hostname in _HERE
+        except ValueError:  # no address at all
+            return False
+
+    def is_own_page(self, origin: str | None, scheme: str, host: str) -> bool:
+        """Return whether a request comes from a page of this server.
+
+        Parameters
+        ----------
+        origin
+            The request's ``Origin``; None where a program that is no browser has sent none.
+        scheme, host
+            How the server was called: ``http``, and the request's ``Host``.
+        """
+        return origin is not None and origin.lower() in (f"{scheme}://{host}".lower(), self.origin)
+
+    def lets_in(self, token: str | None) -> bool:
+        """Return whether a request is let in; ``token`` is its cookie, None where it has none."""
+        return self.password is None or _same(token or "", self.token)
+
+    def is_password(self, given: str) -> bool:
+        """Return whether a text is the password; the time taken tells nothing about the password."""
+        return self.password is not None and _same(given, self.password)
+
+
+def _same(a: str, b: str) -> bool:
+    """Compare two texts in constant time; the digests make both equally long."""
+    digests = (sha256(text.encode("utf-8", "surrogatepass")).digest() for text in (a, b))
+    return hmac.compare_digest(*digests)

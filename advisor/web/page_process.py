@@ -1,0 +1,74 @@
+"""The process of one page: its start and its end by the server."""
+
+import asyncio
+import os
+import sys
+from asyncio.subprocess import PIPE, Process
+from contextlib import suppress
+
+from aiohttp import web
+from textual_serve.app_service import AppService
+from textual_serve.download_manager import DownloadManager
+
+from advisor.mavlink.keeping import Door
+from advisor.web.viewing import ADDRESS, KEY
+
+
+class PageProcess(AppService):
+    """Runs the screens for one browser page, from `start` to `end`.
+
+    Parameters
+    ----------
+    door
+        Address of the campaign for the process.
+    socket
+        The page's own WebSocket, which is closed when the process ends.
+    downloads
+        Passes files from the application to the browser.
+    """
+
+    def __init__(self, door: Door, socket: web.WebSocketResponse, downloads: DownloadManager) -> None:
+        super().__init__(
+            "",
+            write_bytes=socket.send_bytes,
+            write_str=socket.send_str,
+            close=self._close,
+            download_manager=downloads,
+        )
+        self._door, self._socket = door, socket
+
+    async def run(self) -> None:
+        """Pass on the application's output. A page whose process has ended is closed."""
+        with suppress(ConnectionError):  # the browser is gone
+            await super().run()
+        await self._close()
+
+    async def end(self) -> None:
+        """End the process at once, because it holds nothing that must be closed in order."""
+        process = self._process
+        if process is None:
+            return
+        if self._task is not None and not self._task.done():
+            with suppress(ProcessLookupError):
+                process.kill()
+        await self.stop()
+        await process.wait()
+
+    async def _close(self) -> None:
+        await self._socket.close()
+
+    async def _open_app_process(self, width: int = 80, height: int = 24) -> Process:
+        environment = self._build_environment(width, height)
+        self._process = await asyncio.create_subprocess_exec(
+            sys.executable,
+            "-m",
+            "advisor.web.viewer",
+            stdin=PIPE,
+            stdout=PIPE,
+            stderr=PIPE,
+            env={**environment, ADDRESS: self._door.address, KEY: self._door.key.hex()},
+            # An interrupt in the terminal is for the server, which ends the pages in order.
+            start_new_session=os.name == "posix",
+        )
+        self._stdin = self._process.stdin
+        return self._process

@@ -1,0 +1,173 @@
+"""Answers of the web server: the page with the screens, its WebSocket, and the login before them."""
+
+import asyncio
+import json
+from collections.abc import Awaitable, Callable
+from contextlib import suppress
+from pathlib import Path
+
+import textual_serve
+from aiohttp import WSMsgType, web
+from textual_serve.server import Server
+
+from advisor.mavlink.keeping import Door
+from advisor.web.access import Access
+from advisor.web.login import Login
+from advisor.web.page_process import PageProcess
+from advisor.web.rendering import STATIC, page
+
+_Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
+
+LARGEST_MESSAGE = 65_536
+"""Most bytes of one message of a browser: keys, or a pasted text."""
+HEARTBEAT_S = 15.0
+"""Time after which a silent browser loses its place, s."""
+_COLUMNS, _ROWS = (20, 500), (5, 200)
+"""Fewest and most characters of a page. A larger page would only take memory."""
+_OPEN_TO_ALL = ("/login", "/static/", "/textual/")
+_HEADERS = {
+    # The browser itself then refuses to load anything from another host.
+    "Content-Security-Policy": "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; "
+    "font-src 'self'; img-src 'self' data:; connect-src 'self'; form-action 'self'; base-uri 'none'; "
+    "frame-ancestors 'none'",
+    "X-Content-Type-Options": "nosniff",
+    "Server": "advisor",
+    "Referrer-Policy": "same-origin",
+}
+
+
+class Site:
+    """The pages of one campaign.
+
+    Parameters
+    ----------
+    access
+        Decides who is let in.
+    door
+        Address of the campaign for the process of a page.
+    title
+        Name of the log or of the connection.
+    closed
+        Sentence on a page that has been closed.
+    most
+        Largest number of pages at once.
+    """
+
+    def __init__(self, access: Access, door: Door, title: str, closed: str, most: int) -> None:
+        self._access, self._door, self._most = access, door, most
+        self._title, self._closed = title, closed
+        self._textual = Server("", title=title)
+        self._pages: set[PageProcess] = set()
+
+    def application(self) -> web.Application:
+        """Make the routes, behind the checks that all of them share."""
+        application = web.Application(middlewares=[self._guard])
+        login = Login(self._access)
+        application.add_routes(
+            [
+                web.get("/", self._screens),
+                web.get("/ws", self._socket),
+                web.get("/alive", self._alive),
+                web.get("/download/{key}", self._textual.handle_download),
+                web.get("/login", login.show),
+                web.post("/login", login.check),
+                web.static("/static", STATIC),
+                web.static("/textual", Path(textual_serve.__file__).parent / "static"),
+            ]
+        )
+        application.on_response_prepare.append(_add_headers)
+        return application
+
+    async def close(self) -> None:
+        """Close every page and end its process."""
+        await asyncio.gather(*(process.end() for process in self._pages))
+
+    @web.middleware
+    async def _guard(self, request: web.Request, handler: _Handler) -> web.StreamResponse:
+        if not self._access.is_called_properly(request.host):
+            raise web.HTTPForbidden(text="Call this server by the address that advisor serve has printed.")
+        if request.path.startswith(_OPEN_TO_ALL) or self._access.lets_in(
+            request.cookies.get(self._access.cookie)
+        ):
+            return await handler(request)
+        if request.path == "/":
+            raise web.HTTPSeeOther("/login")
+        raise web.HTTPForbidden(text="Give the password first, at /login.")
+
+    async def _screens(self, request: web.Request) -> web.Response:
+        if self._is_full:
+            return page("message", status=503, message=self._full)
+        return page("screens", title=self._title, closed=self._closed)
+
+    async def _alive(self, request: web.Request) -> web.Response:
+        return web.Response(status=204)
+
+    @property
+    def _is_full(self) -> bool:
+        return len(self._pages) >= self._most
+
+    @property
+    def _full(self) -> str:
+        return (
+            f"Every place is taken: {self._most} at once is the most. Close a page elsewhere, or start "
+            "advisor serve with a larger --viewers."
+        )
+
+    async def _socket(self, request: web.Request) -> web.StreamResponse:
+        if not self._access.is_own_page(request.headers.get("Origin"), request.scheme, request.host):
+            raise web.HTTPForbidden(text="This WebSocket is for the server's own page.")
+        if self._is_full:
+            raise web.HTTPServiceUnavailable(text=self._full)
+        socket = web.WebSocketResponse(heartbeat=HEARTBEAT_S, max_msg_size=LARGEST_MESSAGE)
+        process = PageProcess(self._door, socket, self._textual.download_manager)
+        self._pages.add(process)
+        try:
+            await socket.prepare(request)
+            await process.start(
+                _within(request.query.get("width"), _COLUMNS), _within(request.query.get("height"), _ROWS)
+            )
+            with suppress(ConnectionError, ValueError, RecursionError):  # gone, or no message of the terminal
+                await _pass_on(socket, process)
+        finally:
+            await process.end()
+            self._pages.discard(process)
+        return socket
+
+
+async def _pass_on(socket: web.WebSocketResponse, process: PageProcess) -> None:
+    """Pass on a browser's messages until its page is closed.
+
+    Raises
+    ------
+    ValueError, RecursionError
+        The browser sends an unreadable message.
+    """
+    async for message in socket:
+        if message.type is not WSMsgType.TEXT:
+            return
+        match json.loads(message.data):
+            case ["stdin", str(keys)]:
+                await process.send_bytes(keys.encode("utf-8", "ignore"))
+            case ["resize", {"width": width, "height": height}]:
+                await process.set_terminal_size(_within(width, _COLUMNS), _within(height, _ROWS))
+            case ["focus"]:
+                await process.focus()
+            case ["blur"]:
+                await process.blur()
+            case ["ping", str(stamp)]:
+                await socket.send_json(["pong", stamp])
+
+
+def _within(size: object, limits: tuple[int, int]) -> int:
+    """Return the number of characters of a page, within the limits."""
+    least, most = limits
+    try:
+        return min(max(int(str(size)), least), most)
+    except ValueError:
+        return least
+
+
+async def _add_headers(request: web.Request, response: web.StreamResponse) -> None:
+    response.headers.update(_HEADERS)
+    if not request.path.startswith(("/static/", "/textual/")):
+        response.headers["Cache-Control"] = "no-store"

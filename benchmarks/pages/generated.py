@@ -1,0 +1,19 @@
+"""Which pages of the documentation site the code makes: none of them is a file in ``docs``."""
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+from benchmarks.pages import aircraft_file, commands, decision_records, decisions, documents, effects
+
+DOCS = Path(__file__).parents[2] / "docs"
+PAGES: Mapping[str, Callable[[], str]] = {
+    "explanation/decisions/index.md": lambda: decision_records.page(DOCS / "explanation" / "decisions"),
+    "reference/commands.md": commands.page,
+    "reference/aircraft-file.md": aircraft_file.page,
+    "reference/json.md": lambda: documents.page(DOCS / "reference" / "schemas"),
+    "reference/effects.md": effects.page,
+    "reference/gap-decisions.md": decisions.page,
+}
+"""Address of a page in ``docs`` to the function that makes its Markdown."""
+SECTIONS: Mapping[str, str] = {"Developer": "developer"}
+"""Section of the navigation to the folder in ``docs`` whose pages it lists."""

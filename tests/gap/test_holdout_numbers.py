@@ -1,0 +1,78 @@
+"""On manoeuvres kept out everything is measured alike, and what one of them alone tells in that one."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.ndimage import gaussian_filter1d
+
+from advisor.aircraft import Aircraft
+from advisor.gap.diagnose import diagnose
+from advisor.gap.fitting.fit import rms_of
+from advisor.gap.fitting.holdout import hold_out, measured_in
+from advisor.gap.records.floor import TOLERANCE, prefiltered
+from advisor.gap.records.prepare import prepare
+from advisor.gap.search.baseline import fit_baseline
+from advisor.gap.simulator.layout import OUTPUTS
+from advisor.gap.verdict.holdout_numbers import over_maneuvers
+from tests.gap.generator import Setup, fly
+
+
+@pytest.fixture(scope="module")
+def filtered():
+    """A flight whose noise has a memory: innovations are not the errors."""
+    problem, fitted = fit_baseline(
+        prepare(fly(Setup(maneuvers=6, coloured=0.9, seed=33)), Aircraft()), Aircraft()
+    )
+    assert problem.knows_the_noise
+    return problem, fitted, hold_out(problem, fitted)
+
+
+def test_what_a_manoeuvre_alone_tells_is_measured_in_it_errors_and_innovations_alike(filtered):
+    problem, fitted, held = filtered
+    everywhere = measured_in(problem, held, fitted, range(len(problem.flights)))
+    assert everywhere.mean_square == pytest.approx(rms_of(problem, fitted.residuals) ** 2)
+    assert everywhere.innovation_square == pytest.approx(rms_of(problem, fitted.innovations) ** 2)
+    nowhere = measured_in(problem, held, fitted, ())
+    assert nowhere.innovation_square == pytest.approx(held.innovation_square)
+
+
+def test_over_some_manoeuvres_innovations_count_as_their_errors_do(filtered):
+    problem, _, held = filtered
+    kept = [4, 5]
+    some = over_maneuvers(problem, held, kept)
+    cut = replace(problem, flights=replace(problem.flights, flights=problem.flights.flights[4:]))
+    assert some.mean_square == pytest.approx(rms_of(cut, held.residuals[4:]) ** 2)
+    assert some.innovation_square == pytest.approx(rms_of(cut, held.innovations[4:]) ** 2)
+    assert not np.allclose(some.innovation_square, some.mean_square)
+
+
+@pytest.mark.study
+def test_what_only_a_manoeuvre_kept_out_could_tell_is_measured_there():
+    flown = fly(
+        Setup(maneuvers=6, thrust_amplitude=0.6, thrust_moves_in=(5,), switches={"thrust_arm": 0.3}, seed=77)
+    )
+    for holdout in (None, 2):
+        found = diagnose(flown, Aircraft(), holdout)
+        assert found.causes[0].effect == "thrust_moment"
+        assert found.shrink.percent > 90.0
+
+
+@pytest.mark.study
+@pytest.mark.parametrize("smoothed", [False, True])
+def test_in_moving_air_the_gap_is_held_against_instruments_and_never_against_next_to_nothing(smoothed):
+    flown = []
+    for maneuver in fly(Setup(maneuvers=6, gust_std=0.4, noise=0.002 if smoothed else 0.01, seed=34)):
+        channels = {
+            name: replace(c, y=gaussian_filter1d(c.y, 2.0)) if smoothed and name in OUTPUTS else c
+            for name, c in maneuver.channels.items()
+        }
+        flown.append(replace(maneuver, channels=channels))
+    found = diagnose(flown, Aircraft())
+    assert [c.effect for c in found.causes if c.present] == ["turbulence"]
+    assert found.shrink.percent > 90.0
+    assert (found.gap.after > 0.0) != smoothed
+    flights = prepare(flown, Aircraft())
+    assert all(prefiltered(flights).values()) == smoothed
+    for channel, peak in zip(flights.channels, flights.peaks, strict=True):
+        assert found.gap.floor[channel] > (0.5 * TOLERANCE * peak if smoothed else 0.0)

@@ -1,0 +1,137 @@
+"""Who is let in, and what a server that nobody has opened a page of yet answers."""
+
+import http.client
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import pytest
+
+from advisor.mavlink.keeping import Door
+from advisor.problems import ConfigurationError
+from advisor.web.access import Access, checked_origin
+from advisor.web.server import WebServer, listening
+from advisor.web.site import Site
+
+PASSWORD = "correct horse"
+NOWHERE = Door("/nowhere", b"")
+UPGRADE = {
+    "Connection": "Upgrade",
+    "Upgrade": "websocket",
+    "Sec-WebSocket-Version": "13",
+    "Sec-WebSocket-Key": "MDEyMzQ1Njc4OWFiY2RlZg==",
+}
+
+
+class Caller:
+    """Calls one server as a browser does, keeping its cookies."""
+
+    def __init__(self, port: int) -> None:
+        self.port = port
+        self.own = f"http://127.0.0.1:{port}"
+        self.cookie = ""
+
+    def call(
+        self, method: str, path: str, body: str | None = None, **headers: str
+    ) -> tuple[int, str, http.client.HTTPMessage]:
+        """Status, text and headers of an answer; the path is sent as it is."""
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=10.0)
+        sent = {"Cookie": self.cookie, "Content-Type": "application/x-www-form-urlencoded", **headers}
+        connection.request(method, path, body, sent)
+        answer = connection.getresponse()
+        text = answer.read().decode()
+        connection.close()
+        return answer.status, text, answer.headers
+
+    def log_in(self, password: str, origin: str | None = None) -> int:
+        """Give a password; the status of the answer."""
+        body = f"password={password.replace(' ', '+')}"
+        status, _, headers = self.call("POST", "/login", body, Origin=origin or self.own)
+        self.cookie = (headers["Set-Cookie"] or "").partition(";")[0]
+        return status
+
+
+@contextmanager
+def served(access: Access, most: int = 8) -> Iterator[Caller]:
+    """A server at work."""
+    with (
+        listening("127.0.0.1", 0) as at,
+        WebServer(Site(access, NOWHERE, "a <flight>", "closed", most), at),
+    ):
+        yield Caller(at.getsockname()[1])
+
+
+@pytest.fixture(scope="module")
+def guarded() -> Iterator[Caller]:
+    with served(Access(PASSWORD)) as caller:
+        yield caller
+
+
+@pytest.fixture(scope="module")
+def own() -> Iterator[Caller]:
+    with served(Access()) as caller:
+        yield caller
+
+
+def test_without_the_password_there_is_nothing_but_the_question_for_it(guarded: Caller) -> None:
+    guarded.cookie = ""
+    status, _, headers = guarded.call("GET", "/")
+    assert (status, headers["Location"]) == (303, "/login")
+    for path in ("/ws", "/alive", "/download/key", "/nothing"):
+        assert guarded.call("GET", path, Origin=guarded.own, **UPGRADE)[0] == 403
+    assert 'type="password"' in guarded.call("GET", "/login")[1]
+
+
+def test_a_wrong_password_is_refused_and_the_right_one_lets_in(guarded: Caller) -> None:
+    assert guarded.log_in("wrong horse") == 403
+    assert guarded.cookie == ""
+    assert guarded.log_in(PASSWORD) == 303
+    status, text, _ = guarded.call("GET", "/")
+    assert status == 200
+    assert "a &lt;flight&gt;" in text
+
+
+def test_a_form_of_another_page_cannot_log_in(guarded: Caller) -> None:
+    assert guarded.log_in(PASSWORD, origin="http://elsewhere.example") == 403
+
+
+@pytest.mark.parametrize("origin", ["http://elsewhere.example", "null", ""])
+def test_the_websocket_is_closed_to_other_pages(own: Caller, origin: str) -> None:
+    status, _, _ = own.call("GET", "/ws", Origin=origin, **UPGRADE)
+    assert status == 403
+
+
+def test_a_name_that_another_page_gives_to_this_computer_is_refused(own: Caller) -> None:
+    assert own.call("GET", "/", Host="elsewhere.example:8000")[0] == 403
+    assert own.call("GET", "/", Host="[::1")[0] in (400, 403)
+    assert own.call("GET", "/", Host="localhost:9000")[0] == 200
+
+
+@pytest.mark.parametrize(
+    "path", ["/static/../site.py", "/static/%2e%2e/site.py", "/static/..%2fsite.py", "/textual//etc/passwd"]
+)
+def test_no_path_leads_out_of_the_static_files(own: Caller, path: str) -> None:
+    assert own.call("GET", path)[0] in (403, 404)
+    assert own.call("GET", "/static/screens.js")[0] == 200
+
+
+def test_the_browser_is_told_to_load_nothing_from_elsewhere(own: Caller) -> None:
+    _, text, headers = own.call("GET", "/")
+    assert "default-src 'none'" in headers["Content-Security-Policy"]
+    assert "http://" not in text
+    assert "https://" not in text
+
+
+def test_when_all_places_are_taken_a_page_says_so() -> None:
+    with served(Access(), most=0) as caller:
+        status, text, _ = caller.call("GET", "/")
+        assert status == 503
+        assert "Every place is taken: 0 at once is the most." in text
+        assert caller.call("GET", "/ws", Origin=caller.own, **UPGRADE)[0] == 503
+
+
+def test_behind_a_proxy_its_address_counts_as_the_own_one() -> None:
+    access = Access(PASSWORD, checked_origin("https://Flight.example/"))
+    assert access.is_own_page("https://flight.example", "http", "127.0.0.1:8000")
+    assert not access.is_own_page("https://flight.example.elsewhere.example", "http", "127.0.0.1:8000")
+    with pytest.raises(ConfigurationError, match="without a path"):
+        checked_origin("https://flight.example/advisor")
