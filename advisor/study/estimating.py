@@ -1,7 +1,5 @@
 """Many noisy copies of one manoeuvre, each estimated by output error."""
 
-from collections.abc import Callable
-
 import numpy as np
 
 from advisor.decision.foresight import Instruments, expect
@@ -11,9 +9,6 @@ from advisor.oem.estimate import ChannelFit, Estimate
 from advisor.oem.problem import Signal
 from advisor.oem.surface import Servo
 from advisor.study.flying import Flight
-
-Advance = Callable[[int], None]
-"""Told how many estimates were done since the last call."""
 
 
 def estimate_copies(

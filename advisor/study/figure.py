@@ -2,11 +2,13 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from io import BytesIO
 from pathlib import Path
 
 import numpy as np
 
 from advisor.aircraft import Rule
+from advisor.atomic_file import write_atomically
 from advisor.problems import ConfigurationError
 from advisor.study.campaigns import Outcome
 from advisor.study.paper import ORDER
@@ -57,7 +59,13 @@ def refuse_undrawable(path: Path) -> None:
 
 
 def draw(curves: Sequence[Curve], path: Path) -> None:
-    """Write the figure; the ending of ``path`` (.png, .svg) says how."""
+    """Write the figure whole or not at all; the ending of ``path`` (.png, .svg) says how.
+
+    Raises
+    ------
+    OSError
+        The file cannot be written.
+    """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
     from matplotlib.ticker import FixedLocator, FormatStrFormatter, NullLocator
@@ -85,7 +93,9 @@ def draw(curves: Sequence[Curve], path: Path) -> None:
     axes[0].set_ylabel("criterion, Eq. (12), in %")
     figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=4, fontsize=8)
     # Without a date the same study gives the same file.
-    figure.savefig(path, dpi=150, metadata={"Date": None} if path.suffix == ".svg" else None)
+    drawn, form = BytesIO(), path.suffix[1:].lower() or "png"
+    figure.savefig(drawn, format=form, dpi=150, metadata={"Date": None} if form == "svg" else None)
+    write_atomically(path, drawn.getvalue())
 
 
 def in_terminal(curves: Sequence[Curve], rule: Rule, height: int = 13) -> list[str]:

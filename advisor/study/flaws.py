@@ -5,12 +5,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from advisor.aircraft import CampaignPlan
-from advisor.decision.acceptance import separate_computation
-from advisor.oem.estimate import Estimate
-from advisor.study.campaigns import fly_campaigns, outcome
-from advisor.study.estimating import Advance
-from advisor.study.flying import Scene, as_maneuver, fly_named
+from advisor.study.campaigns import Block, Judged, joined, table_blocks
+from advisor.study.flying import Scene
 from advisor.study.paper import ORDER
 
 MOST_CAMPAIGNS = 100
@@ -32,18 +28,18 @@ class Flaws:
     """Median number of manoeuvres the rule ``information`` needs for the same campaigns."""
 
 
-def measure(campaigns: Sequence[Sequence[Estimate]], seed: int, advance: Advance | None = None) -> Flaws:
-    """Measure the first flaw on campaigns that were flown already, the second on an aircraft with Z_q = 0."""
-    verdicts = [separate_computation([e.cost for e in campaign])[1:] for campaign in campaigns]
-    thrown_away = 100.0 * float(np.mean([not result.accepted for v in verdicts for result in v]))
+def near_zero_blocks(campaigns: int, seed: int) -> list[Block]:
+    """Campaigns of an aircraft whose Z_q is zero."""
     scene = Scene()
     scene = replace(scene, aircraft=replace(scene.aircraft, Z_q=0.0))
-    count = min(len(campaigns), MOST_CAMPAIGNS)
-    near_zero = fly_campaigns(scene, NOISE_PERCENT, count, seed, advance=advance)
-    plan = CampaignPlan()
-    maneuvers = [as_maneuver(fly_named(scene, name)) for name in ORDER]
-    never = [outcome(c, "continuous", plan).needed is None for c in near_zero]
-    needed = sorted(outcome(c, "information", plan, maneuvers).needed or np.inf for c in near_zero)
+    return table_blocks(scene, NOISE_PERCENT, min(campaigns, MOST_CAMPAIGNS), seed)
+
+
+def measure(ordinary: Sequence[Judged], near_zero: Sequence[Judged]) -> Flaws:
+    """Both flaws: the first in the paper's campaigns, the second in those of an aircraft with Z_q = 0."""
+    rejected = [one.rejected / (len(ORDER) - 1) for one in joined(ordinary, "separate")]
+    never = [one.needed is None for one in joined(near_zero, "continuous")]
+    needed = sorted(one.needed or np.inf for one in joined(near_zero, "information"))
     middle = needed[len(needed) // 2]
     ended = None if np.isinf(middle) else int(middle)
-    return Flaws(thrown_away, count, 100.0 * float(np.mean(never)), ended)
+    return Flaws(100.0 * float(np.mean(rejected)), len(never), 100.0 * float(np.mean(never)), ended)

@@ -95,24 +95,36 @@ class ReadingResult:
     """Share of campaigns that need exactly as many manoeuvres as the paper's."""
 
 
-def compare(campaigns: Sequence[Sequence[Estimate]], noise_percent: float) -> list[ReadingResult]:
-    """Return every reading on the same campaigns."""
+def needed_by_reading(
+    campaigns: Sequence[Sequence[Estimate]],
+) -> dict[tuple[str, Rule], tuple[int | None, ...]]:
+    """Manoeuvres that each campaign needs under every reading; by the reading's name and the rule."""
+    return {
+        (reading.name, rule): tuple(_needed(campaign, accepting, reading) for campaign in campaigns)
+        for reading in READINGS
+        for rule, accepting in reading.accepting.items()
+    }
+
+
+def compare(
+    blocks: Sequence[Mapping[tuple[str, Rule], tuple[int | None, ...]]], noise_percent: float
+) -> list[ReadingResult]:
+    """How every reading fares over all blocks of campaigns at one noise level."""
     results = []
-    for reading in READINGS:
-        for rule, accepting in reading.accepting.items():
-            needed = [_needed(campaign, accepting, reading) for campaign in campaigns]
-            ordered = sorted(np.inf if n is None else n for n in needed)
-            middle = ordered[len(ordered) // 2]
-            results.append(
-                ReadingResult(
-                    reading.name,
-                    rule,
-                    noise_percent,
-                    None if np.isinf(middle) else int(middle),
-                    100.0 * float(np.mean([n is None for n in needed])),
-                    100.0 * float(np.mean([n == TABLE_1[rule, noise_percent].needed for n in needed])),
-                )
+    for name, rule in blocks[0]:
+        needed = [number for block in blocks for number in block[name, rule]]
+        ordered = sorted(np.inf if n is None else n for n in needed)
+        middle = ordered[len(ordered) // 2]
+        results.append(
+            ReadingResult(
+                name,
+                rule,
+                noise_percent,
+                None if np.isinf(middle) else int(middle),
+                100.0 * float(np.mean([n is None for n in needed])),
+                100.0 * float(np.mean([n == TABLE_1[rule, noise_percent].needed for n in needed])),
             )
+        )
     return results
 
 

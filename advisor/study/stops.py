@@ -20,8 +20,9 @@ from advisor.flight.record import Channel
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.estimator import estimate, estimate_jointly
 from advisor.oem.surface import Servo
+from advisor.study.blocks import blocks
 from advisor.study.campaigns import RULES
-from advisor.study.estimating import Advance, estimate_copies
+from advisor.study.estimating import estimate_copies
 from advisor.study.flying import Flight, Scene, as_maneuver, fly_named, follow, noise_scale, respond
 from advisor.study.paper import ORDER
 
@@ -55,6 +56,8 @@ CASES = (
     Case("servo lag 0.14 s unknown", 2.5, lag_s=0.14),
 )
 """The default tolerance, and tighter ones with which the rule has something to decide."""
+BLOCK = 5
+"""Campaigns of a task: a second of work at most."""
 GUST_S = 0.5
 """Correlation time of the gusts."""
 KNOWN_FROM = 2
@@ -63,7 +66,7 @@ KNOWN_FROM = 2
 
 @dataclass(frozen=True, slots=True)
 class Stops:
-    """All campaigns of one case."""
+    """Campaigns of one case."""
 
     case: Case
     needed: dict[Rule, tuple[int | None, ...]]
@@ -91,26 +94,52 @@ class Stops:
         return 100.0 * float(np.mean([n is None for n in self.needed[rule]]))
 
 
-def measure(
-    campaigns: int, seed: int, advance: Advance | None = None, cases: Sequence[Case] = CASES
-) -> list[Stops]:
-    """Fly every case ``campaigns`` times."""
-    found = []
-    for number, case in enumerate(cases):
-        rng = np.random.default_rng([seed, number])
-        scene = Scene()
-        flights = {name: _through(scene, fly_named(scene, name), case.lag_s) for name in set(ORDER)}
-        noise = 0.01 * case.noise_percent * noise_scale(flights[ORDER[0]], "std")
-        order = [flights[name] for name in ORDER]
-        if case.correlation_s == case.gust_percent == case.lag_s == 0.0:
-            columns = [_copies(flight, noise, campaigns, rng) for flight in order]
-            flown = list(zip(*columns, strict=True))
-        else:
-            flown = [_campaign(scene, order, noise, case, rng) for _ in range(campaigns)]
-        found.append(_measured(case, flown, order))
-        if advance is not None:
-            advance(1)
-    return found
+@dataclass(frozen=True, slots=True)
+class Block:
+    """Campaigns of one case that are flown and judged together."""
+
+    case: Case
+    campaigns: int
+    seed: tuple[int, ...]
+
+
+def stop_blocks(campaigns: int, seed: int, cases: Sequence[Case]) -> list[Block]:
+    """Divide the campaigns of every case into blocks, each with a seed of its own."""
+    return [
+        Block(case, count, (seed, number, k))
+        for number, case in enumerate(cases)
+        for k, count in blocks(campaigns, BLOCK)
+    ]
+
+
+def fly(block: Block) -> Stops:
+    """Fly a block, and see where each rule stops."""
+    case, scene, rng = block.case, Scene(), np.random.default_rng(block.seed)
+    flights = {name: _through(scene, fly_named(scene, name), case.lag_s) for name in set(ORDER)}
+    noise = 0.01 * case.noise_percent * noise_scale(flights[ORDER[0]], "std")
+    order = [flights[name] for name in ORDER]
+    flown: list[tuple[Flown, ...]]
+    if case.correlation_s == case.gust_percent == case.lag_s == 0.0:
+        columns = [_copies(flight, noise, block.campaigns, rng) for flight in order]
+        flown = list(zip(*columns, strict=True))
+    else:
+        flown = [_campaign(scene, order, noise, case, rng) for _ in range(block.campaigns)]
+    return _measured(case, flown, order)
+
+
+def by_case(found: Sequence[Stops]) -> list[Stops]:
+    """Join the blocks of each case."""
+    cases: dict[Case, list[Stops]] = {}
+    for one in found:
+        cases.setdefault(one.case, []).append(one)
+    return [
+        Stops(
+            case,
+            {rule: tuple(n for one in several for n in one.needed[rule]) for rule in RULES},
+            tuple(error for one in several for error in one.error_percent),
+        )
+        for case, several in cases.items()
+    ]
 
 
 def _through(scene: Scene, flight: Flight, lag_s: float) -> Flight:

@@ -50,8 +50,9 @@ def run_on_cluster(
 
     Notes
     -----
-    The scheduler gives the task of a dead worker to another. A task whose workers die again and again ends
-    with a ``BrokenExecutor``.
+    The scheduler gives the tasks of a dead worker to another: its task cannot be told from those that waited
+    for the same worker. So a task whose workers died again and again is done once more alone at the end; the
+    task whose workers die then, too, has killed them and ends with a ``BrokenExecutor``.
     """
     if not tasks:
         return
@@ -68,8 +69,15 @@ def run_on_cluster(
         pool = client.get_executor(pure=False)
         try:
             futures = {pool.submit(_pinned, work, task): task for task in tasks}
+            suspects = []
             for future in as_completed(futures):
-                yield futures.pop(future), _outcome(future, address)
+                task, result = futures.pop(future), _outcome(future, address)
+                if isinstance(result, BrokenExecutor):
+                    suspects.append(task)
+                else:
+                    yield task, result
+            for task in suspects:
+                yield task, _outcome(pool.submit(_pinned, work, task), address)
         finally:
             pool.shutdown(wait=False)
 
@@ -193,8 +201,8 @@ def _outcome(future: "Future[R]", address: str) -> R | Exception:
         return future.result()
     except CancelledError:
         raise ConfigurationError(
-            f"--scheduler: the connection to {address} is lost. What was done is kept: repeat the command"
-            " when the scheduler is back."
+            f"--scheduler: the connection to {address} is lost."
+            " Repeat the command when the scheduler is back."
         ) from None
     except KilledWorker as error:
         return BrokenExecutor(str(error))

@@ -8,6 +8,8 @@ from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future
 from multiprocessing.connection import wait as wait_for
 from typing import TypeVar
 
+from advisor.running.threads import pin_linear_algebra
+
 T = TypeVar("T")
 R = TypeVar("R")
 
@@ -18,7 +20,7 @@ def processes(workers: int) -> Executor:
     return ProcessPoolExecutor(workers, mp_context=context, initializer=_begin_worker)
 
 
-def run_all(
+def run_in_processes(
     work: Callable[[T], R],
     tasks: Sequence[T],
     workers: int,
@@ -89,6 +91,7 @@ def _begin_worker() -> None:
     from advisor.interrupt import ignore
 
     ignore()
+    pin_linear_algebra()
     parent = multiprocessing.parent_process()
     if parent is not None:
         threading.Thread(target=_end_with, args=(parent.sentinel,), daemon=True).start()
