@@ -1,4 +1,4 @@
-"""``--workers`` and ``--scheduler``: where tasks are done, and how far they are."""
+"""``--workers`` and ``--scheduler``: the place where tasks are done, and their progress."""
 
 import os
 import sys
@@ -18,11 +18,12 @@ if TYPE_CHECKING:
 F = TypeVar("F", bound=Callable[..., Any])
 
 _TELL_EVERY_S = 10.0
-"""Without a terminal, progress is told this often."""
+"""Time between two lines of progress without a terminal, s."""
 
 
 def running_options(command: F) -> F:
-    """``--workers N`` and ``--scheduler ADDRESS``, given to the command as ``workers``, ``scheduler``."""
+    """Add the options ``--workers N`` and ``--scheduler ADDRESS``, which the command receives by these
+    names."""
     workers = click.option(
         "--workers",
         type=click.IntRange(1),
@@ -35,7 +36,7 @@ def running_options(command: F) -> F:
 
 
 def runner_of(workers: int | None, scheduler: str | None, guarded: bool = True) -> "Runner":
-    """The way to do tasks that the options ask for.
+    """Return the way to do tasks that the options ask for.
 
     Parameters
     ----------
@@ -64,7 +65,7 @@ def runner_of(workers: int | None, scheduler: str | None, guarded: bool = True) 
 
 
 class Progress:
-    """How far the work is, its rate, and when it ends, on standard error.
+    """Progress of the work on standard error: tasks done, rate and expected end.
 
     Parameters
     ----------
@@ -79,7 +80,7 @@ class Progress:
         self._began_s = self._told_s = time.monotonic()
 
     def advance(self, more: int = 1) -> None:
-        """So many more are done."""
+        """Count ``more`` tasks as done."""
         self._done += more
         now, last, watched = time.monotonic(), self._done >= self._total, sys.stderr.isatty()
         if not (watched or last or now - self._told_s > _TELL_EVERY_S):
