@@ -65,14 +65,14 @@ def read_whole(
     target_system
         System id of the vehicle; None: the first one heard.
     marks
-        Further stretches that are manoeuvres, on a single log.
+        Further stretches marked as manoeuvres, on a single log.
     no_marks
-        Leave out what was decided by hand on the logs.
+        Whether to ignore earlier decisions by hand on the logs.
 
     Raises
     ------
     UnusableInputError
-        No log can be used; the error lists why.
+        No log can be used. The error lists the reasons.
     ConfigurationError
         The file of decisions by hand that belongs to a log is wrong.
     """

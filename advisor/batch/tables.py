@@ -46,7 +46,7 @@ def aircraft_of(flight: Analyzed) -> str:
 
 
 def mixed_up(flights: Sequence[Analyzed]) -> list[str]:
-    """A sentence for each aircraft file that logs of several aircraft share."""
+    """Return a sentence for each aircraft file that logs of several aircraft share."""
     by_file: dict[str, dict[str, str]] = {}
     for flight in flights:
         if flight.usable:

@@ -27,7 +27,7 @@ def running_options(command: F) -> F:
     workers = click.option(
         "--workers",
         type=click.IntRange(1),
-        help="Processes that work at the same time; one a core unless told.",
+        help="Number of processes. Default: one for each core.",
     )
     scheduler = click.option(
         "--scheduler", metavar="ADDRESS", help="Work on the Dask cluster at tcp://host:8786."
@@ -41,7 +41,7 @@ def runner_of(workers: int | None, scheduler: str | None, guarded: bool = True) 
     Parameters
     ----------
     guarded
-        Whether a single worker is a process of its own, too, so that its death costs its task only.
+        Whether a single worker also gets a process of its own, so that its death costs its task only.
 
     Raises
     ------
@@ -70,9 +70,9 @@ class Progress:
     Parameters
     ----------
     total
-        How many there are.
+        Number of tasks.
     things
-        What is counted, in the plural: ``logs``.
+        Name of the tasks in the plural: ``logs``.
     """
 
     def __init__(self, total: int, things: str) -> None:

@@ -36,11 +36,11 @@ def run_on_cluster(
     Parameters
     ----------
     work
-        Can be pickled, as tasks and results.
+        Function of a task. Function, tasks and results can be pickled.
     address
-        Of the scheduler: ``tcp://host:port``.
+        Address of the scheduler: ``tcp://host:port``.
     tell
-        Called with a sentence when versions differ that may change the last digits.
+        Called with a sentence where a difference of versions may change the last digits.
 
     Raises
     ------
@@ -160,7 +160,7 @@ def compare_versions(here: Versions, workers: Mapping[str, Versions]) -> str:
     here
         Version of each package; None where one is missing.
     workers
-        The versions in each worker, by the worker's address.
+        Versions in each worker, by the worker's address.
 
     Returns
     -------

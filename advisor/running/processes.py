@@ -31,9 +31,9 @@ def run_in_processes(
     Parameters
     ----------
     work
-        Can be pickled, as tasks and results.
+        Function of a task. Function, tasks and results can be pickled.
     executor
-        Gives so many workers.
+        Makes an executor with a given number of workers.
 
     Notes
     -----

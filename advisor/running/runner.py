@@ -13,7 +13,7 @@ class Runner(Protocol):
     completion."""
 
     def __call__(self, work: Callable[[T], R], tasks: Sequence[T]) -> Iterator[tuple[T, R | Exception]]:
-        """Do all tasks; the work, the tasks and the results can be pickled."""
+        """Do all tasks. The work, the tasks and the results can be pickled."""
 
 
 def run_here(work: Callable[[T], R], tasks: Sequence[T]) -> Iterator[tuple[T, R | Exception]]:
