@@ -2,8 +2,8 @@
 
     python -m advisor.tui.picture logs/arduplane-calm.tlog --after 5 --out docs
 
-plays the log until the given number of manoeuvres are judged and the next is in the air, and writes
-``pilot.svg`` and ``engineer.svg``.
+The command plays the log until the given number of manoeuvres are judged and the next is in the air. The
+command then writes ``pilot.svg`` and ``engineer.svg``.
 """
 
 import argparse
