@@ -63,9 +63,10 @@ sizes: .venv/.developed ## lines, constants and names of the gap diagnosis, whic
 english: .venv/.developed ## docstrings, messages and pages against docs/developer/style.md
 	$(BIN)/python -m benchmarks.english
 
-bench: .venv/.developed ## every ratio of speed, each against its goal (about twelve minutes)
+bench: .venv/.developed ## every ratio of speed, each against its goal (about twenty minutes)
 	$(BIN)/python -m benchmarks.estimate
 	$(BIN)/python -m benchmarks.campaign
+	$(BIN)/python -m benchmarks.batch
 	$(BIN)/python -m benchmarks.simulator
 	$(BIN)/python -m benchmarks.tlog
 	$(BIN)/python -m benchmarks.link --seconds 60 --rate 2000

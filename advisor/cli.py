@@ -19,6 +19,7 @@ from advisor.first_run import compile_once
 from advisor.interrupt import STOPPED, Interrupted
 from advisor.printable import printable
 from advisor.problems import ConfigurationError, UnusableInputError
+from advisor.running.threads import pin_linear_algebra
 
 COMMANDS = {
     "demo": "Fly the bundled aircraft through the paper's campaign over a real link, with advice.",
@@ -123,9 +124,7 @@ def advisor() -> None:
 
 def main() -> None:
     """Run the command line. Every error that a user may meet becomes one sentence and an exit code."""
-    # Matrices here are small: threads of the linear algebra library cost far more than they gain.
-    for library in ("OPENBLAS", "OMP", "MKL"):
-        os.environ.setdefault(f"{library}_NUM_THREADS", "1")
+    pin_linear_algebra()
     speak_plainly()
     code = _ended_by(_run)
     for stream in (sys.stdout, sys.stderr):
@@ -172,7 +171,7 @@ def _ended_by(run: Callable[[], int]) -> int:
             f"The system refused: {error.strerror or error}{where}. Make room or give another place, "
             "and repeat."
         )
-        return INTERNAL
+        return USAGE
     except Exception as error:
         if os.environ.get("ADVISOR_TRACEBACK"):
             raise

@@ -9,8 +9,10 @@ from advisor.campaign.hand_decisions import ByHand
 from advisor.flight.events import ManeuverFlown, Notice
 from advisor.flight.identity import READER_NOTICE
 from advisor.flight.maneuver import Maneuver
+from advisor.flight.one_aircraft import OneAircraft
 from advisor.flight.repeated_maneuver import are_one, is_fuller
 from advisor.flight.stream import FlightStream
+from advisor.flight.surfaces import Surface
 from advisor.gap.diagnose import diagnose
 from advisor.gap.result import Diagnosis
 from advisor.gap.search.baseline import prior_derivatives
@@ -66,12 +68,20 @@ def _recorded(
     found: list[Maneuver] = []
     notes: list[str] = []
     wrong: list[Problem] = []
+    one_aircraft = OneAircraft()
     for flight, (log, decided) in enumerate(zip(logs, by_hand, strict=True)):
         stream = FlightStream(aircraft, target_system, decided.marks)
         events = [event for columns in open_log(log) for event in stream.feed(columns)]
         events += stream.finish()
         name = printable(log.name)
-        wrong += [Problem(p.code, f"{name}: {p.text}", p.fix) for p in stream.problems()]
+        problems = stream.problems()
+        if stream.vehicle is not None and (foreign := one_aircraft.refuse(name, stream.vehicle)):
+            problems = [foreign]
+        elif stream.vehicle is not None:
+            notes.append(one_aircraft.doubt(name, stream.vehicle))
+        if isinstance(stream.elevator, Surface):
+            notes.append(one_aircraft.doubt_elevator(name, stream.elevator))
+        wrong += [Problem(p.code, f"{name}: {p.text}", p.fix) for p in problems]
         notes += stream.elevator_notes
         notes += [e.text for e in events if isinstance(e, Notice) and e.code == READER_NOTICE]
         for maneuver in (e.maneuver for e in events if isinstance(e, ManeuverFlown)):
@@ -82,7 +92,7 @@ def _recorded(
                 notes.append(f"{name}: manoeuvre {maneuver.number} is excluded by hand: {because}.")
     if wrong:
         raise UnusableInputError.of(wrong)
-    return found, tuple(dict.fromkeys(notes))
+    return found, tuple(dict.fromkeys(filter(None, notes)))
 
 
 def _each_once(recorded: Sequence[Maneuver]) -> list[Maneuver]:

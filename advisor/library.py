@@ -12,7 +12,6 @@ from advisor.aircraft import Aircraft
 from advisor.campaign.state import CampaignState
 from advisor.config import load_aircraft
 from advisor.diagnosis import diagnose_logs
-from advisor.exporting.reading import read_whole
 from advisor.flight.events import ManeuverFlown
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.power_on import PowerOn
@@ -25,6 +24,7 @@ from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import estimate as estimate_one
 from advisor.oem.estimator import estimate_jointly
 from advisor.problems import ConfigurationError, Problem, UnusableInputError
+from advisor.whole_flights import read_whole
 
 
 @dataclass(frozen=True, slots=True)

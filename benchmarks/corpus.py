@@ -9,14 +9,13 @@ flip, and stores them with ``--write`` where they are right.
 """
 
 import json
-import multiprocessing
-import os
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from benchmarks.answer_sealed import PROCESSES, answer
+from advisor.commands.running import runner_of
+from benchmarks.answer_sealed import answer
 from benchmarks.second_generator import case_files as second
 from benchmarks.third_generator import files as third
 from sim.blind.generate import generate
@@ -58,17 +57,17 @@ def verdict_of(document: Mapping[str, Any]) -> Verdict:
 
 def answered() -> Iterator[tuple[str, Verdict]]:
     """Every flight of the corpus, drawn where it is not there yet, with its verdict."""
-    import advisor.diagnosis  # noqa: F401 - imported before the fork, so that every process finds it ready
-
     cases = []
     for name, draw in SETS.items():
         folder = FOLDER / name
         if not folder.with_suffix(".key.json").exists():
             draw(folder)
         cases += sorted(path for path in folder.iterdir() if path.is_dir())
-    with multiprocessing.get_context("fork").Pool(PROCESSES, maxtasksperchild=1) as pool:
-        for case, (_, document, _) in zip(cases, pool.imap(answer, cases), strict=True):
-            yield f"{case.parent.name}/{case.name}", verdict_of(document)
+    for case, result in runner_of(None, None)(answer, cases):
+        if isinstance(result, Exception):
+            raise result
+        document, _ = result
+        yield f"{case.parent.name}/{case.name}", verdict_of(document)
 
 
 def flips_in(found: Mapping[str, Verdict], expected: Mapping[str, Verdict]) -> list[str]:
@@ -82,7 +81,6 @@ def flips_in(found: Mapping[str, Verdict], expected: Mapping[str, Verdict]) -> l
 
 def main() -> int:
     """Exit code 1 where more verdicts flip than are allowed."""
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     found: dict[str, Verdict] = {}
     for case, verdict in answered():
         found[case] = verdict

@@ -17,7 +17,7 @@ from advisor.oem.estimate import Estimate
 
 
 def in_order(results: Sequence[Analyzed]) -> list[Analyzed]:
-    """Return flights oldest first where all usable ones tell when they began, else as given."""
+    """Return flights, oldest first where all usable ones have dates, else in the given order."""
     if not all(SINCE_1970_S <= one.began_s < inf for one in results if one.usable):
         return list(results)
     return sorted(results, key=lambda one: one.began_s if one.usable else inf)
@@ -33,20 +33,35 @@ def estimates_of(flights: Sequence[Analyzed]) -> dict[str, list[tuple[int, Estim
 
 
 def changes_of(flights: Sequence[Analyzed]) -> dict[str, ChangeOverFlights]:
-    """Return the change over the flights of each aircraft, by the name of its aircraft file and its
-    autopilot."""
+    """Return the change over the flights of each aircraft, by the name of its aircraft."""
     found = {name: change_over_flights(several) for name, several in estimates_of(flights).items()}
     return {name: change for name, change in found.items() if change is not None}
 
 
 def aircraft_of(flight: Analyzed) -> str:
-    """What tells one aircraft from another: the aircraft file and the kind of autopilot."""
+    """Return the identity of an aircraft: its aircraft file and the kind of autopilot."""
     vehicle = flight.document["log"]["vehicle"] or {}
-    return " ".join(filter(None, (flight.aircraft_file, vehicle.get("autopilot"))))
+    system = f"system {vehicle['system']}" if vehicle else ""
+    return " ".join(filter(None, (flight.aircraft_file, vehicle.get("autopilot"), system)))
+
+
+def mixed_up(flights: Sequence[Analyzed]) -> list[str]:
+    """Return a sentence for each aircraft file that logs of several aircraft share."""
+    by_file: dict[str, dict[str, str]] = {}
+    for flight in flights:
+        if flight.usable:
+            by_file.setdefault(flight.aircraft_file, {}).setdefault(aircraft_of(flight), flight.log)
+    return [
+        f"Logs of different aircraft, each compared with its own flights only: "
+        f"{'; '.join(f'{aircraft} in {log}' for aircraft, log in several.items())}. "
+        "Give each aircraft a file of its own with --aircraft-map."
+        for several in by_file.values()
+        if len(several) > 1
+    ]
 
 
 def tables_of(flights: Sequence[Analyzed]) -> Dataset:
-    """Return one row a flight, one a manoeuvre, one a parameter of each change.
+    """Return tables with a row for each flight, manoeuvre, and parameter of a change.
 
     Parameters
     ----------
@@ -65,7 +80,7 @@ def _flights(flights: Sequence[Analyzed]) -> Table:
         Column("flight", np.arange(1, len(flights) + 1), "", "number in the order of flying"),
         Column("log", texts([f.log for f in flights]), "", "file of the log"),
         Column("sha256", texts([f.sha256 for f in flights]), "", "SHA-256 of the log"),
-        Column("aircraft", texts([aircraft_of(f) for f in flights]), "", "aircraft file and autopilot"),
+        Column("aircraft", texts([aircraft_of(f) for f in flights]), "", "aircraft file, autopilot, id"),
         Column("began_s", numbers([f.began_s for f in flights]), "s", "begin of the log since 1970"),
         Column("duration_s", numbers([d["log"]["duration_s"] for d in documents]), "s", "vehicle time heard"),
         Column("usable", np.array([f.usable for f in flights], np.bool_), "", "whether the log counts"),
@@ -112,7 +127,7 @@ def _maneuvers(flights: Sequence[Analyzed]) -> Table:
 def _changes(changes: dict[str, ChangeOverFlights]) -> Table:
     rows = [(name, c, moved) for name, c in changes.items() for moved in c.change.moved]
     columns = (
-        Column("aircraft", texts([name for name, _, _ in rows]), "", "aircraft file and autopilot"),
+        Column("aircraft", texts([name for name, _, _ in rows]), "", "aircraft file, autopilot, id"),
         Column(
             "since_flight",
             np.array([c.since for _, c, _ in rows], np.int64),

@@ -24,7 +24,6 @@ from advisor.flight.identity import READER_NOTICE
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.marks import MARK_NOTICES, Mark
 from advisor.flight.messages import Columns
-from advisor.flight.record import Channel
 from advisor.flight.stream import FlightStream
 from advisor.oem.estimator import lag_is_unknown
 from advisor.oem.solution import Method
@@ -160,10 +159,6 @@ class Campaign:
     def power_on(self) -> tuple[int, int]:
         """Flight and power-on of the newest message, each counted from 0."""
         return self._flights.flight, self._stream.boot
-
-    def recent(self, name: str, seconds: float) -> Channel | None:
-        """Return the newest stretch of a channel in the current power-on; None without samples."""
-        return self._stream.recent(name, seconds)
 
     @property
     def problems(self) -> list[Problem]:

@@ -1,10 +1,6 @@
 """``advisor batch``: many flights, each analyzed once."""
 
-import os
-import sys
-import time
 from collections.abc import Callable, Iterator, Sequence
-from datetime import datetime, timedelta
 from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
@@ -13,7 +9,14 @@ from typing import TYPE_CHECKING
 import click
 
 from advisor.aircraft import Aircraft
-from advisor.commands.options import UNUSABLE, aircraft_option, read_aircraft
+from advisor.commands.options import (
+    UNUSABLE,
+    aircraft_option,
+    read_aircraft,
+    refuse_unwritable_folder,
+    writing,
+)
+from advisor.commands.running import Progress, runner_of, running_options
 from advisor.printable import printable
 from advisor.problems import ConfigurationError, Problem, UnusableInputError
 
@@ -26,8 +29,6 @@ INDEX = "index.html"
 """Name of the page of all flights."""
 KEPT = "flights"
 """Folder of each log's result, by the key of the log."""
-_TELL_EVERY_S = 10.0
-"""Time between two lines of progress without a terminal, s."""
 
 
 @click.command
@@ -50,12 +51,7 @@ _TELL_EVERY_S = 10.0
     metavar="MAP.yaml",
     help="For several aircraft: one line for each pattern of logs, with its aircraft file.",
 )
-@click.option(
-    "--workers",
-    type=click.IntRange(1),
-    help="Number of processes. Default: one for each core.",
-)
-@click.option("--scheduler", metavar="ADDRESS", help="Analyze on the Dask cluster at tcp://host:8786.")
+@running_options
 def command(
     places: tuple[Path, ...],
     out: Path,
@@ -78,22 +74,16 @@ def command(
     """
     if aircraft_file is not None and map_file is not None:
         raise ConfigurationError("Give --aircraft for one aircraft, or --aircraft-map for several, not both.")
-    if scheduler is not None and workers is not None:
-        raise ConfigurationError("Give --workers for this computer, or --scheduler for a cluster, not both.")
-    if out.exists() and not out.is_dir():
-        raise ConfigurationError(f"-o: {out} is a file; name a folder.")
+    refuse_unwritable_folder("-o", out)
+    from advisor.batch.flight import analyze, analyze_shared
     from advisor.batch.logs import find_logs
 
-    run = _here(workers or os.cpu_count() or 1) if scheduler is None else _on_cluster(scheduler)
+    run = partial(runner_of(workers, scheduler), analyze if scheduler is None else analyze_shared)
     logs = find_logs(places if scheduler is None else [place.absolute() for place in places], out)
     tasks, results = _tasks(logs, aircraft_file, map_file)
-    try:
+    with writing("-o", out):
         (out / KEPT).mkdir(parents=True, exist_ok=True)
         results |= _analyzed(tasks, out, run)
-    except OSError as error:
-        raise ConfigurationError(
-            f"-o: {out} cannot be written to: {error.strerror or error}. Make room or name another place."
-        ) from None
     return _told([results[log] for log in logs if log in results], out)
 
 
@@ -129,24 +119,6 @@ def _tasks(
     return list(tasks.values()), results
 
 
-def _here(workers: int) -> "Run":
-    """Analyze in processes of this computer."""
-    from advisor.batch.flight import analyze
-    from advisor.batch.runner import run_all
-
-    return partial(run_all, analyze, workers=workers)
-
-
-def _on_cluster(scheduler: str) -> "Run":
-    """Analyze in the workers of a Dask cluster."""
-    from advisor.batch.cluster import check_address, run_on_cluster
-    from advisor.batch.flight import analyze_shared
-
-    check_address(scheduler)
-    tell = partial(click.echo, err=True)
-    return partial(run_on_cluster, analyze_shared, address=scheduler, tell=tell)
-
-
 def _analyzed(tasks: "Sequence[Task]", out: Path, run: "Run") -> "dict[Path, Analyzed]":
     """Return the result of every task: kept from an earlier run, or made now and kept."""
     from advisor.batch.flight import failed, keep, kept
@@ -156,7 +128,7 @@ def _analyzed(tasks: "Sequence[Task]", out: Path, run: "Run") -> "dict[Path, Ana
     to_do = [task for task in tasks if task.log not in results]
     if results:
         click.echo(f"{len(results)} of {len(tasks)} logs were analyzed before.", err=True)
-    progress = _Progress(len(to_do))
+    progress = Progress(len(to_do), "logs")
     for task, result in run(to_do):
         if isinstance(result, Exception):
             results[task.log] = failed(task, [_fault(task, result)])
@@ -189,7 +161,7 @@ def _fault(task: "Task", error: Exception) -> Problem:
 def _told(results: "Sequence[Analyzed]", out: Path) -> int:
     """Write the tables, and print failures and changes."""
     from advisor.batch.index import index_page
-    from advisor.batch.tables import changes_of, in_order, tables_of
+    from advisor.batch.tables import changes_of, in_order, mixed_up, tables_of
     from advisor.exporting.formats import write_formats
     from advisor.exporting.staging import staged
 
@@ -201,6 +173,8 @@ def _told(results: "Sequence[Analyzed]", out: Path) -> int:
     failures = [flight for flight in flights if not flight.usable]
     for flight in failures:
         click.echo(printable(f"{flight.log}: {' '.join(flight.reasons)}"), err=True)
+    for sentence in mixed_up(flights):
+        click.echo(printable(sentence), err=True)
     for name, change in changes_of(flights).items():
         click.echo(printable(f"{name}: {change.sentence}"))
     maneuvers = sum(len(flight.document["maneuvers"]) for flight in flights)
@@ -209,25 +183,3 @@ def _told(results: "Sequence[Analyzed]", out: Path) -> int:
         f" {len(failures)}; tables: flights.{form}, maneuvers.{form}, changes.{form}; page: {INDEX}."
     )
     return UNUSABLE if len(failures) == len(flights) else 0
-
-
-class _Progress:
-    """Progress of the batch on standard error: logs done, rate and expected end."""
-
-    def __init__(self, total: int) -> None:
-        self._total, self._done = total, 0
-        self._began_s = self._told_s = time.monotonic()
-
-    def advance(self) -> None:
-        """Count one more log as done."""
-        self._done += 1
-        now, last, watched = time.monotonic(), self._done == self._total, sys.stderr.isatty()
-        if not (watched or last or now - self._told_s > _TELL_EVERY_S):
-            return
-        self._told_s = now
-        took_s = now - self._began_s
-        line = f"{self._done} of {self._total} logs, {60.0 * self._done / took_s:.1f} a minute"
-        if not last:
-            ends = datetime.now() + timedelta(seconds=took_s / self._done * (self._total - self._done))
-            line += f", ends about {ends:%H:%M}"
-        click.echo(f"\r\033[K{line}" if watched else line, nl=last or not watched, err=True)

@@ -14,6 +14,7 @@ from advisor.commands.options import (
     read_aircraft,
     refuse_marks_on_several,
     refuse_unwritable,
+    refuse_unwritable_folder,
     rule_option,
     target_system_option,
 )
@@ -77,12 +78,13 @@ def command(
     inputs = [*logs, *([aircraft_file] if aircraft_file else [])]
     if cut is not None:
         _refuse_wrong_cut(formats, out, inputs)
-    elif out.exists() and not out.is_dir():
-        raise ConfigurationError(f"-o: {out} is a file; name a folder.")
+    else:
+        refuse_unwritable_folder("-o", out)
     chosen = () if cut is not None else parse_formats(formats or "csv")
     aircraft = read_aircraft(aircraft_file, rule)
     refuse_marks_on_several(marks, logs)
-    from advisor.exporting.reading import dataset, read_whole
+    from advisor.exporting.reading import dataset
+    from advisor.whole_flights import read_whole
 
     flights = read_whole(logs, aircraft, target_system, marks, no_marks=no_marks)
     for note in flights.notes:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import click
 from click.core import ParameterSource
 
-from advisor.commands.exporting import export_option, listed, orders_of, write_exports
+from advisor.commands.improvement_export import export_option, listed, orders_of, write_exports
 from advisor.commands.options import (
     UNUSABLE,
     USAGE,
@@ -23,6 +23,7 @@ from advisor.commands.options import (
     refuse_marks_on_several,
     refuse_unwritable,
     target_system_option,
+    writing,
 )
 from advisor.printable import printable
 from advisor.problems import ConfigurationError, UnusableInputError
@@ -155,9 +156,9 @@ def command(
             click.echo("\r\033[K", nl=False, err=True)
     improved = None
     if found.verdict in ("effect", "parameters"):
-        improved = str(
-            write_improved(found, compared.aircraft, out or Path(improved_name(found, aircraft_file)))
-        )
+        place = out or Path(improved_name(found, aircraft_file))
+        with writing("--out", place):
+            improved = str(write_improved(found, compared.aircraft, place))
     elif out is not None:
         click.echo(
             f"{printable(str(out))} was not written: no cause was named and no number found wrong.", err=True

@@ -1,7 +1,8 @@
 """Options that commands share, so that they read and behave alike in every command."""
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from itertools import combinations
 from math import isfinite, nan
@@ -198,3 +199,38 @@ def refuse_unwritable(option: str, path: Path) -> None:
         )
     if not os.access(path if path.exists() else path.parent, os.W_OK):
         raise ConfigurationError(f"{option}: {path} cannot be written to; name a file elsewhere.")
+
+
+def refuse_unwritable_folder(option: str, folder: Path) -> None:
+    """Refuse before the work a folder that is none, and one that could not be made or written to.
+
+    Raises
+    ------
+    ConfigurationError
+        The path is a file, lies below one, or may not be written.
+    """
+    if folder.exists() and not folder.is_dir():
+        raise ConfigurationError(f"{option}: {folder} is a file; name a folder.")
+    there = next((one for one in (folder, *folder.absolute().parents) if one.exists()), Path("/"))
+    if not there.is_dir():
+        raise ConfigurationError(f"{option}: {folder} lies below the file {there}; name a folder elsewhere.")
+    if not os.access(there, os.W_OK | os.X_OK):
+        raise ConfigurationError(f"{option}: {folder} cannot be written to; name a folder elsewhere.")
+
+
+@contextmanager
+def writing(option: str, path: Path) -> Iterator[None]:
+    """Say in one sentence that what an option names could not be written after all: the disk is full.
+
+    Raises
+    ------
+    ConfigurationError
+        The block ended with an OSError.
+    """
+    try:
+        yield
+    except OSError as error:
+        raise ConfigurationError(
+            f"{option}: {path} cannot be written to: {error.strerror or error}."
+            " Make room or name another place."
+        ) from None

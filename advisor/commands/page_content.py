@@ -11,19 +11,15 @@ from pathlib import Path
 
 from advisor import __version__
 from advisor.aircraft import Aircraft
-from advisor.campaign.campaign import Campaign
-from advisor.campaign.hand_decisions import NOTHING, ByHand
-from advisor.campaign.state import CampaignState
 from advisor.commands.doctor import examine_log
 from advisor.diagnosis import compare_logs, named_simulator
 from advisor.doctor.document import doctor_document
 from advisor.gap.document import gap_document
-from advisor.log_series import LogSeries
 from advisor.printable import printable
-from advisor.problems import Problem, UnusableInputError
+from advisor.problems import UnusableInputError
 from advisor.report.document import analysis_document
 from advisor.report.page.content import Content, Document, Origin
-from advisor.report.page.course import Course, CourseWatch, slices
+from advisor.whole_flights import WholeFlights, read_whole
 
 _COUNTED = ("numpy", "scipy", "matplotlib", "jinja2", "pymavlink")
 """Libraries that numbers and pictures depend on; the page lists their versions."""
@@ -46,49 +42,25 @@ def gather(
     ConfigurationError
         As :func:`advisor.marks_file.read_by_hand`.
     """
-    series = LogSeries(logs)
-    by_hand = NOTHING if no_marks else series.read_by_hand()
-    state, courses, left_out = _heard(series, aircraft, target_system, by_hand)
-    said = [series.order_said] if series.order_said else []
-    for flight, found in sorted(left_out.items()):
-        said += [problem.about(series.names[flight]) for problem in found]
-    if state is None or len(left_out) == len(series.logs):
-        raise UnusableInputError.of([p for _, found in sorted(left_out.items()) for p in found])
+    flights = read_whole(logs, aircraft, target_system, no_marks=no_marks)
+    said = flights.said
     content = Content(
-        state=state,
-        analysis=analysis_document(state, [str(log) for log in series.logs], aircraft, left_out, said),
-        names=tuple(map(printable, series.names)),
+        state=flights.state,
+        analysis=analysis_document(
+            flights.state, [str(log) for log in flights.logs], aircraft, flights.left_out, said
+        ),
+        names=tuple(map(printable, flights.names)),
         aircraft=aircraft,
-        courses=courses,
-        doctor=tuple(_examined(log, aircraft, target_system) for log in series.logs),
-        gap=_gap(series, left_out, aircraft, target_system, by_hand) if with_gap else None,
+        power_ons=flights.power_ons,
+        doctor=tuple(_examined(log, aircraft, target_system) for log in flights.logs),
+        gap=_gap(flights, aircraft, target_system) if with_gap else None,
         origin=Origin(
-            _hashes(series, aircraft_file),
+            _hashes(flights, aircraft_file),
             dict(_versions()),
             printable(shlex.join(["advisor", *sys.argv[1:]])),
         ),
     )
     return content, said
-
-
-def _heard(
-    series: LogSeries, aircraft: Aircraft, target_system: int | None, by_hand: ByHand
-) -> tuple[CampaignState | None, tuple[Course, ...], Mapping[int, tuple[Problem, ...]]]:
-    """Return the campaign at the end of its logs, the time histories of its flights, and reasons for which
-    logs do not count, by flight."""
-    campaign = Campaign(aircraft, target_system, by_hand=by_hand, names=series.names)
-    watch = CourseWatch(campaign)
-    for batch in series.batches():
-        for piece in slices(batch):
-            campaign.feed(piece)
-            watch.look()
-    unreadable = {flight: (problem,) for flight, problem in series.unreadable.items()}
-    if len(unreadable) == len(series.logs):
-        return None, (), unreadable
-    campaign.finish()
-    state = campaign.state
-    unfit = {one.flight: one.problems for one in state.flights if one.problems}
-    return state, watch.courses, unfit | unreadable
 
 
 def _examined(log: Path, aircraft: Aircraft, target_system: int | None) -> Document:
@@ -98,15 +70,10 @@ def _examined(log: Path, aircraft: Aircraft, target_system: int | None) -> Docum
         return doctor_document(None, error.problem)
 
 
-def _gap(
-    series: LogSeries,
-    left_out: Mapping[int, object],
-    aircraft: Aircraft,
-    target_system: int | None,
-    by_hand: ByHand,
-) -> Document:
-    usable = [flight for flight in range(len(series.logs)) if flight not in left_out]
-    logs, decided = [series.logs[f] for f in usable], [by_hand.on_flight(f) for f in usable]
+def _gap(flights: WholeFlights, aircraft: Aircraft, target_system: int | None) -> Document:
+    usable = [flight for flight in range(len(flights.logs)) if flight not in flights.left_out]
+    logs = [flights.logs[flight] for flight in usable]
+    decided = [flights.by_hand.on_flight(flight) for flight in usable]
     simulator = None
     try:
         simulator = named_simulator(aircraft, target_system)
@@ -119,9 +86,9 @@ def _gap(
     return gap_document(compared.diagnosis)
 
 
-def _hashes(series: LogSeries, aircraft_file: Path | None) -> Mapping[str, str]:
+def _hashes(flights: WholeFlights, aircraft_file: Path | None) -> Mapping[str, str]:
     """Return the SHA-256 of every input file, by the file's name."""
-    named = [*zip(series.names, series.logs, strict=True)]
+    named = [*zip(flights.names, flights.logs, strict=True)]
     named += [(aircraft_file.name, aircraft_file)] if aircraft_file else []
     return {printable(name): _sha256(path) for name, path in named if path.is_file()}
 

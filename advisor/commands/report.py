@@ -14,6 +14,7 @@ from advisor.commands.options import (
     refuse_unwritable,
     rule_option,
     target_system_option,
+    writing,
 )
 from advisor.problems import ConfigurationError
 
@@ -62,7 +63,8 @@ def command(
 
     content, said = gather(logs, aircraft, aircraft_file, target_system, no_marks, with_gap)
     markdown = form == "md" or (form is None and out.suffix.lower() == ".md")
-    write_atomically(out, page(content, "md" if markdown else "html"))
+    with writing("-o", out):
+        write_atomically(out, page(content, "md" if markdown else "html"))
     for sentence in said:
         click.echo(sentence, err=True)
     return 0

@@ -1,17 +1,20 @@
 """``advisor study``: the paper's simulated campaign, many times."""
 
 import json
-import sys
+from concurrent.futures import BrokenExecutor
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from advisor.commands.options import json_option, refuse_unwritable
+from advisor.commands.options import json_option, refuse_unwritable, writing
+from advisor.commands.running import Progress, runner_of, running_options
 from advisor.problems import ConfigurationError
 
 if TYPE_CHECKING:
+    from advisor.running.runner import Runner
     from advisor.study.flying import NoiseReading
+    from advisor.study.plan import Report, Study
 
 
 @click.command
@@ -41,6 +44,7 @@ if TYPE_CHECKING:
 @click.option(
     "--stops", is_flag=True, help="Instead: measure how often the rule information stops too early."
 )
+@running_options
 @json_option
 def command(
     campaigns: int,
@@ -51,45 +55,75 @@ def command(
     advice: bool,
     change: bool,
     stops: bool,
+    workers: int | None,
+    scheduler: str | None,
     as_json: bool,
 ) -> int:
     """Print Table 1 and Figure 5 of the paper, as medians and spread over many simulated campaigns.
+
+    Equal seeds give equal studies, whatever --workers and --scheduler are.
 
     \b
     Example:
       advisor study
       advisor study --campaigns 2000 --figure figure5.png
+      advisor study --stops --campaigns 150 --workers 8
       advisor study --json > study.json
     """
-    from rich.console import Console
-    from rich.progress import Progress
-
-    from advisor.study import run
-    from advisor.study.figure import refuse_undrawable
-
     if figure is not None:
         if advice or change or stops:
             raise ConfigurationError(
                 "--figure draws the campaigns: leave out --advice, --change and --stops."
             )
+        from advisor.study.figure import refuse_undrawable
+
         refuse_unwritable("--figure", figure)
         refuse_undrawable(figure)
-    with Progress(console=Console(stderr=True), transient=True, disable=not sys.stderr.isatty()) as progress:
-        task = progress.add_task("flying campaigns", total=None)
+    run = runner_of(workers, scheduler, guarded=False)
+    report = _flown(_chosen(campaigns, seed, noise_reading, readings, advice, change, stops), run)
+    if figure is not None:
+        from advisor.study.figure import draw
 
-        def advance(done: int, total: int) -> None:
-            progress.update(task, completed=done, total=total)
-
-        if advice:
-            report = run.advice(campaigns, seed, advance)
-        elif change:
-            report = run.change(campaigns, seed, advance)
-        elif stops:
-            report = run.early_stops(campaigns, seed, advance)
-        else:
-            report = run.table_1(campaigns, seed, noise_reading, figure, readings, advance)
+        with writing("--figure", figure):
+            draw(report.curves, figure)
     if as_json:
         click.echo(json.dumps(report.document, allow_nan=False))
     else:
         click.echo("\n".join(report.lines).rstrip())
     return 0
+
+
+def _chosen(
+    campaigns: int,
+    seed: int,
+    noise_reading: "NoiseReading",
+    readings: bool,
+    advice: bool,
+    change: bool,
+    stops: bool,
+) -> "Study[Any, Any]":
+    from advisor.study import run
+
+    if advice:
+        return run.advice(campaigns, seed)
+    if change:
+        return run.change(campaigns, seed)
+    if stops:
+        return run.early_stops(campaigns, seed)
+    return run.table_1(campaigns, seed, noise_reading, readings)
+
+
+def _flown(study: "Study[Any, Any]", run: "Runner") -> "Report":
+    """Fly all campaigns, and print the progress."""
+    from advisor.running.runner import results_in_order
+
+    progress = Progress(sum(task.campaigns for task in study.tasks), "campaigns")
+    try:
+        results = results_in_order(
+            run, study.work, study.tasks, lambda place: progress.advance(study.tasks[place].campaigns)
+        )
+    except BrokenExecutor:
+        raise ConfigurationError(
+            "A process of the study was ended every time, as for want of memory. Repeat with fewer --workers."
+        ) from None
+    return study.report(results)

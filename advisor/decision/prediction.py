@@ -44,6 +44,8 @@ class Response(NamedTuple):
     """(3, n) α in rad, q in rad/s, a_z over the air speed in 1/s, in the order of ``PREDICTED``."""
     slopes: FloatArray
     """(3, n, 6) derivative of each output with respect to each of ``DERIVATIVES``."""
+    after_s: FloatArray
+    """(n,) moments, s after the first stamp of the elevator."""
 
     @property
     def peak(self) -> FloatArray:
@@ -167,7 +169,7 @@ def response_to(flown: Flown, derivatives: FloatArray, airspeed_m_s: float | Non
         flown.servo,
         tuple((derivatives * scale).tolist()),
     )
-    return None if found is None else Response(found.values, found.slopes * scale)
+    return None if found is None else found._replace(slopes=found.slopes * scale)
 
 
 def trim_of(maneuver: Maneuver) -> float:
@@ -214,4 +216,8 @@ def _respond(t: bytes, elevator: bytes, servo: Servo, derivatives: tuple[float, 
         return None
     rows = [assembly.rows[0][name] for name in PREDICTED]
     # The columns of the shared parameters stand first, in the order of DERIVATIVES.
-    return Response(np.array([y[r] for r in rows]), np.array([g[r, : len(DERIVATIVES)] for r in rows]))
+    return Response(
+        np.array([y[r] for r in rows]),
+        np.array([g[r, : len(DERIVATIVES)] for r in rows]),
+        moments - command.t[0],
+    )

@@ -2,13 +2,13 @@
 
 from advisor.aircraft import Aircraft
 from advisor.exporting.cut import cut_tlog
-from advisor.exporting.reading import WholeFlights
 from advisor.flight.events import ManeuverFlown
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.repeated_maneuver import are_one
 from advisor.flight.stream import FlightStream
 from advisor.mavlink.frames import FrameScanner
 from advisor.problems import ConfigurationError, UnusableInputError
+from advisor.whole_flights import WholeFlights
 
 LEAD_S = 10.0
 """Flight before the record: best rates are counted over ten seconds."""

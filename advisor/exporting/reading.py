@@ -1,96 +1,17 @@
-"""From logs to the dataset of an export: each log heard once, by the campaign and as whole power-ons."""
+"""The dataset of an export: whole flights as tables."""
 
 import hashlib
-from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from advisor import __version__
-from advisor.aircraft import Aircraft
-from advisor.campaign.campaign import Campaign
-from advisor.campaign.hand_decisions import NOTHING
-from advisor.campaign.state import CampaignState
 from advisor.exporting.found import estimates, maneuvers, residuals
 from advisor.exporting.grid import GRID, on_one_grid
 from advisor.exporting.table import Column, Dataset, Recording, Table, numbers, texts
-from advisor.flight.marks import Mark
 from advisor.flight.power_on import PowerOn
 from advisor.flight.record import ALL_UNITS
-from advisor.flight.stream import FlightStream
-from advisor.log_series import LogSeries
-from advisor.problems import UnusableInputError
-
-
-@dataclass(frozen=True, slots=True)
-class WholeFlights:
-    """Logs of one campaign: what was found, and every sample."""
-
-    logs: tuple[Path, ...]
-    """Flight by flight, in the order in which they count."""
-    state: CampaignState
-    """The campaign at the end of the logs, as ``advisor analyze`` has it."""
-    power_ons: tuple[tuple[int, PowerOn], ...]
-    """Every power-on with the number of its flight, 0 for the first."""
-    notes: tuple[str, ...]
-    """Sentences on the order of the logs, on logs left out, and on what was assumed in reading."""
-
-
-def read_whole(
-    logs: Sequence[Path],
-    aircraft: Aircraft,
-    target_system: int | None = None,
-    marks: Sequence[Mark] = (),
-    *,
-    no_marks: bool = False,
-) -> WholeFlights:
-    """Read and analyze logs as one campaign, and keep every sample of their channels.
-
-    Parameters
-    ----------
-    logs
-        Paths of the logs, a flight each.
-    target_system
-        System id of the vehicle; None: the first one heard.
-    marks
-        Further stretches that are manoeuvres, on a single log.
-    no_marks
-        Leave out what was decided by hand on the logs.
-
-    Raises
-    ------
-    UnusableInputError
-        No log can be used; the error lists why.
-    ConfigurationError
-        The file of decisions by hand beside a log is wrong.
-    """
-    series = LogSeries(logs)
-    by_hand = NOTHING if no_marks else series.read_by_hand()
-    campaign = Campaign(aircraft, target_system, by_hand=by_hand, marks=marks, names=series.names)
-    streams: dict[int, FlightStream] = {}
-    for columns in series.batches():
-        campaign.feed(columns)
-        flight = columns[0].flight if columns else 0
-        if flight not in streams:
-            marked = [mark for mark in (*marks, *by_hand.marks) if mark.flight == flight]
-            streams[flight] = FlightStream(aircraft, target_system, marked, keep_all=True)
-        streams[flight].feed(columns)
-    unreadable = list(series.unreadable.values())
-    if len(unreadable) == len(logs):
-        raise UnusableInputError.of(unreadable)
-    campaign.finish()
-    for stream in streams.values():
-        stream.finish()
-    if campaign.problems:
-        raise UnusableInputError.of(campaign.problems)
-    state = campaign.state
-    left_out = [p.about(series.names[one.flight]) for one in state.flights for p in one.problems]
-    power_ons = [(flight, one) for flight, stream in sorted(streams.items()) for one in stream.power_ons]
-    notes = (*series.said(), *left_out, *state.elevator_notes, *state.reader_notes, *state.mark_notes)
-    return WholeFlights(
-        tuple(series.logs), state, tuple(p for p in power_ons if p[1].channels), tuple(dict.fromkeys(notes))
-    )
+from advisor.whole_flights import WholeFlights
 
 
 def dataset(flights: WholeFlights) -> Dataset:
@@ -110,7 +31,7 @@ def dataset(flights: WholeFlights) -> Dataset:
         "logs": [{"file": str(log), "sha256": _sha256(log)} for log in flights.logs],
         "grid": GRID,
         "decision": state.flight_test.sentence,
-        "notes": list(flights.notes),
+        "notes": flights.notes,
     }
     recordings = tuple(_recording(k, one) for k, (_, one) in enumerate(flights.power_ons, start=1))
     return Dataset(recordings, tables, about)

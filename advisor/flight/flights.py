@@ -4,8 +4,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
 
-import numpy as np
-
 from advisor.aircraft import Aircraft
 from advisor.flight.events import (
     Activity,
@@ -19,18 +17,13 @@ from advisor.flight.events import (
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.marks import Mark
 from advisor.flight.messages import Columns
+from advisor.flight.one_aircraft import OneAircraft
 from advisor.flight.repeated_maneuver import are_one, is_fuller
 from advisor.flight.stream import FlightStream
 from advisor.flight.surfaces import Surface
 from advisor.flight.track import ChannelStatus
 from advisor.flight.vehicle import Vehicle
 from advisor.problems import Problem
-
-_PROBE_US = (1400.0, 1600.0)
-"""Pulses between which two elevators' scales are compared, us: within the travel of every servo."""
-_SCALES_AGREE = 0.05
-"""Relative difference of an elevator's scale between flights that counts as equal, as when a trim is set
-anew."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,7 +71,7 @@ class Flights:
         self._found: list[Maneuver] = []
         self._past: list[FlightHeard] = []
         self._notes: list[str] = []
-        self._first: tuple[str, Vehicle, Surface | None] | None = None
+        self._one_aircraft = OneAircraft()
         self._begin(0)
         self._told_of = -1
 
@@ -102,7 +95,7 @@ class Flights:
 
     @property
     def elevator_notes(self) -> tuple[str, ...]:
-        """Composition of the elevator and assumptions about it, over all flights, as sentences."""
+        """Composition of the elevator, and assumptions about elevator and aircraft, over all flights."""
         return tuple(dict.fromkeys((*self._notes, *self.stream.elevator_notes)))
 
     def heard(self, channels: Mapping[str, ChannelStatus], over: bool = False) -> tuple[FlightHeard, ...]:
@@ -210,44 +203,17 @@ class Flights:
         return ManeuverFlown(self._found[-1])
 
     def _compare_vehicles(self, vehicle: Vehicle) -> Iterator[FlightEvent]:
-        """Yield notices on a vehicle that differs from the first flight's. Another kind of autopilot is
-        refused."""
-        name = self._name(self.flight)
-        if self._first is None:
-            self._first = (name, vehicle, None)
-            return
-        first_name, first, _ = self._first
-        if (vehicle.autopilot, vehicle.is_multicopter) != (first.autopilot, first.is_multicopter):
-            self._foreign = Problem(
-                "other_vehicle",
-                f"The vehicle is {vehicle}, and {first} in {first_name}: two aircraft are no campaign.",
-                "Give the logs of one aircraft only.",
-            )
-            yield Notice(self._foreign.code, f"{name}: {self._foreign}")
-        elif vehicle.system != first.system:
-            said = (
-                f"{name}: the vehicle is {vehicle}, and {first} in {first_name}; both count as one aircraft."
-            )
+        """Yield notices on a vehicle that differs from the first flight's. Another aircraft is refused."""
+        self._foreign = self._one_aircraft.refuse(self.name, vehicle)
+        if self._foreign is not None:
+            yield Notice(self._foreign.code, f"{self.name}: {self._foreign}")
+        elif said := self._one_aircraft.doubt(self.name, vehicle):
+            self._notes.append(said)
             yield Notice("other_system", said)
 
     def _compare_elevators(self) -> Iterator[FlightEvent]:
         """Yield notices on an elevator that is driven otherwise than in the first flight."""
         elevator = self.stream.elevator
-        if self._first is None or not isinstance(elevator, Surface):
-            return
-        first_name, vehicle, first = self._first
-        if first is None:
-            self._first = (self._name(self.flight), vehicle, elevator)
-        elif elevator.outputs != first.outputs or not _scales_agree(elevator, first):
-            outputs = " + ".join(map(str, elevator.outputs))
-            before = " + ".join(map(str, first.outputs))
-            yield Notice(
-                "other_elevator",
-                f"{self._name(self.flight)}: the elevator is output {outputs} with a scale of its own, and "
-                f"output {before} in {first_name}; both count as one aircraft.",
-            )
-
-
-def _scales_agree(a: Surface, b: Surface) -> bool:
-    steps = [np.diff(s.angles(np.tile(np.array(_PROBE_US)[:, None], len(s.parts))), axis=0) for s in (a, b)]
-    return bool(np.allclose(steps[0], steps[1], rtol=_SCALES_AGREE))
+        if isinstance(elevator, Surface) and (said := self._one_aircraft.doubt_elevator(self.name, elevator)):
+            self._notes.append(said)
+            yield Notice("other_elevator", said)

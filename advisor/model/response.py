@@ -179,7 +179,8 @@ def _respond_in(
         if row >= 0:
             y[row] = q + local[5]
             if wanted:
-                g[row] = state[1]
+                for j in range(N_PARAMETERS):
+                    g[row, j] = state[1, j]
                 g[row, 12] += 1.0
         row = rows[3, e]
         if row >= 0:
@@ -243,48 +244,51 @@ def _carry(
 ) -> None:
     """Advance the sensitivities ``state`` (3, 14) of α, q and, on request, θ over one step from (α, q)."""
     a11, a12, a21, a22 = s * shared[0], 1.0 + shared[1], s * s * shared[3], s * shared[4]
+    t0, t1, t2, t3 = t[0], t[1], t[2], t[3]
+    if attitude:
+        for j in range(N_MOVING):
+            state[2, j] += t[15] * state[0, j] + t[16] * state[1, j]
     for j in range(N_MOVING):
         f, k = state[0, j], state[1, j]
-        if attitude:
-            state[2, j] += t[15] * f + t[16] * k
-        state[0, j] = t[0] * f + t[1] * k
-        state[1, j] = t[2] * f + t[3] * k
-    # by the trace (p), by the determinant (d), by A itself (w); for α, q and then for θ
+        state[0, j] = t0 * f + t1 * k
+        state[1, j] = t2 * f + t3 * k
+    # by the trace (p), by the determinant (d), by A itself (w)
     p1 = t[4] * alpha + t[5] * q + t[17] * u1 + t[18] * u2 + t[30] * v1 + t[31] * v2
     p2 = t[6] * alpha + t[7] * q + t[19] * u1 + t[20] * u2 + t[32] * v1 + t[33] * v2
-    p3 = t[19] * alpha + t[20] * q + t[32] * u1 + t[33] * u2 + t[45] * v1 + t[46] * v2
     d1 = t[8] * alpha + t[9] * q + t[21] * u1 + t[22] * u2 + t[34] * v1 + t[35] * v2
     d2 = t[10] * alpha + t[11] * q + t[23] * u1 + t[24] * u2 + t[36] * v1 + t[37] * v2
-    d3 = t[23] * alpha + t[24] * q + t[36] * u1 + t[37] * u2 + t[49] * v1 + t[50] * v2
     w1 = t[12] * alpha + t[25] * u1 + t[38] * v1
     w2 = t[12] * q + t[25] * u2 + t[38] * v2
-    w1_theta = t[25] * alpha + t[38] * u1 + t[51] * v1
-    w2_theta = t[25] * q + t[38] * u2 + t[51] * v2
     state[0, 0] += s * (p1 + a22 * d1 + w1)
     state[1, 0] += s * (p2 + a22 * d2)
-    state[2, 0] += s * (p3 + a22 * d3)
     state[0, 1] += -a21 * d1 + w2
     state[1, 1] += -a21 * d2
-    state[2, 1] += -a21 * d3
     state[0, 3] += s * s * (-a12 * d1)
     state[1, 3] += s * s * (-a12 * d2 + w1)
-    state[2, 3] += s * s * (-a12 * d3 + w1_theta)
     state[0, 4] += s * (p1 + a11 * d1)
     state[1, 4] += s * (p2 + a11 * d2 + w2)
-    state[2, 4] += s * (p3 + a11 * d3 + w2_theta)
     # by Z_δe and M_δe, by Z_0 and M_0
     state[0, 2] += s * (t[13] * delta + t[26] * slope)
     state[1, 2] += s * (t[15] * delta + t[28] * slope)
-    state[2, 2] += s * (t[28] * delta + t[41] * slope)
     state[0, 5] += s * s * (t[14] * delta + t[27] * slope)
     state[1, 5] += s * s * (t[16] * delta + t[29] * slope)
-    state[2, 5] += s * s * (t[29] * delta + t[42] * slope)
     state[0, 7] += s * t[13]
     state[1, 7] += s * t[15]
-    state[2, 7] += s * t[28]
     state[0, 8] += s * s * t[14]
     state[1, 8] += s * s * t[16]
-    state[2, 8] += s * s * t[29]
+    if attitude:
+        p3 = t[19] * alpha + t[20] * q + t[32] * u1 + t[33] * u2 + t[45] * v1 + t[46] * v2
+        d3 = t[23] * alpha + t[24] * q + t[36] * u1 + t[37] * u2 + t[49] * v1 + t[50] * v2
+        w1_theta = t[25] * alpha + t[38] * u1 + t[51] * v1
+        w2_theta = t[25] * q + t[38] * u2 + t[51] * v2
+        state[2, 0] += s * (p3 + a22 * d3)
+        state[2, 1] += -a21 * d3
+        state[2, 3] += s * s * (-a12 * d3 + w1_theta)
+        state[2, 4] += s * (p3 + a11 * d3 + w2_theta)
+        state[2, 2] += s * (t[28] * delta + t[41] * slope)
+        state[2, 5] += s * s * (t[29] * delta + t[42] * slope)
+        state[2, 7] += s * t[28]
+        state[2, 8] += s * s * t[29]
 
 
 @kernel()

@@ -1,7 +1,9 @@
-"""What following the advice saves: campaigns flown as advised beside those that repeat the standard input."""
+"""Manoeuvres that the advice saves: campaigns flown as advised, against campaigns that repeat the standard
+input."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 
@@ -11,19 +13,21 @@ from advisor.decision.history import Flown, usable_ones
 from advisor.decision.information import knowledge
 from advisor.decision.inputs import StepInput
 from advisor.flight.messages import FloatArray
-from advisor.study.estimating import Advance, estimate_copies
+from advisor.study.estimating import estimate_copies
 from advisor.study.flying import Flight, Scene, as_maneuver, fly_named, follow, noise_scale
 from advisor.study.simulator import AIRFRAMES, UAV, NonlinearAircraft
 
 MOST = 25
-"""A campaign is given up after so many manoeuvres."""
+"""Number of manoeuvres after which a campaign is given up."""
 PLAN = CampaignPlan(rule="information", tolerance_percent=0.5)
-"""A tenth of the default tolerance, so that there is something to save: at the default two manoeuvres do."""
+"""Plan with a tenth of the default tolerance, so that the advice can save something: at the default two
+manoeuvres suffice."""
 HEIGHT_M = 100.0
 
 
+@cache
 def scenes() -> Mapping[str, Scene]:
-    """Return the paper's aircraft, and the bundled UAV as linear as its own linearisation is."""
+    """Return the paper's aircraft, and the linearised bundled UAV."""
     habits = AIRFRAMES["uav"][1]
     uav = NonlinearAircraft(UAV, habits.airspeed_m_s, HEIGHT_M).truth
     return {
@@ -46,13 +50,13 @@ class Saving:
     same_excursion: bool
     """Whether the advised inputs were held to the standard input's angles of attack."""
     standard: tuple[int, ...]
-    """Manoeuvres each campaign needed, repeating the standard input in alternating directions."""
+    """Manoeuvres that each campaign needed with the standard input in alternating directions."""
     advised: tuple[int, ...]
-    """The same, flying what was advised after each manoeuvre."""
+    """Manoeuvres that each campaign needed when each input was flown as advised."""
 
     @property
     def percent(self) -> float:
-        """Fewer manoeuvres on average, in percent."""
+        """Mean saving of manoeuvres, in percent."""
         return 100.0 * (1.0 - float(np.mean(self.advised) / np.mean(self.standard)))
 
 
@@ -60,27 +64,48 @@ CASES = (("twin jet", 10.0), ("UAV", 5.0))
 """Aircraft and noise in percent at which the standard input needs about ten manoeuvres."""
 
 
-def measure(
-    campaigns: int, seed: int, advance: Advance | None = None, cases: Sequence[tuple[str, float]] = CASES
-) -> list[Saving]:
-    """Fly every campaign twice, from the same first manoeuvre."""
-    savings = []
-    for name, noise in cases:
-        scene = scenes()[name]
-        for same in (True, False):
-            rng = np.random.default_rng([seed, round(100 * noise), same])
-            pairs = [_both(scene, noise, same, rng, advance) for _ in range(campaigns)]
-            savings.append(Saving(name, noise, same, tuple(s for s, _ in pairs), tuple(a for _, a in pairs)))
-    return savings
+@dataclass(frozen=True, slots=True)
+class Pair:
+    """A campaign that is flown twice from one first manoeuvre: by repetition and as advised."""
+
+    aircraft: str
+    noise_percent: float
+    same_excursion: bool
+    seed: tuple[int, ...]
+    campaigns: int = 1
 
 
-def _both(
-    scene: Scene, noise_percent: float, same: bool, rng: np.random.Generator, advance: Advance | None
-) -> tuple[int, int]:
+def pairs(campaigns: int, seed: int, cases: Sequence[tuple[str, float]] = CASES) -> list[Pair]:
+    """Return every pair of campaigns of the study, each with a seed of its own."""
+    return [
+        Pair(name, noise, same, (seed, round(100 * noise), same, number))
+        for name, noise in cases
+        for same in (True, False)
+        for number in range(campaigns)
+    ]
+
+
+def savings(flown: Sequence[Pair], needed: Sequence[tuple[int, int]]) -> list[Saving]:
+    """Return the saving in each case.
+
+    Parameters
+    ----------
+    needed
+        What :func:`fly` returned for each pair.
+    """
+    by_case: dict[tuple[str, float, bool], list[tuple[int, int]]] = {}
+    for pair, numbers in zip(flown, needed, strict=True):
+        by_case.setdefault((pair.aircraft, pair.noise_percent, pair.same_excursion), []).append(numbers)
+    return [Saving(*case, *map(tuple, zip(*numbers, strict=True))) for case, numbers in by_case.items()]
+
+
+def fly(pair: Pair) -> tuple[int, int]:
+    """Return the manoeuvres that the campaign needs by repetition of the standard input, and as advised."""
+    scene, rng = scenes()[pair.aircraft], np.random.default_rng(pair.seed)
     named = {name: fly_named(scene, name) for name in ("3211", "rev")}
-    noise = 0.01 * noise_percent * noise_scale(named["3211"], "std")
+    noise = 0.01 * pair.noise_percent * noise_scale(named["3211"], "std")
     first = _flown(scene, named["3211"], noise, rng)
-    crew = _crew(scene, named["3211"], same)
+    crew = _crew(scene, named["3211"], pair.same_excursion)
 
     def standard(history: list[Flown]) -> Flight:
         return named["rev" if len(history) % 2 else "3211"]
@@ -89,10 +114,7 @@ def _both(
         option = recommended(history, crew)
         return standard(history) if option is None else fly_input(scene, option)
 
-    needed = tuple(_needed(scene, first, choose, noise, rng) for choose in (standard, advised))
-    if advance is not None:
-        advance(1)
-    return needed[0], needed[1]
+    return _needed(scene, first, standard, noise, rng), _needed(scene, first, advised, noise, rng)
 
 
 def _needed(
@@ -112,7 +134,7 @@ def _needed(
 
 
 def fly_input(scene: Scene, option: StepInput) -> Flight:
-    """Fly an advised input, with as long a free response as the standard input leaves."""
+    """Fly an advised input, with a free response as long as the standard input's."""
     free = scene.duration_s - scene.lead_s - 7.0 * scene.unit_s
     length = scene.lead_s + option.duration_s + free
     t = np.arange(round(length * scene.rate_hz) + 1) / scene.rate_hz
@@ -121,7 +143,7 @@ def fly_input(scene: Scene, option: StepInput) -> Flight:
 
 
 def _crew(scene: Scene, standard: Flight, same: bool) -> Aircraft:
-    """Return the aircraft file, with an angle-of-attack limit where excursions are held."""
+    """Return the aircraft file, with an angle-of-attack limit where excursions are limited."""
     limits = Limits()
     if same:
         # The advice keeps a margin of a tenth to the limit; the limit is set so that the standard
@@ -132,6 +154,6 @@ def _crew(scene: Scene, standard: Flight, same: bool) -> Aircraft:
 
 
 def _flown(scene: Scene, flight: Flight, noise: FloatArray, rng: np.random.Generator) -> Flown:
-    """Measure and estimate one manoeuvre, with what the advice looks at."""
+    """Measure and estimate one manoeuvre, with the data that the advice needs."""
     (estimate,) = estimate_copies(flight, noise, 1, rng)
     return Flown(estimate, maneuver=as_maneuver(flight))

@@ -1,6 +1,6 @@
-"""The paper's campaign flown many times: when each rule stops, and how far off it is then."""
+"""The paper's campaign, flown many times: each rule's stop, and the errors at the stop."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,11 +13,15 @@ from advisor.decision.scatter import scatter_percent, window
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
 from advisor.oem.estimate import Estimate
-from advisor.study.estimating import Advance, estimate_copies
-from advisor.study.flying import NoiseReading, Scene, fly_named, noise_scale
+from advisor.study.blocks import blocks
+from advisor.study.estimating import estimate_copies
+from advisor.study.flying import NoiseReading, Scene, as_maneuver, fly_named, noise_scale
 from advisor.study.paper import ORDER
+from advisor.study.readings import needed_by_reading
 
 RULES: tuple[Rule, ...] = ("continuous", "separate", "information")
+BLOCK = 50
+"""Number of campaigns in a task: a third of a second of work."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,44 +29,87 @@ class Outcome:
     """One campaign under one rule."""
 
     needed: int | None
-    """Manoeuvres flown when the rule first said stop; None: not within the campaign."""
+    """Manoeuvres flown when the rule first said stop. None: no stop within the campaign."""
     theta: FloatArray
-    """(8,) the values then reported (or at the campaign's end)."""
+    """(8,) parameters reported at the stop, or at the campaign's end."""
     tolerance: FloatArray
-    """(8,) what the rule ``information`` allowed then; NaN under the other rules."""
+    """(8,) tolerances of the rule ``information`` at that time. NaN under the other rules."""
     history_percent: tuple[float | None, ...]
-    """The criterion after each manoeuvre; for ``information`` as far as the stop."""
+    """Criterion after each manoeuvre; for ``information`` up to the stop."""
     rejected: int
-    """Manoeuvres that the rule rejected, of all flown."""
+    """Number of flown manoeuvres that the rule rejected."""
 
 
-def fly_campaigns(
+@dataclass(frozen=True, slots=True)
+class Block:
+    """Campaigns that are flown and judged together."""
+
+    scene: Scene
+    noise_percent: float
+    campaigns: int
+    seed: tuple[int, ...]
+    reading: NoiseReading = "std"
+    other_readings: bool = False
+    """Whether the campaigns are also judged by other readings of the paper's rules."""
+
+
+@dataclass(frozen=True, slots=True)
+class Judged:
+    """Results of a block of campaigns."""
+
+    outcomes: Mapping[Rule, tuple[Outcome, ...]]
+    """Rule to its outcomes, campaign by campaign."""
+    needed: Mapping[tuple[str, Rule], tuple[int | None, ...]]
+    """Name of the reading and rule to the manoeuvres that each campaign needed; empty unless requested."""
+
+
+def table_blocks(
     scene: Scene,
     noise_percent: float,
     campaigns: int,
     seed: int,
     reading: NoiseReading = "std",
-    order: Sequence[str] = ORDER,
-    advance: Advance | None = None,
-) -> list[list[Estimate]]:
-    """Return estimates of every manoeuvre of ``campaigns`` repetitions, campaign by campaign.
+    other_readings: bool = False,
+) -> list[Block]:
+    """Divide the campaigns at one noise level into blocks, each with a seed of its own."""
+    return [
+        Block(scene, noise_percent, count, (seed, round(1000 * noise_percent), k), reading, other_readings)
+        for k, count in blocks(campaigns, BLOCK)
+    ]
 
-    The noise is that of the first manoeuvre for all, as one set of instruments has one noise.
+
+def judge(block: Block) -> Judged:
+    """Fly the campaigns of a block, and end each by every rule."""
+    maneuvers = [as_maneuver(fly_named(block.scene, name)) for name in ORDER]
+    plan = CampaignPlan()
+    flown = fly_campaigns(block)
+    return Judged(
+        {rule: tuple(outcome(campaign, rule, plan, maneuvers) for campaign in flown) for rule in RULES},
+        needed_by_reading(flown) if block.other_readings else {},
+    )
+
+
+def joined(judged: Sequence[Judged], rule: Rule) -> list[Outcome]:
+    """Return the outcomes of several blocks under one rule."""
+    return [outcome for block in judged for outcome in block.outcomes[rule]]
+
+
+def fly_campaigns(block: Block) -> list[list[Estimate]]:
+    """Return the estimates of every manoeuvre of a block, campaign by campaign.
+
+    The noise of the first manoeuvre holds for all, because a set of instruments has one noise.
     """
-    rng = np.random.default_rng([seed, round(1000 * noise_percent)])
-    first = noise_scale(fly_named(scene, order[0]), reading)
-    columns = []
-    for name in order:
-        columns.append(estimate_copies(fly_named(scene, name), 0.01 * noise_percent * first, campaigns, rng))
-        if advance is not None:
-            advance(campaigns)
+    rng = np.random.default_rng(block.seed)
+    flights = [fly_named(block.scene, name) for name in ORDER]
+    noise = 0.01 * block.noise_percent * noise_scale(flights[0], block.reading)
+    columns = [estimate_copies(flight, noise, block.campaigns, rng) for flight in flights]
     return [list(campaign) for campaign in zip(*columns, strict=True)]
 
 
 def outcome(
     campaign: Sequence[Estimate], rule: Rule, plan: CampaignPlan, maneuvers: Sequence[Maneuver] = ()
 ) -> Outcome:
-    """When ``rule`` stops one campaign, by the same functions that judge in flight.
+    """Return the outcome of one campaign under ``rule``, by the functions that judge in flight.
 
     Parameters
     ----------
@@ -99,6 +146,6 @@ def outcome(
 
 
 def reported(taken: Sequence[Estimate], plan: CampaignPlan) -> FloatArray:
-    """Return the value a campaign of the paper ends with: the mean over the criterion's window."""
+    """Return the values that a campaign of the paper ends with: the mean over the criterion's window."""
     mean: FloatArray = np.mean([e.theta for e in taken[-plan.window :]], axis=0)
     return mean

@@ -2,11 +2,13 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from io import BytesIO
 from pathlib import Path
 
 import numpy as np
 
 from advisor.aircraft import Rule
+from advisor.atomic_file import write_atomically
 from advisor.problems import ConfigurationError
 from advisor.study.campaigns import Outcome
 from advisor.study.paper import ORDER
@@ -17,16 +19,17 @@ TICKS_PERCENT = (2, 5, 10, 25, 50, 100, 200)
 
 @dataclass(frozen=True, slots=True)
 class Curve:
-    """The criterion of one rule at one noise level over all campaigns."""
+    """Criterion of one rule at one noise level over all campaigns."""
 
     rule: Rule
     noise_percent: float
     quantiles: tuple[tuple[float, float, float] | None, ...]
-    """Per manoeuvre: 10 %, 50 %, 90 % over the campaigns that have a value; None where none has."""
+    """Quantiles 10 %, 50 %, 90 % over the campaigns with a value, for each manoeuvre. None where no campaign
+    has one."""
 
 
 def curve(rule: Rule, noise_percent: float, outcomes: Sequence[Outcome]) -> Curve:
-    """Collect the criterion's history, as if every campaign flew on to its end."""
+    """Collect the criterion's history, as if every campaign continued to its end."""
     quantiles: list[tuple[float, float, float] | None] = []
     for i in range(len(ORDER)):
         values = [
@@ -38,7 +41,7 @@ def curve(rule: Rule, noise_percent: float, outcomes: Sequence[Outcome]) -> Curv
 
 
 def refuse_undrawable(path: Path) -> None:
-    """Refuse before the work a figure that could not be drawn after it.
+    """Refuse, before any work, a figure that could not be drawn after it.
 
     Raises
     ------
@@ -57,7 +60,13 @@ def refuse_undrawable(path: Path) -> None:
 
 
 def draw(curves: Sequence[Curve], path: Path) -> None:
-    """Write the figure; the ending of ``path`` (.png, .svg) says how."""
+    """Write the figure whole or not at all; the ending of ``path`` (.png, .svg) says how.
+
+    Raises
+    ------
+    OSError
+        The file cannot be written.
+    """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
     from matplotlib.ticker import FixedLocator, FormatStrFormatter, NullLocator
@@ -85,7 +94,9 @@ def draw(curves: Sequence[Curve], path: Path) -> None:
     axes[0].set_ylabel("criterion, Eq. (12), in %")
     figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=4, fontsize=8)
     # Without a date the same study gives the same file.
-    figure.savefig(path, dpi=150, metadata={"Date": None} if path.suffix == ".svg" else None)
+    drawn, form = BytesIO(), path.suffix[1:].lower() or "png"
+    figure.savefig(drawn, format=form, dpi=150, metadata={"Date": None} if form == "svg" else None)
+    write_atomically(path, drawn.getvalue())
 
 
 def in_terminal(curves: Sequence[Curve], rule: Rule, height: int = 13) -> list[str]:

@@ -1,7 +1,7 @@
-"""How often the rule ``information`` stops too early, and how many manoeuvres each rule needs.
+"""Early stops of the rule ``information``, and the manoeuvres that each rule needs.
 
-A stop is false when the model that it leaves predicts the true response to the campaign's inputs worse than
-the tolerance: the largest error over time, in percent of the peak, of the worst output.
+A stop is false when the model then predicts the true response to the campaign's inputs worse than the
+tolerance. The error is the largest over time, in percent of the peak, of the worst output.
 """
 
 from collections.abc import Sequence
@@ -20,25 +20,27 @@ from advisor.flight.record import Channel
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.estimator import estimate, estimate_jointly
 from advisor.oem.surface import Servo
+from advisor.study.blocks import blocks
 from advisor.study.campaigns import RULES
-from advisor.study.estimating import Advance, estimate_copies
+from advisor.study.estimating import estimate_copies
 from advisor.study.flying import Flight, Scene, as_maneuver, fly_named, follow, noise_scale, respond
 from advisor.study.paper import ORDER
 
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """What is flown and what disturbs it."""
+    """Input and disturbances of a campaign."""
 
     name: str
     noise_percent: float
     tolerance_percent: float = 5.0
     correlation_s: float = 0.0
-    """Correlation time of the noise, first order; 0: white."""
+    """Correlation time of the noise, s, first order. 0: white."""
     gust_percent: float = 0.0
-    """Gusts that move the aircraft, standard deviation of their angle in percent of the response's in α."""
+    """Standard deviation of the gusts' angle, in percent of that of the response in α."""
     lag_s: float = 0.0
-    """First-order lag of the servo, which the crew does not know: it is estimated jointly, as in flight."""
+    """First-order lag of the servo, s, which the crew does not know. It is estimated jointly, as in
+    flight."""
 
 
 CASES = (
@@ -54,20 +56,22 @@ CASES = (
     Case("servo lag 0.05 s unknown", 2.5, lag_s=0.05),
     Case("servo lag 0.14 s unknown", 2.5, lag_s=0.14),
 )
-"""The default tolerance, and tighter ones with which the rule has something to decide."""
+"""Cases with the default tolerance, and with tighter ones that need several manoeuvres."""
+BLOCK = 5
+"""Number of campaigns in a task: a second of work at most."""
 GUST_S = 0.5
-"""Correlation time of the gusts."""
+"""Correlation time of the gusts, s."""
 KNOWN_FROM = 2
-"""Manoeuvres from which an unknown lag is estimated jointly."""
+"""Number of manoeuvres at which an unknown lag is first estimated jointly."""
 
 
 @dataclass(frozen=True, slots=True)
 class Stops:
-    """All campaigns of one case."""
+    """Campaigns of one case."""
 
     case: Case
     needed: dict[Rule, tuple[int | None, ...]]
-    """Manoeuvres flown when each rule first said stop, a campaign each; None: not in seven."""
+    """Manoeuvres flown when each rule first said stop, for each campaign. None: no stop in seven."""
     error_percent: tuple[float, ...]
     """Error of the predicted response where ``information`` stopped, in percent of its peak."""
 
@@ -91,30 +95,56 @@ class Stops:
         return 100.0 * float(np.mean([n is None for n in self.needed[rule]]))
 
 
-def measure(
-    campaigns: int, seed: int, advance: Advance | None = None, cases: Sequence[Case] = CASES
-) -> list[Stops]:
-    """Fly every case ``campaigns`` times."""
-    found = []
-    for number, case in enumerate(cases):
-        rng = np.random.default_rng([seed, number])
-        scene = Scene()
-        flights = {name: _through(scene, fly_named(scene, name), case.lag_s) for name in set(ORDER)}
-        noise = 0.01 * case.noise_percent * noise_scale(flights[ORDER[0]], "std")
-        order = [flights[name] for name in ORDER]
-        if case.correlation_s == case.gust_percent == case.lag_s == 0.0:
-            columns = [_copies(flight, noise, campaigns, rng) for flight in order]
-            flown = list(zip(*columns, strict=True))
-        else:
-            flown = [_campaign(scene, order, noise, case, rng) for _ in range(campaigns)]
-        found.append(_measured(case, flown, order))
-        if advance is not None:
-            advance(1)
-    return found
+@dataclass(frozen=True, slots=True)
+class Block:
+    """Campaigns of one case that are flown and judged together."""
+
+    case: Case
+    campaigns: int
+    seed: tuple[int, ...]
+
+
+def stop_blocks(campaigns: int, seed: int, cases: Sequence[Case]) -> list[Block]:
+    """Divide the campaigns of every case into blocks, each with a seed of its own."""
+    return [
+        Block(case, count, (seed, number, k))
+        for number, case in enumerate(cases)
+        for k, count in blocks(campaigns, BLOCK)
+    ]
+
+
+def fly(block: Block) -> Stops:
+    """Fly a block, and return where each rule stops."""
+    case, scene, rng = block.case, Scene(), np.random.default_rng(block.seed)
+    flights = {name: _through(scene, fly_named(scene, name), case.lag_s) for name in set(ORDER)}
+    noise = 0.01 * case.noise_percent * noise_scale(flights[ORDER[0]], "std")
+    order = [flights[name] for name in ORDER]
+    flown: list[tuple[Flown, ...]]
+    if case.correlation_s == case.gust_percent == case.lag_s == 0.0:
+        columns = [_copies(flight, noise, block.campaigns, rng) for flight in order]
+        flown = list(zip(*columns, strict=True))
+    else:
+        flown = [_campaign(scene, order, noise, case, rng) for _ in range(block.campaigns)]
+    return _measured(case, flown, order)
+
+
+def by_case(found: Sequence[Stops]) -> list[Stops]:
+    """Join the blocks of each case."""
+    cases: dict[Case, list[Stops]] = {}
+    for one in found:
+        cases.setdefault(one.case, []).append(one)
+    return [
+        Stops(
+            case,
+            {rule: tuple(n for one in several for n in one.needed[rule]) for rule in RULES},
+            tuple(error for one in several for error in one.error_percent),
+        )
+        for case, several in cases.items()
+    ]
 
 
 def _through(scene: Scene, flight: Flight, lag_s: float) -> Flight:
-    """Return the same command, flown through a servo with a lag."""
+    """Return the flight with its command passed through a servo with a lag."""
     if lag_s <= 0.0:
         return flight
     surface, _, _ = Servo(lag_s).move(flight.t, flight.elevator, flight.t)
@@ -122,7 +152,7 @@ def _through(scene: Scene, flight: Flight, lag_s: float) -> Flight:
 
 
 def _copies(flight: Flight, noise: FloatArray, campaigns: int, rng: np.random.Generator) -> list[Flown]:
-    """Return the same manoeuvre of all campaigns, with white noise."""
+    """Return the manoeuvre of each campaign, with white noise."""
     maneuver = as_maneuver(flight)
     return [Flown(e, maneuver=maneuver) for e in estimate_copies(flight, noise, campaigns, rng)]
 
@@ -155,8 +185,7 @@ def _campaign(
 
 
 def _gusts(scene: Scene, flight: Flight, case: Case, rng: np.random.Generator) -> FloatArray | float:
-    """Return (n, 2) what gusts add to α and q: a gust acts through Z_alpha and M_alpha as an elevator
-    would."""
+    """Return the gusts' contributions to α and q, shape (n, 2). A gust acts through Z_alpha and M_alpha."""
     if case.gust_percent == 0.0:
         return 0.0
     size = 0.01 * case.gust_percent * float(np.std(flight.response[:, 0]))
@@ -173,7 +202,7 @@ def _measure(flight: Flight, disturbance: FloatArray) -> Maneuver:
 
 
 def _lag_found(maneuvers: Sequence[Maneuver]) -> float:
-    """Return the lag of the joint estimate; 0 where the data do not tell it from none."""
+    """Return the lag of the joint estimate; 0 where the data do not show one."""
     model = estimate_jointly(maneuvers, Aircraft())
     if isinstance(model, NoEstimate):
         raise ArithmeticError(model.text)
@@ -182,7 +211,7 @@ def _lag_found(maneuvers: Sequence[Maneuver]) -> float:
 
 
 def _coloured(flight: Flight, correlation_s: float, rng: np.random.Generator) -> FloatArray:
-    """Return (n, 2) noise of unit variance."""
+    """Return noise of unit variance, shape (n, 2)."""
     white = rng.standard_normal(flight.response.shape)
     if correlation_s == 0.0:
         return white
@@ -207,8 +236,7 @@ def _measured(case: Case, campaigns: Sequence[Sequence[Flown]], flights: Sequenc
 
 
 def _error_percent(flown: Sequence[Flown], flights: Sequence[Flight], plan: CampaignPlan) -> float:
-    """Return the largest error of the response that the model left by the stop predicts, in percent of its
-    peak."""
+    """Return the largest error of the response predicted at the stop, in percent of its peak."""
     derivatives = knowledge(flown, plan).posterior.shared.theta
     worst = 0.0
     for one, flight in zip(flown, flights, strict=True):

@@ -1,6 +1,7 @@
 """``advisor batch``: the numbers of ``analyze``, each log once, failures listed, resumable."""
 
 import json
+import resource
 import shutil
 from pathlib import Path
 
@@ -8,14 +9,18 @@ import pyarrow.parquet as pq
 import pytest
 
 from advisor.aircraft import PARAMETERS, Aircraft
-from advisor.batch.flight import Task, kept, sha256_of
+from advisor.batch.flight import Analyzed, Task, kept, sha256_of
 from advisor.batch.logs import AircraftMap, find_logs, read_map
+from advisor.batch.tables import aircraft_of, mixed_up
 from advisor.problems import ConfigurationError, UnusableInputError
 from sim.effects.fitting import flight_of
 from sim.record import record
 from sim.scenario import Noise, Scenario
 from tests.conftest import Advisor
-from tests.flights import TWO, recorded
+from tests.flights import SHIPPED, TWO, recorded
+
+CASES = Path(__file__).parents[1] / "cases"
+"""One flight, cut to a manoeuvre, as three kinds of log."""
 
 
 @pytest.fixture
@@ -84,6 +89,53 @@ def test_the_second_run_analyzes_nothing_and_gives_the_same_tables_and_page(
     assert {path: path.stat().st_mtime_ns for path in (out / "flights").iterdir()} == stamps
 
 
+def test_a_hundred_logs_are_analyzed_once(advisor: Advisor, tmp_path: Path) -> None:
+    logs, out = tmp_path / "logs", tmp_path / "out"
+    logs.mkdir()
+    shutil.copy(CASES / "t_base.tlog", logs)
+    beginning = (SHIPPED / "arduplane-default-rates.tlog").read_bytes()[:40_000]
+    for number in range(99):
+        # Bytes of no meaning make each a log of its own.
+        (logs / f"flight-{number:02}.tlog").write_bytes(beginning + bytes(number))
+    first = advisor("batch", logs, "-o", out, "--workers", 1)
+    assert first.returncode == 0, first.stderr
+    assert "100 of 100 logs, " in first.stderr
+    made = {path: (path.stat().st_mtime_ns, path.stat().st_ino) for path in (out / "flights").iterdir()}
+    assert len(made) == 100
+    second = advisor("batch", logs, "-o", out, "--workers", 1)
+    assert "100 of 100 logs were analyzed before." in second.stderr
+    assert " a minute" not in second.stderr
+    assert {path: (path.stat().st_mtime_ns, path.stat().st_ino) for path in made} == made
+
+
+def test_logs_of_two_aircraft_with_one_file_are_told_in_one_sentence_and_not_compared() -> None:
+    one, two = (_flown(f"{name}.tlog", system) for name, system in (("a", 1), ("b", 2)))
+    assert mixed_up([one, one]) == []
+    (sentence,) = mixed_up([one, two])
+    assert "my.yaml ardupilot system 1 in a.tlog; my.yaml ardupilot system 2 in b.tlog." in sentence
+    assert "--aircraft-map" in sentence
+    assert len({aircraft_of(one), aircraft_of(two)}) == 2
+
+
+def _flown(log: str, system: int) -> Analyzed:
+    vehicle = {"system": system, "component": 1, "autopilot": "ardupilot"}
+    return Analyzed(log, "my.yaml", "", 0.0, {"usable": True, "log": {"vehicle": vehicle}})
+
+
+def test_a_disk_that_fills_up_ends_the_batch_with_one_sentence_and_no_half_result(
+    folder: Path, advisor: Advisor, tmp_path: Path
+) -> None:
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (5_000, before[1]))
+    try:
+        run = advisor("batch", folder / "flight-11.tlog", "-o", tmp_path / "out", "--workers", 1)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    assert (run.returncode, run.stderr.count("\n")) == (2, 1)
+    assert run.stderr.startswith(f"-o: {tmp_path / 'out'} cannot be written to: File too large.")
+    assert [path for path in (tmp_path / "out").rglob("*") if path.is_file()] == []
+
+
 def test_two_processes_give_the_tables_of_one(folder: Path, advisor: Advisor, tmp_path: Path) -> None:
     for workers in (1, 2):
         advisor("batch", folder, "-o", tmp_path / f"out-{workers}", "--workers", workers)
@@ -123,7 +175,7 @@ def test_a_map_gives_each_log_its_aircraft_and_lists_logs_without_one(
     assert f"{folder / 'flight-11.tlog'} matches no pattern" in run.stderr
     rows = pq.read_table(tmp_path / "out" / "flights.parquet").to_pylist()
     assert {Path(row["log"]).name: row["aircraft"] for row in rows if row["usable"]} == {
-        "flight-12.tlog": "known.yaml ardupilot"
+        "flight-12.tlog": "known.yaml ardupilot system 1"
     }
 
 
@@ -184,4 +236,4 @@ def test_results_below_a_file_are_refused_in_one_sentence(
     run = advisor("batch", folder / "flight-11.tlog", "-o", tmp_path / "file" / "out")
     assert run.returncode == 2
     assert run.stderr.startswith("-o: ")
-    assert "cannot be written to: Not a directory" in run.stderr
+    assert f"lies below the file {tmp_path / 'file'}" in run.stderr

@@ -21,7 +21,7 @@ def flown(number: int, elevator: float = 1.0) -> Analyzed:
     document = {
         "usable": True,
         "problems": [],
-        "log": {"vehicle": {"autopilot": "px4"}},
+        "log": {"vehicle": {"system": 1, "autopilot": "px4"}},
         "maneuvers": [{"verdict": "accepted"}, {"verdict": "rejected"}],
         "flight_test": {"sentence": "Continue: the criterion is 40 %."},
     }
@@ -58,7 +58,7 @@ def test_a_row_is_a_flight_with_its_day_and_what_came_of_it(page: Page) -> None:
         "1",
         "/logs/of a/campaign/flight-1.bin",
         "2027-01-16 08:00",
-        "a.yaml px4",
+        "a.yaml px4 system 1",
         "1 of 2",
         "Continue: the criterion is 40 %.",
     ]
@@ -99,8 +99,8 @@ def test_without_a_change_the_page_says_so(flights: int, sentence: str) -> None:
 def test_each_aircraft_has_trends_of_its_own() -> None:
     two = [flown(1), replace(flown(2), aircraft_file="b.yaml")]
     text = index_page(two)
-    assert "<h2>a.yaml px4</h2>" in text
-    assert "<h2>b.yaml px4</h2>" in text
+    assert "<h2>a.yaml px4 system 1</h2>" in text
+    assert "<h2>b.yaml px4 system 1</h2>" in text
     assert text.count("<svg") == 12
 
 

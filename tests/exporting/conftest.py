@@ -9,10 +9,11 @@ import pytest
 
 from advisor.aircraft import Aircraft
 from advisor.exporting.formats import WRITERS, write_formats
-from advisor.exporting.reading import WholeFlights, dataset, read_whole
+from advisor.exporting.reading import dataset
 from advisor.exporting.staging import staged
 from advisor.exporting.table import Dataset
 from advisor.report.document import analysis_document
+from advisor.whole_flights import WholeFlights, read_whole
 from tests.flights import FOUR, recorded
 
 

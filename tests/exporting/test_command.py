@@ -65,7 +65,7 @@ def test_a_place_below_a_file_is_refused_in_one_sentence(
     (tmp_path / "file").write_text("")
     run = advisor("export", exported.log, "-o", tmp_path / "file" / "out")
     assert run.returncode == 2
-    assert "cannot be written to: Not a directory. Make room or name another place." in run.stderr
+    assert f"lies below the file {tmp_path / 'file'}; name a folder elsewhere." in run.stderr
     assert "Traceback" not in run.stderr
 
 

@@ -32,7 +32,10 @@ function looked(frame) {{
   return {{
     width: inside.innerWidth, wide, cut, figures: page.querySelectorAll("svg").length,
     loaded: inside.performance.getEntriesByType("resource").map(entry => entry.name),
-    least_height: Math.min(...[...page.querySelectorAll("svg")].map(e => e.getBoundingClientRect().height)),
+    least_height: Math.min(...[...page.querySelectorAll("svg")]
+      .filter(e => e.checkVisibility()).map(e => e.getBoundingClientRect().height)),
+    seen: [...page.querySelectorAll(".broad, .narrow")].filter(e => e.checkVisibility())
+      .map(e => e.className),
   }};
 }}
 addEventListener("load", () => {{
@@ -75,3 +78,4 @@ def test_the_page_asks_for_nothing_and_overflows_nowhere(reported: Reported, tmp
         assert one["cut"] == []
         assert one["figures"] > 10
         assert one["least_height"] > 60.0
+    assert [one["seen"] for one in seen] == [["broad"], ["narrow"]]

@@ -114,7 +114,19 @@ def test_a_full_disk_leaves_the_old_page_and_no_half_one(
     out = tmp_path / "page.md"
     out.write_text("the page of yesterday", encoding="utf-8")
     answer = advisor("report", reported.short_log, "-o", out)
-    assert answer.returncode == 70
-    assert "The system refused" in answer.stderr
+    assert (answer.returncode, answer.stderr.count("\n")) == (2, 1)
+    assert answer.stderr.startswith(f"-o: {out} cannot be written to: File too large.")
     assert [path.name for path in tmp_path.iterdir()] == ["page.md"]
     assert out.read_text(encoding="utf-8") == "the page of yesterday"
+
+
+def test_the_last_manoeuvre_is_predicted_by_those_before_it(reported: Reported) -> None:
+    assert "Manoeuvre 3 is held out: manoeuvres 1, 2 predict its response." in reported.page.text
+    captions = re.findall(r"Manoeuvre 3, (\S+): the prediction's band is ±", reported.page.text)
+    assert captions == ["α", "q", "a_z"]
+
+
+def test_without_three_accepted_manoeuvres_nothing_is_predicted(reported: Reported) -> None:
+    state = replace(reported.content.state, maneuvers=reported.content.state.maneuvers[:2])
+    text = page(replace(reported.content, state=state), "md")
+    assert "A prediction needs at least 3 accepted manoeuvres." in text

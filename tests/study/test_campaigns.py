@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,12 +14,14 @@ from advisor.decision.stopping import progress
 from advisor.oem.estimate import Estimate
 from advisor.oem.problem import Problem, Record, Signal
 from advisor.oem.solution import Solution, solve
+from advisor.running.runner import results_in_order, run_here
 from advisor.study import flaws, readings, run
-from advisor.study.campaigns import RULES, fly_campaigns, outcome
+from advisor.study.campaigns import RULES, Block, fly_campaigns, judge, outcome, table_blocks
 from advisor.study.estimating import estimate_copies
 from advisor.study.figure import curve, in_terminal
 from advisor.study.flying import Scene, fly_named, noise_scale
 from advisor.study.paper import ORDER
+from advisor.study.plan import Study
 from advisor.study.table import as_document, row
 
 SCENE = Scene()
@@ -29,7 +32,7 @@ CAMPAIGNS = 40
 @pytest.fixture(scope="module")
 def flown() -> list[list[Estimate]]:
     """Forty campaigns at 1 % noise."""
-    return fly_campaigns(SCENE, 1.0, CAMPAIGNS, seed=1)
+    return fly_campaigns(Block(SCENE, 1.0, CAMPAIGNS, (1, 1000)))
 
 
 def test_every_campaign_has_the_papers_seven_manoeuvres(flown: list[list[Estimate]]) -> None:
@@ -80,20 +83,30 @@ def test_a_campaign_that_never_stops_counts_as_infinitely_long(flown: list[list[
 
 
 def test_the_readings_of_the_advisor_are_the_rules_themselves(flown: list[list[Estimate]]) -> None:
-    ours = [r for r in readings.compare(flown, 1.0) if r.reading == "as the advisor does"]
+    ours = [
+        r
+        for r in readings.compare([readings.needed_by_reading(flown)], 1.0)
+        if r.reading == "as the advisor does"
+    ]
     for result in ours:
         needed = [outcome(c, result.rule, PLAN).needed for c in flown]
         assert result.never_percent == 100.0 * np.mean([n is None for n in needed])
 
 
 def test_a_window_of_four_cannot_stop_after_three(flown: list[list[Estimate]]) -> None:
-    four = [r for r in readings.compare(flown, 1.0) if r.reading == "(12): n + 1 members"]
+    four = [
+        r
+        for r in readings.compare([readings.needed_by_reading(flown)], 1.0)
+        if r.reading == "(12): n + 1 members"
+    ]
     assert {r.as_paper_percent for r in four} == {0.0}
 
 
-def test_both_flaws_of_the_papers_rules_show(flown: list[list[Estimate]]) -> None:
-    found = flaws.measure(flown, seed=1)
+def test_both_flaws_of_the_papers_rules_show() -> None:
+    ordinary, near_zero = table_blocks(SCENE, 1.0, CAMPAIGNS, seed=1), flaws.near_zero_blocks(CAMPAIGNS, 1)
+    found = flaws.measure([judge(block) for block in ordinary], [judge(block) for block in near_zero])
     assert found.thrown_away_percent == pytest.approx(50.0, abs=8.0)
+    assert found.near_zero_campaigns == CAMPAIGNS
     assert found.near_zero_never_percent > 90.0
     assert found.near_zero_information is not None
 
@@ -138,13 +151,24 @@ def _with(template: Estimate, solution: Solution) -> Estimate:
 
 
 def test_the_whole_study_reports_where_the_paper_lies() -> None:
-    told: list[tuple[int, int]] = []
-    report = run.table_1(10, seed=3, progress=lambda done, total: told.append((done, total)))
+    study = run.table_1(10, seed=3)
+    told: list[int] = []
+    report = study.report(results_in_order(run_here, study.work, study.tasks, told.append))
     text = "\n".join(report.lines)
     assert "continuous, 2.5 %: it needed 7" in text
     assert "Two flaws" in text
-    assert told[-1][0] == told[-1][1]
+    assert told == list(range(len(study.tasks)))
     document = json.loads(json.dumps(report.document, allow_nan=False))
     assert len(document["rows"]) == 9
     assert len(document["figure_5"]) == 6
     assert document["noise_reading"] == "std"
+
+
+@pytest.mark.parametrize(
+    "study", [run.table_1(70, 3), run.advice(3, 3), run.change(30, 3), run.early_stops(7, 3)]
+)
+def test_no_two_tasks_of_a_study_have_the_same_seed_and_together_they_are_all_campaigns(
+    study: Study[Any, Any],
+) -> None:
+    assert len(set(study.tasks)) == len(study.tasks)
+    assert max(task.campaigns for task in study.tasks) < sum(task.campaigns for task in study.tasks)

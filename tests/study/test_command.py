@@ -1,7 +1,9 @@
 """``advisor study`` as a user calls it."""
 
 import json
+import resource
 from pathlib import Path
+from typing import Any
 
 import pytest
 from click.testing import CliRunner, Result
@@ -11,17 +13,26 @@ from advisor.commands import demo
 from advisor.commands.study import command
 from advisor.problems import ConfigurationError
 from advisor.study import advised
+from advisor.study.figure import Curve, draw
 from tests.schemas import breaches
 
 # The study runs once for each figure.
 pytestmark = pytest.mark.xdist_group("study")
+ALONE = ("--workers", "1")
+"""In this process."""
+
+
+def told(kind: str, workers: str = "1") -> Any:
+    """The document of a kind of study."""
+    result = CliRunner().invoke(command, [kind, "--campaigns", "10", "--json", "--workers", workers])
+    return json.loads(result.stdout)
 
 
 @pytest.fixture(scope="module")
 def pictured(tmp_path_factory: pytest.TempPathFactory) -> dict[Path, Result]:
     """What the same study printed beside each of two figures."""
     folder = tmp_path_factory.mktemp("figures")
-    arguments = ["--campaigns", "10", "--seed", "4", "--json", "--figure"]
+    arguments = ["--campaigns", "10", "--seed", "4", "--json", *ALONE, "--figure"]
     return {
         path: CliRunner().invoke(command, [*arguments, str(path)])
         for path in (folder / "figure.svg", folder / "figure.png")
@@ -43,15 +54,33 @@ def test_the_same_seed_gives_the_same_study(pictured: dict[Path, Result]) -> Non
     assert first == again
 
 
+def test_two_processes_give_the_study_of_one() -> None:
+    assert told("--change", workers="2") == told("--change")
+
+
 def test_figure_five_is_written_as_a_picture(pictured: dict[Path, Result]) -> None:
     assert [path.read_bytes()[:5] for path in pictured] == [b"<?xml", b"\x89PNG\r"]
 
 
+def test_a_disk_that_fills_up_leaves_the_old_figure_and_no_half_one(tmp_path: Path) -> None:
+    figure = tmp_path / "figure.svg"
+    figure.write_text("the figure of yesterday")
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (5_000, before[1]))
+    try:
+        with pytest.raises(OSError, match="File too large"):
+            draw([Curve("continuous", 1.0, (None, (1.0, 2.0, 3.0)))], figure)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    assert [path.read_text() for path in tmp_path.iterdir()] == ["the figure of yesterday"]
+
+
 def test_without_json_it_is_told_in_lines() -> None:
-    told = CliRunner().invoke(command, ["--campaigns", "10"]).stdout
-    assert "continuous" in told
-    assert "schema" not in told
-    assert max(map(len, told.split("\n"))) <= 80
+    result = CliRunner().invoke(command, ["--campaigns", "10", *ALONE])
+    assert "continuous" in result.stdout
+    assert "schema" not in result.stdout
+    assert "40 of 40 campaigns, " in result.stderr
+    assert max(map(len, result.stdout.split("\n"))) <= 80
 
 
 @pytest.mark.parametrize(
@@ -75,21 +104,26 @@ def test_a_figure_that_cannot_be_drawn_is_refused_before_a_campaign_is_flown(
 
 
 def test_following_the_advice_saves_manoeuvres() -> None:
-    savings = advised.measure(5, seed=1, cases=[("twin jet", 10.0)])
+    pairs = advised.pairs(5, seed=1, cases=[("twin jet", 10.0)])
+    savings = advised.savings(pairs, [advised.fly(pair) for pair in pairs])
     assert [s.same_excursion for s in savings] == [True, False]
     assert min(s.percent for s in savings) > 20.0
 
 
 @pytest.mark.study
 def test_what_the_advice_saves_is_told_for_two_aircraft() -> None:
-    document = json.loads(CliRunner().invoke(command, ["--advice", "--campaigns", "10", "--json"]).stdout)
+    document = json.loads(
+        CliRunner().invoke(command, ["--advice", "--campaigns", "10", "--json", *ALONE]).stdout
+    )
     assert {row["aircraft"] for row in document["rows"]} == {"twin jet", "UAV"}
     assert {row["same_excursion"] for row in document["rows"]} == {True, False}
     assert min(row["fewer_percent"] for row in document["rows"]) > 10.0
 
 
 def test_a_changed_aircraft_is_noticed_within_two_manoeuvres() -> None:
-    document = json.loads(CliRunner().invoke(command, ["--change", "--campaigns", "10", "--json"]).stdout)
+    document = json.loads(
+        CliRunner().invoke(command, ["--change", "--campaigns", "10", "--json", *ALONE]).stdout
+    )
     lost = [row for row in document["rows"] if row["lost"]]
     assert {(row["lost"], row["noise_percent"]) for row in lost} == {
         (name, noise) for name in ("M_alpha", "Z_alpha") for noise in (1.0, 2.5, 5.0)
@@ -110,6 +144,6 @@ def test_the_demonstration_decides_by_the_papers_rule_unless_told_otherwise_and_
 ) -> None:
     asked: list[Aircraft] = []
     monkeypatch.setattr(demo, "advise", lambda source, title, aircraft: asked.append(aircraft))
-    told = CliRunner().invoke(demo.command, options)
+    said_so = CliRunner().invoke(demo.command, options)
     assert [aircraft.campaign.rule for aircraft in asked] == [rule]
-    assert told.stdout.startswith(said)
+    assert said_so.stdout.startswith(said)

@@ -42,6 +42,8 @@ class Figure:
     caption: str
     """Description of the picture, also for readers who cannot see it."""
     size: Literal["wide", "half", "third", "quarter"] = "wide"
+    narrow: Callable[[], str] | None = None
+    """Draws the picture for a phone, where the broad one would be too small to read."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,7 @@ from typing import Any
 
 from advisor.aircraft import Aircraft
 from advisor.campaign.state import CampaignState
-from advisor.report.page.course import Course
+from advisor.flight.power_on import PowerOn
 
 Document = Mapping[str, Any]
 
@@ -34,8 +34,8 @@ class Content:
     names: tuple[str, ...]
     """Name of each log, flight by flight."""
     aircraft: Aircraft
-    courses: tuple[Course, ...]
-    """Channels over each whole power-on."""
+    power_ons: tuple[tuple[int, PowerOn], ...]
+    """Every power-on, whole, with the number of its flight, 0 for the first."""
     doctor: tuple[Document, ...]
     """``advisor.doctor/1`` of each log."""
     gap: Document | None

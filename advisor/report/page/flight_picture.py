@@ -8,14 +8,16 @@ from matplotlib.figure import Figure as Drawing
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from advisor.campaign.state import JudgedManeuver
+from advisor.flight.power_on import PowerOn
 from advisor.flight.record import Channel
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section
 from advisor.report.page.content import Content
-from advisor.report.page.course import SHOWN, Course, thinned
 from advisor.report.page.drawing import BLUE, ORANGE, picture
+from advisor.report.page.thinned import thinned
 from advisor.report.quantities import CHANNELS
 from advisor.vehicle_time import CLOCK, clock
 
+_SHOWN = ("elevator", "alpha", "q", "airspeed", "height")
 _BINS = 500
 _EXPLAINED = (
     "Elevator δe (trailing edge down positive), angle of attack α, pitch rate q, air speed V as logged, "
@@ -31,23 +33,24 @@ def flight_picture(content: Content) -> Section:
 
 def _blocks(content: Content) -> Iterator[Block]:
     drawn = False
-    for course in content.courses:
-        here = [j for j in content.state.maneuvers if j.maneuver.power_on == (course.flight, course.boot)]
+    for flight, power_on in content.power_ons:
+        here = [j for j in content.state.maneuvers if j.maneuver.power_on == (flight, power_on.boot)]
         if not here:
             continue
         drawn = True
-        name = f"flight-{course.flight}-{course.boot}"
-        svg = picture(name, 7.4, 5.4, _paint, course, here)
-        power_on = f", power-on {course.boot + 1}" if course.boot else ""
-        where = f"{content.names[course.flight]}{power_on}"
-        yield Gallery((Figure(svg, f"{where}. {_EXPLAINED}"),))
+        name = f"flight-{flight}-{power_on.boot}"
+        broad = picture(name, 7.4, 5.4, _paint, power_on, here)
+        narrow = picture(f"{name}-narrow", 3.8, 5.4, _paint, power_on, here)
+        later = f", power-on {power_on.boot + 1}" if power_on.boot else ""
+        where = f"{content.names[flight]}{later}"
+        yield Gallery((Figure(broad, f"{where}. {_EXPLAINED}", narrow=narrow),))
     if not drawn:
         yield Paragraph("No manoeuvre was found, so there is nothing to mark.")
 
 
-def _paint(drawing: Drawing, course: Course, judged: Sequence[JudgedManeuver]) -> None:
-    channels = {c.name: c for c in course.channels if len(c) > 1}
-    shown = [name for name in SHOWN if name in channels]
+def _paint(drawing: Drawing, power_on: PowerOn, judged: Sequence[JudgedManeuver]) -> None:
+    channels = {name: channel for name, channel in power_on.channels.items() if len(channel) > 1}
+    shown = [name for name in _SHOWN if name in channels]
     rows = drawing.subplots(len(shown), 1, sharex=True, squeeze=False)[:, 0]
     for axes, name in zip(rows, shown, strict=True):
         quantity = CHANNELS[name]

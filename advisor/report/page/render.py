@@ -17,13 +17,14 @@ from advisor.report.page.flying import flying
 from advisor.report.page.gap import gap
 from advisor.report.page.headline import headline
 from advisor.report.page.maneuvers import maneuvers
+from advisor.report.page.prediction import prediction
 from advisor.report.page.provenance import provenance
 from advisor.report.page.telemetry import telemetry
 
 PageFormat = Literal["html", "md"]
 _PARTS = (
-    headline, flight_picture, maneuvers, fits, estimates, criterion, flying, gap, telemetry, assumptions,
-    provenance,
+    headline, flight_picture, maneuvers, fits, prediction, estimates, criterion, flying, gap, telemetry,
+    assumptions, provenance,
 )  # fmt: skip
 
 

@@ -1,4 +1,4 @@
-"""Every parameter's course over the manoeuvres at a glance."""
+"""The history of every parameter's estimate over the manoeuvres, at a glance."""
 
 from dataclasses import replace
 
@@ -25,9 +25,9 @@ class Courses(Pane):
 
 All eight parameters at a glance: each manoeuvre's estimate with its 95 % interval (1.96 σ, corrected for
 coloured residuals) against the number of the manoeuvre. The solid line is the joint estimate, the dashed
-line the aircraft file's model. A manoeuvre that does not tell a parameter has no bar.
+line the aircraft file's model. A manoeuvre without information about a parameter has no bar.
 
-An interval that leaves the joint estimate out shows a manoeuvre that disagrees; a row of intervals that
+An interval that excludes the joint estimate shows a manoeuvre that disagrees; a row of intervals that
 drifts shows an aircraft that changes.
 """
 
@@ -51,7 +51,8 @@ drifts shows an aircraft that changes.
         self._draw()
 
     def on_resize(self, event: Resize) -> None:
-        """Only the lowest plots have room for the numbers of the manoeuvres on a small terminal."""
+        """Number the manoeuvres only under the lowest plots on a small terminal, where the others have no
+        room."""
         self._draw()
 
     def _draw(self) -> None:

@@ -38,7 +38,7 @@ _SHARE_OF_ELEVATOR = 8
 
 
 class Fit(Pane):
-    """The elevator, then two plots an output: measured with fitted, and what is left between them."""
+    """The elevator, then two plots for each output: measured with fitted, and the residual."""
 
     BINDINGS = keys.FIT
     TITLE = "4 Fit"
@@ -50,7 +50,7 @@ class Fit(Pane):
 The elevator of the selected manoeuvre; below it, for each output, what was measured (dots) and what the
 model says (line), and the residual (measured minus fitted). Time counts from the start of the input.
 **o** brings the next output to the top when not all have room; what the record lacks is left out. A
-residual without pattern is noise; one with a pattern is something the model does not know.
+residual without pattern is noise; one with a pattern shows an effect that the model lacks.
 
 **left/right** moves a cursor, with **shift** sample by sample; a click sets it. The first line of each
 plot reads the values there. **up/down**, **z/Z** or the wheel zooms in time, **<** and **>** move what is
@@ -97,7 +97,7 @@ it away.
         self._draw()
 
     def lay_over(self, number: int | None) -> None:
-        """Choose the manoeuvre that the next ``show`` lays over the selected one; None: none."""
+        """Choose the manoeuvre that the next ``show`` lays over the selected one. None: none."""
         self._over_number = number
 
     def rows(self) -> Rows | None:

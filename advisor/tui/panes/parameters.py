@@ -33,10 +33,10 @@ class Parameters(Pane):
 
 *model*: the joint estimate over the accepted manoeuvres; *selected*: the selected manoeuvre alone; both
 with 95 % intervals (1.96 σ, corrected for coloured residuals). *prior*: the aircraft file's model; *off
-by*: how many σ it lies from the estimate. A column without room is left away.
+by*: how many σ it lies from the estimate. A column without room is left out.
 
 **up/down** chooses the parameter whose history is drawn: each manoeuvre's value with its interval, the
-prior as a dashed line. *not identifiable*: the input did not tell this parameter from the others; the
+prior as a dashed line. *not identifiable*: the input did not separate this parameter from the others; the
 verdict pane says why.
 """
 

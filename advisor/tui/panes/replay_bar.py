@@ -1,4 +1,4 @@
-"""Where a replay stands; not shown on a live link."""
+"""Position of a replay; hidden on a live link."""
 
 from math import isinf
 
@@ -12,7 +12,7 @@ _WIDTH = 24
 
 
 class ReplayBar(Part, Lines):
-    """Playing or paused, speed, the place in the log, and the vehicle's time there."""
+    """Playing or paused, speed, position in the log, and the vehicle's time there."""
 
     def show(self, view: View) -> None:
         """Write the line when the source is a replay."""

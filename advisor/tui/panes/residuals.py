@@ -1,4 +1,4 @@
-"""Whether the residuals of the selected manoeuvre are white noise."""
+"""Test whether the residuals of the selected manoeuvre are white noise."""
 
 from dataclasses import dataclass
 
@@ -91,7 +91,7 @@ lacks. A wave means a mode that the model misses. Intervals allow for coloured r
         self._only_with_fit()
 
     def _only_with_fit(self) -> None:
-        """Hide what is no output of the fit; without any, one plot says why."""
+        """Hide plots that are no output of the fit. Without any output, one plot shows the reason."""
         shown = self._fits or OUTPUTS[:1]
         for name in OUTPUTS:
             self.query_one(f"#white-{name}").display = name in shown

@@ -16,9 +16,9 @@ from distributed import LocalCluster
 from threadpoolctl import threadpool_info
 
 from advisor.aircraft import Aircraft
-from advisor.batch.cluster import compare_versions, run_on_cluster
 from advisor.batch.flight import Task, analyze_shared, sha256_of
 from advisor.problems import ConfigurationError
+from advisor.running.cluster import compare_versions, run_on_cluster
 from tests.batch.test_command import folder as folder
 from tests.conftest import Advisor
 
@@ -26,7 +26,7 @@ SAME = {"advisor": "1.0", "python": "3.11.2.final.0", "numpy": "2.1"}
 
 TWO_SLEEPS = """
 import sys, time
-from advisor.batch.cluster import run_on_cluster
+from advisor.running.cluster import run_on_cluster
 from advisor.problems import ConfigurationError
 try:
     for _ in run_on_cluster(time.sleep, [0.0, 60.0], sys.argv[1], print):
@@ -97,6 +97,13 @@ def test_a_cluster_gives_the_tables_of_one_process_and_a_second_run_does_nothing
     assert {path: path.stat().st_mtime_ns for path in (shared / "flights").iterdir()} == stamps
 
 
+def test_a_cluster_gives_the_study_of_one_process(scheduler: str, advisor: Advisor) -> None:
+    words = ("study", "--change", "--campaigns", 10, "--json")
+    shared = advisor(*words, "--scheduler", scheduler)
+    assert shared.returncode == 0, shared.stderr
+    assert shared.stdout == advisor(*words, "--workers", 1).stdout
+
+
 def test_a_worker_that_is_killed_in_the_middle_loses_nothing(scheduler: str, tmp_path: Path) -> None:
     marks = [tmp_path / name for name in ("a", "b", "first", "c", "d")]
     done = dict(run_on_cluster(die_the_first_time, marks, scheduler, pytest.fail))
@@ -125,7 +132,7 @@ def test_a_scheduler_that_ends_in_the_middle_is_told_in_one_sentence() -> None:
         assert run.stdout.readline() == "done\n"
     _, told = run.communicate(timeout=60.0)
     assert told.count("\n") == 1, told
-    assert "is lost. What was done is kept" in told
+    assert "is lost. Repeat the command" in told
 
 
 @pytest.mark.parametrize("address", ["8786", "host:8786", "http://host:8786", "tcp://host", "tcp://[:1"])

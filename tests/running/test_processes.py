@@ -8,7 +8,7 @@ import time
 from concurrent.futures import BrokenExecutor
 from pathlib import Path
 
-from advisor.batch.runner import run_all
+from advisor.running.processes import run_in_processes
 
 
 def square(number: int) -> int:
@@ -25,13 +25,13 @@ def say_who_and_sleep(file: str) -> None:
 
 
 def test_every_task_is_done_once_and_an_error_belongs_to_its_task() -> None:
-    done = dict(run_all(square, [1, 7, 3], workers=2))
+    done = dict(run_in_processes(square, [1, 7, 3], workers=2))
     assert (done[1], done[3]) == (1, 9)
     assert isinstance(done[7], ValueError)
 
 
 def test_a_worker_that_is_killed_costs_its_own_task_only() -> None:
-    told = list(run_all(square, [1, 2, 13, 4, 5, 6], workers=2))
+    told = list(run_in_processes(square, [1, 2, 13, 4, 5, 6], workers=2))
     done = dict(told)
     assert len(told) == 6
     assert {n: done[n] for n in (1, 2, 4, 5, 6)} == {1: 1, 2: 4, 4: 16, 5: 25, 6: 36}
@@ -39,7 +39,7 @@ def test_a_worker_that_is_killed_costs_its_own_task_only() -> None:
 
 
 def test_without_tasks_no_process_is_started() -> None:
-    assert list(run_all(square, [], workers=2)) == []
+    assert list(run_in_processes(square, [], workers=2)) == []
 
 
 def is_alive(pid: int) -> bool:
@@ -51,9 +51,9 @@ def is_alive(pid: int) -> bool:
 def test_workers_end_when_the_program_is_killed(tmp_path: Path) -> None:
     file = tmp_path / "pid"
     program = (
-        "from advisor.batch.runner import run_all\n"
-        "from tests.batch.test_runner import say_who_and_sleep\n"
-        f"if __name__ == '__main__': list(run_all(say_who_and_sleep, [{str(file)!r}], 1))\n"
+        "from advisor.running.processes import run_in_processes\n"
+        "from tests.running.test_processes import say_who_and_sleep\n"
+        f"if __name__ == '__main__': list(run_in_processes(say_who_and_sleep, [{str(file)!r}], 1))\n"
     )
     script = tmp_path / "program.py"
     script.write_text(program)
