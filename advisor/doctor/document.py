@@ -1,5 +1,6 @@
 """The ``advisor.doctor/1`` document for scripts, in SI units, with None for missing values."""
 
+from collections.abc import Sequence
 from typing import Any
 
 from advisor.doctor.examination import Examination, Limit
@@ -11,13 +12,17 @@ from advisor.report.text import UNITS
 SCHEMA = "advisor.doctor/1"
 
 
-def doctor_document(findings: Examination | None, problem: Problem | None = None) -> dict[str, Any]:
+def doctor_document(
+    findings: Examination | None, problem: Problem | None = None, commands: Sequence[str] = ()
+) -> dict[str, Any]:
     """Build the document of ``advisor doctor --json``.
 
     Parameters
     ----------
     findings
         Findings of the examination. None when nothing was heard; ``problem`` then gives the reason.
+    commands
+        Commands to type next.
     """
     if findings is None:
         assert problem is not None
@@ -84,6 +89,7 @@ def doctor_document(findings: Examination | None, problem: Problem | None = None
         },
         "limits": [_limit(limit) for limit in findings.limits],
         "notes": list(findings.notes),
+        "next": list(commands),
         "expected_std": expectation and {name: number(std) for name, std in expectation.std.items()},
         "expected_ci95": expectation
         and {

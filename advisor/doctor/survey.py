@@ -65,7 +65,7 @@ class Clocks:
     boots: int
     """Number of the vehicle's power-ons within the record."""
     drift_percent: float
-    """Speed of vehicle time relative to the host's time, in percent above 1. NaN when unknown."""
+    """Excess of the vehicle clock's speed over the host clock's, in percent. NaN when unknown."""
     arrival_jitter_ms: float
     """Standard deviation of arrival relative to the vehicle's clock, which the link causes."""
     strayed: Mapping[str, float]

@@ -1,6 +1,7 @@
 """The findings for people: first the verdict, then the remedies, then the tables."""
 
 import math
+from collections.abc import Sequence
 
 from rich.console import Console, ConsoleOptions, RenderResult
 from rich.table import Table
@@ -10,6 +11,7 @@ from advisor.aircraft import PARAMETERS
 from advisor.doctor.examination import Examination, Limit
 from advisor.doctor.expectation import frequency
 from advisor.doctor.instruments import STRAYED_SHARE
+from advisor.printable import printable
 from advisor.report.document import NORMAL_95
 from advisor.report.text import UNITS, shown
 
@@ -21,8 +23,8 @@ _NOTABLE_COST = 1.1
 class ExaminationText:
     """Renders an examination with rich."""
 
-    def __init__(self, findings: Examination) -> None:
-        self._findings = findings
+    def __init__(self, findings: Examination, commands: Sequence[str] = ()) -> None:
+        self._findings, self._commands = findings, commands
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
         found = self._findings
@@ -50,6 +52,9 @@ class ExaminationText:
                 unit = UNITS[name].removeprefix("1") if UNITS[name] == "1" else UNITS[name]
                 said = f"± {half:.2g} {unit}" if math.isfinite(half) else "not told by these rates"
                 yield Text(f"  {name:<10} {said}".rstrip())
+        if self._commands:
+            yield Text("\nNext:")
+            yield from (Text(f"  {printable(command)}") for command in self._commands)
 
     def _who(self) -> str:
         vehicle = self._findings.vehicle

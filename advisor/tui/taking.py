@@ -25,9 +25,12 @@ def pane_name(pane: Pane, view: View) -> str:
 
 
 def log_of(pane: Pane, view: View) -> Path:
-    """Choose the log that names the files: that of the selected manoeuvre, else the newest."""
+    """Choose the log that names the files: that of the selected manoeuvre, else the newest.
+
+    A page in a browser knows the log of a replay by the title alone.
+    """
     if not view.logs:
-        return WITHOUT_LOG
+        return Path(Path(view.title.split(", ")[0]).name) if view.tempo is not None else WITHOUT_LOG
     judged = view.judged if pane.OF_SELECTED else None
     flight = judged.maneuver.flight if judged is not None else view.state.flight
     return view.logs[min(flight, len(view.logs) - 1)]

@@ -1,6 +1,7 @@
 """Any pane can be copied, and saved beside the log."""
 
 import csv
+from dataclasses import replace
 from io import StringIO
 from pathlib import Path
 
@@ -8,8 +9,13 @@ import numpy as np
 import pytest
 from textual.app import App
 
+from advisor.tui.panes.courses import Courses
+from advisor.tui.panes.fit import Fit
 from advisor.tui.rows import Rows
 from advisor.tui.settings import Settings
+from advisor.tui.source import Tempo
+from advisor.tui.taking import log_of
+from advisor.tui.view import view_before_first
 from tests.tui import flights
 from tests.tui.stage import Stage, stage
 
@@ -29,6 +35,21 @@ def test_what_is_not_known_stands_as_nothing_in_a_row():
     assert (
         Rows(("a", "b", "c"), ((1, np.nan, None), ("x, y", 0.5, 2.0))).csv() == 'a,b,c\n1,,\n"x, y",0.5,2\n'
     )
+
+
+def test_files_are_named_after_the_log_of_the_manoeuvre_that_the_pane_shows():
+    view = view_before_first(flights.AIRCRAFT, "udpin:127.0.0.1:0", None, (Path("a.tlog"), Path("b.tlog")))
+    second = replace(flights.judged(1), maneuver=replace(flights.judged(1).maneuver, flight=1))
+    view = replace(view, state=replace(view.state, maneuvers=(second,)))
+    assert log_of(Fit(), view) == Path("b.tlog")
+    assert log_of(Courses(), view) == Path("a.tlog")
+
+
+def test_without_a_log_at_hand_files_are_named_after_the_replay_or_the_advisor():
+    live = view_before_first(flights.AIRCRAFT, "udpin:127.0.0.1:0", None)
+    page = view_before_first(flights.AIRCRAFT, "one.tlog, other.tlog", Tempo())
+    assert log_of(Courses(), live) == Path("advisor")
+    assert log_of(Courses(), page) == Path("one.tlog")
 
 
 async def test_every_pane_can_be_copied():
