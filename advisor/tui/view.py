@@ -1,6 +1,7 @@
 """One moment as the panes see it."""
 
 from dataclasses import dataclass
+from math import nan
 from pathlib import Path
 
 from advisor.aircraft import Aircraft
@@ -59,7 +60,7 @@ def view_before_first(
     verdict = FlightTestVerdict(plan.rule, "continue", "No manoeuvre has been flown yet.", None, limit, None)
     state = CampaignState(
         vehicle=None,
-        now_s=0.0,
+        now_s=nan,
         duration_s=0.0,
         mode="",
         channels={},
