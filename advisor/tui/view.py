@@ -1,6 +1,7 @@
 """State of one moment for the panes."""
 
 from dataclasses import dataclass
+from math import nan
 from pathlib import Path
 
 from advisor.aircraft import Aircraft
@@ -60,7 +61,7 @@ def view_before_first(
     verdict = FlightTestVerdict(plan.rule, "continue", "No manoeuvre has been flown yet.", None, limit, None)
     state = CampaignState(
         vehicle=None,
-        now_s=0.0,
+        now_s=nan,
         duration_s=0.0,
         mode="",
         channels={},

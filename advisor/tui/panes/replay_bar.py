@@ -26,7 +26,7 @@ class ReplayBar(Part, Lines):
         over = 0.0 < playback.duration_s <= playback.position_s
         state = "❚❚ paused" if tempo.paused else "■ at the end" if over else "► replay"
         jump = "  ►► jumping" if playback.hurrying else ""
-        self.write(f"{state}  {speed}  {place}  {share:4.0%}  at {_now(view)}{jump}")
+        self.write(f"{state}  {speed}  {place}  {100.0 * share:3.0f} %  at {_now(view)}{jump}")
 
 
 def _now(view: View) -> str:
