@@ -125,7 +125,7 @@ damage: .venv/.developed ## 10,000 damaged logs and more, read and analysed (DAM
 
 .PHONY: site words pages examples
 site: .venv/.developed ## the documentation site, built strictly into build/site
-	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict --quiet
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict
 
 words: .venv/.developed ## words of the documentation written by hand, and their limit
 	$(BIN)/python -m benchmarks.pages.words

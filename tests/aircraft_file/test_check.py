@@ -8,6 +8,7 @@ import pytest
 from advisor.aircraft_file.keys import KEYS
 from advisor.config import parse_aircraft
 from tests.conftest import Advisor
+from tests.schemas import breaches
 
 LOG = Path(__file__).parents[1] / "cases" / "t_base.tlog"
 
@@ -17,6 +18,7 @@ def _lacking(advisor: Advisor, folder: Path, text: str, *options: object) -> dic
     file = folder / "a.yaml"
     file.write_text(text)
     document = json.loads(advisor("aircraft", "check", file, "--json", *options).stdout)
+    assert breaches("aircraft", document) == []
     return {lack["key"]: lack["wrong"] for lack in document["lacks"]}
 
 
