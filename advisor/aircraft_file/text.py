@@ -79,5 +79,7 @@ def _commented(sentence: str, indent: str = "") -> list[str]:
 
 def _inline(value: Any) -> str:
     """Write a value on one line of YAML."""
-    text: str = yaml.safe_dump(value, default_flow_style=True, allow_unicode=True, width=10_000)
+    text: str = yaml.safe_dump(
+        value, default_flow_style=True, allow_unicode=True, width=10_000, sort_keys=False
+    )
     return text.removesuffix("\n").removesuffix("...").strip()
