@@ -26,7 +26,11 @@ ESCAPE = b"\x1b[27u"
 PAUSE_S = 0.05
 """Between two keys; a hand is not faster."""
 
-_ON_THE_SCREEN = ("switch", "pane", "speed")
+_PANES = (
+    "2 Verdict", "3 Parameters", "4 Fit", "9 Residuals", "0 Correlation", "h History",
+    "5 Live", "6 Criterion", "7 Channels", "8 Log",
+)  # fmt: skip
+_ON_THE_SCREEN = ("switch", "pane", "cursor", "zoom", "speed")
 """Keys before which no question or page lies over the screen."""
 
 Shown = Callable[[str], bool]
@@ -61,10 +65,12 @@ def dialogue(themes: Iterator[str]) -> Iterator[Key]:
     """One round over the keys, from the engineer's screen and back to it."""
     yield Key("switch", b"p", says("█"))
     yield Key("switch", b"e", headed("1 Manoeuvres"))
-    for number, title in enumerate(
-        ("Verdict", "Parameters", "Fit", "Live", "Criterion", "Channels", "Log"), 2
-    ):
-        yield Key("pane", str(number).encode(), says_focus(f"{number} {title}"))
+    for title in _PANES:
+        yield Key("pane", title[:1].encode(), says_focus(title))
+        if title == "4 Fit":
+            yield Key("cursor", b"\x1b[C", says("  t "))
+            yield Key("zoom", b"z", says("w: whole record"))
+            yield Key("zoom", b"w", says_no_more("w: whole record"))
     yield Key("pane", b"\t", says_focus("1 Manoeuvres"))
     yield Key("help", b"?", says("One row for each"))
     yield Key("close help", b"?", says_no_more("One row for each"))

@@ -142,6 +142,7 @@ def command(
             by_hand=by_hand,
             kept=partial(_decided, (*start.earlier, process.recording)),
             names=[*(printable(log.name) for log in start.earlier), start.campaign.master],
+            logs=[*start.earlier, *recordings],
             show=show,
         )
 

@@ -97,5 +97,6 @@ def command(
         by_hand=by_hand,
         marks=marks,
         names=series.names,
+        logs=series.logs,
         show=show,
     )

@@ -14,6 +14,8 @@ from advisor.problems import UnusableInputError
 from advisor.tui.source import Source, Tempo
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from advisor.campaign.campaign import Campaign
     from advisor.campaign.hand_decisions import ByHand
     from advisor.flight.marks import Mark
@@ -41,6 +43,7 @@ def advise(
     marks: "Sequence[Mark]" = (),
     kept: "Callable[[], ByHand] | None" = None,
     names: Sequence[str] = (),
+    logs: "Sequence[Path]" = (),
     show: "Show | None" = None,
 ) -> None:
     """Run a campaign on a source: on screens, as lines of text, or as ``show`` does.
@@ -64,6 +67,8 @@ def advise(
         beginning. Such a source survives the death of the estimating process.
     names
         Names of the campaign's logs, in their order.
+    logs
+        Logs and recordings, flight by flight; panes are saved into the folder of theirs.
     show
         Shows the campaign elsewhere; None: the terminal does, or lines of text come without a terminal.
 
@@ -80,7 +85,7 @@ def advise(
     make_campaign = partial(_campaign, aircraft, target_system, tell, tuple(marks), tuple(names))
     if show is not None or not headless():
         task = Task(open_source, partial(make_campaign, True), before, kept)
-        (show or _show)(task, aircraft, title, tempo)
+        (show or partial(_show, tuple(logs)))(task, aircraft, title, tempo)
     elif kept is not None:
         task = Task(open_source, partial(make_campaign, False), before, kept)
         narrate(task, click.echo, partial(click.echo, err=True))
@@ -102,12 +107,12 @@ def _campaign(
     return Campaign(aircraft, target_system, settle, tell, by_hand=by_hand, marks=marks, names=names)
 
 
-def _show(task: "Task", aircraft: Aircraft, title: str, tempo: Tempo | None) -> None:
+def _show(logs: "Sequence[Path]", task: "Task", aircraft: Aircraft, title: str, tempo: Tempo | None) -> None:
     from advisor.tui.app import AdvisorApp
     from advisor.tui.remote import RemoteConductor
     from advisor.tui.settings import load_settings
 
-    app = AdvisorApp(RemoteConductor(task), aircraft, title, tempo, load_settings())
+    app = AdvisorApp(RemoteConductor(task), aircraft, title, tempo, load_settings(), logs)
     with in_order():
         app.run()
     if app.failure is not None:

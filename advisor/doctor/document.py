@@ -6,7 +6,8 @@ from typing import Any
 from advisor.doctor.examination import Examination, Limit
 from advisor.doctor.expectation import RESPONSE_ALPHA_DEG, frequency
 from advisor.problems import Problem
-from advisor.report.document import number
+from advisor.report.document import NORMAL_95, number
+from advisor.report.text import UNITS
 
 SCHEMA = "advisor.doctor/1"
 
@@ -37,6 +38,7 @@ def doctor_document(
             "alpha": None,
             "limits": [told],
             "expected_std": None,
+            "expected_ci95": None,
         }
     vehicle, elevator, alpha, clocks = findings.vehicle, findings.elevator, findings.alpha, findings.clocks
     stopping = [limit for limit in findings.limits if limit.stops]
@@ -89,6 +91,11 @@ def doctor_document(
         "notes": list(findings.notes),
         "next": list(commands),
         "expected_std": expectation and {name: number(std) for name, std in expectation.std.items()},
+        "expected_ci95": expectation
+        and {
+            name: {"half": number(NORMAL_95 * std), "unit": UNITS[name].replace("deg", "rad")}
+            for name, std in expectation.std.items()
+        },
         "expected_for": expectation
         and {
             "input": "3-2-1-1",

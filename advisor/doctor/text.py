@@ -12,6 +12,8 @@ from advisor.doctor.examination import Examination, Limit
 from advisor.doctor.expectation import frequency
 from advisor.doctor.instruments import STRAYED_SHARE
 from advisor.printable import printable
+from advisor.report.document import NORMAL_95
+from advisor.report.text import UNITS, shown
 
 _SIGNS = {"ready": "✓", "usable with limits": "!", "not usable": "✗"}
 _STYLES = {"ready": "bold green", "usable with limits": "bold yellow", "not usable": "bold red"}
@@ -42,10 +44,14 @@ class ExaminationText:
             yield Text(
                 f"Expected errors of one 3-2-1-1, steps of {found.expectation.unit_s:.2f} s and "
                 f"±{found.expectation.amplitude_deg:.1f} deg, computed from {found.assumed.source}, "
-                f"natural frequency {frequency(found.assumed.model):.1f} rad/s:"
+                f"natural frequency {frequency(found.assumed.model):.1f} rad/s. "
+                "Half of the 95 % interval (1.96 standard deviations):"
             )
             for name in PARAMETERS:
-                yield Text(f"  {name:<10} ±{found.expectation.std[name]:.3g}")
+                half = shown(name, NORMAL_95 * found.expectation.std[name])
+                unit = UNITS[name].removeprefix("1") if UNITS[name] == "1" else UNITS[name]
+                said = f"± {half:.2g} {unit}" if math.isfinite(half) else "not told by these rates"
+                yield Text(f"  {name:<10} {said}".rstrip())
         if self._commands:
             yield Text("\nNext:")
             yield from (Text(f"  {printable(command)}") for command in self._commands)

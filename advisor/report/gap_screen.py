@@ -38,7 +38,7 @@ _PICTURE = (
     (("timing", "time stamps"), ("accelerometer", "accelerometer"), ("attitude_sensor", "attitude")),
 )
 _SCORES = "per cent: how well a block would explain the gap on its own, the best 100 %"
-_AS_GOOD = "100 % next to the marked block: the data alone can hardly distinguish the two"
+_AS_GOOD = "100 % elsewhere: the data alone can hardly distinguish the two blocks"
 _ROUNDS_TO_ALL = 0.995
 _BAR = 40
 _SPEED = "airspeed_variation"

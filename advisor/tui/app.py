@@ -1,10 +1,10 @@
 """The terminal application: one campaign, two screens."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import partial
 from math import inf
-from pathlib import PurePath
+from pathlib import Path, PurePath
 from time import monotonic
 from typing import Any, ClassVar
 
@@ -56,6 +56,8 @@ class AdvisorApp(replay_actions.ReplayActions, link_actions.LinkActions, HandAct
         How a replay starts; None: the source is no replay.
     settings : Settings, optional
         Theme, first screen, keys.
+    logs : sequence of Path
+        Logs and recordings, flight by flight, beside which panes are saved; none: in the current folder.
     """
 
     TITLE = "inflight advisor"
@@ -91,10 +93,11 @@ class AdvisorApp(replay_actions.ReplayActions, link_actions.LinkActions, HandAct
         title: str,
         tempo: Tempo | None = None,
         settings: Settings | None = None,
+        logs: Sequence[Path] = (),
     ) -> None:
         super().__init__()
         self.settings = settings or Settings()
-        self.view = view_before_first(aircraft, title, tempo)
+        self.view = view_before_first(aircraft, title, tempo, tuple(logs))
         self.conductor = conductor
         self.failure: BaseException | None = None
         """What the caller must answer for: why the thread broke off, or why the input could not be used."""
@@ -190,7 +193,7 @@ class AdvisorApp(replay_actions.ReplayActions, link_actions.LinkActions, HandAct
         if isinstance(self.screen, Face):
             self.screen.say(text, seconds)
         else:
-            self.notify(text, timeout=seconds)
+            self.notify(text, timeout=seconds, markup=False)
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Offer the replay's actions only in a replay, the link's only on a link."""

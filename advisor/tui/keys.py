@@ -36,18 +36,48 @@ SELDOM: list[BindingType] = [
     _key("g", "take_guess", "Take the guessed output", id="guess"),
 ]
 
-PANES = ("manoeuvres", "verdict", "parameters", "fit", "live", "criterion", "channels and link", "log")
+PANES = (
+    ("1", "manoeuvres"),
+    ("2", "verdict"),
+    ("3", "parameters"),
+    ("4", "fit"),
+    ("5", "live"),
+    ("6", "criterion"),
+    ("7", "channels and link"),
+    ("8", "log"),
+    ("9", "residuals"),
+    ("0", "correlation"),
+    ("h", "history"),
+    ("u", "flying qualities"),
+)
+"""Key and name of each pane, in the order of their numbers."""
 
 ENGINEER: list[BindingType] = [
     _key("x", "exclude", "Exclude", id="exclude", show=True),
     _key("n", "note", "Note", id="note", show=True),
+    _key("c", "copy", "Copy the pane", id="copy"),
+    _key("s", "save", "Save the pane", id="save"),
     _key("o", "next_output", "Next output", id="next_output"),
-    *(_key(str(k), f"choose({k})", f"Pane: {name}", id=f"pane_{k}") for k, name in enumerate(PANES, 1)),
+    _key("l", "lay_over", "Lay a manoeuvre over", id="lay_over"),
+    *(_key(key, f"choose({k})", f"Pane: {name}", id=f"pane_{k}") for k, (key, name) in enumerate(PANES, 1)),
 ]
+
+FIT: list[BindingType] = [
+    _key("left", "cursor(-1)", "Cursor to the left", id="cursor_left"),
+    _key("right", "cursor(1)", "Cursor to the right", id="cursor_right"),
+    _key("shift+left", "cursor(-1, True)", "One sample to the left", id="sample_left"),
+    _key("shift+right", "cursor(1, True)", "One sample to the right", id="sample_right"),
+    _key("up,z", "zoom(1)", "Zoom in", id="zoom_in"),
+    _key("down,Z", "zoom(-1)", "Zoom out", id="zoom_out"),
+    _key("less_than_sign", "pan(-1)", "Earlier", id="pan_left"),
+    _key("greater_than_sign", "pan(1)", "Later", id="pan_right"),
+    _key("w", "whole", "Whole record", id="whole"),
+]
+"""Keys that work while the fit pane has the focus."""
 
 ACTIONS = frozenset(
     binding.id
-    for binding in (*EVERYWHERE, *REPLAY, *SELDOM, *ENGINEER)
+    for binding in (*EVERYWHERE, *REPLAY, *SELDOM, *ENGINEER, *FIT)
     if isinstance(binding, Binding) and binding.id is not None
 )
 """The names of all actions, as settings may rebind them."""

@@ -1,6 +1,7 @@
 """One moment as the panes see it."""
 
 from dataclasses import dataclass
+from pathlib import Path
 
 from advisor.aircraft import Aircraft
 from advisor.campaign.state import CampaignState, JudgedManeuver
@@ -28,6 +29,8 @@ class View:
     """Why nothing can be judged of the whole stream, while nothing has been."""
     selected: int | None = None
     """Number of the manoeuvre chosen by hand; None: always the newest."""
+    logs: tuple[Path, ...] = ()
+    """Logs and recordings, flight by flight, beside which files are written; none: in the current folder."""
 
     @property
     def obstacles(self) -> tuple[Problem, ...]:
@@ -47,7 +50,9 @@ class View:
         return next((j for j in reversed(self.state.maneuvers) if j.excluded_because is None), None)
 
 
-def view_before_first(aircraft: Aircraft, title: str, tempo: Tempo | None) -> View:
+def view_before_first(
+    aircraft: Aircraft, title: str, tempo: Tempo | None, logs: tuple[Path, ...] = ()
+) -> View:
     """What there is to show before the first report: nothing flown, nothing heard."""
     plan = aircraft.campaign
     limit = limit_percent(plan.rule, plan)
@@ -62,4 +67,4 @@ def view_before_first(aircraft: Aircraft, title: str, tempo: Tempo | None) -> Vi
         flight_test=verdict,
         model=None,
     )
-    return View(state, LinkHealth("waiting", f"Opening {title}."), None, aircraft, title, tempo)
+    return View(state, LinkHealth("waiting", f"Opening {title}."), None, aircraft, title, tempo, logs=logs)

@@ -84,5 +84,5 @@ def aircraft_file(case: Case) -> dict[str, Any]:
         "elevator": elevator,
         "accelerometer": {"arm_m": round(case.scenario.instruments.accelerometer_arm_m, 4)},
         "reference_airspeed_m_s": round(case.scenario.airspeed_m_s or 0.0, 3),
-        "model": {name: float(f"{value:.6g}") for name, value in case.belief.as_dict().items()},
+        "model": {name: float(f"{value:.6g}") for name, value in case.prior.as_dict().items()},
     }

@@ -85,6 +85,6 @@ def _named(case: Case, mirrored: bool) -> SimulatedCase:
             servo.append((key, round(sizes[key], 5)))
             effects = {effect: {key: -round(sizes[key], 5)}}
     return SimulatedCase(
-        "simulator", scenario, case.belief, effects, case.blocks, case.gap, case.hard, case.background,
+        "simulator", scenario, case.prior, effects, case.blocks, case.gap, case.hard, case.background,
         f"jsbsim:{scenario.aircraft}", tuple(servo),
     )  # fmt: skip

@@ -1,10 +1,11 @@
 """Runs the real application headless over a campaign and a source under the test's control."""
 
 import re
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Sequence
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
 from html import unescape
+from pathlib import Path
 from time import monotonic
 from typing import Any
 
@@ -78,15 +79,21 @@ async def stage(
     size: tuple[int, int] = (120, 40),
     settings: Settings | None = None,
     source: Source | None = None,
+    logs: Sequence[Path] = (),
 ) -> AsyncIterator[Stage]:
     """The application over a campaign that goes through ``states``, shown the first of them."""
     campaign = StagedCampaign(states or (flights.state(),))
     source = source or HandFedSource()
     tempo = Tempo() if isinstance(source, Playable) else None
     app = AdvisorApp(
-        Conductor(source, lambda by_hand: campaign), flights.AIRCRAFT, "udpin:127.0.0.1:0", tempo, settings
+        Conductor(source, lambda by_hand: campaign),
+        flights.AIRCRAFT,
+        "udpin:127.0.0.1:0",
+        tempo,
+        settings,
+        logs,
     )
-    async with app.run_test(size=size) as pilot:
+    async with app.run_test(size=size, notifications=True) as pilot:
         here = Stage(app, pilot, campaign, source)
         await here.until(lambda: app.view.state.vehicle == campaign.state.vehicle and app.is_attached)
         yield here

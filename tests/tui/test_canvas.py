@@ -35,6 +35,27 @@ def test_a_diagonal_line_has_no_holes():
     assert dots(canvas) == 16
 
 
+def test_a_bar_stands_upright_and_a_dash_lies_through_its_middle():
+    canvas = Canvas(4, 2, (0.0, 7.0), (0.0, 7.0))
+    x, y = np.array([4.0]), np.array([3.0])
+    canvas.bars(x, y - 3.0, y + 3.0, 0)
+    canvas.dashes(x, y, 0)
+    assert canvas.text() == ["  ⡆ ", " ⠈⡏ "]
+
+
+def test_a_solid_level_has_twice_the_dots_of_a_dashed_one():
+    dashed, solid = (Canvas(6, 2, (0.0, 1.0), (0.0, 1.0)) for _ in range(2))
+    dashed.level(0.5, 0)
+    solid.level(0.5, 0, dashed=False)
+    assert (dots(dashed), dots(solid)) == (6, 12)
+
+
+def test_a_cursor_is_a_dotted_upright_line():
+    canvas = Canvas(2, 2, (0.0, 3.0), (0.0, 1.0))
+    canvas.upright(2.0, 0)
+    assert canvas.text() == [" ⠅", " ⠅"]
+
+
 def test_nan_breaks_a_line():
     whole, broken = (Canvas(8, 1, (0.0, 4.0), (0.0, 1.0)) for _ in range(2))
     x = np.arange(5.0)

@@ -34,9 +34,19 @@ async def test_the_table_shows_each_manoeuvre_with_what_every_rule_says():
     async with stage(flights.state(4), settings=ENGINEER, size=(80, 24)) as here:
         await filled(here, 4)
         rows = table(here, "Maneuvers")
-        assert rows[0][:4] == ["1", "1:45", "3-2-1-1", "✓ GOOD"]
-        assert (rows[1][3], rows[1][8]) == ("✗ REPEAT", "amplitude; bank")
-        assert rows[3][4:7] == ["✓", "✗", "✓"]
+        assert rows[0][:4] == ["1", "1:45.0", "3-2-1-1", "✓ GOOD"]
+        assert (rows[1][3], rows[1][5]) == ("✗ REPEAT", "amplitude, bank")
+        assert rows[3][4] == "✓✗✓"
+
+
+@pytest.mark.parametrize("size", [(80, 24), (110, 30), (140, 45), (160, 42), (200, 60)], ids=str)
+async def test_no_reason_and_no_time_is_cut_in_the_table_at_any_size(size: tuple[int, int]):
+    async with stage(flights.state(4), settings=ENGINEER, size=size) as here:
+        await filled(here, 4)
+        row = table(here, "Maneuvers")[1]
+        assert row[-1] in ("amplitude, bank", "amplitude +1")
+        shown = next(line for line in here.page().split("\n") if "2:10.0" in line)
+        assert f"{row[-1]} " in shown.split("│")[1].split("┃")[0]
 
 
 async def test_the_eight_parameters_stand_with_intervals_beside_the_prior_model():
@@ -46,14 +56,23 @@ async def test_the_eight_parameters_stand_with_intervals_beside_the_prior_model(
         assert set(rows) == {"Z_0", "Z_α", "Z_q", "Z_δe", "M_0", "M_α", "M_q", "M_δe"}
         assert rows["M_α"][0].startswith("−4")
         assert " ± 3.7" in rows["M_α"][0]
-        assert rows["M_α"][1] == "−52.8"
-        assert rows["M_α"][2].endswith("σ")
+        assert rows["M_α"][2] == "−52.8"
+        assert rows["M_α"][3].endswith("σ")
 
 
 async def test_a_parameter_that_cannot_be_told_has_no_number():
     async with stage(flights.state(4), settings=ENGINEER, size=WIDE) as here:
         await here.until(lambda: len(table(here, "Parameters")) == 8)
-        assert table(here, "Parameters")[2][1::3] == ["not identifiable", "not identifiable"]
+        assert table(here, "Parameters")[2][1:3] == ["not identifiable", "not identifiable"]
+
+
+@pytest.mark.parametrize(("size", "columns"), [((110, 30), 3), ((140, 45), 5)], ids=str)
+async def test_no_number_of_the_parameters_is_cut(size: tuple[int, int], columns: int):
+    async with stage(flights.state(2), settings=ENGINEER, size=size) as here:
+        await here.until(lambda: len(table(here, "Parameters")) == 8)
+        rows = here.app.screen.query_one("Parameters DataTable", DataTable)
+        assert len(rows.columns) == columns
+        assert rows.virtual_size.width <= rows.size.width
 
 
 async def test_selecting_a_manoeuvre_shows_its_fit_and_new_ones_do_not_take_it_away():
@@ -80,7 +99,8 @@ async def test_the_last_row_follows_the_newest_manoeuvre():
 async def test_every_output_is_plotted_in_its_unit_with_its_residual():
     async with stage(flights.state(2), settings=ENGINEER, size=WIDE) as here:
         await filled(here, 2)
-        charts = [plot.chart for plot in here.app.screen.query_one(Fit).query(Plot)]
+        elevator, *charts = (plot.chart for plot in here.app.screen.query_one(Fit).query(Plot))
+        assert elevator.y_label == "δe [deg]"
         assert [c.y_label for c in charts[::2]] == ["α [deg]", "q [deg/s]", "a_z [m/s²]", "θ [deg]"]
         assert all([s.name for s in c.series] == ["measured", "fitted"] for c in charts[::2])
         assert all([s.name for s in c.series] == ["residual"] for c in charts[1::2])
@@ -110,7 +130,7 @@ async def test_excluding_asks_for_a_reason_and_records_it():
         assert isinstance(here.app.focused, Input)
         await here.press(*"gust", "enter")
         await here.until(lambda: ("exclude", 2, "gust") in here.campaign.calls)
-        await here.until(lambda: table(here, "Maneuvers")[1][3::5] == ["∅ EXCLUDED", "gust"])
+        await here.until(lambda: table(here, "Maneuvers")[1][3::2] == ["∅ EXCLUDED", "gust"])
         await here.press("x", *"fine", "enter")
         await here.until(lambda: ("include", 2) in here.campaign.calls)
         await here.until(lambda: ("note", 2, "included again: fine") in here.campaign.calls)
@@ -186,4 +206,5 @@ async def test_the_log_tells_of_the_campaign_and_of_the_link_in_order():
         source.deliver()
         await here.until(lambda: "manoeuvre 2 judged" in here.words("EventLog Lines"))
         lines = here.words("EventLog Lines").split("\n")
-        assert [line.split()[0] for line in lines] == ["ardupilot", "113", "link:", "138"]
+        assert [line[9:].split()[0] for line in lines] == ["following", "manoeuvre", "link:", "manoeuvre"]
+        assert [line[:7].strip() for line in lines] == ["–", "1:53.0", "–", "2:18.0"]

@@ -22,6 +22,7 @@ from tests.tui.stage import Stage, stage
 from tests.tui.stand_ins import HandFedSource, columns
 
 ENGINEER = Settings(screen="engineer")
+BINDINGS = [*keys.EVERYWHERE, *keys.REPLAY, *keys.SELDOM, *keys.ENGINEER, *keys.FIT]
 
 
 def footer(here: Stage) -> str:
@@ -66,8 +67,8 @@ async def test_one_key_switches_between_the_two_screens():
 
 async def test_help_explains_the_pane_that_has_the_focus():
     async with stage(settings=ENGINEER, size=(80, 24)) as here:
-        for number, pane in enumerate(PANES, 1):
-            await here.press(str(number), "question_mark")
+        for (key, _), pane in zip(keys.PANES, PANES, strict=True):
+            await here.press(key, "question_mark")
             await here.until(lambda: isinstance(here.app.screen, Explain))
             text = str(here.app.screen.query_one(Static).render())
             assert text.startswith((pane.HELP or "").splitlines()[0].removeprefix("# "))
@@ -83,8 +84,8 @@ def test_every_pane_has_help_of_its_own(pane: type[Pane]):
 
 async def test_a_number_key_shows_its_pane_and_focuses_it():
     async with stage(settings=ENGINEER, size=(80, 24)) as here:
-        for number, pane in enumerate(PANES, 1):
-            await here.press(str(number))
+        for (key, _), pane in zip(keys.PANES, PANES, strict=True):
+            await here.press(key)
             around = here.app.focused.ancestors_with_self
             assert any(isinstance(node, pane) and node.display for node in around)
 
@@ -100,8 +101,21 @@ async def test_every_action_can_be_given_another_key():
 
 
 def test_every_binding_has_a_name_of_its_own():
-    bindings = [*keys.EVERYWHERE, *keys.REPLAY, *keys.SELDOM, *keys.ENGINEER]
-    assert len(keys.ACTIONS) == len(bindings)
+    assert len(keys.ACTIONS) == len(BINDINGS)
+
+
+def test_no_key_has_two_meanings():
+    pressed = [key for binding in BINDINGS for key in binding.key.split(",")]
+    assert len(pressed) == len(set(pressed))
+
+
+async def test_the_help_of_the_fit_lists_the_keys_that_read_values():
+    async with stage(settings=ENGINEER, size=(80, 24)) as here:
+        await here.press("4", "question_mark")
+        await here.until(lambda: isinstance(here.app.screen, Explain))
+        text = str(here.app.screen.query_one(Static).render())
+        for name in ("cursor_left", "zoom_in", "pan_right", "whole", "lay_over", "copy", "save"):
+            assert re.search(rf" {name}\n", text), name
 
 
 async def test_the_palette_offers_every_action():

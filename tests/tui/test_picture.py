@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from advisor.tui.picture import drawn
+from advisor.tui.svg import drawn
 from tests.tui import flights
 from tests.tui.stage import stage
 

@@ -32,7 +32,7 @@ STEPS = {
     "pulse": ((1, -1.0),),
 }
 """Steps of each input: units of time, and share of the amplitude with trailing edge down. The areas of all
-but a pulse sum to zero, so that the aircraft returns to trim; the first step of a ``3211`` raises the
+but a pulse sum to zero, so that the aircraft returns to trim. The first step of a ``3211`` raises the
 nose."""
 TYPICAL_NOISE = {"alpha": np.radians(0.1), "q": np.radians(0.2), "a_z": 0.1, "theta": np.radians(0.1)}
 """Standard deviations assumed for unmeasured instruments, in SI units of the channel."""

@@ -1,99 +1,202 @@
-"""Measured, fitted and residual, for every output of the selected manoeuvre."""
+"""The elevator over measured, fitted and residual, for every output of the selected manoeuvre."""
 
+import numpy as np
 from textual.app import ComposeResult
 from textual.events import Resize
 
-from advisor.oem.estimate import ChannelFit, Estimate
+from advisor.campaign.state import JudgedManeuver
+from advisor.flight.messages import FloatArray
+from advisor.report.digits import signed
+from advisor.tui import keys
+from advisor.tui.panes.fit_charts import (
+    ELEVATOR,
+    OUTPUTS,
+    elevator_chart,
+    extent,
+    fit_chart,
+    fits_of,
+    in_sight,
+    measured,
+    no_fit,
+    residual_chart,
+    rows_of_fit,
+)
 from advisor.tui.panes.pane import Pane
-from advisor.tui.plot.chart import Chart, Series
+from advisor.tui.plot.sight import Sight
 from advisor.tui.plot.widget import Plot
+from advisor.tui.plot.window import Window
+from advisor.tui.rows import Rows
 from advisor.tui.view import View
-from advisor.tui.words import channel
 
-OUTPUTS = ("alpha", "q", "a_z", "theta")
-_ROWS_FOR_ONE = 14
+_ROWS_FOR_ONE = 11
+"""Rows that an output and its residual need where several stand above one another."""
+_LEAST_ROWS_FOR_BOTH = 8
+"""Rows below which an output has no room for its residual."""
+_ROWS_OF_ELEVATOR = 3
+_SHARE_OF_ELEVATOR = 8
+"""The elevator takes one row in eight, and never less than ``_ROWS_OF_ELEVATOR``."""
 
 
 class Fit(Pane):
-    """Two plots an output: measured with fitted, and what is left between them."""
+    """The elevator, then two plots an output: measured with fitted, and what is left between them."""
 
+    BINDINGS = keys.FIT
     TITLE = "4 Fit"
+    SHORT = "4 Fit"
+    OF_SELECTED = True
     HELP = """\
 # Fit
 
-For each output of the selected manoeuvre: what was measured (dots) and what the model says (line), below
-it the residual (measured minus fitted). **o** brings the next output to the top when not all have room.
-A residual without pattern is noise; one with a pattern is something the model does not know.
+The elevator of the selected manoeuvre; below it, for each output, what was measured (dots) and what the
+model says (line), and the residual (measured minus fitted). Time counts from the start of the input.
+**o** brings the next output to the top when not all have room; what the record lacks is left out. A
+residual without pattern is noise; one with a pattern is something the model does not know.
+
+**left/right** moves a cursor, with **shift** sample by sample; a click sets it. The first line of each
+plot reads the values there. **up/down**, **z/Z** or the wheel zooms in time, **<** and **>** move what is
+shown, **w** shows the whole record again.
+
+**l** lays a second manoeuvre over this one, aligned at the start of the input: the measured curves and
+the residuals of both. The selected one is drawn as before, the second as a pale line; **l** with 0 takes
+it away.
 """
 
     def compose(self) -> ComposeResult:
-        """All plots; those without room are hidden."""
+        """Lay out all plots; those without room are hidden."""
+        yield Plot(no_fit(ELEVATOR, ""), id="fit-elevator")
         for name in OUTPUTS:
-            yield Plot(_no_fit(name, "no manoeuvre has ended yet."), id=f"fit-{name}", classes="fit")
-            yield Plot(_no_fit(name, ""), id=f"residual-{name}", classes="residual")
+            yield Plot(no_fit(name, "no manoeuvre has ended yet."), id=f"fit-{name}", classes="fit")
+            yield Plot(no_fit(name, ""), id=f"residual-{name}", classes="residual")
 
     def on_mount(self) -> None:
         """Begin with the angle of attack."""
         super().on_mount()
         self._first = 0
-        self._shown: object = None
+        self._judged: JudgedManeuver | None = None
+        self._over: JudgedManeuver | None = None
+        self._over_number: int | None = None
+        self._sight: Sight | None = None
 
     def show(self, view: View) -> None:
-        """Draw the selected manoeuvre when it is another one."""
+        """Draw the selected manoeuvre, and the one over it, when another one is to be shown."""
         judged = view.judged
-        if judged is self._shown:
+        over = next((j for j in view.state.maneuvers if j.maneuver.number == self._over_number), None)
+        over = None if over is judged else over
+        if judged is self._judged and over is self._over:
             return
-        self._shown = judged
-        fits = judged.estimate.fits[0] if judged and isinstance(judged.estimate, Estimate) else {}
-        why = judged.estimate.text if judged and not isinstance(judged.estimate, Estimate) else ""
-        start_s = judged.maneuver.span.start_s if judged else 0.0
-        for name in OUTPUTS:
-            fit = fits.get(name)
-            missing = _no_fit(name, why or "not an output of this fit: the log has no such channel.")
-            self.query_one(f"#fit-{name}", Plot).chart = _fit_chart(fit, start_s) if fit else missing
-            self.query_one(f"#residual-{name}", Plot).chart = (
-                _residual_chart(fit, start_s) if fit else missing
-            )
-        if judged:
-            self.subtitle(f"manoeuvre {judged.maneuver.number}")
-        self._make_room()
+        self._judged, self._over = judged, over
+        if judged is not None:
+            first, last = extent(judged, over)
+            before = self._sight or Sight(Window.whole(first, last))
+            self._sight = before.over(first, last, self._stamps())
+        self._draw()
 
     def next_output(self) -> None:
         """Bring the next output to the top."""
-        self._first = (self._first + 1) % len(OUTPUTS)
-        self._make_room()
+        self._first = (self._first + 1) % len(self._outputs())
+        self._draw()
+
+    def lay_over(self, number: int | None) -> None:
+        """Choose the manoeuvre that the next ``show`` lays over the selected one; None: none."""
+        self._over_number = number
+
+    def rows(self) -> Rows | None:
+        """Give one row for each sample of each channel, in sight or not."""
+        return rows_of_fit(self._judged, self._over) if self._judged is not None else None
 
     def on_resize(self, event: Resize) -> None:
         """Show as many outputs as have room."""
-        self._make_room()
+        self._draw()
 
-    def _make_room(self) -> None:
-        count = max(1, self.size.height // _ROWS_FOR_ONE)
-        shown = {OUTPUTS[(self._first + k) % len(OUTPUTS)] for k in range(min(count, len(OUTPUTS)))}
+    def on_plot_pointed(self, event: Plot.Pointed) -> None:
+        """Read the values where the mouse points."""
+        event.stop()
+        self._look(self._sight and self._sight.pointed(event.x, self._stamps()))
+
+    def on_plot_wheeled(self, event: Plot.Wheeled) -> None:
+        """Zoom about the mouse; with shift, pan."""
+        event.stop()
+        if event.sideways:
+            self.action_pan(-1 if event.up else 1)
+        else:
+            self._look(self._sight and self._sight.zoomed(1 if event.up else -1, event.x))
+
+    def action_cursor(self, direction: int, finely: bool = False) -> None:
+        """Move the cursor."""
+        self._look(self._sight and self._sight.stepped(direction, self._stamps(), finely=finely))
+
+    def action_zoom(self, direction: int) -> None:
+        """Zoom in or out in time."""
+        self._look(self._sight and self._sight.zoomed(direction))
+
+    def action_pan(self, direction: int) -> None:
+        """Show earlier or later times."""
+        self._look(self._sight and self._sight.panned(direction))
+
+    def action_whole(self) -> None:
+        """Show the whole record."""
+        self._look(self._sight and self._sight.whole())
+
+    def _look(self, sight: Sight | None) -> None:
+        if sight is not None and sight != self._sight:
+            self._sight = sight
+            self._draw()
+
+    def _stamps(self) -> FloatArray:
+        """Return the stamps on which the cursor stands: of the output at the top, else of the elevator."""
+        there = self._outputs()
+        for name in (there[self._first % len(there)], ELEVATOR):
+            curve = measured(self._judged, name) if self._judged is not None else None
+            if curve is not None:
+                return curve[0]
+        return np.zeros(0)
+
+    def _draw(self) -> None:
+        """Give the room to as many outputs as fit, and draw them."""
+        elevator = max(_ROWS_OF_ELEVATOR, self.size.height // _SHARE_OF_ELEVATOR)
+        there = self._outputs()
+        count = min(max(1, (self.size.height - elevator) // _ROWS_FOR_ONE), len(there))
+        shown = [there[(self._first + k) % len(there)] for k in range(count)]
+        lowest = max(shown, key=OUTPUTS.index)
+        residuals = self.size.height - elevator >= _LEAST_ROWS_FOR_BOTH
+        self._draw_elevator(elevator)
         for name in OUTPUTS:
-            fit, residual = self.query_one(f"#fit-{name}", Plot), self.query_one(f"#residual-{name}", Plot)
-            fit.display = name in shown
-            residual.display = name in shown and bool(residual.chart.series)
-        self.border_title = self.TITLE if len(shown) == len(OUTPUTS) else f"{self.TITLE}  (o: next output)"
+            self._draw_output(name, name in shown, lowest=name == lowest, with_residual=residuals)
+        self.border_title = self.TITLE if count == len(there) else f"{self.TITLE}  (o: next output)"
+        self._write_subtitle()
 
+    def _outputs(self) -> list[str]:
+        """List the outputs of the fit; without a fit, the one output that says why."""
+        fits = fits_of(self._judged) if self._judged is not None else {}
+        return [name for name in OUTPUTS if name in fits] or [OUTPUTS[0]]
 
-def _no_fit(name: str, why: str) -> Chart:
-    return Chart(channel(name).label, "t [s]", why_empty=why)
+    def _draw_elevator(self, rows: int) -> None:
+        plot = self.query_one("#fit-elevator", Plot)
+        plot.display = self._judged is not None
+        plot.styles.height = rows
+        if self._judged is not None and self._sight is not None:
+            chart = elevator_chart(self._judged, self._over)
+            plot.chart = in_sight(chart, self._sight.window.shown, self._sight.cursor, foot=False)
 
+    def _draw_output(self, name: str, shown: bool, *, lowest: bool, with_residual: bool) -> None:
+        fit, residual = self.query_one(f"#fit-{name}", Plot), self.query_one(f"#residual-{name}", Plot)
+        if self._judged is not None and self._sight is not None:
+            window, cursor = self._sight.window.shown, self._sight.cursor
+            charts = fit_chart(name, self._judged, self._over), residual_chart(name, self._judged, self._over)
+            fit.chart = in_sight(charts[0], window, cursor, foot=lowest and not with_residual)
+            residual.chart = in_sight(charts[1], window, cursor, foot=lowest)
+        fit.display = shown
+        residual.display = shown and with_residual and bool(residual.chart.series)
 
-def _fit_chart(fit: ChannelFit, start_s: float) -> Chart:
-    quantity, t = channel(fit.name), fit.t - start_s
-    return Chart(
-        quantity.label,
-        "t [s]",
-        series=(
-            Series("measured", t, fit.measured * quantity.factor, "measured", "points"),
-            Series("fitted", t, fit.fitted * quantity.factor, "fitted"),
-        ),
-    )
-
-
-def _residual_chart(fit: ChannelFit, start_s: float) -> Chart:
-    quantity = channel(fit.name)
-    residual = Series("residual", fit.t - start_s, fit.residual * quantity.factor, "residual")
-    return Chart(quantity.label, "t [s]", series=(residual,))
+    def _write_subtitle(self) -> None:
+        if self._judged is None or self._sight is None:
+            return
+        number = self._judged.maneuver.number
+        said = [f"manoeuvre {number}"]
+        if self._over is not None:
+            said = [f"manoeuvres {number} and {self._over.maneuver.number}, both from the start of the input"]
+        if self._sight.cursor is not None:
+            said.append(f"t {signed(self._sight.cursor, 3)} s")
+        if self._sight.window.zoomed:
+            said.append("w: whole record")
+        self.subtitle("  ".join(said))

@@ -1,44 +1,74 @@
-"""How one parameter's estimate went from manoeuvre to manoeuvre."""
+"""The course of one parameter's estimate from manoeuvre to manoeuvre."""
+
+from dataclasses import dataclass
 
 import numpy as np
 
 from advisor.aircraft import PARAMETERS as NAMES
+from advisor.flight.messages import FloatArray
 from advisor.oem.estimate import Estimate
 from advisor.tui.plot.chart import Chart, Level, Series
 from advisor.tui.view import View
 from advisor.tui.words import PARAMETERS
 
+_MARGIN = 0.5
+"""Manoeuvres to the left of the first and to the right of the last: no bar stands on the edge of a plot."""
 
-def history_chart(view: View | None, name: str) -> Chart:
-    """Each manoeuvre's value with a bar of ± 1.96 σ, the joint estimate and the prior as levels."""
-    quantity, k = PARAMETERS[name], NAMES.index(name)
+
+@dataclass(frozen=True, slots=True)
+class Course:
+    """One parameter over the manoeuvres, and the values to hold against it, in the unit for people."""
+
+    parameter: str
+    numbers: FloatArray
+    """Shape (n,), numbers of the manoeuvres that tell the parameter."""
+    value: FloatArray
+    """Shape (n,)."""
+    half: FloatArray
+    """Shape (n,), half of each 95 % interval: 1.96 σ, corrected for coloured residuals."""
+    model: float | None
+    """The joint estimate; None while there is none, or where it does not tell the parameter."""
+    prior: float | None
+    """The aircraft file's value; None where it has none."""
+
+
+def course(view: View | None, name: str) -> Course:
+    """Collect one parameter's estimates, manoeuvre by manoeuvre."""
+    factor, k = PARAMETERS[name].factor, NAMES.index(name)
     points = [
         (judged.maneuver.number, judged.estimate)
         for judged in (view.state.maneuvers if view else ())
         if isinstance(judged.estimate, Estimate) and name not in judged.estimate.not_identifiable
     ]
-    if view is None or not points:
+    joint = view.state.model if view else None
+    told = joint is not None and name not in joint.not_identifiable
+    prior = view.aircraft.model.get(name) if view else None
+    return Course(
+        name,
+        np.array([number for number, _ in points], dtype=np.float64),
+        np.array([e.theta[k] for _, e in points], dtype=np.float64) * factor,
+        1.96 * np.array([e.std[k] for _, e in points], dtype=np.float64) * factor,
+        float(joint.theta[k]) * factor if joint is not None and told else None,
+        None if prior is None else prior * factor,
+    )
+
+
+def history_chart(view: View | None, name: str) -> Chart:
+    """Draw each manoeuvre's value with its 95 % interval, and the joint estimate and the prior as levels."""
+    quantity, of = PARAMETERS[name], course(view, name)
+    if len(of.numbers) == 0:
         return Chart(quantity.label, "manoeuvre", why_empty="no manoeuvre has given an estimate of it yet.")
-    numbers = np.array([number for number, _ in points], dtype=np.float64)
-    value = np.array([e.theta[k] for _, e in points]) * quantity.factor
-    half = 1.96 * np.array([e.std[k] for _, e in points]) * quantity.factor
-    gap = np.full(len(numbers), np.nan)
-    bars_x = np.column_stack([numbers, numbers, gap]).ravel()
-    bars_y = np.column_stack([value - half, value + half, gap]).ravel()
-    ticks_x = np.column_stack([numbers - 0.15, numbers + 0.15, gap]).ravel()
-    ticks_y = np.column_stack([value, value, gap]).ravel()
     levels = []
-    if view.state.model is not None and name not in view.state.model.not_identifiable:
-        levels.append(Level("model", float(view.state.model.theta[k]) * quantity.factor, "fitted"))
-    if name in view.aircraft.model:
-        levels.append(Level("prior", view.aircraft.model[name] * quantity.factor, "prior"))
+    if of.model is not None:
+        levels.append(Level("model", of.model, "fitted", dashed=False))
+    if of.prior is not None:
+        levels.append(Level("prior", of.prior, "prior"))
+    values = Series("value ± 95 %", of.numbers, of.value, "measured", "intervals", of.half)
     return Chart(
         quantity.label,
         "manoeuvre",
-        series=(
-            Series("value ± 95 %", bars_x, bars_y, "measured"),
-            Series("", ticks_x, ticks_y, "measured"),
-        ),
+        series=(values,),
         levels=tuple(levels),
         whole_x=True,
+        x_range=(float(of.numbers[0]) - _MARGIN, float(of.numbers[-1]) + _MARGIN),
     )

@@ -7,6 +7,9 @@ from textual.screen import Screen
 from textual.timer import Timer
 from textual.widgets import Static
 
+_MARGINS = 2
+"""Cells beside what is said."""
+
 
 class KeysLine(Static):
     """Key and what it does, in the order of their worth; a click on one presses it.
@@ -28,6 +31,10 @@ class KeysLine(Static):
     def on_resize(self) -> None:
         """Show as many as have room."""
         self._write()
+
+    def has_room_for(self, text: str) -> bool:
+        """Whether a text can be told on the line without being cut."""
+        return len(text) + _MARGINS <= self.size.width
 
     def say(self, text: str, seconds: float) -> None:
         """Tell something in place of the keys; what is still told is replaced."""

@@ -21,6 +21,7 @@ class Live(Pane):
     """Angle of attack, pitch rate and elevator of the manoeuvre in the air."""
 
     TITLE = "5 Live"
+    SHORT = "5 Live"
     HELP = """\
 # Live
 

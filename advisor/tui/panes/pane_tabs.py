@@ -1,17 +1,40 @@
 """Which pane is shown, on terminals too small for all of them."""
 
+from collections.abc import Sequence
+
 from rich.text import Text
 from textual.widgets import Static
 
+_BRACKETS = 2
+
 
 class PaneTabs(Static):
-    """The numbered names of the panes on one line, the chosen one marked with brackets."""
+    """The numbered names of the panes on one line, the chosen one marked with brackets.
 
-    def __init__(self, titles: list[str]) -> None:
+    Parameters
+    ----------
+    titles
+        Title of each pane.
+    short
+        The titles for terminals on which the full ones have no room.
+    """
+
+    def __init__(self, titles: Sequence[str], short: Sequence[str]) -> None:
         super().__init__()
-        self._titles = titles
+        self._titles, self._short = titles, short
+        self._chosen = 0
+
+    def on_resize(self) -> None:
+        """Take the titles that have room."""
+        self._write()
 
     def choose(self, number: int) -> None:
         """Mark one pane."""
-        short = [title.replace(" and link", "") for title in self._titles]
-        self.update(Text(" ".join(f"[{t}]" if k == number else t for k, t in enumerate(short, 1))))
+        self._chosen = number
+        self._write()
+
+    def _write(self) -> None:
+        room = self.size.width - _BRACKETS
+        titles = self._titles if len(" ".join(self._titles)) <= room else self._short
+        marked = (f"[{title}]" if k == self._chosen else title for k, title in enumerate(titles, 1))
+        self.update(Text(" ".join(marked)), layout=False)

@@ -1,7 +1,10 @@
 """The eight parameters with their intervals, against the prior model and manoeuvre by manoeuvre."""
 
+from itertools import accumulate
+
 from rich.text import Text
 from textual.app import ComposeResult
+from textual.events import Resize
 from textual.widgets import DataTable
 
 from advisor.aircraft import PARAMETERS as NAMES
@@ -13,21 +16,24 @@ from advisor.tui.plot.widget import Plot
 from advisor.tui.view import View
 from advisor.tui.words import PARAMETERS
 
-# Name and width: what grows must not push the others about.
-_COLUMNS = (("parameter", 10), ("model ± 95 %", 17), ("prior", 8), ("off by", 7), ("selected ± 95 %", 17))
+_COLUMNS = (("parameter", 11), ("model ± 95 %", 17), ("selected ± 95 %", 17), ("prior", 9), ("off by", 7))
+"""Name and width, with a space at the end: what grows must not push the others about. The last ones are left
+away where they have no room: half a number would be another number."""
+_SCROLL_BAR = 1
 
 
 class Parameters(Pane):
     """Table of the joint estimate, and the history of the parameter under the cursor."""
 
     TITLE = "3 Parameters"
+    SHORT = "3 Par"
     can_focus = False
     HELP = """\
 # Parameters
 
 *model*: the joint estimate over the accepted manoeuvres; *selected*: the selected manoeuvre alone; both
 with 95 % intervals (1.96 σ, corrected for coloured residuals). *prior*: the aircraft file's model; *off
-by*: how many σ it lies from the estimate.
+by*: how many σ it lies from the estimate. A column without room is left away.
 
 **up/down** chooses the parameter whose history is drawn: each manoeuvre's value with its interval, the
 prior as a dashed line. *not identifiable*: the input did not tell this parameter from the others; the
@@ -35,24 +41,36 @@ verdict pane says why.
 """
 
     def compose(self) -> ComposeResult:
-        """The table over the history."""
-        table: DataTable[Text] = DataTable(cursor_type="row", cell_padding=1)
-        for name, width in _COLUMNS:
-            table.add_column(name, width=width)
-        yield table
+        """Lay out the table over the history."""
+        yield DataTable[Text](cursor_type="row", cell_padding=0)
         yield Plot(history_chart(None, NAMES[0]))
 
     def on_mount(self) -> None:
-        """Nothing is shown yet."""
+        """Begin without an estimate."""
         super().on_mount()
         self._view: View | None = None
         self._shown: tuple[object, ...] | None = None
+        self._columns = 0
+
+    def on_resize(self, event: Resize) -> None:
+        """Show as many columns as have room."""
+        columns = _columns_in(self.size.width - _SCROLL_BAR)
+        if columns == self._columns:
+            return
+        self._columns, self._shown = columns, None
+        table = self.query_one(DataTable)
+        table.clear(columns=True)
+        for name, width in _COLUMNS[:columns]:
+            table.add_column(name, width=width)
+        if self._view is not None:
+            self.show(self._view)
 
     def show(self, view: View) -> None:
         """Fill the table anew when an estimate changed."""
         self._view = view
         what = (view.state.maneuvers, view.state.model, view.judged)
-        if self._shown is not None and all(a is b for a, b in zip(what, self._shown, strict=True)):
+        same = self._shown is not None and all(a is b for a, b in zip(what, self._shown, strict=True))
+        if same or not self._columns:
             return
         self._shown = what
         table = self.query_one(DataTable)
@@ -62,7 +80,7 @@ verdict pane says why.
             table.clear()
             for name in NAMES:
                 cells = _cells(name, view.state.model, selected, view.aircraft.model.get(name))
-                table.add_row(*(Text(cell) for cell in cells), key=name)
+                table.add_row(*(Text(cell) for cell in cells[: self._columns]), key=name)
             table.move_cursor(row=row)
         self._draw_history(NAMES[row])
 
@@ -81,14 +99,20 @@ def _cells(name: str, model: object, selected: object, prior: float | None) -> t
     return (
         f"{quantity.symbol} {quantity.unit}".removesuffix(" -"),
         _value(name, model),
+        _value(name, selected),
         _prior(name, model, prior),
         _off_by(name, model, prior),
-        _value(name, selected),
     )
 
 
+def _columns_in(width: int) -> int:
+    """Count the columns that have room, at least those of the names and of the model."""
+    ends = accumulate(width for _, width in _COLUMNS)
+    return max(sum(end <= width for end in ends), 2)
+
+
 def _prior(name: str, estimate: object, prior: float | None) -> str:
-    """The prior in as many digits as the estimate deserves."""
+    """Write the prior in as many digits as the estimate deserves."""
     if prior is None:
         return "-"
     factor = PARAMETERS[name].factor

@@ -34,11 +34,11 @@ class Canvas:
         """Shape (rows, columns). Number of the ink last used in each cell, -1 where none."""
 
     def points(self, x: FloatArray, y: FloatArray, ink: int) -> None:
-        """One dot per sample; what is not finite or lies outside is left out."""
+        """Set one dot for each sample; a sample that is not finite or lies outside is left out."""
         self._set(*self._place(x, y), ink)
 
     def line(self, x: FloatArray, y: FloatArray, ink: int) -> None:
-        """A polyline; a NaN breaks it, and a sample alone between two is a point."""
+        """Draw a polyline; a NaN breaks the line, and a sample alone between two NaN is a point."""
         px, py = self._place(x, y)
         self._set(px, py, ink)
         dx, dy = np.diff(px), np.diff(py)
@@ -50,13 +50,29 @@ class Canvas:
         share = along / np.maximum(count[segment] - 1, 1)
         self._set(start_x[segment] + share * dx[segment], start_y[segment] + share * dy[segment], ink)
 
-    def level(self, y: float, ink: int) -> None:
-        """A dashed horizontal line."""
-        px = np.flatnonzero(np.arange(self._width) % 4 < 2).astype(np.float64)
+    def bars(self, x: FloatArray, low: FloatArray, high: FloatArray, ink: int) -> None:
+        """Draw a vertical line at each x from one value to another."""
+        gap = np.full(len(x), np.nan)
+        self.line(np.column_stack([x, x, gap]).ravel(), np.column_stack([low, high, gap]).ravel(), ink)
+
+    def dashes(self, x: FloatArray, y: FloatArray, ink: int) -> None:
+        """Draw a horizontal line of three dots through each point."""
+        px, py = self._place(x, y)
+        for dot in (-1.0, 0.0, 1.0):
+            self._set(px + dot, py, ink)
+
+    def level(self, y: float, ink: int, dashed: bool = True) -> None:
+        """Draw a horizontal line across the whole canvas."""
+        px = np.flatnonzero(np.arange(self._width) % 4 < (2 if dashed else 4)).astype(np.float64)
         self._set(px, np.full(len(px), (self._y1 - y) * self._y_scale), ink)
 
+    def upright(self, x: float, ink: int) -> None:
+        """Draw a dotted vertical line over the whole canvas."""
+        py = np.arange(0.0, self._height, 2.0)
+        self._set(np.full(len(py), (x - self._x0) * self._x_scale), py, ink)
+
     def text(self) -> list[str]:
-        """The rows as strings, blanks where nothing was drawn."""
+        """Return the rows as strings, with blanks where nothing was drawn."""
         rows, columns = self.ink.shape
         cells = self._dots.reshape(rows, 4, columns, 2)
         codes = (cells * BITS[None, :, None, :]).sum(axis=(1, 3), dtype=np.uint32) + BLANK

@@ -1,4 +1,4 @@
-"""What a plot shows: series with units, levels, and a sentence for when there is nothing."""
+"""The content of a plot: series with units, levels, and a sentence for when there is nothing."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -19,7 +19,11 @@ class Series:
     y: FloatArray
     """Shape (n,), in the unit of the chart's y axis; NaN breaks a line."""
     ink: Ink
-    mark: Literal["line", "points"] = "line"
+    mark: Literal["line", "points", "joined", "stems", "intervals"] = "line"
+    """A joined series is a line with a stroke at each value, so that one value alone is seen. A stem goes
+    from 0 to the value; an interval is a value with a vertical bar of half-length ``half``."""
+    half: FloatArray | None = None
+    """Shape (n,), half of each interval in the unit of the y axis; only for intervals."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,6 +33,7 @@ class Level:
     name: str
     y: float
     ink: Ink = "limit"
+    dashed: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,3 +50,14 @@ class Chart:
     """Shown when there is no series."""
     whole_x: bool = False
     """Ticks only at whole numbers (counts)."""
+    log_y: bool = False
+    """Equal ratios of y take equal room: 25 and 2,500 both read. Only positive values are drawn, and no
+    intervals or stems."""
+    x_range: tuple[float, float] | None = None
+    """The ends of the x axis; None: rounded ends that hold all data. Only the former lets a mouse point."""
+    cursor: float | None = None
+    """Value of x at which a vertical line stands and the legend reads each series."""
+    foot: bool = True
+    """Whether the x axis has labels; of plots above one another over one axis only the lowest needs them."""
+    gutter: int = 0
+    """The least width of the labels of the y axis, so that plots above one another begin in one column."""

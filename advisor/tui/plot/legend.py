@@ -6,13 +6,33 @@ from textual.strip import Strip
 
 from advisor.tui.plot.chart import INKS, Chart
 
-_SAMPLE = {"line": "──", "points": "∙∙"}
+_SAMPLE = {"line": "──", "joined": "──", "points": "∙∙", "stems": "││", "intervals": "├┤"}
 
 
-def legend(chart: Chart, width: int, style: Style, inks: list[Style]) -> Strip:
-    """Compose the line; what does not fit is left away from the right."""
-    curves = [(f"  {_SAMPLE[s.mark]} {s.name}", s.ink) for s in chart.series if s.name]
-    levels = [(f"  ╌╌ {level.name}", level.ink) for level in chart.levels]
+def legend(chart: Chart, read: list[str], width: int, style: Style, inks: list[Style]) -> Strip:
+    """Compose the line; what does not fit is left away from the right.
+
+    Parameters
+    ----------
+    chart
+        Says what there is to name.
+    read
+        One text a series: its value at the cursor, empty where there is none.
+    width
+        Cells of the line.
+    style, inks
+        Style of words, and of each ink.
+    """
+    curves = [
+        (f"  {_SAMPLE[s.mark]} {s.name} {value}".rstrip(), s.ink)
+        for s, value in zip(chart.series, read, strict=True)
+        if s.name
+    ]
+    levels = [
+        (f"  {'╌╌' if level.dashed else '──'} {level.name}", level.ink)
+        for level in chart.levels
+        if level.name
+    ]
     parts = [(chart.y_label, style), *((text, inks[INKS.index(ink)]) for text, ink in (*curves, *levels))]
     segments, used = [], 0
     for text, ink in parts:

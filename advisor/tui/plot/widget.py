@@ -1,105 +1,110 @@
-"""The plot widget: a chart painted on a braille canvas with axes."""
+"""The plot widget: a chart painted on a braille canvas with axes, and a mouse that points into it."""
 
-from itertools import pairwise
-from textwrap import wrap
-
-import numpy as np
-from numpy.typing import NDArray
-from rich.segment import Segment
 from rich.style import Style
+from textual.events import MouseDown, MouseMove, MouseScrollDown, MouseScrollUp, MouseUp
+from textual.message import Message
 from textual.strip import Strip
 from textual.widget import Widget
 
-from advisor.tui.plot.axis import round_axis
-from advisor.tui.plot.canvas import Canvas
 from advisor.tui.plot.chart import INKS, Chart, Ink
-from advisor.tui.plot.labels import along_the_foot, down_the_side, whole
-from advisor.tui.plot.legend import legend
+from advisor.tui.plot.painting import Painting, paint
 
-_ROWS_PER_TICK = 3
-_COLUMNS_PER_TICK = 12
 _BOLD: frozenset[Ink] = frozenset({"fitted", "limit"})
 
 
 class Plot(Widget):
     """Paints a `Chart`; repaints only when the chart, the size or the theme changes."""
 
+    class Pointed(Message):
+        """The mouse was pressed, or drawn, at a value of x."""
+
+        def __init__(self, x: float) -> None:
+            super().__init__()
+            self.x = x
+
+    class Wheeled(Message):
+        """The wheel was turned over a value of x."""
+
+        def __init__(self, x: float, up: bool, sideways: bool) -> None:
+            super().__init__()
+            self.x = x
+            self.up = up
+            """Away from the user."""
+            self.sideways = sideways
+            """With the shift key."""
+
     def __init__(self, chart: Chart, *, id: str | None = None, classes: str | None = None) -> None:
         super().__init__(id=id, classes=classes)
         self._chart = chart
-        self._strips: list[Strip] | None = None
+        self._painting: Painting | None = None
 
     @property
     def chart(self) -> Chart:
-        """What is shown."""
+        """The chart in sight."""
         return self._chart
 
     @chart.setter
     def chart(self, chart: Chart) -> None:
         if chart is not self._chart:
             self._chart = chart
-            self._strips = None
+            self._painting = None
             self.refresh()
 
     def on_resize(self) -> None:
-        """A new size needs new ticks."""
-        self._strips = None
+        """Paint anew: another size needs other ticks."""
+        self._painting = None
 
     def notify_style_update(self) -> None:
-        """A new theme needs new colours."""
+        """Paint anew: another theme needs other colours."""
         super().notify_style_update()
-        self._strips = None
+        self._painting = None
+
+    def on_mouse_down(self, event: MouseDown) -> None:
+        """Point, and follow the mouse until it is let go."""
+        if self._chart.x_range is not None:
+            self.capture_mouse()
+            self._point(event.x)
+
+    def on_mouse_move(self, event: MouseMove) -> None:
+        """Point again while the button is down."""
+        if self.app.mouse_captured is self:
+            self._point(event.x)
+
+    def on_mouse_up(self, event: MouseUp) -> None:
+        """Let the mouse go."""
+        self.release_mouse()
+
+    def on_mouse_scroll_up(self, event: MouseScrollUp) -> None:
+        """Report the wheel."""
+        self._wheel(event, up=True)
+
+    def on_mouse_scroll_down(self, event: MouseScrollDown) -> None:
+        """Report the wheel."""
+        self._wheel(event, up=False)
+
+    def _point(self, column: int) -> None:
+        x = self._painted().x_at(column, self.size.width)
+        if x is not None:
+            self.post_message(self.Pointed(x))
+
+    def _wheel(self, event: MouseScrollUp | MouseScrollDown, *, up: bool) -> None:
+        x = self._painted().x_at(event.x, self.size.width)
+        if x is not None and self._chart.x_range is not None:
+            event.stop()
+            self.post_message(self.Wheeled(x, up, event.shift))
 
     def render_line(self, y: int) -> Strip:
-        """One line of the painted chart."""
-        if self._strips is None:
-            self._strips = self._paint(self.size.width, self.size.height)
-        return self._strips[y] if y < len(self._strips) else Strip.blank(self.size.width, self.rich_style)
+        """Return one line of the painted chart."""
+        strips = self._painted().strips
+        return strips[y] if y < len(strips) else Strip.blank(self.size.width, self.rich_style)
+
+    def _painted(self) -> Painting:
+        if self._painting is None:
+            base = self.rich_style
+            self._painting = paint(self._chart, self.size.width, self.size.height, base, self._inks(base))
+        return self._painting
 
     def _inks(self, base: Style) -> list[Style]:
-        """The theme's colours; as component classes they would be looked up anew at every change of focus."""
+        """Look the theme's colours up. Component classes would be looked up at every change of focus."""
         colours = self.app.theme_variables
         return [base + Style(color=colours[f"ink-{ink}"], bold=ink in _BOLD) for ink in INKS]
-
-    def _paint(self, width: int, height: int) -> list[Strip]:
-        chart, base = self._chart, self.rich_style
-        if not chart.series:
-            return _sentence(f"{chart.y_label}: {chart.why_empty}", width, base)
-        if width < 16 or height < 4:
-            return _sentence(f"{chart.y_label}: too little room for a plot.", width, base)
-        inks = self._inks(base)
-        rows = height - 2
-        heights = [s.y for s in chart.series] + [np.array([level.y]) for level in chart.levels]
-        y_axis = round_axis(heights, max(1, rows // _ROWS_PER_TICK))
-        gutter = max(len(label) for label in y_axis.labels) + 1
-        columns = max(2, width - gutter)
-        x_axis = round_axis([s.x for s in chart.series], max(1, columns // _COLUMNS_PER_TICK))
-        if chart.whole_x:
-            x_axis = whole(x_axis)
-        canvas = Canvas(columns, rows, (x_axis.low, x_axis.high), (y_axis.low, y_axis.high))
-        for level in chart.levels:
-            canvas.level(level.y, INKS.index(level.ink))
-        for series in chart.series:
-            draw = canvas.line if series.mark == "line" else canvas.points
-            draw(series.x, series.y, INKS.index(series.ink))
-        side = down_the_side(y_axis, rows, gutter)
-        foot = along_the_foot(x_axis, chart.x_label, gutter, width)
-        return [
-            legend(chart, width, base, inks),
-            *(
-                Strip([Segment(side[row], base), *_runs(text, canvas.ink[row], inks, base)], width)
-                for row, text in enumerate(canvas.text())
-            ),
-            Strip([Segment(foot, base)], width),
-        ]
-
-
-def _runs(text: str, ink: NDArray[np.int8], inks: list[Style], base: Style) -> list[Segment]:
-    """One segment for each stretch of cells in one colour."""
-    edges = [0, *(np.flatnonzero(np.diff(ink)) + 1).tolist(), len(text)]
-    styles = [*inks, base]
-    return [Segment(text[i:j], styles[ink[i]]) for i, j in pairwise(edges)]
-
-
-def _sentence(text: str, width: int, style: Style) -> list[Strip]:
-    return [Strip([Segment(line.ljust(width), style)], width) for line in wrap(text, max(width, 1))]

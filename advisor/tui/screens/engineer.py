@@ -11,6 +11,8 @@ from advisor.tui.hand import HandDecision, Verb
 from advisor.tui.panes.alarm import Alarm
 from advisor.tui.panes.ask import Ask
 from advisor.tui.panes.channels import Channels
+from advisor.tui.panes.correlation import Correlation
+from advisor.tui.panes.courses import Courses
 from advisor.tui.panes.criterion import Criterion
 from advisor.tui.panes.event_log import EventLog
 from advisor.tui.panes.fit import Fit
@@ -20,32 +22,49 @@ from advisor.tui.panes.maneuvers import Maneuvers
 from advisor.tui.panes.pane import Pane
 from advisor.tui.panes.pane_tabs import PaneTabs
 from advisor.tui.panes.parameters import Parameters
+from advisor.tui.panes.qualities import Qualities
 from advisor.tui.panes.replay_bar import ReplayBar
+from advisor.tui.panes.residuals import Residuals
 from advisor.tui.panes.status_line import StatusLine
 from advisor.tui.panes.verdict import Verdict
 from advisor.tui.screens.face import Face
+from advisor.tui.screens.pane_actions import PaneActions
 from advisor.tui.view import View
 
 # In the order of their numbers.
-PANES: tuple[type[Pane], ...] = (Maneuvers, Verdict, Parameters, Fit, Live, Criterion, Channels, EventLog)
+PANES: tuple[type[Pane], ...] = (
+    Maneuvers, Verdict, Parameters, Fit, Live, Criterion, Channels, EventLog, Residuals, Correlation, Courses,
+    Qualities,
+)  # fmt: skip
 _COLUMNS: dict[str, tuple[type[Pane], ...]] = {
     "left": (Maneuvers, Verdict, Parameters),
-    "middle": (Fit,),
+    "middle": (Fit, Residuals, Correlation, Courses, Qualities),
     "right": (Live, Criterion, Channels, EventLog),
 }
 _WIDE, _MEDIUM = (160, 42), (110, 30)
 _LOW = 7
+"""Rows of the manoeuvres over a pane that stands alone."""
+_LOW_TABLE = 38
+"""Rows of a terminal below which the table of parameters shows four of the eight at once."""
 
 
-class EngineerScreen(Face):
-    """Eight panes: all at once on a wide terminal, one beside or below the manoeuvres on a small one."""
+class EngineerScreen(Face, PaneActions):
+    """Eleven panes: eight at once on a wide terminal, one next to or below the manoeuvres on a small one.
+
+    The panes of the middle column share one place: fit, residuals, correlation, history.
+    """
 
     BINDINGS = keys.ENGINEER
     HELP = """\
 # Engineer
 
-**1** to **8** goes to a pane, **tab** to the next; **?** explains the pane that has the focus. On a
-small terminal one pane is shown with the manoeuvres; on a wide one all are.
+**1** to **9**, **0** and **h** go to a pane, **tab** to the next; **?** explains the pane that has the
+focus. On a small terminal one pane is shown with the manoeuvres. On a wide one all are, but fit,
+residuals, correlation and history share one place.
+
+**c** copies the pane that has the focus to the clipboard: its numbers as CSV, its words as text. **s**
+saves the same into a file beside the log or the recording, and its plots as a picture (SVG). A browser
+is offered the files instead.
 """
 
     def __init__(self) -> None:
@@ -53,12 +72,14 @@ small terminal one pane is shown with the manoeuvres; on a wide one all are.
         self._view: View | None = None
         self._chosen: type[Pane] = Fit
         self._beside: type[Pane] = Fit
+        self._middle: type[Pane] = Fit
 
     def compose(self) -> ComposeResult:
-        """The panes in three columns; the style sheet shows what there is room for."""
+        """Lay out the panes in three columns; the style sheet shows those that have room."""
         yield StatusLine()
         yield Alarm()
-        yield PaneTabs([pane.TITLE for pane in PANES])
+        titles = [pane.TITLE.removesuffix(" and link") for pane in PANES]
+        yield PaneTabs(titles, [pane.SHORT for pane in PANES])
         with Container(id="panes"):
             for column, panes in _COLUMNS.items():
                 yield Container(*(pane() for pane in panes), id=column, classes="column")
@@ -67,7 +88,7 @@ small terminal one pane is shown with the manoeuvres; on a wide one all are.
         yield KeysLine()
 
     def on_mount(self) -> None:
-        """Begin with the fit beside the manoeuvres."""
+        """Begin with the fit next to the manoeuvres."""
         self.action_choose(PANES.index(Fit) + 1)
         self.query_one("Maneuvers DataTable").focus()
 
@@ -78,7 +99,7 @@ small terminal one pane is shown with the manoeuvres; on a wide one all are.
         self.set_class(fits[0], "-wide")
         self.set_class(fits[1] and not fits[0], "-medium")
         self.set_class(not any(fits), "-narrow")
-        self.set_class(height < _MEDIUM[1], "-low")
+        self.set_class(height < _LOW_TABLE, "-low")
         self._arrange()
         self.call_after_refresh(self._refresh_panes)
 
@@ -105,6 +126,8 @@ small terminal one pane is shown with the manoeuvres; on a wide one all are.
             self._chosen = kind
         if kind not in _COLUMNS["left"]:
             self._beside = kind
+        if kind in _COLUMNS["middle"]:
+            self._middle = kind
         self._arrange()
         chosen = self.query_one(kind.__name__)
         self.query_one(PaneTabs).choose(number)
@@ -116,16 +139,20 @@ small terminal one pane is shown with the manoeuvres; on a wide one all are.
         """Show what there is room for. Classes would do it too, but style everything inside anew."""
         narrow = self.has_class("-narrow")
         shown = {Maneuvers, self._chosen} if narrow else {*_COLUMNS["left"], self._beside}
+        if self.has_class("-wide"):
+            shown = {*_COLUMNS["left"], self._middle, *_COLUMNS["right"]}
         for pane in self.query("Pane"):
-            pane.display = self.has_class("-wide") or type(pane) in shown
+            pane.display = type(pane) in shown
         for column in self.query(".column"):
             column.display = any(pane.display for pane in column.children)
         alone = narrow and self._chosen not in _COLUMNS["left"]
         self.query_one("#left").styles.height = _LOW if alone else "1fr"
 
-    def action_next_output(self) -> None:
-        """Bring the next output of the fit to the top."""
-        self.query_one(Fit).next_output()
+    def pane_in_front(self) -> Pane:
+        """Return the pane that has the focus, else the one chosen last."""
+        around = self.focused.ancestors_with_self if self.focused else ()
+        focused = next((node for node in around if isinstance(node, Pane)), None)
+        return focused or self.query_one(self._chosen)
 
     def action_exclude(self) -> None:
         """Take the selected manoeuvre out of every decision, or in again; ask why."""

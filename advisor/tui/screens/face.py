@@ -1,4 +1,4 @@
-"""What both faces have in common."""
+"""The base of both faces."""
 
 from collections.abc import Callable
 from contextlib import suppress
@@ -38,8 +38,12 @@ class Face(Screen[None]):
         self.query_one(Ask).put(question, answered, integer=integer)
 
     def say(self, text: str, seconds: float = 3.0) -> None:
-        """Tell something on the last line, for a while."""
-        self.query_one(KeysLine).say(text, seconds)
+        """Tell something on the last line, for a while; what has no room there comes up above the line."""
+        line = self.query_one(KeysLine)
+        if line.has_room_for(text):
+            line.say(text, seconds)
+        else:
+            self.notify(text, timeout=seconds, markup=False)
 
     def show(self, view: View) -> None:
         """Update every part that wants to be to a new moment."""

@@ -1,0 +1,71 @@
+"""Correlation of residuals in time, and of parameters with one another."""
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+
+_WHITE_BOUND = 1.96
+"""Standard deviations that hold 95 % of a normal distribution."""
+
+HIGH_CORRELATION = 0.9
+"""Size of the correlation of two parameters above which users are told that the input moved both alike."""
+
+
+def autocorrelation(residual: FloatArray, lags: int) -> FloatArray:
+    """Estimate the autocorrelation of a residual at whole numbers of samples.
+
+    The estimate is biased: r_k = Σ v_i v_{i+k} / Σ v_i². Here v is the residual less its mean.
+    Source: Box, Jenkins and Reinsel, *Time Series Analysis*, section 2.1. Samples count as evenly spaced.
+
+    Parameters
+    ----------
+    residual
+        Shape (n,), any unit; samples that are not finite are left out.
+    lags
+        The largest lag in samples, at least 0.
+
+    Returns
+    -------
+    ndarray
+        Shape (m + 1,), r_0 to r_m with m = min(lags, n - 1); r_0 is 1. All are 0 without spread.
+    """
+    finite = residual[np.isfinite(residual)]
+    if len(finite) == 0:
+        return np.zeros(1)
+    v = finite - np.mean(finite)
+    most = min(lags, len(v) - 1)
+    power = float(v @ v)
+    if power <= 0.0:
+        return np.zeros(most + 1)
+    return np.array([float(v[k:] @ v[: len(v) - k]) for k in range(most + 1)]) / power
+
+
+def white_noise_bound(samples: int) -> float:
+    """Half-width of the 95 % band of the autocorrelation of white noise: 1.96/√N.
+
+    Parameters
+    ----------
+    samples
+        Number N of samples, at least 1.
+    """
+    return float(_WHITE_BOUND / np.sqrt(samples))
+
+
+def correlation_matrix(covariance: FloatArray) -> FloatArray:
+    """Scale a covariance to correlations.
+
+    Parameters
+    ----------
+    covariance
+        Shape (n, n), symmetric, any units.
+
+    Returns
+    -------
+    ndarray
+        Shape (n, n), from -1 to 1. NaN in the rows and columns of what has no variance above 0.
+    """
+    variance = np.diag(covariance)
+    known = np.isfinite(variance) & (variance > 0.0)
+    scale = np.sqrt(np.where(known, variance, np.nan))
+    correlation: FloatArray = np.clip(covariance / np.outer(scale, scale), -1.0, 1.0)
+    return correlation

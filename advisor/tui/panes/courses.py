@@ -1,0 +1,90 @@
+"""Every parameter's course over the manoeuvres at a glance."""
+
+from dataclasses import replace
+
+from textual.app import ComposeResult
+from textual.events import Resize
+
+from advisor.aircraft import PARAMETERS as NAMES
+from advisor.tui.panes.history import course, history_chart
+from advisor.tui.panes.pane import Pane
+from advisor.tui.plot.chart import Chart
+from advisor.tui.plot.widget import Plot
+from advisor.tui.rows import Rows
+from advisor.tui.view import View
+from advisor.tui.words import PARAMETERS
+
+
+class Courses(Pane):
+    """Eight small plots: each manoeuvre's estimate with its interval against the manoeuvre's number."""
+
+    TITLE = "h History"
+    SHORT = "h Hist"
+    HELP = """\
+# History
+
+All eight parameters at a glance: each manoeuvre's estimate with its 95 % interval (1.96 σ, corrected for
+coloured residuals) against the number of the manoeuvre. The solid line is the joint estimate, the dashed
+line the aircraft file's model. A manoeuvre that does not tell a parameter has no bar.
+
+An interval that leaves the joint estimate out shows a manoeuvre that disagrees; a row of intervals that
+drifts shows an aircraft that changes.
+"""
+
+    def compose(self) -> ComposeResult:
+        """Lay out one plot for each parameter."""
+        for name in NAMES:
+            yield Plot(history_chart(None, name), id=f"course-{name}")
+
+    def on_mount(self) -> None:
+        """Begin without an estimate."""
+        super().on_mount()
+        self._view: View | None = None
+        self._shown: tuple[object, ...] = ()
+
+    def show(self, view: View) -> None:
+        """Draw all courses when an estimate changed."""
+        what = (view.state.maneuvers, view.state.model)
+        if self._shown and all(a is b for a, b in zip(what, self._shown, strict=True)):
+            return
+        self._view, self._shown = view, what
+        self._draw()
+
+    def on_resize(self, event: Resize) -> None:
+        """Only the lowest plots have room for the numbers of the manoeuvres on a small terminal."""
+        self._draw()
+
+    def _draw(self) -> None:
+        across = self.styles.grid_size_columns
+        for k, name in enumerate(NAMES):
+            small = _small(history_chart(self._view, name), foot=k >= len(NAMES) - across)
+            self.query_one(f"#course-{name}", Plot).chart = small
+        if self._view and self._view.state.maneuvers:
+            self.subtitle("by manoeuvre: ├┤ estimate ± 95 %  ── joint  ╌╌ aircraft file")
+
+    def rows(self) -> Rows:
+        """Give one row for each manoeuvre and parameter."""
+        header = (
+            "parameter",
+            "unit",
+            "manoeuvre",
+            "estimate",
+            "half_of_95_percent",
+            "joint",
+            "aircraft_file",
+        )
+        rows = []
+        for name in NAMES:
+            of = course(self._view, name)
+            rows += [
+                (name, PARAMETERS[name].unit, int(number), value, half, of.model, of.prior)
+                for number, value, half in zip(of.numbers, of.value, of.half, strict=True)
+            ]
+        return Rows(header, tuple(rows))
+
+
+def _small(chart: Chart, *, foot: bool) -> Chart:
+    """Remove the names that the frame of the pane gives for all plots."""
+    series = tuple(replace(one, name="") for one in chart.series)
+    levels = tuple(replace(one, name="") for one in chart.levels)
+    return replace(chart, x_label="", foot=foot, series=series, levels=levels)

@@ -1,0 +1,151 @@
+"""Charts of a manoeuvre for the fit pane, alone and with a second manoeuvre laid over it."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from advisor.campaign.state import JudgedManeuver
+from advisor.flight.messages import FloatArray
+from advisor.oem.estimate import ChannelFit, Estimate
+from advisor.tui.plot.chart import Chart, Ink, Series
+from advisor.tui.rows import Rows
+from advisor.tui.words import channel
+
+OUTPUTS = ("alpha", "q", "a_z", "theta")
+ELEVATOR = "elevator"
+_T = "t [s]"
+_GUTTER = 7
+"""Room for ``-12.50``: all plots of the pane begin in one column."""
+
+Curve = tuple[FloatArray, FloatArray]
+"""Seconds since the start of the input, shape (n,), and values in the unit for people, shape (n,)."""
+
+
+def since_start(judged: JudgedManeuver, t: FloatArray) -> FloatArray:
+    """Align stamps at the start of the input: seconds since the first elevator step, shape as ``t``."""
+    return t - judged.maneuver.span.start_s
+
+
+def fits_of(judged: JudgedManeuver) -> dict[str, ChannelFit]:
+    """Look up the fits of a manoeuvre by output; none where there is no estimate."""
+    return dict(judged.estimate.fits[0]) if isinstance(judged.estimate, Estimate) else {}
+
+
+def measured(judged: JudgedManeuver, name: str) -> Curve | None:
+    """Take a channel as the fit used it, else as it was recorded; None where the record has none."""
+    factor = channel(name).factor
+    fit = fits_of(judged).get(name)
+    if fit is not None:
+        return since_start(judged, fit.t), fit.measured * factor
+    recorded = judged.maneuver.channels.get(name)
+    if recorded is None or len(recorded) == 0:
+        return None
+    return since_start(judged, recorded.t), recorded.y * factor
+
+
+def extent(judged: JudgedManeuver, over: JudgedManeuver | None) -> tuple[float, float]:
+    """Find the first and last time to draw, in seconds since the start of the input."""
+    spans = [one.maneuver.span for one in (judged, over) if one is not None]
+    first = min(span.record_from_s - span.start_s for span in spans)
+    last = max(span.end_s - span.start_s for span in spans)
+    return (first, last) if last > first else (first, first + 1.0)
+
+
+def in_sight(chart: Chart, x_range: tuple[float, float], cursor: float | None, *, foot: bool) -> Chart:
+    """Show a stretch of a chart, with a cursor, in line with the other plots of the pane."""
+    return replace(chart, x_range=x_range, cursor=cursor, foot=foot, gutter=_GUTTER)
+
+
+def elevator_chart(judged: JudgedManeuver, over: JudgedManeuver | None) -> Chart:
+    """Draw the elevator of one manoeuvre, or of two."""
+    curves = _overlaid("elevator", measured(judged, ELEVATOR), judged, over, ELEVATOR, "input", "line")
+    return Chart(channel(ELEVATOR).label, _T, series=curves, why_empty="the record has none.")
+
+
+def fit_chart(name: str, judged: JudgedManeuver, over: JudgedManeuver | None) -> Chart:
+    """Draw measured with fitted; with a second manoeuvre, measured with measured."""
+    fit = fits_of(judged).get(name)
+    if fit is None:
+        return no_fit(name, _why_no_fit(judged))
+    if over is not None:
+        curves = _overlaid("measured", measured(judged, name), judged, over, name, "measured", "points")
+        return Chart(channel(name).label, _T, series=curves)
+    t, factor = since_start(judged, fit.t), channel(name).factor
+    return Chart(
+        channel(name).label,
+        _T,
+        series=(
+            Series("measured", t, fit.measured * factor, "measured", "points"),
+            Series("fitted", t, fit.fitted * factor, "fitted"),
+        ),
+    )
+
+
+def residual_chart(name: str, judged: JudgedManeuver, over: JudgedManeuver | None) -> Chart:
+    """Draw measured minus fitted, of one manoeuvre or of two."""
+    fit = fits_of(judged).get(name)
+    if fit is None:
+        return no_fit(name, _why_no_fit(judged))
+    series = [Series(_named("residual", judged, over), *_residual(judged, fit), "residual")]
+    second = fits_of(over).get(name) if over is not None else None
+    if over is not None and second is not None:
+        series.append(Series(_named("residual", over, judged), *_residual(over, second), "prior"))
+    return Chart(channel(name).label, _T, series=tuple(series))
+
+
+def no_fit(name: str, why: str) -> Chart:
+    """Say why there is nothing to draw of an output."""
+    return Chart(channel(name).label, _T, why_empty=why)
+
+
+def rows_of_fit(judged: JudgedManeuver, over: JudgedManeuver | None) -> Rows:
+    """Write the elevator and all outputs, sample by sample, of one manoeuvre or of two."""
+    header = ("manoeuvre", "channel", "unit", "t_s", "measured", "fitted", "residual")
+    return Rows(header, tuple(row for one in (judged, over) if one is not None for row in _samples(one)))
+
+
+def _samples(judged: JudgedManeuver) -> list[tuple[object, ...]]:
+    number, rows = judged.maneuver.number, []
+    for name in (ELEVATOR, *OUTPUTS):
+        curve, fit, unit = measured(judged, name), fits_of(judged).get(name), channel(name).unit
+        if curve is None:
+            continue
+        t, y = curve
+        empty = np.full(len(t), np.nan)
+        fitted = fit.fitted * channel(name).factor if fit is not None else empty
+        columns = (values.tolist() for values in (t, y, fitted, y - fitted))
+        rows += [(number, name, unit, *sample) for sample in zip(*columns, strict=True)]
+    return rows
+
+
+def _overlaid(
+    what: str,
+    curve: Curve | None,
+    judged: JudgedManeuver,
+    over: JudgedManeuver | None,
+    name: str,
+    ink: Ink,
+    mark: str,
+) -> tuple[Series, ...]:
+    if curve is None:
+        return ()
+    first = Series(_named(what, judged, over), *curve, ink, "points" if mark == "points" else "line")
+    second = measured(over, name) if over is not None else None
+    if over is None or second is None:
+        return (first,)
+    return first, Series(_named(what, over, judged), *second, "prior")
+
+
+def _named(what: str, judged: JudgedManeuver, beside: JudgedManeuver | None) -> str:
+    """Name a curve, with the manoeuvre's number where there are two."""
+    return what if beside is None else f"{what} {judged.maneuver.number}"
+
+
+def _residual(judged: JudgedManeuver, fit: ChannelFit) -> Curve:
+    return since_start(judged, fit.t), fit.residual * channel(fit.name).factor
+
+
+def _why_no_fit(judged: JudgedManeuver) -> str:
+    return (
+        "the record has no such channel." if isinstance(judged.estimate, Estimate) else judged.estimate.text
+    )

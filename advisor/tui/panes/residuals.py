@@ -1,0 +1,123 @@
+"""Whether the residuals of the selected manoeuvre are white noise."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from textual.app import ComposeResult
+
+from advisor.flight.messages import FloatArray
+from advisor.oem.correlation import autocorrelation, white_noise_bound
+from advisor.oem.estimate import ChannelFit, Estimate
+from advisor.tui.panes.fit_charts import OUTPUTS
+from advisor.tui.panes.pane import Pane
+from advisor.tui.plot.chart import Chart, Level, Series
+from advisor.tui.plot.widget import Plot
+from advisor.tui.rows import Rows
+from advisor.tui.view import View
+from advisor.tui.words import channel
+
+_LAGS_SHARE = 4
+"""Share of the record that the longest lag takes: a quarter (Box and Jenkins). A longer lag averages too few
+products."""
+
+
+@dataclass(frozen=True, slots=True)
+class Whiteness:
+    """The autocorrelation of one residual against that of white noise."""
+
+    lag_s: FloatArray
+    """Shape (m,), rising; the first is one sample."""
+    r: FloatArray
+    """Shape (m,), autocorrelation at each lag."""
+    bound: float
+    """Half-width of the band that white noise keeps at 95 % of the lags."""
+
+    @classmethod
+    def of(cls, fit: ChannelFit) -> "Whiteness":
+        """Compute the autocorrelation of a fit's residual."""
+        r = autocorrelation(fit.residual, len(fit.t) // _LAGS_SHARE)[1:]
+        apart_s = float(np.median(np.diff(fit.t))) if len(fit.t) > 1 else 0.0
+        return cls(np.arange(1.0, len(r) + 1.0) * apart_s, r, white_noise_bound(len(fit.t)))
+
+    @property
+    def outside(self) -> int:
+        """Number of lags outside the bound; one in twenty is expected of white noise."""
+        return int(np.count_nonzero(np.abs(self.r) > self.bound))
+
+
+class Residuals(Pane):
+    """Autocorrelation of each output's residual with the 95 % bounds of white noise."""
+
+    TITLE = "9 Residuals"
+    SHORT = "9 Res"
+    OF_SELECTED = True
+    HELP = """\
+# Residuals
+
+The autocorrelation *r* of each output's residual in the selected manoeuvre, from one sample to a quarter
+of the record. White noise stays between the dashed lines, ±1.96/√N for N samples, at 95 of 100 lags. The
+first line of each plot counts the lags outside.
+
+A slow decay means that something unknown drives the aircraft: moving air, or an effect that the model
+lacks. A wave means a mode that the model misses. Intervals allow for coloured residuals already.
+"""
+
+    def compose(self) -> ComposeResult:
+        """Lay out one plot for each output."""
+        for name in OUTPUTS:
+            yield Plot(_nothing(name, "no manoeuvre has ended yet."), id=f"white-{name}")
+
+    def on_mount(self) -> None:
+        """Begin with the sentence of one output."""
+        super().on_mount()
+        self._shown: object = None
+        self._fits: dict[str, ChannelFit] = {}
+        self._only_with_fit()
+
+    def show(self, view: View) -> None:
+        """Draw the selected manoeuvre when it is another one."""
+        judged = view.judged
+        if judged is None or judged is self._shown:
+            return
+        self._shown = judged
+        estimate = judged.estimate
+        self._fits = dict(estimate.fits[0]) if isinstance(estimate, Estimate) else {}
+        why = "" if isinstance(estimate, Estimate) else estimate.text
+        for name in OUTPUTS:
+            fit = self._fits.get(name)
+            chart = _chart(name, Whiteness.of(fit)) if fit is not None else _nothing(name, why)
+            self.query_one(f"#white-{name}", Plot).chart = chart
+        self.subtitle(f"manoeuvre {judged.maneuver.number}  ╌╌ 95 % of white noise: ±1.96/√N")
+        self._only_with_fit()
+
+    def _only_with_fit(self) -> None:
+        """Hide what is no output of the fit; without any, one plot says why."""
+        shown = self._fits or OUTPUTS[:1]
+        for name in OUTPUTS:
+            self.query_one(f"#white-{name}").display = name in shown
+
+    def rows(self) -> Rows | None:
+        """Give one row for each output and lag."""
+        if not self._fits:
+            return None
+        rows = []
+        for name, fit in self._fits.items():
+            white = Whiteness.of(fit)
+            pairs = zip(white.lag_s.tolist(), white.r.tolist(), strict=True)
+            rows += [(name, lag_s, r, white.bound) for lag_s, r in pairs]
+        return Rows(("output", "lag_s", "autocorrelation", "white_noise_bound_95_percent"), tuple(rows))
+
+
+def _nothing(name: str, why: str) -> Chart:
+    return Chart(f"r of {channel(name).symbol} [-]", "lag [s]", why_empty=why)
+
+
+def _chart(name: str, white: Whiteness) -> Chart:
+    counted = f"{white.outside} of {len(white.r)} outside"
+    return Chart(
+        f"r of {channel(name).symbol} [-]",
+        "lag [s]",
+        series=(Series(counted, white.lag_s, white.r, "residual", "stems"),),
+        levels=(Level(f"±{white.bound:.2f}", white.bound), Level("", -white.bound)),
+        x_range=(0.0, float(white.lag_s[-1])) if np.any(white.lag_s > 0.0) else None,
+    )

@@ -1,0 +1,160 @@
+"""A chart painted as the lines of a terminal."""
+
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from textwrap import wrap
+
+import numpy as np
+from numpy.typing import NDArray
+from rich.segment import Segment
+from rich.style import Style
+from textual.strip import Strip
+
+from advisor.flight.messages import FloatArray
+from advisor.tui.plot.axis import Axis, LogAxis, exact_axis, log_axis, round_axis
+from advisor.tui.plot.canvas import Canvas
+from advisor.tui.plot.chart import INKS, Chart, Series
+from advisor.tui.plot.labels import along_the_foot, down_the_side, whole
+from advisor.tui.plot.legend import legend
+from advisor.tui.plot.reading import readings
+
+_ROWS_PER_TICK, _ROWS_PER_LOG_TICK = 3, 2
+_COLUMNS_PER_TICK, _COLUMNS_PER_NUMBER = 12, 4
+_LEAST_WIDTH, _LEAST_ROWS = 16, 2
+
+
+@dataclass(frozen=True, slots=True)
+class Painting:
+    """The lines of a plot, and where its x axis lies in them."""
+
+    strips: list[Strip]
+    gutter: int = 0
+    """Cells to the left of the canvas."""
+    x_axis: Axis | None = None
+    """None where no curve is painted."""
+
+    def x_at(self, column: int, width: int) -> float | None:
+        """Return the value of x under a cell of the plot; None where no curve is painted."""
+        if self.x_axis is None:
+            return None
+        share = (column - self.gutter) / max(width - self.gutter - 1, 1)
+        return self.x_axis.low + min(max(share, 0.0), 1.0) * (self.x_axis.high - self.x_axis.low)
+
+
+def paint(chart: Chart, width: int, height: int, base: Style, inks: list[Style]) -> Painting:
+    """Paint a chart on ``width`` x ``height`` cells.
+
+    Parameters
+    ----------
+    chart
+        What is shown.
+    width, height
+        Size in cells; where it is too small, a sentence says so.
+    base, inks
+        Style of words and of each ink.
+    """
+    if not chart.series:
+        return Painting(_sentence(f"{chart.y_label}: {chart.why_empty}", width, base))
+    rows = height - 2 if chart.foot else height - 1
+    if width < _LEAST_WIDTH or rows < _LEAST_ROWS:
+        return Painting(_sentence(f"{chart.y_label}: too little room for a plot.", width, base))
+    chart = _in_range(chart)
+    y_axis = _y_axis(chart, rows)
+    gutter = max(chart.gutter, max(len(label) for label in y_axis.labels) + 1)
+    columns = max(2, width - gutter)
+    x_axis = _x_axis(chart, max(1, columns // (_COLUMNS_PER_NUMBER if chart.whole_x else _COLUMNS_PER_TICK)))
+    canvas = Canvas(columns, rows, (x_axis.low, x_axis.high), (y_axis.low, y_axis.high))
+    _draw(canvas, _logarithmic(chart) if chart.log_y else chart)
+    side = down_the_side(y_axis, rows, gutter)
+    strips = [
+        legend(chart, readings(chart, y_axis), width, base, inks),
+        *(
+            Strip([Segment(side[row], base), *_runs(text, canvas.ink[row], inks, base)], width)
+            for row, text in enumerate(canvas.text())
+        ),
+    ]
+    if chart.foot:
+        strips.append(Strip([Segment(along_the_foot(x_axis, chart.x_label, gutter, width), base)], width))
+    return Painting(strips, gutter, x_axis)
+
+
+def _x_axis(chart: Chart, intervals: int) -> Axis:
+    if chart.x_range is None:
+        axis = round_axis([s.x for s in chart.series], intervals)
+        return whole(axis) if chart.whole_x else axis
+    axis = exact_axis(*chart.x_range, intervals)
+    return replace(axis, step=max(1.0, axis.step)) if chart.whole_x else axis
+
+
+def _y_axis(chart: Chart, rows: int) -> Axis | LogAxis:
+    if chart.log_y:
+        return log_axis(_heights(chart), max(2, rows // _ROWS_PER_LOG_TICK))
+    return round_axis(_heights(chart), max(1, rows // _ROWS_PER_TICK))
+
+
+def _logarithmic(chart: Chart) -> Chart:
+    """Give curves and levels at the decimal logarithms of their heights; NaN where one is not positive."""
+    return replace(
+        chart,
+        series=tuple(replace(s, y=np.log10(np.where(s.y > 0.0, s.y, np.nan))) for s in chart.series),
+        levels=tuple(replace(level, y=float(np.log10(level.y))) for level in chart.levels),
+    )
+
+
+def _in_range(chart: Chart) -> Chart:
+    """Leave out what lies outside the range of x; a neighbour at each end lets lines run to the edge."""
+    if chart.x_range is None:
+        return chart
+    return replace(chart, series=tuple(_cut(s, *chart.x_range) for s in chart.series))
+
+
+def _cut(series: Series, low: float, high: float) -> Series:
+    first = max(int(np.searchsorted(series.x, low)) - 1, 0)
+    last = int(np.searchsorted(series.x, high, side="right")) + 1
+    half = None if series.half is None else series.half[first:last]
+    return replace(series, x=series.x[first:last], y=series.y[first:last], half=half)
+
+
+def _heights(chart: Chart) -> list[FloatArray]:
+    """Collect the values that the y axis has to hold."""
+    held = [np.array([level.y]) for level in chart.levels]
+    for series in chart.series:
+        half = 0.0 if series.half is None else series.half
+        held += [series.y - half, series.y + half]
+    return held
+
+
+def _draw(canvas: Canvas, chart: Chart) -> None:
+    if chart.cursor is not None:
+        canvas.upright(chart.cursor, INKS.index("prior"))
+    for level in chart.levels:
+        canvas.level(level.y, INKS.index(level.ink), level.dashed)
+    for series in chart.series:
+        _draw_series(canvas, series)
+
+
+def _draw_series(canvas: Canvas, series: Series) -> None:
+    ink = INKS.index(series.ink)
+    if series.mark in ("line", "joined"):
+        canvas.line(series.x, series.y, ink)
+        if series.mark == "joined":
+            canvas.dashes(series.x, series.y, ink)
+    elif series.mark == "points":
+        canvas.points(series.x, series.y, ink)
+    elif series.mark == "stems":
+        canvas.bars(series.x, np.zeros(len(series.x)), series.y, ink)
+    else:
+        half = np.zeros(len(series.x)) if series.half is None else series.half
+        canvas.bars(series.x, series.y - half, series.y + half, ink)
+        canvas.dashes(series.x, series.y, ink)
+
+
+def _runs(text: str, ink: NDArray[np.int8], inks: list[Style], base: Style) -> list[Segment]:
+    """Cut a line into one segment for each stretch of cells in one colour."""
+    edges = [0, *(np.flatnonzero(np.diff(ink)) + 1).tolist(), len(text)]
+    styles = [*inks, base]
+    return [Segment(text[i:j], styles[ink[i]]) for i, j in pairwise(edges)]
+
+
+def _sentence(text: str, width: int, style: Style) -> list[Strip]:
+    return [Strip([Segment(line.ljust(width), style)], width) for line in wrap(text, max(width, 1))]

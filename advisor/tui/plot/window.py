@@ -1,0 +1,85 @@
+"""The stretch of an axis that a plot shows, and the sample that a cursor reads."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from advisor.flight.messages import FloatArray
+
+_LEAST_SHARE = 0.01
+"""The shortest stretch as a share of the whole: a hundredth of 12 s holds six samples at 50 Hz."""
+
+
+@dataclass(frozen=True, slots=True)
+class Window:
+    """A stretch of a longer range; every change keeps the stretch inside the range."""
+
+    first: float
+    last: float
+    """The ends of the whole range."""
+    low: float
+    high: float
+    """The ends of what is shown."""
+
+    @classmethod
+    def whole(cls, first: float, last: float) -> "Window":
+        """Show the whole range."""
+        return cls(first, last, first, last)
+
+    @property
+    def zoomed(self) -> bool:
+        """Whether less than the whole range is shown."""
+        return (self.low, self.high) != (self.first, self.last)
+
+    @property
+    def shown(self) -> tuple[float, float]:
+        """The ends of what is shown, lower first."""
+        return self.low, self.high
+
+    def zoom(self, factor: float, about: float) -> "Window":
+        """Show ``1/factor`` of the present length; the value ``about`` keeps its place in the plot."""
+        length = self.high - self.low
+        about = min(max(about, self.low), self.high)
+        wanted = max(length / factor, _LEAST_SHARE * (self.last - self.first))
+        low = about - (about - self.low) / length * wanted
+        return self._placed(low, wanted)
+
+    def pan(self, share: float) -> "Window":
+        """Move by a share of the shown length; above 0 towards the last value."""
+        length = self.high - self.low
+        return self._placed(self.low + share * length, length)
+
+    def showing(self, value: float) -> "Window":
+        """Move as little as shows a value."""
+        length = self.high - self.low
+        low = min(self.low, max(value, self.first))
+        low = max(low, min(value, self.last) - length)
+        return self._placed(low, length)
+
+    def over(self, first: float, last: float) -> "Window":
+        """Take another range: what was whole stays whole, what was zoomed keeps its length and place."""
+        if not self.zoomed:
+            return Window.whole(first, last)
+        return Window(first, last, self.low, self.high)._placed(self.low, self.high - self.low)
+
+    def _placed(self, low: float, length: float) -> "Window":
+        length = min(length, self.last - self.first)
+        low = min(max(low, self.first), self.last - length)
+        high = self.last if length == self.last - self.first else low + length
+        return Window(self.first, self.last, low, high)
+
+
+def nearest(x: FloatArray, value: float) -> int:
+    """Find the index of the element of ``x`` that lies nearest to a value.
+
+    Parameters
+    ----------
+    x
+        Shape (n,), rising, n at least 1.
+    value
+        Any number.
+    """
+    at = int(np.searchsorted(x, value))
+    if at == 0 or at == len(x):
+        return min(at, len(x) - 1)
+    return at if x[at] - value < value - x[at - 1] else at - 1

@@ -1,0 +1,96 @@
+"""Actions of keys on one pane: copy, save, bring the next output up, lay a manoeuvre over another one."""
+
+from abc import abstractmethod
+from collections.abc import Callable
+from io import StringIO
+from typing import TYPE_CHECKING
+
+from advisor.tui.panes.fit import Fit
+from advisor.tui.panes.pane import Pane
+from advisor.tui.taking import files_of, pane_name, save
+from advisor.tui.view import View
+
+if TYPE_CHECKING:
+    from textual.screen import Screen
+
+    Base = Screen[None]
+else:
+    Base = object
+
+_SAY_S = 8.0
+"""Seconds for a sentence with a path in it: a path takes longer to read than a word."""
+
+
+class PaneActions(Base):
+    """Actions of the engineer's screen that concern one pane."""
+
+    _view: View | None
+
+    @abstractmethod
+    def pane_in_front(self) -> Pane:
+        """Return the pane that has the focus, else the one chosen last."""
+
+    @abstractmethod
+    def ask(self, question: str, answered: Callable[[str], object], *, integer: bool = False) -> None:
+        """Ask for one line at the foot of the screen."""
+
+    @abstractmethod
+    def show(self, view: View) -> None:
+        """Update what is visible."""
+
+    @abstractmethod
+    def say(self, text: str, seconds: float = 3.0) -> None:
+        """Tell something for a while."""
+
+    def action_copy(self) -> None:
+        """Copy the pane to the clipboard of the terminal."""
+        if self._view is None:
+            return
+        if self.app.is_web:
+            self.say("a browser's clipboard is out of reach; key s offers the pane as files", _SAY_S)
+            return
+        pane = self.pane_in_front()
+        text = pane.text()
+        self.app.copy_to_clipboard(text)
+        what = f"{pane_name(pane, self._view)} copied, {text.count(chr(10))} lines."
+        self.say(f"{what} Where the terminal has no OSC 52, press s.", _SAY_S)
+
+    def action_save(self) -> None:
+        """Write the pane into files in the folder of the log, or offer the files to a browser."""
+        if self._view is None:
+            return
+        pane = self.pane_in_front()
+        if not self.app.is_web:
+            self.say(save(pane, self._view), _SAY_S)
+            return
+        files = files_of(pane, self._view)
+        for name, text in files.items():
+            self.app.deliver_text(StringIO(text), save_filename=name)
+        self.say(f"your browser is offered {' and '.join(files)}", _SAY_S)
+
+    def action_next_output(self) -> None:
+        """Bring the next output of the fit to the top."""
+        self.query_one(Fit).next_output()
+
+    def action_lay_over(self) -> None:
+        """Ask for the manoeuvre to lay over the selected one."""
+        self.ask(
+            "Lay over manoeuvre number (0: none):", lambda answer: self._lay_over(int(answer)), integer=True
+        )
+
+    def _lay_over(self, number: int) -> None:
+        view = self._view
+        judged = view.judged if view is not None else None
+        if view is None or judged is None:
+            self.say("There is no manoeuvre to lay another one over yet.")
+            return
+        known = {j.maneuver.number for j in view.state.maneuvers}
+        if number and (number not in known or number == judged.maneuver.number):
+            self.say(f"Choose another manoeuvre than {judged.maneuver.number}, from {_listed(known)}.")
+            return
+        self.query_one(Fit).lay_over(number or None)
+        self.show(view)
+
+
+def _listed(numbers: set[int]) -> str:
+    return f"{min(numbers)} to {max(numbers)}"

@@ -1,0 +1,84 @@
+"""A pane as text for the clipboard, and as files in the folder of the log."""
+
+from pathlib import Path
+
+from rich.style import Style
+from textual.geometry import Region
+from textual.strip import Strip
+
+from advisor.atomic_file import write_atomically
+from advisor.printable import printable
+from advisor.tui.panes.pane import Pane
+from advisor.tui.plot.widget import Plot
+from advisor.tui.svg import picture_of
+from advisor.tui.view import View
+
+WITHOUT_LOG = Path("advisor")
+"""Stands for a log where nothing is recorded: files go into the current folder under this name."""
+
+
+def pane_name(pane: Pane, view: View) -> str:
+    """Name a pane for a file: ``fit-4`` for the fit of manoeuvre 4, ``history`` for what has no number."""
+    name = "-".join(pane.TITLE.split()[1:]).lower()
+    judged = view.judged if pane.OF_SELECTED else None
+    return f"{name}-{judged.maneuver.number}" if judged is not None else name
+
+
+def log_of(pane: Pane, view: View) -> Path:
+    """Choose the log that names the files: that of the selected manoeuvre, else the newest.
+
+    A page in a browser knows the log of a replay by the title alone.
+    """
+    if not view.logs:
+        return Path(Path(view.title.split(", ")[0]).name) if view.tempo is not None else WITHOUT_LOG
+    judged = view.judged if pane.OF_SELECTED else None
+    flight = judged.maneuver.flight if judged is not None else view.state.flight
+    return view.logs[min(flight, len(view.logs) - 1)]
+
+
+def files_of(pane: Pane, view: View) -> dict[str, str]:
+    """Give the files that hold a pane by name: CSV of its rows or its text, and SVG of its plots."""
+    log, name = log_of(pane, view), pane_name(pane, view)
+    stem = f"{log.stem}.{name}"
+    files = {f"{stem}.csv" if pane.rows() is not None else f"{stem}.txt": pane.text()}
+    if picture := picture_of_plots(pane, f"{log.name}  {pane.TITLE}  {pane.border_subtitle or ''}".strip()):
+        files[f"{stem}.svg"] = picture
+    return files
+
+
+def save(pane: Pane, view: View) -> str:
+    """Write the files of a pane into the folder of the log; return a sentence that says where, or why not.
+
+    A file of an earlier save is replaced. A file that is half written never carries the name.
+    """
+    folder, files = log_of(pane, view).parent, files_of(pane, view)
+    names = " and ".join(map(printable, files))
+    try:
+        for file, text in files.items():
+            write_atomically(folder / file, text)
+    except OSError as error:
+        place = printable(str(folder))
+        return f"{names} cannot be written in {place}: {error.strerror or error}; key c copies instead"
+    return f"saved {names} in {printable(str(folder.absolute()))}"
+
+
+def picture_of_plots(pane: Pane, title: str) -> str:
+    """Draw the plots in sight as SVG, each in its place; empty where the pane has none with curves."""
+    plots = [plot for plot in pane.query(Plot) if plot.display and plot.chart.series and plot.size.area]
+    if not plots:
+        return ""
+    around = Region.from_union([plot.region for plot in plots])
+    strips = []
+    for y in range(around.y, around.bottom):
+        across = sorted((p for p in plots if p.region.y <= y < p.region.bottom), key=lambda p: p.region.x)
+        strips.append(_joined(across, y, around, plots[0].rich_style))
+    return picture_of(strips, around.width, title)
+
+
+def _joined(plots: list[Plot], y: int, around: Region, paper: Style) -> Strip:
+    """Join one line of the plots that stand side by side."""
+    pieces, x = [], around.x
+    for plot in plots:
+        pieces += [Strip.blank(plot.region.x - x, paper), plot.render_line(y - plot.region.y)]
+        x = plot.region.right
+    return Strip.join([*pieces, Strip.blank(around.right - x, paper)])

@@ -1,0 +1,66 @@
+"""What the fit pane draws of one manoeuvre, and of two laid over one another."""
+
+import csv
+from io import StringIO
+
+import numpy as np
+import pytest
+
+from advisor.tui.panes.fit_charts import (
+    elevator_chart,
+    extent,
+    fit_chart,
+    residual_chart,
+    rows_of_fit,
+    since_start,
+)
+from advisor.tui.panes.residuals import Whiteness
+from tests.tui import flights
+
+FIRST, FOURTH = flights.judged(1), flights.judged(4)
+
+
+def test_manoeuvres_flown_at_different_times_are_aligned_at_the_start_of_their_inputs():
+    for judged in (FIRST, FOURTH):
+        elevator = judged.maneuver.channels["elevator"]
+        t = since_start(judged, elevator.t)
+        assert t[np.flatnonzero(elevator.y)[0]] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_equal_inputs_lie_over_one_another():
+    first, second = elevator_chart(FIRST, FOURTH).series
+    assert first.x == pytest.approx(second.x)
+    assert first.y == pytest.approx(second.y)
+    assert (first.name, second.name) == ("elevator 1", "elevator 4")
+
+
+def test_of_two_manoeuvres_what_was_measured_and_the_residuals_are_drawn():
+    assert [s.name for s in fit_chart("q", FIRST, FOURTH).series] == ["measured 1", "measured 4"]
+    assert [s.name for s in residual_chart("q", FIRST, FOURTH).series] == ["residual 1", "residual 4"]
+
+
+def test_a_manoeuvre_without_an_estimate_is_laid_over_as_it_was_recorded():
+    series = fit_chart("q", FIRST, flights.without_estimate(3)).series
+    assert [s.name for s in series] == ["measured 1", "measured 3"]
+    assert len(residual_chart("q", FIRST, flights.without_estimate(3)).series) == 1
+
+
+def test_the_longer_of_two_records_sets_the_time_axis():
+    assert extent(FIRST, None) == pytest.approx((-2.0, 8.0))
+    assert extent(FIRST, FOURTH) == pytest.approx((-2.0, 8.0))
+
+
+def test_the_rows_hold_every_sample_in_the_unit_that_they_name():
+    rows = list(csv.DictReader(StringIO(rows_of_fit(FIRST, None).csv())))
+    of_q = [row for row in rows if row["channel"] == "q"]
+    fit = FIRST.estimate.fits[0]["q"]
+    assert {row["unit"] for row in of_q} == {"deg/s"}
+    assert [float(row["measured"]) for row in of_q] == pytest.approx(np.degrees(fit.measured), abs=1e-5)
+    assert [float(row["residual"]) for row in of_q] == pytest.approx(np.degrees(fit.residual), abs=1e-5)
+    assert {row["fitted"] for row in rows if row["channel"] == "elevator"} == {""}
+
+
+def test_white_residuals_stay_inside_their_bounds_at_most_lags():
+    white = Whiteness.of(FIRST.estimate.fits[0]["q"])
+    assert white.lag_s[0] == pytest.approx(0.02)
+    assert white.outside < 0.15 * len(white.r)
