@@ -78,7 +78,7 @@ class LogFacts:
 
     def stated_scale(self, output: int) -> Scale | None:
         """Return the limits of an output by the log's parameters; None where the log has none of them."""
-        return self.wiring.scales.get(output) if output in self.wiring.told else None
+        return self.wiring.scales.get(output) if output in self.wiring.known_directions else None
 
 
 def facts_of(
