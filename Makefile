@@ -20,9 +20,7 @@ $(STAMP): pyproject.toml constraints.txt
 # Compiled before a user waits for it; what was compiled from another text is compiled anew by itself.
 KERNELS := $(shell grep -rl --include='*.py' '@kernel' advisor sim) advisor/compiled.py
 .venv/.compiled: $(STAMP) $(KERNELS)
-	$(BIN)/python -m advisor.mavlink.warm
-	$(BIN)/python -m advisor.oem.warm
-	$(BIN)/python -m advisor.gap.warm
+	$(BIN)/python -m advisor.first_run
 	touch $@
 
 # What tests, checks and benchmarks need beyond running: installed only for them.
@@ -127,7 +125,7 @@ damage: .venv/.developed ## 10,000 damaged logs and more, read and analysed (DAM
 
 .PHONY: site words pages examples
 site: .venv/.developed ## the documentation site, built strictly into build/site
-	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict --quiet
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict
 
 words: .venv/.developed ## words of the documentation written by hand, and their limit
 	$(BIN)/python -m benchmarks.pages.words
@@ -141,5 +139,19 @@ examples: .venv/.developed ## run the worked examples of the documentation, and 
 pictures: .venv/.developed ## the screens in the README, drawn by the running program
 	$(BIN)/python -m advisor.tui.picture logs/bundled-demo.tlog --after 3 --out docs/assets
 
+.PHONY: wheel install-check container coverage
+wheel: .venv/.developed ## the wheel and the source archive, in dist
+	$(BIN)/python -m build
+
+install-check: ## the wheel in empty environments, by pip, pipx and uv (ten minutes)
+	.ci/install-check
+
+container: ## the container image (docker or podman)
+	docker build -f Containerfile -t inflight-advisor .
+
+COVERED ?= tests
+coverage: .venv/.developed ## how much of advisor and sim the tests run (COVERED=tests/oem for a part)
+	$(BIN)/python -m pytest -n 2 --dist loadgroup --cov advisor --cov sim --cov-report term --cov-report html:build/coverage $(COVERED)
+
 clean: ## remove .venv and caches
-	rm -rf .venv build *.egg-info .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis
+	rm -rf .venv build dist *.egg-info .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis

@@ -7,8 +7,6 @@ parameters, ``judge`` a campaign, ``diagnose`` the gap. What ``__all__`` does no
 from importlib import import_module
 from typing import Any
 
-__version__ = "0.1.0"
-
 _PUBLIC = {
     "Aircraft": "advisor.aircraft",
     "CampaignState": "advisor.campaign.state",
@@ -32,6 +30,8 @@ __all__ = ["__version__", *_PUBLIC]
 
 def __getattr__(name: str) -> Any:
     """Import a public name at its first use, so that the command line starts fast."""
+    if name == "__version__":
+        return _installed_version()
     if name not in _PUBLIC:
         raise AttributeError(f"module 'advisor' has no attribute {name!r}")
     value = getattr(import_module(_PUBLIC[name]), name)
@@ -42,3 +42,13 @@ def __getattr__(name: str) -> Any:
 def __dir__() -> list[str]:
     """Return the public names, for completion in a shell."""
     return sorted(__all__)
+
+
+def _installed_version() -> str:
+    """Return the version of the installed package; without an installation one below all others."""
+    from importlib.metadata import PackageNotFoundError, version
+
+    try:
+        return version("inflight-advisor")
+    except PackageNotFoundError:
+        return "0+unknown"

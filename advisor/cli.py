@@ -5,15 +5,17 @@ import os
 import sys
 from collections.abc import Callable
 from contextlib import suppress
+from functools import cache, partial, wraps
 from importlib import import_module
 from signal import SIGINT
-from typing import TextIO
+from typing import Any, TextIO
 
 import click
+from click.shell_completion import CompletionItem, shell_complete
 
-from advisor import __version__
 from advisor.ascii_output import speak_plainly
 from advisor.commands.options import INTERNAL, UNUSABLE, USAGE
+from advisor.first_run import compile_once
 from advisor.interrupt import STOPPED, Interrupted
 from advisor.printable import printable
 from advisor.problems import ConfigurationError, UnusableInputError
@@ -30,10 +32,19 @@ COMMANDS = {
     "report": "Write one self-contained page about a flight, for people who were not there.",
     "doctor": "Check before a flight whether the telemetry is good enough; say what to change.",
     "study": "Repeat the paper's simulated campaign: Table 1, Figure 5, Monte-Carlo.",
+    "aircraft": "Write an aircraft file, or say what one lacks and what that costs.",
+    "sample": "Put a sample flight and its aircraft file into this folder.",
     "locate": "Print where settings and recordings are kept.",
+    "completion": "Print what makes a shell complete the advisor's commands.",
 }
 """Command name to its line in ``advisor --help``. The lines stand here so that the help imports no
 command."""
+
+
+COMPLETION_VARIABLE = "_ADVISOR_COMPLETE"
+"""Environment variable by which a shell asks for completions."""
+WITHOUT_KERNELS = frozenset({"locate", "sample", "aircraft", "completion"})
+"""Commands that need no compiled code, or only sometimes: the first run does not compile for them."""
 
 
 class LazyCommands(click.Group):
@@ -45,11 +56,15 @@ class LazyCommands(click.Group):
 
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
         """Import one command; None for an unknown name."""
-        if name not in COMMANDS:
-            return None
-        command = import_module(f"advisor.commands.{name}").command
-        assert isinstance(command, click.Command)
-        return command
+        return _command(name) if name in COMMANDS else None
+
+    def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
+        """Complete the name of a command, or an option, without importing any command."""
+        if incomplete and not incomplete[0].isalnum():
+            return super().shell_complete(ctx, incomplete)
+        return [
+            CompletionItem(name, help=line) for name, line in COMMANDS.items() if name.startswith(incomplete)
+        ]
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """List the commands without importing any."""
@@ -57,8 +72,45 @@ class LazyCommands(click.Group):
             formatter.write_dl(list(COMMANDS.items()))
 
 
+@cache
+def _command(name: str) -> click.Command:
+    """Import a command. One that calls compiled code compiles it first, on the first run."""
+    command = import_module(f"advisor.commands.{name}").command
+    assert isinstance(command, click.Command)
+    if name not in WITHOUT_KERNELS:
+        parts = command.commands.values() if isinstance(command, click.Group) else (command,)
+        for part in parts:
+            part.callback = part.callback and _compiled_first(part.callback)
+    return command
+
+
+def _compiled_first(run: Callable[..., Any]) -> Callable[..., Any]:
+    @wraps(run)
+    def compile_and_run(*arguments: Any, **options: Any) -> Any:
+        compile_once(partial(click.echo, err=True))
+        return run(*arguments, **options)
+
+    return compile_and_run
+
+
+def _say_version(context: click.Context, _: click.Parameter, wanted: bool) -> None:
+    if not wanted or context.resilient_parsing:
+        return
+    from advisor import __version__
+
+    click.echo(f"advisor, version {__version__}")
+    context.exit()
+
+
 @click.group(cls=LazyCommands, context_settings={"help_option_names": ["-h", "--help"]})
-@click.version_option(__version__, prog_name="advisor")
+@click.option(
+    "--version",
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=_say_version,
+    help="Show the version.",
+)
 def advisor() -> None:
     """Inflight advisor: was that manoeuvre good, may we stop testing.
 
@@ -83,6 +135,8 @@ def main() -> None:
 
 def _run() -> int:
     """Call the command that the user names. Raise every message or exit that click would handle itself."""
+    if asked := os.environ.get(COMPLETION_VARIABLE):
+        return shell_complete(advisor, {}, "advisor", COMPLETION_VARIABLE, asked)
     with advisor.make_context("advisor", sys.argv[1:]) as context:
         code = advisor.invoke(context)
     sys.stdout.flush()

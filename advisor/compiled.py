@@ -3,14 +3,16 @@
 Numba freezes into a kernel's machine code the functions that the kernel calls and the constants that it
 reads. Numba's own cache depends only on the text of the kernel's file, so that stale machine code would
 survive a change elsewhere. The key here is the text of the kernel's file and of every module of the package
-that the file imports, directly or through other modules.
+that it imports, directly or through others.
 """
 
 import ast
 import hashlib
 import sys
 from collections.abc import Callable
+from contextlib import suppress
 from functools import cache
+from importlib.util import resolve_name
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
@@ -20,7 +22,10 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def kernel(**options: Any) -> Callable[[Function], Function]:
-    """Compile a function at its first call, and keep the machine code on disk.
+    """Compile a function at its first call, and keep the machine code on disk where a folder allows.
+
+    Numba keeps machine code in ``NUMBA_CACHE_DIR``, next to the module, or in the user's own cache:
+    the first that can be written to. Without such a folder each process compiles for itself.
 
     Parameters
     ----------
@@ -33,9 +38,11 @@ def kernel(**options: Any) -> Callable[[Function], Function]:
     """
 
     def compiled(function: Function) -> Function:
-        found: Any = numba.njit(cache=True, **options)(function)
+        found: Any = numba.njit(**options)(function)
         if found is not function:  # NUMBA_DISABLE_JIT leaves functions as they are.
-            found._cache._cache_file._source_stamp = key_of(function.__module__)
+            with suppress(RuntimeError):  # numba finds no folder to write to
+                found.enable_caching()
+                found._cache._cache_file._source_stamp = key_of(function.__module__)
         return cast("Function", found)
 
     return compiled
@@ -73,8 +80,9 @@ def _imports_of(module: str) -> tuple[str, ...]:
     for node in ast.parse(_text_of(module)).body:
         if isinstance(node, ast.Import):
             named += [alias.name for alias in node.names]
-        elif isinstance(node, ast.ImportFrom) and node.module is not None:
-            named += [node.module, *(f"{node.module}.{alias.name}" for alias in node.names)]
+        elif isinstance(node, ast.ImportFrom):
+            origin = resolve_name("." * node.level + (node.module or ""), sys.modules[module].__package__)
+            named += [origin, *(f"{origin}.{alias.name}" for alias in node.names)]
     package = module.partition(".")[0]
     return tuple(name for name in named if name.partition(".")[0] == package and name in sys.modules)
 

@@ -4,12 +4,14 @@ once."""
 from collections.abc import Iterator, Sequence
 from copy import deepcopy
 from dataclasses import fields, replace
+from difflib import get_close_matches
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError, with_config
 
+import advisor.aircraft as parts
 from advisor.aircraft import PARAMETERS, Aircraft, Elevator, FmuVariables, Markers, Pairs
 from advisor.aircraft_effects import mistakes_in
 from advisor.printable import printable
@@ -27,12 +29,21 @@ def load_aircraft(path: Path | None) -> Aircraft:
     """
     if path is None:
         return Aircraft()
-    content = read_yaml(path)
-    return parse_aircraft({} if content is None else content, str(path))
+    content = read_yaml(path, _EXAMPLE)
+    return parse_aircraft({} if content is None else content, str(path), _EXAMPLE)
 
 
-def parse_aircraft(content: Any, origin: str = "aircraft file") -> Aircraft:
+def parse_aircraft(content: Any, origin: str = "aircraft file", mend: str = "") -> Aircraft:
     """Turn the parsed YAML into an aircraft.
+
+    Parameters
+    ----------
+    content
+        Sections and keys.
+    origin
+        Name of the file, or of whatever the content comes from, for the sentence about mistakes.
+    mend
+        Sentence on what to do about them.
 
     Raises
     ------
@@ -44,7 +55,7 @@ def parse_aircraft(content: Any, origin: str = "aircraft file") -> Aircraft:
     mistakes: list[str] = []
     while True:
         try:
-            aircraft = reader.validate_python(content)
+            found = reader.validate_python(content)
         except ValidationError as error:
             mistakes += dict.fromkeys(_sentence(item) for item in error.errors())
             # The rest is read again, so that one wrong key does not hide another's mistake.
@@ -53,12 +64,13 @@ def parse_aircraft(content: Any, origin: str = "aircraft file") -> Aircraft:
                 break
             content = remainder
         else:
-            mistakes += _beyond_types(aircraft)
+            mistakes += _beyond_types(found)
             if not mistakes:
-                return replace(aircraft, name=printable(aircraft.name))
+                return replace(found, name=printable(found.name))
             break
     more = [f"and {len(mistakes) - _MOST_LISTED} more"] if len(mistakes) > _MOST_LISTED else []
-    raise ConfigurationError(f"{origin}: " + "; ".join([*mistakes[:_MOST_LISTED], *more]) + ".")
+    listed = "; ".join([*mistakes[:_MOST_LISTED], *more])
+    raise ConfigurationError(f"{origin}: {listed}. {mend}".rstrip())
 
 
 def _without_empty(content: Any) -> Any:
@@ -86,22 +98,8 @@ def _take_out(section: dict[Any, Any], location: Sequence[int | str]) -> None:
 
 def _reader() -> TypeAdapter[Aircraft]:
     # The core's dataclasses stay free of pydantic. The rule that unknown keys are refused is attached here.
-    from advisor import aircraft
-
     strict = with_config(ConfigDict(extra="forbid", allow_inf_nan=False))
-    for part in (
-        aircraft.ElevatorOutput,
-        aircraft.Elevator,
-        aircraft.Alpha,
-        aircraft.Accelerometer,
-        aircraft.Reference,
-        aircraft.FmuTrim,
-        aircraft.FmuVariables,
-        aircraft.CampaignPlan,
-        aircraft.Limits,
-        aircraft.Markers,
-        aircraft.Aircraft,
-    ):
+    for part in _PARTS:
         strict(part)
     return TypeAdapter(Aircraft)
 
@@ -118,12 +116,35 @@ def _sentence(item: Any) -> str:
         ):
             path += f".{step}" if path else str(step)
     if item["type"] in ("unexpected_keyword_argument", "extra_forbidden"):
-        return f"{path or 'file'}: unknown key"
+        return f"{path or 'file'}: unknown key{_meant(str(item['loc'][-1]))}"
     if item["type"] == "dataclass_type":
         return f"{path or 'file'}: must hold keys with values"
     return f"{path or 'file'}: {item['msg'][0].lower()}{item['msg'][1:]}"
 
 
+def _meant(key: str) -> str:
+    """Name the known key that an unknown one resembles, as a question; empty where none does."""
+    known = sorted({one.name for part in _PARTS for one in fields(part)})
+    near = get_close_matches(key, known, 1)
+    return f" (did you mean {near[0]}?)" if near else ""
+
+
+_PARTS = (
+    parts.ElevatorOutput,
+    parts.Elevator,
+    parts.Alpha,
+    parts.Accelerometer,
+    parts.Reference,
+    parts.FmuTrim,
+    parts.FmuVariables,
+    parts.CampaignPlan,
+    parts.Limits,
+    parts.Markers,
+    parts.Aircraft,
+)
+"""The sections of the file, innermost first."""
+_EXAMPLE = "To see every key with its meaning, type: advisor aircraft new --blank -o example.yaml."
+"""Next step after a file was refused."""
 _MOST_LISTED = 20
 """Most mistakes that are listed. A user with more has repeated one mistake."""
 _MOST_POINTS = 500

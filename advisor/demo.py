@@ -7,9 +7,11 @@ packets on a socket.
 import subprocess
 import sys
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from types import TracebackType
 from typing import TYPE_CHECKING
 
+from advisor.bundled import SIMULATOR
 from advisor.problems import UnusableInputError
 
 if TYPE_CHECKING:
@@ -45,7 +47,7 @@ class Demonstration:
         from advisor.mavlink.link import Link
 
         self._link = Link("udpin:127.0.0.1:0", record_to=self._record_to).start()
-        command = [sys.executable, "-m", "sim", "fly", "--master", f"udpout:127.0.0.1:{self._link.port}"]
+        command = [sys.executable, "-m", SIMULATOR, "fly", "--master", f"udpout:127.0.0.1:{self._link.port}"]
         self._process = subprocess.Popen(
             [*command, *self._options],
             stdin=subprocess.DEVNULL,
@@ -63,6 +65,18 @@ class Demonstration:
             self._process.terminate()
             self._process.communicate()
 
+    @staticmethod
+    def fly_once() -> None:
+        """Fly one manoeuvre into a file that is thrown away: this compiles all that the aircraft needs."""
+        with TemporaryDirectory() as folder:
+            scenario = Path(folder) / "one.yaml"
+            scenario.write_text('aircraft: linear\nmaneuvers: ["3211"]\n')
+            out = Path(folder) / "one.tlog"
+            command = [sys.executable, "-m", SIMULATOR, "record", "--scenario", str(scenario)]
+            subprocess.run(
+                [*command, "--out", str(out)], stdin=subprocess.DEVNULL, capture_output=True, check=False
+            )
+
     def over(self) -> bool:
         """Return whether the aircraft has landed and its last packets have arrived.
 
@@ -79,6 +93,6 @@ class Demonstration:
             raise UnusableInputError(
                 "no_flight",
                 f"The bundled aircraft ended with exit code {code}: {said.strip()}",
-                "Try: python -m sim fly --master udpout:127.0.0.1:14550",
+                f"Try: python -m {SIMULATOR} fly --master udpout:127.0.0.1:14550",
             )
         return code == 0 and self._link.statistics.silent_s > LANDING_S

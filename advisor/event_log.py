@@ -1,4 +1,4 @@
-"""Sentences for an event log: the newest sentences, and the number of dropped ones."""
+"""Sentences for an event log: the newest of them."""
 
 from collections import deque
 from collections.abc import Iterable
@@ -16,19 +16,11 @@ class EventLog:
     def __init__(self, kept: int) -> None:
         self._lines: deque[str] = deque(maxlen=kept)
         self.lines: tuple[str, ...] = ()
-        """Sentences, oldest first. The object stays identical until a sentence is added."""
-        self.before = 0
-        """Number of sentences that were dropped."""
+        """Oldest first; the same object until something is added."""
 
     def add(self, sentences: Iterable[str]) -> None:
-        """Add sentences."""
-        before, further = len(self._lines), list(sentences)
+        """Take further sentences."""
+        further = list(sentences)
         if further:
             self._lines.extend(further)
-            self.before += before + len(further) - len(self._lines)
             self.lines = tuple(self._lines)
-
-    def clear(self) -> None:
-        """Drop all sentences."""
-        self._lines.clear()
-        self.lines, self.before = (), 0

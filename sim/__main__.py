@@ -9,13 +9,13 @@ from typing import Any
 
 import click
 
-from sim.blind.seal import SealError
-from sim.effects.fitting import flight_of
-from sim.flight import Flight
-from sim.loading import ScenarioError
-from sim.modelled import modelled_flight
-from sim.scenario import Scenario, read_scenario
-from sim.trim import TrimError
+from .blind.seal import SealError
+from .effects.fitting import flight_of
+from .flight import Flight
+from .loading import ScenarioError
+from .modelled import modelled_flight
+from .scenario import Scenario, read_scenario
+from .trim import TrimError
 
 
 def _speed(text: str) -> float | None:
@@ -81,7 +81,7 @@ def fly(master: str, speed: str, **options: Any) -> None:
 
     Example: python -m sim fly --master udpout:127.0.0.1:14550 --speed 10
     """
-    from sim.fly import serve
+    from .fly import serve
 
     factor = _speed(speed)
     sent = serve(_flown(options), master, factor, tell=lambda text: click.echo(text, err=True))
@@ -96,7 +96,7 @@ def record(out: Path, **options: Any) -> None:
 
     Example: python -m sim record --out flight.tlog --seed 7
     """
-    from sim.record import record as write
+    from .record import record as write
 
     flight = _flown(options)
     count = write(flight, out)
@@ -114,7 +114,7 @@ def compare(flight: Path, replays: tuple[Path, ...]) -> None:
              python -m sim record --aircraft improved.yaml --replay-inputs flight.tlog --out improved.tlog
              python -m sim compare flight.tlog now.tlog improved.tlog
     """
-    from sim.compare import distances
+    from .compare import distances
 
     for replay in replays:
         for apart in distances(flight, replay):
@@ -140,8 +140,8 @@ def blind(cases: int, seed: int, out: Path, only: tuple[str, ...]) -> None:
 
     Example: python -m sim blind --cases 200 --seed 11 --out cases
     """
-    from sim.blind.draw import GROUPS
-    from sim.blind.generate import generate, key_beside
+    from .blind.draw import GROUPS
+    from .blind.generate import generate, key_beside
 
     unknown = [name for name in only if name not in GROUPS]
     if unknown:
@@ -163,7 +163,7 @@ def commit(folder: Path, answers: Path) -> None:
 
     ANSWERS holds one JSON object a line: {"case": NAME, "answer": document of advisor gap --json}.
     """
-    from sim.blind.seal import commit as commit_answers
+    from .blind.seal import commit as commit_answers
 
     click.echo(commit_answers(folder, answers))
 
@@ -180,8 +180,8 @@ def commit(folder: Path, answers: Path) -> None:
 @click.option("--json", "as_json", is_flag=True, help="Print the figures as one JSON document.")
 def reveal(folder: Path, answers: Path, key: Path | None, details: bool, as_json: bool) -> None:
     """Open the key and score committed answers, with 95 % intervals."""
-    from sim.blind.generate import key_beside
-    from sim.blind.reveal import report, score_document
+    from .blind.generate import key_beside
+    from .blind.reveal import report, score_document
 
     opened = key or key_beside(folder)
     if as_json:
@@ -193,8 +193,11 @@ def reveal(folder: Path, answers: Path, key: Path | None, details: bool, as_json
 
 def run(arguments: Sequence[str] | None = None) -> None:
     """Run the command. A user's mistake ends with exit code 2 and one sentence."""
+    name = f"python -m {__package__}"  # a wheel installs this package under another name
+    for each in main.commands.values():
+        each.help = (each.help or "").replace("python -m sim", name)
     try:
-        main(arguments, prog_name="python -m sim")
+        main(arguments, prog_name=name)
     except ScenarioError as error:
         for problem in error.problems:
             click.echo(f"error: {problem}", err=True)

@@ -8,10 +8,10 @@ from typing import Any
 
 import yaml
 
-from sim.effects.terms import problems_with
-from sim.linear import ShortPeriod
-from sim.loading import ScenarioError
-from sim.servo import Calibration
+from .effects.terms import problems_with
+from .linear import ShortPeriod
+from .loading import ScenarioError
+from .servo import Calibration
 
 
 @dataclass(frozen=True)

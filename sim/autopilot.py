@@ -4,11 +4,11 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
-from sim.hand import by_hand
-from sim.linear import ShortPeriod
-from sim.maneuvers import Input, elevator_input
-from sim.motion import Controls, Motion
-from sim.scenario import Augmentation, Maneuver, Scenario
+from .hand import by_hand
+from .linear import ShortPeriod
+from .maneuvers import Input, elevator_input
+from .motion import Controls, Motion
+from .scenario import Augmentation, Maneuver, Scenario
 
 MANUAL, FBWA, CRUISE = 0, 5, 7
 """ArduPlane's mode numbers, as in HEARTBEAT.custom_mode."""

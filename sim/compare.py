@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.airframe import GRAVITY_M_S2
-from sim.autopilot import MANUAL
-from sim.loading import ScenarioError
-from sim.tlog import read_tlog
+from .airframe import GRAVITY_M_S2
+from .autopilot import MANUAL
+from .loading import ScenarioError
+from .tlog import read_tlog
 
 FloatArray = NDArray[np.float64]
 Stream = tuple[FloatArray, FloatArray]

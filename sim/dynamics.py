@@ -1,7 +1,7 @@
 """Equations of motion of the bundled nonlinear aircraft and their integration.
 
-The motion is longitudinal along the flight path, with a bank angle in coordinated turns (Stevens & Lewis,
-*Aircraft Control and Simulation*, wind-axes force equations with β = 0):
+The motion is longitudinal along the flight path, with a bank angle in coordinated turns. The equations are
+the wind-axes force equations with β = 0 (Stevens & Lewis, *Aircraft Control and Simulation*):
 
     V̇ = (T cos α − D)/m − g sin γ
     α̇ = q − (L + T sin α)/(m V) + (g/V) cos γ cos μ
@@ -18,7 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from advisor.compiled import kernel
-from sim.airframe import AIR_DENSITY_KG_M3, GRAVITY_M_S2
+
+from .airframe import AIR_DENSITY_KG_M3, GRAVITY_M_S2
 
 FloatArray = NDArray[np.float64]
 

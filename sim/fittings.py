@@ -6,11 +6,11 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from sim.atmosphere import DrydenTurbulence
-from sim.motion import Motion
-from sim.scenario import Scenario
-from sim.sensors import DerivedAlpha, SensorEffect
-from sim.servo import FirstOrderServo, Mechanism, SecondOrderServo, TransportDelay
+from .atmosphere import DrydenTurbulence
+from .motion import Motion
+from .scenario import Scenario
+from .sensors import DerivedAlpha, SensorEffect
+from .servo import FirstOrderServo, Mechanism, SecondOrderServo, TransportDelay
 
 SERVO_HZ, SERVO_DAMPING = 20.0, 0.8
 """Frequency, Hz, and damping of a servo that is only rate-limited."""

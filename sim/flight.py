@@ -8,15 +8,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim import hangar
-from sim.atmosphere import DrydenTurbulence
-from sim.autopilot import Autopilot, Demand, Pilot, Planned, plan
-from sim.fittings import Fittings, complete
-from sim.loading import DepartureError
-from sim.motion import Controls, Motion
-from sim.scenario import Maneuver, Noise, Scenario
-from sim.sensors import NOISY, ChannelNoise, Reading, ideal
-from sim.servo import Servo
+from . import hangar
+from .atmosphere import DrydenTurbulence
+from .autopilot import Autopilot, Demand, Pilot, Planned, plan
+from .fittings import Fittings, complete
+from .loading import DepartureError
+from .motion import Controls, Motion
+from .scenario import Maneuver, Noise, Scenario
+from .sensors import NOISY, ChannelNoise, Reading, ideal
+from .servo import Servo
 
 _DEPARTED_RAD_S = 50.0
 """Pitch rate above which the motion counts as unbounded, rad/s. No aircraft flies so."""

@@ -11,9 +11,9 @@ os.environ.setdefault("MAVLINK_DIALECT", "ardupilotmega")
 
 from pymavlink import mavutil
 
-from sim.flight import Flight
-from sim.mavlink import COMPONENT, SYSTEM
-from sim.telemetry import Telemetry
+from .flight import Flight
+from .mavlink import COMPONENT, SYSTEM
+from .telemetry import Telemetry
 
 
 def serve(

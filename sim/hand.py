@@ -6,8 +6,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from sim.maneuvers import STEPS, Input, elevator_input, stepped
-from sim.scenario import Maneuver
+from .maneuvers import STEPS, Input, elevator_input, stepped
+from .scenario import Maneuver
 
 STICK_HZ = 0.3
 """Bandwidth of the stick's own motion, Hz. A hand corrects a few times in ten seconds."""

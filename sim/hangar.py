@@ -2,13 +2,13 @@
 
 from dataclasses import dataclass, replace
 
-from sim.airframe import LIGHT_AIRCRAFT, UAV, Airframe
-from sim.jsbsim_aircraft import JsbsimAircraft
-from sim.linear import RESEARCH_JET
-from sim.linear_aircraft import LinearAircraft
-from sim.loading import ScenarioError
-from sim.nonlinear_aircraft import NonlinearAircraft
-from sim.scenario import Scenario
+from .airframe import LIGHT_AIRCRAFT, UAV, Airframe
+from .jsbsim_aircraft import JsbsimAircraft
+from .linear import RESEARCH_JET
+from .linear_aircraft import LinearAircraft
+from .loading import ScenarioError
+from .nonlinear_aircraft import NonlinearAircraft
+from .scenario import Scenario
 
 Aircraft = LinearAircraft | NonlinearAircraft | JsbsimAircraft
 

@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from sim.linear import ShortPeriod
-from sim.loading import ScenarioError
-from sim.maneuvers import elevator_input
-from sim.motion import Controls, Motion
-from sim.servo import Calibration
+from .linear import ShortPeriod
+from .loading import ScenarioError
+from .maneuvers import elevator_input
+from .motion import Controls, Motion
+from .servo import Calibration
 
 FOOT_M = 0.3048
 FULL_TRIM = 1

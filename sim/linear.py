@@ -5,8 +5,8 @@ from dataclasses import asdict, dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.dynamics import DERIVATIVES, derivatives
-from sim.trim import Trim
+from .dynamics import DERIVATIVES, derivatives
+from .trim import Trim
 
 FloatArray = NDArray[np.float64]
 

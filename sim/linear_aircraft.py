@@ -13,10 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from advisor.compiled import kernel
-from sim.airframe import GRAVITY_M_S2
-from sim.linear import ShortPeriod
-from sim.motion import Controls, Motion
-from sim.servo import Calibration
+
+from .airframe import GRAVITY_M_S2
+from .linear import ShortPeriod
+from .motion import Controls, Motion
+from .servo import Calibration
 
 ROLL_RATE_MAX = 2.0
 ROLL_LAG_S = 0.15

@@ -6,12 +6,12 @@ from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from sim.airframe import GRAVITY_M_S2
-from sim.autopilot import MANUAL
-from sim.flight import Sample
-from sim.parameters import STREAM_GROUPS, STREAM_OF_ID, parameter_table, parameter_type
-from sim.scenario import Clock
-from sim.servo import Calibration
+from .airframe import GRAVITY_M_S2
+from .autopilot import MANUAL
+from .flight import Sample
+from .parameters import STREAM_GROUPS, STREAM_OF_ID, parameter_table, parameter_type
+from .scenario import Clock
+from .servo import Calibration
 
 SYSTEM, COMPONENT = 1, 1
 HOME_LATITUDE, HOME_LONGITUDE, HOME_HEIGHT_M = 47.0, 11.0, 600.0

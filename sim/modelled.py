@@ -5,16 +5,16 @@ from pathlib import Path
 
 import numpy as np
 
-from sim.aircraft_file import AircraftFile, read_aircraft
-from sim.autopilot import Autopilot, plan
-from sim.effects.kit import Kit
-from sim.effects.terms import fit_terms
-from sim.fittings import Fittings
-from sim.flight import Flight
-from sim.hangar import LINEAR_HABITS, unit_for
-from sim.linear_aircraft import LinearAircraft
-from sim.replay import RecordedAirspeed, RecordedPilot, Recording, read_recording
-from sim.scenario import Clock, Instruments, Scenario, Servo
+from .aircraft_file import AircraftFile, read_aircraft
+from .autopilot import Autopilot, plan
+from .effects.kit import Kit
+from .effects.terms import fit_terms
+from .fittings import Fittings
+from .flight import Flight
+from .hangar import LINEAR_HABITS, unit_for
+from .linear_aircraft import LinearAircraft
+from .replay import RecordedAirspeed, RecordedPilot, Recording, read_recording
+from .scenario import Clock, Instruments, Scenario, Servo
 
 
 def modelled_flight(scenario: Scenario, path: Path, replayed: Path | None = None) -> Flight:

@@ -3,12 +3,12 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.airframe import Airframe, as_record
-from sim.dynamics import DERIVATIVES, derivatives, step
-from sim.linear import ShortPeriod, linearise
-from sim.motion import Controls, Motion
-from sim.servo import Calibration
-from sim.trim import trim_level
+from .airframe import Airframe, as_record
+from .dynamics import DERIVATIVES, derivatives, step
+from .linear import ShortPeriod, linearise
+from .motion import Controls, Motion
+from .servo import Calibration
+from .trim import trim_level
 
 
 class NonlinearAircraft:

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from sim.servo import Calibration
+from .servo import Calibration
 
 ELEVATOR_OUTPUT = 2
 

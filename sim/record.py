@@ -5,9 +5,9 @@ from typing import BinaryIO
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from sim.flight import Flight
-from sim.mavlink import COMPONENT, SYSTEM
-from sim.telemetry import Telemetry
+from .flight import Flight
+from .mavlink import COMPONENT, SYSTEM
+from .telemetry import Telemetry
 
 
 def write_tlog(flight: Flight, out: BinaryIO) -> int:

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.autopilot import CRUISE, MANUAL, Autopilot, Demand, Planned
-from sim.loading import ScenarioError
-from sim.motion import Motion
-from sim.servo import Calibration
-from sim.tlog import read_tlog
+from .autopilot import CRUISE, MANUAL, Autopilot, Demand, Planned
+from .loading import ScenarioError
+from .motion import Motion
+from .servo import Calibration
+from .tlog import read_tlog
 
 ELEVATOR_FUNCTION = 19
 THROTTLE_FUNCTION = 70

@@ -7,9 +7,9 @@ from typing import Any, Literal
 
 import yaml
 
-from sim.airframe import Airframe
-from sim.loading import ScenarioError, load
-from sim.maneuvers import INPUTS
+from .airframe import Airframe
+from .loading import ScenarioError, load
+from .maneuvers import INPUTS
 
 
 @dataclass(frozen=True)

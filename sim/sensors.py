@@ -6,10 +6,10 @@ from typing import Protocol
 
 import numpy as np
 
-from sim.airframe import GRAVITY_M_S2
-from sim.motion import Motion
-from sim.scenario import AlphaSensor
-from sim.servo import FirstOrderServo
+from .airframe import GRAVITY_M_S2
+from .motion import Motion
+from .scenario import AlphaSensor
+from .servo import FirstOrderServo
 
 
 @dataclass(slots=True)

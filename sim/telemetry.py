@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim.flight import Flight
-from sim.mavlink import Message, Voice
+from .flight import Flight
+from .mavlink import Message, Voice
 
 GREETING = "Bundled aircraft, ArduPlane V4.5.6 manners"
 """Text that the vehicle repeats, by which listeners recognise a simulated aircraft."""

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.dynamics import DERIVATIVES, derivatives
+from .dynamics import DERIVATIVES, derivatives
 
 
 class TrimError(ValueError):

@@ -174,7 +174,8 @@ def compare_versions(here: Versions, workers: Mapping[str, Versions]) -> str:
     refused = [told for name, told in differing.items() if name in _SAME]
     if refused:
         raise ConfigurationError(
-            f"--scheduler: workers need this advisor and this Python, but there is {'; '.join(refused)}."
+            f"--scheduler: workers need this advisor and this Python, but there is {'; '.join(refused)}. "
+            "Install the versions of this computer there."
         )
     return f"Results may differ in the last digits: {'; '.join(differing.values())}." if differing else ""
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from advisor.aircraft import Aircraft
 from advisor.campaign.hand_decisions import NOTHING, ByHand, Remark
 from advisor.campaign.joint_estimate import NEWEST, Together
+from advisor.campaign.journal import Journal
 from advisor.campaign.running_estimate import Settling
 from advisor.campaign.servo_lag import learnt as learnt_from
 from advisor.campaign.servo_lag import may_learn, reserved
@@ -17,20 +18,7 @@ from advisor.decision.history import Flown
 from advisor.decision.judge import judge_campaign
 from advisor.decision.stopping import flight_test
 from advisor.decision.verdict import FlightTestVerdict
-from advisor.event_log import EventLog
-from advisor.flight.events import (
-    Activity,
-    DataAgain,
-    FlightBegan,
-    FlightEvent,
-    ManeuverAgain,
-    ManeuverFlown,
-    ModeChanged,
-    NoData,
-    Notice,
-    Rebooted,
-    VehicleFound,
-)
+from advisor.flight.events import Activity, FlightEvent, ManeuverAgain, ManeuverFlown, Notice
 from advisor.flight.flights import Flights
 from advisor.flight.identity import READER_NOTICE
 from advisor.flight.maneuver import Maneuver
@@ -41,9 +29,7 @@ from advisor.flight.stream import FlightStream
 from advisor.oem.estimator import lag_is_unknown
 from advisor.oem.solution import Method
 from advisor.problems import Problem
-
-NOTICES = 1000
-"""Sentences that the event log keeps, 0.1 kB each: enough for some hundred manoeuvres."""
+from advisor.vehicle_time import clock
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,7 +89,7 @@ class Campaign:
         self._to_remark = list(by_hand.remarks)
         self._maneuvers: list[Maneuver] = []
         self._history: list[Flown] = []
-        self._notices = EventLog(NOTICES)
+        self._journal = Journal()
         self._mark_notes: tuple[str, ...] = ()
         self._reader_notes: tuple[str, ...] = ()
         self._activity: tuple[Activity, ...] = ()
@@ -130,7 +116,7 @@ class Campaign:
         self._decide()
         self._learn()
         for problem in self._stream.marks.problems():
-            self._log(str(problem))
+            self._journal.write(str(problem))
         return told
 
     @property
@@ -163,8 +149,7 @@ class Campaign:
             other_vehicles=tuple(sorted(stream.other_systems)),
             no_data=stream.no_data,
             mark_notes=self._mark_notes,
-            notices=self._notices.lines,
-            notices_before=self._notices.before,
+            notices=self._journal.lines,
             flight=flights.flight,
             boot=stream.boot,
             flights=flights.heard(channels, self._ended),
@@ -198,58 +183,50 @@ class Campaign:
         if math.isfinite(self._now_s):
             here = Remark(self._now_s, text, self._stream.boot, self._flights.flight)
             self.by_hand = self.by_hand.remarking(here)
-        self._log(f"mark: {text}", self._stream.now_s)
+        self._journal.write(f"mark: {text}", self._stream.now_s)
 
     def begin_maneuver(self) -> None:
         """Begin a manoeuvre's mark at the newest vehicle time. A mark that is already open is dropped."""
         if not math.isfinite(self._now_s):
-            self._log("nothing can be marked before the vehicle's clock is heard")
+            self._journal.write("nothing can be marked before the vehicle's clock is heard")
             return
         self._stream.marks.begin_by_hand(self._now_s)
-        self._log("a manoeuvre is marked from here", self._stream.now_s)
+        self._journal.write("a manoeuvre is marked from here", self._stream.now_s)
 
     def end_maneuver(self) -> None:
         """End the mark at the newest vehicle time. The manoeuvre is judged when all of it has arrived."""
         ended = self._stream.marks.end_by_hand(self._now_s)
         if isinstance(ended, Notice):
-            self._log(ended.text, self._stream.now_s)
+            self._journal.write(ended.text, self._stream.now_s)
             return
         self.by_hand = self.by_hand.marking(replace(ended, flight=self._flights.flight))
-        self._log(f"a manoeuvre is marked from {ended.start_s:.1f} s to here", self._stream.now_s)
+        self._journal.write(f"a manoeuvre is marked from {clock(ended.start_s)} to here", self._stream.now_s)
+
+    def log(self, sentence: str) -> None:
+        """Write a sentence from outside, such as what a link reports, into the event log."""
+        self._journal.write(sentence, self._stream.now_s)
 
     def note(self, number: int, text: str) -> None:
         """Write a note on a manoeuvre."""
         self.by_hand = self.by_hand.noting(self._maneuvers[self._index(number)], text)
-        self._log(f"note on manoeuvre {number}: {text}", self._stream.now_s)
+        self._journal.write(f"note on manoeuvre {number}: {text}", self._stream.now_s)
         self._decide()
 
     def _take(self, events: Sequence[FlightEvent]) -> list[CampaignEvent]:
         told: list[CampaignEvent] = []
         for event in events:
             told.append(event)
+            self._journal.take(event)
             match event:
                 case ManeuverFlown(maneuver):
                     told.append(self._judge(maneuver))
                 case Activity():
                     joined = event.joined(self._activity[-1]) if self._activity else None
                     self._activity = (*self._activity[:-1], joined) if joined else (*self._activity, event)
-                case ModeChanged(mode, at_s):
-                    self._log(f"mode {mode}", at_s)
                 case Notice():
                     self._note_down(event)
-                case NoData(problems):
-                    for problem in problems:
-                        self._log(f"NO DATA: {problem}", self._stream.now_s)
-                case DataAgain():
-                    self._log("the data serve again", self._stream.now_s)
-                case VehicleFound(vehicle):
-                    self._log(f"following {vehicle}")
                 case ManeuverAgain():
                     told += self._heard_again(event)
-                case FlightBegan(flight, name):
-                    self._log(f"{name}: flight {flight + 1} begins")
-                case Rebooted(boot):
-                    self._log(f"the vehicle's clock went back, as after a reboot: power-on {boot + 1}")
         if self._tell is not None:
             for happened in told:
                 self._tell(happened)
@@ -263,14 +240,14 @@ class Campaign:
         self._history.append(replace(flown, excluded_because=because))
         self._decide()
         self._learn()
-        ended_s = maneuver.span.end_s
-        self._log(f"manoeuvre {maneuver.number}: {self._judged[-1].verdict.sentence}", ended_s)
-        self._log(self._flight_test.sentence, ended_s)
+        span = maneuver.span
+        verdict = f"manoeuvre {maneuver.number} ({clock(span.start_s)}): {self._judged[-1].verdict.sentence}"
+        self._journal.write_of_past(verdict, span.end_s)
+        self._journal.write_of_past(self._flight_test.sentence, span.end_s)
         return ManeuverJudged(self._judged[-1], self._flight_test)
 
     def _note_down(self, notice: Notice) -> None:
-        """Log a notice, and keep those about marks and about the reader for the report."""
-        self._log(notice.text)
+        """Keep the notices about marks and about the reader for the report."""
         if notice.code in MARK_NOTICES:
             self._mark_notes += (notice.text,)
         if notice.code == READER_NOTICE:
@@ -285,8 +262,10 @@ class Campaign:
         because = known if known is not None else self.by_hand.excluded_because(maneuver)
         where = f" in {self._flights.name}" if self._flights.name else ""
         better = "; this record holds more and takes the place" if event.takes_place else ""
-        self._log(
-            f"manoeuvre {maneuver.number} comes again{where}: it counts once{better}", maneuver.span.end_s
+        self._journal.write_of_past(
+            f"manoeuvre {maneuver.number} ({clock(maneuver.span.start_s)}) comes again{where}: "
+            f"it counts once{better}",
+            maneuver.span.end_s,
         )
         if not event.takes_place and because == known:
             return []
@@ -313,7 +292,7 @@ class Campaign:
         now = (self._flights.flight, self._stream.boot, self._stream.now_s)
         for remark in [r for r in self._to_remark if (r.flight, r.boot, r.at_s) <= now]:
             self._to_remark.remove(remark)
-            self._log(f"mark: {remark.text}", remark.at_s)
+            self._journal.write(f"mark: {remark.text}", remark.at_s)
 
     def _decide(self) -> None:
         plan = self._aircraft.campaign
@@ -361,7 +340,7 @@ class Campaign:
             for flown, before in zip(again, self._history, strict=True)
         ]
         lag = learnt.elevator.lag_found_s
-        self._log(
+        self._journal.write(
             f"the servo's lag is {lag:.3f} s by all manoeuvres together; every estimate uses it now;"
             f" for the aircraft file: elevator: {{lag_s: {lag:.3f}}}"
         )
@@ -372,12 +351,9 @@ class Campaign:
         self._history[i] = replace(self._history[i], excluded_because=because)
         self.by_hand = self.by_hand.excluding(self._maneuvers[i], because)
         what = "included again" if because is None else f"excluded: {because}"
-        self._log(f"manoeuvre {number} {what}", self._stream.now_s)
+        self._journal.write(f"manoeuvre {number} {what}", self._stream.now_s)
         self._decide()
         self._learn()
-
-    def _log(self, text: str, at_s: float = math.nan) -> None:
-        self._notices.add([f"{at_s:.1f} s: {text}" if math.isfinite(at_s) else text])
 
     def _index(self, number: int) -> int:
         return [maneuver.number for maneuver in self._maneuvers].index(number)

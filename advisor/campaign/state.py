@@ -66,9 +66,7 @@ class CampaignState:
     mark_notes: tuple[str, ...] = ()
     """Marks that could not be used, each with its reason."""
     notices: tuple[str, ...] = ()
-    """Newest sentences for the event log, oldest first."""
-    notices_before: int = 0
-    """Number of dropped sentences that came before ``notices``."""
+    """Newest sentences for the event log with the vehicle's time, oldest first."""
     flight: int = 0
     """Number of the log or link being heard, 0 for the first."""
     boot: int = 0

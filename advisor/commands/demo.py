@@ -8,6 +8,7 @@ import click
 from advisor.aircraft import Rule
 from advisor.commands.options import RULES, aircraft_option, read_aircraft
 from advisor.commands.screen import advise, headless
+from advisor.first_run import compile_once
 from advisor.interrupt import in_order
 
 HEADLESS_SPEED = 10.0
@@ -69,6 +70,7 @@ def command(
 
     if speed is None:
         speed = HEADLESS_SPEED if headless() else 1.0
+    compile_once(partial(click.echo, err=True), {"bundled aircraft": Demonstration.fly_once})
     flight = Demonstration(flown, speed, seed, record_to)
     if headless():
         click.echo(f"rule {rule} decides: {MEANING[rule]}; --rule chooses another")

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
+from click.shell_completion import CompletionItem
 
 from advisor.aircraft import Aircraft
 from advisor.commands.options import (
@@ -25,7 +26,11 @@ _LOG_ENDINGS = (".tlog", ".bin", ".ulg")
 
 
 @click.command
-@click.argument("target", metavar="LOG|CONN")
+@click.argument(
+    "target",
+    metavar="LOG|CONN",
+    shell_complete=lambda ctx, parameter, text: [CompletionItem(text, type="file")],
+)
 @click.option(
     "--seconds", type=click.FloatRange(min=1.0), default=15.0, show_default=True, help="Time to listen, s."
 )
@@ -63,15 +68,22 @@ def command(
             findings = _examine_link(target, aircraft, target_system, seconds, request_rates)
     except UnusableInputError as error:
         problem = error.problem
+    commands: tuple[str, ...] = ()
+    if findings is not None:
+        from advisor.doctor.next_steps import Examined, next_commands
+
+        file = str(aircraft_file) if aircraft_file else None
+        has_model = bool(aircraft.model) or aircraft.simulator is not None
+        commands = next_commands(findings, Examined(target, _is_log(target), file, target_system, has_model))
     if as_json:
         from advisor.doctor.document import doctor_document
 
-        click.echo(json.dumps(doctor_document(findings, problem), allow_nan=False, indent=1))
+        click.echo(json.dumps(doctor_document(findings, problem, commands), allow_nan=False, indent=1))
     elif findings is not None:
         from advisor.doctor.text import ExaminationText
         from advisor.report.console import PlainConsole
 
-        PlainConsole(soft_wrap=True).print(ExaminationText(findings))
+        PlainConsole(soft_wrap=True).print(ExaminationText(findings, commands))
     sentence = problem or _first_obstacle(findings)
     if sentence is None:
         return 0

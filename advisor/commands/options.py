@@ -70,7 +70,7 @@ def maneuver_option(command: F) -> F:
         metavar="START:END",
         callback=lambda ctx, parameter, texts: parse_marks(texts),
         help="Mark this stretch as a manoeuvre: seconds since boot, or with + since the log's first ATTITUDE "
-        "(+12:+24). Repeatable.",
+        "(+12:+24). Minutes and seconds are understood too (1:20.4:1:33). Repeatable.",
     )(command)
 
 
@@ -106,16 +106,14 @@ def parse_mark(text: str) -> "Mark":
     """
     from advisor.flight.marks import LONGEST_S, Mark
 
-    start, _, end = text.partition(":")
-    relative = [time.strip().startswith("+") for time in (start, end)]
-    try:
-        start_s, end_s = float(start), float(end)
-    except ValueError:
-        start_s = end_s = nan
+    parts = text.split(":")
+    half = len(parts) // 2 if len(parts) in (2, 4) else len(parts)
+    relative = [part.strip().startswith("+") for part in (parts[0], parts[-half])]
+    start_s, end_s = _seconds(parts[:half]), _seconds(parts[half:])
     if not (isfinite(start_s) and isfinite(end_s) and start_s >= 0.0 and relative[0] == relative[1]):
         raise ConfigurationError(
             f"--maneuver {text}: give START:END in seconds since boot, or both with + from the start of the "
-            "log, e.g. --maneuver +12:+24."
+            "log, e.g. --maneuver +12:+24; minutes:seconds are understood too, e.g. --maneuver 1:20.4:1:33."
         )
     if end_s <= start_s:
         raise ConfigurationError(f"--maneuver {text}: END must lie after START; exchange or correct them.")
@@ -124,6 +122,17 @@ def parse_mark(text: str) -> "Mark":
             f"--maneuver {text}: a manoeuvre lasts {LONGEST_S:.0f} s at most; mark each input separately."
         )
     return Mark(start_s, end_s, from_log_start=relative[0], name=f"--maneuver {text}")
+
+
+def _seconds(parts: Sequence[str]) -> float:
+    """Read seconds, ``["80.4"]``, or minutes and seconds, ``["1", "20.4"]``; NaN where it is no time."""
+    try:
+        *minutes, seconds = map(float, parts)
+    except ValueError:
+        return nan
+    if len(minutes) > 1 or (minutes and not 0.0 <= seconds < 60.0):
+        return nan
+    return 60.0 * sum(minutes) + seconds
 
 
 def refuse_marks_on_several(marks: "Sequence[Mark]", logs: Sequence[Path]) -> None:

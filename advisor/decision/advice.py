@@ -26,21 +26,23 @@ def next_input(
     history: Sequence[Flown], aircraft: Aircraft, stopped: bool, course: Course | None = None
 ) -> NextInput:
     """Return the input to fly after the last manoeuvre of ``history``. ``course`` is explained in
-    ``flight_test``."""
+    ``flight_test``.
+
+    The number of further manoeuvres is foretold once a manoeuvre was usable; before, nothing tells it.
+    """
     plan = aircraft.campaign
     if stopped:
         return NextInput("no further manoeuvre needed", Remaining(0, 0))
     course = course or Course(plan)
     conditions = find_conditions(history, aircraft, course)
-    if history and (mend := _mend(history[-1])):
-        return NextInput(f"next: {mend}", _without_a_model(history, plan))
+    mend = _mend(history[-1]) if history else ""
     if conditions is None:
-        spoken = _same_but_better(history[-1]) if history else _first_input(aircraft)
-        return NextInput(f"next: {spoken}", _without_a_model(history, plan))
+        spoken = mend or (_same_but_better(history[-1]) if history else _first_input(aircraft))
+        return NextInput(f"next: {spoken}", None)
     known = course.known(usable_ones(history))
-    choice = _choose(conditions, known, plan)
+    choice = None if mend else _choose(conditions, known, plan)
     if choice is None:
-        spoken, errors = "the same again", conditions.last_covariance
+        spoken, errors = mend or "the same again", conditions.last_covariance
     else:
         spoken, errors = choice[0].spoken(conditions.travel_rad), choice[1]
     remaining = _remaining(history, plan, known, errors)
@@ -122,9 +124,3 @@ def _mend(flown: Flown) -> str:
 def _remedy(flown: Flown) -> str:
     """Return the remedy that the first reason names; empty without a reason."""
     return flown.reasons[0].text.partition("; ")[2] if flown.reasons else ""
-
-
-def _without_a_model(history: Sequence[Flown], plan: CampaignPlan) -> Remaining:
-    """Return the least number of manoeuvres that the rule needs."""
-    least = 2 if plan.rule == "information" else plan.window
-    return Remaining(least, int(np.ceil(least / usable_share(history))) + 1)

@@ -30,11 +30,11 @@ _SHORTEST_STEP = 0.15
 _OTHER_CONTROLS_DEG = 5.0
 _THROTTLE_PERCENT = 15.0
 _CUT_SHORT_BY = {
-    "gap": "the telemetry breaks off there; check the link",
-    "end of log": "the recording ends there; let it run on for some seconds",
-    "mode change": "the mode changes there; stay in the mode until the motion has died down",
+    "gap": ("the telemetry breaks off", "check the link"),
+    "end of log": ("the recording ends", "let the recording run on for some seconds"),
+    "mode change": ("the mode changes", "stay in the mode until the motion has died down"),
 }
-"""Cause of a free response that was cut short, other than the pilot's hand, and its remedy."""
+"""Cause of a record that was cut short, other than the pilot's hand, and its remedy."""
 _ASSUMED_STROKE_DEG = 25.0
 """Full travel of the elevator where the aircraft file has no calibration, deg."""
 
@@ -132,19 +132,14 @@ def _gap(channels: list[Channel], maneuver: Maneuver, period_s: float) -> list[R
 
 def _free_response(maneuver: Maneuver, period_s: float) -> list[Reason]:
     if _is_broken_off(maneuver.span):
-        return [
-            Reason(
-                "aborted",
-                "the input was broken off before the elevator came to rest; fly all of it",
-                0.0,
-                1.0,
-            )
-        ]
+        what, mend = _CUT_SHORT_BY[maneuver.span.closed_by]
+        return [Reason("aborted", f"{what} before the elevator came to rest; {mend}", 0.0, 1.0)]
     free, least = maneuver.span.end_s - maneuver.span.last_step_s, _SHORTEST_FREE * period_s
     if free >= least:
         return []
     shown, limit = distinct_texts(free, least, 1)
-    mend = _CUT_SHORT_BY.get(maneuver.span.closed_by, "hands still after the last step")
+    ended = _CUT_SHORT_BY.get(maneuver.span.closed_by)
+    mend = "hands still after the last step" if ended is None else f"{ended[0]} there; {ended[1]}"
     text = f"free response too short, {shown} s (at least {limit}); {mend}"
     return [Reason("free_response", text, free, least)]
 

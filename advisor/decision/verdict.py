@@ -97,9 +97,15 @@ class NextInput:
 
     advice: str
     """Advice as a pilot hears it: ``next: reverse 3-2-1-1, 0.4 s steps, 60 % stick``."""
-    remaining: Remaining
+    remaining: Remaining | None
+    """Expected number of further manoeuvres; None while no manoeuvre was usable."""
     holding_back: str | None = None
     """Parameter, or output of a prediction, that delays the stop."""
+
+    @property
+    def foretold(self) -> str:
+        """How many more are expected, as a pilot hears it; empty while nothing foretells it."""
+        return self.remaining.spoken if self.remaining is not None else ""
 
 
 @dataclass(frozen=True, slots=True)

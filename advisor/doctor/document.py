@@ -1,22 +1,28 @@
 """The ``advisor.doctor/1`` document for scripts, in SI units, with None for missing values."""
 
+from collections.abc import Sequence
 from typing import Any
 
 from advisor.doctor.examination import Examination, Limit
 from advisor.doctor.expectation import RESPONSE_ALPHA_DEG, frequency
 from advisor.problems import Problem
-from advisor.report.document import number
+from advisor.report.document import NORMAL_95, number
+from advisor.report.text import UNITS
 
 SCHEMA = "advisor.doctor/1"
 
 
-def doctor_document(findings: Examination | None, problem: Problem | None = None) -> dict[str, Any]:
+def doctor_document(
+    findings: Examination | None, problem: Problem | None = None, commands: Sequence[str] = ()
+) -> dict[str, Any]:
     """Build the document of ``advisor doctor --json``.
 
     Parameters
     ----------
     findings
         Findings of the examination. None when nothing was heard; ``problem`` then gives the reason.
+    commands
+        Commands to type next.
     """
     if findings is None:
         assert problem is not None
@@ -32,6 +38,7 @@ def doctor_document(findings: Examination | None, problem: Problem | None = None
             "alpha": None,
             "limits": [told],
             "expected_std": None,
+            "expected_ci95": None,
         }
     vehicle, elevator, alpha, clocks = findings.vehicle, findings.elevator, findings.alpha, findings.clocks
     stopping = [limit for limit in findings.limits if limit.stops]
@@ -82,7 +89,13 @@ def doctor_document(findings: Examination | None, problem: Problem | None = None
         },
         "limits": [_limit(limit) for limit in findings.limits],
         "notes": list(findings.notes),
+        "next": list(commands),
         "expected_std": expectation and {name: number(std) for name, std in expectation.std.items()},
+        "expected_ci95": expectation
+        and {
+            name: {"half": number(NORMAL_95 * std), "unit": UNITS[name].replace("deg", "rad")}
+            for name, std in expectation.std.items()
+        },
         "expected_for": expectation
         and {
             "input": "3-2-1-1",

@@ -11,6 +11,7 @@ from advisor.flight.channels import stamps
 from advisor.flight.clocks import BootClock
 from advisor.flight.messages import Columns, FloatArray, cut
 from advisor.flight.vehicle import Vehicle
+from advisor.vehicle_time import between
 
 # The field whose change shows that a message brings a new value.
 _TELLING = {
@@ -64,7 +65,7 @@ class Clocks:
     boots: int
     """Number of the vehicle's power-ons within the record."""
     drift_percent: float
-    """Speed of vehicle time relative to the host's time, in percent above 1. NaN when unknown."""
+    """Excess of the vehicle clock's speed over the host clock's, in percent. NaN when unknown."""
     arrival_jitter_ms: float
     """Standard deviation of arrival relative to the vehicle's clock, which the link causes."""
     strayed: Mapping[str, float]
@@ -188,7 +189,7 @@ class Survey:
         """Sentences on the stretches in which the autopilot wrote nothing into its own log."""
         because = " (LOG_DISARMED 0)" if self._carrier == "dataflash" else ""
         return [
-            f"The autopilot logged nothing from {p.start_s:.1f} to {p.end_s:.1f} s, as it may while "
+            f"The autopilot logged nothing from {between(p.start_s, p.end_s)}, as it may while "
             f"disarmed{because}: no link was lost."
             for p in self._pauses()
         ]

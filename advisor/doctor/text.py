@@ -1,6 +1,7 @@
 """The findings for people: first the verdict, then the remedies, then the tables."""
 
 import math
+from collections.abc import Sequence
 
 from rich.console import Console, ConsoleOptions, RenderResult
 from rich.table import Table
@@ -10,6 +11,9 @@ from advisor.aircraft import PARAMETERS
 from advisor.doctor.examination import Examination, Limit
 from advisor.doctor.expectation import frequency
 from advisor.doctor.instruments import STRAYED_SHARE
+from advisor.printable import printable
+from advisor.report.document import NORMAL_95
+from advisor.report.text import UNITS, shown
 
 _SIGNS = {"ready": "✓", "usable with limits": "!", "not usable": "✗"}
 _STYLES = {"ready": "bold green", "usable with limits": "bold yellow", "not usable": "bold red"}
@@ -19,8 +23,8 @@ _NOTABLE_COST = 1.1
 class ExaminationText:
     """Renders an examination with rich."""
 
-    def __init__(self, findings: Examination) -> None:
-        self._findings = findings
+    def __init__(self, findings: Examination, commands: Sequence[str] = ()) -> None:
+        self._findings, self._commands = findings, commands
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
         found = self._findings
@@ -40,10 +44,17 @@ class ExaminationText:
             yield Text(
                 f"Expected errors of one 3-2-1-1, steps of {found.expectation.unit_s:.2f} s and "
                 f"±{found.expectation.amplitude_deg:.1f} deg, computed from {found.assumed.source}, "
-                f"natural frequency {frequency(found.assumed.model):.1f} rad/s:"
+                f"natural frequency {frequency(found.assumed.model):.1f} rad/s. "
+                "Half of the 95 % interval (1.96 standard deviations):"
             )
             for name in PARAMETERS:
-                yield Text(f"  {name:<10} ±{found.expectation.std[name]:.3g}")
+                half = shown(name, NORMAL_95 * found.expectation.std[name])
+                unit = UNITS[name].removeprefix("1") if UNITS[name] == "1" else UNITS[name]
+                said = f"± {half:.2g} {unit}" if math.isfinite(half) else "not told by these rates"
+                yield Text(f"  {name:<10} {said}".rstrip())
+        if self._commands:
+            yield Text("\nNext:")
+            yield from (Text(f"  {printable(command)}") for command in self._commands)
 
     def _who(self) -> str:
         vehicle = self._findings.vehicle

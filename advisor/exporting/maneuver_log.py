@@ -40,7 +40,9 @@ def log_of_maneuver(
     every = [judged.maneuver for judged in flights.state.maneuvers]
     maneuver = next((m for m in every if m.number == number), None)
     if maneuver is None:
-        raise ConfigurationError(f"--cut: there is no manoeuvre {number}; the logs hold {len(every)}.")
+        raise ConfigurationError(
+            f"--cut: there is no manoeuvre {number}; give a number from 1 to {len(every)}."
+        )
     log = flights.logs[maneuver.flight]
     start_s, end_s = _stretch(maneuver, every)
     power_on = next(p for flight, p in flights.power_ons if (flight, p.boot) == maneuver.power_on)

@@ -34,7 +34,7 @@ class Cutting:
 
     def __init__(self, tracks: Tracks, who: Identity, calibrated: bool) -> None:
         self._tracks, self._who = tracks, who
-        self._sense = None if calibrated else ElevatorSign()
+        self._sign = None if calibrated else ElevatorSign()
         self._modes = [(-np.inf, who.mode)]
         self._released = (0, -np.inf)
         self.maneuvers = 0
@@ -45,7 +45,7 @@ class Cutting:
     @property
     def is_backwards(self) -> bool:
         """Whether the elevator was found to move opposite to its output's nominal sign."""
-        return self._sense is not None and bool(self._sense.backwards)
+        return self._sign is not None and bool(self._sign.backwards)
 
     def begin(self, mode: str) -> None:
         """Begin a flight mode without earlier manoeuvres."""
@@ -78,9 +78,9 @@ class Cutting:
     def _counted(self, maneuver: Maneuver) -> list[FlightEvent]:
         self.maneuvers += 1
         self._released = (maneuver.boot, maneuver.span.end_s)
-        if self._sense is None or "elevator" not in maneuver.channels:
+        if self._sign is None or "elevator" not in maneuver.channels:
             return [ManeuverFlown(maneuver)]
-        maneuver, found = self._sense.right(maneuver)
+        maneuver, found = self._sign.right(maneuver)
         return [*found, ManeuverFlown(maneuver)]
 
     def why_on_ground(self, span: Span, up_to_order: int | None = None) -> str | None:

@@ -49,7 +49,7 @@ def _as_listed(outputs: Sequence[ElevatorOutput], wiring: Wiring) -> Surface | P
             one.output,
             Calibration(one.calibration) if one.calibration else wiring.scale(one.output),
             one.weight,
-            one.calibration is not None or _is_told(one.output, wiring),
+            one.calibration is not None or _has_known_direction(one.output, wiring),
         )
         for one in outputs
     )
@@ -92,7 +92,7 @@ def _as_found(calibration: Pairs | None, wiring: Wiring) -> Surface | Problem:
     if not whole:
         return _nothing_found(wiring)
     parts = in_shares(
-        Part(n, wiring.scale(n), 1.0 / (len(sides) * len(side)), _is_told(n, wiring))
+        Part(n, wiring.scale(n), 1.0 / (len(sides) * len(side)), _has_known_direction(n, wiring))
         for sides in whole
         for side in sides
         for n in side
@@ -112,12 +112,12 @@ def _carried_over(
     first, *others = _numbers(parts)
     if not others:
         return Surface((Part(first, Calibration(calibration)),), True, "")
-    untold = [n for n in (first, *others) if n not in wiring.told]
-    if untold:
+    unknown = [n for n in (first, *others) if n not in wiring.known_directions]
+    if unknown:
         return Problem(
             "no_elevator",
             f"elevator.calibration describes one output, but outputs {joined_numbers((first, *others))} act "
-            f"together, and {wiring.words.sense.format(n=untold[0])} is not known.",
+            f"together, and {wiring.words.sense.format(n=unknown[0])} is not known.",
             "Give elevator.outputs in place of it, with a calibration for each output.",
         )
     measured = wiring.scale(first)
@@ -162,9 +162,9 @@ def _is_half(n: int, wiring: Wiring) -> bool:
     return n in wiring.roles and bool(wiring.roles[n].side)
 
 
-def _is_told(n: int, wiring: Wiring) -> bool:
+def _has_known_direction(n: int, wiring: Wiring) -> bool:
     """Return whether the parameters give the direction in which a pitch demand moves output ``n``."""
-    return (wiring.roles.get(n) == ELEVATOR or _is_half(n, wiring)) and n in wiring.told
+    return (wiring.roles.get(n) == ELEVATOR or _is_half(n, wiring)) and n in wiring.known_directions
 
 
 def _formed(parts: Sequence[Part], why: str, kinds: Sequence[str]) -> str:

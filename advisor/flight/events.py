@@ -1,6 +1,7 @@
 """Events that the stream of messages gives to the flight test, in the order in which they became known."""
 
 from dataclasses import dataclass, replace
+from math import nan
 
 from advisor.flight.maneuver import InputKind, Maneuver
 from advisor.flight.vehicle import Vehicle
@@ -114,16 +115,35 @@ class Notice:
 
 
 @dataclass(frozen=True, slots=True)
+class VehicleSaid:
+    """A vehicle, or another sender on the link, said something in words (STATUSTEXT)."""
+
+    text: str
+    """Printable, on one line, of bounded length."""
+    severity: str
+    """Name of MAV_SEVERITY; empty where a log does not keep the severity."""
+    system: int
+    component: int
+    at_s: float
+    """Vehicle time, s since boot; NaN before the first stamped message."""
+
+
+@dataclass(frozen=True, slots=True)
 class NoData:
     """The present data cannot serve."""
 
     problems: tuple[Problem, ...]
     """At least one problem: missing or slow messages, the most fundamental first."""
+    at_s: float = nan
+    """Vehicle time, s since boot; NaN before the first stamped message."""
 
 
 @dataclass(frozen=True, slots=True)
 class DataAgain:
     """The present data can serve again."""
+
+    at_s: float = nan
+    """Vehicle time, s since boot."""
 
 
 FlightEvent = (
@@ -136,6 +156,7 @@ FlightEvent = (
     | ManeuverAgain
     | Activity
     | Notice
+    | VehicleSaid
     | NoData
     | DataAgain
 )

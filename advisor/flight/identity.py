@@ -17,6 +17,7 @@ from advisor.flight.vehicle import Vehicle, VehicleFinder
 from advisor.flight.wiring import AILERON, RUDDER, Wiring
 from advisor.printable import printable
 from advisor.problems import Problem
+from advisor.vehicle_time import clock
 
 _BUNDLED = b"Bundled aircraft"
 """Beginning of the STATUSTEXT with which this project's simulator introduces itself."""
@@ -217,7 +218,7 @@ class Identity:
         if (name, value) in self._changes_said:
             return []
         self._changes_said.add((name, value))
-        at = f" at {now_s:.1f} s" if isfinite(now_s) else ""
+        at = f" at {clock(now_s)}" if isfinite(now_s) else ""
         used = (
             f"the elevator is counted with {before:g} all the same, for its linkage has not changed"
             if flown

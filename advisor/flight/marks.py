@@ -13,6 +13,7 @@ import numpy as np
 from advisor.flight.events import Notice
 from advisor.flight.maneuver import Span
 from advisor.problems import Problem
+from advisor.vehicle_time import between, clock
 
 Marker = Literal["hand", "switch", "text"]
 
@@ -188,7 +189,7 @@ class Marks:
         begun_s = self._open.pop("hand", None)
         if begun_s is not None:
             said = "is dropped: the vehicle's clock began anew before its end."
-            self._notices.append(Notice("mark_dropped", f"The mark begun at {begun_s:.1f} s {said}"))
+            self._notices.append(Notice("mark_dropped", f"The mark begun at {clock(begun_s)} {said}"))
         for by in tuple(self._open):
             self._close(by, last_s)
         self._heard.append((self._first_s, last_s))
@@ -218,7 +219,7 @@ class Marks:
     def _refused(self, mark: Mark) -> Notice | None:
         """Return the reason for which a mark that has just ended cannot be used; None for a usable mark."""
         length_s = mark.end_s - mark.start_s
-        where = f"The mark from {mark.start_s:.1f} to {mark.end_s:.1f} s"
+        where = f"The mark from {between(mark.start_s, mark.end_s)}"
         if not 0.0 < length_s <= LONGEST_S:
             most = f"is {length_s:.1f} s long: a mark lasts more than 0 and at most {LONGEST_S:.0f} s."
             return Notice("mark_length", f"{where} {most}")
@@ -227,7 +228,7 @@ class Marks:
         if hand_s < mark.end_s:
             others.append(hand_s)
         if others:
-            said = f"another mark begins at {min(others):.1f} s and shares time with it."
+            said = f"another mark begins at {clock(min(others))} and shares time with it."
             return Notice("marked_already", f"{where} is left out: {said}")
         return None
 

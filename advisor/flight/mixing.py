@@ -12,7 +12,7 @@ import numpy as np
 from advisor.flight.channels import Decoded
 from advisor.flight.commanded import Commanded, joined
 from advisor.flight.events import Notice
-from advisor.flight.output_signs import answers
+from advisor.flight.output_signs import pitch_signs
 from advisor.flight.surfaces import Surface, joined_numbers
 from advisor.flight.tracks import Tracks
 from advisor.problems import Problem
@@ -132,7 +132,7 @@ class Mixing:
         q, alpha = (self._tracks.cut(name, t[0], t[-1], int(window.order[-1])) for name in ("q", "alpha"))
         if q is not None:
             shares = [part.share for part in surface.parts]
-            told = answers(t, window.angles[first], shares, q, alpha, singly=bool(surface.unsure))
+            told = pitch_signs(t, window.angles[first], shares, q, alpha, singly=bool(surface.unsure))
             for n, lifts in zip(surface.outputs, told, strict=True):
                 if lifts is not None:
                     self._lifts.setdefault(n, lifts)

@@ -18,12 +18,12 @@ _LEAST_S = 4.0
 """Shortest flight from which signs are taken, s. In one to three seconds slow movements look alike: there a
 wrong sign reached 22 on these records."""
 _EXPLAINED = 0.7
-"""Least share of the pitch rate that the regression must explain, as in ``sense.py``."""
+"""Least share of the pitch rate that the regression must explain, as in ``elevator_sign.py``."""
 _MOST = 8
 """Most outputs whose signs are tried together, in 256 combinations."""
 
 
-def answers(
+def pitch_signs(
     t: FloatArray,
     angles: FloatArray,
     shares: Sequence[float],

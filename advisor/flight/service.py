@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from advisor.flight.events import DataAgain, FlightEvent, NoData
+from advisor.flight.events import DataAgain, NoData
 from advisor.flight.messages import Columns, FloatArray
 from advisor.flight.track import ChannelStatus
 from advisor.problems import Problem
@@ -63,7 +63,7 @@ class Service:
         """Take the times at which samples of a channel arrived from one source, shape (n,)."""
         self._arrivals.setdefault((channel, source), []).extend(arrival_s.tolist())
 
-    def advance(self, columns: Sequence[Columns]) -> list[FlightEvent]:
+    def advance(self, columns: Sequence[Columns]) -> list[NoData | DataAgain]:
         """Judge the stream at every moment that these messages have passed."""
         if not columns:
             return []
@@ -72,7 +72,7 @@ class Service:
             # As nearly always: no moment of judgement has passed.
             self._newest_s = max(self._newest_s, newest_s)
             return []
-        told: list[FlightEvent] = []
+        told: list[NoData | DataAgain] = []
         for now_s in np.unique(np.concatenate([c.arrival_s for c in columns])).tolist():
             if now_s > self._newest_s + PAUSE_S:
                 self._due_s = now_s + WINDOW_S
@@ -90,7 +90,7 @@ class Service:
         for times in self._arrivals.values():
             del times[: next((i for i, t in enumerate(times) if t > oldest_s), len(times))]
 
-    def _look(self, now_s: float) -> list[FlightEvent]:
+    def _look(self, now_s: float) -> list[NoData | DataAgain]:
         found = tuple(self._judge(self._lately(now_s), now_s))
         standing = frozenset(problem.code for problem in found)
         if standing != self._standing or self._since_s is None:

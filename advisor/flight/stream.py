@@ -40,6 +40,7 @@ from advisor.flight.track import ChannelStatus
 from advisor.flight.tracks import Tracks
 from advisor.flight.trust import Distrust, frozen
 from advisor.flight.vehicle import Vehicle
+from advisor.flight.vehicle_texts import VehicleTexts
 from advisor.problems import Problem
 
 KEEP_S = 120.0
@@ -78,6 +79,7 @@ class FlightStream:
         self.power_ons: list[PowerOn] = []
         """Every power-on that is over, whole; empty without ``keep_all``."""
         self._who = Identity(aircraft.elevator, target_system)
+        self._texts = VehicleTexts()
         self._attitudes = Attitudes()
         self._clock = BootClock()
         self._tracks = Tracks(aircraft.alpha.source, aircraft.airspeed_m_s)
@@ -243,7 +245,7 @@ class FlightStream:
         return events
 
     def _finish_boot(self) -> list[FlightEvent]:
-        events = self._path.finish(self._master_s)
+        events = [*self._path.finish(self._master_s), *self._texts.finish(self._master_s)]
         self._past = self._at_best()
         if self._keep_s == np.inf:
             self.power_ons.append(self._power_on())
@@ -272,10 +274,16 @@ class FlightStream:
         """Take columns within which neither vehicle nor parameters nor mode change."""
         mode = self._who.mode
         flown = self._cutting.maneuvers > self._flown_before
-        events = self._who.learn(piece, self._master_s, flown)
+        events: list[FlightEvent] = [
+            said
+            for columns in piece
+            if columns.name == "STATUSTEXT"
+            for said in self._texts.heard(columns, self._master_s)
+        ]
+        events += self._who.learn(piece, self._master_s, flown)
         vehicle = self._who.vehicle
         if vehicle is None:
-            return [*events, *self._service.advance(piece)]
+            return [*events, *self._serving(piece)]
         if vehicle.system != self._system:
             left = self._start_again(BootClock(self.boot + 1)) if self._system is not None else []
             events = [*left, *events]
@@ -300,7 +308,11 @@ class FlightStream:
                 events += [*self._start_again(self._clock), Rebooted(self.boot)]
             events += self._feed_part(part, master, vehicle)
         self._senders.hear(mine, vehicle.component)
-        return [*events, *self._service.advance(mine)]
+        return [*events, *self._serving(mine)]
+
+    def _serving(self, piece: Sequence[Columns]) -> list[FlightEvent]:
+        """Whether what arrives can serve, where that has changed."""
+        return [replace(told, at_s=self._master_s) for told in self._service.advance(piece)]
 
     def _start_again(self, clock: BootClock) -> list[FlightEvent]:
         """Begin another power-on, or another vehicle, and drop the earlier state."""

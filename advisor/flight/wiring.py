@@ -46,14 +46,14 @@ class Words:
 
 @dataclass(frozen=True, slots=True)
 class Wiring:
-    """The outputs, where known."""
+    """Known roles, scales and directions of the servo outputs."""
 
     words: Words
     roles: Mapping[int, Role] = field(default_factory=dict)
     """Output number, from 1, to its role where known. Outputs that move no surface have a role without a
     name."""
     scales: Mapping[int, Scale] = field(default_factory=dict)
-    told: frozenset[int] = frozenset()
+    known_directions: frozenset[int] = frozenset()
     """Outputs whose direction the parameters give."""
     assumed: str = ""
     """Sentence on guesses among the roles."""

@@ -127,7 +127,7 @@ def _refuse(flights: Flights) -> None:
     if not len(flights):
         raise UnusableInputError(
             "no_maneuver",
-            "No usable manoeuvre in the log: no simulator can be held against it.",
+            "No usable manoeuvre in the log: there is nothing to compare a simulator with.",
             "Fly at least three elevator manoeuvres (3-2-1-1 or doublets), better nine.",
         )
     if "alpha" not in flights.channels:

@@ -6,8 +6,8 @@ from advisor.gap.result import Diagnosis
 
 _NOT_GIVEN = "No simulator was given: the aircraft file holds no complete model."
 _INSTEAD = (
-    "The flight was held against a model fitted to it: that shows effects which eight numbers cannot, and "
-    "nothing of a simulator's numbers."
+    "The flight was compared with a model fitted to it. That shows effects beyond eight parameters, and "
+    "nothing about a simulator's parameters."
 )
 _STATEMENT = (
     "No simulator was given, so no gap can be stated. A model fitted to this flight leaves no effect to name."

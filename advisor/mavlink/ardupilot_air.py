@@ -86,8 +86,7 @@ def _first(tables: Mapping[str, Table], places: Iterable[tuple[str, str]]) -> tu
 
 
 def _away_from(time_us: IntArray, other_us: IntArray) -> NDArray[np.bool_]:
-    """Return the times of the other record that lie outside all times of the first by more than three
-    intervals."""
+    """Return whether each other time is farther from all times than three intervals of these."""
     if len(time_us) < 2:
         return np.ones(len(other_us), dtype=np.bool_)
     apart_us = np.abs(other_us - time_us[nearest(other_us, time_us)])

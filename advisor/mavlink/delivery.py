@@ -23,7 +23,7 @@ class Delivery:
         self._heard_s = float("-inf")
 
     def restart(self) -> None:
-        """Begin the next window with the next look."""
+        """Begin a new window at the next call of ``look``."""
         self._since_s = None
 
     def hear(self, message: int, now_s: float) -> None:

@@ -44,9 +44,9 @@ class RateRequest(Talker):
     MAVLink, command protocol: SET_MESSAGE_INTERVAL (511) in a COMMAND_LONG is answered by a COMMAND_ACK that
     names no message. So only one request is open at a time. An unanswered one is sent again with a raised
     confirmation. A refused or unanswered request is repeated after a rest that doubles, see
-    `advisor.mavlink.message_request`. After a reboot everything is requested again. A granted rate that
-    falls is requested again at once, a few times, then after rests. At the end every message gets its default
-    rate back.
+    `advisor.mavlink.message_request`. After a reboot everything is requested again. A granted rate that falls
+    is requested again at once, a few times, then after rests. At the end every message gets its default rate
+    back.
 
     Parameters
     ----------
@@ -55,14 +55,14 @@ class RateRequest(Talker):
     """
 
     def __init__(self, rates_hz: Mapping[str, float]) -> None:
-        self._wishes = {
+        self._requests = {
             DEFINITIONS[n].id: MessageRequest(n, DEFINITIONS[n].id, hz) for n, hz in rates_hz.items()
         }
         self._standing: MessageRequest | None = None
         self._asked_s = self._began_s = float("-inf")
         self._vehicle: tuple[int, int] | None = None
         self._reboots = RebootWatch()
-        self._delivery = Delivery(self._wishes, MEASURE_S)
+        self._delivery = Delivery(self._requests, MEASURE_S)
         self._stations: set[int] = set()
         self._put_back_s = float("-inf")
         self._put_back = self._unanswered = 0
@@ -103,7 +103,7 @@ class RateRequest(Talker):
             if not standing.is_exhausted:
                 return [self._request(standing, now_s)]
             self._settle("no answer", now_s)
-        due = next((wish for wish in self._wishes.values() if wish.due_s <= now_s), None)
+        due = next((request for request in self._requests.values() if request.due_s <= now_s), None)
         if due is not None:
             self._standing = due
             return [self._request(due, now_s)]
@@ -113,7 +113,9 @@ class RateRequest(Talker):
 
     def leave(self, now_s: float) -> list[Any] | None:
         """Restore every requested rate; return None when the vehicle has answered, or never will."""
-        asked = [wish for wish in self._wishes.values() if wish.answer or wish is self._standing]
+        asked = [
+            request for request in self._requests.values() if request.answer or request is self._standing
+        ]
         if self._vehicle is None or not asked:
             return None
         if self._put_back and self._unanswered <= 0:
@@ -124,18 +126,18 @@ class RateRequest(Talker):
             return None
         self._put_back += 1
         self._put_back_s, self._unanswered = now_s, len(asked)
-        return [_set_interval(self._vehicle, wish.message, 0.0, self._put_back - 1) for wish in asked]
+        return [_set_interval(self._vehicle, request.message, 0.0, self._put_back - 1) for request in asked]
 
     def report(self) -> list[str]:
         """Return answers and delivered rates, each once."""
         said, self._said = self._said, []
         return said
 
-    def _request(self, wish: MessageRequest, now_s: float) -> Any:
+    def _request(self, request: MessageRequest, now_s: float) -> Any:
         assert self._vehicle is not None
-        wish.tries += 1
+        request.tries += 1
         self._asked_s = now_s
-        return _set_interval(self._vehicle, wish.message, 1e6 / wish.rate_hz, wish.tries - 1)
+        return _set_interval(self._vehicle, request.message, 1e6 / request.rate_hz, request.tries - 1)
 
     def _begin_anew(self, now_s: float) -> None:
         """Begin again after a reboot, in which the vehicle has forgotten every rate."""
@@ -147,8 +149,8 @@ class RateRequest(Talker):
 
     def _forget(self) -> None:
         """Begin with a vehicle without requests so far."""
-        for wish in self._wishes.values():
-            wish.begin()
+        for request in self._requests.values():
+            request.begin()
         self._standing = None
         self.delivered_hz = {}
         self._delivery.restart()
@@ -159,49 +161,50 @@ class RateRequest(Talker):
         elif self._standing is not None and self._standing.tries:
             self._settle(answer, now_s)
             # The vehicle receives our messages: earlier unanswered requests need not wait.
-            for wish in self._wishes.values():
-                if wish.answer == "no answer":
-                    wish.due_s = now_s
+            for request in self._requests.values():
+                if request.answer == "no answer":
+                    request.due_s = now_s
 
     def _settle(self, answer: str, now_s: float) -> None:
-        wish, self._standing = self._standing, None
-        assert wish is not None
-        said = self.answers.get(wish.name)
-        wish.settle(answer, now_s)
-        self.answers[wish.name] = answer
+        request, self._standing = self._standing, None
+        assert request is not None
+        said = self.answers.get(request.name)
+        request.settle(answer, now_s)
+        self.answers[request.name] = answer
         self._delivery.restart()
         if answer == said:
             return
         if answer == "no answer":
             self._said.append(
-                f"{wish.name}: no answer to {MOST_TRIES} requests for its rate, asked again after a while; "
+                f"{request.name}: no answer to {MOST_TRIES} requests for its rate, which come again later; "
                 "an autopilot told to obey one ground station only (SYSID_ENFORCE, MAV_OPTIONS) obeys the "
                 "system id in SYSID_MYGCS (MAV_GCS_SYSID)"
             )
         elif answer != "granted":
-            self._said.append(f"{wish.name}: the vehicle answers '{answer}' to the request for its rate")
+            self._said.append(f"{request.name}: the vehicle answers '{answer}' to the request for its rate")
 
     def _measured(self, rates: Mapping[int, float], now_s: float) -> None:
         before = self.delivered_hz
-        self.delivered_hz = {wish.name: rates[wish.message] for wish in self._wishes.values()}
+        self.delivered_hz = {request.name: rates[request.message] for request in self._requests.values()}
         if not before:
-            self._said.append("delivered: " + self._table(self._wishes.values()))
-        granted = [wish for wish in self._wishes.values() if wish.answer == "granted"]
-        fallen = [wish for wish in granted if rates[wish.message] < ENOUGH * wish.rate_hz]
-        for wish in granted:
-            if wish not in fallen:
-                wish.held(now_s)
-        news = [wish for wish in fallen if before.get(wish.name, 0.0) >= ENOUGH * wish.rate_hz]
-        at_once = [wish.fell(now_s) for wish in fallen]
+            self._said.append("delivered: " + self._table(self._requests.values()))
+        granted = [request for request in self._requests.values() if request.answer == "granted"]
+        fallen = [request for request in granted if rates[request.message] < ENOUGH * request.rate_hz]
+        for request in granted:
+            if request not in fallen:
+                request.held(now_s)
+        news = [request for request in fallen if before.get(request.name, 0.0) >= ENOUGH * request.rate_hz]
+        at_once = [request.fell(now_s) for request in fallen]
         if news:
             how = "at once" if any(at_once) else f"after a rest of up to {LONGEST_REST_S:.0f} s"
             self._said.append(
                 f"rates fell, asked for again {how}: {self._table(news)}; {who_sets_rates(self._stations)}"
             )
 
-    def _table(self, wishes: Iterable[MessageRequest]) -> str:
+    def _table(self, requests: Iterable[MessageRequest]) -> str:
         return ", ".join(
-            f"{wish.name} {self.delivered_hz[wish.name]:.1f} Hz of {wish.rate_hz:g} asked" for wish in wishes
+            f"{request.name} {self.delivered_hz[request.name]:.1f} Hz of {request.rate_hz:g} asked"
+            for request in requests
         )
 
 

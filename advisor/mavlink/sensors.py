@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from advisor.flight.messages import IntArray
 from advisor.mavlink.dataflash import Table
 from advisor.mavlink.equivalent import latest
+from advisor.vehicle_time import between, clock
 
 BoolArray = NDArray[np.bool_]
 
@@ -92,7 +93,7 @@ def _changes(table: Table, quantity: str) -> list[Said]:
         return []
     sentences = []
     for row in rows.tolist():
-        since = f" from {table.time_us[row] / 1e6:.1f} s on" if row else ""
+        since = f" since {clock(table.time_us[row] / 1e6)}" if row else ""
         text = f"{quantity}: sensor {instance[row]} flew{since}"
         sentences.append(Said(int(table.order[row]), int(table.time_us[row]), text))
     return sentences
@@ -102,7 +103,7 @@ def _silences(every: Table, table: Table, quantity: str) -> list[Said]:
     sentences = []
     for first, last in silent(every, table):
         start_s, end_s = every.time_us[[first, last]] / 1e6
-        text = f"{quantity}: no sensor was healthy from {start_s:.1f} to {end_s:.1f} s and none is used there"
+        text = f"{quantity}: no sensor was healthy from {between(start_s, end_s)} and none is used there"
         sentences.append(Said(int(every.order[first]), int(every.time_us[first]), text))
     return sentences
 

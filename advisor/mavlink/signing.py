@@ -43,12 +43,14 @@ def read_key(path: Path) -> bytes:
     try:
         content = path.read_bytes()
     except OSError as error:
-        raise ConfigurationError(f"Signing key {path}: {error.strerror}.") from None
+        raise ConfigurationError(
+            f"Signing key {path}: {error.strerror}; name a file that can be read."
+        ) from None
     if len(content) == KEY_LENGTH:
         return content
     phrase = content.rstrip(b"\r\n")
     if not phrase:
-        raise ConfigurationError(f"Signing key {path} is empty: it holds 32 bytes or a passphrase.")
+        raise ConfigurationError(f"Signing key {path} is empty: write 32 bytes or a passphrase into it.")
     return hashlib.sha256(phrase).digest()
 
 

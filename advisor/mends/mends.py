@@ -24,5 +24,5 @@ class Mends(Protocol):
 
 
 def sentence(clause: str, end: str = ".") -> str:
-    """Return a clause with a capital letter and an end."""
+    """Return a clause as a sentence: with a capital letter and the given end."""
     return clause[:1].upper() + clause[1:] + end

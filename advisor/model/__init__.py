@@ -1,1 +1,1 @@
-"""What we believe: the short-period model and its exact solution."""
+"""The short-period model and its exact solution."""

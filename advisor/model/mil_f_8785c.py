@@ -1,9 +1,9 @@
 """The short-period requirements of MIL-F-8785C, *Flying Qualities of Piloted Airplanes* (5 November 1980).
 
 Paragraph 3.2.2.1.1 (Figures 1 to 3) bounds the natural frequency ω_n against the acceleration sensitivity
-n/α: lines of constant ω_n²/(n/α), the control anticipation parameter CAP, with least values of ω_n and, in
-Category C, of n/α. Paragraph 3.2.2.1.2 (Table IV) bounds the damping ratio. The least values in Category C
-are those of Classes I, II-C and IV, as MIL-STD-1797A prints them.
+n/α. The bounds are lines of constant ω_n²/(n/α), the control anticipation parameter CAP. Least values of ω_n
+and, in Category C, of n/α are added. Paragraph 3.2.2.1.2 (Table IV) bounds the damping ratio. The least
+values in Category C are those of Classes I, II-C and IV, as MIL-STD-1797A prints them.
 """
 
 from collections.abc import Callable, Mapping
@@ -22,14 +22,14 @@ CATEGORIES: Mapping[Category, str] = {
     "C": "take-off, approach, landing",
 }
 WORSE = 4
-"""Stands for worse than Level 3."""
+"""Number of the level worse than Level 3."""
 
 Range = tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True)
 class ShortPeriodLimits:
-    """What one level of one category asks for."""
+    """Limits of one level in one category."""
 
     damping: Range
     """Damping ratio, 1."""
@@ -64,19 +64,19 @@ LIMITS: Mapping[Category, tuple[ShortPeriodLimits, ShortPeriodLimits, ShortPerio
 
 @dataclass(frozen=True, slots=True)
 class LevelFound:
-    """The level that a short period reaches in one category of flight phases; 4: worse than Level 3."""
+    """The level of a short period in one category of flight phases; 4 is worse than Level 3."""
 
     category: Category
     level: int
-    """By the values themselves."""
+    """Level of the values themselves."""
     best_level: int
-    """The best level that the 95 % intervals reach."""
+    """Best level within the 95 % intervals."""
     worst_level: int
-    """The worst level that the 95 % intervals reach."""
+    """Worst level within the 95 % intervals."""
 
     @property
     def sentence(self) -> str:
-        """The level in words, with those that the intervals do not exclude."""
+        """The level in words, with the levels that the intervals do not exclude."""
         spoken = f"Category {self.category}: {_spoken(self.level)}"
         others = [level for level in (self.best_level, self.worst_level) if level != self.level]
         if not others:
@@ -90,10 +90,10 @@ def _spoken(level: int) -> str:
 
 @dataclass(frozen=True, slots=True)
 class ShortPeriodFound:
-    """The four numbers that the requirements are about, each with its 95 % interval; units as the limits'."""
+    """The four parameters of the requirements, each with its 95 % interval, in the units of the limits."""
 
     values: ShortPeriodLimits
-    """Both ends of each range are the value."""
+    """The values, each as both ends of its range."""
     intervals: ShortPeriodLimits
 
 
@@ -108,8 +108,7 @@ def assess(category: Category, found: ShortPeriodFound) -> LevelFound:
 
 
 def _first(category: Category, found: ShortPeriodLimits, agrees: Callable[[Range, Range], bool]) -> int:
-    """Return the first level whose four ranges agree with those found; every level allows what better ones
-    do."""
+    """Return the first level whose four ranges agree with those found; every level includes better ones."""
     for level, limits in enumerate(LIMITS[category], start=1):
         if all(map(agrees, astuple(found), astuple(limits))):
             return level

@@ -1,9 +1,8 @@
 """The model solved on the union of all stamps, with exact sensitivities.
 
-*Interpolate the model, not the data.* The input is linear (or held) between its own stamps, so
-between two neighbouring stamps of any channel the solution is known in closed form
-(``transition``); each output is read off exactly where it was measured. Gaps and irregular
-sampling need no special case.
+*Interpolate the model, not the data.* The input is linear (or held) between its own stamps. Between two
+neighbouring stamps of any channel the solution is therefore known in closed form (``transition``), and each
+output is read off exactly where it was measured. Gaps and irregular sampling need no special case.
 
 Parameters of one manoeuvre, in this order: what all share, ``SHARED``, then its own
 ``LOCAL``. With the air speed ratio s = V/V_ref of a step, the model is
@@ -39,7 +38,7 @@ LOCAL = ("Z_0", "M_0", "alpha_initial", "q_initial", "theta_initial", "q_bias", 
 N_SHARED, N_LOCAL = len(SHARED), len(LOCAL)
 N_PARAMETERS = N_SHARED + N_LOCAL
 N_MOVING = N_SHARED + 4
-"""Parameters up to here move α and q; the rest only enter the outputs."""
+"""Number of parameters that move α and q; the rest only enter the outputs."""
 
 
 class Grid(NamedTuple):
@@ -49,9 +48,9 @@ class Grid(NamedTuple):
     """
 
     first: Index
-    """(m + 1,) where each manoeuvre's events begin, and E."""
+    """(m + 1,) index of the first event of each manoeuvre, and E."""
     kind: Index
-    """(E,) which step leads to the next event; at a manoeuvre's last event, to the event."""
+    """(E,) kind of the step to the next event; at a manoeuvre's last event, of the step to that event."""
     step_s: FloatArray
     """(U,) length of the step."""
     ratio: FloatArray
@@ -63,9 +62,9 @@ class Grid(NamedTuple):
     slope: FloatArray
     """(E,) rate of δe on the step, rad/s."""
     known: FloatArray
-    """(E,) g(t): what is known to drive α̇ besides the model, rad/s, constant over the step."""
+    """(E,) g(t), the known contribution to α̇ beyond the model, rad/s, constant over the step."""
     row: Index
-    """(4, E) which measurement each output of ``OUTPUTS`` has at the event, -1 for none."""
+    """(4, E) row of the measurement of each output of ``OUTPUTS`` at the event, -1 for none."""
     vane: FloatArray
     """(E,) -x_α/V in s."""
     airspeed: FloatArray
@@ -86,13 +85,13 @@ def respond(grid: Grid, shared: FloatArray, local: FloatArray, y: FloatArray, g:
     ----------
     shared : (7,), order of ``SHARED``.
     local : (m, 7), order of ``LOCAL``.
-    y : (N,) receives the outputs.
+    y : (N,), which receives the outputs.
     g : (N, 14) receives their derivatives by the parameters of the row's manoeuvre; with
         shape (0, 14) only the outputs are computed.
 
     Returns
     -------
-    False when the parameters make the model overflow; ``y`` and ``g`` are then useless.
+    False where the parameters make the model overflow; ``y`` and ``g`` are then useless.
     """
     kinds = len(grid.step_s)
     table = np.empty((kinds, WIDTH))
@@ -242,7 +241,7 @@ def _carry(
     state: FloatArray,
     attitude: bool,
 ) -> None:
-    """Carry the sensitivities ``state`` (3, 14) of α, q and, if asked, θ over one step from (α, q)."""
+    """Advance the sensitivities ``state`` (3, 14) of α, q and, on request, θ over one step from (α, q)."""
     a11, a12, a21, a22 = s * shared[0], 1.0 + shared[1], s * s * shared[3], s * shared[4]
     for j in range(N_MOVING):
         f, k = state[0, j], state[1, j]

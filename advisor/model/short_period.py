@@ -26,7 +26,7 @@ SPEED_EXPONENTS: Mapping[str, int] = {
     "M_q": 1,
     "M_delta_e": 2,
 }
-"""Power of the air speed each parameter grows with at constant density.
+"""Power of the air speed with which each parameter grows at constant density.
 
 Z = -ρVS·C_L/(2m) and M = ρV²Sc·C_m/(2I_yy); a rate derivative carries another c/(2V).
 """
@@ -79,8 +79,8 @@ class ShortPeriod:
         return complex(first), complex(second)
 
     def trim(self) -> tuple[FloatArray, float]:
-        """Return the equilibrium state (2,) with q = 0 and its elevator; the least-norm one when it is not
-        unique."""
+        """Return the equilibrium state (2,) with q = 0 and its elevator; the least-norm one where there are
+        several."""
         t = self.theta
         system = np.array([[t[1], t[3]], [t[5], t[7]]])
         alpha, elevator = np.linalg.lstsq(system, -self.c, rcond=None)[0]

@@ -1,10 +1,10 @@
 """Exact discretisation of ẋ = A·x + u + v·t over one step, and its derivatives by A.
 
-The solution is x(h) = φ₀(hA)·x + h·φ₁(hA)·u + h²·φ₂(hA)·v with φₖ(X) = Σ Xⁿ/(n+k)!. By the
-theorem of Cayley and Hamilton every power of a 2×2 matrix is p·I + r·X, so that each φₖ is two
-scalars that depend on T = tr X and D = det X only, and so are their derivatives: the series
-below runs on scalars, to round-off, for the highest order; the others follow from
-φₖ = I/k! + X·φₖ₊₁. φ₃ serves the integral of the pitch rate, which is the pitch angle.
+The solution is x(h) = φ₀(hA)·x + h·φ₁(hA)·u + h²·φ₂(hA)·v with φₖ(X) = Σ Xⁿ/(n+k)!. By the theorem of Cayley
+and Hamilton every power of a 2×2 matrix is p·I + r·X. Each φₖ is therefore two scalars that depend on T = tr
+X and D = det X only, and so are its derivatives. The series for the highest order runs on scalars, to
+round-off. The others follow from φₖ = I/k! + X·φₖ₊₁. φ₃ gives the integral of the pitch rate, which is the
+pitch angle.
 """
 
 import math
@@ -13,9 +13,9 @@ from advisor.compiled import kernel
 from advisor.flight.messages import FloatArray
 
 ORDERS = 4
-"""φ₀ to φ₃."""
+"""Number of functions φ₀ to φ₃."""
 WIDTH = 13 * ORDERS
-"""Numbers in a row of the table: for each k, three 2×2 matrices and one scalar."""
+"""Length of a row of the table: for each k, three 2×2 matrices and one scalar."""
 REACH = 2.0
 """Largest |hA| of one series; longer steps are divided."""
 MOST_DIVISIONS = 256
@@ -23,7 +23,7 @@ MOST_DIVISIONS = 256
 
 @kernel()
 def divisions(a11: float, a12: float, a21: float, a22: float, h: float) -> int:
-    """Return equal parts a step is cut into so that the series converges fast; 0 when A is beyond use."""
+    """Return into how many equal parts a step is divided for fast convergence; 0 where A is too large."""
     trace = abs(a11 + a22)
     determinant = abs(a11 * a22 - a12 * a21)
     size = h * (trace + math.sqrt(determinant))
@@ -36,9 +36,9 @@ def divisions(a11: float, a12: float, a21: float, a22: float, h: float) -> int:
 def fill(row: FloatArray, a11: float, a12: float, a21: float, a22: float, h: float) -> None:
     """Write the step of length ``h`` into ``row``, shape (``WIDTH``,).
 
-    For each k the row holds, at 13·k: Φ = hᵏφₖ (4 numbers, row by row), its derivative by the
-    trace of A (4), by the determinant of A (4), and the factor of the explicit A (1), so that
-    dΦ = P·d(tr A) + Q·d(det A) + w·dA.
+    For each k the row holds four parts, beginning at 13·k. They are Φ = hᵏφₖ (4 numbers, row by row), its
+    derivative P by the trace of A (4), its derivative Q by the determinant of A (4), and the factor w of the
+    explicit A (1). Then dΦ = P·d(tr A) + Q·d(det A) + w·dA.
     """
     x11, x12, x21, x22 = h * a11, h * a12, h * a21, h * a22
     trace = x11 + x22

@@ -1,13 +1,12 @@
-"""The air speed inside a manoeuvre, made from a slow, late instrument and the accelerometers.
+"""The air speed inside a manoeuvre, from a slow, late instrument and the accelerometers.
 
-Air speed arrives a few times a second, filtered and late (0.3 s on an ArduPlane), while within
-a 3-2-1-1 it swings by metres per second. Its rate, however, follows from the motion alone,
+An air speed arrives a few times per second, filtered and late (0.3 s on an ArduPlane). Within a 3-2-1-1 it
+changes by metres per second. Its rate follows from the motion alone,
 
     V̇ = a_x·cos α + a_z·sin α - g·sin(θ - α)
 
-in still air. The integral gives the shape, the instrument the level and the drift, and the
-delay between the two is the instrument's. An instrument that disagrees with the motion (gusts)
-is believed over the motion.
+in still air. The integral gives the shape, the instrument level and drift, and the delay between the two is
+the instrument's. An instrument that disagrees with the motion (gusts) is preferred to the motion.
 """
 
 from collections.abc import Mapping
@@ -24,28 +23,28 @@ from advisor.oem.problem import Signal
 LONGEST_LAG_S = 0.6
 LAG_STEP_S = 0.02
 SMALLEST_GAIN = 0.3
-"""A lag is believed when it takes away this share of the disagreement's power."""
+"""Least share of the disagreement's power that a lag must remove to be used."""
 LARGEST_DISAGREEMENT = 0.03
-"""Of the mean speed; above, the instrument alone is used."""
+"""Largest disagreement of instrument and motion, relative to the mean speed. Above it the instrument alone is
+used."""
 FEWEST_SAMPLES = 8
 MOTION = ("a_x", "a_z", "theta", "alpha")
 
 
 @dataclass(frozen=True, slots=True)
 class Airspeed:
-    """V over time, and how it was come by."""
+    """Air speed over time, and its source."""
 
     signal: Signal
     """V in m/s."""
     lag_s: float
-    """How late the instrument reads; 0 when it could not be told."""
+    """Delay of the instrument, s; 0 when it cannot be estimated."""
     smooth: bool
-    """Shape from the accelerometers; False: the instrument as it is."""
+    """Whether the shape comes from the accelerometers; if not, the instrument's reading is used."""
 
 
 def airspeed(channels: Mapping[str, Channel]) -> Airspeed | None:
-    """Return the air speed of a manoeuvre; None when none was measured, or none that is one of flight
-    throughout."""
+    """Return the air speed of a manoeuvre; None where none was measured, or where it is implausible."""
     measured = channels.get("airspeed")
     if measured is None or len(measured) < 2 or not np.all(np.isfinite(measured.y)):
         return None
@@ -73,7 +72,7 @@ def airspeed(channels: Mapping[str, Channel]) -> Airspeed | None:
 def _joined(
     t: FloatArray, y: FloatArray, grid: FloatArray, shape: FloatArray, lags: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return level and drift that join shape and instrument, and the mean square left over, for each lag."""
+    """Return level and drift that join shape and instrument, and the residual mean square, for each lag."""
     late = t - lags[:, None]
     side = y - np.interp(late, grid, shape)
     since = late - grid[0]

@@ -1,8 +1,8 @@
-"""Whether a measured angle of attack counts, and what stands in for one that does not.
+"""Use of a measured angle of attack, and its replacement by the motion.
 
-Most small aircraft have no vane. With pitch rate, specific force, attitude and air speed the angle of
-attack is a state that nobody need measure. An angle of attack that the autopilot derives counts only as far
-as the kinematics support it (``advisor.flight.kinematics``).
+Most small aircraft have no vane. With pitch rate, specific force, attitude and air speed the angle of attack
+is a state that need not be measured. An angle of attack that an autopilot derives is used only where the
+kinematics support it (``advisor.flight.kinematics``).
 """
 
 from collections.abc import Mapping, Sequence
@@ -17,16 +17,16 @@ from advisor.flight.maneuver import Maneuver
 from advisor.flight.record import Channel
 
 FEWEST_SAMPLES = 20
-"""Fewest samples of a channel that counts in a manoeuvre."""
+"""Least number of samples of a channel in a manoeuvre that is used."""
 
 
 def has(channels: Mapping[str, Channel], name: str) -> bool:
-    """Return whether a channel has samples enough to be estimated from."""
+    """Return whether a channel has enough samples for an estimate."""
     return name in channels and int(np.count_nonzero(np.isfinite(channels[name].y))) >= FEWEST_SAMPLES
 
 
 def lacking(maneuver: Maneuver, aircraft: Aircraft) -> tuple[str, ...]:
-    """Return channels whose absence keeps the motion from standing in for an angle of attack."""
+    """Return the channels whose absence prevents the motion from replacing an angle of attack."""
     absent = [name for name in NEEDED if not has(maneuver.channels, name)]
     airspeed = maneuver.channels.get("airspeed")
     measured = airspeed is not None and len(airspeed) > 1 and float(np.min(airspeed.y)) > 0.0
@@ -36,13 +36,13 @@ def lacking(maneuver: Maneuver, aircraft: Aircraft) -> tuple[str, ...]:
 
 
 def can_do_without(maneuver: Maneuver, aircraft: Aircraft) -> bool:
-    """Return whether the motion can stand in for an angle of attack."""
+    """Return whether the motion can replace an angle of attack."""
     return not lacking(maneuver, aircraft)
 
 
 def why_left_out(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> str:
-    """Return why no measured angle of attack counts in these manoeuvres, as half a sentence; empty where one
-    does."""
+    """Return why no measured angle of attack is used in these manoeuvres, as half a sentence; empty where one
+    is."""
     if aircraft.alpha.source == "none":
         return "alpha is left out, as the aircraft file asks"
     if not all(has(m.channels, "alpha") for m in maneuvers):
@@ -61,7 +61,7 @@ def why_left_out(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> str:
 
 
 def infer(maneuver: Maneuver, aircraft: Aircraft) -> Channel:
-    """Return the angle of attack as the motion shows it, for a manoeuvre that can do without a measured one.
+    """Return the angle of attack that the motion implies, for a manoeuvre that needs no measured one.
 
     Raises
     ------

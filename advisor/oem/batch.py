@@ -1,7 +1,7 @@
-"""Thousands of simulated manoeuvres on one grid: for studies of what an input can teach.
+"""Estimates of thousands of simulated manoeuvres on one grid, for studies of the information in an input.
 
-All share input and stamps and differ in their measurements only, so the grid is laid out once
-and everything after that is compiled.
+All manoeuvres share input and stamps and differ in their measurements only. The grid is laid out once, and
+everything after that is compiled.
 """
 
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ from advisor.oem.solution import noise_floor, solve
 
 @dataclass(frozen=True, slots=True)
 class Batch:
-    """One row a manoeuvre. A row that could not be estimated is NaN."""
+    """Estimates with one manoeuvre per row. A row without an estimate is NaN."""
 
     theta: FloatArray
     """(n, 8), order of ``PARAMETERS``."""
@@ -40,12 +40,12 @@ class Batch:
 
     @property
     def failed(self) -> int:
-        """How many rows could not be estimated."""
+        """Number of rows without an estimate."""
         return int(np.count_nonzero(np.isnan(self.theta[:, 0])))
 
 
 def solve_many(elevator: Signal, t: FloatArray, alpha: FloatArray, q: FloatArray) -> Batch:
-    """Estimate every row on its own.
+    """Estimate every row separately.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ def solve_many(elevator: Signal, t: FloatArray, alpha: FloatArray, q: FloatArray
 
 
 _POSITION = np.array([index if is_shared else N_SHARED + index for is_shared, index in REPORTED])
-"""Where the eight stand among all parameters."""
+"""Index of each of the eight parameters among all parameters."""
 
 
 @kernel()

@@ -1,10 +1,10 @@
-"""Errors that contain the scatter between manoeuvres: what no model of the noise within one manoeuvre knows.
+"""Errors that contain the scatter between manoeuvres, which no noise model within one manoeuvre knows.
 
-The influence of the measurements on a joint estimate splits into one contribution of each manoeuvre. At the
-optimum the contributions sum to zero; their scatter is the covariance that holds whatever the errors within
-a manoeuvre are, model error included (Liang & Zeger, *Biometrika* 73, 1986: clusters are manoeuvres). From
-few manoeuvres that scatter is known badly, so that it takes the place of the stated error only where chance
-hardly explains the difference.
+The influence of the measurements on a joint estimate is a sum of contributions of the manoeuvres. At the
+optimum the contributions sum to zero. Their scatter is a covariance that holds whatever the errors within a
+manoeuvre are, model error included. The manoeuvres are the clusters of Liang & Zeger, *Biometrika* 73, 1986.
+A few manoeuvres determine the scatter badly, so it replaces the stated error only where chance hardly
+explains the difference.
 """
 
 import numpy as np
@@ -13,18 +13,18 @@ from scipy.special import chdtri
 from advisor.flight.messages import FloatArray
 
 CHANCE = 0.05
-"""Of widening an error that is stated rightly."""
+"""Probability of widening an error that is stated rightly."""
 
 
 def widened_by_scatter(covariance: FloatArray, contributions: FloatArray) -> FloatArray:
-    """Return the covariance, each error at least as large as the manoeuvres' scatter makes plain.
+    """Return the covariance, with each error at least as large as the scatter of the manoeuvres requires.
 
     Parameters
     ----------
     covariance
-        Shape (p, p), as the noise within the manoeuvres has it.
+        Shape (p, p): covariance from the noise within the manoeuvres.
     contributions
-        Shape (m, p): how far each manoeuvre's residuals pull each parameter.
+        Shape (m, p): contribution of each manoeuvre's residuals to each parameter.
     """
     maneuvers = len(contributions)
     stated = np.diag(covariance)

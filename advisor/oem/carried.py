@@ -1,9 +1,9 @@
-"""A solution carried on over the newest samples of a manoeuvre, without solving the model again.
+"""A solution updated with the newest samples of a manoeuvre, without solving the whole model again.
 
-The model is solved over the new samples alone, from where the solution ends: its state and the state's
-sensitivities go on, and each new sample adds to sums (``sums``) from which the next Gauss-Newton step and the
-errors follow. All samples count at every refresh. Air speed and what is known to turn the path stay as they
-were at the end of the solution, so that a complete solution takes over twice a second.
+The model is solved over the new samples alone, from the state and the sensitivities at the end of the
+solution. Each new sample adds to sums (``sums``) from which the next Gauss-Newton step and the errors follow.
+All samples count at every refresh. Air speed and turning of the path stay at their last values, so a complete
+solution follows twice per second.
 """
 
 from collections.abc import Mapping
@@ -27,13 +27,15 @@ from advisor.oem.sums import Sums
 from advisor.standard_gravity import GRAVITY_M_S2
 
 LONGEST_PROMISE = 2.0
-"""Change of -2 log likelihood that a step may promise. Beyond it the model is solved again over all samples.
-Nine of ten estimates carried on then lie within 0.17 standard deviations of the complete ones (the first
-manoeuvre of ``logs/arduplane-calm.tlog``)."""
+"""Largest change of -2 log likelihood that a step may promise. Beyond it the model is solved again over all
+samples. Nine of ten updated estimates then lie within 0.17 standard deviations of the complete ones (the
+first manoeuvre of ``logs/arduplane-calm.tlog``)."""
 REST_S = 2.0
-"""Of the command before the new samples: a servo has forgotten what came earlier."""
+"""Length in s of the command before the new samples that is kept. A servo has forgotten an earlier
+command."""
 NEARLY_SINGULAR = 1e12
-"""Largest sum of variances, each relative to the variance alone, that round-off leaves alone."""
+"""Largest sum of variances, each relative to that of the parameter alone, for a well-conditioned matrix.
+Round-off decides above it."""
 _INITIAL = [N_SHARED + LOCAL.index(name) for name in ("alpha_initial", "q_initial", "theta_initial")]
 _Q_BIAS = LOCAL.index("q_bias")
 _EIGHT = np.array([i if is_shared else N_SHARED + i for is_shared, i in REPORTED])
@@ -41,29 +43,29 @@ _STATES = tuple(OUTPUTS.index(name) for name in ("alpha", "q", "theta"))
 
 
 class _Step(NamedTuple):
-    """A Gauss-Newton step from the place of the solution."""
+    """A Gauss-Newton step from the point of the solution."""
 
     change: FloatArray
-    """(n,) of the free parameters."""
+    """(n,) step of the free parameters."""
     information: FloatArray
-    """(n, n) of the samples."""
+    """(n, n) information of the samples."""
     inverse: FloatArray
-    """(n, n) of the information with that of the prior."""
+    """(n, n) inverse of the information plus that of the prior."""
     promise: float
-    """Change of -2 log likelihood."""
+    """Promised change of -2 log likelihood."""
 
 
 class Carried:
-    """Carries the solution of one manoeuvre on.
+    """An updatable solution of one manoeuvre.
 
     Parameters
     ----------
     solution
-        Of one record, its model solved at its optimum.
+        Solution of one record, with the model solved at its optimum.
     prepared
-        What the solution was made from.
+        The prepared record of the solution.
     reported
-        The solution as the rest of the program sees it.
+        The estimate that the rest of the program sees.
     """
 
     def __init__(self, solution: Solution, prepared: Prepared, reported: Estimate) -> None:
@@ -86,8 +88,7 @@ class Carried:
             self._sums[name].add(np.ascontiguousarray(g[:, self._free]), z - y)
 
     def on(self, maneuver: Maneuver) -> Estimate | None:
-        """Return the estimate with the manoeuvre's newest samples; None where the model must be solved
-        again."""
+        """Return the estimate with the newest samples; None where the model must be solved again."""
         new = {name: self._new(name, maneuver) for name in self._rows}
         stamps = np.concatenate([signal.t for signal in new.values()])
         if len(stamps) and not self._solve(maneuver, new, stamps):
@@ -95,7 +96,7 @@ class Carried:
         return self._stepped()
 
     def _new(self, name: str, maneuver: Maneuver) -> Signal:
-        """What the solution has not seen of an output; an angle of attack sent again is nothing new."""
+        """Return the new samples of an output. A repeated angle of attack is not new."""
         channel = maneuver.channels[name]
         last_s, last = self._rows[name][-1][0][-1], self._rows[name][-1][1][-1]
         late = self._solution.problem.alpha_delay_s if name == "alpha" else 0.0
@@ -107,7 +108,7 @@ class Carried:
         return Signal(t[keep], y[keep])
 
     def _solve(self, maneuver: Maneuver, new: Mapping[str, Signal], stamps: FloatArray) -> bool:
-        """Solve the model over the new samples; whether that could be done."""
+        """Solve the model over the new samples, and return whether that succeeded."""
         if not np.min(stamps) > self._end_s - STAMP_S:
             return False
         shared, local = self._solution.optimum.shared, self._solution.optimum.local.copy()
@@ -129,7 +130,8 @@ class Carried:
         return True
 
     def _through(self, g: FloatArray) -> FloatArray:
-        """Return derivatives (k, 14) by the state that was reached, put down to all parameters."""
+        """Return the derivatives (k, 14) of the outputs by all parameters, from those by the state at the
+        start."""
         whole = g.copy()
         whole[:, _INITIAL] = 0.0
         return np.asarray(whole + g[:, _INITIAL] @ self._sensitivities)
@@ -173,7 +175,7 @@ class Carried:
         )
 
     def _stepped(self) -> Estimate | None:
-        """Return the estimate after a step from the solution's place by all samples."""
+        """Return the estimate after a step from the solution's point with all samples."""
         optimum = self._solution.optimum
         first = self._step({name: float(optimum.noise[OUTPUTS.index(name)]) for name in self._sums})
         noise = {} if first is None else self._noise_after(first.change)
@@ -198,7 +200,7 @@ class Carried:
         )
 
     def _step(self, noise: Mapping[str, float]) -> "_Step | None":
-        """Return the step for this noise of the outputs; None where it is hardly determined."""
+        """Return the step for this noise of the outputs; None where it is nearly undetermined."""
         whole = np.sum([s.gram / noise[name] ** 2 for name, s in self._sums.items()], axis=0)
         information, gradient = whole[:-1, :-1], whole[:-1, -1]
         drawn = self._prior * self._place

@@ -1,13 +1,13 @@
-"""Non-dimensional coefficients from the derivatives, when geometry and mass are known.
+"""Non-dimensional coefficients from the derivatives, where geometry and mass are known.
 
-With the true air speed V, the dynamic pressure q̄ = ½·ρ·V², rates made non-dimensional by c/(2·V), and drag's
-part in the lift direction neglected (Etkin & Reid, *Dynamics of Flight*, Table 4.4):
+V is the true air speed and q̄ = ½·ρ·V² the dynamic pressure. Rates are made non-dimensional by c/(2·V), and
+drag's part in the lift direction is neglected (Etkin & Reid, *Dynamics of Flight*, Table 4.4):
 
     Z_α = -q̄·S·C_Lα/(m·V)          M_α = q̄·S·c·C_mα/I_yy
     Z_q = -q̄·S·c·C_Lq/(2·m·V²)     M_q = q̄·S·c²·C_mq/(2·V·I_yy)
     Z_δe = -q̄·S·C_Lδe/(m·V)        M_δe = q̄·S·c·C_mδe/I_yy
 
-C_mq stands for C_mq + C_mα̇: still air does not tell the two apart.
+C_mq stands for C_mq + C_mα̇, because still air does not distinguish the two.
 """
 
 from collections.abc import Mapping
@@ -29,7 +29,7 @@ class Coefficient:
 
 
 def coefficients(estimate: Estimate, reference: Reference, air: AirFlown) -> Mapping[str, Coefficient]:
-    """Return coefficients by name, as many as the reference data allow; empty without air speed.
+    """Return the coefficients by name, as far as the reference data allow; empty without an air speed.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ def coefficients(estimate: Estimate, reference: Reference, air: AirFlown) -> Map
     reference
         Mass, wing area, chord and pitching inertia; those missing leave their coefficients out.
     air
-        Density, and the true air speed for the logged one.
+        Density, and the ratio of true to logged air speed.
     """
     if estimate.airspeed_m_s is None:
         return {}
@@ -55,10 +55,9 @@ def coefficients(estimate: Estimate, reference: Reference, air: AirFlown) -> Map
 def scales(
     airspeed_m_s: float, reference: Reference, density_kg_m3: float = SEA_LEVEL_DENSITY_KG_M3
 ) -> Mapping[str, tuple[str, float]]:
-    """Return the coefficient name to the derivative it comes from and the factor between them, from Table
-    4.4.
+    """Return by coefficient name the derivative and the factor between the two, from Table 4.4.
 
-    A coefficient whose reference data are missing is not among them.
+    Coefficients without reference data are left out.
     """
     area, chord, mass, inertia = (
         reference.wing_area_m2,

@@ -2,11 +2,10 @@
 
     ν_k = w_k + x_k,   x_{k+1} = φ·x_k + e_k
 
-Real residuals are a mixture of the two: sensor noise that forgets at once and small errors of
-the model that last. Sample autocorrelations of residuals come out too small, because the fitted
-parameters have eaten part of the slow noise; restricted maximum likelihood (Patterson &
-Thompson, *Biometrika* 58, 1971) looks only at what no parameter can explain and is free of that
-bias.
+Real residuals are a mixture of white sensor noise and small, lasting errors of the model. Sample
+autocorrelations of residuals are too small, because the fitted parameters absorb part of the slow noise.
+Restricted maximum likelihood (Patterson & Thompson, *Biometrika* 58, 1971) uses only what no parameter can
+explain, and is free of that bias.
 """
 
 import math
@@ -22,13 +21,13 @@ from advisor.oem.recursion import accumulated
 from advisor.oem.whitening import schedule, whiten
 
 MEMORIES = (-0.4, 0.3, 0.5, 0.7, 0.8, 0.87, 0.92, 0.95, 0.97, 0.985, 0.993)
-"""First guesses of φ."""
+"""Starting values of φ in the search."""
 WHITE_SHARES = (0.0, 0.1, 0.5, 2.0)
-"""First guesses of var w / var x."""
+"""Starting values of var w / var x in the search."""
 SIGNIFICANT = 6.0
-"""Gain in twice the log-likelihood from which colour is believed."""
+"""Least gain in twice the log likelihood for coloured noise."""
 PROMISING = 1.0
-"""Gain of the best first guess below which the search for colour is not begun."""
+"""Least gain of the best starting value for which the search is begun."""
 LARGEST_MEMORY = 0.9995
 SMALLEST_SHARE = 1e-4
 LOG_SMALLEST_SHARE = math.log(SMALLEST_SHARE)
@@ -37,31 +36,31 @@ _NEARLY_ONE = 1.0 - 1e-9
 
 @dataclass(frozen=True, slots=True)
 class Stretch:
-    """Residuals of one output in one manoeuvre, and what its parameters could explain."""
+    """Residuals of one output in one manoeuvre, and the regressors of its parameters."""
 
     residual: FloatArray
-    """(n,)."""
+    """(n,) residuals."""
     columns: FloatArray
     """(n, p) derivatives by the manoeuvre's parameters."""
 
 
 @dataclass(frozen=True, slots=True)
 class Colour:
-    """Noise of one output."""
+    """Noise model of one output."""
 
     variance: float
-    """Of the coloured part x, or of all when ``memory`` is 0."""
+    """Variance of the coloured part x, or of the whole noise when ``memory`` is 0."""
     memory: float
-    """φ; 0: white."""
+    """φ; 0 for white noise."""
     white_share: float
     """var w / var x."""
     uncertainty: FloatArray
-    """(k, k) covariance of the logarithm of ``variance``, and with colour of the two shape
-    parameters of ``shape``."""
+    """(k, k) covariance of the logarithm of ``variance`` and, for coloured noise, of the two parameters of
+    ``shape``."""
 
     @property
     def shape(self) -> FloatArray:
-        """(2,) φ and var w / var x on unbounded scales."""
+        """(2,) φ and var w / var x, transformed to unbounded scales."""
         return _unbounded(self.memory, self.white_share)
 
 

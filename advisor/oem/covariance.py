@@ -1,11 +1,10 @@
-"""How far to trust an estimate: the Cramér-Rao bound, and its correction for coloured residuals.
+"""Errors of an estimate: the Cramér-Rao bound, and its correction for coloured residuals.
 
-Near the optimum the estimate is linear in the noise, θ̂ - θ = Aᵀ·ν, with the influence A of
-every measurement. White noise of covariance R gives AᵀRA, which is the Cramér-Rao bound. Real
-residuals are coloured; then the covariance is AᵀΓA with Γ the noise's own autocovariance,
-estimated from the residuals (Klein & Morelli, *Aircraft System Identification*, section on
-the accuracy of output-error estimates with coloured residuals; here with the
-autocovariance of the model in ``colour``).
+Near the optimum the estimate is linear in the noise, θ̂ - θ = Aᵀ·ν, where A is the influence of every
+measurement. White noise of covariance R gives AᵀRA, the Cramér-Rao bound. Real residuals are coloured. The
+covariance is then AᵀΓA with the noise's autocovariance Γ, estimated from the residuals. The source is Klein &
+Morelli, *Aircraft System Identification*, on output-error estimates with coloured residuals; the noise model
+here is that of ``colour``.
 """
 
 from collections.abc import Mapping
@@ -21,14 +20,14 @@ from advisor.oem.colour import Colour, Stretch, find_colour, moved, product
 from advisor.oem.problem import Assembly
 
 LEAST_EIGENVALUE = 1e-13
-"""Of a normalised information matrix; below, round-off decides the inverse."""
+"""Least eigenvalue of a normalised information matrix. Round-off decides the inverse below it."""
 OPEN_SHARE = 0.01
-"""Of a parameter, in directions the data leave open; above, it is unresolved."""
+"""Largest share of a parameter in undetermined directions. Above it the parameter is unresolved."""
 DIFFERENCE = 0.05
 LEAST_FREEDOM = 3.0
 GAUSS_975 = 1.959963984540054
 REPORTED = tuple((name in SHARED, (SHARED if name in SHARED else LOCAL).index(name)) for name in PARAMETERS)
-"""Where each of the eight stands: (shared or local, index)."""
+"""Place of each of the eight parameters: whether it is shared, and its index."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,21 +37,21 @@ class Influence:
     rows: FloatArray
     """(N, 8 + k) change of each parameter for a unit change of each measurement."""
     condition: float
-    """Condition number of the information matrix of the eight, normalised to a unit diagonal."""
+    """Condition number of the information matrix of the eight parameters, normalised to a unit diagonal."""
     unresolved: tuple[str, ...]
-    """Parameters that lie in a direction about which the data say nothing at all."""
+    """Parameters in a direction about which the data say nothing."""
     extra_covariance: FloatArray
-    """(k, k) inverse information of the extra parameters, all others free."""
+    """(k, k) inverse information of the extra parameters, with all others free."""
 
 
 @dataclass(frozen=True, slots=True)
 class Coloured:
-    """What is known of the noise after a fit."""
+    """The noise model of a fit."""
 
     colours: Mapping[str, Colour]
-    """Output name to the colour of its noise."""
+    """Output name to the noise model of the output."""
     widening: FloatArray
-    """(8 + k,) factor on each standard deviation for not knowing the colours exactly."""
+    """(8 + k,) factor on each standard deviation for the uncertainty of the noise model."""
 
 
 def influence(
@@ -68,9 +67,9 @@ def influence(
 
     Parameters
     ----------
-    extra : (N, k) derivatives of the outputs by parameters estimated besides, such as a servo's lag;
-        the result then has their columns after the eight.
-    prior : (7,) inverse variances of the shared parameters known beforehand.
+    extra : (N, k) derivatives of the outputs by additional parameters, such as a servo's lag; the result
+        then has their columns after the eight.
+    prior : (7,) inverse prior variances of the shared parameters.
     """
     weight = 1.0 / noise[assembly.channel] ** 2
     common, own = assembly.free[assembly.free < N_SHARED], assembly.free[assembly.free >= N_SHARED]
@@ -129,7 +128,7 @@ def influence(
 
 
 def _inverse(information: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the inverse of a symmetric matrix, and how much of each unknown it leaves open, 0 to 1.
+    """Return the inverse of a symmetric matrix, and the undetermined share of each unknown, 0 to 1.
 
     Directions in which the matrix is singular to working precision are left out.
     """
@@ -143,12 +142,12 @@ def _inverse(information: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def cramer_rao(assembly: Assembly, rows: FloatArray, noise: FloatArray) -> FloatArray:
-    """Return AᵀRA, shape (8 + k, 8 + k)."""
+    """Return the Cramér-Rao bound AᵀRA, shape (8 + k, 8 + k)."""
     return (rows * noise[assembly.channel, None] ** 2).T @ rows
 
 
 def colours_of(assembly: Assembly, residual: FloatArray, g: FloatArray) -> Mapping[str, Colour]:
-    """Return output name to the colour of its noise, pooled over the manoeuvres."""
+    """Return by output name the noise model of the output, pooled over the manoeuvres."""
     return {
         output: find_colour([Stretch(residual[s], g[s][:, assembly.free]) for s in stretches])
         for output, stretches in _stretches(assembly).items()
@@ -156,7 +155,7 @@ def colours_of(assembly: Assembly, residual: FloatArray, g: FloatArray) -> Mappi
 
 
 def coloured(assembly: Assembly, rows: FloatArray, noise: Coloured) -> FloatArray:
-    """Return AᵀΓA, shape (8 + k, 8 + k), each standard deviation widened."""
+    """Return AᵀΓA, shape (8 + k, 8 + k), with each standard deviation widened."""
     total = np.zeros((rows.shape[1], rows.shape[1]))
     for output, stretches in _stretches(assembly).items():
         for s in stretches:
@@ -166,11 +165,11 @@ def coloured(assembly: Assembly, rows: FloatArray, noise: Coloured) -> FloatArra
 
 
 def widening(assembly: Assembly, rows: FloatArray, colours: Mapping[str, Colour]) -> FloatArray:
-    """Return (8 + k,) factor on each standard deviation for not knowing the colours exactly.
+    """Return the factor on each standard deviation for the uncertainty of the noise model, shape (8 + k,).
 
-    The colours are themselves estimates. Their uncertainty is carried to each variance (Satterthwaite's
-    degrees of freedom), and the deviation enlarged by Student's over Gauss's 97.5 % point, so that
-    ±1.96 standard deviations hold the truth in 95 % of cases.
+    The uncertainty of the noise model is carried to each variance (Satterthwaite's degrees of freedom). The
+    deviation is enlarged by the ratio of Student's to Gauss's 97.5 % point. ±1.96 standard deviations then
+    hold the truth in 95 % of cases.
     """
     variance, spread = np.zeros(rows.shape[1]), np.zeros(rows.shape[1])
     for output, stretches in _stretches(assembly).items():

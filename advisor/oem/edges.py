@@ -1,10 +1,9 @@
-"""When a step of the command really happened: somewhere between two stamps.
+"""The time of a command's step, which lies somewhere between two stamps.
 
-The command is sampled. A step that lies between two stamps is drawn as a ramp over the interval,
-as if it had happened in the middle; it may have been anywhere, at the later stamp when a digital
-command is held. Half a sample is a false delay, and with the small errors of a joint
-estimate that is many standard deviations. So each large step gets a time of its own, estimated
-together with everything else, when the data ask for it.
+A step between two stamps is drawn as a ramp over the interval, as if it had happened in the middle. It may
+have happened anywhere, and at the later stamp for a held digital command. Half an interval is a false delay,
+of many standard deviations in a joint estimate. Each large step therefore gets its own time, estimated
+together with all other parameters, where the data require it.
 """
 
 from collections.abc import Sequence
@@ -22,36 +21,35 @@ from advisor.oem.solution import Solution, evaluate, search
 from advisor.oem.weighing import Weighing
 
 LARGE = 0.25
-"""A step is large that covers this share of the command's range within one interval ..."""
+"""Least share of the command's range that a step covers within one interval."""
 ISOLATED = 0.3
-"""... while the intervals beside it change by less than this share of it."""
+"""Largest change in the neighbouring intervals, as a share of the step."""
 WIDTH_S = 1e-4
-"""Duration of a sharpened step."""
+"""Duration of a sharpened step, s."""
 DIFFERENCE_S = 2e-4
 ROUNDS = 2
 CHANCE = 1e-3
-"""Steps are left as ramps when times of no meaning would gain as much with this chance ..."""
+"""Largest probability of the gain by chance for which steps are sharpened, compared with arbitrary times."""
 GAIN_UPRIGHT = 3.0
-"""... and when less than this, twice a log-likelihood, is gained by all of them standing upright in the
-middle of their intervals, where no time is fitted: a ramp and a step in its middle look alike and differ
-in M_δe."""
+"""Least gain in twice the log likelihood of all steps upright in the middle of their intervals, where no time
+is fitted. A ramp and a step in its middle look alike and differ in M_δe."""
 MOST_MANEUVERS = 20
 CLOSE_ENOUGH = 1e-9
-"""Promised change of log J per sample at which a search on the way is done."""
+"""Promised change of log J per sample at which an intermediate search ends."""
 
 
 @dataclass(frozen=True, slots=True)
 class Edges:
-    """Large steps of one record and when they happened."""
+    """Large steps of one record, and their times."""
 
     interval: tuple[int, ...]
     """Index of the stamp before each step."""
     time: FloatArray
-    """(k,) when, between that stamp and the next."""
+    """(k,) time of each step, between its stamp and the next, s."""
 
 
 def large_steps(command: Signal) -> Edges:
-    """Return steps that stand alone between two stamps, first placed in the middle."""
+    """Return the steps that stand alone between two stamps, placed in the middle."""
     change = np.abs(np.diff(command.y))
     beside = np.maximum(np.append(change[1:], 0.0), np.append(0.0, change[:-1]))
     span = float(np.ptp(command.y))
@@ -70,12 +68,12 @@ def sharpened(command: Signal, edges: Edges) -> Signal:
 
 
 def with_edges(plain: Solution, extra: FloatArray | None = None) -> Solution:
-    """Return the solution with every large step at its own time; ``plain`` itself when that gains too little.
+    """Return the solution with every large step at its own time; ``plain`` where that gains too little.
 
     Parameters
     ----------
-    extra : derivatives by parameters estimated besides, as in ``covariance.influence``; their
-        columns come first, those of the edges after them.
+    extra : derivatives by additional parameters, as in ``covariance.influence``; their columns come first,
+        those of the edges after them.
     """
     records = plain.problem.records
     edges = [large_steps(record.elevator) for record in records]
@@ -122,7 +120,7 @@ def _edged(problem: Problem, edges: Sequence[Edges], records: Sequence[Record]) 
 
 
 def _moved(edges: Sequence[Edges], steps: FloatArray, records: Sequence[Record]) -> list[Edges]:
-    """Return edges displaced, each within its interval."""
+    """Return the edges displaced, each within its interval."""
     moved, at = [], 0
     for record, e in zip(records, edges, strict=True):
         k = len(e.interval)
@@ -137,9 +135,9 @@ def _moved(edges: Sequence[Edges], steps: FloatArray, records: Sequence[Record])
 def _by_edges(
     problem: Problem, edges: Sequence[Edges], records: Sequence[Record], optimum: Optimum, owner: Index
 ) -> FloatArray:
-    """Return (N, k) derivatives of the outputs by the times of all edges, manoeuvre by manoeuvre.
+    """Return the derivatives of the outputs by the times of all edges, shape (N, k), manoeuvre by manoeuvre.
 
-    The j-th edges of all manoeuvres move at once: each shows in its own manoeuvre only.
+    The j-th edges of all manoeuvres are moved at once, because each affects its own manoeuvre only.
     """
     counts = [len(e.interval) for e in edges]
     offsets = np.cumsum([0, *counts])

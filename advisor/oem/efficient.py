@@ -1,14 +1,13 @@
-"""The efficient estimate where the noise is coloured: one whitened Gauss-Newton step from the optimum.
+"""The efficient estimate with coloured noise: one whitened Gauss-Newton step from the optimum.
 
-Output error weighs every sample alike. Where the noise remembers, generalised least squares has the
-smaller error: residuals and sensitivities pass through the filter that whitens the noise, and from there on
-all is as with white noise. From an estimate as good as output error's, one step reaches the Cramér-Rao
-bound of an estimator that is told the colour (Lehmann & Casella, *Theory of Point Estimation*, theorem
-6.4.3). Lowest J, Eq. (7), and smallest error are then two different points.
+Output error weighs every sample alike. With coloured noise generalised least squares has the smaller error:
+residuals and sensitivities pass through the filter that whitens the noise. From an estimate as good as output
+error's, one step reaches the Cramér-Rao bound for known noise. The source is Lehmann & Casella, *Theory of
+Point Estimation*, theorem 6.4.3. The lowest J of Eq. (7) and the smallest error are then at different points.
 
-What is slow in a residual is not always noise. A servo's lag, a late angle of attack and moving air are slow,
-too, and an estimator that discounts the slow part trusts the fast part, where errors of timing live. So
-the step is taken only where it gains something and the record is nothing but model and such noise:
+A slow residual is not always noise. A servo's lag, a late angle of attack and moving air are slow too. An
+estimator that discounts the slow part relies on the fast part, where timing errors matter. The step is
+therefore taken only where it gains something and the residual is coloured noise:
 
 - whitened, no output's residual remembers anything (Ljung & Box, *Biometrika* 65, 1978);
 - the step is no longer than right models let it be (Hausman, *Econometrica* 46, 1978).
@@ -28,34 +27,35 @@ from advisor.oem.weighing import Weighing
 
 N = len(PARAMETERS)
 LAGS = 20
-"""Samples over which a whitened residual must not remember."""
+"""Number of lags over which a whitened residual must be uncorrelated."""
 CHANCE = 0.01
-"""Of refusing where the noise is what it seems, over all tests."""
+"""Probability of refusing the step by chance, over all tests."""
 GAIN = 0.02
-"""Least relative decrease of some parameter's variance that is worth a step."""
+"""Least relative decrease of some parameter's variance for a step."""
 LEAST_SHARE = 0.01
-"""Variance of the step as a share of the estimate's, below which round-off would decide a test of it."""
+"""Least variance of the step as a share of the estimate's for a test of the step. Round-off decides below
+it."""
 
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """From the lowest cost to the smallest error."""
+    """A step from the lowest cost to the smallest error."""
 
     change: FloatArray
-    """(8,) of the parameters."""
+    """(8,) change of the parameters."""
     covariance: FloatArray
-    """(8, 8) of the parameters after it, widened for not knowing the colours exactly."""
+    """(8, 8) covariance of the parameters after the step, widened for the uncertainty of the noise model."""
     gain: float
     """Largest relative decrease of a parameter's variance."""
     chances: FloatArray
-    """Chance, were all noise of these colours, of each output's whitened residual remembering as much as
-    it does, and of a step as long as this."""
+    """Probabilities, under this noise model, of each output's whitened autocorrelation and of the length of
+    the step."""
 
 
 def efficient(solution: Solution) -> Solution:
-    """Return the solution with the efficient values and errors of the eight, or itself.
+    """Return the solution with the efficient values and errors of the eight parameters, or unchanged.
 
-    Cost, fit and all else stay those of output error.
+    Cost and fit stay those of output error.
     """
     colours = solution.noise.colours.values()
     if all(c.memory == 0.0 for c in colours) or any(c.variance == 0.0 for c in colours):
@@ -67,7 +67,7 @@ def efficient(solution: Solution) -> Solution:
 
 
 def efficient_step(solution: Solution) -> Step | None:
-    """Return the step and what speaks for it; None when it overflows."""
+    """Return the step with the probabilities of its tests; None where it overflows."""
     colours, assembly = solution.noise.colours, solution.assembly
     weighing = Weighing.by(solution.noise, assembly)
     found = weighing.influence(solution.sensitivities, solution.extra)
@@ -88,10 +88,10 @@ def efficient_step(solution: Solution) -> Step | None:
 
 
 def _unsure(solution: Solution, change: FloatArray) -> FloatArray:
-    """Return (8, 8) covariance of the step for not knowing the colours, by which it is weighed, exactly.
+    """Return the covariance of the step for the uncertainty of the noise model, shape (8, 8).
 
-    The estimate's covariance is larger by it than with known colours, and the usual formula with estimated
-    ones smaller: it counts twice (Kenward & Roger, *Biometrics* 53, 1997).
+    The covariance of the estimate is larger by it than with a known noise model. The usual formula with an
+    estimated model is smaller, so the term counts twice (Kenward & Roger, *Biometrics* 53, 1997).
     """
     total = np.zeros((N, N))
     for output, colour in solution.noise.colours.items():
@@ -109,7 +109,7 @@ def _unsure(solution: Solution, change: FloatArray) -> FloatArray:
 
 
 def _chance(change: FloatArray, covariance: FloatArray, unit: FloatArray) -> float:
-    """Return chance that a change of this covariance is as long as this one, both in units of ``unit``
+    """Return the probability of a change at least this long under its covariance, in units of ``unit``
     (8,)."""
     values, vectors = np.linalg.eigh(covariance / np.outer(unit, unit))
     along = vectors.T @ (change / unit)
@@ -117,9 +117,9 @@ def _chance(change: FloatArray, covariance: FloatArray, unit: FloatArray) -> flo
 
 
 def _remembering(solution: Solution, weighing: Weighing) -> list[float]:
-    """For each output the chance that white noise seems to remember as much as its whitened residual.
+    """Return for each output the probability that white noise has such a whitened autocorrelation.
 
-    An output of few samples has no say.
+    An output with few samples is not tested.
     """
     white = weighing.forward(solution.residual[:, None])[:, 0]
     lags = np.arange(1, LAGS + 1)

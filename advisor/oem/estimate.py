@@ -1,4 +1,4 @@
-"""What an estimate is: values, errors one can believe, and how well the model explains the data."""
+"""The result of an estimation: values, errors, and the quality of the fit."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -12,7 +12,7 @@ from advisor.flight.messages import FloatArray
 
 @dataclass(frozen=True, slots=True)
 class ChannelFit:
-    """Measured against fitted, for one output at its own stamps."""
+    """Measured and fitted values of one output at its own stamps."""
 
     name: str
     t: FloatArray
@@ -64,52 +64,53 @@ class InstrumentEstimate:
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
-    """The eight parameters of Eq. (3) from one manoeuvre or from several at once."""
+    """The eight parameters of Eq. (3) from one manoeuvre, or from several together."""
 
     theta: FloatArray
-    """Shape (8,), order of ``PARAMETERS``. For a joint estimate Z_0 and M_0 are means over manoeuvres."""
+    """Shape (8,), in the order of ``PARAMETERS``. In a joint estimate Z_0 and M_0 are means over the
+    manoeuvres."""
     covariance_cr: FloatArray
-    """Shape (8, 8). Cramér-Rao bound: right when residuals are white."""
+    """Shape (8, 8). Cramér-Rao bound, which holds for white residuals."""
     covariance: FloatArray
     """Shape (8, 8). Corrected for coloured residuals."""
     cost: float
-    """The lowest J = det R of Eq. (7) over angle of attack and pitch rate; where no angle of attack counts,
-    over pitch rate and a_z."""
+    """Lowest J = det R of Eq. (7) over angle of attack and pitch rate; without an angle of attack over pitch
+    rate and a_z."""
     fits: tuple[Mapping[str, ChannelFit], ...]
-    """One mapping of output name to fit per manoeuvre, the fit of lowest cost."""
+    """One mapping of output name to fit per manoeuvre, at the lowest cost."""
     iterations: int
     not_identifiable: Mapping[str, str]
-    """Parameter name to the reason, in words; such a parameter has no usable value."""
+    """Parameter name to the reason why the parameter has no usable value."""
     correlated: tuple[tuple[str, str, float], ...]
     """Pairs of parameters with |correlation| above 0.9."""
     condition: float
     """Condition number of the normalised information matrix."""
     airspeed_m_s: float | None
-    """Speed at which the derivatives are given; None when no air speed was measured."""
+    """Speed of the derivatives, m/s; None where no air speed was measured."""
     notes: tuple[str, ...] = ()
-    """What the user must know about these numbers, one sentence each."""
+    """Sentences that the user must know about these values."""
     theta_of_lowest_cost: FloatArray | None = None
-    """Shape (8,), the parameters of ``cost`` and ``fits`` where they are not ``theta``: with coloured noise
-    or in moving air the smallest error lies elsewhere (``efficient``, ``filter_error``)."""
+    """Shape (8,), the parameters of ``cost`` and ``fits`` where they differ from ``theta``. With coloured
+    noise or in moving air the smallest error lies at another point (``efficient``, ``filter_error``)."""
     instruments: tuple[InstrumentEstimate, ...] = ()
-    """What the data tell of the instruments, used in this estimate."""
+    """Instrument parameters that the data determine, as used in this estimate."""
     gust_rad: float | None = None
-    """Standard deviation of the gust angle w/V, where the air moved."""
+    """Standard deviation of the gust angle w/V, rad, where the air moved."""
     filtered: bool = False
-    """Whether ``theta`` is filter error's, which allows for moving air and coloured instruments."""
+    """Whether ``theta`` comes from filter error, which allows for moving air and coloured instruments."""
     servo_lag_s: float = 0.0
-    """First-order lag of the servo used, given or estimated."""
+    """First-order lag of the servo in use, s, given or estimated."""
     prediction: Mapping[str, float] = field(default_factory=dict)
-    """Output name to the largest half-width of the predicted response's 95 % band, over the peak of that
-    response; empty while a manoeuvre is still being flown."""
+    """Output name to the largest half-width of the 95 % band of the predicted response, over the peak of that
+    response. Empty while a manoeuvre is still being flown."""
 
     @property
     def outputs(self) -> tuple[str, ...]:
-        """Names of the outputs that counted."""
+        """Names of the outputs in the fit."""
         return tuple(self.fits[0])
 
     def instrument(self, name: str) -> InstrumentEstimate | None:
-        """What the data tell of one instrument; None where nothing is told."""
+        """Return the estimate of one instrument parameter; None where the data do not determine it."""
         return next((x for x in self.instruments if x.name == name), None)
 
     @property
@@ -129,7 +130,7 @@ class Estimate:
 
 @dataclass(frozen=True, slots=True)
 class NoEstimate:
-    """Why there is no estimate: a numerical failure is a value, not an exception."""
+    """The reason for a missing estimate: a numerical failure is a value, not an exception."""
 
     code: str
     """``too_few_samples``, ``no_input``, ``not_converged``, ``singular``, ..."""

@@ -1,4 +1,4 @@
-"""From manoeuvres to estimates: what the rest of the program calls."""
+"""From manoeuvres to estimates: the functions that the rest of the program calls."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -35,36 +35,37 @@ from advisor.oem.weighing import Weighing
 
 N = len(PARAMETERS)
 COLOURED = 0.5
-"""Lag-1 correlation of the pitch rate's residual below which nothing drives the aircraft."""
+"""Least lag-1 correlation of the pitch rate's residual for moving air. Below it nothing drives the
+aircraft."""
 UNEXPLAINED = 0.004
-"""Share of the pitch rate's variance that moving air leaves unexplained at the least."""
+"""Least unexplained share of the pitch rate's variance for moving air."""
 CLEARLY = 10.0
-"""Twice the log-likelihood by which another reading of the record must beat the usual one."""
+"""Least gain in twice the log likelihood by which another reading of the record must beat the usual one."""
 
 
 def estimate(
     maneuver: Maneuver, aircraft: Aircraft, *, method: Method = "gauss-newton"
 ) -> Estimate | NoEstimate:
-    """Return all eight parameters from one manoeuvre.
+    """Return all eight parameters from one manoeuvre, or why there is no estimate.
 
     Parameters
     ----------
-    method : ``gauss-newton``, or ``nelder-mead`` for the paper's simplex (the same optimum, later). The
-        simplex takes instruments and air as they are given.
+    method : ``gauss-newton``, or ``nelder-mead`` for the paper's simplex, which finds the same optimum more
+        slowly and estimates neither instruments nor moving air.
     """
     return _estimate([maneuver], aircraft, method)
 
 
 def estimate_jointly(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Estimate | NoEstimate:
-    """Return one estimate over several manoeuvres: shared derivatives, own trim, initial states and
-    biases."""
+    """Return one estimate over several manoeuvres, with shared derivatives and separate nuisance
+    parameters."""
     if not maneuvers:
         return NoEstimate("no_maneuver", "There is no manoeuvre to estimate from.")
     return _estimate(maneuvers, aircraft, "gauss-newton")
 
 
 def _estimate(maneuvers: Sequence[Maneuver], aircraft: Aircraft, method: Method) -> Estimate | NoEstimate:
-    """Return output error, unknown instruments, times of edges, then filter error where the air moves."""
+    """Estimate by output error, with instruments and edges, then by filter error where the air moves."""
     prepared = prepare(maneuvers, aircraft)
     if isinstance(prepared, NoEstimate):
         return prepared
@@ -88,9 +89,9 @@ def _estimate(maneuvers: Sequence[Maneuver], aircraft: Aircraft, method: Method)
 
 
 def _air(solution: Solution, maneuvers: Sequence[Maneuver], prepared: Prepared) -> Turbulence | None:
-    """Return the moving air and the noise of the instruments, where output error is out of its validity.
+    """Return moving air and noise of the instruments where output error is not valid, else None.
 
-    Without an angle of attack the specific force carries every gust, so that its noise is always modelled.
+    Without an angle of attack the specific force carries every gust, so its noise is always modelled.
     """
     if prepared.alpha_left_out:
         found = moving_air(solution, seen_by_alpha=False)
@@ -104,15 +105,15 @@ def _air(solution: Solution, maneuvers: Sequence[Maneuver], prepared: Prepared) 
 
 
 def lag_is_unknown(aircraft: Aircraft) -> bool:
-    """Return whether neither the crew nor the flight so far tells the servo's lag."""
+    """Return whether neither the crew nor an earlier manoeuvre gives the servo's lag."""
     return aircraft.elevator.lag_s is None and aircraft.elevator.lag_found_s is None
 
 
 def unknown_instruments(prepared: Prepared, aircraft: Aircraft) -> tuple[Instrument, ...]:
-    """Return instruments whose parameters the aircraft file leaves open and the record may tell.
+    """Return the instrument parameters that the aircraft file leaves open and the record may determine.
 
-    A vane and an accelerometer at one place describe the motion of that place as well as those at the
-    centre of gravity describe the aircraft's: one of the two places must be known to tell the other.
+    A vane and an accelerometer at one place describe the motion of that place. Instruments at the centre of
+    gravity describe the aircraft's equally well. One of the two places must be known to determine the other.
     """
     unknown = [SERVO_LAG] if lag_is_unknown(aircraft) else []
     measured = {name for record in prepared.problem.records for name in record.outputs}
@@ -125,12 +126,12 @@ def unknown_instruments(prepared: Prepared, aircraft: Aircraft) -> tuple[Instrum
 
 
 def _solved(problem: Problem, method: Method, servo_known: bool) -> Solution | NoEstimate:
-    """Return the solution with the record read as the data clearly prefer.
+    """Return the solution with the reading of the record that the data clearly prefer.
 
-    Eqs. (1)-(2) take the flight path as constant; gravity's part in α̇ as it turns is some 1e-4 rad/s and
-    is left out where the data do not follow it. A command without large steps may be held between its
-    stamps instead of linear; large steps get times of their own (``edges``). With a smooth command, holding
-    is a delay of half an interval, which a servo that is not known takes along: it is then read as linear.
+    Eqs. (1)-(2) take the flight path as constant. Gravity's part in α̇ as the path turns is about 1e-4 rad/s,
+    and is left out where the data do not follow it. A command without large steps may be held instead of
+    linear; large steps get their own times (``edges``). With a smooth command, holding is a delay of half an
+    interval, which an unknown servo's lag absorbs. Such a command is read as linear.
     """
     best = solve(problem, method=method)
     if any(record.normal_gravity is not None and record.airspeed is not None for record in problem.records):
@@ -144,10 +145,10 @@ def _solved(problem: Problem, method: Method, servo_known: bool) -> Solution | N
 
 
 def _clearer(best: Solution | NoEstimate, other: Problem, method: Method) -> Solution | NoEstimate:
-    """``best``, unless the other reading of the same data explains them clearly better.
+    """Return ``best``, unless the other reading of the same data explains them clearly better.
 
-    Better both as output error weighs them and as coloured noise does: where the model does not hold, as with
-    a servo unknown, the two may contradict each other.
+    The other reading must be better by output error's weights and by those of coloured noise. Where the model
+    does not hold, as with an unknown servo, the two may contradict each other.
     """
     if isinstance(best, NoEstimate):
         return best
@@ -175,15 +176,15 @@ def report(
     filtered: Solution | None = None,
     quick: bool = False,
 ) -> Estimate:
-    """Return a solution as the rest of the program sees it.
+    """Return a solution as an estimate for the rest of the program.
 
     Parameters
     ----------
-    told : instrument parameters that the data tell.
-    lagged : (8,) the estimate had the servo a lag of ``SUPPOSED_LAG_S``, when the servo is unknown.
-    air : what was found of moving air, where output error is out of its validity.
-    filtered : filter error's solution, where the air was allowed for.
-    quick : leave out what takes milliseconds: what missing channels cost, and the efficient estimate.
+    told : instrument parameters that the data determine.
+    lagged : (8,) the estimate under a servo lag of ``SUPPOSED_LAG_S``, for an unknown servo.
+    air : moving air, where output error is not valid.
+    filtered : solution of filter error, where moving air was allowed for.
+    quick : leave out what takes milliseconds: the cost of missing channels, and the efficient estimate.
     """
     best = filtered or (solution if quick else efficient(solution))
     pulls = (filtered or solution).contributions[:, : len(best.covariance)]
@@ -210,7 +211,7 @@ def report(
 
 
 def _supposing_a_lag(solution: Solution, aircraft: Aircraft) -> FloatArray | None:
-    """Return (8,) the estimate had an unknown servo a lag of ``SUPPOSED_LAG_S``; None where the servo is
+    """Return the estimate under a servo lag of ``SUPPOSED_LAG_S``, shape (8,); None where the servo is
     known."""
     if not lag_is_unknown(aircraft):
         return None
@@ -221,7 +222,7 @@ def _supposing_a_lag(solution: Solution, aircraft: Aircraft) -> FloatArray | Non
 
 
 def channel_fits(solution: Solution) -> tuple[dict[str, ChannelFit], ...]:
-    """Return measured against fitted, for every manoeuvre and output."""
+    """Return measured and fitted values for every manoeuvre and output."""
     assembly = solution.assembly
     return tuple(
         {

@@ -1,10 +1,10 @@
-"""Filter error: the estimate in the air there is.
+"""Filter error: the estimate in moving air.
 
-Output error takes every deviation for measurement noise. Moving air drives the aircraft, and its motion
+Output error takes every deviation for measurement noise. Moving air drives the aircraft, and the motion
 remembers each gust. A Kalman filter of air and instruments (``innovations``) follows both. Filter and model
-are linear about the fitted motion, so the filter whitens residuals and sensitivities alike, and the
-estimate is least squares of the whitened ones (Maine & Iliff, NASA RP-1168; Jategaonkar, *Flight Vehicle
-System Identification*, chapter 5).
+are linear about the fitted motion, so the filter whitens residuals and sensitivities alike. The estimate is
+least squares of the whitened ones (Maine & Iliff, NASA RP-1168; Jategaonkar, *Flight Vehicle System
+Identification*, chapter 5).
 """
 
 from collections.abc import Sequence
@@ -26,21 +26,22 @@ from advisor.oem.whitened import Whitened, gains_along, whitened
 
 ROUNDS = 6
 SETTLED = 0.1
-"""Largest step still to take, in standard deviations, with which the estimate is settled."""
+"""Largest pending step of a converged estimate, in standard deviations."""
 UNSETTLED = 3.0
-"""... and with which the search has run away: the model does not hold for the record."""
+"""Pending step, in standard deviations, above which the search has diverged: the model does not fit the
+record."""
 MOST_MANEUVERS = 7
-"""Newest manoeuvres from which the noise is found: its figures are known well enough by then."""
+"""Number of the newest manoeuvres from which the noise is estimated. More would change its values little."""
 _UNIT = np.ones(len(OUTPUTS))
 
 
 def moving_air(solution: Solution, seen_by_alpha: bool) -> Turbulence:
-    """Return whether the residuals of a solution bear the mark of moving air, and the noise that fits best.
+    """Return the moving air and the noise that fit the residuals of a solution best; None without moving air.
 
     Parameters
     ----------
     seen_by_alpha
-        Whether the angle of attack reads the air, as a vane does, or is made from inertial sensors.
+        Whether the angle of attack reads the air, like a vane, instead of coming from inertial sensors.
     """
     none = np.empty((len(solution.residual), 0))
     place = Place(
@@ -75,23 +76,22 @@ def _rows(place: Place) -> list[Rows]:
 
 
 def filter_error(solution: Solution, air: AirModel, instruments: Sequence[Instrument]) -> Solution | None:
-    """Return the estimate with moving air and coloured instruments allowed for; None where the search runs
-    away.
+    """Return the estimate with moving air and coloured instruments; None where the search diverges.
 
     Parameters
     ----------
     solution
-        Where the search begins: an output error solution.
+        Output error solution from which the search starts.
     air
         Noise of the instruments and motion of the air.
     instruments
-        Parameters of the instruments that are estimated, too.
+        Instrument parameters that are estimated too.
 
     Returns
     -------
     Solution or None
-        ``theta``, ``covariance_cr`` and ``covariance`` are filter error's; residuals are the innovations'
-        raw counterparts at the new place, and the cost is that of the new place.
+        ``theta``, ``covariance_cr`` and ``covariance`` are filter error's. Residuals and cost are those of
+        output error at the new point.
     """
     optimum = solution.optimum
     here = at(solution.problem, optimum.shared, optimum.local, instruments)
@@ -111,9 +111,10 @@ def filter_error(solution: Solution, air: AirModel, instruments: Sequence[Instru
 def _better(
     here: Place, seen: Whitened, air: AirModel, instruments: Sequence[Instrument]
 ) -> tuple[Place | None, Whitened | None]:
-    """Return the likeliest place along the step; none where the likelihood falls all the way.
+    """Return the likeliest point along the step; None where the likelihood falls all the way.
 
-    A whole step ignores that the filter's gains move with the parameters, and overshoots in a curved valley.
+    A whole step ignores that the filter's gains change with the parameters, and overshoots in a curved
+    valley.
     """
     best: tuple[Place | None, Whitened | None] = (None, None)
     lowest = seen.cost
@@ -128,7 +129,7 @@ def _better(
 
 
 def _moved(here: Place, seen: Whitened, scale: float, instruments: Sequence[Instrument]) -> Place | None:
-    """Return the place after a share of the step; None where the model overflows there."""
+    """Return the point after a share of the step; None where the model overflows there."""
     common, own = free_of(here.assembly)
     shared, local, problem = here.shared.copy(), here.local.copy(), here.problem
     shared[common] += scale * seen.step[: len(common)]
@@ -140,8 +141,7 @@ def _moved(here: Place, seen: Whitened, scale: float, instruments: Sequence[Inst
 
 
 def _solution(start: Solution, place: Place, air: AirModel) -> Solution | None:
-    """Return errors of the place reached: Cramér-Rao's, and those that allow for colour left in the
-    innovations."""
+    """Return the solution at the point, with Cramér-Rao errors and with errors for coloured innovations."""
     assembly, n = place.assembly, len(PARAMETERS)
     white = np.empty((len(place.residual), 1 + N_PARAMETERS + place.extra.shape[1]))
     columns = np.column_stack([place.residual, place.sensitivities, place.extra])

@@ -1,12 +1,13 @@
 """Flying qualities of the short period from an estimate, with 95 % intervals by the delta method.
 
-With A and B of Eqs. (1)-(3), V the true air speed, and the elevator held after a step:
+A and B are the matrices of Eqs. (1)-(3), V is the true air speed, and the elevator is held after a step:
 
     ω_n = √det A        ζ = -tr A/(2·ω_n)        1/T_θ2 = (M_α·Z_δe - M_δe·Z_α)/M_δe
     n/α = V/g·(M_δe·Z_α - M_α·Z_δe)/(M_q·Z_δe - (1 + Z_q)·M_δe)        CAP = ω_n²/(n/α)
 
-T_θ2 is the zero of pitch rate to elevator, n/α the ratio of the steady load factor to the steady angle of
-attack. The static margin is -C_mα/C_Lα = M_α·I_yy/(Z_α·m·V·c), drag's part in the lift direction neglected.
+T_θ2 is the zero of pitch rate to elevator, and n/α the ratio of the steady load factor to the steady angle of
+attack. The static margin is -C_mα/C_Lα = M_α·I_yy/(Z_α·m·V·c), with drag's part in the lift direction
+neglected.
 """
 
 from collections.abc import Callable, Mapping
@@ -33,14 +34,15 @@ UNITS: Mapping[str, str] = {
     "neutral_point": "% chord",
 }
 _STEP = 1e-30
-"""Of the complex-step derivative, which has no cancellation: any step that does not underflow."""
+"""Step of the complex-step derivative. The derivative has no cancellation, so any step that does not
+underflow will do."""
 
 _Function = Callable[[NDArray[np.complex128]], np.complex128]
 
 
 @dataclass(frozen=True, slots=True)
 class Quality:
-    """One number of the flying qualities, in the unit of ``UNITS``."""
+    """One parameter of the flying qualities, in the unit of ``UNITS``."""
 
     value: float
     std: float
@@ -53,30 +55,30 @@ class Quality:
 
 @dataclass(frozen=True, slots=True)
 class FlyingQualities:
-    """What an estimate says of the flying qualities."""
+    """Flying qualities of an estimate."""
 
     qualities: Mapping[str, Quality]
-    """By the names of ``UNITS``, as many as the estimate and the reference data allow."""
+    """Qualities by the names of ``UNITS``, as far as estimate and reference data allow."""
     levels: tuple[LevelFound, ...]
-    """MIL-F-8785C, by category; empty where a number is missing that the requirement is about."""
+    """Levels of MIL-F-8785C by category; empty where a required parameter is missing."""
     air: AirFlown
     airspeed_m_s: float | None
-    """As the log gives it; the derivatives are given at this air speed."""
+    """Logged air speed at which the derivatives are given, m/s."""
     true_airspeed_m_s: float | None
-    """As used in n/α, CAP and the coefficients."""
+    """True air speed in n/α, CAP and the coefficients, m/s."""
     left_out: Mapping[str, str] = field(default_factory=dict)
-    """Why a number of ``UNITS`` is missing, by name."""
+    """By name, why a parameter of ``UNITS`` is missing."""
 
 
 def flying_qualities(estimate: Estimate, air: AirFlown, reference: Reference) -> FlyingQualities:
-    """Return flying qualities of an estimate.
+    """Return the flying qualities of an estimate.
 
     Parameters
     ----------
     estimate
         Derivatives with the covariance that is corrected for coloured residuals.
     air
-        Turns the logged air speed into the true one.
+        Atmosphere, which turns the logged air speed into the true one.
     reference
         Mass, chord, pitching inertia and centre of gravity, for static margin and neutral point.
     """
@@ -103,7 +105,7 @@ def _levels(found: Mapping[str, Quality]) -> tuple[LevelFound, ...]:
 
 
 def _functions(speed: float | None, reference: Reference) -> dict[str, _Function | str]:
-    """Return each number as a function of the eight parameters, or why there is none."""
+    """Return each quality as a function of the eight parameters, or why there is none."""
     without_speed = "no air speed is known"
     functions: dict[str, _Function | str] = {
         "natural_frequency": _frequency,
@@ -150,7 +152,7 @@ def _frequency(t: NDArray[np.complex128]) -> np.complex128:
 
 
 def _turn_per_alpha(t: NDArray[np.complex128]) -> np.complex128:
-    """Return the steady pitch rate over steady angle of attack with the elevator held, 1/s."""
+    """Return the steady pitch rate over the steady angle of attack with the elevator held, 1/s."""
     return np.complex128((t[7] * t[1] - t[5] * t[3]) / (t[6] * t[3] - (1.0 + t[2]) * t[7]))
 
 

@@ -1,9 +1,8 @@
-"""The estimate of a manoeuvre while it is being flown, refreshed at every sample.
+"""The estimate of a manoeuvre in flight, refreshed at every sample.
 
-Each refresh is complete: all data so far, all parameters, corrected errors. Most refreshes carry the last
-solution on over the newest samples (``carried``). Twice a second the model is solved anew over all data, from
-where the last search ended. What changes slowly, the colour of the noise and whether the angle of attack
-counts, is found out every two seconds.
+Each refresh is complete: all data so far, all parameters, corrected errors. Most refreshes update the last
+solution with the newest samples (``carried``). Twice per second the model is solved anew over all data, from
+the last optimum. The noise model, and the use of the angle of attack, are checked every two seconds.
 """
 
 import math
@@ -17,17 +16,18 @@ from advisor.oem.prepare import prepare
 from advisor.oem.solution import Solution, solve
 
 CARRY_S = 0.5
-"""Flight over which a solution is carried on. The air speed, taken as constant, changes by up to 4 % in it
-(``logs/arduplane-calm.tlog``)."""
+"""Time in s after which the model is solved anew. The air speed, taken as constant, changes by up to 4 % in
+it (``logs/arduplane-calm.tlog``)."""
 COLOUR_EVERY_S = 2.0
-"""Flight between two fits of the noise's colour, and between two checks of the angle of attack."""
+"""Time in s between two fits of the noise model, and between two checks of the angle of attack."""
 
 CLOSE_ENOUGH = 1e-4
-"""Promised change of log J per sample at which a refresh is done: hundredths of a standard deviation."""
+"""Promised change of log J per sample at which a refresh ends: hundredths of a standard deviation."""
 
 
 class Follower:
-    """Follows one manoeuvre after another; begins anew when the manoeuvre's number changes."""
+    """An estimator that follows one manoeuvre after another, and restarts when the manoeuvre's number
+    changes."""
 
     def __init__(self, aircraft: Aircraft) -> None:
         self._aircraft = aircraft

@@ -1,14 +1,14 @@
-"""Minimising J = det R, Eq. (7), by Gauss-Newton with R re-estimated at every step.
+"""Minimisation of J = det R, Eq. (7), by Gauss-Newton with R re-estimated at every step.
 
-With R = diag(σ_c²) at its own maximum-likelihood value, minimising Σ n_c·log σ_c² is minimising
-det R; its gradient is that of the weighted sum of squares at the present R, hence Gauss-Newton
-with weights 1/σ_c² (Maine & Iliff, *Formulation and implementation of a practical algorithm
-for parameter estimation with process and measurement noise*, 1981). Levenberg's damping enters
-only when a step is rejected. It begins and fades far below the usual sizes: the record of a diverging
-aircraft has directions 1e-9 as well determined as others, and a larger damping would stop the search there.
+R = diag(σ_c²) at its own maximum-likelihood value makes minimising Σ n_c·log σ_c² equal to minimising det R.
+The gradient is that of the weighted sum of squares at the present R, hence Gauss-Newton with weights 1/σ_c².
+The source is Maine & Iliff, *Formulation and implementation of a practical algorithm for parameter estimation
+with process and measurement noise*, 1981. Levenberg's damping enters only when a step is rejected, and begins
+far below the usual sizes. The record of a diverging aircraft has directions 1e-9 as well determined as
+others, and a larger damping would stop the search.
 
-The normal equations have the shape of an arrow: six derivatives shared by all manoeuvres, the
-rest each manoeuvre's own. The own ones are eliminated manoeuvre by manoeuvre, so the work grows
+The normal equations have the shape of an arrow: six derivatives are shared by all manoeuvres, and each
+manoeuvre has its own nuisance parameters. These are eliminated manoeuvre by manoeuvre, so the work grows
 linearly with their number.
 """
 
@@ -21,41 +21,42 @@ from advisor.flight.messages import FloatArray
 from advisor.model.response import N_LOCAL, N_PARAMETERS, N_SHARED, OUTPUTS, Grid, Index, respond
 
 FLAT = 1e-11
-"""Converged when the last step promised less than this change of log J; what is left after it is far less."""
+"""Promised change of log J below which a step ends the search; the remaining change is far smaller."""
 BLOCK = 64
-"""Rows whose products are summed at once."""
+"""Number of rows whose products are summed at once."""
 MOST_ITERATIONS = 120
 FIRST_DAMPING = 1e-8
-"""Relative to the diagonal; smaller than this it does not hide that a step still promises something."""
+"""First damping relative to the diagonal. So small a damping does not hide that a step still promises a
+decrease."""
 LEAST_DAMPING = 1e-12
 DAMPING_FACTOR = 10.0
 LEAST_NOISE = 1e-10
-"""Floor of σ relative to the spread of the channel: data without noise have no other."""
+"""Least σ relative to the spread of the channel, for data without noise."""
 
 WITHOUT_NOISE = 1e4
-"""Times the floor: residuals this small are round-off of data without noise."""
+"""Factor on that floor below which residuals are round-off of data without noise."""
 
 CONVERGED, EXHAUSTED, OVERFLOW, SINGULAR = 0, 1, 2, 3
 
 
 class Optimum(NamedTuple):
-    """Where the search ended."""
+    """The end of a search."""
 
     status: int
-    """``CONVERGED``, ``EXHAUSTED`` (too many iterations), ``OVERFLOW``, ``SINGULAR``."""
+    """``CONVERGED``, ``EXHAUSTED`` (too many iterations), ``OVERFLOW`` or ``SINGULAR``."""
     shared: FloatArray
     """(7,), order of ``SHARED``."""
     local: FloatArray
     """(m, 7), order of ``LOCAL``."""
     noise: FloatArray
-    """(4,) σ of each output, order of ``OUTPUTS``; 0 when not measured."""
+    """(4,) σ of each output, in the order of ``OUTPUTS``; 0 where an output is not measured."""
     log_likelihood_cost: float
     """Σ n_c·log σ_c²."""
     iterations: int
     fitted: FloatArray
-    """(N,) outputs of the model there."""
+    """(N,) outputs of the model at the optimum."""
     sensitivities: FloatArray
-    """(N, 14) their derivatives by the parameters of the row's manoeuvre."""
+    """(N, 14) derivatives of the outputs by the parameters of the row's manoeuvre."""
 
 
 @kernel()
@@ -102,7 +103,8 @@ def normal_equations(
     free: Index,
     noise: FloatArray,
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the information matrix (m, n, n) and gradient (m, n) of each manoeuvre by the n free parameters.
+    """Return the information matrix (m, n, n) and the gradient (m, n) of each manoeuvre for the n free
+    parameters.
 
     Only the lower triangles are filled.
     """
@@ -130,7 +132,8 @@ def normal_equations(
 
 @kernel()
 def cholesky(a: FloatArray) -> bool:
-    """Return the lower factor in place; False when ``a`` is not positive definite to working precision."""
+    """Compute the lower factor in place; return False where ``a`` is not positive definite to working
+    precision."""
     n = a.shape[0]
     for j in range(n):
         pivot = a[j, j]
@@ -150,7 +153,7 @@ def cholesky(a: FloatArray) -> bool:
 
 @kernel()
 def solve_lower(a: FloatArray, b: FloatArray) -> None:
-    """b ← L⁻¹·b for the columns of ``b`` (n, k)."""
+    """Solve L·x = b in place for the columns of ``b`` (n, k)."""
     for i in range(a.shape[0]):
         for c in range(b.shape[1]):
             for k in range(i):
@@ -160,7 +163,7 @@ def solve_lower(a: FloatArray, b: FloatArray) -> None:
 
 @kernel()
 def solve_upper(a: FloatArray, b: FloatArray) -> None:
-    """b ← L⁻ᵀ·b for the columns of ``b`` (n, k)."""
+    """Solve Lᵀ·x = b in place for the columns of ``b`` (n, k)."""
     for i in range(a.shape[0] - 1, -1, -1):
         for c in range(b.shape[1]):
             for k in range(i + 1, a.shape[0]):
@@ -178,7 +181,7 @@ def _stack(
     own: FloatArray,
     across: FloatArray,
 ) -> None:
-    """Take one manoeuvre's normal equations apart.
+    """Split the normal equations of one manoeuvre into blocks of shared and nuisance parameters.
 
     Parameters
     ----------
@@ -204,7 +207,7 @@ def _stack(
 
 @kernel()
 def _eliminate(carried: FloatArray, top: FloatArray, right: FloatArray) -> None:
-    """Subtract from the shared equations what the local parameters take up (Schur complement).
+    """Subtract from the shared equations the part that the nuisance parameters absorb (Schur complement).
 
     Parameters
     ----------
@@ -281,7 +284,7 @@ def descend(
 ) -> Optimum:
     """Minimise Σ n_c·log σ_c² from a start. Shapes as in ``Assembly``; ``floor`` (4,) of σ.
 
-    ``prior`` (7,) holds inverse variances that draw the shared parameters to zero; the cost counts them.
+    ``prior`` (7,) holds inverse prior variances of the shared parameters about zero, which the cost includes.
     """
     shared, local = shared.copy(), local.copy()
     y, g = np.empty(len(z)), np.empty((len(z), N_PARAMETERS))
@@ -315,7 +318,7 @@ def descend(
                     return Optimum(CONVERGED, shared, local, noise, cost, iteration, y, g)
             damping = max(FIRST_DAMPING, DAMPING_FACTOR * damping)
         if not accepted:
-            # Not even a tiny step lowers the cost: round-off rules, there is nothing left to gain.
+            # Not even a tiny step lowers the cost: only round-off remains.
             status = CONVERGED if fine else SINGULAR
             break
         shared, local, noise, cost = trial, trial_local, trial_noise, trial_cost

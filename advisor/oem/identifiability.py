@@ -1,14 +1,14 @@
-"""Which parameters this input tells, and which it does not. A good fit is no proof of either.
+"""Identifiability: the parameters that an input determines. A good fit proves none of them.
 
-Four ways to lose a parameter, each with its own sentence:
+A parameter is lost in four ways, each with its own sentence:
 
-- the data say nothing about it at all (a singular direction of the information matrix);
-- the elevator followed angle of attack and pitch rate, as a closed loop moves it: δe = k₀ + k₁·α + k₂·q makes
-  (1)-(2) hold for a whole plane of derivatives, and which of them fits best is decided by how the command
-  runs between its stamps;
-- its corrected error is as large as the size such a derivative has on this aircraft;
-- the servo is unknown, and a lag too small to be seen in the fit would change the value beyond
-  use. That is how an over-damped aircraft fails, where α, q and δe move together.
+- The data say nothing about the parameter at all (a singular direction of the information matrix).
+- The elevator followed angle of attack and pitch rate in a closed loop: δe = k₀ + k₁·α + k₂·q satisfies
+  (1)-(2) for a whole plane of derivatives. The command between its stamps then decides which of them fits
+  best.
+- The corrected error is as large as the typical size of such a derivative on this aircraft.
+- The servo is unknown, and a lag too small to be seen in the fit would change the value beyond use. An
+  over-damped aircraft, where α, q and δe move together, fails in this way.
 """
 
 import math
@@ -24,21 +24,23 @@ from advisor.oem.correlation import HIGH_CORRELATION, correlation_matrix
 from advisor.oem.solution import Solution
 
 LARGEST_ERROR = 0.5
-"""Corrected standard deviation over the natural size of the parameter."""
+"""Largest corrected standard deviation over the natural size of the parameter."""
 LARGEST_SHIFT = 0.5
-"""Change with the lag below over the new value or the natural size, whichever is larger."""
+"""Largest change of a parameter under the supposed servo lag, over the new value or the natural size,
+whichever is larger."""
 LEAST_OWN_MOTION = 0.02
-"""Root mean square of the elevator's motion that no feedback explains, as a share of all of it."""
+"""Least motion of the elevator that no feedback explains, root mean square, as a share of the whole
+motion."""
 LEVEL_UNKNOWN = "not identifiable without a measured angle of attack, whose level it goes with"
 SUPPOSED_LAG_S = 0.05
-"""A servo lag nobody would notice in the fit."""
+"""Servo lag, s, that would not be noticed in the fit."""
 
 
 def natural_size(theta: FloatArray) -> Mapping[str, float]:
-    """Return how large each derivative is on an aircraft with these poles and this control power.
+    """Return the typical size of each derivative on an aircraft with these poles and this control power.
 
-    Rates ω = max(√|det A|, |tr A|/2) set Z_α and M_q, their square M_α; control is measured
-    by M_δe, and by the lift Z_δe that turns the path as fast as M_δe does within 1/ω.
+    Rates ω = max(√|det A|, |tr A|/2) set Z_α and M_q, and their square sets M_α. M_δe measures control. The
+    lift Z_δe is measured by the one that turns the path as fast as M_δe does within 1/ω.
     """
     a = ShortPeriod(theta).a
     rate = max(math.sqrt(abs(float(np.linalg.det(a)))), abs(float(np.trace(a))) / 2.0)
@@ -54,7 +56,7 @@ def natural_size(theta: FloatArray) -> Mapping[str, float]:
 
 
 def not_identifiable(solution: Solution, lagged: FloatArray | None) -> dict[str, str]:
-    """Return parameter name to the reason why it has no usable value.
+    """Return by parameter name the reason why the parameter has no usable value.
 
     Parameters
     ----------
@@ -70,8 +72,8 @@ def not_identifiable(solution: Solution, lagged: FloatArray | None) -> dict[str,
     own = own_motion(solution)
     if own < LEAST_OWN_MOTION:
         text = (
-            "not identifiable from this input: the elevator followed angle of attack and pitch rate, as a"
-            f" closed loop moves it; only {100.0 * own:.1f} % of its motion was its own"
+            "not identifiable from this input: a closed loop moved the elevator with angle of attack and"
+            f" pitch rate; only {100.0 * own:.1f} % of its motion is independent of them"
         )
         reasons = dict.fromkeys(sizes, text) | reasons
     for name, size in sizes.items():
@@ -88,7 +90,7 @@ def not_identifiable(solution: Solution, lagged: FloatArray | None) -> dict[str,
             for name, j in moment.items()
             if not abs(lagged[j] - solution.theta[j]) <= LARGEST_SHIFT * max(abs(lagged[j]), sizes[name])
         ]
-        # M_q trades with a lag on every aircraft; it is lost only where stiffness or control are, too.
+        # M_q is correlated with a lag on every aircraft; it is lost only where stiffness or control are too.
         for name in shifted if shifted != ["M_q"] else []:
             value, moved = solution.theta[moment[name]], lagged[moment[name]]
             if name not in reasons:
@@ -100,8 +102,7 @@ def not_identifiable(solution: Solution, lagged: FloatArray | None) -> dict[str,
 
 
 def own_motion(solution: Solution) -> float:
-    """Return the share of the elevator's motion, root mean square, that one feedback of α and q leaves
-    unexplained."""
+    """Return the share of the elevator's motion, root mean square, that no feedback of α and q explains."""
     assembly, fitted = solution.assembly, solution.fitted
     measured = assembly.grid.row[OUTPUTS.index("q")] >= 0
     elevator = np.empty(len(fitted))

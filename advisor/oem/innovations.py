@@ -4,10 +4,10 @@ About a simulated flight the model is linear:
 
     δα̇ = Z_α (δα + η) + (1 + Z_q) δq,   δq̇ = M_α (δα + η) + M_q δq,   δθ̇ = δq,   η̇ = −η/T_g + white
 
-with η the gust angle w/V, and for each sensor a first-order noise of its own above its white one
-(Jategaonkar, *Flight Vehicle System Identification*, chapter 5). The gains depend on times and noise only,
-so they are found once; residuals and sensitivities then pass through the same filter, and least
-squares of what comes out is the best that can be done with such noise.
+where η is the gust angle w/V. Each sensor has first-order noise in addition to its white noise (Jategaonkar,
+*Flight Vehicle System Identification*, chapter 5). The gains depend on times and noise only, so they are
+computed once. Residuals and sensitivities then pass the same filter, and least squares of the innovations is
+the best estimate with such noise.
 """
 
 from dataclasses import dataclass
@@ -24,44 +24,44 @@ ALPHA, A_Z = OUTPUTS.index("alpha"), OUTPUTS.index("a_z")
 
 @dataclass(frozen=True)
 class AirModel:
-    """Noise of the instruments and motion of the air, as standard deviations in SI."""
+    """Noise of the instruments and motion of the air, as standard deviations in SI units."""
 
     white: FloatArray
     """Shape (4,): white noise of α, q, a_z, θ."""
     coloured: FloatArray
-    """Shape (4,): noise with memory, by channel."""
+    """Shape (4,): coloured noise of α, q, a_z, θ."""
     memory_s: float
-    """Of the coloured noise."""
+    """Correlation time of the coloured noise, s."""
     gust: float
-    """Of the gust angle w/V, rad; 0 for still air."""
+    """Standard deviation of the gust angle w/V, rad; 0 for still air."""
     gust_memory_s: float
     seen_by_alpha: float = 1.0
-    """1 when the α channel reads the air (a vane), 0 when it is made from inertial sensors."""
+    """1 where the α channel reads the air (a vane), 0 where it comes from inertial sensors."""
 
     @classmethod
     def still(cls, white: FloatArray, seen_by_alpha: float = 1.0) -> "AirModel":
-        """Return white noise of the instruments, shape (4,), and nothing besides."""
+        """Return a model with white noise of the instruments, shape (4,), in still air."""
         return cls(white, np.full(len(OUTPUTS), 1e-12), 0.3, 0.0, 1.0, seen_by_alpha)
 
 
 @dataclass(frozen=True)
 class Gains:
-    """A filter made ready for one record."""
+    """Gains of the filter for one record."""
 
     step: FloatArray
     """Shape (n, 4, 4): transition of α, q, θ and the gust up to each row."""
     keep: FloatArray
-    """Shape (n,): what is left of the coloured noise since the row before."""
+    """Shape (n,): decay of the coloured noise since the row before."""
     gain: FloatArray
-    """Shape (n, 8)."""
+    """Shape (n, 8): Kalman gain of each row."""
     root: FloatArray
     """Shape (n,): standard deviation of each innovation."""
     channel: np.ndarray
     observed: FloatArray
-    """Shape (4, 8): how each channel sees the states."""
+    """Shape (4, 8): observation of the states by each channel."""
 
     def innovations(self, columns: FloatArray, order: np.ndarray | None = None) -> FloatArray:
-        """Return whitened columns, shape (n, k), in the same order of rows: ``order`` says which come in
+        """Return whitened columns, shape (n, k), in their order of rows; ``order`` gives the rows in order of
         time."""
         rows = np.arange(len(columns)) if order is None else order
         return np.asarray(
@@ -80,18 +80,18 @@ def gains_of(
     extra: FloatArray | float = 0.0,
     arms_m: tuple[float, float] = (0.0, 0.0),
 ) -> Gains:
-    """Find the gains for rows at times ``t``, ascending, of channels ``channel``, both shape (n,).
+    """Return the gains for rows at ascending times ``t`` of channels ``channel``, both of shape (n,).
 
     Parameters
     ----------
     system
         Z_α, Z_q, M_α, M_q, V.
     start_variance
-        Of α, q and θ at the start; 0 when the fit has initial states of its own.
+        Variance of α, q and θ at the start; 0 where the fit has its own initial states.
     extra
         Shape (n,): variance of each row beyond its channel's noise, such as that of an uncertain stamp.
     arms_m
-        Of the vane and of the accelerometer, ahead of the centre of gravity.
+        Arms of the vane and of the accelerometer, ahead of the centre of gravity.
     """
     white = np.asarray(air.white[channel] ** 2 + extra)
     observed = kalman.observed_by(system, air.seen_by_alpha, *arms_m)
@@ -109,9 +109,11 @@ def cost_of(
     air: AirModel,
     start_variance: float = DIFFUSE,
 ) -> float:
-    """-2 log likelihood of a residual, shape (n,), without its constant and without rows still diffuse.
+    """Return -2 log likelihood of a residual, shape (n,), up to a constant and without rows that are still
+    diffuse.
 
-    Arguments as in ``gains_of``. A search for the noise asks for it a few hundred times, so nothing is kept.
+    The arguments are those of ``gains_of``. A search for the noise calls this a few hundred times, so nothing
+    is kept.
     """
     observed = kalman.observed_by(system, air.seen_by_alpha, 0.0, 0.0)
     return float(
@@ -120,5 +122,6 @@ def cost_of(
 
 
 def _memory(air: AirModel) -> FloatArray:
-    """Return coloured noise by channel and its memory, the gust and its memory, shape (7,)."""
+    """Return coloured noise by channel and its correlation time, the gust and its correlation time, shape
+    (7,)."""
     return np.array([*air.coloured, air.memory_s, air.gust, air.gust_memory_s])

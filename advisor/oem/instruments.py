@@ -1,12 +1,12 @@
-"""Instrument parameters estimated together with the derivatives: servo lag, place or lateness of the vane.
+"""Instrument parameters estimated together with the derivatives: servo lag, arm or delay of the vane.
 
-A log holds the command, not the surface. A servo lag of 0.14 s ignored halves M_α and M_δe of a small
-aircraft while the fit still explains 95 % of the motion. A vane ahead of the centre of gravity reads α -
-(x/V)·q, an autopilot's own angle of attack is late: both move Z_α, Z_q, Z_δe and M_q while α and q fit as
-well as before. With a_z and air speed the kinematics tell either from the aircraft.
+A log holds the command, not the surface. An ignored servo lag of 0.14 s halves M_α and M_δe of a small
+aircraft, while the fit still explains 95 % of the motion. A vane ahead of the centre of gravity reads α -
+(x/V)·q, and an autopilot's own angle of attack is late. Both change Z_α, Z_q, Z_δe and M_q while α and q fit
+as well as before. With a_z and air speed the kinematics distinguish instrument and aircraft.
 
 Each unknown instrument is one more shared parameter. Gauss-Newton steps move all of them with everything else
-refitted. A value is kept only when the data tell it from zero beyond doubt.
+refitted. A value is kept only where the data distinguish it from zero beyond doubt.
 """
 
 from collections.abc import Callable, Sequence
@@ -32,21 +32,21 @@ ROUNDS = 12
 SETTLED = 1e-2
 """Change of Σ n·log σ², per round, below which the search for instrument parameters is done."""
 CLOSE_ENOUGH = 1e-7
-"""Promised change of log J per sample at which a search on the way is done."""
+"""Promised change of log J per sample at which an intermediate search ends."""
 CLEARLY = 9.0
-"""Twice the log-likelihood that a parameter must bring to be believed: three standard deviations."""
+"""Least gain in twice the log likelihood for a parameter: three standard deviations."""
 KNOWN_TO = 0.1
-"""Standard deviation over the value, below which a value stands for the aircraft. An error of a tenth of a
-usual servo lag moves M_δe by some 5 %, as much as the tolerance that a campaign has by default."""
+"""Largest standard deviation over the value for which the value represents the aircraft. An error of a tenth
+of a usual servo lag moves M_δe by some 5 %, the default tolerance of a campaign."""
 SMALLEST_DELAY_S = 0.004
-"""Smallest lateness of the angle of attack that matters, s: a fifth of a sample at 50 Hz."""
+"""Smallest delay of the angle of attack that matters, s: a fifth of a sample at 50 Hz."""
 SMALLEST_ARM_M = 0.02
 """Smallest distance of an accelerometer from the centre of gravity that matters, m."""
 
 
 @dataclass(frozen=True, slots=True)
 class Instrument:
-    """One parameter of the instruments, and how a problem holds the parameter."""
+    """One instrument parameter, and its place in a problem."""
 
     name: InstrumentName
     read: Callable[[Problem], float]
@@ -56,9 +56,9 @@ class Instrument:
     lowest: float
     highest: float
     starts: tuple[float, ...]
-    """Values at which the search looks first, besides the present one."""
+    """Values at which the search starts, in addition to the present one."""
     smallest: Callable[[Problem], float]
-    """Smallest value that can be told from how the record was sampled, in the parameter's unit."""
+    """Smallest value that the sampling of the record can show, in the parameter's unit."""
 
 
 def _with_lag(problem: Problem, value: float) -> Problem:
@@ -78,7 +78,8 @@ def _with_imu(problem: Problem, value: float) -> Problem:
 
 
 def _half_interval(problem: Problem) -> float:
-    """When a command acts between two of its stamps nobody knows: a shorter lag looks alike."""
+    """Return half the interval of the command. A shorter lag looks like an unknown time between two
+    stamps."""
     return 0.5 * float(np.median(np.concatenate([np.diff(r.elevator.t) for r in problem.records])))
 
 
@@ -121,12 +122,13 @@ ACCELEROMETER_ARM = Instrument(
     lambda _: SMALLEST_ARM_M,
 )
 OF_ALPHA = (VANE_ARM, ALPHA_DELAY)
-"""Two readings of an angle of attack that the kinematics contradict: nearly alike, so at most one is kept."""
+"""Two readings of an angle of attack that contradict the kinematics in nearly equal ways; at most one is
+kept."""
 
 
 @dataclass(frozen=True, slots=True)
 class Told:
-    """An instrument parameter that the data tell."""
+    """An instrument parameter that the data determine."""
 
     instrument: Instrument
     value: float
@@ -136,10 +138,10 @@ class Told:
 
 @dataclass(frozen=True, slots=True)
 class Fitted:
-    """A solution with the instrument parameters that are told, and what was found of each."""
+    """A solution with the instrument parameters that the data determine."""
 
     solution: Solution
-    """Its ``extra`` columns are the derivatives by ``told``, in that order."""
+    """Solution whose ``extra`` columns are the derivatives by ``told``, in that order."""
     told: tuple[Told, ...] = ()
 
 
@@ -156,11 +158,12 @@ class _Fit(NamedTuple):
 
 
 def fit_instruments(plain: Solution, unknown: Sequence[Instrument]) -> Fitted:
-    """Estimate the unknown instruments that the data tell; ``plain`` is the solution without any.
+    """Estimate the unknown instrument parameters that the data determine; ``plain`` is the solution without
+    any.
 
-    A parameter is kept when the record is clearly likelier with it than without, with noise of the colour
-    that the residuals have: the likelihood ratio holds where an error from the curvature does not, since on a
-    well damped aircraft a servo's lag trades with M_q and M_δe over a long way.
+    A parameter is kept where the record is clearly likelier with it, for noise of the residuals' colour. The
+    likelihood ratio holds where an error from the curvature does not. On a well damped aircraft a servo's lag
+    is correlated with M_q and M_δe over a long range.
     """
     begin = _Fit(plain.problem, plain.assembly, plain.optimum)
     common = tuple(x for x in unknown if x not in OF_ALPHA)
@@ -185,7 +188,7 @@ def fit_instruments(plain: Solution, unknown: Sequence[Instrument]) -> Fitted:
 
 
 def _without(x: Instrument, best: _Fit, names: Sequence[Instrument], plain: Solution) -> _Fit:
-    """Return the optimum with one instrument back where the aircraft file has it."""
+    """Return the optimum with one instrument set back to the aircraft file's value."""
     begin = _Fit(plain.problem, plain.assembly, plain.optimum)
     others = [other for other in names if other is not x]
     reset = x.write(best.problem, x.read(plain.problem))
@@ -193,7 +196,7 @@ def _without(x: Instrument, best: _Fit, names: Sequence[Instrument], plain: Solu
 
 
 def _gain(weighing: Weighing, fit: _Fit, rival: _Fit) -> float:
-    """Return twice the log-likelihood ratio of a fit over a rival, for noise of one colour."""
+    """Return twice the log likelihood ratio of a fit over a rival, under one noise model."""
 
     def misfit(of: _Fit) -> float:
         return weighing.misfit(of.assembly.z - of.optimum.fitted, of.optimum.sensitivities)
@@ -233,7 +236,7 @@ def _looked_about(begin: _Fit, names: Sequence[Instrument]) -> _Fit:
 
 
 def _descend(begin: _Fit, names: Sequence[Instrument]) -> _Fit:
-    """Return Gauss-Newton on the instruments, everything else refitted at each step."""
+    """Minimise the cost over the instruments by Gauss-Newton, with everything else refitted at each step."""
     best = begin
     for _ in range(ROUNDS if names else 0):
         step = _step(best, names)
@@ -258,7 +261,7 @@ def _moved(problem: Problem, names: Sequence[Instrument], step: FloatArray) -> P
 
 
 def _step(fit: _Fit, names: Sequence[Instrument]) -> FloatArray:
-    """Return (k,) Gauss-Newton step of the instruments with everything else free."""
+    """Return the Gauss-Newton step of the instruments with everything else free, shape (k,)."""
     optimum = fit.optimum
     columns = by_instruments(fit.problem, optimum.shared, optimum.local, names)
     effect = influence(fit.assembly, optimum.sensitivities, optimum.noise, columns)
@@ -276,7 +279,7 @@ def _at(problem: Problem, near: _Fit) -> _Fit | None:
 
 
 def told_at(solution: Solution, names: Sequence[Instrument]) -> tuple[Told, ...]:
-    """Return the instruments' values and errors in a solution whose first extra columns are theirs."""
+    """Return values and errors of instruments in a solution whose first extra columns are theirs."""
     std = np.sqrt(np.diag(solution.covariance)[N : N + len(names)])
     return tuple(Told(x, x.read(solution.problem), float(s)) for x, s in zip(names, std, strict=True))
 

@@ -1,7 +1,7 @@
-"""The Kalman filter of ``innovations``, compiled: its covariance, its gains, and what it makes of residuals.
+"""The compiled Kalman filter of ``innovations``: covariance, gains, and innovations of residuals.
 
-States: α, q, θ and the gust angle, which move together, then the coloured noise of each channel. Rows come
-one at a time, in order of time, so that every update is by a scalar.
+The states are α, q, θ and the gust angle, which are coupled, then the coloured noise of each channel. Rows
+come in order of time, so that every update is by a scalar.
 """
 
 import numpy as np
@@ -11,13 +11,13 @@ from advisor.flight.messages import FloatArray
 
 STATES = 8
 DIFFUSE = 1e3
-"""Variance of a motion of which nothing is known at the start of the record."""
+"""Variance of an unknown motion at the start of the record, far above any motion in SI units."""
 
 
 @kernel(error_model="numpy")
 def observed_by(system: FloatArray, seen_by_alpha: float, vane_m: float, imu_m: float) -> FloatArray:
-    """Return how α, q, a_z and θ see the states, shape (4, 8); ``system``, shape (5,), is Z_α, Z_q, M_α, M_q,
-    V."""
+    """Return the observation of the states by α, q, a_z and θ, shape (4, 8); ``system``, shape (5,), is Z_α,
+    Z_q, M_α, M_q, V."""
     z_a, z_q, m_a, m_q, speed = system[0], system[1], system[2], system[3], system[4]
     lift = speed * z_a - imu_m * m_a
     observed = np.zeros((4, STATES))
@@ -33,7 +33,7 @@ def observed_by(system: FloatArray, seen_by_alpha: float, vane_m: float, imu_m: 
 def _begun(
     system: FloatArray, memory: FloatArray, start_variance: float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return rates of α, q, θ and the gust, half their square, and the covariance at the start, shape (8,
+    """Return the matrix of α, q, θ and the gust, half its square, and the covariance at the start, shape (8,
     8)."""
     z_a, z_q, m_a, m_q = system[0], system[1], system[2], system[3]
     A, P = np.zeros((4, 4)), np.zeros((STATES, STATES))
@@ -55,7 +55,7 @@ def _begun(
 def _transition(
     step: FloatArray, A: FloatArray, half_square: FloatArray, dt: float, keep_gust: float
 ) -> None:
-    """Fill in what α, q, θ and the gust become after ``dt``: second order, the gust exactly."""
+    """Write the transition of α, q, θ and the gust over ``dt`` s: second order, exact for the gust."""
     for a in range(4):
         for b in range(4):
             step[a, b] = (A[a, b] + half_square[a, b] * dt) * dt
@@ -67,8 +67,8 @@ def _transition(
 def _propagate(
     P: FloatArray, moved: FloatArray, step: FloatArray, keep: float, keep_gust: float, memory: FloatArray
 ) -> None:
-    """The covariance after a step; ``moved``, shape (4, 8), is room to work in."""
-    # Nothing depends on θ, and the gust on nothing else.
+    """Advance the covariance by a step; ``moved``, shape (4, 8), is work space."""
+    # No state depends on θ, and the gust depends on itself alone.
     for b in range(STATES):
         a, q, air = P[0, b], P[1, b], P[3, b]
         moved[0, b] = step[0, 0] * a + step[0, 1] * q + step[0, 3] * air
@@ -89,7 +89,7 @@ def _propagate(
             P[a, b] *= keep * keep
     fresh = memory[5] ** 2 * (1.0 - keep_gust * keep_gust)
     P[3, 3] += fresh
-    # The gust that arises within the step already acts on the states, for half of it.
+    # The gust that arises within the step already acts on the states for half of it.
     for a in range(2):
         P[a, 3] += 0.5 * step[a, 3] * fresh
         P[3, a] += 0.5 * step[a, 3] * fresh
@@ -101,7 +101,7 @@ def _propagate(
 
 @kernel(error_model="numpy", fastmath={"contract"})
 def _correct(P: FloatArray, gain: FloatArray, observed: FloatArray, white: float) -> float:
-    """Take a row into the covariance; its variance, and the ``gain``, shape (8,), filled in."""
+    """Update the covariance with a row; return the innovation's variance, and write ``gain``, shape (8,)."""
     gain[:] = 0.0
     for s in range(STATES):
         seen = observed[s]
@@ -131,23 +131,24 @@ def gains_along(
     observed: FloatArray,
     start_variance: float,
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Return gains of a record, as ``innovations.Gains`` has them: steps, what colour keeps, gains, roots.
+    """Return the gains of a record for ``innovations.Gains``: transitions, decays of the colour, gains,
+    roots.
 
     Parameters
     ----------
     t, channel
-        Shape (n,): times, ascending, and which row of ``observed`` each sample is.
+        Shape (n,): ascending times, and the row of ``observed`` for each sample.
     system
         Shape (5,): Z_α, Z_q, M_α, M_q, V.
     white
         Shape (n,): variance of each row's white noise.
     memory
-        Shape (7,): standard deviations of the coloured noise by channel and its memory in s, then of the
-        gust angle, rad, and its memory in s.
+        Shape (7,): standard deviations of the coloured noise by channel and its correlation time in s, then
+        that of the gust angle in rad, and its correlation time in s.
     observed
-        Shape (4, 8): how each channel sees the states.
+        Shape (4, 8): observation of the states by each channel.
     start_variance
-        Of α, q and θ at the start.
+        Variance of α, q and θ at the start.
     """
     n = len(t)
     steps, keeps = np.empty((n, 4, 4)), np.empty(n)
@@ -180,10 +181,11 @@ def cost_along(
     observed: FloatArray,
     start_variance: float,
 ) -> float:
-    """-2 log likelihood of a ``residual``, shape (n,): no constant, and no rows that are still diffuse.
+    """Return -2 log likelihood of a ``residual``, shape (n,), up to a constant and without rows that are
+    still diffuse.
 
-    What ``gains_along`` and ``pass_through`` say of it, in one pass in which nothing is kept. Arguments as
-    there, but ``white``, shape (4,), is by channel.
+    The result is that of ``gains_along`` and ``pass_through``, in one pass that keeps nothing. The arguments
+    are theirs, but ``white``, shape (4,), is by channel.
     """
     A, half_square, P = _begun(system, memory, start_variance)
     step, moved = np.eye(4), np.empty((4, STATES))
@@ -226,10 +228,10 @@ def pass_through(
     columns: FloatArray,
     rows: np.ndarray,
 ) -> FloatArray:
-    """Return innovations of columns, shape (n, k), each in units of its own standard deviation.
+    """Return innovations of columns, shape (n, k), in units of each innovation's standard deviation.
 
-    The first six arguments as ``gains_along`` gives and takes them; ``rows``, shape (n,), are the columns'
-    rows in order of time.
+    The first six arguments are results and arguments of ``gains_along``; ``rows``, shape (n,), has the
+    columns' rows in order of time.
     """
     n, k = columns.shape
     out = np.empty((n, k))

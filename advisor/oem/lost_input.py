@@ -1,10 +1,9 @@
-"""Elevator samples that a link lost at a step, estimated with the aircraft's answer to them.
+"""Elevator samples that a link lost at a step, estimated from the response of the aircraft.
 
-A lost measurement costs its own information and no more. A lost sample of the input costs far
-more: joined by a straight line, the edge of a step lies up to an interval beside its true
-place, and every output after it is explained wrongly. But the outputs tell where the edge was.
-So where samples are missing and the command differs before and after, they are parameters like
-the others, bounded by their neighbours: Gauss-Newton on them and the aircraft together.
+A lost measurement costs its own information only. A lost sample of the input costs far more: every later
+output is explained wrongly. Joined by a straight line, the edge of a step lies up to an interval from its
+true place. The outputs determine that place. Samples missing across a change of the command become
+parameters, bounded by their neighbours. Gauss-Newton estimates them together with the aircraft.
 """
 
 from dataclasses import replace
@@ -18,19 +17,19 @@ from advisor.oem.problem import Problem, Record, Signal, assemble
 from advisor.oem.solution import Solution, solve
 
 LOST_INTERVAL = 1.5
-"""Stamps further apart than this many usual intervals have lost a sample between them."""
+"""Distance of two stamps, in usual intervals, above which a sample between them was lost."""
 LONGEST_GAP_S = 0.25
-"""Beyond this a gap is an outage, which no step of a stick explains."""
+"""Longest gap, s, that is restored. A longer gap is an outage, which no step of a stick explains."""
 STEP_SHARE = 0.05
-"""Share of the input's range that the command must have moved across the gap."""
+"""Least change of the command across the gap, as a share of the input's range."""
 MOST_ROUNDS = 6
 _SETTLED = 1e-3
 
 
 def restored(problem: Problem) -> Problem:
-    """Return the problem with the input samples lost at steps put back, each record by itself.
+    """Return the problem with the input samples that were lost at steps, restored record by record.
 
-    A record that lost none, or whose fit does not converge, is left as it is.
+    A record without lost samples, or whose fit does not converge, stays unchanged.
     """
     return replace(problem, records=tuple(_restored(problem, record) for record in problem.records))
 
@@ -86,7 +85,7 @@ def _with_values(record: Record, at: Index, values: FloatArray) -> Record:
 
 
 def _correction(solution: Solution, at: Index) -> FloatArray:
-    """Return the change of each lost sample that, with a change of the parameters, explains the residuals
+    """Return the change of each lost sample that, together with the parameters, explains the residuals
     best."""
     (record,) = solution.problem.records
     step = 0.1 * float(np.ptp(record.elevator.y))

@@ -1,8 +1,7 @@
-"""What a_z would have brought where it was not measured, as a factor on each parameter's error.
+"""The value of a_z where it was not measured, as a factor on each parameter's error.
 
-The channel is imagined at the stamps of the pitch rate and as clear as it (the same noise over the same
-motion), with the bias that comes with it; the sensitivities of the present fit then give the Cramér-Rao
-bound with it.
+The channel is imagined at the stamps of the pitch rate, with an equal ratio of noise to motion and with its
+own bias. The sensitivities of the present fit give the Cramér-Rao bound with that channel.
 """
 
 from dataclasses import replace
@@ -21,12 +20,13 @@ WORTH_NAMING = 1.05
 
 
 def price(solution: Solution) -> FloatArray | None:
-    """Return (8,) error of each parameter without a_z over that with it, order of ``PARAMETERS``.
+    """Return the error of each parameter without a_z over that with it, shape (8,), in the order of
+    ``PARAMETERS``.
 
     Returns
     -------
     array or None
-        None when it cannot be told: a_z takes an air speed, and an input that tells something.
+        None where the factors are unknown: a_z needs an air speed and an informative input.
     """
     records, output = solution.problem.records, "a_z"
     if any(record.airspeed is None for record in records):
@@ -51,7 +51,7 @@ def price(solution: Solution) -> FloatArray | None:
 
 
 def in_words(factors: FloatArray | None) -> str:
-    """Return the sentence for the notes; empty when nothing is known."""
+    """Return the sentence for the notes; empty where the factors are unknown."""
     if factors is None:
         return ""
     named = [
@@ -60,10 +60,8 @@ def in_words(factors: FloatArray | None) -> str:
         if factor > WORTH_NAMING
     ]
     if not named:
-        return f" No error is more than {100.0 * (WORTH_NAMING - 1.0):.0f} % larger for that."
-    return (
-        f" Had it been as clear as the pitch rate, errors would be smaller by the factors {', '.join(named)}."
-    )
+        return f" No error is more than {100.0 * (WORTH_NAMING - 1.0):.0f} % larger without it."
+    return f" With an a_z as clear as the pitch rate, errors would be smaller by factors: {', '.join(named)}."
 
 
 def _spread(assembly: Assembly, y: FloatArray, output: str) -> float:

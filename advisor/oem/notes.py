@@ -1,4 +1,4 @@
-"""What the user must know about the numbers, one sentence each."""
+"""Notes that the user must know about an estimate, one sentence each."""
 
 from collections.abc import Sequence
 
@@ -26,14 +26,14 @@ def notes(
     best: Solution,
     priced: bool,
 ) -> tuple[str, ...]:
-    """Collect the sentences.
+    """Return the sentences.
 
     Parameters
     ----------
-    told : instrument parameters that the data tell.
-    lagged : (8,) the estimate under ``SUPPOSED_LAG_S`` of servo lag, when the servo is unknown.
-    best : the solution the values are taken from, ``solution``, the efficient one or filter error's.
-    priced : say in numbers what missing channels cost.
+    told : instrument parameters that the data determine.
+    lagged : (8,) the estimate under a servo lag of ``SUPPOSED_LAG_S``, for an unknown servo.
+    best : the solution of the values: ``solution``, the efficient one or filter error's.
+    priced : state the cost of missing channels in numbers.
     """
     sentences = [
         _outputs(solution, prepared),
@@ -63,32 +63,35 @@ def _outputs(solution: Solution, prepared: Prepared) -> str:
 
 
 def _instrument(told: Told, solution: Solution) -> str:
-    """What was found of one instrument, and the line that puts the value into the aircraft file."""
+    """Return a sentence about one instrument, with the line that puts its value into the aircraft file."""
     value, half = told.value, 1.96 * told.std
     match told.instrument.name:
         case "servo_lag_s":
             return (
-                f"The servo's lag is estimated and used: {value:.3f} ± {half:.3f} s; a pure delay would look"
-                " much the same." + _line(told, f"elevator: {{lag_s: {value:.3f}}}")
+                f"The servo's lag is estimated and used: {value:.3f} ± {half:.3f} s. A pure delay would look"
+                " nearly the same." + _line(told, f"elevator: {{lag_s: {value:.3f}}}")
             )
         case "vane_arm_m":
             speed = solution.problem.reference_airspeed_m_s or float(solution.assembly.grid.airspeed.mean())
             return (
-                f"alpha reads as a vane {value:.2f} ± {half:.2f} m ahead of the centre of gravity does"
-                f" ({value / speed:.3f} s of pitch rate); this is allowed for."
+                f"alpha reads like a vane {value:.2f} ± {half:.2f} m ahead of the centre of gravity"
+                f" ({value / speed:.3f} s of pitch rate); the estimate allows for that."
                 + _line(told, f"alpha: {{vane_arm_m: {value:.2f}}}")
             )
         case "alpha_delay_s":
-            return f"alpha is {1e3 * value:.0f} ± {1e3 * half:.0f} ms late against the motion; allowed for."
+            return (
+                f"alpha is {1e3 * value:.0f} ± {1e3 * half:.0f} ms late relative to the motion;"
+                " the estimate allows for that."
+            )
         case "accelerometer_arm_m":
             return (
                 f"The accelerometer reads as if {value:.2f} ± {half:.2f} m ahead of the centre of gravity;"
-                " allowed for." + _line(told, f"accelerometer: {{arm_m: {value:.2f}}}")
+                " the estimate allows for that." + _line(told, f"accelerometer: {{arm_m: {value:.2f}}}")
             )
 
 
 def _line(told: Told, line: str) -> str:
-    """Return the line for the aircraft file, once a value is known to a tenth."""
+    """Return the line for the aircraft file, where a value is known to a tenth."""
     return f" For the aircraft file: {line}" if told.std < KNOWN_TO * abs(told.value) else ""
 
 
@@ -101,8 +104,8 @@ def _servo(solution: Solution, lagged: FloatArray | None) -> str:
         if solution.theta[j] != 0.0:
             changes.append(f"{name} by {100.0 * (lagged[j] / solution.theta[j] - 1.0):+.0f} %")
     return (
-        f"Servo dynamics unknown (elevator.lag_s is not set): a lag of {SUPPOSED_LAG_S:g} s, if there is one,"
-        f" changes {' and '.join(changes)}."
+        f"Servo dynamics unknown (elevator.lag_s is not set): a lag of {SUPPOSED_LAG_S:g} s would"
+        f" change {' and '.join(changes)}."
     )
 
 
@@ -110,15 +113,15 @@ def _found_lag(aircraft: Aircraft) -> str:
     elevator = aircraft.elevator
     if elevator.lag_s is not None or elevator.lag_found_s is None:
         return ""
-    return f"The servo's lag of {elevator.lag_found_s:.3f} s, as all manoeuvres together tell it, is used."
+    return f"The servo's lag of {elevator.lag_found_s:.3f} s is used, as estimated from all manoeuvres."
 
 
 def _airspeed(prepared: Prepared) -> str:
     if prepared.airspeed_lag_s < NOTED_LAG_S:
         return ""
     return (
-        f"The air speed reads {prepared.airspeed_lag_s:.1f} s late against the accelerometers; its course"
-        " within a manoeuvre is taken from them."
+        f"The air speed reads {prepared.airspeed_lag_s:.1f} s late relative to the accelerometers. Its"
+        " changes within a manoeuvre are taken from them."
     )
 
 
@@ -127,9 +130,10 @@ def _scale(solution: Solution) -> str:
     if abs(scale) < NOTED_SCALE or len(solution.problem.records) == 1:
         return ""
     return (
-        f"Accelerations agree with angle of attack if the true air speed is {100.0 * scale:+.1f} % from the"
-        " measured (or angle of attack is that much off, the other way); this is allowed for in a_z, not in"
-        " the speed the derivatives are given at."
+        "Accelerations agree with the angle of attack if the true air speed differs by"
+        f" {100.0 * scale:+.1f} % from the measured one. An angle of attack that is wrong by as much, the"
+        " other way, looks the same. The fit of a_z allows for that; the speed of the derivatives stays as"
+        " measured."
     )
 
 
@@ -137,8 +141,8 @@ def _held(prepared: Prepared) -> str:
     if not prepared.alpha_held:
         return ""
     return (
-        f"Angle of attack is renewed at {prepared.renewed_hz:.0f} Hz only and repeated under fresh stamps"
-        " between; it is used at that rate."
+        f"Angle of attack is renewed at {prepared.renewed_hz:.0f} Hz only, and repeated under fresh stamps"
+        " in between. The fit uses it at that rate."
     )
 
 
@@ -147,9 +151,7 @@ def _edges(solution: Solution, prepared: Prepared) -> str:
     steps = sum(len(used.elevator.t) - len(given.elevator.t) for used, given in pairs) // 2
     if steps == 0:
         return ""
-    return (
-        f"The times of {steps} elevator steps, each between two samples of the command, are estimated, too."
-    )
+    return f"The times of {steps} elevator steps, each between two samples of the command, are estimated too."
 
 
 def _offset(solution: Solution, prepared: Prepared) -> str:
@@ -157,10 +159,7 @@ def _offset(solution: Solution, prepared: Prepared) -> str:
     if later == 0.0:
         return ""
     reading = "held" if solution.problem.records[0].held else "linear"
-    return (
-        f"The command, {reading} between its stamps, acts {1e3 * later:+.1f} ms from them; this was"
-        " estimated, too."
-    )
+    return f"The command, {reading} between its stamps, acts {1e3 * later:+.1f} ms after them, as estimated."
 
 
 def _vane(aircraft: Aircraft) -> str:
@@ -177,8 +176,8 @@ def _weighed(solution: Solution, best: Solution) -> str:
         f"{output} {colour.memory:.2f}" for output, colour in solution.noise.colours.items() if colour.memory
     )
     return (
-        f"The noise remembers (from sample to sample: {memories}) and is nothing but noise: values and errors"
-        " are those of generalised least squares, which weighs it as it is; the cost stays output error's."
+        f"The noise is coloured (correlation of neighbouring samples: {memories}). Values and errors are"
+        " those of generalised least squares; the cost is output error's."
     )
 
 
@@ -187,8 +186,8 @@ def _correlated(solution: Solution) -> str:
     if not pairs:
         return ""
     return (
-        f"Errors are correlated above {HIGH_CORRELATION:g}: {', '.join(pairs)}; this input tells them better"
-        " together than each alone."
+        f"Errors are correlated above {HIGH_CORRELATION:g}: {', '.join(pairs)}. This input determines their"
+        " combination better than each alone."
     )
 
 
@@ -196,7 +195,7 @@ def _missing(solution: Solution, prepared: Prepared, priced: bool) -> str:
     if "a_z" not in prepared.missing:
         return ""
     return (
-        "No vertical acceleration was used (it takes a_z and air speed): Z_alpha, Z_q and Z_delta_e rest"
-        " on angle of attack alone, and a late or scaled angle of attack goes into them unseen."
+        "No vertical acceleration was used, which needs a_z and air speed. Z_alpha, Z_q and Z_delta_e depend"
+        " on the angle of attack alone, and a late or scaled angle of attack biases them unnoticed."
         + in_words(price(solution) if priced else None)
     )

@@ -1,10 +1,10 @@
-"""When the command acts between its stamps, common to all manoeuvres.
+"""The time at which the command acts between its stamps, common to all manoeuvres.
 
-A digital command is held, and the telemetry reads it some fixed time after it was set; a command
-from a stick is nearer to lines between the stamps. Either way what acts may lie up to half an interval
-from what was recorded. Large steps get times of their own (``edges``); a smooth input has none, so
-here the reading (held or linear) and one offset are decided by the likelihood. Only with a known servo:
-a lag that is estimated takes an offset along.
+A digital command is held, and telemetry reads it at a fixed time after it was set. A command from a stick is
+nearer to lines between the stamps. Either way the acting command may be up to half an interval from the
+recorded one. Large steps get their own times (``edges``). For a smooth input the likelihood decides on the
+reading (held or linear) and on one offset. That needs a known servo, because an estimated lag absorbs an
+offset.
 """
 
 from dataclasses import replace
@@ -24,9 +24,9 @@ from advisor.oem.weighing import Weighing
 ROUNDS = 4
 SETTLED_S = 1e-5
 CLEARLY = 10.0
-"""Twice the log-likelihood that another reading of the input must bring."""
+"""Least gain in twice the log likelihood for another reading of the input."""
 PARAMETERS_BEFORE = 8
-"""Rows of the influence ahead of the offset's own."""
+"""Number of influence rows before the offset's own."""
 
 
 class Shifted(NamedTuple):
@@ -38,14 +38,14 @@ class Shifted(NamedTuple):
     slope: FloatArray
     """(N, 1) derivative of the outputs by the offset."""
     misfit: float
-    """Twice the negative log-likelihood but for a constant, as ``Weighing`` has it."""
+    """Twice the negative log likelihood up to a constant, by ``Weighing``."""
 
 
 def with_offset(plain: Solution) -> Solution:
     """Return the solution with the reading and offset of the input that the data clearly prefer, else
     ``plain``.
 
-    Columns of instruments in ``plain.extra`` are kept; that of the offset is not.
+    Columns of instruments in ``plain.extra`` are kept; the column of the offset is not.
     """
     records = plain.problem.records
     if all(large_steps(record.elevator).interval for record in records):
@@ -69,7 +69,8 @@ def with_offset(plain: Solution) -> Solution:
 
 
 def _best(plain: Solution, weighing: Weighing, *, held: bool, middle: float, half: float) -> Shifted | None:
-    """Return Gauss-Newton on the offset with everything else refitted, within ``half`` of the ``middle``."""
+    """Minimise the cost over the offset by Gauss-Newton within ``half`` of the ``middle``, with everything
+    else refitted."""
     records = tuple(replace(record, held=held) for record in plain.problem.records)
     near, offset, best = plain.optimum, middle, None
     for _ in range(ROUNDS):

@@ -1,6 +1,4 @@
-"""A setting of all parameters in a fit: the residuals and sensitivities there, in order of time where
-asked.
-"""
+"""A setting of all parameters in a fit, with its residuals and sensitivities."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,21 +11,21 @@ from advisor.oem.instruments import Instrument, by_instruments
 from advisor.oem.problem import Assembly, Problem, assemble
 
 ASSUMED_M_S = 20.0
-"""Air speed supposed where none is known: a gust's angle and the weight's part of α̇ depend on it."""
+"""Air speed assumed where none is known, m/s. The gust angle and the weight's part of α̇ depend on it."""
 
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """A setting of all parameters, with residuals and sensitivities there."""
+    """A setting of all parameters, with its residuals and sensitivities."""
 
     problem: Problem
     assembly: Assembly
     shared: FloatArray
     local: FloatArray
     residual: FloatArray
-    """(N,)."""
+    """(N,) residuals."""
     sensitivities: FloatArray
-    """(N, 14)."""
+    """(N, 14) sensitivities."""
     extra: FloatArray
     """(N, k) derivatives by the instrument parameters."""
 
@@ -35,7 +33,8 @@ class Place:
 def at(
     problem: Problem, shared: FloatArray, local: FloatArray, instruments: Sequence[Instrument]
 ) -> Place | None:
-    """Return the place of ``shared`` (7,) and ``local`` (m, 7) parameters; None where the model overflows."""
+    """Return the residuals at ``shared`` (7,) and ``local`` (m, 7) parameters; None where the model
+    overflows."""
     assembly = assemble(problem)
     y, g = np.empty(len(assembly.z)), np.empty((len(assembly.z), N_PARAMETERS))
     if not respond(assembly.grid, shared, local, y, g):
@@ -45,12 +44,12 @@ def at(
 
 
 def free_of(assembly: Assembly) -> tuple[Index, Index]:
-    """Return free shared parameters and free parameters of each manoeuvre's own, as indices of all 14."""
+    """Return the free shared and the free local parameters, as indices of all 14."""
     return assembly.free[assembly.free < N_SHARED], assembly.free[assembly.free >= N_SHARED]
 
 
 def in_time(assembly: Assembly, m: int) -> Index:
-    """Return (n,) rows of the manoeuvre ``m`` in order of time."""
+    """Return the rows of manoeuvre ``m`` in order of time, shape (n,)."""
     rows = np.concatenate([np.arange(s.start, s.stop) for s in assembly.rows[m].values()])
     return np.asarray(rows[np.argsort(assembly.t[rows], kind="stable")])
 
@@ -62,6 +61,6 @@ def speeds_of(place: Place) -> list[float]:
 
 
 def system_of(place: Place, ratio: float) -> FloatArray:
-    """Return (4,) Z_α, Z_q, M_α, M_q at an air speed of ``ratio`` times the reference."""
+    """Return Z_α, Z_q, M_α, M_q at an air speed of ``ratio`` times the reference, shape (4,)."""
     z_a, z_q, m_a, m_q = (place.shared[SHARED.index(n)] for n in ("Z_alpha", "Z_q", "M_alpha", "M_q"))
     return np.array([ratio * z_a, z_q, ratio**2 * m_a, ratio * m_q])

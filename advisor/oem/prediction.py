@@ -1,9 +1,9 @@
-"""How well an estimate predicts the response to its own inputs: the 95 % band, relative to the peak.
+"""Accuracy of the predicted response to the estimate's own inputs: the 95 % band relative to the peak.
 
-The sensitivities of the outputs carry the errors of the derivatives, and of instruments estimated with them,
-to the response (delta method). Trim, initial states and biases are refitted in every manoeuvre, so that
-what they can take up is no error of the prediction. Errors that trade with each other, such as those of a
-servo's lag and of M_δe, cancel where they move no response.
+Sensitivities of the outputs carry the errors of derivatives and estimated instruments to the response (delta
+method). Trim, initial states and biases are refitted in every manoeuvre, so what they absorb is no error of
+the prediction. Correlated errors, such as those of a servo's lag and of M_δe, cancel where they move no
+response.
 """
 
 from collections.abc import Mapping
@@ -20,7 +20,7 @@ _DERIVATIVES = tuple(name for name in SHARED if name in PARAMETERS)
 
 
 def prediction_band(solution: Solution) -> Mapping[str, float]:
-    """Return output name to the largest half-width of the 95 % band over the peak of the response, all
+    """Return by output name the largest half-width of the 95 % band over the peak of the response, in all
     manoeuvres.
 
     Parameters
@@ -52,6 +52,6 @@ def prediction_band(solution: Solution) -> Mapping[str, float]:
 
 
 def _without(own: FloatArray, columns: FloatArray, weight: FloatArray) -> FloatArray:
-    """What a manoeuvre's own parameters cannot take up of ``columns`` (n, k)."""
+    """Return the part of ``columns`` (n, k) that a manoeuvre's nuisance parameters cannot absorb."""
     taken = np.linalg.lstsq(own * weight[:, None], columns * weight[:, None], rcond=1e-10)[0]
     return np.asarray(columns - own @ taken)

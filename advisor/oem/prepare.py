@@ -1,4 +1,4 @@
-"""From manoeuvres and the aircraft file to the estimator's problem."""
+"""From manoeuvres and the aircraft file to the estimation problem."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -20,32 +20,32 @@ from advisor.oem.surface import Servo
 from advisor.standard_gravity import GRAVITY_M_S2
 
 OUTPUTS = ("alpha", "q", "a_z")
-"""Outputs that count. The attitude is the pitch rate's integral: its residual remembers every error of
-model and air, so that as an output the attitude outweighs the others and moves M_α by 5 to 10 % on real
-flights."""
+"""Outputs of the fit. The attitude is the integral of the pitch rate, so its residual contains every error of
+model and air. As an output it would outweigh the others and move M_α by 5 to 10 % on real flights."""
 SPEED_CHANGE = 0.03
-"""Beyond this relative change of air speed the derivatives are scaled with it ..."""
+"""Relative change of air speed above which derivatives are scaled with a measured air speed."""
 SMOOTH_SPEED_CHANGE = 0.01
-"""... and already beyond this one when its shape comes from the accelerometers: no noise can pass for it."""
+"""Relative change of an air speed shaped by the accelerometers, above which derivatives are scaled with it.
+No noise can pass for such a change."""
 
 
 @dataclass(frozen=True, slots=True)
 class Prepared:
-    """The problem, and what was learnt on the way to it."""
+    """The problem, with facts about its preparation."""
 
     problem: Problem
     renewed_hz: float
-    """Rate at which angle of attack really changes, the slowest of the manoeuvres; NaN where none counts."""
+    """Rate of renewal of the angle of attack, Hz, the slowest of the manoeuvres; NaN where none is used."""
     alpha_held: bool
-    """Angle of attack arrives under fresh stamps without being renewed."""
+    """Whether the angle of attack repeats old values under fresh stamps."""
     alpha_left_out: str
-    """Why no measured angle of attack counts, in words; empty where one does."""
+    """Why no measured angle of attack is used, in words; empty where one is."""
     missing: tuple[str, ...]
     """Outputs that no manoeuvre has: a_z, theta."""
     airspeed_lag_s: float
-    """How late the air speed reads, mean over the manoeuvres."""
+    """Delay of the air speed, s, mean over the manoeuvres."""
     airspeed_m_s: float | None
-    """Mean measured speed."""
+    """Mean measured air speed, m/s."""
 
 
 def prepare(
@@ -54,12 +54,12 @@ def prepare(
     outputs: Sequence[str] = OUTPUTS,
     alpha_left_out: str | None = None,
 ) -> Prepared | NoEstimate:
-    """Collect what the estimator needs, or say why it cannot begin.
+    """Return the estimation problem, or why there is none.
 
     Parameters
     ----------
-    outputs : the outputs to use when measured; q always is, and alpha unless the motion contradicts it.
-    alpha_left_out : what ``why_left_out`` said, where that is known already.
+    outputs : outputs that are used where measured; q always is, and alpha unless the motion contradicts it.
+    alpha_left_out : result of ``why_left_out``, where it is known already.
     """
     for maneuver in maneuvers:
         missing = _missing(maneuver)
@@ -91,7 +91,7 @@ def prepare(
 
 
 def _without_alpha(maneuvers: Sequence[Maneuver], aircraft: Aircraft, why: str) -> Prepared:
-    """Return the angle of attack as a state that nobody measures: q and a_z are the outputs."""
+    """Return a problem with the angle of attack as an unmeasured state; q and a_z are the outputs."""
     inferred = [infer(m, aircraft) for m in maneuvers]
     known = [{**m.channels, "alpha": alpha} for m, alpha in zip(maneuvers, inferred, strict=True)]
     return _prepared(
@@ -152,7 +152,7 @@ def _servo(elevator: Elevator) -> Servo:
 
 
 def _renewed(signal: Signal) -> tuple[Signal, bool]:
-    """Return samples that bring a new value, and whether the channel is held between them.
+    """Return the samples that bring a new value, and whether the channel is held between them.
 
     A staircase under fresh stamps would count each value several times, and late.
     """
@@ -200,7 +200,7 @@ def _record(maneuver: Maneuver, speed: Signal | None, alpha: Signal, usable: Seq
 
 
 def _level(channels: Mapping[str, Channel]) -> Signal:
-    """Return the pitch angle as if the wings were level: θ minus the integral of (cos φ - 1)·q - r·sin φ."""
+    """Return the pitch angle of level wings: θ minus the integral of (cos φ - 1)·q - r·sin φ."""
     theta = _signal(channels["theta"])
     if not _has(channels, "bank"):
         return theta
@@ -212,7 +212,7 @@ def _level(channels: Mapping[str, Channel]) -> Signal:
 
 
 def _no_alpha(maneuvers: Sequence[Maneuver], aircraft: Aircraft, why: str) -> NoEstimate:
-    """Neither an angle of attack nor what stands in for one."""
+    """Return why there is neither an angle of attack nor a replacement for one."""
     absent = sorted({name for m in maneuvers for name in lacking(m, aircraft)})
     text = f"{why}, and the motion cannot stand in for it: no {', no '.join(absent)} in the record."
     return NoEstimate("no_alpha", text[0].upper() + text[1:])
@@ -225,7 +225,7 @@ def _constant(maneuver: Maneuver, speed: float | None) -> Signal | None:
 
 
 def _reference(speeds: Sequence[Signal], aircraft: Aircraft, smooth: bool) -> float | None:
-    """Return the reference air speed, when the speed moves enough to matter."""
+    """Return the reference air speed, where the speed changes enough to matter."""
     together = np.concatenate([speed.y for speed in speeds])
     if np.min(together) <= 0.0:
         return None

@@ -1,7 +1,7 @@
-"""What holds for any tail: beforehand knowledge of Z_q and Z_δe, where no angle of attack is measured.
+"""The prior of Z_q and Z_δe for an aircraft with a tail, where no angle of attack is measured.
 
-Without a vane, pitch rate and specific force leave Z_q and Z_δe to trade with Z_α on a well damped aircraft.
-Both are small on every aircraft, for one reason each:
+Without a vane, Z_q and Z_δe are correlated with Z_α in pitch rate and specific force of a well damped
+aircraft. Both are small on every aircraft:
 
 - Z_q = -ρ·S·c·C_Lq/(4·m) is the lift of the pitch rate relative to the turn of the path;
 - Z_δe/M_δe = k_y²/(l_t·V): the tail's lift turns the path by its force, the nose by its moment, with k_y the
@@ -22,12 +22,12 @@ turboprop)."""
 
 
 def precision(problem: Problem, shared: FloatArray) -> FloatArray:
-    """Return the inverse variances with which the prior draws the shared parameters to zero.
+    """Return the inverse prior variances of the shared parameters about zero.
 
     Parameters
     ----------
     shared
-        Shape (7,), order of ``SHARED``; M_δe among them scales the prior of Z_δe.
+        Shape (7,), in the order of ``SHARED``; M_δe scales the prior of Z_δe.
 
     Returns
     -------
@@ -40,8 +40,8 @@ def precision(problem: Problem, shared: FloatArray) -> FloatArray:
 
 
 def precision_without_alpha(shared: FloatArray) -> FloatArray:
-    """Return (7,) inverse variances where no angle of attack is measured; ``shared`` (7,), order of
-    ``SHARED``."""
+    """Return inverse prior variances without a measured angle of attack, shape (7,), for ``shared`` (7,)
+    parameters."""
     weight = np.zeros(N_SHARED)
     moment = max(abs(float(shared[SHARED.index("M_delta_e")])), 1e-6)
     weight[SHARED.index("Z_q")] = Z_Q_STD**-2

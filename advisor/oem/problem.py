@@ -1,4 +1,4 @@
-"""What is estimated from: the data of one or more manoeuvres, each channel at its own stamps."""
+"""The estimation problem: data of one or more manoeuvres, each channel at its own stamps."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -12,9 +12,9 @@ from advisor.oem.surface import Servo
 from advisor.standard_gravity import GRAVITY_M_S2
 
 STAMP_S = 1e-9
-"""Stamps closer than this are one event."""
+"""Distance of two stamps below which they are one event, s."""
 STAMP_DIGITS = 12
-"""Decimals to which the lengths of steps are told apart: equal steps share their matrices."""
+"""Decimals to which lengths of steps are distinguished: equal steps share their matrices."""
 
 
 class Signal(NamedTuple):
@@ -30,22 +30,23 @@ class Signal(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Record:
-    """One manoeuvre as the estimator sees it. SI throughout."""
+    """Data of one manoeuvre, in SI units."""
 
     elevator: Signal
     """The command in rad, linear between its stamps; it passes through the servo of the problem."""
     outputs: Mapping[str, Signal]
-    """Measured outputs, keys out of ``OUTPUTS``: q, and alpha or a_z. NaN samples are no samples."""
+    """Measured outputs, with keys of ``OUTPUTS``: q, and alpha or a_z. NaN samples are ignored."""
     airspeed: Signal | None = None
-    """V in m/s; None: taken as constant, as Eqs. (1)-(2) do."""
+    """V in m/s; None means constant, as in Eqs. (1)-(2)."""
     normal_gravity: Signal | None = None
-    """Gravity across the flight path in the plane of symmetry, over g; None: 1, level flight."""
+    """Gravity across the flight path in the plane of symmetry, over g; None means 1, for level flight."""
     gravity_z: Signal | None = None
-    """g·cos θ·cos φ in m/s², needed by a_z; None: 9.80665."""
+    """g·cos θ·cos φ in m/s², needed by a_z; None means 9.80665."""
     held: bool = False
-    """The input is held between its stamps instead of linear."""
+    """Whether the input is held between its stamps instead of linear."""
     inferred_alpha: Signal | None = None
-    """α in rad from the motion, where none is measured: the search starts from it, no residual uses it."""
+    """α in rad from the motion, where none is measured. The search starts from it, and no residual uses
+    it."""
 
     @property
     def alpha(self) -> Signal:
@@ -64,19 +65,19 @@ class Record:
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """Records that share the six derivatives, and how they were measured."""
+    """Records that share the six derivatives, with the properties of their instruments."""
 
     records: tuple[Record, ...]
     reference_airspeed_m_s: float | None = None
-    """Speed the derivatives are referred to; None: no scaling with speed."""
+    """Reference speed of the derivatives, m/s; None means that they do not scale with speed."""
     servo: Servo = field(default_factory=Servo)
     vane_arm_m: float = 0.0
     accelerometer_arm_m: float = 0.0
     alpha_delay_s: float = 0.0
-    """How late the angle of attack is stamped."""
+    """Delay of the angle of attack, s."""
     airspeed_may_be_off: bool = True
-    """Estimate a scale error of the air speed in a_z (equivalent, ratiometric, or derived speeds are
-    off by some per cent, which would otherwise pull Z_alpha and M_alpha along)."""
+    """Whether a scale error of the air speed in a_z is estimated. Equivalent, ratiometric or derived speeds
+    are off by some per cent, which would otherwise bias Z_alpha and M_alpha."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,17 +86,17 @@ class Assembly:
 
     grid: Grid
     z: FloatArray
-    """(N,) the measurements; manoeuvre by manoeuvre, within one output by output."""
+    """(N,) measurements, manoeuvre by manoeuvre, within one output by output."""
     t: FloatArray
-    """(N,) their stamps."""
+    """(N,) stamps of the measurements."""
     rows: tuple[Mapping[str, slice], ...]
     """For each manoeuvre, output name to its rows."""
     channel: Index
     """(N,) index into ``OUTPUTS``."""
     owner: Index
-    """(N,) the manoeuvre."""
+    """(N,) index of the manoeuvre."""
     free: Index
-    """The parameters of 14 that are estimated, increasing."""
+    """Indices of the estimated parameters among the 14, increasing."""
 
     @property
     def maneuvers(self) -> int:
@@ -109,7 +110,7 @@ def assemble(problem: Problem) -> Assembly:
     Raises
     ------
     ValueError
-        If a record lacks q, the input, or both alpha and a_z, or has fewer than two stamps of one.
+        A record lacks q, the input, or both alpha and a_z, or has fewer than two stamps of one of them.
     """
     pieces = [_Piece.of(record, problem) for record in problem.records]
     measured = {name for piece in pieces for name in piece.outputs}
@@ -161,9 +162,10 @@ def assemble(problem: Problem) -> Assembly:
 
 
 def _kinds(steps: FloatArray) -> tuple[FloatArray, Index]:
-    """Return different steps (U, 2) and which of them each (E, 2) is: equal ones share their matrices.
+    """Return the different steps (U, 2), and the index of each step (E, 2) among them. Equal steps share
+    matrices.
 
-    Where the speed moves hardly two are equal, so none is looked for.
+    Where the speed changes, hardly two steps are equal, and none is searched for.
     """
     if np.any(steps[:, 1] != 1.0):
         return steps, np.arange(len(steps), dtype=np.int64)
@@ -172,10 +174,10 @@ def _kinds(steps: FloatArray) -> tuple[FloatArray, Index]:
 
 
 def _free(measured: set[str], scaled: bool) -> Index:
-    """Return which of the 14 parameters the measured outputs give a meaning to.
+    """Return which of the 14 parameters the measured outputs determine.
 
-    Without alpha no output tells the level of the angle of attack: Z_0 and M_0 take up any. Its initial
-    value then stays where the search starts.
+    Without alpha no output determines the level of the angle of attack, and Z_0 and M_0 absorb any. Its
+    initial value then stays at the start of the search.
     """
     local = ["Z_0", "M_0", *(["alpha_initial"] if "alpha" in measured else []), "q_initial"]
     if "theta" in measured:
@@ -195,7 +197,7 @@ class _Piece:
     t: FloatArray
     outputs: Mapping[str, Signal]
     steps: FloatArray
-    """(E, 2) length of the step and air speed ratio."""
+    """(E, 2) length of each step, and air speed ratio."""
     elevator: FloatArray
     start: FloatArray
     slope: FloatArray
@@ -256,7 +258,7 @@ def _finite(signal: Signal) -> Signal:
 
 
 def merged(stamps: FloatArray, pace: float) -> FloatArray:
-    """Return distinct stamps in order, with more between where they lie further apart than ``pace``."""
+    """Return the distinct stamps in order, with more between them where their distance exceeds ``pace``."""
     ordered = np.sort(stamps)
     t: FloatArray = ordered[np.concatenate([[True], np.diff(ordered) > STAMP_S])]
     if not np.isfinite(pace):
@@ -269,6 +271,6 @@ def merged(stamps: FloatArray, pace: float) -> FloatArray:
 
 
 def _padded(rows: FloatArray) -> FloatArray:
-    """Repeat the last row, so that steps are as many as events."""
+    """Return the rows with the last one repeated, so that there are as many steps as events."""
     padded: FloatArray = np.concatenate([rows, rows[-1:]])
     return padded

@@ -1,6 +1,6 @@
-"""The paper's way: the Nelder-Mead simplex on the cost, kept to compare with.
+"""The paper's minimisation by the Nelder-Mead simplex, kept for comparison.
 
-Minimised is log J instead of J: at J ~ 1e-12 an absolute tolerance on J is vacuous and the
+The simplex minimises log J instead of J. At J ~ 1e-12 an absolute tolerance on J is meaningless, and the
 search stops 1-4 % above the optimum.
 """
 
@@ -12,7 +12,8 @@ from advisor.model.response import N_PARAMETERS, N_SHARED, Grid, Index, respond
 from advisor.oem.gauss_newton import CONVERGED, EXHAUSTED, OVERFLOW, Optimum, weigh
 
 FIRST_STEP = 0.05
-"""As ``fminsearch``: first simplex 5 % of each parameter, 0.00025 where it is zero."""
+"""Relative size of the first simplex, as in ``fminsearch``: 5 % of each parameter, 0.00025 where it is
+zero."""
 ZERO_STEP = 0.00025
 MOST_ROUNDS = 12
 
@@ -27,10 +28,10 @@ def descend_by_simplex(
     shared: FloatArray,
     local: FloatArray,
 ) -> Optimum:
-    """Minimise Σ n_c·log σ_c² by Nelder-Mead; same arguments and result as ``gauss_newton.descend``.
+    """Minimise Σ n_c·log σ_c² by Nelder-Mead; arguments and result are those of ``gauss_newton.descend``.
 
-    The simplex is begun anew at its own end until that no longer helps, because a simplex
-    collapses in valleys as narrow as those of Z_q and Z_δe.
+    The simplex restarts at its own end until that no longer helps, because it collapses in valleys as narrow
+    as those of Z_q and Z_δe.
     """
     common, own = free[free < N_SHARED], free[free >= N_SHARED] - N_SHARED
     y, none = np.empty(len(z)), np.empty((0, N_PARAMETERS))

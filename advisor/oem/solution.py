@@ -1,4 +1,4 @@
-"""Solving a problem: start, descent, errors, what is identifiable."""
+"""The solution of a problem: start, descent, errors, and identifiability."""
 
 from dataclasses import dataclass, replace
 from typing import Literal
@@ -26,41 +26,42 @@ from advisor.oem.simplex import descend_by_simplex
 from advisor.oem.start import start
 
 Method = Literal["gauss-newton", "nelder-mead"]
-NOTHING_TO_TELL = "The input does not excite the motion enough to tell the parameters apart."
+NOTHING_TO_TELL = "The input does not excite the motion enough to distinguish the parameters."
 HEALTHY_ITERATIONS = 12
-"""A search that takes longer may be creeping along the valley of a second minimum: begin elsewhere, too."""
+"""Largest number of iterations of an unsuspicious search. A longer search may creep along the valley of a
+second minimum, and another start is tried."""
 
 
 @dataclass(frozen=True, slots=True)
 class Solution:
-    """The optimum of one problem, with everything computed from it."""
+    """The optimum of one problem, with all quantities computed from it."""
 
     problem: Problem
     assembly: Assembly
     optimum: Optimum
     influence: Influence
     theta: FloatArray
-    """(8,) order of ``PARAMETERS``; Z_0 and M_0 are means over the manoeuvres."""
+    """(8,) in the order of ``PARAMETERS``; Z_0 and M_0 are means over the manoeuvres."""
     covariance_cr: FloatArray
-    """(8 + k, 8 + k) Cramér-Rao bound; beyond the eight stand the k extra parameters."""
+    """(8 + k, 8 + k) Cramér-Rao bound of the eight and of the k extra parameters."""
     covariance: FloatArray
-    """(8 + k, 8 + k) corrected for coloured residuals."""
+    """(8 + k, 8 + k) covariance corrected for coloured residuals."""
     noise: Coloured
     """Colour of each output's noise."""
     contributions: FloatArray
-    """(m, 8 + k) how far each manoeuvre's residuals pull each parameter; over the manoeuvres they sum to
+    """(m, 8 + k) contribution of each manoeuvre's residuals to each parameter; the contributions sum to
     zero."""
     extra: FloatArray | None = None
-    """(N, e) derivatives by parameters estimated besides, such as the times of edges; e >= k."""
+    """(N, e) derivatives by additional parameters, such as the times of edges; e >= k."""
 
     @property
     def fitted(self) -> FloatArray:
-        """(N,) model outputs, rows as in ``assembly``."""
+        """(N,) model outputs, in the rows of ``assembly``."""
         return self.optimum.fitted
 
     @property
     def sensitivities(self) -> FloatArray:
-        """(N, 14) their derivatives by the parameters of the row's manoeuvre."""
+        """(N, 14) derivatives of the outputs by the parameters of the row's manoeuvre."""
         return self.optimum.sensitivities
 
     @property
@@ -70,7 +71,7 @@ class Solution:
 
     @property
     def cost(self) -> float:
-        """J = σ_α²·σ_q², Eq. (7); σ_q²·σ_az² where no angle of attack counts."""
+        """J = σ_α²·σ_q², Eq. (7); σ_q²·σ_az² without an angle of attack."""
         noise = dict(zip(OUTPUTS, self.optimum.noise, strict=True))
         other = "alpha" if noise["alpha"] > 0.0 else "a_z"
         return float((noise["q"] * noise[other]) ** 2)
@@ -90,7 +91,7 @@ def solve(
     ----------
     begin : shared (7,) and local (m, 7) parameters to start from, e.g. of an earlier, shorter
         solution; by default the regression of ``start``.
-    noise : what was found of the noise a moment ago, to be used again instead of fitted.
+    noise : noise model of a recent solution, which is used instead of a new fit.
     flat : promised change of log J per sample at which Gauss-Newton stops.
     """
     assembly, optimum = search(problem, method=method, begin=begin, flat=flat)
@@ -102,8 +103,8 @@ def solve(
         return NoEstimate("singular", NOTHING_TO_TELL)
     if optimum.status != CONVERGED:
         text = (
-            f"The search for the best fit did not settle in {optimum.iterations} iterations:"
-            " values far apart explain this record equally well."
+            f"The search for the best fit did not converge in {optimum.iterations} iterations:"
+            " very different values explain this record equally well."
         )
         return NoEstimate("not_converged", text)
     return evaluate(problem, assembly, optimum, noise=noise)
@@ -116,7 +117,7 @@ def search(
     begin: tuple[FloatArray, FloatArray] | None = None,
     flat: float = FLAT,
 ) -> tuple[Assembly, Optimum]:
-    """Only the optimum of a problem, whatever became of it; arguments as in ``solve``."""
+    """Return the optimum of a problem, whatever its status; the arguments are those of ``solve``."""
     assembly = assemble(problem)
     floor = noise_floor(assembly)
     data = (assembly.grid, assembly.z, assembly.channel, assembly.owner, assembly.free, floor)
@@ -142,12 +143,12 @@ def evaluate(
     noise: Coloured | None = None,
     kept: int | None = None,
 ) -> Solution | NoEstimate:
-    """Return errors of an optimum.
+    """Return the solution at an optimum, with its errors.
 
     Parameters
     ----------
-    extra, noise : as in ``covariance.influence`` and in ``solve``.
-    kept : how many of the extra parameters shall have errors of their own, the first ones; default all.
+    extra, noise : arguments of ``covariance.influence`` and of ``solve``.
+    kept : number of extra parameters, the first ones, with errors of their own; by default all.
     """
     g = optimum.sensitivities
     effect = influence(assembly, g, optimum.noise, extra, precision(problem, optimum.shared))
@@ -173,21 +174,21 @@ def evaluate(
 
 
 def contributions_of(assembly: Assembly, rows: FloatArray, residual: FloatArray) -> FloatArray:
-    """Return (m, 8 + k) share of each manoeuvre in the influence ``rows`` (N, 8 + k) of a ``residual``
-    (N,)."""
+    """Return the contribution of each manoeuvre, shape (m, 8 + k), from influence ``rows`` (N, 8 + k) and
+    ``residual`` (N,)."""
     pull = rows * residual[:, None]
     first = np.searchsorted(assembly.owner, np.arange(assembly.maneuvers))
     return np.array([part.sum(axis=0) for part in np.split(pull, first[1:])])
 
 
 def reported(shared: FloatArray, local: FloatArray) -> FloatArray:
-    """Return the eight parameters, order of ``PARAMETERS``, from the solver's."""
+    """Return the eight parameters, in the order of ``PARAMETERS``, from the solver's."""
     mean = local.mean(axis=0)
     return np.array([shared[i] if is_shared else mean[i] for is_shared, i in REPORTED])
 
 
 def noise_floor(assembly: Assembly) -> FloatArray:
-    """Return (4,) smallest σ believed of each output, for data without noise."""
+    """Return the smallest σ of each output, shape (4,), for data without noise."""
     count = np.maximum(np.bincount(assembly.channel, minlength=len(OUTPUTS)), 1)
     mean = np.bincount(assembly.channel, assembly.z, len(OUTPUTS)) / count
     deviation = assembly.z - mean[assembly.channel]

@@ -1,13 +1,13 @@
-"""Where the search begins: the integrated equations as a linear regression.
+"""The start of the search: the integrated equations as a linear regression.
 
 Integrated from the first stamp, Eqs. (1)-(2) read
 
     α(t) = α(0) + Z_0·t + Z_α·∫α + (1 + Z_q)·∫q + Z_δe·∫δe
 
-and likewise for q: linear in the parameters, the initial states among them, and with noise that
-integration has averaged out (integral form of the equation-error method; Klein & Morelli, Ch. 5).
-Each equation is regressed at the stamps of its own left side; the derivatives are common to all
-manoeuvres, constants and initial states are each manoeuvre's own.
+and likewise for q. These equations are linear in the parameters, including the initial states, and
+integration averages the noise. This is the integral form of the equation-error method (Klein & Morelli, Ch.
+5). Each equation is regressed at the stamps of its left side. The derivatives are common to all manoeuvres;
+constants and initial states belong to one manoeuvre each.
 """
 
 import numpy as np
@@ -20,15 +20,15 @@ from advisor.oem.surface import Servo
 
 
 def start(problem: Problem, *, lift_from_alpha_only: bool = False) -> tuple[FloatArray, FloatArray]:
-    """Return shared (7,) and local (m, 7) parameters to begin with.
+    """Return shared (7,) and local (m, 7) parameters for the start of a search.
 
     Parameters
     ----------
-    lift_from_alpha_only : regress Eq. (1) with Z_q = Z_δe = 0. These two are small and trade with
-        Z_α; where the model does not quite hold (an angle of attack that is late, a servo unknown) the
-        free regression can begin in the valley of another minimum.
+    lift_from_alpha_only : regress Eq. (1) with Z_q = Z_δe = 0. These two are small and correlated with
+        Z_α. Where the model does not quite hold (a late angle of attack, an unknown servo), the free
+        regression can start in the valley of another minimum.
 
-    Always returns finite numbers; a record that teaches nothing yields a least-norm solution.
+    The numbers are always finite; a record without information yields a least-norm solution.
     """
     if any("alpha" not in record.outputs for record in problem.records):
         return _from_force(problem)
@@ -65,11 +65,11 @@ def start(problem: Problem, *, lift_from_alpha_only: bool = False) -> tuple[Floa
 
 
 def _from_force(problem: Problem) -> tuple[FloatArray, FloatArray]:
-    """Return the start where no angle of attack is measured, with Z_q = Z_δe = 0.
+    """Return the start without a measured angle of attack, with Z_q = Z_δe = 0.
 
-    Specific force is aerodynamic: n = a_z/V = Z_0 + Z_α·α. In Eq. (2) n stands for α, with the factor
-    M_α/Z_α, so that moving air, which the inferred α does not show, does no harm. The slope of n over the
-    inferred α is Z_α; a parabola in time takes up its drift.
+    Specific force is aerodynamic: n = a_z/V = Z_0 + Z_α·α. In Eq. (2) n replaces α with the factor M_α/Z_α,
+    so that moving air, which the inferred α does not show, does no harm. The slope of n over the inferred α
+    is Z_α; a parabola in time removes its drift.
     """
     shared, local = np.zeros(N_SHARED), np.zeros((len(problem.records), N_LOCAL))
     moments, rates, slopes, forces, own = [], [], [], [], []
@@ -107,7 +107,7 @@ def _from_force(problem: Problem) -> tuple[FloatArray, FloatArray]:
 
 
 def _ratio(record: Record, problem: Problem, t: FloatArray) -> Signal:
-    """Return the air speed over the reference; 1 where the derivatives are not scaled with it."""
+    """Return the air speed over the reference; 1 where derivatives do not scale with it."""
     if record.airspeed is None or problem.reference_airspeed_m_s is None:
         return Signal(t, np.ones(len(t)))
     return Signal(record.airspeed.t, record.airspeed.y / problem.reference_airspeed_m_s)
@@ -120,7 +120,8 @@ def _speed(record: Record, t: FloatArray) -> FloatArray:
 def _regressors(
     record: Record, problem: Problem, t: FloatArray, moment: bool
 ) -> tuple[FloatArray, FloatArray]:
-    """Return integrals of α, q, δe from the record's first stamp to ``t``: (n, 3); and of 1 and s: (n, 2)."""
+    """Return the integrals of α, q, δe from the record's first stamp to ``t``, shape (n, 3), and of 1 and s,
+    shape (n, 2)."""
     alpha, q = _usable(record.alpha), _usable(record.outputs["q"])
     surface = _surface(record, problem.servo)
     begin = min(signal.t[0] for signal in record.outputs.values())

@@ -1,8 +1,8 @@
-"""All that a fit linear about one place needs of the samples: sums that grow with each, compiled.
+"""Compiled sums over samples that determine a fit which is linear about one point.
 
-With G the derivatives of an output and r its residual, [G r]ᵀ[G r] gives the step, the noise after it and
-the Cramér-Rao bound for any weight of the output. GᵀΓG, with Γ the autocovariance of noise that remembers,
-gives the errors corrected for colour. A first-order memory needs of the earlier samples a running sum only.
+G has the derivatives of an output, r is its residual. [G r]ᵀ[G r] gives the step, the noise after it and the
+Cramér-Rao bound for any weight of the output. GᵀΓG, with the autocovariance Γ of coloured noise, gives the
+errors corrected for colour. For first-order noise a running sum replaces the earlier samples.
 """
 
 from dataclasses import dataclass
@@ -20,21 +20,21 @@ class Sums:
 
     colour: Colour
     gram: FloatArray
-    """(n + 1, n + 1) of the derivatives by the n parameters and the residual."""
+    """(n + 1, n + 1) inner products of the derivatives by the n parameters, and of the residual."""
     coloured: FloatArray
-    """(n, n) GᵀΓG over the variance of the remembering part."""
+    """(n, n) GᵀΓG over the variance of the coloured part."""
     kept: FloatArray
-    """(n,) Σ memoryᵏ·g over the samples so far, the newest at k = 1."""
+    """(n,) Σ memoryᵏ·g over the samples so far, with k = 1 for the newest."""
     samples: int = 0
 
     @classmethod
     def none(cls, parameters: int, colour: Colour) -> "Sums":
-        """Return sums over no samples."""
+        """Return sums without samples."""
         n = parameters
         return cls(colour, np.zeros((n + 1, n + 1)), np.zeros((n, n)), np.zeros(n))
 
     def add(self, derivatives: FloatArray, residual: FloatArray) -> None:
-        """Take further samples in order of time: (k, n) derivatives, (k,) residuals."""
+        """Add further samples in order of time: derivatives (k, n) and residuals (k,)."""
         memory, white = self.colour.memory, self.colour.white_share
         _add(self.gram, self.coloured, self.kept, derivatives, residual, memory, white)
         self.samples += len(residual)

@@ -1,11 +1,10 @@
-"""From elevator command to surface: a servo's delay and first-order lag, exact for what the command is.
+"""From elevator command to surface: a servo's delay and first-order lag, exact for a linear command.
 
     τ·δ̇ = u(t - T) - δ
 
-A command that is linear between its stamps drives the lag to
-δ(t + h) = u₁ - τ·u̇ + (δ(t) - u₀ + τ·u̇)·exp(-h/τ), so the surface is known without error at
-every stamp of the grid; between two stamps it is taken as linear, on a grid fine enough that this costs
-about 0.1 % of a step's height at a lag of 0.1 s.
+A command that is linear between its stamps gives δ(t + h) = u₁ - τ·u̇ + (δ(t) - u₀ + τ·u̇)·exp(-h/τ), so the
+surface is exact at every stamp of the grid. Between two stamps it is taken as linear. The grid is fine enough
+for an error of about 0.1 % of a step's height at a lag of 0.1 s.
 """
 
 from dataclasses import dataclass
@@ -20,19 +19,20 @@ LONGEST_STEP_S = 0.0105
 
 @dataclass(frozen=True, slots=True)
 class Servo:
-    """What lies between the command and the surface; the default is nothing."""
+    """The servo between command and surface; by default it has neither delay nor lag."""
 
     lag_s: float = 0.0
     delay_s: float = 0.0
 
     def grid(self, command_t: FloatArray) -> tuple[FloatArray, float]:
-        """Return where the surface's motion has corners, and the longest step that still follows it."""
+        """Return the times of corners in the surface's motion, and the longest step that follows the
+        motion."""
         return command_t + self.delay_s, LONGEST_STEP_S if self.lag_s > 0.0 else np.inf
 
     def move(
         self, command_t: FloatArray, command: FloatArray, t: FloatArray, held: bool = False
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return the surface position at the grid ``t`` (E,), which must hold the command's corners.
+        """Return the surface position at the grid ``t`` (E,), which must contain the command's corners.
 
         Returns
         -------
@@ -47,7 +47,7 @@ class Servo:
             before = after = np.interp(t, stamps, command)
         if self.lag_s <= 0.0:
             return after, after, before[1:]
-        # The servo is at rest at the first command known; run it from there.
+        # The servo is at rest at the first known command, where the recursion starts.
         early = stamps[stamps < t[0] - 1e-9]
         run = np.concatenate([early, t])
         if held:
@@ -64,7 +64,7 @@ class Servo:
 def _lagged(
     step: FloatArray, start: FloatArray, arrival: FloatArray, lag: float, initial: float
 ) -> FloatArray:
-    """Return the first-order lag of a command that goes linearly from ``start`` to ``arrival`` in each
+    """Return the first-order lag of a command that moves linearly from ``start`` to ``arrival`` in each
     ``step``."""
     surface = np.empty(len(step) + 1)
     surface[0] = initial

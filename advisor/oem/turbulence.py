@@ -1,7 +1,7 @@
-"""Moving air in what a fit leaves over: turbulence told from instruments, by a Kalman filter's likelihood.
+"""Moving air in the residuals of a fit, distinguished from instrument noise by a Kalman filter's likelihood.
 
-A gust enters the vane, the lift and the moment together, an instrument's noise only its own channel: the
-likelihoods of the two tell them apart (the filter: ``innovations``).
+A gust enters vane, lift and moment together, an instrument's noise only its own channel. The likelihoods of
+the two distinguish them (the filter is in ``innovations``).
 """
 
 from collections.abc import Sequence
@@ -30,7 +30,7 @@ class Rows:
 def cost_of(
     rows: Sequence[Rows], system: FloatArray, air: AirModel, start_variance: float = DIFFUSE
 ) -> float:
-    """-2 log likelihood of residuals under an air model, summed over manoeuvres."""
+    """Return -2 log likelihood of residuals under a model of the air, summed over the manoeuvres."""
     return sum(
         innovations.cost_of(r.t, r.channel, r.residual, np.append(system, r.speed), air, start_variance)
         for r in rows
@@ -38,37 +38,37 @@ def cost_of(
 
 
 LARGEST_GUST_RAD = 0.26
-"""Largest standard deviation of the gust angle, rad: beyond 15 deg no lift is linear in the angle of
+"""Largest standard deviation of the gust angle, rad. Beyond 15 deg no lift is linear in the angle of
 attack."""
 _STEPS = (0.7, 0.35, 0.15)
-"""Of the search in the logarithms of the noise figures: from a factor of two to one of 1.16."""
+"""Steps of the search in the logarithms of the noise parameters: from a factor of two to one of 1.16."""
 _RANGE = (1e-12, 1e3)
-"""Of every noise figure, SI: without noise the likelihood has no end."""
+"""Range of every noise parameter, SI. Without a lower bound the likelihood of data without noise has no
+maximum."""
 _MEMORY_GAIN = 5.0
-"""Log likelihood that noise with a memory must bring over white noise before moving air is looked for."""
+"""Least gain in log likelihood of coloured over white noise for a search for moving air."""
 
 
 @dataclass(frozen=True)
 class Turbulence:
-    """Whether the residuals look like moving air, and how strongly."""
+    """Whether the residuals contain moving air, and how much."""
 
     gain: float
-    """Log likelihood that moving air brings over instruments with coloured noise of their own."""
+    """Gain in log likelihood of moving air over coloured instruments."""
     gust_angle: float
-    """Standard deviation of w/V, rad."""
+    """Standard deviation of the gust angle w/V, rad."""
     air: AirModel
-    """The likelier of the two."""
+    """The likelier model of air and instruments."""
 
     @property
     def present(self) -> bool:
-        """Moving air, beyond what noise of instruments explains, and large enough to matter (0.1 deg)."""
+        """Whether moving air exceeds what instrument noise explains, and is large enough to matter (0.1
+        deg)."""
         return self.gain > 20.0 and self.gust_angle > 0.0017 and self.is_air
 
     @property
     def is_air(self) -> bool:
-        """Whether the gusts are within a linear model of the aircraft; larger ones are errors of the
-        model.
-        """
+        """Whether the gusts are within a linear model of the aircraft; larger ones are model errors."""
         return self.gust_angle < LARGEST_GUST_RAD
 
 
@@ -79,7 +79,7 @@ def find_turbulence(
     seen_by_alpha: bool,
     start_variance: float = DIFFUSE,
 ) -> Turbulence:
-    """Fit noise with and without moving air to residuals and compare.
+    """Return the comparison of noise with and without moving air, fitted to residuals.
 
     Parameters
     ----------
@@ -88,9 +88,9 @@ def find_turbulence(
     system
         Z_α, Z_q, M_α, M_q.
     white
-        Shape (4,): first guess of the white noise, SI.
+        Shape (4,): starting values of the white noise, SI.
     start_variance
-        Of α, q and θ at the start of a record; 0 for residuals of a fit with initial states of its own.
+        Variance of α, q and θ at the start of a record; 0 for residuals of a fit with its own initial states.
     """
 
     def descend(start: AirModel, moving: bool, steps: Sequence[float] = _STEPS) -> tuple[AirModel, float]:
@@ -102,7 +102,7 @@ def find_turbulence(
     still = descend(AirModel(white, colour, 0.3, 0.0, 1.0, float(seen_by_alpha)), False)
     plain = AirModel.still(rms, float(seen_by_alpha))
     if 0.5 * (cost_of(rows, system, plain, start_variance) - still[1]) < _MEMORY_GAIN:
-        # Air that moves has a memory; where no channel shows any, there is nothing to tell apart.
+        # Moving air is coloured: where no channel is, there is no moving air.
         return Turbulence(0.0, 0.0, still[0])
     quieter = replace(still[0], coloured=0.3 * still[0].coloured, gust_memory_s=1.0)
     angle = _residual_angle(rows, system, rms)
@@ -116,7 +116,7 @@ def find_turbulence(
 
 
 def _residual_angle(rows: Sequence[Rows], system: FloatArray, rms: FloatArray) -> float:
-    """Return the root mean square of what is left in the angle of attack, rad; without a channel, by its
+    """Return the root mean square residual of the angle of attack, rad; without that channel, from the
     lift."""
     if any(np.any(r.channel == ALPHA) for r in rows):
         return float(rms[ALPHA])
@@ -125,7 +125,7 @@ def _residual_angle(rows: Sequence[Rows], system: FloatArray, rms: FloatArray) -
 
 
 def spread_of(rows: Sequence[Rows]) -> FloatArray:
-    """Return the root mean square of each output's residuals, shape (4,); 1 for one that is missing."""
+    """Return the root mean square of each output's residuals, shape (4,); 1 for a missing output."""
     picked = [np.concatenate([r.residual[r.channel == c] for r in rows]) for c in range(len(OUTPUTS))]
     return np.array([max(float(np.sqrt(np.mean(one**2))), 1e-12) if len(one) else 1.0 for one in picked])
 
@@ -138,7 +138,7 @@ def _descend(
     steps: Sequence[float],
     start_variance: float,
 ) -> tuple[AirModel, float]:
-    """Return coordinate search in the logarithms of the noise figures, by ever smaller steps."""
+    """Minimise by coordinate search in the logarithms of the noise parameters, with ever smaller steps."""
     figures = [*start.white, *start.coloured, start.memory_s, start.gust, start.gust_memory_s]
     x = np.log(np.clip(figures, *_RANGE))
     free = [*range(9), 9, 10] if moving else [*range(9)]
@@ -163,6 +163,6 @@ def _descend(
                         break
                     best, x = cost, moved
                 if best < before:
-                    # The other way leads back to where it came from.
+                    # The opposite direction leads back to the previous point.
                     break
     return model(x), best

@@ -1,7 +1,7 @@
 """Compile the estimator once, so that no pilot waits for it: ``python -m advisor.oem.warm``.
 
-The compiled code is kept beside the modules (or where ``NUMBA_CACHE_DIR`` says), and every later start
-loads it in a fraction of a second.
+The compiled code is kept next to the modules (or where ``NUMBA_CACHE_DIR`` says). Every later start loads it
+in a fraction of a second.
 """
 
 import numpy as np
@@ -17,8 +17,7 @@ from advisor.oem.solution import Solution, solve
 
 
 def warm() -> None:
-    """Estimate a small flight in all the ways there are: alone, with others, with moving air
-    allowed for, while it is flown."""
+    """Estimate a small flight in every way: alone, jointly, with moving air, and while it is flown."""
     maneuver = _flown()
     prepared = prepare([maneuver], Aircraft())
     solution = solve(prepared.problem) if isinstance(prepared, Prepared) else None
@@ -29,7 +28,7 @@ def warm() -> None:
 
 
 def _flown() -> Maneuver:
-    """Return four channels of a doublet: no particular aircraft, but one with an estimate."""
+    """Return four channels of a doublet by an arbitrary aircraft for which there is an estimate."""
     rng = np.random.default_rng(1)
     t = np.arange(0.0, 6.0, 0.05)
     u = np.where((t > 1.0) & (t < 2.0), 0.03, 0.0) - np.where((t > 2.0) & (t < 3.0), 0.03, 0.0)

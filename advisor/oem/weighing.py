@@ -1,8 +1,8 @@
-"""Weighing every measurement by the noise as it is: generalised least squares.
+"""Weights for every measurement by the actual noise: generalised least squares.
 
-With Γ = L·Lᵀ the noise's autocovariance, residuals and sensitivities times L⁻¹ are those of a problem with
-white noise of unit variance, and every formula for white noise holds for them. Where no output's noise is
-coloured, this is output error's own weighing, 1/σ².
+Let Γ = L·Lᵀ be the autocovariance of the noise. Residuals and sensitivities times L⁻¹ are those of a problem
+with white noise of unit variance, for which every formula of white noise holds. For white noise these are
+output error's own weights, 1/σ².
 """
 
 from collections.abc import Callable, Mapping
@@ -26,15 +26,15 @@ class Weighing:
 
     assembly: Assembly
     by_maneuver: tuple[Mapping[str, Whitening], ...]
-    """For each manoeuvre, output name to its part."""
+    """For each manoeuvre, output name to its whitening filter."""
 
     @classmethod
     def by(cls, noise: Coloured, assembly: Assembly) -> "Weighing":
-        """By noise of these colours; any problem about the same measurements may be weighed by it."""
+        """Return the weighing for a noise model; any problem with the same measurements may use it."""
 
         def whitening(output: str, samples: int) -> Whitening:
             colour = noise.colours[output]
-            # An output that never moves leaves nothing over and has no say; it keeps its unit.
+            # An output that never moves has no residual and no influence; it keeps its unit.
             return Whitening.of(samples, colour.memory, colour.white_share, colour.variance or 1.0)
 
         return cls(
@@ -50,21 +50,21 @@ class Weighing:
         return self._each(Whitening.forward, rows)
 
     def backward(self, rows: FloatArray) -> FloatArray:
-        """Return l⁻ᵀ·rows, (N, k)."""
+        """Return L⁻ᵀ·rows, (N, k)."""
         return self._each(Whitening.backward, rows)
 
     def influence(self, g: FloatArray, extra: FloatArray | None) -> FloatArray | None:
-        """Return (N, 8 + k) influence of every measurement on the efficient estimate; None when it
-        overflows."""
+        """Return the influence of every measurement on the efficient estimate, shape (N, 8 + k); None where
+        it overflows."""
         weighed = influence(
             self.assembly, self.forward(g), UNIT, None if extra is None else self.forward(extra)
         )
         return None if weighed is None else self.backward(weighed.rows)
 
     def misfit(self, residual: FloatArray, g: FloatArray) -> float:
-        """Return weighed sum of squares, less what a last step of all parameters would still take off.
+        """Return the weighted sum of squares, minus the decrease by a last step of all parameters.
 
-        The difference between two readings of one record is twice their log-likelihood ratio.
+        The difference between two readings of one record is twice their log likelihood ratio.
         """
         white = self.forward(residual[:, None])[:, 0]
         a = self.assembly

@@ -1,7 +1,7 @@
-"""A fit seen through the filter of moving air and coloured instruments: likelihood, next step, errors.
+"""A fit whitened by the filter of moving air and coloured instruments: likelihood, next step and errors.
 
-The filter whitens residuals and sensitivities alike. The manoeuvres' own parameters are eliminated one
-manoeuvre after the other.
+The filter whitens residuals and sensitivities alike. The nuisance parameters are eliminated manoeuvre by
+manoeuvre.
 """
 
 from dataclasses import dataclass
@@ -17,29 +17,29 @@ from advisor.oem.prior import precision
 
 @dataclass(frozen=True, slots=True)
 class Whitened:
-    """A place seen through the filter, the manoeuvres' own parameters eliminated."""
+    """A whitened fit with nuisance parameters eliminated."""
 
     cost: float
-    """-2 log likelihood, but for a constant, with the prior's part."""
+    """-2 log likelihood up to a constant, including the prior."""
     step: FloatArray
-    """(n,) of the shared and instrument parameters that are free."""
+    """(n,) step of the free shared and instrument parameters."""
     own_steps: tuple[FloatArray, ...]
-    """Of each manoeuvre's own parameters that are free."""
+    """Step of each manoeuvre's free nuisance parameters."""
     std: FloatArray
     """(n,) Cramér-Rao standard deviations."""
 
     @property
     def pending(self) -> float:
-        """The largest step still to take, in standard deviations."""
+        """Largest pending step, in standard deviations."""
         return float(np.max(np.abs(self.step) / self.std))
 
 
 def whitened(place: Place, air: AirModel, instruments: int) -> Whitened | None:
-    """Return the place seen through the filter; None where the numbers overflow.
+    """Return the whitened fit; None where numbers overflow.
 
     Parameters
     ----------
-    instruments : how many of the place's extra columns are parameters of instruments.
+    instruments : number of the place's extra columns that are instrument parameters.
     """
     common, own = free_of(place.assembly)
     n = len(common) + instruments
@@ -72,13 +72,13 @@ def whitened(place: Place, air: AirModel, instruments: int) -> Whitened | None:
 
 
 def gains_along(place: Place, air: AirModel) -> list[tuple[Index, Gains]]:
-    """For each manoeuvre its rows in order of time, and the filter's gains along them."""
+    """Return for each manoeuvre its rows in order of time, and the filter's gains along them."""
     problem, found = place.problem, []
     for m, speed in enumerate(speeds_of(place)):
         system = np.append(system_of(place, speed / (problem.reference_airspeed_m_s or speed)), speed)
         order = in_time(place.assembly, m)
         arms = (problem.vane_arm_m, problem.accelerometer_arm_m)
-        # The fit has initial states of its own, so the filter begins without any doubt about them.
+        # The fit has its own initial states, so the filter starts without uncertainty.
         gains = gains_of(
             place.assembly.t[order], place.assembly.channel[order], system, air, 0.0, arms_m=arms
         )

@@ -2,7 +2,9 @@
 
 With Γ = L·Lᵀ the autocovariance of
 
-    ν_k = w_k + x_k,   x_{k+1} = φ·x_k + e_k,   var x = 1,   var w = share,
+the innovations of a scalar Kalman filter over ν, each over its standard deviation, are L⁻¹·ν. The source is
+Harvey, *Forecasting, Structural Time Series Models and the Kalman Filter*, section 3.4. The filter starts
+with the stationary variance of x, so it needs no time to settle.
 
 the innovations of a scalar Kalman filter over ν, each over its standard deviation, are L⁻¹·ν
 (Harvey, *Forecasting, Structural Time Series Models and the Kalman Filter*, section 3.4). The filter
@@ -19,14 +21,14 @@ from advisor.flight.messages import FloatArray
 
 @dataclass(frozen=True, slots=True)
 class Whitening:
-    """L⁻¹ of one stretch of samples."""
+    """L⁻¹ for one stretch of samples."""
 
     memory: float
-    """φ."""
+    """φ, the correlation of neighbouring samples of x."""
     scale: FloatArray
-    """(n,) one over the standard deviation of each innovation."""
+    """(n,) reciprocal of the standard deviation of each innovation."""
     gain: FloatArray
-    """(n,) what the state takes of each innovation."""
+    """(n,) gain of the state for each innovation."""
 
     @classmethod
     def of(cls, samples: int, memory: float, white_share: float, variance: float = 1.0) -> "Whitening":
@@ -39,13 +41,13 @@ class Whitening:
         return whiten(np.ascontiguousarray(rows), self.memory, self.scale, self.gain).T
 
     def backward(self, rows: FloatArray) -> FloatArray:
-        """Return l⁻ᵀ·rows, shape (n, k)."""
+        """Return L⁻ᵀ·rows, shape (n, k)."""
         return whiten_adjoint(np.ascontiguousarray(rows), self.memory, self.scale, self.gain)
 
 
 @kernel()
 def schedule(samples: int, memory: float, white_share: float) -> tuple[FloatArray, FloatArray, float]:
-    """``scale`` and ``gain`` of a ``Whitening`` with var x = 1, and log det Γ."""
+    """Return ``scale`` and ``gain`` of a ``Whitening`` with var x = 1, and log det Γ."""
     scale, gain = np.empty(samples), np.empty(samples)
     log_determinant = 0.0
     predicted = 1.0
@@ -60,7 +62,7 @@ def schedule(samples: int, memory: float, white_share: float) -> tuple[FloatArra
 
 @kernel()
 def whiten(rows: FloatArray, memory: float, scale: FloatArray, gain: FloatArray) -> FloatArray:
-    """Return (L⁻¹·rows)ᵀ, shape (k, n): transposed, because what follows are products along time."""
+    """Return (L⁻¹·rows)ᵀ, shape (k, n), transposed for products along time."""
     n, width = rows.shape
     white = np.empty((width, n))
     state = np.zeros(width)
@@ -74,7 +76,7 @@ def whiten(rows: FloatArray, memory: float, scale: FloatArray, gain: FloatArray)
 
 @kernel()
 def whiten_adjoint(rows: FloatArray, memory: float, scale: FloatArray, gain: FloatArray) -> FloatArray:
-    """Return l⁻ᵀ·rows, shape (n, k): the recursion of ``whiten`` run backwards."""
+    """Return L⁻ᵀ·rows, shape (n, k), by the recursion of ``whiten`` run backwards."""
     n, width = rows.shape
     result = np.empty((n, width))
     carried = np.zeros(width)

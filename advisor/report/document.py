@@ -217,8 +217,8 @@ def _flight_test(verdict: FlightTestVerdict) -> dict[str, Any]:
             "advice": verdict.next.advice,
             "holding_back": verdict.next.holding_back,
             "remaining_maneuvers": {
-                "median": verdict.next.remaining.median,
-                "p90": verdict.next.remaining.p90,
+                "median": verdict.next.remaining and verdict.next.remaining.median,
+                "p90": verdict.next.remaining and verdict.next.remaining.p90,
             },
         },
         "warnings": list(verdict.warnings),

@@ -4,9 +4,18 @@ from collections.abc import Callable, Iterator, Sequence
 
 from advisor.campaign.campaign import Campaign, CampaignEvent, ManeuverJudged
 from advisor.campaign.state import CampaignState
-from advisor.flight.events import DataAgain, FlightBegan, ManeuverAgain, NoData, Notice, VehicleFound
+from advisor.flight.events import (
+    DataAgain,
+    FlightBegan,
+    ManeuverAgain,
+    NoData,
+    Notice,
+    Rebooted,
+    VehicleFound,
+)
 from advisor.flight.messages import Columns
 from advisor.report.text import maneuver_line, next_line, stop_line
+from advisor.vehicle_time import CLOCK, clock
 
 
 def follow(
@@ -32,12 +41,15 @@ def follow(
 def _say(event: CampaignEvent, say: Callable[[str], object]) -> None:
     match event:
         case FlightBegan(_, name):
-            say(f"{name}:")
+            say(f"{name}: its times count from its own boot")
         case ManeuverAgain(maneuver, takes_place):
             better = ", and this record replaces it" if takes_place else ""
-            say(f"{maneuver.number:2d}  {maneuver.span.start_s:8.2f} s  comes again and counts once{better}")
+            at = clock(maneuver.span.start_s)
+            say(f"{maneuver.number:2d}  {at:>7}  comes again and counts once{better}")
         case VehicleFound(vehicle):
-            say(f"following {vehicle}")
+            say(f"following {vehicle}; times are {CLOCK}")
+        case Rebooted(boot):
+            say(f"power-on {boot + 1}: the vehicle's clock began anew, and times count from this boot")
         case Notice(_, text):
             say(f"note: {text}")
         case NoData(problems):

@@ -28,10 +28,10 @@ def ranking(causes: Sequence[Cause]) -> Iterator[RenderableType]:
         yield Text(f"Below 1 %: {', '.join(unlikely)}.", style="dim")
     for c in likely:
         if c.cannot_be_told_from:
-            yield Text(tie_sentence(c))
+            yield Text(confusion_sentence(c))
 
 
-def tie_sentence(c: Cause) -> str:
+def confusion_sentence(c: Cause) -> str:
     """Return a sentence on effects that look alike here, and on the way to distinguish them."""
     others = [spelled(name) for name in c.cannot_be_told_from]
     listed = others[0] if len(others) == 1 else f"{', '.join(others[:-1])} or {others[-1]}"

@@ -9,6 +9,7 @@ from rich.panel import Panel
 from rich.table import Table
 from rich.text import Text
 
+from advisor.bundled import SIMULATOR
 from advisor.gap.result import Diagnosis, spelled
 from advisor.gap.verdict.ledger import in_words
 from advisor.gap.verdict.text import place
@@ -37,7 +38,7 @@ _PICTURE = (
     (("timing", "time stamps"), ("accelerometer", "accelerometer"), ("attitude_sensor", "attitude")),
 )
 _SCORES = "per cent: how well a block would explain the gap on its own, the best 100 %"
-_AS_GOOD = "100 % next to the marked block: the data alone can hardly distinguish the two"
+_AS_GOOD = "100 % elsewhere: the data alone can hardly distinguish the two blocks"
 _ROUNDS_TO_ALL = 0.995
 _BAR = 40
 _SPEED = "airspeed_variation"
@@ -95,7 +96,7 @@ class GapScreen:
     def _written(self) -> str:
         if self.improved is None:
             return ""
-        return f"The improved simulator is {self.improved}; python -m sim flies it with --aircraft."
+        return f"The improved simulator is {self.improved}; python -m {SIMULATOR} flies it with --aircraft."
 
 
 def _note(text: str) -> Table:

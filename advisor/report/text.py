@@ -16,6 +16,7 @@ from advisor.flight.events import Activity
 from advisor.flight.track import ChannelStatus
 from advisor.oem.estimate import Estimate
 from advisor.report.qualities import coefficients_of, qualities_of, quality_lines
+from advisor.vehicle_time import CLOCK, clock
 
 SYMBOLS = {
     "Z_0": "Z_0",
@@ -49,12 +50,14 @@ def maneuver_line(judged: JudgedManeuver) -> str:
     """Return one line for a verdict: number, time, input, verdict and reason."""
     span, verdict = judged.maneuver.span, judged.verdict
     mark = "✓" if verdict.accepted else "✗"
-    return f"{judged.maneuver.number:2d}  {span.start_s:8.2f} s  {span.kind:<15}  {mark} {verdict.sentence}"
+    return (
+        f"{judged.maneuver.number:2d}  {clock(span.start_s):>7}  {span.kind:<15}  {mark} {verdict.sentence}"
+    )
 
 
 def activity_line(activity: Activity) -> str:
     """Return one line for a movement of the elevator that was no test input: time and description."""
-    return f" -  {activity.start_s:8.2f} s  to {activity.end_s:8.2f} s      {activity.text}"
+    return f" -  {clock(activity.start_s):>7}  to {clock(activity.end_s):<12}  {activity.text}"
 
 
 def caution_lines(maneuvers: Sequence[JudgedManeuver]) -> list[str]:
@@ -81,8 +84,8 @@ def next_line(verdict: FlightTestVerdict) -> str:
     """Return the next input, and the expected number of further manoeuvres."""
     if verdict.next is None:
         return "no advice yet"
-    more = "" if verdict.decision == "stop" else f"; {verdict.next.remaining.spoken}"
-    return f"{verdict.next.advice}{more}"
+    more = "" if verdict.decision == "stop" else verdict.next.foretold
+    return "; ".join(filter(None, (verdict.next.advice, more)))
 
 
 class AnalysisText:
@@ -138,6 +141,8 @@ class AnalysisText:
                 for a in self.state.activity
             ]
         in_order = sorted(lines, key=lambda entry: entry[0])
+        if in_order:
+            yield Text(f"no.  start  times are {CLOCK}", style="dim")
         for flight, here in groupby(in_order, key=lambda entry: entry[0][0]):
             if len(self.files) > 1:
                 yield Text(f"{self.files[flight]}:", style="bold")

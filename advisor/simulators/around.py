@@ -1,4 +1,4 @@
-"""Effects around a simulator: between command and surface before, and in the instruments behind."""
+"""Effects around a simulator: between command and surface before it, and in the instruments behind it."""
 
 import numpy as np
 
@@ -12,7 +12,7 @@ COMMAND = EFFECT_ENTRIES[: EFFECT_ENTRIES.index("M_delta2")]
 def instruments(
     grid: FloatArray, speed: FloatArray, surface: FloatArray, h: float, p: FloatArray
 ) -> FloatArray:
-    """Return a motion as its instruments read it, without the skew of their stamps.
+    """Return the motion as read by its instruments, without the skew of their stamps.
 
     Parameters
     ----------
@@ -21,7 +21,7 @@ def instruments(
     speed
         Shape (n + 1,), m/s.
     surface
-        Shape (n,), rad from trim: the deflection over each step, which a structural mode answers.
+        Shape (n,), rad from trim: deflection over each step, which excites a structural mode.
     h
         Step in s.
     p
@@ -53,15 +53,14 @@ def instruments(
 
 
 def skewed(grid: FloatArray, h: float, p: FloatArray) -> FloatArray:
-    """Return the series of shape (4, n + 1) as they stand under stamps that are late by the skews in
-    ``p``."""
+    """Return the series, shape (4, n + 1), under stamps that are late by the skews in ``p``."""
     t = np.arange(grid.shape[1]) * h
     return np.stack([np.interp(t - p[INDEX[name]], t, y) for name, y in zip(SKEWS, grid, strict=True)])
 
 
 def lagging(y: FloatArray, h: float, lag_s: float) -> FloatArray:
-    """Return a series of shape (n,) behind a lag of first order, linear between its samples; below zero:
-    ahead."""
+    """Return a series of shape (n,) behind a first-order lag, linear between samples; a negative lag
+    leads."""
     if lag_s <= 0.0:
         return y - lag_s * np.gradient(y, h) if lag_s < 0.0 else y
     keep = np.exp(-h / lag_s)
@@ -76,7 +75,7 @@ def lagging(y: FloatArray, h: float, lag_s: float) -> FloatArray:
 def second_order_response(
     surface: FloatArray, h: float, omega_rad_s: float, damping: float
 ) -> tuple[FloatArray, FloatArray]:
-    """Return bend of a structural mode that follows the surface, rad, and its rate: each of shape (n +
+    """Return the bend of a structural mode that follows the surface, rad, and its rate, each of shape (n +
     1,)."""
     n = len(surface)
     bend, rate = np.zeros(n + 1), np.zeros(n + 1)

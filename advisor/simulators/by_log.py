@@ -1,4 +1,4 @@
-"""A simulator that is known only by a log which it wrote: what the log shows of it, identified first."""
+"""A simulator that is known only by its log: the log is identified first."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
@@ -13,18 +13,18 @@ from advisor.problems import ConfigurationError, UnusableInputError
 from advisor.simulators.linear import LinearSimulator
 
 _LEAST = 2
-"""Manoeuvres of a simulator's log: a single one names no effect, for none is left to confirm it."""
+"""Least number of manoeuvres in a simulator's log. A single one names no effect, for lack of a hold-out."""
 _SUFFIXES = (".tlog", ".bin", ".ulg")
 
 
 @dataclass(frozen=True)
 class IdentifiedSimulator(LinearSimulator):
-    """The short period and the effects that a simulator's log shows, as a simulator."""
+    """The short period and the effects identified from a simulator's log, as a simulator."""
 
     as_file: Aircraft = field(default_factory=Aircraft)
-    """The aircraft file with what was identified in place of its model, servo and effects."""
+    """The aircraft file with the identified model, servo and effects."""
     notes: tuple[str, ...] = ()
-    """What was identified, with standard deviations."""
+    """Sentences about the identified model and effects, with standard deviations."""
 
 
 def from_log(

@@ -1,7 +1,7 @@
-"""A flight beside the user's own simulator: where the gap lies, which effect causes it, how far it shrinks.
+"""The comparison of a flight with the user's own simulator: place, cause and shrink of the gap.
 
-The simulator S replays the recorded inputs. Its linear surrogate L is diagnosed on y − (y_S − y_L): what a
-simulator makes of the inputs beyond L is its own, and is not called missing.
+The simulator S replays the recorded inputs. Its linear surrogate L is diagnosed on y − (y_S − y_L). The
+difference between S and L belongs to the simulator, and is not called missing.
 """
 
 from collections.abc import Mapping, Sequence
@@ -32,12 +32,12 @@ from advisor.simulators.protocol import Condition, Inputs, Simulator
 from advisor.simulators.surrogate import Surrogate, surrogate_of
 
 _FLIES, _DIAGNOSED = 0.25, 0.8
-"""Shares of the work after the first replays, and after the diagnosis."""
+"""Shares of the work that are done after the first replays, and after the diagnosis."""
 
 
 @dataclass(frozen=True)
 class Compared:
-    """The diagnosis against a simulator, and that simulator to first order."""
+    """The diagnosis against a simulator, and the simulator's linear surrogate."""
 
     diagnosis: Diagnosis
     aircraft: Aircraft
@@ -56,9 +56,9 @@ def compare(
     Parameters
     ----------
     maneuvers, holdout, progress
-        As ``advisor.gap.diagnose.diagnose`` takes them.
+        Arguments of ``advisor.gap.diagnose.diagnose``.
     simulator
-        The user's own.
+        The user's own simulator.
     aircraft
         The aircraft file. Its effects and its servo act around and in the simulator; its model is not used.
 
@@ -104,7 +104,7 @@ def _measured(
     as_flown: Mapping[int, AsGiven],
     holdout: int | None,
 ) -> Diagnosis:
-    """Return the diagnosis with what the simulator itself makes of its findings."""
+    """Return the diagnosis with the gap of the simulator itself, before and after the findings."""
     found = in_simulator(examined, flying, surrogate, as_flown, holdout)
     told = examined.diagnosis
     notes = (f"The effects stay on paper: {found.refused}", *told.notes) if found.refused else told.notes
@@ -112,8 +112,7 @@ def _measured(
 
 
 def _linear(flying: Flying) -> dict[int, AsGiven]:
-    """Return how a linear simulator begins every manoeuvre: its surrogate is itself, and nothing lies
-    beyond."""
+    """Return how a linear simulator starts every manoeuvre: it equals its surrogate."""
     begun = []
     for flight in flying.flights.flights:
         rest = Inputs(np.array([0.5, 1.5]) * flight.h, np.zeros(2))
@@ -122,7 +121,7 @@ def _linear(flying: Flying) -> dict[int, AsGiven]:
 
 
 def _surrogate_and_rest(flying: Flying, aircraft: Aircraft) -> tuple[Surrogate, dict[int, AsGiven]]:
-    """Return the surrogate, and how the simulator flies every manoeuvre."""
+    """Return the surrogate, and every manoeuvre as flown by the simulator."""
     flights = flying.flights
     variants = variants_for(flights)
     known = with_known(base_entries(aircraft), aircraft.effects, flights, variants)
@@ -150,14 +149,14 @@ def _without_equations(aircraft: Aircraft) -> Aircraft:
 
 
 def _usual(flying: Flying) -> Condition:
-    """Return the condition in the middle of those in which the manoeuvres began."""
+    """Return the condition in the middle of those at the starts of the manoeuvres."""
     conditions = [condition_of(f, flying.flights, flying.mass_kg) for f in flying.flights.flights]
     height = float(np.mean([c.height_m for c in conditions]))
     return Condition(flying.flights.reference_m_s, height, 0.0, flying.mass_kg)
 
 
 def _without(m: Maneuver, as_flown: Mapping[int, AsGiven]) -> Maneuver:
-    """Return the manoeuvre without what the simulator makes of it beyond its surrogate."""
+    """Return the manoeuvre without the simulator's difference to its surrogate."""
     if m.number not in as_flown:
         return m
     flight, grid = as_flown[m.number].flight, as_flown[m.number].beyond
@@ -170,7 +169,7 @@ def _without(m: Maneuver, as_flown: Mapping[int, AsGiven]) -> Maneuver:
 
 
 def _less(channel: Channel, t: FloatArray, by: FloatArray) -> Channel:
-    """Return a channel less a series; a sample that repeats the one before repeats it still."""
+    """Return a channel minus a series; a sample that repeats the one before still repeats it."""
     y = channel.y - np.interp(channel.t, t, by)
     fresh = np.concatenate([[True], np.diff(channel.y) != 0.0])
     return replace(channel, y=y[np.maximum.accumulate(np.where(fresh, np.arange(len(y)), 0))])

@@ -1,4 +1,4 @@
-"""A simulator flies the recorded inputs, and what it makes of them beyond its linear surrogate."""
+"""A simulator that flies the recorded inputs, and the difference to its linear surrogate."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ Progress = Callable[[str, float], None]
 
 @dataclass(frozen=True)
 class Flying:
-    """A simulator with the manoeuvres that it is to fly."""
+    """A simulator with the manoeuvres to be flown."""
 
     simulator: Simulator
     flights: Flights
@@ -37,16 +37,16 @@ class Flying:
         Parameters
         ----------
         command
-            Shape (manoeuvres, entries): what lies between the recorded command and the simulator's input.
+            Shape (manoeuvres, entries): effects between the recorded command and the simulator's input.
         held
             Whether the command was held between its stamps.
         increments
-            What is added to the simulator in each manoeuvre; None: nothing.
+            Increments of the simulator in each manoeuvre; None adds nothing.
 
         Raises
         ------
         UnusableInputError
-            The simulator does not load, does not trim, takes too long, or leaves numbers.
+            The simulator does not load, does not trim, takes too long, or returns no finite numbers.
         """
         found = []
         many = self.flights.flights
@@ -67,23 +67,25 @@ class Flying:
 
 @dataclass(frozen=True)
 class AsGiven:
-    """One manoeuvre as the simulator flew it before anything was found."""
+    """One manoeuvre as flown by the simulator without added effects."""
 
     flight: Flight
-    """With the simulator's own speed and trim."""
+    """Flight with the simulator's own speed and trim."""
     beyond: FloatArray
-    """Shape (4, n + 1): what the simulator made of the inputs beyond its surrogate."""
+    """Shape (4, n + 1): outputs of the simulator minus those of its surrogate."""
 
 
 def beyond(flying: Flying, replays: Sequence[Replay], p: FloatArray, held: bool = False) -> list[FloatArray]:
-    """What a simulator made of the inputs beyond the surrogate with the same effects, manoeuvre by manoeuvre.
+    """Return the outputs of a simulator minus those of the surrogate with equal effects, manoeuvre by
+    manoeuvre.
 
     Parameters
     ----------
     replays
         The simulator's motion in every manoeuvre.
     p
-        Shape (manoeuvres, entries): the surrogate with the effects around and in the simulator.
+        Shape (manoeuvres, entries): driving numbers of the surrogate, with the effects around and in the
+        simulator.
     held
         Whether the command was held between its stamps.
 
@@ -104,16 +106,16 @@ def beyond(flying: Flying, replays: Sequence[Replay], p: FloatArray, held: bool 
 
 
 def added(flown: Sequence[Flight], found: FloatArray, as_given: FloatArray) -> tuple[Increments, ...]:
-    """What effects add to the simulator in every manoeuvre.
+    """Return the increments that effects add to the simulator, for every manoeuvre.
 
     Parameters
     ----------
     flown
         The manoeuvres as the simulator flew them without the effects.
     found
-        Shape (manoeuvres, entries): the surrogate with the effects.
+        Shape (manoeuvres, entries): driving numbers of the surrogate with the effects.
     as_given
-        Shape (6,): the surrogate's derivatives, as the simulator has them.
+        Shape (6,): derivatives of the surrogate, without the effects.
     """
     plain = np.zeros(found.shape[1])
     plain[: len(as_given)] = as_given
@@ -133,7 +135,7 @@ def without_servo(p: FloatArray, surrogate: Surrogate) -> FloatArray:
 
 
 def _refuse_broken(replay: Replay, description: str, flight: Flight) -> None:
-    """Refuse a replay with a number missing, or one that ends long before the manoeuvre does."""
+    """Refuse a replay that lacks a number, or that ends long before the manoeuvre does."""
     series = (
         replay.t,
         replay.alpha,
@@ -160,12 +162,12 @@ def _refuse_broken(replay: Replay, description: str, flight: Flight) -> None:
 
 
 def refuse_unmoved(description: str, replays: Sequence[Replay], flights: Flights) -> None:
-    """Refuse a simulator whose pitch rate moves by less than the flight's instrument can tell.
+    """Refuse a simulator whose pitch rate moves by less than the noise of the flight's gyro.
 
     Raises
     ------
     UnusableInputError
-        It does in every manoeuvre.
+        The pitch rate moves by less in every manoeuvre.
     """
     noise = float(flights.white[flights.channels.index("q")])
     if max(float(np.ptp(replay.q)) for replay in replays) < noise:

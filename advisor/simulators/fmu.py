@@ -24,7 +24,7 @@ _INPUTS = ("elevator", "aileron", "rudder", "throttle", "force_increment", "mome
 _DIFFERENCE_RAD = 1e-3
 _NEWTON_STEPS = 30
 _STEADY = 1e-4
-"""Rate of α, rad/s, and of q, rad/s², below which flight is steady: a solver may leave as much."""
+"""Rate of α (rad/s) and of q (rad/s²) below which flight is steady: a solver may leave as much."""
 _LONGEST_NEWTON_STEP_RAD = 0.1
 
 
@@ -66,7 +66,7 @@ class FmuSimulator:
     path : Path
         The FMU.
     variables : FmuVariables
-        What the FMU calls its variables.
+        Names of the variables in the FMU.
     speed_tolerance_percent : float
         Largest difference between the air speed at which the FMU begins and the flown one.
     """
@@ -94,7 +94,7 @@ class FmuSimulator:
         self.takes_increments = variables.force_increment is not None
 
     def replay(self, condition: Condition, inputs: Inputs, increments: Increments | None = None) -> Replay:
-        """Begin at the condition, and fly the inputs as departures from their start values."""
+        """Start at the condition, and fly the inputs as departures from their start values."""
         step = self._step_s
         t = step * np.arange(math.ceil(inputs.t[-1] / step) + 1)
         middles = t[:-1] + 0.5 * step
@@ -120,7 +120,7 @@ class FmuSimulator:
         return Replay(t, *np.array(rows).T)
 
     def linearise(self, condition: Condition) -> Mapping[str, float] | None:
-        """None: an FMU for co-simulation has no linearisation that all FMUs share."""
+        """Return None: FMUs for co-simulation have no common interface for a linearisation."""
         return None
 
     def close(self) -> None:
@@ -135,7 +135,7 @@ class FmuSimulator:
         }
 
     def _begin(self, condition: Condition, held: Mapping[str, FloatArray]) -> dict[str, float]:
-        """Begin in steady flight; the inputs' values there."""
+        """Start in steady flight, and return the values of the inputs there."""
         start = self._start_values(condition)
         if "alpha" not in self._trim:
             self._fmu.begin(start)
@@ -210,7 +210,7 @@ class FmuSimulator:
         self._fmu.write({self._inputs[name]: value / self._factor[name] for name, value in values.items()})
 
     def _motion(self, condition: Condition) -> list[float]:
-        """Return the outputs in the order of ``_OUTPUTS``; what is not mapped stays at the condition's."""
+        """Return the outputs in the order of ``_OUTPUTS``; an unmapped output keeps the condition's value."""
         values = dict(zip(self._outputs, self._fmu.read(self._outputs.values()), strict=True))
         kept = {"airspeed": condition.airspeed_m_s, "height": condition.height_m}
         return [self._factor[name] * values[name] if name in values else kept[name] for name in _OUTPUTS]

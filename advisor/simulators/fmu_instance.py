@@ -10,7 +10,7 @@ from advisor.problems import UnusableInputError
 
 _REAL = ("Real", "Float64")
 Use = Literal["output", "input", "start"]
-"""What a variable is for: read, set in every step, or set before the first."""
+"""Use of a variable: it is read, set in every step, or set before the first step."""
 
 
 class Fmu:
@@ -19,8 +19,8 @@ class Fmu:
     Raises
     ------
     UnusableInputError
-        The file is no FMU of FMI 2 or 3, holds no co-simulation, or no binary for this platform. From the
-        other methods: a variable is not there or is no number, or the FMU refuses a call.
+        The file is no FMU of FMI 2 or 3, holds no co-simulation, or no binary for this platform. The other
+        methods raise it where a variable is missing or no number, or where the FMU refuses a call.
     """
 
     def __init__(self, path: Path) -> None:
@@ -32,7 +32,7 @@ class Fmu:
             platforms = fmpy.supported_platforms(str(path))
             self._folder = fmpy.extract(str(path), tempfile.mkdtemp())
         except Exception as error:
-            # FMPy lets the exceptions of zip files, of XML and its own pass, down to Exception itself.
+            # FMPy passes on the exceptions of zip files, of XML and its own, down to Exception itself.
             raise self._unusable(f"is no FMU: {_sentence(error)}", "Export the FMU again.") from error
         version = self._description.fmiVersion
         if not version.startswith(("2.", "3.")):
@@ -51,7 +51,7 @@ class Fmu:
 
     @property
     def default_step_s(self) -> float | None:
-        """The step that the FMU proposes, s; None: it proposes none."""
+        """Step that the FMU proposes, s; None where it proposes none."""
         experiment = self._description.defaultExperiment
         step = None if experiment is None else experiment.stepSize
         return None if step is None else float(step)

@@ -1,4 +1,4 @@
-"""How far in the user's own simulator: the effects are added to it, and it flies the manoeuvres again."""
+"""The gap in the user's own simulator: the effects are added, and it flies the manoeuvres again."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -27,7 +27,7 @@ EQUATIONS = ("force_equation", "moment_equation")
 
 @dataclass(frozen=True)
 class Carried:
-    """The part of a model that the simulator can be given."""
+    """The part of a model that the simulator can take."""
 
     point: Point
     on_paper: tuple[str, ...]
@@ -45,15 +45,15 @@ def in_simulator(
     Parameters
     ----------
     examined
-        The diagnosis of manoeuvres without what the simulator makes of them beyond its surrogate.
+        Diagnosis of the manoeuvres, with the simulator's difference to its surrogate subtracted.
     flying
         The simulator with the manoeuvres.
     surrogate
-        The simulator to first order.
+        Linear surrogate of the simulator.
     as_flown
-        Manoeuvre number to how the simulator flew the manoeuvre.
+        Manoeuvre number to the manoeuvre as flown by the simulator.
     holdout
-        As ``advisor.gap.diagnose.diagnose`` takes it.
+        Argument of ``advisor.gap.diagnose.diagnose``.
     """
     diagnosis, e = examined.diagnosis, examined.evidence
     problem, last = e.problem, e.stages[-1]
@@ -80,7 +80,7 @@ def in_simulator(
     try:
         replays = measured.replays(without_servo(found, surrogate), problem.held, increments)
     except UnusableInputError as error:
-        # The diagnosis stands, whatever the simulator makes of the effects.
+        # The diagnosis stands, even if the simulator does not fly with the effects.
         table = qualified(original, before, None, kept)
         return InSimulator(name, was, None, None, parts[0].on_paper, table, str(error.problem))
     grids = beyond(measured, replays, found, problem.held)
@@ -99,7 +99,7 @@ def in_simulator(
 
 
 def _carried(point: Point, problem: Problem, surrogate: Surrogate, flying: Flying) -> Carried:
-    """Return a model without what the simulator cannot be given, and the names of that."""
+    """Return a model without the parts that the simulator cannot take, and the names of those parts."""
     on_paper: list[str] = []
     if not flying.simulator.takes_increments:
         derivatives = np.array([surrogate.derivatives[name] for name in DERIVATIVES])
@@ -128,7 +128,7 @@ def _found(problem: Problem, points: Sequence[Point]) -> FloatArray:
 
 
 def _named(point: Point) -> Point:
-    """Return the model without what is part of every model: that is the flight's, not the simulator's."""
+    """Return the model without nuisance parameters, which belong to the flight instead of the simulator."""
     keep = [k for k, effect in enumerate(point.effects) if not effect.is_nuisance]
     return replace(
         point,
@@ -138,7 +138,7 @@ def _named(point: Point) -> Point:
 
 
 def _with(problem: Problem, grids: Sequence[FloatArray], sign: float) -> Problem:
-    """Return the problem with series on the grid added to what was measured, each by the sign."""
+    """Return the problem with series on the grid, times ``sign``, added to the measurements."""
     flights = []
     for flight, grid in zip(problem.flights.flights, grids, strict=True):
         t = np.arange(grid.shape[1]) * flight.h
@@ -151,7 +151,7 @@ def _with(problem: Problem, grids: Sequence[FloatArray], sign: float) -> Problem
 
 
 def _without_the_air(examined: Examined, after: HeldOut) -> HeldOut:
-    """Return the errors without the share that the air's likeliest course takes out of the model's."""
+    """Return the errors without the share that the air's likeliest course removes from the model's."""
     air, last = examined.evidence.air, examined.evidence.stages[-1].held_out
     if air is None:
         return after

@@ -1,7 +1,7 @@
-"""Force and moment that effects add to a simulator: Eqs. (1)-(2) with the effects, less those without.
+"""Force and moment that effects add to a simulator: Eqs. (1)-(2) with the effects minus those without.
 
-The numbers are entries of ``advisor.gap.simulator.layout``, so that an effect acts in the user's simulator as
-in the model in which the diagnosis found the effect.
+The parameters are entries of ``advisor.gap.simulator.layout``. An effect therefore acts in the user's
+simulator as in the model in which the diagnosis found the effect.
 """
 
 from collections.abc import Mapping
@@ -21,7 +21,7 @@ CARRIED = (
 )  # fmt: skip
 """Entries that become increments."""
 _HIGHEST = 3.0
-"""Exponent of the ground's influence at which heights below the reference end."""
+"""Exponent of the ground's influence that is never exceeded below the reference height."""
 
 
 @dataclass(frozen=True)
@@ -45,8 +45,8 @@ class Added:
         return z - z_plain, m - m_plain
 
     def _remembered(self, state: State) -> tuple[float, float]:
-        """Return the lift's lagging angle and the engine's lagging throttle, after the time since the last
-        call."""
+        """Return the lagging angle of the lift and the lagging throttle of the engine, after the time since
+        the last call."""
         seen = self._memory
         if not seen or state.t < seen["t"]:
             seen.update(t=state.t, lift=self.alpha_trim, engine=0.0)
@@ -86,7 +86,7 @@ class Added:
 
 
 def attached(sharpness: float, beyond_rad: float) -> float:
-    """Return the share of the lift that is left beyond an angle of attack (Kirchhoff's flow); 1 without a
+    """Return the attached share of the lift beyond an angle of attack (Kirchhoff's flow); 1 without a
     sharpness."""
     if sharpness <= 0.0:
         return 1.0

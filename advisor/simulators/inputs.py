@@ -1,4 +1,4 @@
-"""What a simulator is given of a flown manoeuvre, and the replay as a manoeuvre on the gap's own grid."""
+"""Inputs of a simulator from a flown manoeuvre, and the replay as a manoeuvre on the gap's own grid."""
 
 from dataclasses import replace
 
@@ -27,7 +27,7 @@ _RATE_S = 0.02
 
 
 def condition_of(flight: Flight, flights: Flights, mass_kg: float | None) -> Condition:
-    """Return the steady flight in which a manoeuvre begins: mean speed and height before the first step."""
+    """Return the steady flight at the start of a manoeuvre: mean speed and height before the first step."""
     before = max(int(flight.first_step_s / flight.h), 1)
     speed = float(np.mean(flight.slow[SPEED, :before]))
     height = float(np.mean(flight.slow[HEIGHT, :before])) if "height" in flights.has else 0.0
@@ -36,7 +36,8 @@ def condition_of(flight: Flight, flights: Flights, mass_kg: float | None) -> Con
 
 
 def inputs_of(flight: Flight, flights: Flights, p: FloatArray, held: bool) -> Inputs:
-    """Return the recorded command after what lies between command and surface in ``p``, shape (entries,)."""
+    """Return the recorded command behind the effects between command and surface in ``p``, shape
+    (entries,)."""
     stamps = flight.t_held if held else flight.t_u
     elevator = surface(flight.h, flight.n, stamps, flight.u, held, flight.u_trim, p)
     others = {"throttle": flight.slow[THROTTLE]} if "throttle" in flights.has else {}
@@ -45,10 +46,9 @@ def inputs_of(flight: Flight, flights: Flights, p: FloatArray, held: bool) -> In
 
 
 def as_flight(flight: Flight, replay: Replay, reference_m_s: float) -> Flight:
-    """Return the manoeuvre as the simulator flew it: the same command, with the simulator's own speed and
-    trim.
+    """Return the manoeuvre as flown by the simulator: equal command, with the simulator's own speed and trim.
 
-    Bank and turn are none, and thrust is taken to be drag.
+    Bank and turn are zero, and thrust equals drag.
     """
     middles = (np.arange(flight.n) + 0.5) * flight.h
     slow = np.zeros_like(flight.slow)
@@ -64,7 +64,7 @@ def as_flight(flight: Flight, replay: Replay, reference_m_s: float) -> Flight:
 
 
 def at_reference(flight: Flight, reference_m_s: float) -> Flight:
-    """Return the manoeuvre with derivatives that hold at another speed."""
+    """Return the manoeuvre with derivatives at another reference speed."""
     trim = flight.trim.copy()
     trim[REFERENCE] = reference_m_s
     return replace(flight, trim=trim)
@@ -78,7 +78,7 @@ def on_grid(replay: Replay, flight: Flight) -> FloatArray:
 
 
 def read_from(flight: Flight, grid: FloatArray, channels: tuple[str, ...]) -> Flight:
-    """Return the manoeuvre with a series on the grid, shape (4, n + 1), in place of what was measured."""
+    """Return the manoeuvre with a series on the grid, shape (4, n + 1), in place of the measurements."""
     t = np.arange(flight.n + 1) * flight.h
     stamps = np.arange(0.0, t[-1], _RATE_S)
     names = ("alpha", "q", "a_z", "theta")

@@ -18,7 +18,7 @@ from advisor.simulators.protocol import Condition, Increments, Inputs, Replay, S
 
 _SPAWN = multiprocessing.get_context("spawn")
 _GOODBYE_S = 1.0
-"""Time that a process has to end by itself once its connection is closed."""
+"""Time in s that a process has to end after its connection is closed."""
 
 
 class Isolated:
@@ -45,7 +45,7 @@ class Isolated:
     ConfigurationError
         The simulator cannot be built.
     UnusableInputError
-        From each method: the simulator refuses, raises, crashes, answers no numbers, or takes too long.
+        Each method: the simulator refuses, raises, crashes, returns no numbers, or takes too long.
     """
 
     def __init__(
@@ -190,7 +190,7 @@ def _serve(connection: Connection, folder: str, make: str, arguments: tuple[Any,
 
 
 class _NoReplayError(Exception):
-    """What the simulator returned is no replay."""
+    """The simulator did not return a replay."""
 
 
 def _outcome(task: Any, *given: Any) -> tuple[str, Any]:
@@ -201,7 +201,7 @@ def _outcome(task: Any, *given: Any) -> tuple[str, Any]:
     except _NoReplayError as error:
         return "raised", str(error)
     except (Exception, SystemExit) as error:
-        # Whatever foreign code raises becomes text: its classes do not exist in the parent.
+        # Exceptions of foreign code become text, because their classes do not exist in the parent.
         return "raised", " ".join(f"{type(error).__name__}: {error}".split())[:300].rstrip(".: ")
 
 

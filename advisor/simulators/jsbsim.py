@@ -16,7 +16,7 @@ from advisor.simulators.protocol import Condition, Increments, Inputs, Replay
 from advisor.simulators.protocol import State as Motion
 
 _PROBE = 1e-3
-"""Departure in central differences: rad of α and of elevator, rad/s of q."""
+"""Departures for central differences: of α and of the elevator in rad, of q in rad/s."""
 
 
 def make_jsbsim(model: str, aircraft: Aircraft) -> Isolated:
@@ -60,7 +60,7 @@ class Jsbsim:
         try:
             return self._fly(condition, inputs, increments)
         except Exception:
-            # Engines and filters of a flight that failed keep what made it fail.
+            # Engines and filters keep the state of a failed flight, so a new instance is loaded.
             self._flight = Flight(self._path)
             raise
 
@@ -98,7 +98,7 @@ class Jsbsim:
     def linearise(self, condition: Condition) -> Mapping[str, float] | None:
         """Return central differences of α̇ and q̇ about the trimmed state, at constant speed and flight path.
 
-        A moment by the rate of α is part of the derivatives, as in the short-period model.
+        A moment by the rate of α becomes part of the derivatives, as in the short-period model.
         """
         start = self._trimmed(condition)
         by_alpha = self._slopes(condition, start, alpha=_PROBE)
@@ -114,7 +114,7 @@ class Jsbsim:
         }
 
     def close(self) -> None:
-        """Nothing to end: JSBSim lives in this process."""
+        """Do nothing: JSBSim lives in this process."""
 
     def _trimmed(self, condition: Condition) -> State:
         state = trim(self._flight, condition, self._trims.get(condition))
@@ -142,7 +142,7 @@ class Jsbsim:
         return (u * w_dot - w * u_dot) / (u * u + w * w), fdm["accelerations/qdot-rad_sec2"]
 
     def _throw(self, name: str) -> float:
-        """Return command per radian of surface, positive where a positive surface turns to the left."""
+        """Return the command per radian of surface, positive where a positive surface turns to the left."""
         fdm = self._flight.fdm
         surface, rate = {
             "aileron": ("fcs/left-aileron-pos-rad", "accelerations/pdot-rad_sec2"),
@@ -177,7 +177,7 @@ class Jsbsim:
         )
 
     def _add(self, increments: Increments, t: float, elevator: float, throttle: float) -> None:
-        """Add the increments of the state in which this step's forces are evaluated, one step on."""
+        """Add the increments for the state in which the forces of the next step are evaluated."""
         fdm = self._flight.fdm
         alpha_dot, q_dot = self._rates()
         speed = fdm["velocities/vt-fps"]

@@ -1,7 +1,7 @@
-"""One JSBSim aircraft in SI units: put into a steady state, commanded, and read.
+"""One JSBSim aircraft in SI units, for steady states, commands and readings.
 
-The flight stands still while a state is looked for (:meth:`Flight.freeze`): position and velocity keep
-their values, and engines and propellers settle. Lags of the flight control are passed meanwhile.
+The flight stands still while a state is sought (:meth:`Flight.freeze`): position and velocity keep their
+values, and engines and propellers settle. Lags of the flight control pass meanwhile.
 """
 
 from pathlib import Path
@@ -19,9 +19,9 @@ POUND_KG = 0.45359237
 STEP_S = 0.005
 
 _LATITUDE_DEG = 45.0
-"""Where gravity is the standard's."""
+"""Latitude at which gravity is standard, deg."""
 _CLEARANCE_M = 3000.0
-"""Height above the terrain, which is moved out of the way of gear and ground effect."""
+"""Height above the terrain, m, which is lowered so that gear and ground effect play no part."""
 _ADAMS_BASHFORTH_2, _NONE = 3, 0
 _INTEGRATORS = {
     "simulation/integrator/rate/rotational": _ADAMS_BASHFORTH_2,
@@ -31,10 +31,11 @@ _INTEGRATORS = {
 }
 _COMMANDS = np.linspace(-1.0, 1.0, 81)
 _PROBE = 0.02
-"""Departure of α, rad, and of q, rad/s, that shows whether the flight control feeds motion back."""
+"""Departures of α (rad) and of q (rad/s) that show whether the flight control feeds motion back."""
 _ROUNDING = 1e-9
 _SETTLE_STEPS = 3
-"""Forces trail the state, and the rate of α trails the forces, by a call each."""
+"""Number of calls until all values follow: forces trail the state, and the rate of α trails the forces, by
+one call each."""
 
 
 class State(NamedTuple):
@@ -42,7 +43,7 @@ class State(NamedTuple):
 
     alpha: float = 0.0
     elevator: float = 0.0
-    """At the surface, rad."""
+    """Surface deflection, rad."""
     aileron: float = 0.0
     """Command from -1 to 1."""
     rudder: float = 0.0
@@ -50,20 +51,20 @@ class State(NamedTuple):
     phi: float = 0.0
     throttle: float = 0.6
     axial: float = 0.0
-    """Force along the path that balances what thrust does not, lb."""
+    """Force along the path that balances the excess of thrust, lb."""
 
 
 class Flight:
     """A loaded model; the elevator is commanded in radians of surface.
 
-    The elevator takes the model's own way from command to surface, with the model's own actuator, where that
-    way is one curve. Where the flight control feeds motion back, the surface itself is written, and actuator
-    and flight control are bypassed.
+    The elevator takes the model's own path from command to surface, with its actuator, where that path is one
+    curve. Where the flight control feeds motion back, the surface itself is written, and actuator and flight
+    control are bypassed.
 
     Raises
     ------
     UnusableInputError
-        The model does not load; from :meth:`begin`: its command moves no ``fcs/elevator-pos-rad``.
+        The model does not load. :meth:`begin` raises it where the command moves no ``fcs/elevator-pos-rad``.
     """
 
     def __init__(self, path: Path) -> None:
@@ -122,7 +123,7 @@ class Flight:
             self.fdm[f"fcs/throttle-cmd-norm[{i}]"] = min(max(setting, 0.0), 1.0)
 
     def put(self, state: State, gamma: float, q: float = 0.0) -> None:
-        """Put the aircraft into a state on a path of angle ``gamma``, with a pitch rate."""
+        """Put the aircraft into a state on a path of angle ``gamma``, with pitch rate ``q``."""
         fdm = self.fdm
         fdm["ic/alpha-rad"] = state.alpha
         fdm["ic/beta-rad"] = 0.0
@@ -141,7 +142,7 @@ class Flight:
         fdm.resume_integration()
 
     def run_engines(self) -> None:
-        """Let engines and propellers run for a second of held flight."""
+        """Run engines and propellers for a second of frozen flight."""
         for _ in range(round(1.0 / STEP_S)):
             self.fdm.run()
 
@@ -170,7 +171,7 @@ class Flight:
             fdm.run_ic()
 
     def _elevator_curve(self, condition: Condition) -> tuple[FloatArray, FloatArray] | None:
-        """Return surfaces in ascending order and their commands; None: the surface is written."""
+        """Return surfaces in ascending order and their commands; None where the surface is written."""
         fdm = self.fdm
         fdm[WRITES] = 0.0
         fdm["fcs/pitch-trim-cmd-norm"] = 0.0

@@ -1,8 +1,8 @@
-"""A JSBSim aircraft loaded from a copy of its own XML that also takes increments and a written surface.
+"""A JSBSim aircraft from a copy of its XML, which also takes increments and a written surface.
 
 The copy lies in a temporary folder; nothing is written next to the model. The copy has external forces and an
-external moment for increments, a point mass for the flown mass, and a last channel of the flight control that
-can write the elevator. The copy has no <output> and no <input>: the model opens neither files nor sockets.
+external moment for increments, and a point mass for the flown mass. A last channel of its flight control can
+write the elevator. The copy has no <output> and no <input>: the model opens neither files nor sockets.
 """
 
 import importlib.util
@@ -19,7 +19,7 @@ FORCE = "external_reactions/advisor-force"
 AXIAL = "external_reactions/advisor-axial"
 MOMENT = "external_reactions/advisor-moment/magnitude-lbsft"
 WRITES = "advisor/elevator-writes"
-"""1: the surface is written, and the model's flight control is bypassed."""
+"""Property that is 1 where the surface is written and the model's flight control is bypassed."""
 WRITTEN = "advisor/elevator-written-rad"
 LOAD = "inertia/pointmass-weight-lbs"
 LOAD_PLACE = "inertia/pointmass-location-{}-inches"
@@ -63,7 +63,7 @@ def load(path: Path, dt: float) -> Any:
     import jsbsim
 
     root = Path(jsbsim.get_default_root_dir())
-    # An aircraft of a whole JSBSim tree brings its engines and systems two folders up.
+    # An aircraft of a whole JSBSim tree has its engines and systems two folders up.
     own = path.parent.parent.parent
     engines, systems = (
         str(folder if folder.is_dir() else root / folder.name) for folder in (own / "engine", own / "systems")
@@ -102,7 +102,7 @@ def _equipped(path: Path) -> "ET.ElementTree[ET.Element]":
     for tag in ("output", "input"):
         for element in root.findall(tag):
             root.remove(element)
-    # The first point mass keeps the index 0 whatever the model's own are.
+    # The first point mass keeps the index 0, whatever the model's own are.
     _section(root, "mass_balance").insert(0, ET.fromstring(_POINT_MASS))
     _section(root, "flight_control", path.parent).extend(ET.fromstring(_CHANNEL))
     _section(root, "external_reactions").extend(ET.fromstring(_REACTIONS))
@@ -110,7 +110,7 @@ def _equipped(path: Path) -> "ET.ElementTree[ET.Element]":
 
 
 def _section(root: ET.Element, tag: str, folder: Path | None = None) -> ET.Element:
-    """Return the section, with what its own ``file`` holds, and made where there is none."""
+    """Return the section with the content of its own ``file``; the section is created where there is none."""
     section = root.find(tag)
     if section is None:
         section = ET.SubElement(root, tag, {"name": "advisor"})

@@ -17,24 +17,24 @@ from advisor.simulators.protocol import Condition
 
 _UNKNOWNS = ("alpha", "elevator", "phi", "aileron", "rudder")
 _LONGITUDINAL = (1, 3)
-"""Places of ẇ and q̇ among the accelerations after u̇."""
+"""Indices of ẇ and q̇ among the accelerations after u̇."""
 _DIFFERENCE = 1e-4
 _LONGEST_STEP = 0.1
-"""Longest Newton step of an angle, rad, or a command."""
+"""Longest Newton step of an angle (rad) or of a command."""
 _NEWTON_STEPS = 40
 _STEADY = 1e-6
 """Acceleration below which flight is steady, m/s² and rad/s²."""
 _THROTTLES = 12
 _BALANCED_M_S2 = 1e-3
-"""Axial acceleration that the throttle need not solve: the force along the path takes that."""
+"""Axial acceleration, m/s², that the throttle need not remove: the force along the path balances it."""
 _ENGINE_SECONDS = 30
 _ENGINES_STEADY = 1e-4
-"""Change of the axial acceleration in a second below which engines run steadily, m/s²."""
+"""Change of the axial acceleration in one second, m/s², below which engines run steadily."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Tried:
-    """Steady flight at one throttle, and the axial acceleration that remained, m/s²."""
+    """Steady flight at one throttle, and the remaining axial acceleration, m/s²."""
 
     state: State
     excess: float
@@ -46,7 +46,7 @@ def trim(flight: Flight, condition: Condition, known: State | None = None) -> St
     Parameters
     ----------
     known : State
-        An earlier trim of the same condition: its throttle is kept, and only engines settle anew.
+        Earlier trim of the condition, whose throttle is kept while the engines settle anew.
 
     Raises
     ------
@@ -60,14 +60,14 @@ def trim(flight: Flight, condition: Condition, known: State | None = None) -> St
     best = tried[-1]
     state = best.state._replace(axial=-best.excess / FOOT_M * flight.mass_slug)
     flight.put(state, condition.flight_path_rad)
-    # A turboprop forgets its power while a state is put.
+    # A turboprop loses its power while a state is put.
     _settle_engines(flight)
     return state
 
 
 def _next_throttle(tried: list[_Tried]) -> float | None:
-    """Return the next throttle between those that slow and those that accelerate; None: the last one
-    serves."""
+    """Return the next throttle between a decelerating and an accelerating one; None where the last one is
+    good enough."""
     last = tried[-1]
     if abs(last.excess) < _BALANCED_M_S2 or len(tried) >= _THROTTLES:
         return None
@@ -77,18 +77,18 @@ def _next_throttle(tried: list[_Tried]) -> float | None:
         end = 1.0 if slow else 0.0
         return None if last.state.throttle == end else end
     (low, lacking), (high, exceeding) = max(slow), min(fast)
-    # Halves help a secant that creeps along one side.
+    # Bisection helps a secant that creeps along one side.
     share = lacking / (lacking - exceeding) if len(tried) % 3 else 0.5
     return low + share * (high - low)
 
 
 def _steady(flight: Flight, condition: Condition, guess: State) -> _Tried:
-    """Return the steady flight at the guess's throttle, but for the axial acceleration."""
+    """Return the steady flight at the guess's throttle, with its axial acceleration."""
     state = guess._replace(axial=0.0)
     flight.put(state, condition.flight_path_rad)
     _settle_engines(flight)
     state = _newton(flight, condition, state)
-    # Engines see another angle of attack now.
+    # The engines now have another angle of attack.
     _settle_engines(flight)
     state = _newton(flight, condition, state)
     return _Tried(state, float(flight.accelerations()[0]))
@@ -105,7 +105,7 @@ def _settle_engines(flight: Flight) -> None:
 
 
 def _newton(flight: Flight, condition: Condition, state: State) -> State:
-    """Solve all accelerations but the axial one; least squares where an axis has no control."""
+    """Solve all accelerations except the axial one, by least squares where an axis has no control."""
     gamma = condition.flight_path_rad
 
     def accelerations(at: State) -> FloatArray:
@@ -127,7 +127,7 @@ def _newton(flight: Flight, condition: Condition, state: State) -> State:
             if slopes[1, 0] < 0.0:
                 flight.put(state, gamma)
                 return state
-            # Beyond the stall lift falls with the angle of attack.
+            # Beyond the stall, lift falls with the angle of attack.
             break
         change *= min(1.0, _LONGEST_STEP / np.max(np.abs(change)))
         for name, by in zip(_UNKNOWNS, change, strict=True):

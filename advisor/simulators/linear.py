@@ -1,4 +1,4 @@
-"""Eight numbers as a simulator: Eqs. (1)-(2) about a trim, with the exact kinematics, in still air."""
+"""The eight parameters as a simulator: Eqs. (1)-(2) about a trim, with exact kinematics, in still air."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -13,25 +13,25 @@ from advisor.simulators.protocol import Condition, Increments, Inputs, Replay, S
 from advisor.standard_gravity import GRAVITY_M_S2
 
 _FARTHEST_RAD = 1.5
-"""Angle of attack at which no motion is computed any further."""
+"""Angle of attack, rad, at which the computation ends."""
 _Motion = tuple[float, float, float]
-"""α, q and θ."""
+"""α (rad), q (rad/s) and θ (rad)."""
 
 
 @dataclass(frozen=True)
 class LinearSimulator:
-    """The derivatives of the short period at a reference speed, with which they scale."""
+    """Short-period derivatives at a reference speed, which scale with the speed."""
 
     derivatives: Mapping[str, float]
     """Z_alpha, Z_q, Z_delta_e, M_alpha, M_q, M_delta_e."""
     reference_m_s: float | None = None
-    """Speed at which the derivatives hold; None: at whatever speed is flown."""
+    """Reference speed of the derivatives, m/s; None means the speed that is flown."""
     description: str = "the aircraft file's model"
     takes_increments: bool = True
     speed_limit_s: float = np.inf
 
     def replay(self, condition: Condition, inputs: Inputs, increments: Increments | None = None) -> Replay:
-        """Fly the inputs from trim at constant speed, step by step as the gap's own simulation does."""
+        """Fly the inputs from trim at constant speed, by the steps of the gap's own simulation."""
         n, h = len(inputs.t), float(inputs.t[1] - inputs.t[0])
         speed, steep = condition.airspeed_m_s, condition.flight_path_rad
         elevator = inputs.elevator.tolist()
@@ -69,7 +69,7 @@ class LinearSimulator:
         """Do nothing: no process runs."""
 
     def _rates(self, speed: float, steep: float) -> FloatArray:
-        """What one step needs: six derivatives at the speed, g/V, and the lift that carries the weight."""
+        """Return six derivatives at the speed, g/V, and the lift that carries the weight."""
         here = self.linearise(Condition(speed))
         weight = GRAVITY_M_S2 / speed
         return np.array([*(here[name] for name in DERIVATIVES), weight, -weight * np.cos(steep)])
@@ -80,7 +80,8 @@ def _step(
 ) -> tuple[float, tuple[float, float]]:
     """Return the normal force over m·V in rad/s, and the rates of α and q.
 
-    ``rates``, shape (8,): the six derivatives, g/V, and the lift in trim, rad/s; ``weight``: its part of α̇.
+    ``rates``, shape (8,), has the six derivatives, g/V, and the lift in trim, rad/s; ``weight`` is the
+    weight's part of α̇.
     """
     z_alpha, z_q, z_delta, m_alpha, m_q, m_delta, _, level = rates.tolist()
     normal = level + z_alpha * now.alpha + z_q * now.q + z_delta * now.elevator

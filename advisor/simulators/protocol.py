@@ -1,4 +1,4 @@
-"""What a simulator must do to be compared with a flight.
+"""The protocol of a simulator that can be compared with a flight.
 
 A simulator trims at a flight condition and replays recorded inputs from there. Effects of the command and of
 the instruments are applied around a simulator, so every simulator carries them. Effects of the force and of
@@ -16,33 +16,33 @@ from advisor.flight.messages import FloatArray
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """The flight condition in which a manoeuvre begins: steady, straight flight."""
+    """Flight condition at the start of a manoeuvre: steady, straight flight."""
 
     airspeed_m_s: float
-    """True air speed."""
+    """True air speed, m/s."""
     height_m: float = 0.0
-    """Pressure altitude."""
+    """Pressure altitude, m."""
     flight_path_rad: float = 0.0
     mass_kg: float | None = None
-    """None: the simulator's own mass."""
+    """Mass of the aircraft; None means the simulator's own."""
 
 
 @dataclass(frozen=True, slots=True)
 class Inputs:
-    """The recorded inputs of one manoeuvre, as departures from where they rested before the first step."""
+    """Recorded inputs of one manoeuvre, as departures from their values before the first step."""
 
     t: FloatArray
     """Shape (n,). Seconds since the start of the record: the middles of even steps."""
     elevator: FloatArray
-    """Shape (n,), rad, positive trailing edge down, the mean over each step, at the surface: what lies
-    between command and surface in the aircraft file is in it already."""
+    """Shape (n,). Surface deflection, rad, positive trailing edge down, mean over each step. The aircraft
+    file's effects between command and surface are included."""
     others: Mapping[str, FloatArray] = field(default_factory=dict)
-    """``aileron`` and ``rudder`` in rad, ``throttle`` from 0 to 1: shape (n,), those that were logged."""
+    """Logged inputs of shape (n,): ``aileron`` and ``rudder`` in rad, ``throttle`` from 0 to 1."""
 
 
 @dataclass(frozen=True, slots=True)
 class State:
-    """Where a simulator stands in one step, for increments that depend on the motion."""
+    """State of a simulator in one step, for increments that depend on the motion."""
 
     t: float
     alpha: float
@@ -60,7 +60,7 @@ class State:
 class Increments(Protocol):
     """Force and moment that are added to a simulator in every step. An instance can be pickled.
 
-    A simulator calls an instance with rising times. An effect with a memory begins anew when time goes back.
+    A simulator calls an instance with rising times. An effect with a memory restarts when time goes back.
     """
 
     def __call__(self, state: State) -> tuple[float, float]:
@@ -69,7 +69,7 @@ class Increments(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Replay:
-    """The motion that a simulator made of recorded inputs, without any instrument."""
+    """Motion of a simulator that flew recorded inputs, without any instrument."""
 
     t: FloatArray
     """Shape (m,). Seconds since the start of the record."""
@@ -81,7 +81,7 @@ class Replay:
     airspeed_m_s: FloatArray
     height_m: FloatArray
     a_x: FloatArray | None = None
-    """Specific force along body x, m/s²; None: worked out of the motion."""
+    """Specific force along body x, m/s²; None means that the motion determines it."""
 
 
 class Simulator(Protocol):
@@ -90,20 +90,20 @@ class Simulator(Protocol):
     Raises
     ------
     advisor.problems.UnusableInputError
-        From each method: the model does not load, does not trim, or takes longer than its time limit.
+        The model does not load, does not trim, or takes longer than its time limit. Each method may raise it.
     """
 
     @property
     def description(self) -> str:
-        """What it is, for people: ``JSBSim c172p``."""
+        """Description for people, such as ``JSBSim c172p``."""
 
     @property
     def takes_increments(self) -> bool:
-        """Whether it carries effects of the force and of the pitching moment."""
+        """Whether the simulator takes effects of the force and of the pitching moment."""
 
     @property
     def speed_limit_s(self) -> float:
-        """Wall time that one replay may take."""
+        """Most wall time of one replay, s."""
 
     def replay(self, condition: Condition, inputs: Inputs, increments: Increments | None = None) -> Replay:
         """Trim at the condition, and fly the inputs as departures from the trimmed controls."""
@@ -111,15 +111,16 @@ class Simulator(Protocol):
     def linearise(self, condition: Condition) -> Mapping[str, float] | None:
         """Return Z_alpha, Z_q, Z_delta_e, M_alpha, M_q, M_delta_e at the condition.
 
-        None: they are identified from replays.
+        None means that derivatives are identified from replays.
         """
 
     def close(self) -> None:
-        """End whatever process the simulator runs in."""
+        """End all processes of the simulator."""
 
 
 Factory = Callable[[str, Aircraft], Simulator]
-"""Makes a simulator of what follows the colon in a specification, and of the aircraft file.
+"""Function that makes a simulator from the part of a specification behind the colon, and from the aircraft
+file.
 
-Raises ``advisor.problems.ConfigurationError`` where that names nothing which can be loaded.
+It raises ``advisor.problems.ConfigurationError`` where that part names nothing that can be loaded.
 """

@@ -14,22 +14,22 @@ from advisor.gap.result import Qualification
 from advisor.gap.verdict.yardsticks import BAND, yardsticks
 
 _WINDOW_S = 0.1
-"""Over which an error is averaged, as slow inputs are: what is shorter is the instrument's noise."""
+"""Length in s of the average over an error. A shorter error is instrument noise."""
 
 
 def qualified(
     problem: Problem, before: HeldOut, after: HeldOut | None, kept: Sequence[int]
 ) -> tuple[Qualification, ...]:
-    """Return every channel beside its tolerance.
+    """Return every channel compared with its tolerance.
 
     Parameters
     ----------
     problem
-        The flights as they were measured.
+        The flights as measured.
     before, after
-        What the simulator leaves as given, and with the effects; None: nothing was added.
+        Residuals of the simulator as given, and with the effects; None where nothing was added.
     kept
-        Places of the manoeuvres that count.
+        Indices of the manoeuvres that count.
     """
     table = []
     for c, channel in enumerate(problem.channels):

@@ -1,4 +1,4 @@
-"""Which simulator a specification names: ``linear``, or a kind, a colon and what the kind needs."""
+"""Simulators by their specification: ``linear``, or a kind, a colon and an argument."""
 
 from collections.abc import Callable
 from importlib import import_module
@@ -22,11 +22,11 @@ _OURS = {
     "python": "advisor.simulators.by_python:make_python",
 }
 _NEEDS = {"jsbsim": ("jsbsim", "jsbsim"), "fmu": ("fmpy", "fmu")}
-"""Kind to the package that it imports, and the extra of ours that brings the package."""
+"""Kind to the package that it imports, and to the extra of this project that installs the package."""
 _FORMS = "linear, jsbsim:MODEL, fmu:FILE, python:module:factory, log:FILE"
 
 ReadLog = Callable[[Path], list[Maneuver]]
-"""Reads the manoeuvres of a log."""
+"""Function that reads the manoeuvres of a log."""
 
 
 def simulator_of(specification: str, aircraft: Aircraft, read_log: ReadLog) -> Simulator:
@@ -35,18 +35,18 @@ def simulator_of(specification: str, aircraft: Aircraft, read_log: ReadLog) -> S
     Parameters
     ----------
     specification
-        As a user writes it.
+        Specification in the user's spelling.
     aircraft
         The aircraft file.
     read_log
-        Reads a log that the simulator wrote.
+        Function that reads a log written by the simulator.
 
     Raises
     ------
     ConfigurationError
         The kind is unknown, its package is missing, or what follows the colon names nothing.
     UnusableInputError
-        The simulator's log cannot serve.
+        The simulator's log cannot be used.
     """
     kind, _, rest = specification.partition(":")
     if kind == "linear":

@@ -1,4 +1,4 @@
-"""A simulator's linear surrogate: derivatives, and what its own servo adds between input and surface."""
+"""The linear surrogate of a simulator: derivatives, and the lag and delay of its own servo."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -28,25 +28,25 @@ from advisor.simulators.inputs import on_grid, read_from
 from advisor.simulators.protocol import Replay
 
 _STARTS_S = (0.003, 0.03, 0.1)
-"""Where the search for the servo's lag and delay begins: the cost has local minima in a delay."""
+"""Starting values of the servo's lag and delay, s: the cost has local minima in a delay."""
 _DIGITS = 4
-"""Of a lag or delay in s: a tenth of a millisecond, which no record shows."""
+"""Decimals of a lag or delay in s. A tenth of a millisecond shows in no record."""
 
 
 @dataclass(frozen=True)
 class Surrogate:
-    """What a simulator is to first order."""
+    """First-order model of a simulator."""
 
     derivatives: Mapping[str, float]
     """Z_alpha, Z_q, Z_delta_e, M_alpha, M_q, M_delta_e at the reference speed."""
     reference_m_s: float
     lag_s: float = 0.0
-    """Lag of first order of the simulator's own servo ..."""
+    """First-order lag of the simulator's own servo, s."""
     delay_s: float = 0.0
-    """... and the delay before the servo."""
+    """Delay ahead of the simulator's own servo, s."""
 
     def aircraft(self, file: Aircraft) -> Aircraft:
-        """Return the aircraft file with the surrogate in place of its model, and both servos in a row."""
+        """Return the aircraft file with the surrogate as its model, and both servos in series."""
         elevator = replace(
             file.elevator,
             lag_s=(file.elevator.lag_s or 0.0) + self.lag_s,
@@ -71,15 +71,15 @@ def surrogate_of(
     Parameters
     ----------
     flights
-        The manoeuvres as the aircraft flew them.
+        The manoeuvres as flown by the aircraft.
     flown, replays
-        The same manoeuvres as the simulator flew them (``advisor.simulators.inputs.as_flight``).
+        The manoeuvres as flown by the simulator (``advisor.simulators.inputs.as_flight``).
     command
-        Shape (manoeuvres, entries): what lies between the recorded command and the simulator's input.
+        Shape (manoeuvres, entries): effects between the recorded command and the simulator's input.
     linearised
-        Derivatives that the simulator hands out, from which the search begins; None: a regression's.
+        The simulator's derivatives, from which the search starts; None starts from a regression.
     """
-    # The simulator's four outputs are known without instruments, whatever the flight has measured.
+    # The simulator's four outputs are known without instruments, whichever the flight has measured.
     read = tuple(read_from(f, on_grid(r, f), OUTPUTS) for f, r in zip(flown, replays, strict=True))
     peaks = np.array([float(np.median([np.ptp(f.outputs[c].y) for f in read])) for c in OUTPUTS])
     seen = replace(
@@ -107,8 +107,8 @@ def surrogate_of(
 
 
 def trimmed_at(p: FloatArray, flight: Flight) -> FloatArray:
-    """Return driving numbers, shape (entries,), with the trim terms of a manoeuvre as the simulator began
-    it."""
+    """Return driving numbers, shape (entries,), with the trim terms of a manoeuvre at the simulator's
+    start."""
     theta, reference = float(flight.trim[THETA_FROM]), float(flight.trim[REFERENCE])
     speed, height = float(flight.slow[SPEED, 0]), float(flight.slow[HEIGHT, 0])
     return trimmed(p, flight.alpha_trim, theta, speed, height, reference)

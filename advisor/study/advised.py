@@ -13,9 +13,7 @@ from advisor.decision.inputs import StepInput
 from advisor.flight.messages import FloatArray
 from advisor.study.estimating import Advance, estimate_copies
 from advisor.study.flying import Flight, Scene, as_maneuver, fly_named, follow, noise_scale
-from sim.airframe import UAV
-from sim.hangar import AIRFRAMES
-from sim.nonlinear_aircraft import NonlinearAircraft
+from advisor.study.simulator import AIRFRAMES, UAV, NonlinearAircraft
 
 MOST = 25
 """A campaign is given up after so many manoeuvres."""

@@ -112,7 +112,8 @@ def in_terminal(curves: Sequence[Curve], rule: Rule, height: int = 13) -> list[s
     rows = [f"{labels.get(i, ''):>6} |{''.join(cells).rstrip()}" for i, cells in enumerate(grid)]
     numbers = "".join(f"{i:^{width}}" for i in range(1, len(ORDER) + 1))
     return [
-        f"{rule}: criterion of Eq. (12) in %, median; each mark is a noise level in %, --- the limit",
+        f"{rule}: criterion of Eq. (12) in %, median after each manoeuvre;",
+        "  each mark is a noise level in %, --- the limit",
         *rows,
         f"{'':>6} +{'-' * (width * len(ORDER))}",
         f"{'':>8}{numbers}".rstrip() + "  manoeuvres flown",

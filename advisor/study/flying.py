@@ -10,8 +10,7 @@ from scipy.linalg import expm
 from advisor.flight.maneuver import Maneuver, Span
 from advisor.flight.messages import FloatArray
 from advisor.flight.record import Channel
-from sim.linear import RESEARCH_JET, ShortPeriod
-from sim.maneuvers import STEPS
+from advisor.study.simulator import RESEARCH_JET, STEPS, ShortPeriod
 
 Steps = tuple[tuple[float, float], ...]
 NoiseReading = Literal["std", "peak", "rms", "sample"]

@@ -1,6 +1,7 @@
 """The study in words: Table 1 beside the paper's, where the paper lies, the flaws."""
 
 from collections.abc import Iterable, Sequence
+from textwrap import wrap
 
 import numpy as np
 
@@ -17,6 +18,11 @@ COMMON = (5.0, 95.0)
 """A single realisation between these percentiles of ours is nothing out of the ordinary."""
 
 
+_COLUMNS = 80
+"""Columns of the narrowest terminal that everything must fit."""
+_LABEL, _CELL = 12, 8
+"""Characters of a label and of a number in the table: 12 + 8 · 8 are 76."""
+
 NAMED = CampaignPlan().parameters
 """Parameters with a tolerance of their own."""
 
@@ -25,34 +31,51 @@ def heading(campaigns: int, scene: Scene, reading: NoiseReading) -> list[str]:
     """What was flown."""
     degrees = np.degrees(scene.amplitude_rad)
     return [
-        f"The paper's campaign, {campaigns} times: modified 3-2-1-1 and its reverse (seven manoeuvres, "
-        f"{scene.unit_s:g} s steps, {degrees:.0f} deg),",
-        f"{scene.duration_s:g} s at {scene.rate_hz:g} Hz, white noise on angle of attack and pitch rate; "
-        f'"noise 1 %" is 1 % {NOISE_READINGS[reading]}.',
-        "The paper's rules are continuous (Eqs. 10 and 12) and separate (Eqs. 11 and 12); on real flights "
-        "information decides.",
+        *_wrapped(
+            f"The paper's campaign, {campaigns} times: modified 3-2-1-1 and its reverse (seven manoeuvres, "
+            f"{scene.unit_s:g} s steps, {degrees:.0f} deg), {scene.duration_s:g} s at {scene.rate_hz:g} Hz, "
+            f'white noise on angle of attack and pitch rate; "noise 1 %" is 1 % {NOISE_READINGS[reading]}.'
+        ),
+        *_wrapped(
+            "The paper's rules are continuous (Eqs. 10 and 12) and separate (Eqs. 11 and 12); "
+            "on real flights information decides."
+        ),
         "",
     ]
 
 
 def table(rows: Sequence[Row]) -> list[str]:
-    """Return three lines a row: the median error, the range of the middle 80 %, the paper's error."""
+    """Return a block a rule and noise: the median error, the range of the middle 80 %, the paper's error."""
+    names = "".join(f"{_symbol(name):>{_CELL}}" for name in PARAMETERS)
     lines = [
-        "Nominal error in % at the stop: median, 10 % to 90 % of the campaigns, and the paper's. "
-        "Needed: median (90 %), never.",
-        f"{'rule':<12}{'noise':>6}  " + "".join(f"{name:>11}" for name in PARAMETERS) + "   needed",
+        *_wrapped(
+            "Nominal error in % at the stop: median, 10 % and 90 % of the campaigns, and the paper's. "
+            "Needed: the median number of manoeuvres, and what nine campaigns in ten need at most."
+        ),
+        f"{'':<{_LABEL}}{names}",
     ]
     for row in rows:
         low, middle, high = np.quantile(row.error_percent, [0.1, 0.5, 0.9], axis=0)
-        medians = "".join(f"{m:>11.2f}" for m in middle)
-        ranges = "".join(f"{f'{a:.2f}-{b:.2f}':>11}" for a, b in zip(low, high, strict=True))
-        needed = f"{_count(row.needed_quantile(0.5))} ({_count(row.needed_quantile(0.9))})"
-        lines.append(f"{row.rule:<12}{row.noise_percent:>5g}%  {medians}   {needed}")
-        lines.append(f"{'':<20}{ranges}   {row.never_percent:.0f} % never")
+        paper = "" if row.paper is None else f"; paper {_count(row.paper.needed)}"
+        lines.append(
+            f"{row.rule}, noise {row.noise_percent:g} %: needed {_count(row.needed_quantile(0.5))} (9 in 10: "
+            f"{_count(row.needed_quantile(0.9))}), never {row.never_percent:.0f} %{paper}"
+        )
+        lines += [_numbers("median", middle), _numbers("10 %", low), _numbers("90 %", high)]
         if row.paper is not None:
-            paper = "".join(f"{row.paper.error_percent[name]:>11.2f}" for name in PARAMETERS)
-            lines.append(f"{'':<12}{'paper':>6}  {paper}   {_count(row.paper.needed)}")
+            lines.append(_numbers("paper", [row.paper.error_percent[name] for name in PARAMETERS]))
     return [*lines, ""]
+
+
+def _symbol(name: str) -> str:
+    """Return a parameter's symbol, short enough for a column: ``M_δe``."""
+    return name.replace("_alpha", "_α").replace("_delta_e", "_δe")
+
+
+def _numbers(label: str, values: Iterable[float]) -> str:
+    """Return a line of the table: one number a parameter."""
+    cells = (f"{value:.2f}" if value < 1000.0 else f"{value:.2g}" for value in values)
+    return f"{f'  {label}':<{_LABEL}}" + "".join(f"{cell:>{_CELL}}" for cell in cells)
 
 
 def where_the_paper_lies(rows: Sequence[Row]) -> list[str]:
@@ -71,7 +94,7 @@ def where_the_paper_lies(rows: Sequence[Row]) -> list[str]:
             *([f"smaller than nearly all of ours: {', '.join(below)}"] if below else []),
         ]
         ended = "never ended" if row.paper.needed is None else f"needed {row.paper.needed}"
-        lines.append(
+        lines += _wrapped(
             f"  {row.rule}, {row.noise_percent:g} %: it {ended}, as {same:.0f} % of ours; {'; '.join(words)}."
         )
     return [*lines, ""]
@@ -84,7 +107,7 @@ def tolerances(rows: Sequence[Row]) -> list[str]:
         if row.outside_tolerance_percent is not None:
             outside = {name: row.outside_tolerance_percent[PARAMETERS.index(name)] for name in NAMED}
             worst = max(outside, key=lambda name: outside[name])
-            lines.append(
+            lines += _wrapped(
                 f"information, {row.noise_percent:g} %: outside its tolerance at the stop "
                 f"{np.mean(list(outside.values())):.1f} % of the named derivatives, at most "
                 f"{outside[worst]:.1f} % ({worst})."
@@ -96,24 +119,28 @@ def flaws(found: Flaws) -> list[str]:
     """What users of the paper's rules must know."""
     return [
         "Two flaws of the paper's rules:",
-        f"  separate computation rejects {found.thrown_away_percent:.0f} % of equally good manoeuvres: a new "
-        "cost is as likely above the median of the earlier ones as below.",
-        f"  a parameter near zero keeps Eq. (12) from falling: with Z_q = 0 and {NOISE_PERCENT:g} % noise, "
-        f"{found.near_zero_never_percent:.0f} % of {found.near_zero_campaigns} campaigns never end; the rule "
-        f"information ends them after {_count(found.near_zero_information)} (median).",
+        *_wrapped(
+            f"  separate computation rejects {found.thrown_away_percent:.0f} % of equally good manoeuvres: "
+            "a new cost is as likely above the median of the earlier ones as below."
+        ),
+        *_wrapped(
+            f"  a parameter near zero keeps Eq. (12) from falling: with Z_q = 0 and {NOISE_PERCENT:g} % "
+            f"noise, {found.near_zero_never_percent:.0f} % of {found.near_zero_campaigns} campaigns never "
+            f"end; the rule information ends them after {_count(found.near_zero_information)} (median)."
+        ),
         "",
     ]
 
 
 def readings(results: Iterable[ReadingResult]) -> list[str]:
     """Return how other readings of the paper fare."""
-    lines = [
+    lines = _wrapped(
         "Other readings of the rules: median needed, never, share of campaigns that need exactly what the "
-        "paper's did",
-    ]
+        "paper's did"
+    )
     lines += [
-        f"  {r.reading:<26}{r.rule:<12}{r.noise_percent:>4g} %  median {_count(r.median):>5}  never "
-        f"{r.never_percent:3.0f} %  as the paper {r.as_paper_percent:3.0f} %"
+        f"  {r.reading:<25}{r.rule:<11}{r.noise_percent:>4g} %{_count(r.median):>6}  never "
+        f"{r.never_percent:3.0f} %  as paper {r.as_paper_percent:3.0f} %"
         for r in results
     ]
     return [*lines, ""]
@@ -121,16 +148,16 @@ def readings(results: Iterable[ReadingResult]) -> list[str]:
 
 def savings(found: Sequence[Saving], campaigns: int) -> list[str]:
     """Return manoeuvres needed with and without the advice."""
-    lines = [
+    lines = _wrapped(
         f"Manoeuvres until the response is known to {PLAN.tolerance_percent:g} % of its peak, the named "
-        f"derivatives accordingly (rule information), {campaigns} campaigns each,",
-        "repeating the standard 3-2-1-1 in alternating directions, and flying what was advised:",
-    ]
+        f"derivatives accordingly (rule information), {campaigns} campaigns each, repeating the standard "
+        "3-2-1-1 in alternating directions, and flying what was advised:"
+    )
     for one in found:
         limits = (
             "angle of attack as in the standard input" if one.same_excursion else "within the usual limits"
         )
-        lines.append(
+        lines += _wrapped(
             f"  {one.aircraft}, noise {one.noise_percent:g} %, {limits}: {np.mean(one.standard):.1f} and "
             f"{np.mean(one.advised):.1f} on average (median {np.median(one.standard):.0f} and "
             f"{np.median(one.advised):.0f}): {one.percent:.0f} % fewer."
@@ -143,12 +170,12 @@ def detections(found: Sequence[Detection], campaigns: int) -> list[str]:
     lines = [f"Something changed, {campaigns} campaigns each:"]
     for one in found:
         if one.lost is None:
-            lines.append(
+            lines += _wrapped(
                 f"  noise {one.noise_percent:g} %, nothing changed: suspected in "
                 f"{one.suspected_percent:.1f} %, confirmed in {one.confirmed_percent:.1f} %."
             )
         else:
-            lines.append(
+            lines += _wrapped(
                 f"  noise {one.noise_percent:g} %, {one.lost} loses {100 * LOSS:.0f} % after {BEFORE} "
                 f"manoeuvres: suspected at once in {one.suspected_percent:.1f} %, confirmed and named "
                 f"after two in {one.confirmed_percent:.1f} % ({one.sigma:.0f} sigma)."
@@ -157,24 +184,32 @@ def detections(found: Sequence[Detection], campaigns: int) -> list[str]:
 
 
 def early_stops(found: Sequence[Stops], campaigns: int) -> list[str]:
-    """Return false stops of the rule ``information``, and manoeuvres needed beside those of the paper's
-    rules."""
-    lines = [
-        "Stops of the rule information. False: the predicted response is wrong by more than the",
-        f"tolerance. Needed by {campaigns} campaigns of seven manoeuvres: median (share without stop).",
-        f"{'case':<26}{'noise':>6}{'tolerance':>10}{'false':>8}{'error, 95 %':>13}"
-        f"{'information':>14}{'continuous':>14}{'separate':>14}",
-    ]
+    """False stops of the rule ``information``, and manoeuvres needed beside those of the paper's rules."""
+    lines = _wrapped(
+        "Stops of the rule information. False: the predicted response is wrong by more than the tolerance; "
+        "error: how wrong it is in 95 % of the stops at most. "
+        f"Needed by {campaigns} campaigns of seven manoeuvres: median (share without stop)."
+    )
     for one in found:
         case, error = one.case, one.error_quantile(0.95)
-        needed = "".join(
-            f"{f'{_count(one.median_needed(rule))} ({one.never_percent(rule):.0f} %)':>14}"
+        wrong = "no stop" if error is None else f"false {one.false_percent:.1f} %, error {error:.2f} %"
+        needed = ", ".join(
+            f"{rule} {_count(one.median_needed(rule))} ({one.never_percent(rule):.0f} %)"
             for rule in ("information", "continuous", "separate")
         )
-        false, size = ("-", "-") if error is None else (f"{one.false_percent:.1f} %", f"{error:.2f} %")
-        asked = f"{case.noise_percent:>4g} %{case.tolerance_percent:>8g} %"
-        lines.append(f"{case.name:<26}{asked}{false:>8}{size:>13}{needed}")
+        lines += _wrapped(
+            f"{case.name}, noise {case.noise_percent:g} %, tolerance {case.tolerance_percent:g} %: {wrong}"
+        )
+        lines += _wrapped(f"  needed: {needed}")
     return lines
+
+
+def _wrapped(text: str) -> list[str]:
+    """Wrap a sentence into lines of 80 columns, those after the first indented; no number without its %."""
+    told = text.lstrip().replace(" %", "\N{NO-BREAK SPACE}%")
+    begins = " " * (len(text) - len(text.lstrip()))
+    lines = wrap(told, _COLUMNS, initial_indent=begins, subsequent_indent="    ")
+    return [line.replace("\N{NO-BREAK SPACE}", " ") for line in lines]
 
 
 def _count(number: int | None) -> str:

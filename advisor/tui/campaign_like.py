@@ -45,5 +45,8 @@ class CampaignLike(Protocol):
     def end_maneuver(self) -> None:
         """End the mark of a manoeuvre at the present moment."""
 
+    def log(self, sentence: str) -> None:
+        """Write a sentence into the event log at the present moment."""
+
     def note(self, number: int, text: str) -> None:
         """Add a note to a manoeuvre."""

@@ -12,7 +12,6 @@ from time import monotonic
 
 from advisor.campaign.hand_decisions import NOTHING, ByHand
 from advisor.tui.campaign_like import CampaignLike
-from advisor.tui.chronicle import Chronicle
 from advisor.tui.conducting import Report, Tell
 from advisor.tui.goal import Goal
 from advisor.tui.hand import HandDecision
@@ -43,10 +42,9 @@ class Conductor:
         self._tell: Tell = lambda report: None
         self._requests: SimpleQueue[Callable[[CampaignLike], None]] = SimpleQueue()
         self._by_hand = by_hand
-        self._where_kept = ""
+        self._said_where = ""
         self._pending: list[HandDecision] = []
         self._goal: Goal | None = None
-        self._chronicle = Chronicle()
         self._stopped = Event()
         self._rewound = False
         self._told_s = -inf
@@ -68,7 +66,6 @@ class Conductor:
         try:
             while not self._stopped.is_set():
                 self._rewound = False
-                self._chronicle.start_again()
                 self._play(self._make_campaign(self._by_hand))
         finally:
             self._source.close()
@@ -133,13 +130,12 @@ class Conductor:
         self._report(campaign)
 
     def _report(self, campaign: CampaignLike) -> None:
+        for sentence in self._source.take_notices():
+            campaign.log(f"link: {sentence}")
         state = campaign.state
-        self._chronicle.follow(state.notices, state.notices_before)
-        self._chronicle.note(self._where_kept)
-        self._chronicle.hear(self._source.take_notices())
         playback = self._source.playback() if isinstance(self._source, Playable) else None
         problems = () if state.maneuvers else tuple(campaign.problems)
-        self._tell(Report(state, self._source.health(), playback, self._chronicle.lines, problems))
+        self._tell(Report(state, self._source.health(), playback, state.notices, problems))
         self._told_s = monotonic()
 
     def _decide(self, campaign: CampaignLike, decision: HandDecision) -> None:
@@ -158,7 +154,10 @@ class Conductor:
         """Remember for a rewind what was decided by hand, and keep it with the data."""
         if campaign.by_hand != self._by_hand:
             self._by_hand = campaign.by_hand
-            self._where_kept = self._source.keep(self._by_hand)
+            where = self._source.keep(self._by_hand)
+            if where != self._said_where:
+                self._said_where = where
+                campaign.log(where)
 
     def _jump(self, campaign: CampaignLike, number: int) -> None:
         if not isinstance(self._source, Playable):

@@ -9,7 +9,7 @@ from advisor.tui.conducting import Conducting
 from advisor.tui.hand import HandDecision
 from advisor.tui.screens.face import Face
 from advisor.tui.view import View
-from advisor.tui.words import clock
+from advisor.vehicle_time import clock
 
 if TYPE_CHECKING:
     from textual.app import App

@@ -48,6 +48,7 @@ PANES = (
     ("9", "residuals"),
     ("0", "correlation"),
     ("h", "history"),
+    ("u", "flying qualities"),
 )
 """Key and name of each pane, in the order of their numbers."""
 

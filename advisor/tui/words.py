@@ -37,8 +37,3 @@ def percent(value: float | None) -> str:
     if value is None or not isfinite(value):
         return "-"
     return f"{value:.1f} %" if abs(value) < 10.0 else f"{value:.0f} %"
-
-
-def clock(seconds: float) -> str:
-    """Minutes and seconds of vehicle time: ``3:07``."""
-    return f"{int(seconds // 60)}:{int(seconds % 60):02d}"

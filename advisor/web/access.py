@@ -1,4 +1,4 @@
-"""Who is let in: the password, the names of the server, and the pages that may speak to it."""
+"""Access to the pages: the password, the names of the server, and the pages that may speak to it."""
 
 import hmac
 import secrets
@@ -44,14 +44,15 @@ def checked_origin(address: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Access:
-    """Decides on every request; the same password lets all viewers in."""
+    """Decides on every request. One password lets all viewers in."""
 
     password: str | None = field(default=None, repr=False)
-    """None: whoever reaches the server is let in, which must be programs of this computer alone."""
+    """Password of the pages. None: every program that reaches the server is let in, so that only this
+    computer may reach it."""
     origin: str | None = None
-    """Address that browsers see, where a proxy stands before the server."""
+    """Address that browsers see, where a proxy stands before the server. None: no proxy."""
     token: str = field(default_factory=lambda: secrets.token_urlsafe(32), repr=False)
-    """Kept as a cookie by a browser that has given the password; another one after each start."""
+    """Cookie of a browser that has given the password. Each start of the server has another one."""
 
     @property
     def cookie(self) -> str:

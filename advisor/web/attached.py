@@ -1,4 +1,4 @@
-"""A campaign that the server conducts, as the process of a page sees it."""
+"""A campaign conducted by the server, as the process of a page sees it."""
 
 from multiprocessing.connection import Connection
 from threading import Event
@@ -9,7 +9,7 @@ from advisor.tui.hand import HandDecision
 from advisor.tui.source import Order, Tempo
 
 LOOK_EVERY_S = 0.1
-"""Time after which a thread without news looks whether it shall stop, s."""
+"""Time after which a thread without news tests whether to stop, s."""
 
 
 class ServerGoneError(Exception):
@@ -22,7 +22,7 @@ class AttachedConductor:
     Parameters
     ----------
     connection
-        To the server, which has told its `Viewing` already.
+        Connection to the server, after its first message `Viewing`.
     """
 
     def __init__(self, connection: Connection) -> None:
@@ -30,14 +30,14 @@ class AttachedConductor:
         self._stopped = Event()
 
     def run(self, tell: Tell) -> None:
-        """Hear reports until `stop`.
+        """Take reports until `stop`.
 
         Raises
         ------
         ServerGoneError
             The server has ended.
         Exception
-            Whatever has broken the campaign off.
+            The error that ended the campaign.
         """
         last: Report | None = None
         while not self._stopped.is_set():
@@ -58,19 +58,19 @@ class AttachedConductor:
         self._ask("decide", decision)
 
     def order(self, order: Order) -> None:
-        """Do what a crew wants of the link."""
+        """Carry out a crew's request to the link."""
         self._ask("order", order)
 
     def jump(self, number: int) -> None:
-        """Play on, or from the beginning, to just before a manoeuvre."""
+        """Play on to just before a manoeuvre, or play to it from the beginning."""
         self._ask("jump", number)
 
     def play(self, tempo: Tempo) -> None:
-        """Hold a replay, let it go on, faster or slower."""
+        """Pause a replay, continue it, or change its speed."""
         self._ask("play", tempo)
 
     def step(self) -> None:
-        """Play the next tenth of a second of a held replay."""
+        """Play the next tenth of a second of a paused replay."""
         self._ask("step")
 
     def _hear(self) -> object:

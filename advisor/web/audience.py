@@ -1,4 +1,4 @@
-"""The door by which the processes of the pages come to the campaign that they show."""
+"""Entrance of the pages' processes to the campaign that they show."""
 
 import time
 from collections.abc import Callable
@@ -15,20 +15,20 @@ from advisor.web.showing import PATIENCE_S, Showing
 from advisor.web.viewing import Viewing
 
 LOOK_EVERY_S = 0.2
-"""Time after which a page without news is looked at for its end, s."""
+"""Time after which a page without news is tested for its end, s."""
 _OWN_REPLAY = frozenset({"jump", "play", "step"})
 _BY_HAND = frozenset({"decide", "order"})
 
 
 class Audience:
-    """Lets pages in, sends each its reports, and passes on what each asks.
+    """Lets pages in, sends each its reports, and passes on the requests of each.
 
     Parameters
     ----------
     viewing
         First message to each page.
     shared
-        The campaign that all pages show; None: each page has a campaign of its own.
+        Campaign that all pages show. None: each page has a campaign of its own.
     make_conductor
         Makes the conductor of a page's own campaign.
     """
@@ -85,7 +85,7 @@ class Audience:
                 asking.join()  # a connection that a thread still reads would stay open
 
     def _report(self, connection: Connection, showing: Showing, gone: Event) -> None:
-        """Send the whole of the first report, then what has changed since the report sent last."""
+        """Send the first report as a whole, then the changes since the last report."""
         number, last = 0, None
         while not gone.is_set() and not self._closing.is_set():
             newer = showing.newer(number, LOOK_EVERY_S)
@@ -98,7 +98,7 @@ class Audience:
                 return
 
     def _obey(self, connection: Connection, conductor: Conducting, gone: Event) -> None:
-        """Pass on what the page asks, until the page is gone."""
+        """Pass on the page's requests, until the page is gone."""
         with suppress(EOFError, OSError):
             while not gone.is_set():
                 if not connection.poll(LOOK_EVERY_S):

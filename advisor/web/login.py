@@ -1,4 +1,4 @@
-"""The page that asks for the password, and the cookie that a browser keeps."""
+"""The page that asks for the password, and the cookie of a browser."""
 
 import asyncio
 
@@ -8,9 +8,9 @@ from advisor.web.access import Access
 from advisor.web.rendering import page
 
 AFTER_WRONG_S = 1.0
-"""Pause after a wrong password, s: guesses are checked one after another, one a second."""
+"""Pause after a wrong password, s. Guesses are checked one after another, one a second."""
 MOST_WAITING = 20
-"""Guesses that may wait for their turn; further ones are refused at once."""
+"""Most guesses that may wait for their turn. Further ones are refused at once."""
 _BUSY = "Too many passwords are being tried at this moment. Try again in a minute."
 
 
@@ -20,7 +20,7 @@ class Login:
     Parameters
     ----------
     access
-        Knows the password.
+        Holder of the password.
     """
 
     def __init__(self, access: Access) -> None:
@@ -33,7 +33,7 @@ class Login:
         return page("login", wrong=False)
 
     async def check(self, request: web.Request) -> web.Response:
-        """Let a browser in that gives the password; a wrong one costs a second."""
+        """Let a browser with the right password in. A wrong password costs a second."""
         if not self._access.is_own_page(request.headers.get("Origin"), request.scheme, request.host):
             raise web.HTTPForbidden(text="This form belongs to another page.")
         if self._waiting >= MOST_WAITING:

@@ -1,4 +1,4 @@
-"""The process behind one page, as the server starts and ends it."""
+"""The process of one page: its start and its end by the server."""
 
 import asyncio
 import os
@@ -20,11 +20,11 @@ class PageProcess(AppService):
     Parameters
     ----------
     door
-        Where the process finds the campaign.
+        Address of the campaign for the process.
     socket
         The page's own WebSocket, which is closed when the process ends.
     downloads
-        Hands files that the application delivers to the browser.
+        Passes files from the application to the browser.
     """
 
     def __init__(self, door: Door, socket: web.WebSocketResponse, downloads: DownloadManager) -> None:
@@ -38,13 +38,13 @@ class PageProcess(AppService):
         self._door, self._socket = door, socket
 
     async def run(self) -> None:
-        """Pass on what the application paints; a page whose process has ended is closed."""
+        """Pass on the application's output. A page whose process has ended is closed."""
         with suppress(ConnectionError):  # the browser is gone
             await super().run()
         await self._close()
 
     async def end(self) -> None:
-        """End the process at once: it keeps nothing that would have to be closed in order."""
+        """End the process at once, because it holds nothing that must be closed in order."""
         process = self._process
         if process is None:
             return

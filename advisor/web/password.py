@@ -1,4 +1,4 @@
-"""Where the password comes from: a file, the environment, or a prompt; never the command line."""
+"""Source of the password: a file, the environment, or a prompt; never the command line."""
 
 import os
 import sys
@@ -10,7 +10,8 @@ from advisor.problems import ConfigurationError
 
 VARIABLE = "ADVISOR_PASSWORD"
 SHORTEST = 8
-"""Characters. At one guess a second, eight random letters or digits outlast every campaign."""
+"""Least length of the password. At one guess a second, eight random letters or digits outlast every
+campaign."""
 
 
 def read_password(file: Path | None, needed_for: str) -> str | None:
@@ -21,14 +22,14 @@ def read_password(file: Path | None, needed_for: str) -> str | None:
     file
         File whose first line is the password; None: the environment variable, else a prompt.
     needed_for
-        What makes a password necessary, as a user wrote it; empty: it may be missing.
+        Option that makes a password necessary, as the user wrote it. Empty: the password may be missing.
 
     Raises
     ------
     ConfigurationError
         The file cannot be read, the password is too short, or one is needed and nobody can be asked.
     """
-    # Taken out of the environment: no process that is started from here has a use for it.
+    # Removed from the environment, because no process started here needs the password.
     given = os.environ.pop(VARIABLE, None)
     if file is not None:
         return _long_enough(_first_line(file), f"--password-file {file}")

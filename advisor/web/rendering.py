@@ -27,7 +27,7 @@ def page(name: str, status: int = 200, **values: object) -> web.Response:
     status
         HTTP status.
     **values
-        What the template asks for.
+        Values for the template.
     """
     text = _environment().get_template(f"{name}.html.j2").render(**values)
     return web.Response(text=text, content_type="text/html", status=status)

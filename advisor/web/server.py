@@ -1,4 +1,4 @@
-"""The web server in a thread of its own, so that the main thread hears signals."""
+"""The web server in a separate thread, so that the main thread receives signals."""
 
 import asyncio
 import os
@@ -13,7 +13,8 @@ from advisor.problems import ConfigurationError
 from advisor.web.site import Site
 
 PATIENCE_S = 4.0
-"""Time for all pages to end, s; the recording is closed after them, and a Ctrl-C waits 5 s in all."""
+"""Longest time for the end of all pages, s. The recording is closed after them, and a Ctrl-C waits 5 s in
+all."""
 
 
 def listening(host: str, port: int) -> socket.socket:
@@ -35,7 +36,7 @@ def listening(host: str, port: int) -> socket.socket:
 
 
 def _reason(error: OSError) -> str:
-    """Return why the system refuses, without the address that Python adds."""
+    """Return the system's reason for a refusal, without the address that Python adds."""
     if isinstance(error, socket.gaierror) or error.errno is None:
         return str(error.strerror or error)
     return os.strerror(error.errno)
@@ -47,9 +48,9 @@ class WebServer:
     Parameters
     ----------
     site
-        What is served.
+        Site to serve.
     at
-        Socket that listens already.
+        Socket that is already listening.
     """
 
     def __init__(self, site: Site, at: socket.socket) -> None:

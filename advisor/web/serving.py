@@ -25,7 +25,7 @@ _REPLAY_IS_OVER = "Its replay has ended with it."
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Where pages are served, to whom, and how many."""
+    """Address, access and number of the pages."""
 
     at: socket.socket
     access: Access
@@ -43,7 +43,7 @@ def place(
     viewers: int,
     watch_only: bool = False,
 ) -> Iterator[Place]:
-    """Check what a user asks for, and take the port.
+    """Check the user's options, and take the port.
 
     Raises
     ------
@@ -78,7 +78,7 @@ def serve(place: Place, task: Task, aircraft: Aircraft, title: str, tempo: Tempo
     Parameters
     ----------
     place
-        Where the pages are served.
+        Address of the pages, and access to them.
     task
         Campaign and source.
     aircraft
@@ -86,12 +86,12 @@ def serve(place: Place, task: Task, aircraft: Aircraft, title: str, tempo: Tempo
     title
         Name of the log or of the connection.
     tempo
-        How each replay starts; None: the source is a live link.
+        Start settings of each replay. None: the source is a live link.
 
     Raises
     ------
     UnusableInputError
-        When the link can never serve.
+        The link can never serve.
     """
     from advisor.tui.settings import load_settings
     from advisor.web.audience import Audience

@@ -1,4 +1,4 @@
-"""A campaign at work and its newest report, for any number of pages."""
+"""A running campaign and its newest report, for any number of pages."""
 
 from threading import Condition, Thread
 from types import TracebackType
@@ -7,13 +7,13 @@ from typing import Self
 from advisor.tui.conducting import Conducting, Report
 
 PATIENCE_S = 2.0
-"""Time for the estimating process to end, s; it ends by itself when the server has gone."""
+"""Longest time for the end of the estimating process, s. The process also ends when the server has gone."""
 
 
 class Showing:
     """Runs a conductor in a thread and keeps its newest report.
 
-    A page that is slow to take reports misses those in between, and never holds up another page.
+    A page that takes reports slowly misses some, and never delays another page.
 
     Parameters
     ----------
@@ -24,7 +24,7 @@ class Showing:
     def __init__(self, conductor: Conducting) -> None:
         self.conductor = conductor
         self.failure: BaseException | None = None
-        """Why the campaign has broken off."""
+        """Error that ended the campaign; None while it runs."""
         self._changed = Condition()
         self._report: Report | None = None
         self._number = 0
@@ -46,19 +46,19 @@ class Showing:
         return self._thread.is_alive()
 
     def newer(self, than: int, timeout_s: float) -> tuple[int, Report] | None:
-        """Wait for a report that is newer than one that is known.
+        """Wait for a report that is newer than a known one.
 
         Parameters
         ----------
         than
-            Number of the known report; 0: none is known.
+            Number of the known report, 0 for none.
         timeout_s
             Longest time to wait, s.
 
         Returns
         -------
         tuple of int and Report, or None
-            The newest report and its number; None when no newer one came in time.
+            Newest report and its number. None when no newer one came in time.
         """
         with self._changed:
             self._changed.wait_for(lambda: self._number > than or self.failure is not None, timeout_s)

@@ -19,11 +19,11 @@ from advisor.web.rendering import STATIC, page
 _Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 
 LARGEST_MESSAGE = 65_536
-"""Bytes of one message of a browser: keys, or a text that is pasted."""
+"""Most bytes of one message of a browser: keys, or a pasted text."""
 HEARTBEAT_S = 15.0
 """Time after which a silent browser loses its place, s."""
 _COLUMNS, _ROWS = (20, 500), (5, 200)
-"""Fewest and most characters of a page; a larger page would only take memory."""
+"""Fewest and most characters of a page. A larger page would only take memory."""
 _OPEN_TO_ALL = ("/login", "/static/", "/textual/")
 _HEADERS = {
     # The browser itself then refuses to load anything from another host.
@@ -44,7 +44,7 @@ class Site:
     access
         Decides who is let in.
     door
-        Where the process of a page finds the campaign.
+        Address of the campaign for the process of a page.
     title
         Name of the log or of the connection.
     closed
@@ -60,7 +60,7 @@ class Site:
         self._pages: set[PageProcess] = set()
 
     def application(self) -> web.Application:
-        """Make the routes, behind the checks that hold for all of them."""
+        """Make the routes, behind the checks that all of them share."""
         application = web.Application(middlewares=[self._guard])
         login = Login(self._access)
         application.add_routes(
@@ -135,12 +135,12 @@ class Site:
 
 
 async def _pass_on(socket: web.WebSocketResponse, process: PageProcess) -> None:
-    """Pass on what a browser sends until its page is closed.
+    """Pass on a browser's messages until its page is closed.
 
     Raises
     ------
     ValueError, RecursionError
-        The browser sends what cannot be read.
+        The browser sends an unreadable message.
     """
     async for message in socket:
         if message.type is not WSMsgType.TEXT:
@@ -159,7 +159,7 @@ async def _pass_on(socket: web.WebSocketResponse, process: PageProcess) -> None:
 
 
 def _within(size: object, limits: tuple[int, int]) -> int:
-    """Return the number of characters that a page gets, whatever a browser asks for."""
+    """Return the number of characters of a page, within the limits."""
     least, most = limits
     try:
         return min(max(int(str(size)), least), most)

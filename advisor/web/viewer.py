@@ -2,8 +2,8 @@
 
 python -m advisor.web.viewer
 
-Keys and paint come and go on the standard streams, as Textual's web driver has it. The campaign
-runs in the server, which is reached by a local socket.
+Keys and output go over the standard streams, as in Textual's web driver. The campaign runs in the server,
+which is reached by a local socket.
 """
 
 import os
@@ -32,19 +32,19 @@ class WatchingEngineerScreen(EngineerScreen):
     """The engineer's screen without the keys that decide by hand."""
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Offer nothing that decides by hand."""
+        """Disable every decision by hand."""
         return action not in _BY_HAND and super().check_action(action, parameters)
 
 
 class ViewerApp(AdvisorApp):
-    """The application in a page, which can be left at any time: the advisor goes on without the page.
+    """The application in a page. The page can be left at any time, and the advisor goes on.
 
     Parameters
     ----------
     viewing
         First message of the server.
     conductor
-        Speaks with the campaign in the server.
+        Conductor that speaks with the campaign in the server.
     """
 
     # Textual looks for them beside this module.
@@ -57,7 +57,7 @@ class ViewerApp(AdvisorApp):
         self._watch_only = viewing.watch_only
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Offer what decides by hand only where the page may decide."""
+        """Enable decisions by hand only where the page may decide."""
         return not (self._watch_only and action in _BY_HAND) and super().check_action(action, parameters)
 
     def action_leave(self) -> None:

@@ -17,20 +17,18 @@ _HEAD = """# The effects that a diagnosis can name
 
 This page is made from `advisor/gap/candidates`.
 
-{count} effects, by the block of the simulator that they belong to. For each this page says:
+{count} effects, by the block of the simulator. Each entry says:
 
 - *Said*: the sentence of a verdict. Letters in italics stand for sizes.
-- *Parameters*: as `effects:` of the aircraft file spells them, in the file's unit, and the range that a
-  search covers. A dash marks what is not searched for: a choice between two descriptions, or a number that
-  another module finds.
-- *Named from*: the least size of the first parameter. Where none stands, the change of the motion alone
-  decides ([decisions](gap-decisions.md), `search/acceptance.py` and `search/score.py`).
+- *Parameters*: names and units as in `effects:` of the aircraft file, and the range of the search. A dash
+  marks a number that is not searched for.
+- *Named from*: the least size of the first parameter. Without an entry the change of the motion alone decides
+  ([decisions](gap-decisions.md), `search/acceptance.py` and `search/score.py`).
 - *Needs*: channels, or a change in the flight, without which the effect cannot be seen.
-- *Apart from*: what looks alike, and what tells the two apart.
+- *Apart from*: an effect that looks alike, and how to distinguish the two.
 
-"By the flight" marks a bound that depends on the length of the flight, on its heights or on its air speed.
-Where an autopilot has filtered the channels, a time of a sensor has a name from `_FILTERED_S` of the
-decisions on.
+"By the flight" marks a bound that depends on the length, the heights or the air speed of the flight. Where an
+autopilot has filtered the channels, times of sensors are named at `_FILTERED_S` or more.
 """
 _BLOCKS = {
     "input": "between command and surface",

@@ -19,13 +19,7 @@ from benchmarks.pages.figure import errors, residuals, response, stages, svg
 
 ROOT = Path(__file__).parents[2]
 LOG = ROOT / "logs" / "arduplane-calm.tlog"
-AIRCRAFT = """name: arduplane
-elevator: {output: 2, calibration: [[1000, 25.0], [1500, 0.0], [2000, -25.0]]}
-reference_airspeed_m_s: 26.1
-model: {Z_0: 0.0, Z_alpha: -8.01, Z_q: -0.03, Z_delta_e: 0.79,
-        M_0: 0.0, M_alpha: -48.3, M_q: -4.23, M_delta_e: -101.8}
-"""
-"""The derivatives of ``logs/README.md``; the servo's lag is not told."""
+AIRCRAFT = LOG.with_suffix(".yaml")
 UAV = """name: uav
 reference_airspeed_m_s: 22.0
 model: {Z_0: 0.04, Z_alpha: -4.3, Z_q: -0.03, Z_delta_e: -0.28,
@@ -34,7 +28,7 @@ model: {Z_0: 0.04, Z_alpha: -4.3, Z_q: -0.03, Z_delta_e: -0.28,
 """An aircraft that has not flown yet."""
 _SHOWN = 1
 """Index of the manoeuvre that the figures show."""
-FILES: Mapping[str, str] = {"aircraft.yaml": AIRCRAFT, "uav.yaml": UAV}
+FILES: Mapping[str, str] = {"uav.yaml": UAV}
 """Aircraft files in the folder in which the examples run."""
 
 
@@ -68,7 +62,7 @@ EXAMPLES: Sequence[Example] = (
     Example("aircraft new --from logs/arduplane-calm.tlog -o mine.yaml", {"aircraft-new": [Part()]}),
     Example("aircraft check mine.yaml", {"aircraft-check": [Part(until="  accelerometer.arm_m")]}),
     Example(
-        "analyze logs/arduplane-calm.tlog --aircraft aircraft.yaml",
+        "analyze logs/arduplane-calm.tlog --aircraft logs/arduplane-calm.yaml",
         {
             "analyze-maneuvers": [Part(" 1 ", "[1-7] angle of attack")],
             "analyze-estimate": [Part("Joint estimate", "note:")],
@@ -78,7 +72,7 @@ EXAMPLES: Sequence[Example] = (
         },
     ),
     Example(
-        "gap logs/arduplane-calm.tlog --aircraft aircraft.yaml",
+        "gap logs/arduplane-calm.tlog --aircraft logs/arduplane-calm.yaml",
         {
             "gap": [Part(until="╭─ where in the flight"), Part("cause ", "● part of")],
             "gap-course": [Part("╭─ where in the flight", "cause ")],
@@ -86,11 +80,11 @@ EXAMPLES: Sequence[Example] = (
         },
     ),
     Example(
-        "gap logs/arduplane-calm.tlog --aircraft aircraft.yaml --why",
+        "gap logs/arduplane-calm.tlog --aircraft logs/arduplane-calm.yaml --why",
         {"gap-why": [Part("╭─ why", "╭─ error in")]},
     ),
     Example(
-        "gap logs/arduplane-calm.tlog --aircraft aircraft-with-actuator-lag.yaml",
+        "gap logs/arduplane-calm.tlog --aircraft arduplane-calm-with-actuator-lag.yaml",
         {"gap-again": [Part(until="╭─ where in the flight")]},
     ),
     Example("gap --foresee --aircraft uav.yaml", {"foresee": [Part()]}),
@@ -148,10 +142,7 @@ def _printed(words: str, room: Path) -> Sequence[str]:
 
 def figures() -> Iterator[tuple[str, str]]:
     """Yield the name and the SVG of every figure, after estimating and diagnosing."""
-    with TemporaryDirectory() as place:
-        path = Path(place) / "aircraft.yaml"
-        path.write_text(AIRCRAFT, encoding="utf-8")
-        aircraft = load_aircraft(path)
+    aircraft = load_aircraft(AIRCRAFT)
     maneuver = read(LOG, aircraft).maneuvers[_SHOWN]
     found = estimate(maneuver, aircraft)
     assert isinstance(found, Estimate), found.text

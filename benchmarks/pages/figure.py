@@ -20,7 +20,7 @@ _UNITS: Mapping[str, tuple[str, str, float]] = {
     "theta": ("θ", "deg", math.degrees(1.0)),
 }
 """Channel to its letter, the unit of people and the factor from the SI unit."""
-_FIRST, _SECOND, _GREY = "#b5482f", "#1f6f8b", "#7a7a7a"
+_FIRST, _SECOND, _GREY = "#c4553a", "#2b86a8", "#7a7a7a"
 """Colours that a reader without red or green keeps apart by their lightness, on white and on black."""
 
 

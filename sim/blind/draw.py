@@ -5,15 +5,15 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from sim import hangar
-from sim.blind.sizes import INSIDE, ON_ANY_ENGINE, OUTSIDE, Scale
-from sim.blind.visibility import structural_gap
-from sim.effects.fitting import KINDS, flight_of, without_effects
-from sim.flight import Sample, noise_sigma
-from sim.linear import ShortPeriod
-from sim.loading import DepartureError
-from sim.scenario import Air, Clock, Instruments, Maneuver, Noise, Scenario
-from sim.trim import TrimError
+from .. import hangar
+from ..effects.fitting import KINDS, flight_of, without_effects
+from ..flight import Sample, noise_sigma
+from ..linear import ShortPeriod
+from ..loading import DepartureError
+from ..scenario import Air, Clock, Instruments, Maneuver, Noise, Scenario
+from ..trim import TrimError
+from .sizes import INSIDE, ON_ANY_ENGINE, OUTSIDE, Scale
+from .visibility import structural_gap
 
 Group = Literal["clean", "hard", "jsbsim", "none", "parameters", "outside", "two", "simulator"]
 GROUPS: tuple[Group, ...] = get_args(Group)
@@ -39,7 +39,7 @@ class Case:
 
     group: Group
     scenario: Scenario
-    belief: ShortPeriod
+    prior: ShortPeriod
     """Prior model of the simulator, for ``model`` in the aircraft file."""
     effects: dict[str, dict[str, float]]
     blocks: list[str]
@@ -52,7 +52,7 @@ class Case:
     def key(self) -> dict[str, object]:
         """Return the content of the sealed key for this case."""
         said = asdict(self)
-        del said["scenario"], said["belief"]
+        del said["scenario"], said["prior"]
         said["aircraft"] = self.scenario.aircraft
         return said
 
@@ -191,9 +191,9 @@ def sized(
     quiet = replace(scenario, noise=Noise(), air=Air(), clock=replace(scenario.clock, jitter_s=0.0))
     flight = flight_of(without_effects(quiet))
     truth = flight.engine.truth
-    belief = _believed(truth, generator) if group == "parameters" else truth
+    prior = _prior_of(truth, generator) if group == "parameters" else truth
     if not names:
-        return Case(group, scenario, belief, {}, [], 0.0, hard, background)
+        return Case(group, scenario, prior, {}, [], 0.0, hard, background)
     plain = list(flight.samples())
     scale = _scale(scenario, plain)
     sigma = noise_sigma(scenario)
@@ -208,7 +208,7 @@ def sized(
             return Case(
                 group,
                 replace(scenario, effects=effects),
-                belief,
+                prior,
                 effects,
                 blocks,
                 min(gaps),
@@ -246,7 +246,7 @@ def _scale(scenario: Scenario, plain: list[Sample]) -> Scale:
     return Scale(1.0 if scenario.aircraft == "uav" else 4.0, base.chord, amplitude, swing, speed, **fields)
 
 
-def _believed(truth: ShortPeriod, generator: np.random.Generator) -> ShortPeriod:
+def _prior_of(truth: ShortPeriod, generator: np.random.Generator) -> ShortPeriod:
     """Return a simulator with the right structure, and with derivatives off by 10 to 30 percent."""
     values = truth.as_dict()
     for name in ("Z_alpha", "M_alpha", "M_q", "M_delta_e"):

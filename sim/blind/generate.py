@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 import yaml
 
-from sim.blind.draw import GROUPS, SHARES, Case, Group, draw_case
-from sim.blind.seal import seal
-from sim.blind.simulated import SimulatedCase, draw_simulated
-from sim.effects.fitting import flight_of
-from sim.record import record
-from sim.servo import Calibration
+from ..effects.fitting import flight_of
+from ..record import record
+from ..servo import Calibration
+from .draw import GROUPS, SHARES, Case, Group, draw_case
+from .seal import seal
+from .simulated import SimulatedCase, draw_simulated
 
 LOG, AIRCRAFT = "flight.tlog", "aircraft.yaml"
 MADE_AT = 1_790_000_000
@@ -84,5 +84,5 @@ def aircraft_file(case: Case) -> dict[str, Any]:
         "elevator": elevator,
         "accelerometer": {"arm_m": round(case.scenario.instruments.accelerometer_arm_m, 4)},
         "reference_airspeed_m_s": round(case.scenario.airspeed_m_s or 0.0, 3),
-        "model": {name: float(f"{value:.6g}") for name, value in case.belief.as_dict().items()},
+        "model": {name: float(f"{value:.6g}") for name, value in case.prior.as_dict().items()},
     }

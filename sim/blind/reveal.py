@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from sim.blind.score import Rate, by_effect, in_time, judge, score
-from sim.blind.seal import SealError, unseal
+from .score import Rate, by_effect, in_time, judge, score
+from .seal import SealError, unseal
 
 
 def read_answers(path: Path) -> dict[str, dict[str, Any]]:

@@ -58,7 +58,7 @@ class Judged:
     probability: float
     parameters: Mapping[str, Mapping[str, float]]
     """Parameters of the first cause."""
-    ties: tuple[str, ...]
+    confusions: tuple[str, ...]
     block: str
     shrink_percent: float
     simulator_percent: float
@@ -82,9 +82,9 @@ class Judged:
         return self.group == "simulator" and not self.truth and self.verdict in _FINE
 
     @property
-    def right_or_tie(self) -> bool:
+    def right_or_confused(self) -> bool:
         """Whether the true cause is first, or is stated as indistinguishable from the first."""
-        return self.right or (self.verdict == "effect" and self.truth[0] in self.ties)
+        return self.right or (self.verdict == "effect" and self.truth[0] in self.confusions)
 
 
 def judge(key: Mapping[str, Any], answers: Mapping[str, Mapping[str, Any]]) -> list[Judged]:
@@ -111,7 +111,7 @@ def judge(key: Mapping[str, Any], answers: Mapping[str, Mapping[str, Any]]) -> l
                 added=tuple(str(step.get("effect")) for step in answer.get("waterfall") or []),
                 probability=float(first.get("probability") or 0.0),
                 parameters=first.get("parameters") or {},
-                ties=tuple(first.get("cannot_be_told_from") or ()),
+                confusions=tuple(first.get("cannot_be_told_from") or ()),
                 block=str((answer.get("where") or {}).get("block", "")),
                 shrink_percent=math.nan if shrink is None else float(shrink),
                 simulator_percent=math.nan if simulated is None else float(simulated),
@@ -135,9 +135,9 @@ def score(judged: Sequence[Judged]) -> list[Rate]:
     covered = [inside for j in single if j.right for inside in _covered(j)]
     return [
         _share("right cause first, clean", [j.right for j in clean], ">= 98"),
-        _share("  the same, or a tie that is stated", [j.right_or_tie for j in clean], ""),
+        _share("  the first cause, or a stated confusion", [j.right_or_confused for j in clean], ""),
         _share("right cause first, hard, moderate or stronger", [j.right for j in moderate], ">= 95"),
-        _share("  the same, or a tie that is stated", [j.right_or_tie for j in moderate], ""),
+        _share("  the first cause, or a stated confusion", [j.right_or_confused for j in moderate], ""),
         _share("right cause first, hard, all", [j.right for j in hard], ""),
         _share("a named cause is right (hard)", [j.right for j in named_in_hard], ">= 98"),
         _share("  the same, or the air it was flown in", [j.is_there for j in named_in_hard], ""),

@@ -57,7 +57,8 @@ def unseal(folder: Path, answers: Path, key_file: Path) -> dict[str, Any]:
     """
     place = folder / COMMITMENT
     if not place.exists():
-        raise SealError(f"answers are not committed: run python -m sim commit {folder} {answers} first")
+        program = f"python -m {__package__.split('.')[0]}"
+        raise SealError(f"answers are not committed: run {program} commit {folder} {answers} first")
     if place.read_text(encoding="utf-8").strip() != hashlib.sha256(answers.read_bytes()).hexdigest():
         raise SealError(f"{answers}: not the answers that were committed")
     text = key_file.read_text(encoding="utf-8")

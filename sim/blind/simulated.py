@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sim.blind.draw import Case, scenario_of, sized
-from sim.blind.sizes import ON_ANY_ENGINE
-from sim.hangar import Habits
-from sim.trim import TrimError
+from ..hangar import Habits
+from ..trim import TrimError
+from .draw import Case, scenario_of, sized
+from .sizes import ON_ANY_ENGINE
 
 FLEET = {
     "c172p": Habits(53.0, 2.5, 0.4),
@@ -85,6 +85,6 @@ def _named(case: Case, mirrored: bool) -> SimulatedCase:
             servo.append((key, round(sizes[key], 5)))
             effects = {effect: {key: -round(sizes[key], 5)}}
     return SimulatedCase(
-        "simulator", scenario, case.belief, effects, case.blocks, case.gap, case.hard, case.background,
+        "simulator", scenario, case.prior, effects, case.blocks, case.gap, case.hard, case.background,
         f"jsbsim:{scenario.aircraft}", tuple(servo),
     )  # fmt: skip

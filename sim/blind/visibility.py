@@ -11,9 +11,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.flight import Sample
-from sim.linear import ShortPeriod
-from sim.servo import Calibration
+from ..flight import Sample
+from ..linear import ShortPeriod
+from ..servo import Calibration
 
 FloatArray = NDArray[np.float64]
 CHANNELS = ("alpha", "q", "a_z", "theta")

@@ -1,7 +1,7 @@
 """Moving air."""
 
-from sim.atmosphere import gust_1_minus_cos
-from sim.motion import Motion
+from ..atmosphere import gust_1_minus_cos
+from ..motion import Motion
 
 
 class Gusts:

@@ -9,14 +9,14 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from sim.atmosphere import DrydenTurbulence
-from sim.effects.actuator import Backlash, Deadband, RateLimit
-from sim.effects.air import Gusts
-from sim.effects.changes import EngineSurge, FieldChange, Onset
-from sim.effects.instruments import BendingMode, Lagging, Leading, Scaled, VaneAhead
-from sim.effects.kit import Kind, Kit, Sizes
-from sim.fittings import Turbulent
-from sim.servo import FirstOrderServo, Mechanism, SecondOrderServo, TransportDelay
+from ..atmosphere import DrydenTurbulence
+from ..fittings import Turbulent
+from ..servo import FirstOrderServo, Mechanism, SecondOrderServo, TransportDelay
+from .actuator import Backlash, Deadband, RateLimit
+from .air import Gusts
+from .changes import EngineSurge, FieldChange, Onset
+from .instruments import BendingMode, Lagging, Leading, Scaled, VaneAhead
+from .kit import Kind, Kit, Sizes
 
 
 def _delay(kit: Kit, sizes: Sizes) -> None:

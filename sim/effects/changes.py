@@ -3,7 +3,7 @@
 import math
 from typing import Any
 
-from sim.motion import Motion
+from ..motion import Motion
 
 
 class Onset:

@@ -3,16 +3,16 @@
 from collections.abc import Mapping
 from dataclasses import replace
 
-from sim import hangar
-from sim.autopilot import plan
-from sim.effects.catalogue import CATALOGUE
-from sim.effects.kit import Kind, Kit, Sizes
-from sim.effects.outside import OUTSIDE
-from sim.fittings import Fittings
-from sim.flight import Flight
-from sim.loading import ScenarioError
-from sim.nonlinear_aircraft import NonlinearAircraft
-from sim.scenario import Scenario
+from .. import hangar
+from ..autopilot import plan
+from ..fittings import Fittings
+from ..flight import Flight
+from ..loading import ScenarioError
+from ..nonlinear_aircraft import NonlinearAircraft
+from ..scenario import Scenario
+from .catalogue import CATALOGUE
+from .kit import Kind, Kit, Sizes
+from .outside import OUTSIDE
 
 KINDS: Mapping[str, Kind] = {**CATALOGUE, **OUTSIDE}
 """Every effect that a scenario may name."""

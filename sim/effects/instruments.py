@@ -3,9 +3,9 @@
 import math
 from collections.abc import Callable
 
-from sim.motion import Motion
-from sim.sensors import Reading
-from sim.servo import FirstOrderServo
+from ..motion import Motion
+from ..sensors import Reading
+from ..servo import FirstOrderServo
 
 
 class Lagging:

@@ -3,9 +3,9 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from sim.autopilot import Planned
-from sim.fittings import Fittings
-from sim.motion import Controls
+from ..autopilot import Planned
+from ..fittings import Fittings
+from ..motion import Controls
 
 Sizes = Mapping[str, float]
 

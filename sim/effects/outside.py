@@ -4,13 +4,13 @@ import math
 
 import numpy as np
 
-from sim.airframe import GRAVITY_M_S2
-from sim.effects.actuator import Stiction
-from sim.effects.air import WindShear
-from sim.effects.instruments import Transformed
-from sim.effects.kit import Kind, Kit, Sizes
-from sim.motion import Motion
-from sim.sensors import Reading
+from ..airframe import GRAVITY_M_S2
+from ..motion import Motion
+from ..sensors import Reading
+from .actuator import Stiction
+from .air import WindShear
+from .instruments import Transformed
+from .kit import Kind, Kit, Sizes
 
 
 class _LimitCycle:

@@ -8,13 +8,13 @@ import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from sim.airframe import GRAVITY_M_S2
-from sim.effects.air import Gusts
-from sim.effects.catalogue import CATALOGUE
-from sim.effects.changes import FieldChange, Onset
-from sim.effects.kit import Kit, Sizes
-from sim.linear import ShortPeriod
-from sim.motion import Motion
+from ..airframe import GRAVITY_M_S2
+from ..linear import ShortPeriod
+from ..motion import Motion
+from .air import Gusts
+from .catalogue import CATALOGUE
+from .changes import FieldChange, Onset
+from .kit import Kit, Sizes
 
 Term = Callable[[Kit, Any, Sizes, float], None]
 """Function that fits a term. Arguments: kit, linear aircraft, parameters, and the boot time at which the log

@@ -97,8 +97,8 @@ def test_a_free_response_cut_short_is_named():
 @pytest.mark.parametrize(
     ("closed_by", "mend"),
     [
-        ("end of log", "let it run on"), ("gap", "check the link"), ("mode change", "stay in the mode"),
-        ("next input", "hands still"),
+        ("end of log", "let the recording run on"), ("gap", "check the link"),
+        ("mode change", "stay in the mode"), ("next input", "hands still"),
     ],
 )  # fmt: skip
 def test_a_free_response_cut_short_is_laid_to_what_ended_it(closed_by, mend):

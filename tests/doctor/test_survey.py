@@ -142,7 +142,7 @@ def test_a_stretch_without_any_record_is_a_pause_of_a_log_and_a_fault_of_a_link(
     master = attitude(t)
     survey, arrivals = surveyed([master, aoa(t, among(master, t, t), renewed_hz=20.0)], carrier=carrier)
     assert len(survey.pauses) == told
-    assert all("from 20.0 to 43.0 s" in sentence for sentence in survey.pauses)
+    assert all("from 0:20.0 to 0:43.0" in sentence for sentence in survey.pauses)
     assert (arrivals["ATTITUDE"].largest_gap_s > 1.0) is (told == 0)
     assert (arrivals["AOA_SSA"].lowest_hz < 40.0) is (told == 0)
     assert survey.clocks.boots == 1

@@ -87,4 +87,4 @@ def test_a_manoeuvre_that_is_not_there_is_refused_with_how_many_are(
 ) -> None:
     run = advisor("export", exported.log, "--cut", "9", "-o", tmp_path / "m9.tlog")
     assert run.returncode == 2
-    assert "no manoeuvre 9; the logs hold 4" in run.stderr
+    assert "no manoeuvre 9; give a number from 1 to 4" in run.stderr

@@ -20,7 +20,7 @@ def improvement(**changes: object) -> Improvement:
     plain = Improvement(
         name="glider",
         model={name: Value(value, abs(value) / 50.0) for name, value in MODEL.items()},
-        believed={},
+        prior={},
         airspeed_m_s=25.0,
         servo=Servo(lag_s=0.08),
         effects={},

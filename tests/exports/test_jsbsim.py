@@ -83,7 +83,7 @@ def wanted(before: dict[str, float], factors: dict[str, float], airspeed_m_s: fl
         p: Value(factors[p] * value, 0.004 * abs(factors[p] * value) + 1e-6) for p, value in before.items()
     }
     return improvement(
-        model=model, believed=before, airspeed_m_s=airspeed_m_s, height_m=1000.0,
+        model=model, prior=before, airspeed_m_s=airspeed_m_s, height_m=1000.0,
         servo=changes.pop("servo", Servo()), **changes,
     )  # fmt: skip
 
@@ -119,7 +119,7 @@ def test_a_derivative_without_a_term_of_its_own_gets_a_function(tmp_path):
     assert "Z_q" not in terms_of(parse(model.file.read_bytes(), "737"))
     found = {p: Value(value, 1e-3 * abs(value) + 1e-6) for p, value in before.items()}
     found["Z_q"] = Value(before["Z_q"] - 0.05, 1e-3)
-    improved = improvement(model=found, believed=before, airspeed_m_s=150.0, height_m=1000.0, servo=Servo())
+    improved = improvement(model=found, prior=before, airspeed_m_s=150.0, height_m=1000.0, servo=Servo())
     made = aircraft_text(improved, model)
     assert 'name="aero/advisor/Z_q"' in made.text
     assert flown(placed(made.text, tmp_path, "737"), 150.0)["Z_q"] == pytest.approx(
@@ -240,7 +240,7 @@ def test_an_elevator_without_an_angle_is_compared_only_by_ratio():
     found = {p: Value(v, 1.0) for p, v in before.items()} | {
         "Z_delta_e": Value(-0.1, 1e-4), "M_delta_e": Value(-9.0, 1e-3)
     }  # fmt: skip
-    made = aircraft_text(improvement(model=found, believed=before, airspeed_m_s=150.0, servo=Servo()), model)
+    made = aircraft_text(improvement(model=found, prior=before, airspeed_m_s=150.0, servo=Servo()), model)
     assert made.left_out == (
         "Z_delta_e: the elevator's position is no angle", "M_delta_e: the elevator's position is no angle"
     )  # fmt: skip

@@ -57,7 +57,7 @@ def test_a_change_before_the_first_test_input_counts_from_its_moment_on_and_is_s
     surface, told = after_a_change(name, value, flown=False)
     assert surface == elevator(*BEFORE, (1, name, value))
     assert told == [
-        f"{name} changed from {1500 if 'TRIM' in name else 0} to {value:g} at 10.0 s: "
+        f"{name} changed from {1500 if 'TRIM' in name else 0} to {value:g} at 0:10.0: "
         f"the elevator is counted with {value:g} after that."
     ]
 

@@ -9,7 +9,7 @@ import pytest
 
 from advisor.aircraft import Aircraft, Elevator, ElevatorOutput
 from advisor.flight.events import ManeuverFlown
-from advisor.flight.output_signs import answers
+from advisor.flight.output_signs import pitch_signs
 from advisor.flight.pieces import between
 from advisor.flight.record import Channel
 from advisor.flight.stream import FlightStream
@@ -180,7 +180,7 @@ def test_an_output_that_rests_tells_nothing_and_the_others_do() -> None:
     pull = 0.05 * np.sign(np.sin(1.7 * t))
     q = Channel("q", t, np.cumsum(-7.0 * pull) * 0.02 + 1e-4 * np.sin(31.0 * t))
     angles = np.column_stack([pull, np.zeros(len(t)), -pull])
-    assert answers(t, angles, (0.4, 0.2, 0.4), q, None) == [False, None, True]
+    assert pitch_signs(t, angles, (0.4, 0.2, 0.4), q, None) == [False, None, True]
 
 
 def test_outputs_that_only_move_together_are_asked_one_by_one_where_nothing_is_told_of_them() -> None:
@@ -188,8 +188,8 @@ def test_outputs_that_only_move_together_are_asked_one_by_one_where_nothing_is_t
     pull = 0.05 * np.sign(np.sin(1.7 * t))
     q = Channel("q", t, np.cumsum(-7.0 * pull) * 0.02 + 1e-4 * np.sin(31.0 * t))
     together = np.column_stack([pull, -0.3 * pull])
-    assert answers(t, together, (0.7, 0.3), q, None, singly=True) == [False, True]
-    assert None in answers(t, together, (0.7, 0.3), q, None)
+    assert pitch_signs(t, together, (0.7, 0.3), q, None, singly=True) == [False, True]
+    assert None in pitch_signs(t, together, (0.7, 0.3), q, None)
 
 
 def test_a_pitch_rate_that_follows_no_output_tells_nothing() -> None:
@@ -197,4 +197,4 @@ def test_a_pitch_rate_that_follows_no_output_tells_nothing() -> None:
     t = np.arange(0.0, 8.0, 0.02)
     q = Channel("q", t, 0.01 * rng.standard_normal(len(t)))
     angles = 0.05 * np.sign(np.sin(np.outer(t, [1.7, 2.3])))
-    assert answers(t, angles, (0.5, 0.5), q, None) == [None, None]
+    assert pitch_signs(t, angles, (0.5, 0.5), q, None) == [None, None]

@@ -151,7 +151,7 @@ def test_what_fitted_numbers_do_does_not_pass_for_the_work_of_the_effect_beside_
     found = diagnose(flown, wrong)
     assert found.causes[0].effect == "pitch_rate_scale"
     assert 0.0 < found.shrink.by_numbers_percent < found.shrink.percent
-    assert f"the numbers alone {found.shrink.by_numbers_percent:.0f} %" in found.sentence
+    assert f"the parameters alone {found.shrink.by_numbers_percent:.0f} %" in found.sentence
     assert diagnose(flown, Aircraft()).shrink.by_numbers_percent is None
 
 
@@ -182,7 +182,7 @@ def test_numbers_that_are_right_to_a_per_cent_are_no_gap_to_mend_and_the_sentenc
     found = diagnose(fly(Setup(maneuvers=6, noise=0.01, seed=4)), Aircraft(model=nearly))
     assert found.verdict == "none"
     assert found.gap.before > 0.1
-    assert "its numbers are right to a few per cent" in found.sentence
+    assert "its parameters are right to a few per cent" in found.sentence
 
 
 @pytest.mark.study

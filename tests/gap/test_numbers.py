@@ -84,7 +84,7 @@ def test_wrong_numbers_that_make_nearly_all_of_a_gap_are_the_answer_though_a_mom
     found = diagnose(fly(Setup(maneuvers=6, switches={"cm_a2": 1.6}, seed=5)), wrong)
     assert [c.effect for c in found.causes if c.present] == ["nonlinear_pitching_moment"]
     assert found.verdict == "parameters"
-    assert "wrong numbers" in found.sentence
+    assert "wrong parameters" in found.sentence
     assert "nonlinear pitching moment" in found.sentence
     assert found.causes[0].probability < 0.1
     assert found.shrink.by_numbers_percent > 98.0
@@ -118,7 +118,7 @@ def test_a_wrong_number_is_placed_in_its_equation(sound, number, block):
     ("gust_m_s", "off", "verdict", "said"),
     [
         (2.0, {"M_delta_e": 0.88}, "parameters", "the air makes the rest"),
-        (6.0, {"Z_alpha": 0.8}, "effect", "its numbers are off besides"),
+        (6.0, {"Z_alpha": 0.8}, "effect", "its parameters are wrong too"),
     ],
 )
 def test_of_a_gust_and_wrong_numbers_the_larger_part_of_the_gap_is_the_answer(
@@ -140,5 +140,5 @@ def test_beside_something_unknown_what_was_named_stays_with_half_its_probability
     assert found.causes[0].effect == "transport_delay"
     assert found.causes[0].present
     assert found.causes[0].probability <= 0.5
-    assert "beside what looks like transport delay" in found.sentence
+    assert "in addition to what looks like transport delay" in found.sentence
     assert found.effects["transport_delay"]["delay_s"] == pytest.approx(0.06, abs=0.005)

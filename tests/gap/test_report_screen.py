@@ -9,7 +9,7 @@ from rich.console import Console
 
 from advisor.flight.kinematics import KinematicCheck
 from advisor.gap.result import Cause, Diagnosis, Gap, Shrink, Trace, Unseen, Value, Where, Yardsticks
-from advisor.report.gap_causes import tie_sentence
+from advisor.report.gap_causes import confusion_sentence
 from advisor.report.gap_screen import GapScreen
 from advisor.report.gap_sizes import in_units, short, sizes_of, with_error
 
@@ -136,7 +136,7 @@ def test_a_cause_takes_a_line_with_its_size_in_units_people_use():
 
 
 def test_what_a_cause_is_tied_with_is_a_sentence():
-    assert tie_sentence(DELAY) == (
+    assert confusion_sentence(DELAY) == (
         "Transport delay cannot be told from actuator lag here. "
         "To tell them apart, log the measured surface position."
     )

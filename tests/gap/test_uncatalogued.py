@@ -278,4 +278,4 @@ def test_a_visible_gap_that_is_too_small_for_a_name_is_not_called_nothing():
     found = diagnose(fly(Setup(switches=wake, noise=0.004, seed=3)), Aircraft())
     assert found.verdict == "none"
     assert found.gap.before > 0.2
-    assert "too little for a name" in found.sentence
+    assert "too small to name a cause" in found.sentence

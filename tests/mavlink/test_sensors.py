@@ -49,7 +49,7 @@ def test_a_sensor_that_dies_in_flight_gives_way_from_then_on():
     assert chosen.fields["row"].tolist() == [0, 3, 5]
     assert [one.text for one in said(records, chosen, "Rates")] == [
         "Rates: sensor 0 flew",
-        "Rates: sensor 1 flew from 0.3 s on",
+        "Rates: sensor 1 flew since 0:00.3",
     ]
 
 
@@ -63,7 +63,7 @@ def test_no_sensor_flew_while_none_is_healthy_and_that_is_said():
     chosen = flown(records)
     assert chosen.fields["row"].tolist() == [*range(10), *range(20, 30)]
     assert [one.text for one in said(records, chosen, "Rates")] == [
-        "Rates: no sensor was healthy from 1.0 to 1.9 s and none is used there"
+        "Rates: no sensor was healthy from 0:01.0 to 0:01.9 and none is used there"
     ]
 
 

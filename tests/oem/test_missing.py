@@ -51,4 +51,4 @@ def test_the_notes_of_an_estimate_put_the_price_beside_the_missing_channel():
     known = Aircraft(elevator=Elevator(lag_s=0.0), airspeed_m_s=SPEED_M_S)
     found = estimate(flown(UAV, unit_s=0.4, noise=0.02, length_s=8.0), known)
     note = next(note for note in found.notes if "No vertical acceleration" in note)
-    assert "by the factors" in note or "more than 5 %" in note
+    assert "by factors" in note or "more than 5 %" in note

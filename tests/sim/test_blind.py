@@ -106,7 +106,7 @@ def test_a_drawn_effect_is_visible_above_the_noise(group):
     assert case.gap >= SMALLEST_GAP
     assert len(case.effects) == (2 if group == "two" else 1)
     assert set(case.effects) <= set(OUTSIDE if group == "outside" else INSIDE)
-    assert set(aircraft_file(case)["model"]) == set(case.belief.as_dict())
+    assert set(aircraft_file(case)["model"]) == set(case.prior.as_dict())
 
 
 def test_the_same_numbers_draw_the_same_case():

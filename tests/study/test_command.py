@@ -51,6 +51,7 @@ def test_without_json_it_is_told_in_lines() -> None:
     told = CliRunner().invoke(command, ["--campaigns", "10"]).stdout
     assert "continuous" in told
     assert "schema" not in told
+    assert max(map(len, told.split("\n"))) <= 80
 
 
 @pytest.mark.parametrize(

@@ -20,6 +20,7 @@ from advisor.flight.maneuver import Maneuver, Span
 from advisor.flight.record import Channel
 from advisor.flight.vehicle import Vehicle
 from advisor.oem.estimate import ChannelFit, Estimate, NoEstimate
+from advisor.vehicle_time import clock
 
 TRUTH = np.array([0.04, -3.2, 0.02, -0.21, 0.47, -48.0, -4.2, -101.0])
 SPREAD = np.array([0.004, 0.15, 0.01, 0.05, 0.05, 1.9, 0.3, 4.0])
@@ -166,7 +167,8 @@ def state(flown: int = 7, bad: tuple[int, ...] = (2,), in_the_air: bool = False)
         )
     }
     notices = tuple(
-        f"{clock_s:.0f} s: manoeuvre {k} judged" for k, clock_s in enumerate(np.arange(113.0, now_s, 25.0), 1)
+        f"{clock(clock_s):>7}  manoeuvre {k} judged"
+        for k, clock_s in enumerate(np.arange(113.0, now_s, 25.0), 1)
     )
     return CampaignState(
         vehicle=VEHICLE,
@@ -179,7 +181,7 @@ def state(flown: int = 7, bad: tuple[int, ...] = (2,), in_the_air: bool = False)
         model=_estimate({}, np.random.default_rng(0)) if flown else None,
         flying=flying,
         settling=judged(flown + 1).estimate if flying else None,  # type: ignore[arg-type]
-        notices=("ardupilot 1/1 heard", *notices),
+        notices=("      –  following ardupilot 1/1", *notices),
     )
 
 

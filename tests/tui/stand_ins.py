@@ -40,13 +40,28 @@ class StagedCampaign:
         self.problems: list[Problem] = []
         self.by_hand = by_hand
         self._marking_since_s: float | None = None
+        self._logged: list[tuple[int, str]] = []
         self._known: dict[object, tuple[JudgedManeuver, ...]] = {}
 
     @property
     def state(self) -> CampaignState:
         # As with the real campaign, what did not change stays the same object.
         now = self._states[min(self._stage, len(self._states) - 1)]
-        return replace(now, maneuvers=self._maneuvers(now), marking_since_s=self._marking_since_s)
+        return replace(
+            now,
+            maneuvers=self._maneuvers(now),
+            marking_since_s=self._marking_since_s,
+            notices=self._notices(now) if self._logged else now.notices,
+        )
+
+    def _notices(self, now: CampaignState) -> tuple[str, ...]:
+        notices = list(now.notices)
+        for k, (at, sentence) in enumerate(self._logged):
+            notices.insert(at + k, f"      –  {sentence}")
+        return tuple(notices)
+
+    def log(self, sentence: str) -> None:
+        self._logged.append((len(self._states[min(self._stage, len(self._states) - 1)].notices), sentence))
 
     def _maneuvers(self, now: CampaignState) -> tuple[JudgedManeuver, ...]:
         key = (id(now), self.by_hand)

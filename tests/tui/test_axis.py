@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from advisor.tui.plot.axis import Axis, exact_axis, round_axis
+from advisor.tui.plot.axis import Axis, exact_axis, log_axis, round_axis
 from advisor.tui.plot.labels import along_the_foot, down_the_side, whole
 
 values = st.lists(st.floats(-1e9, 1e9), min_size=1, max_size=8)
@@ -63,3 +63,21 @@ def test_the_foot_keeps_to_its_width_and_ends_with_the_unit(width: int):
     foot = along_the_foot(Axis(0.0, 100.0, 5.0), "t [s]", 4, width)
     assert len(foot) == width
     assert foot.endswith("t [s]")
+
+
+def test_a_logarithmic_axis_reads_at_25_and_at_2500():
+    axis = log_axis([np.array([25.0, 2500.0])], 8)
+    assert axis.labels == ["20", "50", "100", "200", "500", "1,000", "2,000", "5,000"]
+    assert 10.0**axis.low <= 25.0 < 2500.0 <= 10.0**axis.high
+
+
+def test_a_logarithmic_axis_without_room_keeps_powers_of_ten():
+    assert log_axis([np.array([25.0, 2500.0])], 3).labels == ["100", "1,000"]
+
+
+@pytest.mark.parametrize("values", [[], [0.0, -3.0], [np.nan], [100.0], [3.0, 1e7]])
+@pytest.mark.parametrize("most", [2, 4, 9])
+def test_a_logarithmic_axis_has_two_ticks_or_more_within_its_ends(values: list[float], most: int):
+    axis = log_axis([np.array(values)], most)
+    assert len(axis.ticks) >= 2
+    assert axis.low - 1e-9 <= axis.ticks[0] < axis.ticks[-1] <= axis.high + 1e-9

@@ -34,9 +34,19 @@ async def test_the_table_shows_each_manoeuvre_with_what_every_rule_says():
     async with stage(flights.state(4), settings=ENGINEER, size=(80, 24)) as here:
         await filled(here, 4)
         rows = table(here, "Maneuvers")
-        assert rows[0][:4] == ["1", "1:45", "3-2-1-1", "✓ GOOD"]
-        assert (rows[1][3], rows[1][8]) == ("✗ REPEAT", "amplitude; bank")
-        assert rows[3][4:7] == ["✓", "✗", "✓"]
+        assert rows[0][:4] == ["1", "1:45.0", "3-2-1-1", "✓ GOOD"]
+        assert (rows[1][3], rows[1][5]) == ("✗ REPEAT", "amplitude, bank")
+        assert rows[3][4] == "✓✗✓"
+
+
+@pytest.mark.parametrize("size", [(80, 24), (110, 30), (140, 45), (160, 42), (200, 60)], ids=str)
+async def test_no_reason_and_no_time_is_cut_in_the_table_at_any_size(size: tuple[int, int]):
+    async with stage(flights.state(4), settings=ENGINEER, size=size) as here:
+        await filled(here, 4)
+        row = table(here, "Maneuvers")[1]
+        assert row[-1] in ("amplitude, bank", "amplitude +1")
+        shown = next(line for line in here.page().split("\n") if "2:10.0" in line)
+        assert f"{row[-1]} " in shown.split("│")[1].split("┃")[0]
 
 
 async def test_the_eight_parameters_stand_with_intervals_beside_the_prior_model():
@@ -120,7 +130,7 @@ async def test_excluding_asks_for_a_reason_and_records_it():
         assert isinstance(here.app.focused, Input)
         await here.press(*"gust", "enter")
         await here.until(lambda: ("exclude", 2, "gust") in here.campaign.calls)
-        await here.until(lambda: table(here, "Maneuvers")[1][3::5] == ["∅ EXCLUDED", "gust"])
+        await here.until(lambda: table(here, "Maneuvers")[1][3::2] == ["∅ EXCLUDED", "gust"])
         await here.press("x", *"fine", "enter")
         await here.until(lambda: ("include", 2) in here.campaign.calls)
         await here.until(lambda: ("note", 2, "included again: fine") in here.campaign.calls)
@@ -196,4 +206,5 @@ async def test_the_log_tells_of_the_campaign_and_of_the_link_in_order():
         source.deliver()
         await here.until(lambda: "manoeuvre 2 judged" in here.words("EventLog Lines"))
         lines = here.words("EventLog Lines").split("\n")
-        assert [line.split()[0] for line in lines] == ["ardupilot", "113", "link:", "138"]
+        assert [line[9:].split()[0] for line in lines] == ["following", "manoeuvre", "link:", "manoeuvre"]
+        assert [line[:7].strip() for line in lines] == ["–", "1:53.0", "–", "2:18.0"]

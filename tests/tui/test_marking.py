@@ -123,7 +123,7 @@ def test_nothing_is_marked_before_the_vehicles_clock_is_heard():
     campaign.end_maneuver()
     assert campaign.by_hand == ByHand()
     assert campaign.state.marking_since_s is None
-    assert campaign.state.notices[0] == "nothing can be marked before the vehicle's clock is heard"
+    assert campaign.state.notices[0].strip() == "–  nothing can be marked before the vehicle's clock is heard"
 
 
 def test_without_a_recording_a_link_says_that_decisions_are_not_kept():

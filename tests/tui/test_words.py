@@ -8,7 +8,7 @@ from advisor.aircraft import PARAMETERS as NAMES
 from advisor.tui.advice import Word
 from advisor.tui.letters import block_letters
 from advisor.tui.panes.gauge import bar
-from advisor.tui.words import PARAMETERS, channel, clock, percent
+from advisor.tui.words import PARAMETERS, channel, percent
 
 
 def test_every_parameter_has_a_symbol_and_a_unit():
@@ -34,10 +34,6 @@ def test_a_channel_nobody_named_keeps_its_name():
 )
 def test_percentages_are_short(value: float | None, text: str):
     assert percent(value) == text
-
-
-def test_vehicle_time_reads_as_minutes_and_seconds():
-    assert clock(187.4) == "3:07"
 
 
 @pytest.mark.parametrize("word", get_args(Word))

@@ -10,8 +10,8 @@ from advisor.gap.simulator.layout import HEIGHT, THROTTLE
 
 _LEAST_S = 0.004
 _FILTERED_S = 0.02
-"""Least delay of a sensor that is named, in s: of a raw sensor (4 ms), and of a channel that an autopilot
-filtered (20 ms)."""
+"""Least delay that is named, s: of a raw sensor (4 ms), and of a channel that an autopilot filtered (20
+ms)."""
 _THROTTLE_MOVES, _HEIGHT_MOVES_M = 0.02, 0.2
 """Least change within a manoeuvre that makes the channel informative: of the throttle as a share of its
 range, and of the height in m."""

@@ -18,8 +18,8 @@ _DERIVATIVE_STEP = 1e-3
 _LEAST_SCALE = np.array([0.5, 0.05, 0.1, 1.0, 0.5, 1.0])
 """Least size of each derivative for its finite-difference step, in the units of ``DERIVATIVES``."""
 _NEAR, _STEPS = 0.02, 2.0
-"""Largest change within which sensitivities to nuisance parameters are reused: of each derivative relative to
-its size, and of an effect's parameters in their finite-difference steps."""
+"""Largest change within which sensitivities to nuisance parameters are reused. Derivatives count relative to
+their size, parameters of effects in finite-difference steps."""
 _OWN_STEPS = np.array([1e-4, 1e-4, 1e-3, 1e-3])
 """Finite-difference steps of initial states (rad, rad/s) and trim terms (1/s, 1/s²)."""
 _SPEEDS = ("speed_level_m_s", "speed_slope_m_s", "speed_bow_m_s")
@@ -261,8 +261,8 @@ def linearise(problem: Problem, point: Point, near: Sequence[Linear] | None = No
     edges are reused.
 
     Edges may lie far from their stamps, as in a command logged 25 times per second. A search that kept their
-    sensitivities while a delay or a skew changes would end where its gradient vanishes and that of the cost
-    does not.
+    sensitivities while a delay changes would go astray. It would end where its gradient vanishes and that of
+    the cost does not.
     """
     p, steps = problem.driving(point), shared_steps(point)
     shifted = np.stack([problem.driving(moved) for moved in shifted_points(point, range(len(steps)))], axis=1)

@@ -24,8 +24,8 @@ _CHI_SQUARE_999, _CHI_SQUARE_500 = 22.46, 5.35
 """Limits of chi square with six degrees of freedom, for probabilities of 99.9 % and 50 %."""
 
 _LOG_ODDS_OTHER_STATED = -4.0
-"""Log prior odds of an arm that the aircraft file states, relative to an equivalent arm that the file leaves
-open; also of a vane's arm where α is an estimate."""
+"""Log prior odds of an arm that the aircraft file states, relative to an equivalent arm that it leaves open.
+They also hold for a vane's arm where α is an estimate."""
 _LOG_ODDS_BACKWARD = {"alpha_vane_offset": -5.0, "accelerometer_offset": -2.5}
 """Log prior odds of an arm that points backwards. The two arms are equivalent in the data. A vane behind the
 centre of gravity is hardly ever found, an accelerometer there less often than a vane ahead."""

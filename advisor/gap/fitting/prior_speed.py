@@ -1,7 +1,7 @@
 """The air speed at which the aircraft file's derivatives hold, where the file states none.
 
 The mean speed of the manoeuvres is the default. A manoeuvre costs speed, and pilots begin one slower than the
-last, so derivatives of the trim speed can be off by some per cent, all by their power of the speed.
+last. Derivatives of the trim speed can then be off by some per cent, all by their power of the speed.
 """
 
 import numpy as np

@@ -45,7 +45,7 @@ def regressions(flights: Flights) -> list[FloatArray]:
     """Return starting values of the derivatives, each of shape (6,).
 
     A channel that is late by a large part of a radian of the short period leads the regression astray, even
-    in sign, and no search recovers. The regression with that channel shifted is then a start too.
+    in sign. No search recovers from that. The regression with that channel shifted is then a start too.
     """
     as_stamped, left_share = _regressed(flights, Late())
     if left_share < _IN_STEP:

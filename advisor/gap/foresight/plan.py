@@ -32,7 +32,7 @@ STEPS = {
     "pulse": ((1, -1.0),),
 }
 """Steps of each input: units of time, and share of the amplitude with trailing edge down. The areas of all
-but a pulse sum to zero, so that the aircraft returns to trim; the first step of a ``3211`` raises the
+but a pulse sum to zero, so that the aircraft returns to trim. The first step of a ``3211`` raises the
 nose."""
 TYPICAL_NOISE = {"alpha": np.radians(0.1), "q": np.radians(0.2), "a_z": 0.1, "theta": np.radians(0.1)}
 """Standard deviations assumed for unmeasured instruments, in SI units of the channel."""
@@ -63,7 +63,9 @@ def foresee_plan(
     derivatives = prior_derivatives(aircraft)
     if derivatives is None:
         missing = ", ".join(name for name in PARAMETERS if name not in aircraft.model)
-        raise ConfigurationError(f"foresee needs the aircraft file's model: {missing} missing.")
+        raise ConfigurationError(
+            f"foresee needs the aircraft file's model: {missing} missing; write what is missing under model."
+        )
     if aircraft.model["M_delta_e"] == 0.0:
         raise ConfigurationError(
             "model.M_delta_e: an elevator of no effect (0) shows nothing; give the moment it makes, in 1/s²."

@@ -2,7 +2,7 @@
 
 The length of a signature, in standard deviations of the noise, gives the smallest detectable size. The angle
 between two signatures tells how easily one effect is taken for the other. Parameters with a prior, such as
-the edges of the command, are eliminated with it as additional rows, so that lengths and angles are those of
+the edges of the command, are eliminated with it as additional rows. Lengths and angles are therefore those of
 the marginal likelihood. Latency may absorb an effect too, but only within its bounds.
 """
 

@@ -28,8 +28,8 @@ _LEAST_SAMPLES = 50
 _LEAST_QUIET_S = 4.0
 """Least length of all quiet stretches together for a model of slow air, s."""
 _LONE = 8.0
-"""Power of a stretch over the median of all stretches, or of a manoeuvre over the quietest quarter, above
-which a gust may be in it."""
+"""Ratio of powers above which a gust may be the cause: a stretch over the median of all, or a manoeuvre over
+the quietest quarter."""
 _MARGIN = 1.03
 """Least ratio of the log likelihood that moving air explains to that of any other block, for a gust."""
 _FAINT, _FAINT_MARGIN = 3.0, 1.2

@@ -6,8 +6,8 @@ from advisor.flight.maneuver import Maneuver
 from advisor.flight.messages import FloatArray
 
 _STEEP, _SHORT_S = 0.15, 0.02
-"""Least jump between two stamps, as a share of the command's range, that counts as an edge; and the interval
-in s at which this share applies. For other intervals the product of jump and interval is compared."""
+"""Least jump between two stamps that counts as an edge, as a share of the command's range. The share holds
+for intervals of the second number, s; for others the product of jump and interval is compared."""
 _LOST = 1.5
 """Interval between two stamps, in usual intervals, above which a stamp counts as lost."""
 _HOLE_S, _HOLE = 0.15, 3.5

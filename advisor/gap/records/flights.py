@@ -53,8 +53,8 @@ class Flight:
     """Shape (4,): α and θ at the start, reference speed, and 1 where derivatives scale with speed."""
     outputs: Mapping[str, Measured]
     edges: FloatArray
-    """Shape (m, 4). Edges of the command: middle of the interval between two stamps (s), jump times length
-    (rad s), length (s), and the part of the length that belongs to lost stamps (s)."""
+    """Shape (m, 4). Edges of the command: middle of the interval between stamps (s), jump times length (rad
+    s), length (s), lost part (s)."""
     stamps: FloatArray = field(default_factory=lambda: np.empty(0))
     """Shape (rows,): stamps of all compared outputs, one channel after another."""
     output: np.ndarray = field(default_factory=lambda: np.empty(0, dtype=np.int64))

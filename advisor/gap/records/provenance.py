@@ -13,8 +13,9 @@ second, which look as rough as a vane."""
 def is_estimate(m: Maneuver, smoothed: bool, rough: bool) -> bool:
     """Return whether α is an estimate from inertial sensors.
 
-    ArduPilot marks every α as derived. An α renewed faster than its estimator, or as rough as an instrument
-    at a rate where roughness is informative, is a vane's, unless the record is smooth.
+    ArduPilot marks every α as derived. An α that is renewed faster than its estimator is a vane's. So is one
+    as rough as an instrument, where the rate makes roughness informative. A smooth record is an estimate all
+    the same.
     """
     alpha = m.channels.get("alpha")
     if alpha is None or alpha.provenance != "derived":

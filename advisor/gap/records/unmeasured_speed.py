@@ -1,7 +1,7 @@
 """The air speed of a flight without an air speed sensor: level and changes, from the motion.
 
-The factor 1/V turns specific force into rate of α: α̇ − q = (a_z cos α − a_x sin α + g cos(θ − α))/V. The
-accelerometers show the change of V.
+The factor 1/V turns specific force into rate of α, α̇ − q = (a_z cos α − a_x sin α + g cos(θ − α))/V. The
+accelerometers show how V changes.
 """
 
 from collections.abc import Sequence

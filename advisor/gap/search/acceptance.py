@@ -22,16 +22,16 @@ _WITH_THE_AIR = 30.0
 """Least gain in log likelihood, in moving air, of an effect that air speed, throttle or height determine.
 These channels move with the air too."""
 _CLEAR_GAIN, _CLEAR_SIGMAS = 15.0, 5.0
-"""Least gain in log likelihood in moving air, and least significance in standard deviations, of an effect
-that is the first one and changes the outputs clearly."""
+"""Least gain in log likelihood, and least significance in standard deviations, of the first effect in moving
+air. Its change must be clear too."""
 LEAST_SIGMA = 3.0
 """Least significance of an effect: number of standard deviations by which some parameter differs from
 zero."""
 CERTAIN = 30.0
 """Gain in log likelihood above which something like the effect is certainly present."""
 BEYOND_DOUBT, _VISIBLE_CHANGE, _CLEAR_CHANGE = 100.0, 5.0, 10.0
-"""Gain in log likelihood beyond doubt; and changes, in multiples of the least change, above which jitter of
-the stamps hides no time, and above which moving air cannot imitate the effect."""
+"""Gain in log likelihood beyond doubt; and two changes, in multiples of the least change. Above the first,
+jitter of the stamps hides no time. Above the second, moving air cannot imitate the effect."""
 LEAST_OFFSET_RAD = 0.003
 """Least offset of α that is removed before the fit, and that is named, rad."""
 _SET_WITHIN_RAD = 0.007

@@ -114,7 +114,7 @@ def _beyond_drag(
     """Return by manoeuvre the acceleration along the path that neither drag nor ``columns`` explain, m/s².
 
     Drag and a propeller's loss of thrust with speed decelerate. A slowly varying thrust moves the speed with
-    it and would pass for a negative drag, so a part of the polar that accelerates is left out.
+    it and would pass for a negative drag. A part of the polar that accelerates is therefore left out.
     """
     cut = list(zip(flights.flights, columns, stretches, strict=True))
     along = np.concatenate([GRAVITY_M_S2 * flight.slow[THRUST][flown] for flight, _, flown in cut])

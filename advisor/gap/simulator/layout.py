@@ -78,8 +78,8 @@ DISTURB_INPUT, DISTURB_FORCE, DISTURB_MOMENT, DISTURB_AIR = DISTURBED
 """Rows of the disturbances, one value per step, which are added to δ, α̇, q̇ and the angle of the air."""
 TRIM = places(("alpha", "theta", "reference", "scaled"))
 ALPHA_TRIM, THETA_FROM, REFERENCE, SCALED = TRIM
-"""Indices in a manoeuvre's trim: α and θ at its start (rad), reference speed of the derivatives (m/s), and 1
-where derivatives scale with the air speed."""
+"""Indices in a manoeuvre's trim: initial α and θ (rad), reference speed of the derivatives (m/s), and 1 where
+derivatives scale with the air speed."""
 
 
 def key_of(*lists: Any) -> int:

@@ -64,9 +64,8 @@ class AirspeedScale:
         too = "too high" if self.scale > 0.0 else "too low"
         off = f"{100.0 * self.scale:+.1f} ± {100.0 * self.std:.1f} %"
         return (
-            f"The true air speed is {off} off the one in use, as the motion shows; an accelerometer that "
-            f"reads as much {too} looks the same: compare the air speed with the ground speed on opposite "
-            "headings."
+            f"The motion shows a true air speed {off} off the one in use. An accelerometer that reads as "
+            f"much {too} looks the same: compare air speed and ground speed on opposite headings."
         )
 
 

@@ -46,9 +46,9 @@ be named."""
 _SEVERAL = 2
 """Number of effects that may imitate a law together."""
 _SEPARATE_SHARE = 0.5
-"""Least gain of the effects in addition to the law, as a share of their gain without it, for separate causes;
-a certain gain is enough. They must also change the outputs by that share of the law's change. A wrong air
-speed has side effects."""
+"""Least gain of the effects in addition to the law, relative to their gain without it, for separate causes; a
+certain gain is enough. They must also change the outputs by that share of the law's change. A wrong air speed
+has side effects."""
 
 _MISSING = 0.03
 """Residual of all effects beyond noise, as a share of some channel's peak, above which a ringing servo is

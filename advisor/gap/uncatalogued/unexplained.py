@@ -42,8 +42,8 @@ effect."""
 OF_PEAK = 0.01
 """Least residual as a share of a channel's peak. A simplified model is no more accurate."""
 _BEYOND_DOUBT, _FAR_LOUDER, _FAR_ABOVE = 0.5, 4.0, 2.0
-"""Share of that limit that is enough for an evident residual; and the ratio to the quiet power, and to the
-noise, at which a residual is evident."""
+"""Share of that limit that is enough for an evident residual. Such a residual exceeds the quiet power by the
+second factor, and the noise by the third."""
 _CLEAR = 0.1
 """Residual as a share of a channel's peak that no description of an effect leaves, however much it
 explains."""

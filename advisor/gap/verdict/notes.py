@@ -48,7 +48,7 @@ def _of_the_hold_out(holdout: int | None, flown: int) -> Iterator[str]:
     if holdout is not None and holdout >= flown:
         yield (
             f"{holdout} manoeuvres cannot be kept out of {flown}: each was kept out in turn instead. "
-            f"Keep out {flown - 1} at most."
+            f"Give --holdout {flown - 1} at most."
         )
 
 
@@ -61,15 +61,15 @@ def _of_the_speed(e: Evidence, aircraft: Aircraft) -> Iterator[str]:
         yield _without_air_speed(flights, bool(aircraft.stated_airspeed_m_s))
     elif not is_stated and abs(reference / flown - 1.0) > _ANOTHER_SPEED:
         yield (
-            f"The aircraft file's numbers are right at {reference:.1f} m/s; the manoeuvres' mean is "
-            f"{flown:.1f}: state reference_airspeed_m_s."
+            f"The aircraft file's derivatives are right at {reference:.1f} m/s. The mean of the manoeuvres "
+            f"is {flown:.1f} m/s: state reference_airspeed_m_s."
         )
     if e.shear is not None:
         per_metre = f"{abs(e.shear.gradient_per_s):.2f} ± {e.shear.std:.2f} m/s"
         if e.shear.is_implausible:
-            yield f"The air speed's error grows by {per_metre} a metre climbed: more than any wind changes."
+            yield f"The air speed's error grows by {per_metre} per metre climbed, which no wind explains."
         else:
-            yield f"The wind changed with height, by {per_metre} a metre."
+            yield f"The wind changed with height, by {per_metre} per metre."
     if e.airspeed_scale is not None:
         yield e.airspeed_scale.sentence
     if e.weight is not None:
@@ -84,8 +84,8 @@ def _of_a_constant_speed(e: Evidence, verdict: Verdict) -> Iterator[str]:
     if constant - given > _MATTERS:
         percent = 100.0 * e.problem.flights.speed_moves
         yield (
-            f"The simulator was given the air speed of the log, which moved by up to {percent:.0f} %: "
-            f"one at constant speed would leave a gap of {constant:.1f}."
+            f"The simulator was given the air speed of the log, which varied by up to {percent:.0f} %. "
+            f"At constant speed it would leave a gap of {constant:.1f}."
         )
 
 
@@ -93,9 +93,9 @@ def _without_air_speed(flights: Flights, is_known: bool) -> str:
     whence = "from the aircraft file, or from the motion where the file has none" if is_known else "assumed"
     moves = flights.speed_moves > 0.0
     level = "on average" if moves else "before each manoeuvre"
-    differs = f", up to {100.0 * flights.speed_moves:.0f} % off by the motion" if moves else ""
+    differs = f", with differences up to {100.0 * flights.speed_moves:.0f} % by the motion" if moves else ""
     shown = "a_x" in flights.has and {"alpha", "a_z", "theta"} <= set(flights.channels)
-    later = "from there it is what the accelerometers make of it" if shown else "it stays there"
+    later = "its changes come from the accelerometers" if shown else "it stays constant"
     return f"No air speed in the log: {flights.reference_m_s:.1f} m/s {level}, {whence}{differs}; {later}."
 
 
@@ -118,15 +118,15 @@ def _of_the_air(e: Evidence) -> Iterator[str]:
     if e.air is None:
         return
     yield (
-        "What is given as 'after' includes this flight's gusts as estimated from the same samples: that "
-        "flatters the model, and no aircraft file can hold them."
+        "The gap 'after' includes this flight's gusts, estimated from the same samples. That flatters the "
+        "model, and no aircraft file can hold gusts."
     )
     if e.air.gust:
         yield f"The gust shows most in manoeuvre {e.air.gust_number}."
     if e.problem.flights.alpha_is_derived:
         yield (
-            "The angle of attack is an estimate that sees no gust: this flight's derivatives are rough, "
-            "and the strength of the gusts is overestimated."
+            "The angle of attack is an estimate that sees no gust. This flight's derivatives are rough, and "
+            "the strength of the gusts is overestimated."
         )
 
 
@@ -134,14 +134,14 @@ def _of_the_file(aircraft: Aircraft, nuisances: Collection[str]) -> Iterator[str
     """Yield the additional terms of the improved simulator, and the treatment of the file's effects."""
     if nuisances:
         yield (
-            f"The improved simulator has a propeller's terms, too ({_listed(sorted(nuisances))}): "
-            "every aircraft with a propeller has them, and they are not counted as a cause."
+            f"The improved simulator also has a propeller's terms ({_listed(sorted(nuisances))}). Every "
+            "aircraft with a propeller has them, so they do not count as a cause."
         )
     aside = left_aside(aircraft.effects)
     if had := [effect for effect in aircraft.effects if effect not in aside]:
-        yield f"The simulator has the file's {_listed(had)}; what is found here is beyond that."
+        yield f"The simulator already has {_listed(had)} from the file; sizes found here add to that."
     if aside:
-        yield f"The file's {_listed(aside)} belongs to the flight that showed it: left aside."
+        yield f"The file's {_listed(aside)} belongs to another flight and is left aside."
 
 
 def _of_what_is_missing(e: Evidence, aircraft: Aircraft) -> Iterator[str]:
@@ -150,22 +150,22 @@ def _of_what_is_missing(e: Evidence, aircraft: Aircraft) -> Iterator[str]:
     if missing:
         yield f"Without {' and '.join(missing)} several instrument effects cannot be seen."
     if len(flights) == 1:
-        yield "Only one manoeuvre: none is left to keep out of the fit, so no cause is sought."
+        yield "Only one manoeuvre: none is left for the hold-out, so no cause is sought."
     elif len(flights) < _FEW:
-        yield f"Only {len(flights)} manoeuvres: intervals are wide, changes between manoeuvres hard to see."
+        yield f"Only {len(flights)} manoeuvres: intervals are wide, and changes in flight are hard to see."
     yield from unusual_signs(aircraft.model)
     if aircraft.elevator.lag_s is None:
-        yield "The servo's lag is not in the aircraft file: a lag found here may simply be the servo's."
+        yield "The aircraft file does not state the servo's lag: a lag found here may be the servo's."
 
 
 def _command(e: Evidence) -> str:
     """Return how the command moved between its stamps, and what looks the same."""
     if not e.problem.held:
-        return "The command was taken as linear between its stamps, its edges anywhere between two."
+        return "The command was taken as linear between its stamps, with edges anywhere between two."
     half = 0.5 * float(np.median(np.diff(e.problem.flights.flights[0].t_u)))
     return (
-        "The command was held between its stamps. Had it moved linearly instead, the aircraft would answer "
-        f"{1e3 * half:.0f} ms late: the two look the same."
+        "The command was taken as held between its stamps. A linear command with a delay of "
+        f"{1e3 * half:.0f} ms looks the same."
     )
 
 
@@ -183,6 +183,6 @@ def unusual_signs(model: Mapping[str, float]) -> tuple[str, ...]:
     if model.get("M_delta_e", 0.0) <= 0.0:
         return ()
     return (
-        f"The aircraft file's M_delta_e is {model['M_delta_e']:g}, above zero: unusual, for an elevator is "
-        "positive trailing edge down and pitches the nose down; right for a canard.",
+        f"The aircraft file's M_delta_e is {model['M_delta_e']:g}, above zero. That is right for a canard "
+        "only: an elevator trailing edge down is positive and pitches the nose down.",
     )

@@ -46,27 +46,29 @@ def sentence_of(
     present = [c for c in causes if c.present]
     if verdict == "none":
         if gap.before < VISIBLE:
-            left = "nothing is left above the noise"
+            left = "the gap is within the noise"
         elif gap.after < 0.5 * gap.before:
             percent = 100.0 * (1.0 - gap.after / gap.before)
-            left = f"its numbers are right to a few per cent; fitted ones remove {percent:.0f} % of the gap"
+            left = (
+                f"its parameters are right to a few per cent; fitted ones remove {percent:.0f} % of the gap"
+            )
         else:
-            left = "what is left above the noise is too little for a name"
+            left = "the residual above the noise is too small to name a cause"
         return f"The simulator flies like the aircraft: {left}."
     removed = f"{max(shrink.percent, 0.0):.0f} % of the gap" if shrink is not None else "the gap"
     if verdict == "parameters":
         if shrink is not None and shrink.beyond_air_percent is not None:
             removed = f"{shrink.beyond_air_percent:.0f} % of the gap, and the air makes the rest"
-        of_the_numbers = f"wrong numbers: the fitted eight remove {removed}"
+        wrong = f"wrong parameters: the eight fitted ones remove {removed}"
         if shrink is not None and shrink.by_numbers_percent is not None and present:
             besides = ", ".join(spelled(c.effect) for c in present)
-            return f"The simulator has {of_the_numbers}; {besides} explains little of it."
-        return f"The simulator has the right structure and {of_the_numbers}."
+            return f"The simulator has {wrong}; {besides} explains little of it."
+        return f"The simulator has the right structure and {wrong}."
     if verdict == "unknown":
         tried = next((c for c in causes if c.probability > 0.02), None)
         near = f"; the closest, {spelled(tried.effect)}, is not enough" if tried is not None else ""
         if present:
-            near = f", beside what looks like {', '.join(spelled(c.effect) for c in present)}"
+            near = f", in addition to what looks like {', '.join(spelled(c.effect) for c in present)}"
         alike = [place(b) for b, score in where.ranking if b != where.block and score >= _AS_LIKELY]
         places = " or ".join([place(where.block), *alike])
         return f"Something acts {places} that no known effect explains{near}."
@@ -74,17 +76,17 @@ def sentence_of(
     if len(present) > 1:
         also = "; also " + ", ".join(spelled(c.effect) for c in present[1:])
     if present[0].block == "air" and len(present) == 1:
-        numbers = ""
+        also_wrong = ""
         if shrink is not None and shrink.beyond_air_percent is not None:
-            numbers = (
-                f"; its numbers are off besides, which makes {shrink.beyond_air_percent:.0f} % of the gap"
+            also_wrong = (
+                f"; its parameters are wrong too, which makes {shrink.beyond_air_percent:.0f} % of the gap"
             )
-        return f"{named}: that is the air, not the simulator{numbers}."
+        return f"{named}: that is the air, not the simulator{also_wrong}."
     if shrink is not None and shrink.beyond_air_percent is not None:
         removed = f"{shrink.beyond_air_percent:.0f} % of the gap that is not the air's"
     added = "adding it"
     if shrink is not None and shrink.by_numbers_percent is not None:
         # The share of fitted derivatives must not pass for the effect's.
-        added = "adding it and fitting the eight numbers anew"
-        removed += f" (the numbers alone {shrink.by_numbers_percent:.0f} %)"
+        added = "adding it and refitting the eight parameters"
+        removed += f" (the parameters alone {shrink.by_numbers_percent:.0f} %)"
     return f"{named}; {added} removes {removed}{also}."

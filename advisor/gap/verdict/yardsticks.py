@@ -1,9 +1,9 @@
 """Published measures of a simulator's fidelity, in addition to the gap.
 
-The measures are Theil's inequality coefficient with its split into bias, variance and covariance (Theil 1966;
-Jategaonkar, *Flight Vehicle System Identification*, section 11.3), R², and the tolerance of simulator
-qualification. For the short period that tolerance is ±1.5° of pitch or ±2 °/s, and ±0.10 g (14 CFR Part 60,
-Appendix A, and EASA CS-FSTD(A), test 2.c.10).
+The measures are Theil's inequality coefficient (Theil 1966), R², and the tolerance of simulator
+qualification. The coefficient is split into bias, variance and covariance (Jategaonkar, *Flight Vehicle
+System Identification*, section 11.3). For the short period the tolerance is ±1.5° of pitch or ±2 °/s, and
+±0.10 g. The source is 14 CFR Part 60, Appendix A, and EASA CS-FSTD(A), test 2.c.10.
 """
 
 import numpy as np

@@ -27,7 +27,7 @@ class Improvement:
     name: str
     model: Mapping[str, Value]
     """The eight parameters at ``airspeed_m_s``, SI."""
-    believed: Mapping[str, float]
+    prior: Mapping[str, float]
     """Prior model of the simulator: any of the eight parameters, none where unknown."""
     airspeed_m_s: float
     servo: Servo
@@ -57,10 +57,10 @@ class Improvement:
         found = self.model[parameter]
         return found.value - NORMAL_95 * found.std, found.value + NORMAL_95 * found.std
 
-    def differs(self, parameter: str, believed: float) -> bool:
+    def differs(self, parameter: str, prior: float) -> bool:
         """Return whether the flight contradicts a prior value, which then lies outside the 95 % interval."""
         low, high = self.interval95(parameter)
-        return not low <= believed <= high
+        return not low <= prior <= high
 
     def coefficients(self) -> Mapping[str, Coefficient]:
         """Return the eight non-dimensional coefficients, per radian. C_L_0 and C_m_0 hold at zero angles.
@@ -103,7 +103,7 @@ def improvement_of(diagnosis: Diagnosis, aircraft: Aircraft) -> Improvement:
     return Improvement(
         name=aircraft.name,
         model=diagnosis.model,
-        believed=aircraft.model,
+        prior=aircraft.model,
         airspeed_m_s=diagnosis.reference_airspeed_m_s,
         servo=servo_of(flown.elevator, effects),
         effects={name: values for name, values in effects.items() if name not in OF_THE_SERVO},

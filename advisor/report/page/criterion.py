@@ -1,16 +1,18 @@
 """The stop criterion against the number of manoeuvres, rule by rule: the paper's Figure 5 for this flight."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from math import ceil, floor, log10, sqrt
 from typing import Any
 
 from matplotlib.figure import Figure as Drawing
-from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
+from matplotlib.ticker import FixedLocator, FuncFormatter, MaxNLocator, NullLocator
 
 from advisor.decision.verdict import limit_percent
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, Table
 from advisor.report.page.content import Content
 from advisor.report.page.drawing import BLACK, BLUE, picture
 
+_MOST_TICKS = 8
 _EXPLAINED = (
     "The rules continuous and separate compare the scatter of the newest estimates with a limit (Eq. 12). "
     "The rule information compares errors with the tolerances of the aircraft file (100 %: met). "
@@ -61,17 +63,33 @@ def _paint(drawing: Drawing, one: Mapping[str, Any], limit: float) -> None:
     axes.plot([i for i, _ in history], [v for _, v in history], color=BLUE, marker="o", markersize=3.5)
     axes.axhline(limit, color=BLACK, linestyle="--", linewidth=1.0)
     axes.annotate(
-        f"limit {limit:g} %", (1.0, limit), xycoords=("axes fraction", "data"), ha="right", va="bottom"
+        f"limit {limit:g} %", (0.01, limit), xycoords=("axes fraction", "data"), ha="left", va="bottom"
     )
     stopped = [(i, v) for i, v in history if i == one["stopped_at"]]
     if stopped:
         axes.plot(*stopped[0], marker="D", markersize=9, markerfacecolor="none", markeredgecolor=BLACK)
+    low, high = _range([limit, *(v for _, v in history)])
     axes.set_yscale("log")
-    axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axes.yaxis.set_minor_formatter(NullFormatter())
-    values = [limit, *(v for _, v in history)]
-    axes.set_ylim(0.6 * min(values), 1.8 * max(values))
+    axes.set_ylim(low, high)
+    axes.yaxis.set_major_locator(FixedLocator(_ticks(low, high)))
+    axes.yaxis.set_major_formatter(
+        FuncFormatter(lambda value, _: f"{value:,.0f}" if value >= 1.0 else f"{value:g}")
+    )
+    axes.yaxis.set_minor_locator(NullLocator())
     axes.set_xlim(0.5, len(one["history_percent"]) + 0.5)
     axes.xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
     axes.set(xlabel="manoeuvres flown", ylabel="criterion [%]")
+
+
+def _range(values: Sequence[float]) -> tuple[float, float]:
+    """Return the ends of the axis: all values with room around, and a factor of ten at least."""
+    low, high = 0.6 * min(values), 1.8 * max(values)
+    widen = max(1.0, sqrt(10.0 * low / high))
+    return low / widen, high * widen
+
+
+def _ticks(low: float, high: float) -> list[float]:
+    """Return the values at 1, 2 and 5 times powers of ten, or at powers of ten alone where those are many."""
+    decades = range(floor(log10(low)), ceil(log10(high)) + 1)
+    fine = [m * 10.0**k for k in decades for m in (1.0, 2.0, 5.0) if low <= m * 10.0**k <= high]
+    return fine if len(fine) <= _MOST_TICKS else [v for v in fine if 10.0 ** round(log10(v)) == v]

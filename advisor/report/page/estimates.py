@@ -21,7 +21,7 @@ def estimates(content: Content) -> Section:
 
 
 def _blocks(content: Content) -> Iterator[Block]:
-    model, believed = content.analysis["model"], content.aircraft.model
+    model, prior = content.analysis["model"], content.aircraft.model
     if model is None:
         yield Paragraph("No manoeuvre is accepted, so there is no joint estimate.")
         return
@@ -31,10 +31,10 @@ def _blocks(content: Content) -> Iterator[Block]:
     yield Table(
         "joint", f"Joint estimate from manoeuvres {numbers}{at}; ± is half the 95 % interval.",
         ("parameter", "estimate ± 95 %", "± 95 % if white", "file's model", "unit"),
-        tuple(_joint(name, model[name], believed.get(name)) for name in PARAMETERS), frozenset({1, 2, 3}),
+        tuple(_joint(name, model[name], prior.get(name)) for name in PARAMETERS), frozenset({1, 2, 3}),
     )  # fmt: skip
     accepted = [m for m in content.analysis["maneuvers"] if m["verdict"] == "accepted" and m["estimates"]]
-    yield Gallery(tuple(_forest(name, accepted, model[name], believed.get(name)) for name in PARAMETERS))
+    yield Gallery(tuple(_forest(name, accepted, model[name], prior.get(name)) for name in PARAMETERS))
     yield Table(
         "by-maneuver", "Estimate of each accepted manoeuvre alone, ± half the 95 % interval.",
         ("no.", *(f"{SYMBOLS[name]} [{UNITS[name]}]" for name in PARAMETERS)),
@@ -43,11 +43,11 @@ def _blocks(content: Content) -> Iterator[Block]:
     )  # fmt: skip
 
 
-def _joint(name: str, entry: Mapping[str, Any], believed: float | None) -> tuple[str, ...]:
+def _joint(name: str, entry: Mapping[str, Any], prior: float | None) -> tuple[str, ...]:
     known = "–"
-    if believed is not None:
+    if prior is not None:
         half = 0.0 if entry["std"] is None else shown(name, NORMAL_95 * entry["std"])
-        known = signed(shown(name, believed), decimals_for(half))
+        known = signed(shown(name, prior), decimals_for(half))
     if entry["value"] is None:
         return SYMBOLS[name], f"– ({entry['reason']})", "–", known, UNITS[name]
     white = shown(name, NORMAL_95 * entry["std_cr"])
@@ -71,19 +71,19 @@ def _narrow(cell: str) -> str:
 
 
 def _forest(
-    name: str, accepted: list[Mapping[str, Any]], joint: Mapping[str, Any], believed: float | None
+    name: str, accepted: list[Mapping[str, Any]], joint: Mapping[str, Any], prior: float | None
 ) -> Figure:
     rows = [(str(m["number"]), m["estimates"][name]) for m in accepted] + [("joint", joint)]
     known = [(label, one) for label, one in rows if one["value"] is not None and one["std"] is not None]
-    svg = picture(f"forest-{name}", 2.4, 0.9 + 0.15 * len(rows), _paint, name, known, believed)
-    told = "" if believed is None else " Dashes: the file's model."
+    svg = picture(f"forest-{name}", 2.4, 0.9 + 0.15 * len(rows), _paint, name, known, prior)
+    told = "" if prior is None else " Dashes: the file's model."
     return Figure(
         svg, f"{SYMBOLS[name]}: each manoeuvre and the joint estimate with 95 % intervals.{told}", "quarter"
     )
 
 
 def _paint(
-    drawing: Drawing, name: str, known: list[tuple[str, Mapping[str, Any]]], believed: float | None
+    drawing: Drawing, name: str, known: list[tuple[str, Mapping[str, Any]]], prior: float | None
 ) -> None:
     axes = drawing.subplots()
     for row, (label, one) in enumerate(known):
@@ -93,8 +93,8 @@ def _paint(
             fmt="D" if joint else "o", color=BLACK if joint else BLUE, markersize=5 if joint else 3.5,
             linewidth=1.6 if joint else 0.9, capsize=2,
         )  # fmt: skip
-    if believed is not None:
-        axes.axvline(shown(name, believed), color=ORANGE, linestyle="--", linewidth=1.0)
+    if prior is not None:
+        axes.axvline(shown(name, prior), color=ORANGE, linestyle="--", linewidth=1.0)
     axes.set_yticks(range(len(known)), [label for label, _ in known])
     axes.invert_yaxis()
     axes.set_xlabel(f"{SYMBOLS[name]} [{UNITS[name]}]")

@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
+from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from advisor.campaign.state import JudgedManeuver
 from advisor.flight.record import Channel
@@ -13,6 +14,7 @@ from advisor.report.page.content import Content
 from advisor.report.page.course import SHOWN, Course, thinned
 from advisor.report.page.drawing import BLUE, ORANGE, picture
 from advisor.report.quantities import CHANNELS
+from advisor.vehicle_time import CLOCK, clock
 
 _BINS = 500
 _EXPLAINED = (
@@ -55,7 +57,9 @@ def _paint(drawing: Drawing, course: Course, judged: Sequence[JudgedManeuver]) -
         axes.set_ylabel(quantity.label)
         _mark(axes, judged)
     drawing.align_ylabels(list(rows))
-    rows[-1].set_xlabel("time since boot [s]")
+    rows[-1].set_xlabel(f"time ({CLOCK})")
+    rows[-1].xaxis.set_major_locator(MaxNLocator(8, steps=[1, 1.5, 2, 3, 6, 10]))
+    rows[-1].xaxis.set_major_formatter(FuncFormatter(lambda t, _: clock(t)))
     for one in judged:
         middle = 0.5 * (one.maneuver.span.start_s + one.maneuver.span.end_s)
         sign = "✓" if one.verdict.accepted else "✗"

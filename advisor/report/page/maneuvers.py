@@ -6,9 +6,10 @@ from typing import Any
 from advisor.report.page.blocks import Section, Table, listing
 from advisor.report.page.content import Content
 from advisor.report.text import caution_lines
+from advisor.vehicle_time import CLOCK, clock
 
 _HYPHEN, _SPACE = "\N{NON-BREAKING HYPHEN}", "\N{NO-BREAK SPACE}"
-_HEAD = ("no.", "start [s]", "input", "mode", "verdict", "why")
+_HEAD = ("no.", "start", "input", "mode", "verdict", "why")
 
 
 def maneuvers(content: Content) -> Section:
@@ -16,7 +17,7 @@ def maneuvers(content: Content) -> Section:
     found = content.analysis["maneuvers"]
     rows = tuple(_row(maneuver, len(content.names) > 1) for maneuver in found)
     table = Table(
-        "maneuver-list", "Every manoeuvre in the order flown; times are seconds since boot.", _HEAD, rows,
+        "maneuver-list", f"Every manoeuvre in the order flown; times are {CLOCK}.", _HEAD, rows,
         frozenset({0, 1}),
     )  # fmt: skip
     return Section("maneuvers", "Manoeuvres", (table, *listing(caution_lines(content.state.maneuvers))))
@@ -31,7 +32,7 @@ def _row(maneuver: Mapping[str, Any], several: bool) -> tuple[str, ...]:
         why.append(f"({maneuver['log']})")
     return (
         str(maneuver["number"]),
-        f"{maneuver['start_boot_s']:.2f}",
+        clock(maneuver["start_boot_s"]),
         maneuver["input"].replace("-", _HYPHEN).replace(" ", _SPACE),
         maneuver["mode"],
         f"✓{_SPACE}accepted" if accepted else f"✗{_SPACE}rejected",

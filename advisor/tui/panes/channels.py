@@ -4,10 +4,12 @@ from textual.app import ComposeResult
 from textual.containers import VerticalScroll
 
 from advisor.tui.panes.crew_notes import alpha_in_words
+from advisor.tui.panes.hanging import HangingLines, Labelled
 from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.pane import Pane
 from advisor.tui.panes.status_line import CONDITIONS
 from advisor.tui.view import View
+from advisor.vehicle_time import clock
 
 
 class Channels(Pane):
@@ -28,20 +30,24 @@ gap. Below: the link.
         """Text that scrolls."""
         with VerticalScroll():
             yield Lines(id="problems")
-            yield Lines("Nothing has arrived yet.", id="arriving")
+            yield HangingLines("Nothing has arrived yet.", id="arriving")
 
     def show(self, view: View) -> None:
         """Write the lists."""
         health = view.health
-        lines = [f"α  {alpha_in_words(view)}", "", f"{'channel':<11}{'rate':>6}  {'gap':>7}  source"]
+        rows: list[Labelled] = [
+            ("α  ", alpha_in_words(view)),
+            ("", f"vehicle time {clock(view.state.now_s)}"),
+        ]
+        rows += [("", ""), (f"{'channel':<11}{'Hz':>4} {'gap s':>6}  ", "source")]
         for name, status in view.state.channels.items():
-            rate, gap = f"{status.rate_hz:.0f} Hz", f"{status.largest_gap_s:.2f} s"
-            lines.append(f"{name:<11}{rate:>6}  {gap:>7}  {status.source} ({status.provenance})")
+            label = f"{name:<11}{status.rate_hz:>4.0f} {status.largest_gap_s:>6.2f}  "
+            rows.append((label, f"{status.source} ({status.provenance})"))
         if not view.state.channels:
-            lines.append("no channel yet: the vehicle has not sent what the advisor needs")
-        lines += ["", f"{CONDITIONS[health.condition]}: {health.sentence}"]
-        lines += [f"{name:<22}{value}" for name, value in health.figures]
+            rows.append(("", "no channel yet: the vehicle has not sent what the advisor needs"))
+        rows += [("", ""), ("", f"{CONDITIONS[health.condition]}: {health.sentence}")]
+        rows += [(f"{name:<22}", value) for name, value in health.figures]
         problems = self.query_one("#problems", Lines)
         problems.display = bool(view.obstacles)
         problems.write("\n".join(f"! {problem}" for problem in view.obstacles))
-        self.query_one("#arriving", Lines).write("\n".join(lines))
+        self.query_one("#arriving", HangingLines).write_rows(rows)

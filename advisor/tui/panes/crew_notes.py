@@ -1,7 +1,7 @@
 """What else a pilot must know: what to fly next, where alpha comes from, what has changed."""
 
 from advisor.aircraft import PARAMETERS as NAMES
-from advisor.tui.panes.lines import Lines
+from advisor.tui.panes.hanging import HangingLines
 from advisor.tui.panes.part import Part
 from advisor.tui.view import View
 from advisor.tui.words import PARAMETERS, headline
@@ -36,18 +36,19 @@ def _link_in_words(view: View) -> str:
     return "good" if view.health.condition == "good" else view.health.sentence
 
 
-class CrewNotes(Part, Lines):
+class CrewNotes(Part, HangingLines):
     """Next input, the manoeuvre in the air, alpha's provenance, warnings."""
 
     def show(self, view: View) -> None:
         """Write one line each; warnings last, each with its sign."""
         verdict = view.state.flight_test
         next_input = verdict.next.advice if verdict.next else "no advice yet"
-        lines = [
-            f"next        {next_input.removeprefix('next: ')}",
-            f"in the air  {flying_in_words(view)}",
-            f"α           {alpha_in_words(view)}",
-            f"link        {_link_in_words(view)}",
-            *(f"! {headline(warning)}" for warning in verdict.warnings),
-        ]
-        self.write("\n".join(lines))
+        self.write_rows(
+            (
+                ("next        ", next_input.removeprefix("next: ")),
+                ("in the air  ", flying_in_words(view)),
+                ("α           ", alpha_in_words(view)),
+                ("link        ", _link_in_words(view)),
+                *(("! ", headline(warning)) for warning in verdict.warnings),
+            )
+        )

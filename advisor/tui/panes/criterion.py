@@ -2,10 +2,11 @@
 
 import numpy as np
 from textual.app import ComposeResult
+from textual.containers import VerticalScroll
 
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.rounding import distinct_texts
-from advisor.tui.panes.lines import Lines
+from advisor.tui.panes.hanging import HangingLines, Labelled
 from advisor.tui.panes.pane import Pane
 from advisor.tui.plot.chart import Chart, Ink, Level, Series
 from advisor.tui.plot.widget import Plot
@@ -13,28 +14,30 @@ from advisor.tui.view import View
 
 RULE_INKS: dict[str, Ink] = {"continuous": "measured", "separate": "residual", "information": "input"}
 
-_Y, _X = "criterion [% of its limit]", "manoeuvre"
+_Y, _X = "[% of limit]", "manoeuvre"
 
 
 class Criterion(Pane):
     """One curve a rule against the limit, and what each rule says."""
 
     TITLE = "6 Criterion"
+    can_focus = False
     SHORT = "6 Crit"
     HELP = """\
 # Criterion
 
-The stop criterion after each manoeuvre for the three rules side by side, each as a share of its own
-limit: the test may stop below the dashed line. The rule that decides is marked **►**; what the others
-would have said is never hidden.
+The stop criterion after each manoeuvre for the three rules side by side, each as a share of its own limit, on
+a logarithmic axis: the test may stop below the dashed line, at 100 %. The rule that decides is marked **►**;
+what the others would have said is never hidden.
 
 The rule information stops when the 95 % band of the predicted response, each named derivative and the
 prediction of the newest manoeuvre are within their tolerances; the lines above the curves tell how far.
 """
 
     def compose(self) -> ComposeResult:
-        """A line for each rule over the curves."""
-        yield Lines("No manoeuvre has ended yet.")
+        """Lay out the rules' lines over the curves."""
+        with VerticalScroll():
+            yield HangingLines("No manoeuvre has ended yet.")
         yield Plot(_chart(None))
 
     def on_mount(self) -> None:
@@ -49,11 +52,11 @@ prediction of the newest manoeuvre are within their tolerances; the lines above 
             return
         self._shown = verdict
         self.query_one(Plot).chart = _chart(verdict)
-        self.query_one(Lines).write("\n".join(_rule_lines(verdict)) or "No manoeuvre has ended yet.")
+        self.query_one(HangingLines).write_rows(_rows(verdict))
 
 
-def _rule_lines(verdict: FlightTestVerdict) -> list[str]:
-    lines = []
+def _rows(verdict: FlightTestVerdict) -> list[Labelled]:
+    rows: list[Labelled] = []
     for rule, progress in verdict.by_rule.items():
         known = [value for value in progress.history_percent if value is not None]
         limit = progress.limit_percent
@@ -61,8 +64,9 @@ def _rule_lines(verdict: FlightTestVerdict) -> list[str]:
         so_far = f"{now} %" if known else "too few"
         says = f"stop since {progress.stopped_at}" if progress.stopped_at else "continue"
         mark = "►" if rule == verdict.rule else " "
-        lines.append(f"{mark} {rule:<12} {so_far:>8}  (limit {most:>3} %)  {says}")
-    return [*lines, *verdict.evidence, *(f"! {warning}" for warning in verdict.warnings)]
+        rows.append((f"{mark} ", f"{rule:<12} {so_far:>8}  (limit {most:>3} %)  {says}"))
+    rows += [("  ", line) for line in verdict.evidence]
+    return rows + [("! ", warning) for warning in verdict.warnings]
 
 
 def _chart(verdict: FlightTestVerdict | None) -> Chart:
@@ -72,7 +76,8 @@ def _chart(verdict: FlightTestVerdict | None) -> Chart:
         if np.isfinite(history).any():
             numbers = np.arange(1.0, len(history) + 1.0)
             share = history / progress.limit_percent * 100.0
-            series.append(Series(rule, numbers, share, RULE_INKS.get(rule, "prior")))
+            ink = RULE_INKS.get(rule, "prior")
+            series.append(Series(rule, numbers, share, ink, "joined"))
     if verdict is None or not series:
         return Chart(_Y, _X, why_empty="too few accepted manoeuvres for any rule yet.")
-    return Chart(_Y, _X, series=tuple(series), levels=(Level("limit", 100.0),), whole_x=True)
+    return Chart(_Y, _X, series=tuple(series), levels=(Level("limit", 100.0),), whole_x=True, log_y=True)

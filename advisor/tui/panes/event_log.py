@@ -3,11 +3,13 @@
 from textual.app import ComposeResult
 from textual.containers import VerticalScroll
 
-from advisor.tui.panes.lines import Lines
+from advisor.tui.panes.hanging import HangingLines
 from advisor.tui.panes.pane import Pane
 from advisor.tui.view import View
 
-_KEPT = 200
+_SHOWN = 200
+_TIME = 9
+"""Characters that a sentence begins with: its time and two blanks."""
 
 
 class EventLog(Pane):
@@ -19,23 +21,29 @@ class EventLog(Pane):
     HELP = """\
 # Log
 
-Verdicts, marks, notes, changes by hand and what the link reported, newest at the bottom. **m** adds a
-mark at this moment.
+Verdicts, marks, notes, changes by hand, what the vehicle said in words (STATUSTEXT, with its severity, and
+its sender where that is not the vehicle) and what the link reported, newest at the bottom. **m** adds a mark
+at this moment.
+
+Times are minutes:seconds since the vehicle's boot, as in the table of manoeuvres and in the replay bar. They
+begin anew where a line says that another power-on, flight or vehicle begins.
 """
 
     def compose(self) -> ComposeResult:
         """Text that scrolls and stays at its end."""
         with VerticalScroll():
-            yield Lines("Nothing has happened yet.")
+            yield HangingLines("Nothing has happened yet.")
 
     def on_mount(self) -> None:
-        """Nothing is shown yet."""
+        """Show nothing yet, and the newest line whenever there is one."""
         super().on_mount()
         self._shown: tuple[str, ...] = ()
+        self.query_one(VerticalScroll).anchor()
 
     def show(self, view: View) -> None:
         """Write the newest lines."""
         if view.log and view.log is not self._shown:
             self._shown = view.log
-            self.query_one(Lines).write("\n".join(view.log[-_KEPT:]))
-            self.query_one(VerticalScroll).scroll_end(animate=False)
+            self.query_one(HangingLines).write_rows(
+                (line[:_TIME], line[_TIME:]) for line in view.log[-_SHOWN:]
+            )

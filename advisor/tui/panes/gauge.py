@@ -2,8 +2,8 @@
 
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.rounding import distinct_texts
+from advisor.tui.panes.hanging import HangingLines
 from advisor.tui.panes.last_verdict import symbol_and_word
-from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.part import Part
 from advisor.tui.view import View
 from advisor.tui.words import percent
@@ -22,20 +22,21 @@ def bar(value: float, limit: float, width: int) -> str:
     return "".join(cells)
 
 
-class Gauge(Part, Lines):
+class Gauge(Part, HangingLines):
     """Criterion, manoeuvres so far, and what is still expected."""
 
     def show(self, view: View) -> None:
         """Write the two lines."""
-        self.write(f"criterion   {_criterion(view)}\nmanoeuvres  {_flown(view)}")
+        self.write_rows((("criterion   ", _criterion(view)), ("manoeuvres  ", _flown(view))))
 
 
 def _criterion(view: View) -> str:
     verdict = view.state.flight_test
     value, limit = verdict.criterion_percent, verdict.limit_percent
     if value is None:
-        least = 2 if verdict.rule == "information" else view.aircraft.campaign.window
-        return f"none yet: it needs {least} good manoeuvres (limit {percent(limit)})"
+        least = 1 if verdict.rule == "information" else view.aircraft.campaign.window
+        good = "a good manoeuvre" if least == 1 else f"{least} good manoeuvres"
+        return f"none yet: it takes {good} (limit {percent(limit)})"
     side = "below" if value < limit else "above"
     now, most = distinct_texts(value, limit)
     return f"{now:>4} %  {bar(value, limit, 24)}  {side} the limit {most} %"
@@ -51,6 +52,6 @@ def _flown(view: View) -> str:
 
 
 def _remaining(verdict: FlightTestVerdict) -> str:
-    if verdict.decision == "stop" or verdict.next is None:
+    if verdict.decision == "stop" or verdict.next is None or not verdict.next.foretold:
         return ""
-    return f"; {verdict.next.remaining.spoken}"
+    return f"; {verdict.next.foretold}"

@@ -1,29 +1,31 @@
 """Every manoeuvre with its verdict, and what each rule would have said."""
 
+from textwrap import shorten
+
 from rich.text import Text
 from textual.app import ComposeResult
+from textual.events import Resize
 from textual.message import Message
 from textual.widgets import DataTable
 
 from advisor.campaign.state import JudgedManeuver
-from advisor.oem.estimate import Estimate
 from advisor.tui.panes.last_verdict import symbol_and_word
 from advisor.tui.panes.pane import Pane
 from advisor.tui.view import View
-from advisor.tui.words import clock
+from advisor.vehicle_time import clock
 
-# Name and width: what grows must not push the others about.
-_COLUMNS = (
-    ("no.", 3),
-    ("start", 5),
-    ("input", 15),
-    ("verdict", 10),
-    ("con", 3),
-    ("sep", 3),
-    ("inf", 3),
-    ("cost J", 8),
-    ("reason", 30),
+Columns = tuple[tuple[str, int], ...]
+"""Name and width of each; the widths do not depend on the rows, so what grows pushes nothing about."""
+
+_FIRST: Columns = (("no.", 3), ("start", 7), ("input", 15))
+_MIDDLE: tuple[Columns, ...] = (
+    (("verdict", 10), ("csi", 3)),
+    (("", 2), ("csi", 3)),
+    (("", 2),),
 )
+"""Columns between the input and the reason, the fullest first. The symbol alone is the least."""
+_REASON = 13
+"""Characters that the longest reason takes in a word (``free response``), and ``turbulence +1``."""
 _RULES = ("continuous", "separate", "information")
 
 
@@ -42,8 +44,9 @@ parameter panes show; on the last row they follow the newest.
 - **x** takes the selected manoeuvre out of every decision, or in again; the reason is asked and recorded.
 - **n** adds a note to it.
 
-*con*, *sep*, *inf*: what the rules continuous, separate and information say of it; the cost J is det R
-of Eq. (7).
+*start*: minutes:seconds since the vehicle's boot. *csi*: what the rules **c**ontinuous, **s**eparate and
+**i**nformation say of it. *reason*: the most telling one in a word, and how many more there are; the
+verdict pane has them in sentences, with the cost J (det R of Eq. 7) and each rule's limit.
 """
 
     class Selected(Message):
@@ -54,33 +57,50 @@ of Eq. (7).
             self.number = number
 
     def compose(self) -> ComposeResult:
-        """One table."""
-        table: DataTable[Text] = DataTable(cursor_type="row", zebra_stripes=True, cell_padding=1)
-        for name, width in _COLUMNS:
-            table.add_column(name, width=width)
-        yield table
+        """Lay out one table."""
+        yield DataTable(cursor_type="row", zebra_stripes=True, cell_padding=1)
 
     def on_mount(self) -> None:
         """Say why the table is empty."""
         super().on_mount()
         self._shown: tuple[JudgedManeuver, ...] | None = None
+        self._judged: JudgedManeuver | None = None
+        self._columns: Columns = ()
         self.subtitle("none yet: a row appears when a manoeuvre has ended")
+
+    def on_resize(self, event: Resize) -> None:
+        """Give the columns what room there is: no word is cut."""
+        table = self.query_one(DataTable)
+        columns = _columns(table.size.width)
+        if columns != self._columns:
+            self._columns = columns
+            table.clear(columns=True)
+            for name, width in columns:
+                table.add_column(name, width=width)
+            self._fill()
 
     def show(self, view: View) -> None:
         """Fill the table anew when a verdict changed."""
         maneuvers = view.state.maneuvers
         if maneuvers is self._shown or (not maneuvers and not self._shown):
             return
-        self._shown = maneuvers
-        table = self.query_one(DataTable)
-        with self.prevent(DataTable.RowHighlighted):
-            table.clear()
-            for judged in maneuvers:
-                table.add_row(*(Text(cell) for cell in _cells(judged)), key=str(judged.maneuver.number))
-            if view.judged is not None:
-                table.move_cursor(row=maneuvers.index(view.judged), scroll=True)
+        self._shown, self._judged = maneuvers, view.judged
+        self._fill()
         taken_out = sum(j.excluded_because is not None for j in maneuvers)
         self.subtitle(f"{len(maneuvers)} flown" + (f", {taken_out} excluded" if taken_out else ""))
+
+    def _fill(self) -> None:
+        """Write every row, in the widths that the columns have."""
+        table, shown = self.query_one(DataTable), self._shown or ()
+        if not self._columns:
+            return
+        with self.prevent(DataTable.RowHighlighted):
+            table.clear()
+            for judged in shown:
+                cells = [Text(_cell(judged, name, width)) for name, width in self._columns]
+                table.add_row(*cells, key=str(judged.maneuver.number))
+            if self._judged is not None:
+                table.move_cursor(row=shown.index(self._judged), scroll=True)
 
     def on_data_table_row_highlighted(self, event: DataTable.RowHighlighted) -> None:
         """Tell the screen which manoeuvre the engineer looks at."""
@@ -91,18 +111,46 @@ of Eq. (7).
             self.post_message(self.Selected(None if newest else number))
 
 
-def _cells(judged: JudgedManeuver) -> tuple[str, ...]:
+def _columns(room: int) -> Columns:
+    """Choose the columns for a table of so many characters, its scroll bar included."""
+    columns: Columns = ()
+    for middle in _MIDDLE:
+        columns = (*_FIRST, *middle)
+        rest = room - 1 - sum(width + 2 for _, width in columns) - 2
+        if rest >= _REASON:
+            break
+    return (*columns, ("reason", max(rest, _REASON)))
+
+
+def _cell(judged: JudgedManeuver, column: str, width: int) -> str:
     symbol, word = symbol_and_word(judged)
-    maneuver, verdict = judged.maneuver, judged.verdict
-    cost = f"{judged.estimate.cost:.2e}" if isinstance(judged.estimate, Estimate) else "-"
-    rules = (verdict.rules.get(rule) for rule in _RULES)
-    reason = judged.excluded_because or "; ".join(r.code for r in verdict.reasons)
-    return (
-        str(maneuver.number),
-        clock(maneuver.span.start_s),
-        maneuver.span.kind,
-        f"{symbol} {word}",
-        *("-" if rule is None else "✓" if rule.accepted else "✗" for rule in rules),
-        cost,
-        reason,
-    )
+    match column:
+        case "no.":
+            return str(judged.maneuver.number)
+        case "start":
+            return clock(judged.maneuver.span.start_s)
+        case "input":
+            return judged.maneuver.span.kind
+        case "verdict":
+            return f"{symbol} {word}"
+        case "csi":
+            said = (judged.verdict.rules.get(rule) for rule in _RULES)
+            return "".join("-" if rule is None else "✓" if rule.accepted else "✗" for rule in said)
+        case "reason":
+            return _reason(judged, width)
+    return symbol
+
+
+def _reason(judged: JudgedManeuver, width: int) -> str:
+    """Return the reasons against a manoeuvre, as many as have room; no word is cut."""
+    if judged.excluded_because is not None:
+        return shorten(judged.excluded_because, width, placeholder="…")
+    words = [r.code.replace("_", " ") for r in judged.verdict.reasons]
+    listings = (_listed(words, count) for count in range(len(words), 0, -1))
+    return next((listed for listed in listings if len(listed) <= width), words[0] if words else "")
+
+
+def _listed(words: list[str], count: int) -> str:
+    """Join the first words, and say how many more there are."""
+    more = f" +{len(words) - count}" if count < len(words) else ""
+    return f"{', '.join(words[:count])}{more}"

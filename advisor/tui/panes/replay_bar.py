@@ -6,13 +6,13 @@ from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.part import Part
 from advisor.tui.source import Playback
 from advisor.tui.view import View
-from advisor.tui.words import clock
+from advisor.vehicle_time import clock
 
 _WIDTH = 24
 
 
 class ReplayBar(Part, Lines):
-    """Playing or paused, speed, and the place in the log."""
+    """Playing or paused, speed, the place in the log, and the vehicle's time there."""
 
     def show(self, view: View) -> None:
         """Write the line when the source is a replay."""
@@ -25,6 +25,13 @@ class ReplayBar(Part, Lines):
         place = "━" * round(share * _WIDTH) + "─" * (_WIDTH - round(share * _WIDTH))
         over = 0.0 < playback.duration_s <= playback.position_s
         state = "❚❚ paused" if tempo.paused else "■ at the end" if over else "► replay"
-        times = f"{clock(playback.position_s)} of {clock(playback.duration_s)}"
         jump = "  ►► jumping" if playback.hurrying else ""
-        self.write(f"{state}  {speed}  {place}  {times}{jump}")
+        self.write(f"{state}  {speed}  {place}  {share:4.0%}  at {_now(view)}{jump}")
+
+
+def _now(view: View) -> str:
+    """Return the vehicle's time, with flight and power-on where there are several."""
+    state = view.state
+    flight = f"flight {state.flight + 1}, " if state.flight else ""
+    power_on = f"power-on {state.boot + 1}, " if state.boot else ""
+    return f"{flight}{power_on}{clock(state.now_s)}"

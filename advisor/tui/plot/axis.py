@@ -1,4 +1,4 @@
-"""Axes: ranges and ticks at round numbers."""
+"""Axes: ranges and ticks at round numbers, in equal steps or in equal ratios."""
 
 from dataclasses import dataclass
 from math import ceil, floor, log10
@@ -30,6 +30,54 @@ class Axis:
         """The ticks in as many decimals as the step needs."""
         decimals = max(0, -floor(log10(self.step) + 1e-9))
         return [f"{tick:.{decimals}f}" for tick in self.ticks]
+
+
+@dataclass(frozen=True, slots=True)
+class LogAxis:
+    """A logarithmic range with ticks at 1, 2 and 5 times powers of ten, or at powers of ten alone."""
+
+    low: float
+    """Decimal logarithm of the value at the lower end."""
+    high: float
+    """Decimal logarithm of the value at the upper end."""
+    values: tuple[float, ...]
+    """Values at the ticks, rising."""
+
+    @property
+    def ticks(self) -> list[float]:
+        """Decimal logarithms of ``values``."""
+        return [log10(value) for value in self.values]
+
+    @property
+    def labels(self) -> list[str]:
+        """The values in full: ``25``, ``2,500``."""
+        return [f"{value:,.0f}" if value >= 1.0 else f"{value:g}" for value in self.values]
+
+
+def log_axis(values: list[FloatArray], most: int) -> LogAxis:
+    """Choose the logarithmic axis that holds all positive values, with about ``most`` ticks and at least two.
+
+    Parameters
+    ----------
+    values : list of ndarray
+        Data of any lengths; what is not positive and finite is left out, without any the range is 1 to 10.
+    most : int
+        Wanted number of ticks, at least 2.
+    """
+    positive = np.concatenate([v[np.isfinite(v) & (v > 0.0)] for v in values] or [np.empty(0)])
+    low, high = (float(positive.min()), float(positive.max())) if len(positive) else (1.0, 10.0)
+    bottom, top = _round_up(low / 2.2), _round_up(high * 1.05)
+    first, last = floor(log10(bottom) + 1e-9), ceil(log10(top) - 1e-9)
+    fine = [m * 10.0**k for k in range(first, last + 1) for m in (1.0, 2.0, 5.0)]
+    ticks = [value for value in fine if bottom * (1 - 1e-9) <= value <= top * (1 + 1e-9)]
+    every = 1
+    while len(ticks) > max(most, 2):
+        decades = [10.0**k for k in range(first, last + 1) if k % every == 0]
+        sparser = [value for value in decades if bottom * (1 - 1e-9) <= value <= top * (1 + 1e-9)]
+        if len(sparser) < 2:
+            break
+        ticks, every = sparser, every + 1
+    return LogAxis(log10(bottom), log10(top), tuple(ticks))
 
 
 def round_axis(values: list[FloatArray], intervals: int) -> Axis:

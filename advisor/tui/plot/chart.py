@@ -19,8 +19,9 @@ class Series:
     y: FloatArray
     """Shape (n,), in the unit of the chart's y axis; NaN breaks a line."""
     ink: Ink
-    mark: Literal["line", "points", "stems", "intervals"] = "line"
-    """A stem goes from 0 to the value; an interval is a value with a vertical bar of half-length ``half``."""
+    mark: Literal["line", "points", "joined", "stems", "intervals"] = "line"
+    """A joined series is a line with a stroke at each value, so that one value alone is seen. A stem goes
+    from 0 to the value; an interval is a value with a vertical bar of half-length ``half``."""
     half: FloatArray | None = None
     """Shape (n,), half of each interval in the unit of the y axis; only for intervals."""
 
@@ -49,6 +50,9 @@ class Chart:
     """Shown when there is no series."""
     whole_x: bool = False
     """Ticks only at whole numbers (counts)."""
+    log_y: bool = False
+    """Equal ratios of y take equal room: 25 and 2,500 both read. Only positive values are drawn, and no
+    intervals or stems."""
     x_range: tuple[float, float] | None = None
     """The ends of the x axis; None: rounded ends that hold all data. Only the former lets a mouse point."""
     cursor: float | None = None

@@ -2,7 +2,7 @@
 
 from math import ceil, floor
 
-from advisor.tui.plot.axis import Axis
+from advisor.tui.plot.axis import Axis, LogAxis
 
 
 def whole(axis: Axis) -> Axis:
@@ -10,7 +10,7 @@ def whole(axis: Axis) -> Axis:
     return Axis(floor(axis.low), ceil(axis.high), max(1.0, round(axis.step)))
 
 
-def down_the_side(axis: Axis, rows: int, gutter: int) -> list[str]:
+def down_the_side(axis: Axis | LogAxis, rows: int, gutter: int) -> list[str]:
     """Labels of the y axis, one string of ``gutter`` characters a row, highest value first."""
     column = [" " * gutter] * rows
     for tick, label in zip(axis.ticks, axis.labels, strict=True):

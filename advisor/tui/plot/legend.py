@@ -6,7 +6,7 @@ from textual.strip import Strip
 
 from advisor.tui.plot.chart import INKS, Chart
 
-_SAMPLE = {"line": "──", "points": "∙∙", "stems": "││", "intervals": "├┤"}
+_SAMPLE = {"line": "──", "joined": "──", "points": "∙∙", "stems": "││", "intervals": "├┤"}
 
 
 def legend(chart: Chart, read: list[str], width: int, style: Style, inks: list[Style]) -> Strip:

@@ -11,14 +11,14 @@ from rich.style import Style
 from textual.strip import Strip
 
 from advisor.flight.messages import FloatArray
-from advisor.tui.plot.axis import Axis, exact_axis, round_axis
+from advisor.tui.plot.axis import Axis, LogAxis, exact_axis, log_axis, round_axis
 from advisor.tui.plot.canvas import Canvas
 from advisor.tui.plot.chart import INKS, Chart, Series
 from advisor.tui.plot.labels import along_the_foot, down_the_side, whole
 from advisor.tui.plot.legend import legend
 from advisor.tui.plot.reading import readings
 
-_ROWS_PER_TICK = 3
+_ROWS_PER_TICK, _ROWS_PER_LOG_TICK = 3, 2
 _COLUMNS_PER_TICK, _COLUMNS_PER_NUMBER = 12, 4
 _LEAST_WIDTH, _LEAST_ROWS = 16, 2
 
@@ -59,12 +59,12 @@ def paint(chart: Chart, width: int, height: int, base: Style, inks: list[Style])
     if width < _LEAST_WIDTH or rows < _LEAST_ROWS:
         return Painting(_sentence(f"{chart.y_label}: too little room for a plot.", width, base))
     chart = _in_range(chart)
-    y_axis = round_axis(_heights(chart), max(1, rows // _ROWS_PER_TICK))
+    y_axis = _y_axis(chart, rows)
     gutter = max(chart.gutter, max(len(label) for label in y_axis.labels) + 1)
     columns = max(2, width - gutter)
     x_axis = _x_axis(chart, max(1, columns // (_COLUMNS_PER_NUMBER if chart.whole_x else _COLUMNS_PER_TICK)))
     canvas = Canvas(columns, rows, (x_axis.low, x_axis.high), (y_axis.low, y_axis.high))
-    _draw(canvas, chart)
+    _draw(canvas, _logarithmic(chart) if chart.log_y else chart)
     side = down_the_side(y_axis, rows, gutter)
     strips = [
         legend(chart, readings(chart, y_axis), width, base, inks),
@@ -84,6 +84,21 @@ def _x_axis(chart: Chart, intervals: int) -> Axis:
         return whole(axis) if chart.whole_x else axis
     axis = exact_axis(*chart.x_range, intervals)
     return replace(axis, step=max(1.0, axis.step)) if chart.whole_x else axis
+
+
+def _y_axis(chart: Chart, rows: int) -> Axis | LogAxis:
+    if chart.log_y:
+        return log_axis(_heights(chart), max(2, rows // _ROWS_PER_LOG_TICK))
+    return round_axis(_heights(chart), max(1, rows // _ROWS_PER_TICK))
+
+
+def _logarithmic(chart: Chart) -> Chart:
+    """Give curves and levels at the decimal logarithms of their heights; NaN where one is not positive."""
+    return replace(
+        chart,
+        series=tuple(replace(s, y=np.log10(np.where(s.y > 0.0, s.y, np.nan))) for s in chart.series),
+        levels=tuple(replace(level, y=float(np.log10(level.y))) for level in chart.levels),
+    )
 
 
 def _in_range(chart: Chart) -> Chart:
@@ -120,8 +135,10 @@ def _draw(canvas: Canvas, chart: Chart) -> None:
 
 def _draw_series(canvas: Canvas, series: Series) -> None:
     ink = INKS.index(series.ink)
-    if series.mark == "line":
+    if series.mark in ("line", "joined"):
         canvas.line(series.x, series.y, ink)
+        if series.mark == "joined":
+            canvas.dashes(series.x, series.y, ink)
     elif series.mark == "points":
         canvas.points(series.x, series.y, ink)
     elif series.mark == "stems":

@@ -3,7 +3,7 @@
 import numpy as np
 
 from advisor.report.digits import signed
-from advisor.tui.plot.axis import Axis
+from advisor.tui.plot.axis import Axis, LogAxis
 from advisor.tui.plot.chart import Chart, Series
 from advisor.tui.plot.window import nearest
 
@@ -11,7 +11,7 @@ _DIGITS = 4
 """Digits for the length of an axis: one part in a thousand or less of what can be seen."""
 
 
-def readings(chart: Chart, y_axis: Axis) -> list[str]:
+def readings(chart: Chart, y_axis: Axis | LogAxis) -> list[str]:
     """Write the value of each series at the chart's cursor; nothing where no sample is near.
 
     Returns

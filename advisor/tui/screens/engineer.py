@@ -22,6 +22,7 @@ from advisor.tui.panes.maneuvers import Maneuvers
 from advisor.tui.panes.pane import Pane
 from advisor.tui.panes.pane_tabs import PaneTabs
 from advisor.tui.panes.parameters import Parameters
+from advisor.tui.panes.qualities import Qualities
 from advisor.tui.panes.replay_bar import ReplayBar
 from advisor.tui.panes.residuals import Residuals
 from advisor.tui.panes.status_line import StatusLine
@@ -32,11 +33,12 @@ from advisor.tui.view import View
 
 # In the order of their numbers.
 PANES: tuple[type[Pane], ...] = (
-    Maneuvers, Verdict, Parameters, Fit, Live, Criterion, Channels, EventLog, Residuals, Correlation, Courses
+    Maneuvers, Verdict, Parameters, Fit, Live, Criterion, Channels, EventLog, Residuals, Correlation, Courses,
+    Qualities,
 )  # fmt: skip
 _COLUMNS: dict[str, tuple[type[Pane], ...]] = {
     "left": (Maneuvers, Verdict, Parameters),
-    "middle": (Fit, Residuals, Correlation, Courses),
+    "middle": (Fit, Residuals, Correlation, Courses, Qualities),
     "right": (Live, Criterion, Channels, EventLog),
 }
 _WIDE, _MEDIUM = (160, 42), (110, 30)

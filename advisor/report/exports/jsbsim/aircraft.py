@@ -74,7 +74,7 @@ def _left_out(improvement: Improvement, surface: str) -> list[str]:
         left.append(f"the servo's damping of {servo.damping:.2g}, which is 1 here")
     if surface not in SURFACES:
         # Per radian in flight, per full travel in the aircraft.
-        unknown = [p for p in SLOPES if p.endswith("delta_e") and p not in improvement.believed]
+        unknown = [p for p in SLOPES if p.endswith("delta_e") and p not in improvement.prior]
         left += [f"{p}: the elevator's position is no angle" for p in unknown]
     return left
 
@@ -91,12 +91,12 @@ def _targets(
     for parameter in SLOPES:
         own = first.derivatives[parameter]
         unit = (per_rad or math.nan) if parameter.endswith("delta_e") else 1.0
-        believed = improvement.believed.get(parameter, own * unit)
+        prior = improvement.prior.get(parameter, own * unit)
         value = improvement.model[parameter].value
-        if improvement.differs(parameter, believed) and not math.isnan(believed):
+        if improvement.differs(parameter, prior) and not math.isnan(prior):
             # A term is changed by the ratio, because the file's numbers may belong to another air density.
-            by_difference = own + (value - believed) / unit
-            found[parameter] = own * value / believed if believed and parameter in terms else by_difference
+            by_difference = own + (value - prior) / unit
+            found[parameter] = own * value / prior if prior and parameter in terms else by_difference
     moved = ["M" + parameter[1:] for parameter in found if parameter[0] == "Z"]
     return found | {parameter: first.derivatives[parameter] for parameter in moved if parameter not in found}
 

@@ -1,7 +1,7 @@
 """Effects of force and pitching moment as functions of a JSBSim aircraft.
 
-The curves are those of the aircraft file's ``effects``. They are squares and cubes of α or of the elevator,
-counted from ``about_rad`` or else from the trim, and a moment by the rate of α. All are proportional to the
+The curves are those of the aircraft file's ``effects``. Squares and cubes are of α or of the elevator; a
+moment is by the rate of α. They count from ``about_rad`` or else from the trim. All are proportional to the
 dynamic pressure.
 """
 

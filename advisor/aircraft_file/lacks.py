@@ -1,0 +1,127 @@
+"""Keys that an aircraft file lacks, and the cost of each missing key."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from advisor.aircraft import Aircraft
+from advisor.aircraft_file.keys import BY_PATH, KEYS
+from advisor.aircraft_file.log_facts import LogFacts
+from advisor.flight.surfaces import Surface
+
+BEYOND_US = 20.0
+"""Pulses that may lie beyond a calibration's ends, us: a servo's trim and a transmitter's stray by this."""
+
+
+@dataclass(frozen=True, slots=True)
+class Lack:
+    """One key that is missing, or that does not fit the log."""
+
+    key: str
+    """Path of the key."""
+    cost: str
+    """Sentence on the cost."""
+    mend: str
+    """Clause that tells how to mend the file."""
+    wrong: bool = False
+    """The key is there and contradicts the log."""
+
+
+def lacks_of(aircraft: Aircraft, facts: LogFacts | None = None) -> tuple[Lack, ...]:
+    """Find the keys that a file lacks, in the order of the file, after those that contradict the log.
+
+    Parameters
+    ----------
+    aircraft
+        The aircraft file as read.
+    facts
+        What a log of this aircraft tells; None: no log is at hand.
+    """
+    found = [
+        Lack(key.path, key.cost, key.mend)
+        for key in KEYS
+        if key.cost and _counts(key.path, aircraft, facts) and not _given(key.path, aircraft)
+    ]
+    return (*(_contradictions(aircraft, facts) if facts else ()), *found)
+
+
+def _given(path: str, aircraft: Aircraft) -> bool:
+    """Return whether the file gives the key, or another key in its place."""
+    match path:
+        case "elevator.output":
+            return aircraft.elevator.output != "auto" or bool(aircraft.elevator.outputs)
+        case "elevator.calibration":
+            return aircraft.elevator.is_calibrated
+        case "model":
+            return bool(aircraft.model) or aircraft.simulator is not None
+    value: Any = aircraft
+    for name in path.split("."):
+        value = getattr(value, name)
+    return value is not None
+
+
+def _counts(path: str, aircraft: Aircraft, facts: LogFacts | None) -> bool:
+    """Return whether a missing key costs anything on this aircraft."""
+    match path:
+        case "elevator.output":
+            return facts is None or not isinstance(facts.elevator, Surface)
+        case "airspeed_m_s":
+            return facts is not None and facts.airspeed_m_s is None
+        case "alpha.vane_arm_m":
+            stated = aircraft.alpha.source.startswith("named_value:")
+            return stated or (facts is not None and facts.alpha_provenance == "vane")
+    return True
+
+
+def _contradictions(aircraft: Aircraft, facts: LogFacts) -> Iterator[Lack]:
+    if not isinstance(facts.elevator, Surface):
+        yield Lack("elevator.output", facts.elevator.text, facts.elevator.fix.rstrip("."), wrong=True)
+    yield from _beyond_calibration(aircraft, facts)
+    wanted = aircraft.alpha.source
+    if wanted not in ("auto", "none") and facts.alpha_source is None:
+        yield Lack(
+            "alpha.source",
+            f"The log has no angle of attack by {wanted}.",
+            "record what alpha.source names, or write alpha.source: auto",
+            wrong=True,
+        )
+    reference = aircraft.reference_airspeed_m_s
+    if reference is not None and facts.airspeed_m_s is not None:
+        low, _, high = facts.airspeed_m_s
+        if not low <= reference <= high:
+            yield Lack(
+                "reference_airspeed_m_s",
+                f"The derivatives are carried over to {reference:g} m/s; the log was flown at "
+                f"{low:.1f} to {high:.1f} m/s.",
+                "write a speed within the flown ones",
+                wrong=True,
+            )
+
+
+def _beyond_calibration(aircraft: Aircraft, facts: LogFacts) -> Iterator[Lack]:
+    """Yield the outputs whose pulses go beyond their calibration, where the deflection is held."""
+    calibrations = {one.output: one.calibration for one in aircraft.elevator.outputs}
+    if aircraft.elevator.calibration and len(facts.outputs) == 1:
+        calibrations = {facts.outputs[0]: aircraft.elevator.calibration}
+    for output, pairs in calibrations.items():
+        if pairs is None or output not in facts.pulses_us:
+            continue
+        low, high = facts.pulses_us[output]
+        ends = _ends([pwm for pwm, _ in pairs])
+        if low < ends[0] - BEYOND_US or high > ends[1] + BEYOND_US:
+            yield Lack(
+                "elevator.calibration",
+                f"Output {output} moves from {low:.0f} to {high:.0f} us in the log, the calibration ends at "
+                f"{ends[0]:.0f} and {ends[1]:.0f} us: beyond, the deflection is held.",
+                "measure the deflection at the pulses that were flown",
+                wrong=True,
+            )
+
+
+def _ends(pulses: Sequence[float]) -> tuple[float, float]:
+    return min(pulses), max(pulses)
+
+
+def known_keys(aircraft: Aircraft) -> list[str]:
+    """List the paths of the given keys, of all keys that cost something when missing."""
+    return [path for path, key in BY_PATH.items() if key.cost and _given(path, aircraft)]

@@ -1,0 +1,178 @@
+"""Facts of a log about its aircraft: outputs and their limits, air speed, pressure, angle of attack."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from advisor.aircraft import Aircraft
+from advisor.flight.elevator_guess import Guess
+from advisor.flight.events import ManeuverFlown
+from advisor.flight.maneuver import Maneuver
+from advisor.flight.messages import Columns, FloatArray
+from advisor.flight.parameters import Parameters
+from advisor.flight.stream import FlightStream
+from advisor.flight.surfaces import Scale, Surface
+from advisor.flight.vehicle import Vehicle
+from advisor.flight.wiring import Wiring
+from advisor.problems import Problem, UnusableInputError
+
+FLYING_SHARE = 0.5
+"""Share of the 95th percentile of the air speed above which an aircraft flies. A stall speed is above half of
+the cruise speed; an aircraft on the ground reads a few m/s of wind."""
+SLOWEST_M_S = 3.0
+"""Air speed below which no fixed-wing aircraft of a flight test flies, m/s: an air speed that never exceeds
+this was never flown with."""
+_GROUND_STATIONS_COMPONENT = 190
+"""MAV_COMP_ID_MISSIONPLANNER: ground stations store the vehicle's parameters under this component."""
+_FRAMES = {
+    1: "fixed wing",
+    2: "quadrotor",
+    19: "VTOL, tailsitter",
+    20: "VTOL, tailsitter",
+    21: "VTOL, tiltrotor",
+    22: "VTOL, fixed rotor",
+    23: "VTOL, tailsitter",
+    24: "VTOL, tiltwing",
+    25: "VTOL",
+    16: "flapping wing",
+}
+"""Values of MAV_TYPE, MAVLink common.xml."""
+
+
+@dataclass(frozen=True, slots=True)
+class LogFacts:
+    """The aircraft as one log shows it."""
+
+    vehicle: Vehicle
+    elevator: Surface | Problem
+    """The outputs that the log's parameters and the aircraft file make the elevator."""
+    guess: Guess | None
+    """The output that the pitch rate answers to, where no parameter tells the elevator."""
+    wiring: Wiring
+    """All outputs as the log's parameters describe them."""
+    pulses_us: Mapping[int, tuple[float, float]]
+    """Servo output to its shortest and longest pulse, us."""
+    airspeed_m_s: tuple[float, float, float] | None
+    """5th, 50th and 95th percentile of the air speed in flight; None: the log has none."""
+    pressure_pa: float | None
+    """Median static pressure; None: the log has none."""
+    alpha_source: str | None
+    """Message and field of the angle of attack; None: the log has none."""
+    alpha_provenance: str
+    """``vane``, ``derived``, ``simulated``, or ``unknown``."""
+    maneuvers_m_s: tuple[float, ...]
+    """Mean air speed of every manoeuvre; NaN where a manoeuvre has none."""
+
+    @property
+    def frame(self) -> str:
+        """Kind of aircraft in words."""
+        return _FRAMES.get(self.vehicle.type, f"MAV_TYPE {self.vehicle.type}")
+
+    @property
+    def outputs(self) -> tuple[int, ...]:
+        """Outputs of the elevator, known or guessed; empty where nothing tells."""
+        if isinstance(self.elevator, Surface):
+            return self.elevator.outputs
+        return (self.guess.output,) if self.guess else ()
+
+    def stated_scale(self, output: int) -> Scale | None:
+        """Return the limits of an output by the log's parameters; None where the log has none of them."""
+        return self.wiring.scales.get(output) if output in self.wiring.known_directions else None
+
+
+def facts_of(
+    batches: Iterable[Sequence[Columns]], aircraft: Aircraft, target_system: int | None = None
+) -> LogFacts:
+    """Gather what a log tells about its aircraft.
+
+    Parameters
+    ----------
+    batches
+        Messages of the log, in order of arrival.
+    aircraft
+        Aircraft file in use, by which elevator and angle of attack are chosen.
+    target_system
+        System id of the vehicle; None: the first one heard.
+
+    Raises
+    ------
+    UnusableInputError
+        The log holds no vehicle, or one that has no elevator by its kind.
+    """
+    stream, parameters = FlightStream(aircraft, target_system), Parameters()
+    events: list[object] = []
+    speeds: dict[int, list[FloatArray]] = {}
+    pressures: dict[int, list[FloatArray]] = {}
+    pulses: dict[int, dict[int, tuple[float, float]]] = {}
+    for batch in batches:
+        events += stream.feed(batch)
+        for part in batch:
+            if part.name == "PARAM_VALUE":
+                for name, _, stated in parameters.news(part):
+                    parameters.keep((part.system, part.component), name, stated)
+            elif part.name == "VFR_HUD":
+                speeds.setdefault(part.system, []).append(np.asarray(part.fields["airspeed"], dtype=float))
+            elif part.name == "SCALED_PRESSURE":
+                hpa = np.asarray(part.fields["press_abs"], dtype=float)
+                pressures.setdefault(part.system, []).append(100.0 * hpa)
+            elif part.name == "SERVO_OUTPUT_RAW":
+                _widen(pulses.setdefault(part.system, {}), part)
+    events += stream.finish()
+    vehicle = stream.vehicle
+    if vehicle is None or vehicle.is_multicopter:
+        raise UnusableInputError.of(stream.problems())
+    mine = (vehicle.system, vehicle.component)
+    alpha = stream.channels.get("alpha")
+    return LogFacts(
+        vehicle=vehicle,
+        elevator=stream.elevator,
+        guess=stream.guess,
+        wiring=parameters.wiring(
+            [(vehicle.system, _GROUND_STATIONS_COMPONENT), mine], autopilot=vehicle.autopilot
+        ),
+        pulses_us=pulses.get(vehicle.system, {}),
+        airspeed_m_s=_in_flight(speeds.get(vehicle.system, [])),
+        pressure_pa=_median(pressures.get(vehicle.system, [])),
+        alpha_source=alpha.source if alpha else None,
+        alpha_provenance=alpha.provenance if alpha else "unknown",
+        maneuvers_m_s=tuple(_mean_speed(e.maneuver) for e in events if isinstance(e, ManeuverFlown)),
+    )
+
+
+def _widen(ranges: dict[int, tuple[float, float]], part: Columns) -> None:
+    """Widen the range of every output by the pulses of SERVO_OUTPUT_RAW messages."""
+    ports = np.asarray(part.fields["port"])
+    for port in np.unique(ports).tolist():
+        for n in range(1, 17):
+            column = part.fields.get(f"servo{n}_raw")
+            if column is None:
+                continue
+            pulses = np.asarray(column, dtype=float)[ports == port]
+            pulses = pulses[(pulses > 0.0) & (pulses < 65535.0)]
+            if len(pulses):
+                low, high = ranges.get(16 * port + n, (np.inf, -np.inf))
+                ranges[16 * port + n] = (min(low, float(pulses.min())), max(high, float(pulses.max())))
+
+
+def _in_flight(parts: Sequence[FloatArray]) -> tuple[float, float, float] | None:
+    speeds = np.concatenate(parts) if parts else np.empty(0)
+    speeds = speeds[np.isfinite(speeds)]
+    if len(speeds) == 0:
+        return None
+    fast = float(np.percentile(speeds, 95.0))
+    if fast < SLOWEST_M_S:
+        return None
+    low, middle, high = np.percentile(speeds[speeds > FLYING_SHARE * fast], [5.0, 50.0, 95.0])
+    return float(low), float(middle), float(high)
+
+
+def _mean_speed(maneuver: Maneuver) -> float:
+    airspeed = maneuver.channels.get("airspeed")
+    return float(np.mean(airspeed.y)) if airspeed is not None and len(airspeed) else float("nan")
+
+
+def _median(parts: Sequence[FloatArray]) -> float | None:
+    values = np.concatenate(parts) if parts else np.empty(0)
+    values = values[np.isfinite(values) & (values > 0.0)]
+    return float(np.median(values)) if len(values) else None

@@ -1,0 +1,147 @@
+"""A new aircraft file for the aircraft that one log shows."""
+
+from math import isfinite
+from statistics import median
+
+from advisor.aircraft_file.log_facts import LogFacts
+from advisor.aircraft_file.text import Draft
+from advisor.flight.atmosphere import standard_density
+from advisor.flight.derived_alpha import DERIVED_ALPHA
+from advisor.flight.surfaces import Scale, joined_numbers
+from advisor.problems import Problem
+
+_FULL_STROKE_DEG = 25.0
+"""Deflection that the end point of a servo counts as while nothing is measured."""
+
+
+def proposed(facts: LogFacts, log: str) -> Draft:
+    """Turn what a log tells into an aircraft file.
+
+    Parameters
+    ----------
+    facts
+        What the log tells.
+    log
+        Name of the log, for the comments.
+    """
+    draft = Draft(head=_head(facts, log))
+    _elevator(facts, draft)
+    _alpha(facts, draft)
+    _airspeed(facts, log, draft)
+    return draft
+
+
+def _head(facts: LogFacts, log: str) -> list[str]:
+    vehicle = facts.vehicle
+    firmware = f" {vehicle.firmware}" if vehicle.firmware else ""
+    flown = len(facts.maneuvers_m_s)
+    lines = [
+        f"Aircraft file of the inflight advisor, made from {log}: {vehicle.autopilot}{firmware}, "
+        f"{facts.frame}, system {vehicle.system}, {flown or 'no'} manoeuvre{'' if flown == 1 else 's'}.",
+    ]
+    if facts.pressure_pa is not None:
+        lines.append(
+            f"Static pressure {0.01 * facts.pressure_pa:.0f} hPa: a density of "
+            f"{standard_density(facts.pressure_pa):.3f} kg/m³ in the standard atmosphere. "
+            "The log's pressure is used; the file needs none."
+        )
+    lines.append("Remove the # in front of a key once you know the value; every key may be left out.")
+    return lines
+
+
+def _elevator(facts: LogFacts, draft: Draft) -> None:
+    if isinstance(facts.elevator, Problem):
+        _unknown_elevator(facts, facts.elevator, draft)
+        return
+    surface = facts.elevator
+    if len(surface.parts) > 1:
+        several = joined_numbers(surface.outputs)
+        draft.values["elevator.output"] = "auto"
+        draft.comments["elevator.output"] = f"finds outputs {several} by {facts.wiring.words.function}"
+        limits = " ".join(_limits(facts, n) for n in surface.outputs)
+        listed = ", ".join(f"{{output: {n}, calibration: [[PWM, deg], ...]}}" for n in surface.outputs)
+        draft.comments["elevator.calibration"] = (
+            f"{limits} Once measured, give each output its own, in place of output: outputs: [{listed}]."
+        )
+        return
+    output = surface.outputs[0]
+    draft.values["elevator.output"] = output
+    why = facts.wiring.assumed or f"by {facts.wiring.words.elevator} in the log"
+    draft.comments["elevator.output"] = why.rstrip(".")
+    _calibration(facts, output, draft)
+
+
+def _unknown_elevator(facts: LogFacts, problem: Problem, draft: Draft) -> None:
+    if facts.guess is None:
+        draft.comments["elevator.output"] = f"{problem.text} Usual: {facts.wiring.words.usual}."
+        draft.unsure.append(f"The elevator is unknown: {problem.text} Write elevator.output by hand.")
+        return
+    output = facts.guess.output
+    draft.values["elevator.output"] = output
+    draft.comments["elevator.output"] = f"GUESS, check: {facts.guess}"
+    _calibration(facts, output, draft)
+    draft.unsure.append(f"Check elevator.output: {facts.guess}.")
+
+
+def _calibration(facts: LogFacts, output: int, draft: Draft) -> None:
+    """Write the limits of one output in place of the usual example."""
+    draft.comments["elevator.calibration"] = _limits(facts, output)
+    scale = facts.stated_scale(output)
+    if scale is not None:
+        draft.examples["elevator.calibration"] = _as_calibration(scale)
+
+
+def _limits(facts: LogFacts, output: int) -> str:
+    """Describe an output's travel in the log, in one sentence or two."""
+    scale = facts.stated_scale(output)
+    said = []
+    if scale is not None:
+        said.append(
+            f"Output {output} by {facts.wiring.words.limits}: {scale.low_us:g}/{scale.trim_us:g}/"
+            f"{scale.high_us:g} us{', reversed' if scale.reversed else ''}."
+        )
+    if output in facts.pulses_us:
+        low, high = facts.pulses_us[output]
+        said.append(f"Its pulses in this log reach from {low:.0f} to {high:.0f} us.")
+    return " ".join(said)
+
+
+def _as_calibration(scale: Scale) -> str:
+    down = _FULL_STROKE_DEG if scale.reversed else -_FULL_STROKE_DEG
+    points = ((scale.low_us, -down), (scale.trim_us, 0.0), (scale.high_us, down))
+    return "[" + ", ".join(f"[{pwm:g}, {deg:.1f}]" for pwm, deg in points) + "]"
+
+
+def _alpha(facts: LogFacts, draft: Draft) -> None:
+    if facts.alpha_source is None:
+        draft.comments["alpha.source"] = "This log has no angle of attack: estimates use pitch rate and a_z."
+        return
+    draft.values["alpha.source"] = "auto"
+    draft.comments["alpha.source"] = f"the log has {facts.alpha_source}, {_kind(facts)}"
+    if facts.alpha_source == DERIVED_ALPHA:
+        draft.needless.add("alpha.vane_arm_m")
+
+
+def _kind(facts: LogFacts) -> str:
+    """Describe the source of the angle of attack."""
+    if facts.alpha_source == DERIVED_ALPHA:
+        return "made of attitude, climb rate and air speed: no vane"
+    return {
+        "vane": "a vane",
+        "derived": "the autopilot's own estimate, unless a vane feeds it",
+        "simulated": "of a simulator",
+    }.get(facts.alpha_provenance, "which may be a vane or an estimate")
+
+
+def _airspeed(facts: LogFacts, log: str, draft: Draft) -> None:
+    if facts.airspeed_m_s is None:
+        draft.unsure.append(f"{log} has no air speed: write airspeed_m_s, the speed that was flown.")
+        return
+    low, middle, high = facts.airspeed_m_s
+    draft.needless.add("airspeed_m_s")
+    speeds = [speed for speed in facts.maneuvers_m_s if isfinite(speed)]
+    draft.values["reference_airspeed_m_s"] = round(median(speeds) if speeds else middle, 1)
+    draft.comments["reference_airspeed_m_s"] = (
+        f"derivatives are given at this speed, the median of {'the manoeuvres' if speeds else 'the flight'}; "
+        f"flown: {low:.1f} to {high:.1f} m/s"
+    )

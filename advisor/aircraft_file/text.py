@@ -1,0 +1,83 @@
+"""The text of a new aircraft file: known keys as values, unknown keys as comments with their cost."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from textwrap import wrap
+from typing import Any
+
+import yaml
+
+from advisor.aircraft_file.keys import KEYS, Key
+
+_WIDTH = 100
+"""Columns of a comment line."""
+
+
+@dataclass(slots=True)
+class Draft:
+    """An aircraft file that is about to be written."""
+
+    head: list[str] = field(default_factory=list)
+    """Sentences at the head of the file."""
+    values: dict[str, Any] = field(default_factory=dict)
+    """Path of a key to its value; ``elevator.outputs`` takes the place of output and calibration."""
+    comments: dict[str, str] = field(default_factory=dict)
+    """Path of a key to where its value comes from, or what is known in place of a value."""
+    examples: dict[str, str] = field(default_factory=dict)
+    """Path of a key without a value to the value in its comment, in place of the usual example."""
+    needless: set[str] = field(default_factory=set)
+    """Paths of keys that this aircraft does not need."""
+    unsure: list[str] = field(default_factory=list)
+    """Sentences on what the user must check."""
+
+
+def aircraft_text(draft: Draft) -> str:
+    """Write an aircraft file.
+
+    Returns
+    -------
+    YAML that ``advisor.config.parse_aircraft`` reads. A key without a value is a comment.
+    """
+    lines = [line for sentence in draft.head for line in _commented(sentence)]
+    section, values = "", draft.values
+    for key in KEYS:
+        if key.path in draft.needless:
+            continue
+        within, _, name = key.path.rpartition(".")
+        if within != section:
+            section = within
+            # A section with nothing in it is read as left for later.
+            lines += ["", f"{section}:"] if section else [""]
+            if section == "elevator" and "elevator.outputs" in values:
+                lines += _outputs(values["elevator.outputs"], draft.comments)
+        if "elevator.outputs" in values and key.path in ("elevator.output", "elevator.calibration"):
+            continue
+        lines += _entry(key, name, "  " if section else "", draft)
+    return "\n".join(lines) + "\n"
+
+
+def _outputs(outputs: Sequence[Mapping[str, Any]], comments: Mapping[str, str]) -> list[str]:
+    lines = _commented(comments.get("elevator.outputs", "Each output with its own calibration."), "  ")
+    return [*lines, "  outputs:", *(f"    - {_inline(one)}" for one in outputs)]
+
+
+def _entry(key: Key, name: str, indent: str, draft: Draft) -> list[str]:
+    said = draft.comments.get(key.path, "")
+    if key.path in draft.values:
+        about, line = said or key.meaning, f"{indent}{name}: {_inline(draft.values[key.path])}"
+        beside = f"{line}  # {about}"
+        return [beside] if len(beside) <= _WIDTH else [*_commented(about, indent), line]
+    cost = f"Without it: {key.cost[0].lower()}{key.cost[1:]}" if key.cost else ""
+    notes = [f"{key.meaning[0].upper()}{key.meaning[1:]}.", cost, said]
+    lines = [line for note in notes if note for line in _commented(note, indent)]
+    return [*lines, f"{indent}# {name}: {draft.examples.get(key.path, key.example)}"]
+
+
+def _commented(sentence: str, indent: str = "") -> list[str]:
+    return [f"{indent}# {line}" for line in wrap(sentence, _WIDTH - len(indent))]
+
+
+def _inline(value: Any) -> str:
+    """Write a value on one line of YAML."""
+    text: str = yaml.safe_dump(value, default_flow_style=True, allow_unicode=True, width=10_000)
+    return text.removesuffix("\n").removesuffix("...").strip()

@@ -1,0 +1,13 @@
+"""Where the bundled simulator and the sample flight are: in the repository, or where a wheel put them."""
+
+from pathlib import Path
+
+_PACKAGE = Path(__file__).parent
+_INSTALLED = (_PACKAGE.parent / "inflight_sim").is_dir()
+
+SIMULATOR = "inflight_sim" if _INSTALLED else "sim"
+"""Name of the simulator's package: a wheel leaves ``sim`` to other programs."""
+SAMPLES = _PACKAGE / "sample" if _INSTALLED else _PACKAGE.parent / "logs"
+"""Folder with the sample flight."""
+SAMPLE = "arduplane-calm"
+"""Name of the sample flight's log and of its aircraft file, without their endings."""

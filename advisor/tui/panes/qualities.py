@@ -1,0 +1,56 @@
+"""Flying qualities of the joint estimate."""
+
+from textual.app import ComposeResult
+from textual.containers import VerticalScroll
+
+from advisor.oem.estimate import Estimate
+from advisor.report.qualities import coefficients_of, qualities_of, quality_lines
+from advisor.tui.panes.hanging import HangingLines, Labelled
+from advisor.tui.panes.pane import Pane
+from advisor.tui.view import View
+
+_NONE_YET = "No manoeuvre is accepted yet; flying qualities come from the joint estimate."
+
+
+class Qualities(Pane):
+    """Natural frequency, damping, n/α, CAP, T_θ2 and level, each with its 95 % interval."""
+
+    TITLE = "u Flying qualities"
+    SHORT = "u FQ"
+    can_focus = False
+    HELP = """\
+# Flying qualities
+
+From the joint estimate over the accepted manoeuvres: natural frequency and damping of the short period, T_θ2,
+n/α and CAP, each with half its 95 % interval (delta method), and the levels of MIL-F-8785C. Static margin,
+neutral point and coefficients need `reference` in the aircraft file. The air density and the speed that they
+are given for stand below.
+"""
+
+    def compose(self) -> ComposeResult:
+        """Lay out text that scrolls."""
+        with VerticalScroll():
+            yield HangingLines(_NONE_YET)
+
+    def on_mount(self) -> None:
+        """Show nothing before the first estimate."""
+        super().on_mount()
+        self._shown: Estimate | None = None
+
+    def show(self, view: View) -> None:
+        """Write the flying qualities when the joint estimate is another one."""
+        if view.state.model is self._shown:
+            return
+        self._shown = view.state.model
+        self.query_one(HangingLines).write_rows(_rows(view))
+        numbers = ", ".join(map(str, view.state.estimate_from))
+        self.subtitle(f"from manoeuvres {numbers}" if numbers else "")
+
+
+def _rows(view: View) -> list[Labelled]:
+    reference = view.aircraft.reference
+    found = qualities_of(view.state, reference)
+    if found is None:
+        return [("", _NONE_YET)]
+    lines = quality_lines(found, coefficients_of(view.state, reference))
+    return [(" " * (len(line) - len(line.lstrip())), line.strip()) for line in lines]

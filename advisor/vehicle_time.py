@@ -1,0 +1,30 @@
+"""Vehicle time as people read it: one clock on every screen, in every line of text, in every report.
+
+Documents and files that programs read give the vehicle's time in seconds since its boot.
+"""
+
+from math import isfinite
+
+CLOCK = "minutes:seconds since the vehicle's boot"
+"""Unit and origin of the times that `clock` writes, for headings and help."""
+
+
+def clock(seconds: float) -> str:
+    """Write a time since the vehicle's boot: ``3:07.5``; ``–`` where the time is not known.
+
+    Minutes run on above 60, so that the seconds of a document are found by one multiplication.
+
+    Parameters
+    ----------
+    seconds
+        Vehicle time, s since boot; NaN before the vehicle's clock is heard.
+    """
+    if not isfinite(seconds):
+        return "–"
+    minutes, tenths = divmod(round(abs(seconds) * 10.0), 600)
+    return f"{'-' if seconds < 0.0 and (minutes or tenths) else ''}{minutes}:{tenths / 10.0:04.1f}"
+
+
+def between(start_s: float, end_s: float) -> str:
+    """Write a stretch of vehicle time, s since boot: ``3:07.5 to 3:19.0``."""
+    return f"{clock(start_s)} to {clock(end_s)}"

@@ -1,0 +1,126 @@
+"""``advisor aircraft new``: what a log or a crew says becomes a commented file that loads."""
+
+from pathlib import Path
+
+import click
+import pytest
+
+from advisor.aircraft import Aircraft
+from advisor.aircraft_file.keys import KEYS
+from advisor.config import load_aircraft
+from tests.conftest import Advisor
+
+CASES = Path(__file__).parents[1] / "cases"
+LOGS = Path(__file__).parents[2] / "logs"
+
+
+@pytest.mark.parametrize("log", [CASES / "t_base.tlog", CASES / "base.bin"])
+def test_a_log_tells_the_elevators_output_and_the_air_speed(
+    advisor: Advisor, tmp_path: Path, log: Path
+) -> None:
+    file = tmp_path / "a.yaml"
+    assert advisor("aircraft", "new", "--from", log, "-o", file).returncode == 0
+    aircraft = load_aircraft(file)
+    assert aircraft.elevator.output == 2
+    assert aircraft.reference_airspeed_m_s == pytest.approx(24.0, abs=1.5)
+
+
+def test_the_end_points_of_the_servo_stand_in_the_file_as_an_example(
+    advisor: Advisor, tmp_path: Path
+) -> None:
+    file = tmp_path / "a.yaml"
+    advisor("aircraft", "new", "--from", CASES / "t_base.tlog", "-o", file)
+    assert "# calibration: [[1100, 25.0], [1500, 0.0], [1900, -25.0]]" in file.read_text()
+    assert not load_aircraft(file).elevator.is_calibrated
+
+
+def test_an_unknown_elevator_is_said_and_left_out(advisor: Advisor, tmp_path: Path) -> None:
+    file = tmp_path / "a.yaml"
+    run = advisor("aircraft", "new", "--from", CASES / "u_base.ulg", "-o", file)
+    assert "The elevator is unknown" in run.stdout
+    assert load_aircraft(file).elevator.output == "auto"
+
+
+def test_a_file_that_exists_is_written_over_by_force_alone(advisor: Advisor, tmp_path: Path) -> None:
+    file = tmp_path / "a.yaml"
+    file.write_text("name: mine\n")
+    refused = advisor("aircraft", "new", "--from", CASES / "t_base.tlog", "-o", file)
+    assert (refused.returncode, file.read_text()) == (2, "name: mine\n")
+    assert "--force" in refused.stderr
+    assert advisor("aircraft", "new", "--from", CASES / "t_base.tlog", "-o", file, "--force").returncode == 0
+
+
+def test_a_log_that_is_none_ends_with_code_3(advisor: Advisor, tmp_path: Path) -> None:
+    run = advisor("aircraft", "new", "--from", tmp_path / "no.tlog", "-o", tmp_path / "a.yaml")
+    assert run.returncode == 3
+    assert not (tmp_path / "a.yaml").exists()
+
+
+def test_a_blank_file_holds_every_key_as_a_comment(advisor: Advisor, tmp_path: Path) -> None:
+    advisor("aircraft", "new", "--blank", "-o", tmp_path / "a.yaml")
+    text = (tmp_path / "a.yaml").read_text()
+    assert load_aircraft(tmp_path / "a.yaml") == Aircraft()
+    assert [key.path for key in KEYS if f"# {key.path.rpartition('.')[2]}: {key.example}" not in text] == []
+
+
+@pytest.fixture
+def answers(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """Answers that the questions take one by one; after the last the input ends."""
+    given: list[str] = []
+
+    def prompt(question: str, default: str, err: bool) -> str:
+        if not given:
+            raise click.Abort
+        return given.pop(0) or default
+
+    monkeypatch.setattr("click.prompt", prompt)
+    return given
+
+
+def test_answers_make_the_file(advisor: Advisor, tmp_path: Path, answers: list[str]) -> None:
+    answers += ["Kite", "3", "1900:20 1100:-20 1500:0", "0.06", "", "named_value:AOA", "0.4", "", "18.5"]
+    answers += ["3.1", "0.6", "0.2", "0.25", "", "", "12"]
+    run = advisor("aircraft", "new", "-o", tmp_path / "a.yaml")
+    assert (run.returncode, run.stderr.count("\n")) == (0, 1)
+    aircraft = load_aircraft(tmp_path / "a.yaml")
+    assert aircraft.name == "Kite"
+    assert aircraft.elevator.calibration == ((1100.0, -20.0), (1500.0, 0.0), (1900.0, 20.0))
+    assert (aircraft.elevator.lag_s, aircraft.elevator.delay_s) == (0.06, None)
+    assert aircraft.alpha.vane_arm_m == 0.4
+    assert (aircraft.limits.bank_deg, aircraft.limits.alpha_deg) == (30.0, 12.0)
+
+
+def test_several_outputs_have_a_calibration_each(
+    advisor: Advisor, tmp_path: Path, answers: list[str]
+) -> None:
+    answers += ["Wing", "1 2", "1000:-10 2000:10", "1000:10 2000:-10", *[""] * 13]
+    assert advisor("aircraft", "new", "-o", tmp_path / "a.yaml").returncode == 0
+    outputs = load_aircraft(tmp_path / "a.yaml").elevator.outputs
+    assert [(one.output, one.calibration) for one in outputs] == [
+        (1, ((1000.0, -10.0), (2000.0, 10.0))),
+        (2, ((1000.0, 10.0), (2000.0, -10.0))),
+    ]
+
+
+def test_an_answer_that_is_wrong_is_asked_again(advisor: Advisor, tmp_path: Path, answers: list[str]) -> None:
+    answers += ["", "two", "99", "2", "1500", "1500:0 1500:1", "", "5 ms", "0.05", *[""] * 12]
+    run = advisor("aircraft", "new", "-o", tmp_path / "a.yaml")
+    assert run.returncode == 0
+    for sentence in (
+        "two is no output",
+        "99 is not a servo output",
+        "Give pairs",
+        "PWM must rise",
+        "5 ms is no",
+    ):
+        assert sentence in run.stderr
+    assert load_aircraft(tmp_path / "a.yaml").elevator.lag_s == 0.05
+
+
+def test_questions_without_answers_leave_no_file(
+    advisor: Advisor, tmp_path: Path, answers: list[str]
+) -> None:
+    run = advisor("aircraft", "new", "-o", tmp_path / "a.yaml")
+    assert run.returncode == 2
+    assert "advisor aircraft new --from LOG" in run.stderr
+    assert not (tmp_path / "a.yaml").exists()

@@ -1,0 +1,44 @@
+"""Shells complete commands, options and files."""
+
+import pytest
+
+from tests.conftest import Advisor
+
+
+@pytest.fixture
+def completed(advisor: Advisor, monkeypatch: pytest.MonkeyPatch):
+    """What bash is offered for a line whose last word is being typed."""
+
+    def offer(line: str) -> list[str]:
+        words = line.split(" ")
+        monkeypatch.setenv("COMP_WORDS", line)
+        monkeypatch.setenv("COMP_CWORD", str(len(words) - 1))
+        monkeypatch.setenv("_ADVISOR_COMPLETE", "bash_complete")
+        run = advisor()
+        assert run.returncode == 0
+        return run.stdout.split()
+
+    return offer
+
+
+def test_a_command_is_completed(completed) -> None:
+    assert completed("advisor an") == ["plain,analyze"]
+
+
+def test_an_option_and_its_values_are_completed(completed) -> None:
+    assert completed("advisor analyze a.tlog --ru") == ["plain,--rule"]
+    assert "plain,information" in completed("advisor analyze a.tlog --rule ")
+
+
+@pytest.mark.parametrize("line", ["advisor analyze fl", "advisor doctor fl", "advisor gap --aircraft fl"])
+def test_a_file_is_left_to_the_shell(completed, line: str) -> None:
+    assert completed(line) == ["file,fl"] or completed(line) == ["file,"]
+
+
+def test_a_command_within_a_command_is_completed(completed) -> None:
+    assert completed("advisor aircraft ch") == ["plain,check"]
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_every_shell_has_its_script(advisor: Advisor, shell: str) -> None:
+    assert "_ADVISOR_COMPLETE" in advisor("completion", shell).stdout
