@@ -88,7 +88,7 @@ async def test_a_second_manoeuvre_is_laid_over_and_taken_away_again():
         await here.press("l", "1", "enter")
         assert fit.border_subtitle == "manoeuvres 4 and 1"
         assert str(fit.border_title).startswith("4 Fit  both from the start of the input")
-        assert legend(here, "fit-alpha") == "α [deg]  ∙∙ measured 4  ── measured 1"
+        assert legend(here, "fit-alpha") == "α [deg]  ── measured 1  ∙∙ measured 4"
         await here.press("l", "9", "enter")
         assert "Choose another manoeuvre than 4, from 1 to 4." in here.page()
         await here.press("l", "0", "enter")

@@ -57,8 +57,8 @@ plot reads the values there. **up/down**, **z/Z** or the wheel zooms in time, **
 shown, **w** shows the whole record again.
 
 **l** lays a second manoeuvre over this one, aligned at the start of the input: the measured curves and
-the residuals of both. The selected one is drawn as before, the second as a pale line; **l** with 0 takes
-it away.
+the residuals of both. The selected manoeuvre keeps its colours, the second is a pale line below; **l**
+with 0 takes the second away.
 """
 
     def compose(self) -> ComposeResult:
