@@ -86,13 +86,11 @@ def residual_chart(name: str, judged: JudgedManeuver, over: JudgedManeuver | Non
     fit = fits_of(judged).get(name)
     if fit is None:
         return no_fit(name, _why_no_fit(judged))
-    series: tuple[Series, ...] = (
-        Series(_named("residual", judged, over), *_residual(judged, fit), "residual"),
-    )
+    series = [Series(_named("residual", judged, over), *_residual(judged, fit), "residual")]
     second = fits_of(over).get(name) if over is not None else None
     if over is not None and second is not None:
-        series = (Series(_named("residual", over, judged), *_residual(over, second), "prior"), *series)
-    return Chart(channel(name).label, _T, series=series)
+        series.insert(0, Series(_named("residual", over, judged), *_residual(over, second), "prior"))
+    return Chart(channel(name).label, _T, series=tuple(series))
 
 
 def no_fit(name: str, why: str) -> Chart:
