@@ -215,7 +215,9 @@ def _columns(replay: Any) -> dict[str, list[float] | None]:
         rows[one.name] = None if row is None else _finite(row, one.name)
     lengths = {len(row) for row in rows.values() if row is not None}
     if len(lengths) != 1 or min(lengths) < 2:
-        raise _NoReplayError(f"its replay's channels have {sorted(lengths)} samples, not one number above 1")
+        raise _NoReplayError(
+            f"the channels of its replay must have equal lengths of at least 2; they have {sorted(lengths)} samples"
+        )
     if not np.all(np.diff(np.array(rows["t"])) > 0.0):
         raise ValueError("its replay's t does not ascend")
     return rows

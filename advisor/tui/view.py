@@ -1,7 +1,6 @@
-"""State of one moment for the panes."""
+"""One moment as the panes see it."""
 
 from dataclasses import dataclass
-from math import nan
 from pathlib import Path
 
 from advisor.aircraft import Aircraft
@@ -13,21 +12,21 @@ from advisor.tui.source import LinkHealth, Playback, Tempo
 
 @dataclass(frozen=True, slots=True, eq=False)
 class View:
-    """Campaign, link, replay, and the manoeuvre that an engineer looks at."""
+    """The campaign, the link, the replay, and which manoeuvre an engineer looks at."""
 
     state: CampaignState
     health: LinkHealth
     playback: Playback | None
-    """Position of a replay. None on a live link, and before the log is read."""
+    """Where a replay stands; None on a live link, and before the log is read."""
     aircraft: Aircraft
     title: str
-    """Name of the source."""
+    """What the source is called."""
     tempo: Tempo | None = None
-    """Tempo of a replay. None on a live link."""
+    """How a replay is wanted to run; None on a live link."""
     log: tuple[str, ...] = ()
-    """Sentences of the event log, oldest first."""
+    """What happened so far, oldest first."""
     problems: tuple[Problem, ...] = ()
-    """Reasons for which nothing can be judged of the whole stream, while nothing has been judged."""
+    """Why nothing can be judged of the whole stream, while nothing has been."""
     selected: int | None = None
     """Number of the manoeuvre chosen by hand; None: always the newest."""
     logs: tuple[Path, ...] = ()
@@ -35,33 +34,32 @@ class View:
 
     @property
     def obstacles(self) -> tuple[Problem, ...]:
-        """Reasons for which nothing can be judged: of the present data, and at the end of the whole
-        stream."""
+        """Why nothing can be judged: of what arrives at present; at the end, of the whole stream."""
         return self.problems if self.health.condition == "ended" else self.state.no_data
 
     @property
     def judged(self) -> JudgedManeuver | None:
-        """Manoeuvre that is shown in detail. None before the first."""
+        """The manoeuvre to show in detail; None before the first."""
         maneuvers = self.state.maneuvers
         newest = maneuvers[-1] if maneuvers else None
         return next((j for j in maneuvers if j.maneuver.number == self.selected), newest)
 
     @property
     def last(self) -> JudgedManeuver | None:
-        """Newest manoeuvre that is not excluded by hand."""
+        """The newest manoeuvre that nobody took out by hand."""
         return next((j for j in reversed(self.state.maneuvers) if j.excluded_because is None), None)
 
 
 def view_before_first(
     aircraft: Aircraft, title: str, tempo: Tempo | None, logs: tuple[Path, ...] = ()
 ) -> View:
-    """Return the view before the first report: nothing flown, nothing heard."""
+    """What there is to show before the first report: nothing flown, nothing heard."""
     plan = aircraft.campaign
     limit = limit_percent(plan.rule, plan)
     verdict = FlightTestVerdict(plan.rule, "continue", "No manoeuvre has been flown yet.", None, limit, None)
     state = CampaignState(
         vehicle=None,
-        now_s=nan,
+        now_s=0.0,
         duration_s=0.0,
         mode="",
         channels={},

@@ -284,8 +284,8 @@ def _turned(
     """Return how the response to moved edges changes from the first of ``rows`` to each other, shape (rows, k
     - 1).
 
-    ``rows`` has shape (k, entries): driving numbers, first of the point, then with one time moved by its
-    step. Delay and latency shift the response, a skew only shifts its reading.
+    ``rows`` has shape (k, entries). The first row holds the driving numbers of the point; each other row is
+    that row with one time changed by its finite-difference step. Delay and latency shift the response, a skew only shifts its reading.
     """
     late = np.round(rows[:, INDEX["delay_s"]] + rows[:, INDEX["latency_s"]], 9).tolist()
     places = {seconds: k for k, seconds in enumerate(dict.fromkeys(late))}

@@ -50,7 +50,8 @@ def _leading_on(
     """Return a certain effect that is too small to be named, where it reveals another effect.
 
     Two effects may hide each other, because derivatives compensate for one of them. The candidates for the
-    next addition are returned too. Whether both stay is decided after the last addition.
+    next addition are returned too. ``settled`` drops each of the effects that proves needless after the last
+    addition.
     """
     if not considered or considered[0].gain < BEYOND_DOUBT:
         return None, None
