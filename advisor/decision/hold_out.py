@@ -7,7 +7,7 @@ import numpy as np
 
 from advisor.decision.consistency import consensus
 from advisor.decision.history import Flown
-from advisor.decision.pooling import DERIVATIVES, Shared, posteriors_at_one_speed, common_airspeed
+from advisor.decision.pooling import DERIVATIVES, Shared, common_airspeed, posteriors_at_one_speed
 from advisor.decision.prediction import PREDICTED, Z95, Response, measured, response_to
 from advisor.flight.messages import FloatArray
 from advisor.flight.record import Channel
