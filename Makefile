@@ -152,7 +152,7 @@ container: ## the container image (docker or podman)
 
 COVERED ?= tests
 coverage: .venv/.developed ## how much of advisor and sim the tests run (COVERED=tests/oem for a part)
-	$(BIN)/python -m pytest -n 2 --dist loadgroup --cov advisor --cov sim --cov-report term --cov-report html:build/coverage $(COVERED)
+	$(BIN)/python -m pytest -n 2 --dist loadgroup --timeout 600 --cov advisor --cov sim --cov-report term --cov-report html:build/coverage $(COVERED)
 
 clean: ## remove .venv and caches
 	rm -rf .venv build dist *.egg-info .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis

@@ -1,4 +1,4 @@
-"""Where the bundled simulator and the sample flight are: in the repository, or where a wheel put them."""
+"""Location of the bundled simulator and the sample flight: in the repository, or in an installed wheel."""
 
 from pathlib import Path
 
@@ -6,7 +6,7 @@ _PACKAGE = Path(__file__).parent
 _INSTALLED = (_PACKAGE.parent / "inflight_sim").is_dir()
 
 SIMULATOR = "inflight_sim" if _INSTALLED else "sim"
-"""Name of the simulator's package: a wheel leaves ``sim`` to other programs."""
+"""Name of the simulator's package. A wheel leaves the name ``sim`` to other programs."""
 SAMPLES = _PACKAGE / "sample" if _INSTALLED else _PACKAGE.parent / "logs"
 """Folder with the sample flight."""
 SAMPLE = "arduplane-calm"

@@ -1,4 +1,4 @@
-"""The first run on a machine: all kernels are compiled before work begins, and a line says how far that is.
+"""The first run on a machine: all kernels are compiled before work begins, with a line of progress.
 
 ``python -m advisor.first_run`` does so when installing.
 """
@@ -32,15 +32,15 @@ KERNELS: Stages = {
 def compile_once(tell: Tell, stages: Stages = KERNELS) -> None:
     """Compile every kernel, unless this version was compiled on this machine before.
 
-    A mark in the folder of the machine code says so. A kernel whose source changes is compiled anew when it
-    is next called, with the mark or without.
+    A mark in the folder of the machine code records the compilation. A kernel whose source changes is
+    compiled anew at its next call, with the mark or without.
 
     Parameters
     ----------
     tell
         Takes each sentence about the progress.
     stages
-        What is compiled; by default all that commands call.
+        Kernels to compile. Default: all that commands call.
     """
     if os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
         return
@@ -63,7 +63,7 @@ def compile_once(tell: Tell, stages: Stages = KERNELS) -> None:
 
 
 def _folder() -> Path | None:
-    """Return the folder of the mark, chosen as numba chooses the folder of machine code; None for none."""
+    """Return the folder of the mark, by numba's choice of the folder for machine code; None without one."""
     from platformdirs import user_cache_path
 
     given = os.environ.get("NUMBA_CACHE_DIR")
@@ -80,7 +80,8 @@ def _writable(folder: Path) -> bool:
 
 
 def _key(stages: Stages) -> str:
-    """Return a hash of versions, machine and folder: all that machine code depends on but the sources."""
+    """Return a hash of versions, machine and folder, on which machine code depends in addition to the
+    sources."""
     parts = (version("numba"), _own_version(), sys.version, platform.machine(), __file__, *stages)
     return sha256("\0".join(parts).encode()).hexdigest()[:16]
 

@@ -93,7 +93,7 @@ class LogSeries:
 
 
 def of_flight(columns: Sequence[Columns], flight: int) -> list[Columns]:
-    """Return the columns with the number of one flight of a campaign."""
+    """Set the flight number of columns, and return the columns."""
     return [replace(c, flight=flight) for c in columns] if flight else list(columns)
 
 

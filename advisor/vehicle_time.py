@@ -1,6 +1,6 @@
-"""Vehicle time as people read it: one clock on every screen, in every line of text, in every report.
+"""Vehicle time for people: one form on every screen, in every text, in every report.
 
-Documents and files that programs read give the vehicle's time in seconds since its boot.
+Documents and files for programs give the vehicle's time in seconds since its boot.
 """
 
 from math import isfinite
@@ -12,7 +12,7 @@ CLOCK = "minutes:seconds since the vehicle's boot"
 def clock(seconds: float) -> str:
     """Write a time since the vehicle's boot: ``3:07.5``; ``–`` where the time is not known.
 
-    Minutes run on above 60, so that the seconds of a document are found by one multiplication.
+    Minutes continue beyond 60, so that one multiplication gives the seconds of a document.
 
     Parameters
     ----------

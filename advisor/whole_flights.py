@@ -1,4 +1,4 @@
-"""Logs heard by the campaign, which forgets, and as whole power-ons, which keep every sample."""
+"""Logs heard by the campaign, which drops samples, and as whole power-ons, which keep every sample."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -17,20 +17,20 @@ from advisor.problems import Problem, UnusableInputError
 
 @dataclass(frozen=True, slots=True)
 class WholeFlights:
-    """Logs of one campaign: what was found, and every sample."""
+    """Logs of one campaign: its results, and every sample."""
 
     logs: tuple[Path, ...]
-    """Flight by flight, in the order in which they count."""
+    """Logs in the order in which their flights count."""
     names: tuple[str, ...]
-    """What each log is called."""
+    """Name of each log."""
     order_said: str
-    """A sentence on the order of the logs where it is not the one given; else empty."""
+    """Sentence on the order of the logs where it differs from the given one; else empty."""
     by_hand: ByHand
-    """What was decided by hand on the logs."""
+    """Decisions by hand on the logs."""
     state: CampaignState
-    """The campaign at the end of the logs, as ``advisor analyze`` has it."""
+    """Campaign at the end of the logs, as in ``advisor analyze``."""
     left_out: Mapping[int, tuple[Problem, ...]]
-    """Why a log does not count, by the number of its flight."""
+    """Number of a flight to the reasons for which its log does not count."""
     power_ons: tuple[tuple[int, PowerOn], ...]
     """Every power-on with the number of its flight, 0 for the first."""
 
@@ -42,7 +42,7 @@ class WholeFlights:
 
     @property
     def notes(self) -> list[str]:
-        """Sentences on what was read, and on what was assumed in reading."""
+        """Sentences on the logs, and on assumptions made in reading them."""
         state = self.state
         notes = (*self.said, *state.elevator_notes, *state.reader_notes, *state.mark_notes)
         return list(dict.fromkeys(notes))
@@ -65,14 +65,14 @@ def read_whole(
     target_system
         System id of the vehicle; None: the first one heard.
     marks
-        Further stretches that are manoeuvres, on a single log.
+        Further stretches marked as manoeuvres, on a single log.
     no_marks
-        Leave out what was decided by hand on the logs.
+        Whether to ignore earlier decisions by hand on the logs.
 
     Raises
     ------
     UnusableInputError
-        No log can be used; the error lists why.
+        No log can be used. The error lists the reasons.
     ConfigurationError
         The file of decisions by hand that belongs to a log is wrong.
     """

@@ -10,7 +10,7 @@ REPOSITORY = Path(__file__).parents[1]
 STYLE = REPOSITORY / "docs" / "developer" / "style.md"
 """The page of the rule, which quotes bad examples."""
 _SENTENCE_END = re.compile(
-    r"(?<=[.!?])(?<!\be\.g\.)(?<!\bi\.e\.)(?<!Eqs\.)(?<!Eq\.)(?<!\bcf\.)(?<!\bvs\.)\s+(?=[A-Z`*\"“(Δαθ])"
+    r"(?:(?<=[.!?])|(?<=[.!?]\*\*))(?<!\be\.g\.)(?<!\bi\.e\.)(?<!Eqs\.)(?<!Eq\.)(?<!\bcf\.)(?<!\bvs\.)\s+(?=[A-Z`*\"“(Δαθ])"
 )
 _MESSAGE_END = re.compile(rf";\s+|{_SENTENCE_END.pattern}")
 """A message says what is wrong before a semicolon, and the next step after it."""

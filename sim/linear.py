@@ -13,10 +13,12 @@ FloatArray = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class ShortPeriod:
-    """The paper's eight parameters, Eqs. (1)–(2), in rad and s:
+    """The paper's eight parameters, in rad and s.
 
-    α̇ = Z_0 + Z_α α + (1 + Z_q) q + Z_δe δe
-    q̇ = M_0 + M_α α + M_q q + M_δe δe
+    The equations of motion are Eqs. (1)–(2),
+
+        α̇ = Z_0 + Z_α α + (1 + Z_q) q + Z_δe δe
+        q̇ = M_0 + M_α α + M_q q + M_δe δe
     """
 
     Z_0: float

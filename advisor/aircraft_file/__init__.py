@@ -1,1 +1,1 @@
-"""Aircraft files: written for a user, and looked over for keys that they lack."""
+"""Aircraft files: writing one for a user, and checking one for missing keys."""

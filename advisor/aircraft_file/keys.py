@@ -12,13 +12,13 @@ class Key:
     meaning: str
     """Quantity, unit and sign, for the comment in the file."""
     example: str
-    """Value in YAML that stands in the comment while the true value is unknown."""
+    """Value in YAML for the comment, while the true value is unknown."""
     question: str = ""
-    """Question on the terminal; empty: never asked."""
+    """Question on the terminal. Empty: never asked."""
     cost: str = ""
-    """Sentence on the cost of the missing key; empty where a missing key costs nothing."""
+    """Sentence on the cost of the missing key. Empty: a missing key costs nothing."""
     mend: str = ""
-    """How a crew finds the value, a clause."""
+    """Clause on how a crew finds the value."""
 
 
 KEYS = (
@@ -45,7 +45,7 @@ KEYS = (
         "0.05",
         "First-order lag of the elevator's servo, s",
         "The lag is estimated with the derivatives: wider intervals, and M_alpha and M_delta_e too small "
-        "where a flight does not tell it.",
+        "where a flight does not determine it.",
         "film a step of the servo on the ground; the lag is the time to 63 % of the step",
     ),
     Key(
@@ -53,7 +53,7 @@ KEYS = (
         "delay between the logged command and the servo's first movement, s",
         "0.02",
         "Delay from the logged command to the servo's first movement, s",
-        "The delay counts as zero; one that exists biases M_alpha and M_q.",
+        "The delay counts as zero; a real delay biases M_alpha and M_q.",
         "film a step of the servo on the ground; the delay ends when the arm begins to move",
     ),
     Key(
@@ -101,7 +101,7 @@ KEYS = (
         "mass, kg",
         "10.0",
         "Mass, kg",
-        "No lift derivatives without dimension, and no static margin.",
+        "No non-dimensional lift derivatives, and no static margin.",
         "weigh the aircraft",
     ),
     Key(
@@ -109,7 +109,7 @@ KEYS = (
         "wing area, m²",
         "0.6",
         "Wing area, m²",
-        "No derivatives without dimension (C_m_alpha and the like).",
+        "No non-dimensional derivatives (C_m_alpha and the like).",
         "take the area from the drawing",
     ),
     Key(
@@ -117,7 +117,7 @@ KEYS = (
         "mean aerodynamic chord, m",
         "0.25",
         "Mean aerodynamic chord, m",
-        "No derivatives without dimension, and no static margin.",
+        "No non-dimensional derivatives, and no static margin.",
         "take the chord from the drawing",
     ),
     Key(
@@ -125,7 +125,7 @@ KEYS = (
         "pitching moment of inertia about the centre of gravity, kg m²",
         "1.0",
         "Pitching moment of inertia, kg m²",
-        "No moment derivatives without dimension, and no static margin.",
+        "No non-dimensional moment derivatives, and no static margin.",
         "swing the aircraft as a pendulum, or take the value of the design",
     ),
     Key(
@@ -138,7 +138,7 @@ KEYS = (
     ),
     Key(
         "model",
-        "what the simulator believes; Z_0 to M_delta_e in rad and s",
+        "the simulator's derivatives, Z_0 to M_delta_e in rad and s",
         "{M_alpha: -48.0, M_q: -4.2, M_delta_e: -100.0, Z_alpha: -8.0}",
         "",
         "advisor gap has no simulator to compare the flight with, unless --simulator names one.",
@@ -159,6 +159,6 @@ KEYS = (
         "write an angle a few degrees below the stall",
     ),
 )
-"""In the order of the file."""
+"""Keys in the order of the file."""
 
 BY_PATH = {key.path: key for key in KEYS}

@@ -10,32 +10,33 @@ from advisor.aircraft_file.log_facts import LogFacts
 from advisor.flight.surfaces import Surface
 
 BEYOND_US = 20.0
-"""Pulses that may lie beyond a calibration's ends, us: a servo's trim and a transmitter's stray by this."""
+"""Distance by which pulses may exceed a calibration's ends, us. A servo's trim and a transmitter's differ by
+so much."""
 
 
 @dataclass(frozen=True, slots=True)
 class Lack:
-    """One key that is missing, or that does not fit the log."""
+    """One key that is missing, or that contradicts the log."""
 
     key: str
     """Path of the key."""
     cost: str
-    """Sentence on the cost."""
+    """Sentence on the cost of the missing key."""
     mend: str
-    """Clause that tells how to mend the file."""
+    """Clause on the remedy in the file."""
     wrong: bool = False
-    """The key is there and contradicts the log."""
+    """Whether the key is present and contradicts the log."""
 
 
 def lacks_of(aircraft: Aircraft, facts: LogFacts | None = None) -> tuple[Lack, ...]:
-    """Find the keys that a file lacks, in the order of the file, after those that contradict the log.
+    """Return the keys that a file lacks, in the order of the file, after those that contradict the log.
 
     Parameters
     ----------
     aircraft
-        The aircraft file as read.
+        Aircraft file as read.
     facts
-        What a log of this aircraft tells; None: no log is at hand.
+        Facts of a log of this aircraft. None: no log is at hand.
     """
     found = [
         Lack(key.path, key.cost, key.mend)
@@ -46,7 +47,7 @@ def lacks_of(aircraft: Aircraft, facts: LogFacts | None = None) -> tuple[Lack, .
 
 
 def _given(path: str, aircraft: Aircraft) -> bool:
-    """Return whether the file gives the key, or another key in its place."""
+    """Return whether the file gives the key, or another key that replaces it."""
     match path:
         case "elevator.output":
             return aircraft.elevator.output != "auto" or bool(aircraft.elevator.outputs)
@@ -82,7 +83,7 @@ def _contradictions(aircraft: Aircraft, facts: LogFacts) -> Iterator[Lack]:
         yield Lack(
             "alpha.source",
             f"The log has no angle of attack by {wanted}.",
-            "record what alpha.source names, or write alpha.source: auto",
+            "record the source that alpha.source names, or write alpha.source: auto",
             wrong=True,
         )
     reference = aircraft.reference_airspeed_m_s
@@ -99,7 +100,7 @@ def _contradictions(aircraft: Aircraft, facts: LogFacts) -> Iterator[Lack]:
 
 
 def _beyond_calibration(aircraft: Aircraft, facts: LogFacts) -> Iterator[Lack]:
-    """Yield the outputs whose pulses go beyond their calibration, where the deflection is held."""
+    """Yield the outputs whose pulses exceed their calibration, where the deflection is held."""
     calibrations = {one.output: one.calibration for one in aircraft.elevator.outputs}
     if aircraft.elevator.calibration and len(facts.outputs) == 1:
         calibrations = {facts.outputs[0]: aircraft.elevator.calibration}

@@ -21,8 +21,8 @@ FLYING_SHARE = 0.5
 """Share of the 95th percentile of the air speed above which an aircraft flies. A stall speed is above half of
 the cruise speed; an aircraft on the ground reads a few m/s of wind."""
 SLOWEST_M_S = 3.0
-"""Air speed below which no fixed-wing aircraft of a flight test flies, m/s: an air speed that never exceeds
-this was never flown with."""
+"""Air speed below which no fixed-wing aircraft of a flight test flies, m/s. An air speed that never exceeds
+it shows no flight."""
 _GROUND_STATIONS_COMPONENT = 190
 """MAV_COMP_ID_MISSIONPLANNER: ground stations store the vehicle's parameters under this component."""
 _FRAMES = {
@@ -42,27 +42,27 @@ _FRAMES = {
 
 @dataclass(frozen=True, slots=True)
 class LogFacts:
-    """The aircraft as one log shows it."""
+    """Facts about an aircraft from one log."""
 
     vehicle: Vehicle
     elevator: Surface | Problem
-    """The outputs that the log's parameters and the aircraft file make the elevator."""
+    """Elevator by the log's parameters and the aircraft file."""
     guess: Guess | None
-    """The output that the pitch rate answers to, where no parameter tells the elevator."""
+    """Output that the pitch rate answers to, where no parameter names the elevator."""
     wiring: Wiring
-    """All outputs as the log's parameters describe them."""
+    """All outputs by the log's parameters."""
     pulses_us: Mapping[int, tuple[float, float]]
     """Servo output to its shortest and longest pulse, us."""
     airspeed_m_s: tuple[float, float, float] | None
-    """5th, 50th and 95th percentile of the air speed in flight; None: the log has none."""
+    """Percentiles 5, 50 and 95 of the air speed in flight, m/s. None: the log has none."""
     pressure_pa: float | None
-    """Median static pressure; None: the log has none."""
+    """Median static pressure, Pa. None: the log has none."""
     alpha_source: str | None
-    """Message and field of the angle of attack; None: the log has none."""
+    """Message and field of the angle of attack. None: the log has none."""
     alpha_provenance: str
     """``vane``, ``derived``, ``simulated``, or ``unknown``."""
     maneuvers_m_s: tuple[float, ...]
-    """Mean air speed of every manoeuvre; NaN where a manoeuvre has none."""
+    """Mean air speed of every manoeuvre, m/s. NaN where a manoeuvre has none."""
 
     @property
     def frame(self) -> str:
@@ -71,7 +71,7 @@ class LogFacts:
 
     @property
     def outputs(self) -> tuple[int, ...]:
-        """Outputs of the elevator, known or guessed; empty where nothing tells."""
+        """Outputs of the elevator, known or guessed. Empty where unknown."""
         if isinstance(self.elevator, Surface):
             return self.elevator.outputs
         return (self.guess.output,) if self.guess else ()
@@ -84,14 +84,14 @@ class LogFacts:
 def facts_of(
     batches: Iterable[Sequence[Columns]], aircraft: Aircraft, target_system: int | None = None
 ) -> LogFacts:
-    """Gather what a log tells about its aircraft.
+    """Return the facts of a log about its aircraft.
 
     Parameters
     ----------
     batches
         Messages of the log, in order of arrival.
     aircraft
-        Aircraft file in use, by which elevator and angle of attack are chosen.
+        Aircraft file that chooses elevator and angle of attack.
     target_system
         System id of the vehicle; None: the first one heard.
 

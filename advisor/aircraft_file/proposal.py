@@ -1,4 +1,4 @@
-"""A new aircraft file for the aircraft that one log shows."""
+"""A new aircraft file from one log."""
 
 from math import isfinite
 from statistics import median
@@ -11,16 +11,16 @@ from advisor.flight.surfaces import Scale, joined_numbers
 from advisor.problems import Problem
 
 _FULL_STROKE_DEG = 25.0
-"""Deflection that the end point of a servo counts as while nothing is measured."""
+"""Deflection assumed at the end point of a servo without a measurement, deg."""
 
 
 def proposed(facts: LogFacts, log: str) -> Draft:
-    """Turn what a log tells into an aircraft file.
+    """Return an aircraft file with the facts of a log.
 
     Parameters
     ----------
     facts
-        What the log tells.
+        Facts of the log.
     log
         Name of the log, for the comments.
     """
@@ -92,7 +92,7 @@ def _calibration(facts: LogFacts, output: int, draft: Draft) -> None:
 
 
 def _limits(facts: LogFacts, output: int) -> str:
-    """Describe an output's travel in the log, in one sentence or two."""
+    """Return an output's travel in the log, in one sentence or two."""
     scale = facts.stated_scale(output)
     said = []
     if scale is not None:
@@ -123,9 +123,9 @@ def _alpha(facts: LogFacts, draft: Draft) -> None:
 
 
 def _kind(facts: LogFacts) -> str:
-    """Describe the source of the angle of attack."""
+    """Return a clause on the source of the angle of attack."""
     if facts.alpha_source == DERIVED_ALPHA:
-        return "made of attitude, climb rate and air speed: no vane"
+        return "derived from attitude, climb rate and air speed, without a vane"
     return {
         "vane": "a vane",
         "derived": "the autopilot's own estimate, unless a vane feeds it",

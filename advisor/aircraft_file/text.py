@@ -15,20 +15,20 @@ _WIDTH = 100
 
 @dataclass(slots=True)
 class Draft:
-    """An aircraft file that is about to be written."""
+    """Content of an aircraft file before it is written."""
 
     head: list[str] = field(default_factory=list)
-    """Sentences at the head of the file."""
+    """Sentences for the head of the file."""
     values: dict[str, Any] = field(default_factory=dict)
-    """Path of a key to its value; ``elevator.outputs`` takes the place of output and calibration."""
+    """Path of a key to its value. ``elevator.outputs`` replaces output and calibration."""
     comments: dict[str, str] = field(default_factory=dict)
-    """Path of a key to where its value comes from, or what is known in place of a value."""
+    """Path of a key to the source of its value, or to the known facts in place of a value."""
     examples: dict[str, str] = field(default_factory=dict)
     """Path of a key without a value to the value in its comment, in place of the usual example."""
     needless: set[str] = field(default_factory=set)
     """Paths of keys that this aircraft does not need."""
     unsure: list[str] = field(default_factory=list)
-    """Sentences on what the user must check."""
+    """Sentences on points that the user must check."""
 
 
 def aircraft_text(draft: Draft) -> str:
@@ -46,7 +46,7 @@ def aircraft_text(draft: Draft) -> str:
         within, _, name = key.path.rpartition(".")
         if within != section:
             section = within
-            # A section with nothing in it is read as left for later.
+            # An empty section counts as left for later.
             lines += ["", f"{section}:"] if section else [""]
             if section == "elevator" and "elevator.outputs" in values:
                 lines += _outputs(values["elevator.outputs"], draft.comments)
@@ -79,5 +79,7 @@ def _commented(sentence: str, indent: str = "") -> list[str]:
 
 def _inline(value: Any) -> str:
     """Write a value on one line of YAML."""
-    text: str = yaml.safe_dump(value, default_flow_style=True, allow_unicode=True, width=10_000)
+    text: str = yaml.safe_dump(
+        value, default_flow_style=True, allow_unicode=True, width=10_000, sort_keys=False
+    )
     return text.removesuffix("\n").removesuffix("...").strip()

@@ -17,7 +17,7 @@ from advisor.oem.estimate import Estimate
 
 
 def in_order(results: Sequence[Analyzed]) -> list[Analyzed]:
-    """Return flights oldest first where all usable ones tell when they began, else as given."""
+    """Return flights, oldest first where all usable ones have dates, else in the given order."""
     if not all(SINCE_1970_S <= one.began_s < inf for one in results if one.usable):
         return list(results)
     return sorted(results, key=lambda one: one.began_s if one.usable else inf)
@@ -39,14 +39,14 @@ def changes_of(flights: Sequence[Analyzed]) -> dict[str, ChangeOverFlights]:
 
 
 def aircraft_of(flight: Analyzed) -> str:
-    """What tells one aircraft from another: the aircraft file, the autopilot and the vehicle's system id."""
+    """Return the identity of an aircraft: its aircraft file and the kind of autopilot."""
     vehicle = flight.document["log"]["vehicle"] or {}
     system = f"system {vehicle['system']}" if vehicle else ""
     return " ".join(filter(None, (flight.aircraft_file, vehicle.get("autopilot"), system)))
 
 
 def mixed_up(flights: Sequence[Analyzed]) -> list[str]:
-    """A sentence for each aircraft file that logs of several aircraft share."""
+    """Return a sentence for each aircraft file that logs of several aircraft share."""
     by_file: dict[str, dict[str, str]] = {}
     for flight in flights:
         if flight.usable:
@@ -61,7 +61,7 @@ def mixed_up(flights: Sequence[Analyzed]) -> list[str]:
 
 
 def tables_of(flights: Sequence[Analyzed]) -> Dataset:
-    """Return one row a flight, one a manoeuvre, one a parameter of each change.
+    """Return tables with a row for each flight, manoeuvre, and parameter of a change.
 
     Parameters
     ----------

@@ -18,19 +18,19 @@ from advisor.flight.vehicle import Vehicle
 from advisor.vehicle_time import CLOCK, clock
 
 KEPT = 1000
-"""Sentences kept, 0.1 kB each: some hundred manoeuvres with all that is said of them."""
+"""Number of sentences kept, 0.1 kB each: enough for some hundred manoeuvres."""
 WIDTH = 7
 """Characters of a time: 999 minutes."""
 _LATE_S = 1.0
-"""A sentence that comes so much later than its event names the event's time, s. The stamps of messages of one
-moment differ by less."""
+"""Least delay of a sentence behind its event, s, at which the sentence names the event's time. The stamps of
+messages of one moment differ by less."""
 
 
 class Journal:
     """Writes sentences with their times, which never run backwards within one power-on.
 
-    A sentence stands at the time of its event, or at the newest time before it where that is later. Where the
-    vehicle's clock begins anew, a sentence says so.
+    A sentence stands at the time of its event, or at the newest earlier time where that is later. Where the
+    vehicle's clock restarts, a sentence says so.
     """
 
     def __init__(self) -> None:
@@ -52,7 +52,7 @@ class Journal:
         text
             One line.
         at_s
-            Vehicle time of the event, s since boot; NaN: the newest time so far.
+            Vehicle time of the event, s since boot. NaN: the newest time so far.
         """
         when = f"at {clock(at_s)}, " if at_s < self._newest_s - _LATE_S else ""
         self._newest_s = max(self._newest_s, at_s) if isfinite(at_s) else self._newest_s
@@ -88,7 +88,7 @@ class Journal:
                 )
 
     def _begin(self, text: str) -> None:
-        """Begin another clock: times may be smaller than before, and ``text`` says so."""
+        """Begin another clock, whose times may be smaller; ``text`` says so."""
         self._newest_s = -inf
         self.write(text)
 

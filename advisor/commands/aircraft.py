@@ -1,4 +1,4 @@
-"""``advisor aircraft``: write an aircraft file, and say what one lacks."""
+"""``advisor aircraft``: write an aircraft file, or check one for missing keys."""
 
 import json
 from dataclasses import asdict
@@ -24,7 +24,7 @@ SCHEMA = "advisor.aircraft/1"
 
 @click.group
 def command() -> None:
-    """Write an aircraft file, or say what one lacks and what that costs.
+    """Write an aircraft file, or list missing keys with their cost.
 
     \b
     Example:
@@ -51,8 +51,8 @@ def command() -> None:
 def new(log: Path | None, out: Path, blank: bool, force: bool, target_system: int | None) -> None:
     """Write a commented aircraft file, from answers on the terminal or from a log.
 
-    A log tells the outputs with their functions and limits, the air speed, the pressure, and whether there is
-    a vane. What stays unknown stands in the file as a comment with what its absence costs.
+    A log gives the outputs with their functions and limits, the air speed, the pressure, and the kind of
+    angle of attack. An unknown key stands in the file as a comment with the cost of its absence.
 
     \b
     Example:
@@ -90,12 +90,12 @@ def new(log: Path | None, out: Path, blank: bool, force: bool, target_system: in
 @command.command
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option(
-    "--log", type=click.Path(path_type=Path), metavar="LOG", help="Also hold the file against this log."
+    "--log", type=click.Path(path_type=Path), metavar="LOG", help="Compare the file with this log as well."
 )
 @target_system_option
 @json_option
 def check(file: Path, log: Path | None, target_system: int | None, as_json: bool) -> None:
-    """Read an aircraft file, and say what is missing and what each missing key costs.
+    """Read an aircraft file, and list missing keys with their cost.
 
     \b
     Example:
@@ -115,7 +115,7 @@ def check(file: Path, log: Path | None, target_system: int | None, as_json: bool
     click.echo(f"{printable(str(file))} is a valid aircraft file: {aircraft.name}.")
     click.echo(f"Given: {', '.join(known_keys(aircraft)) or 'no key that estimates rest on'}.")
     _list("Does not fit the log:", [lack for lack in lacks if lack.wrong])
-    _list("Missing, with what that costs:", [lack for lack in lacks if not lack.wrong])
+    _list("Missing, with the cost:", [lack for lack in lacks if not lack.wrong])
     if not lacks:
         click.echo("Nothing is missing.")
 

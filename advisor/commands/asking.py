@@ -14,7 +14,7 @@ _DEFAULTS = {
     "alpha.source": "auto",
     "limits.bank_deg": "30",
 }
-"""Path of a key to the answer that Enter gives; Enter leaves every other key out."""
+"""Path of a key to its default answer. Without a default, Enter leaves the key out."""
 _TEXTS = frozenset({"name", "alpha.source"})
 
 
@@ -30,7 +30,7 @@ def ask() -> dict[str, Any]:
     ConfigurationError
         The input ends before the last question.
     """
-    click.echo("Enter takes what stands in brackets; '-' there means: not known, left out.", err=True)
+    click.echo("Enter takes the answer in brackets; '-' there means: not known, left out.", err=True)
     values: dict[str, Any] = {}
     for key in KEYS:
         if key.path == "alpha.vane_arm_m" and not _has_vane(values):
@@ -43,7 +43,7 @@ def ask() -> dict[str, Any]:
 
 
 def nested(values: dict[str, Any]) -> dict[str, Any]:
-    """Paths with values as the sections of the aircraft file."""
+    """Return paths with values as the sections of the aircraft file."""
     content: dict[str, Any] = {}
     for path, value in values.items():
         *sections, name = path.split(".")
@@ -59,7 +59,7 @@ def _has_vane(values: dict[str, Any]) -> bool:
 
 
 def _put(path: str, question: str, values: dict[str, Any]) -> None:
-    """Ask until the answer is taken."""
+    """Ask until an answer is valid."""
     while True:
         text = _answer(question, _DEFAULTS.get(path, "-"))
         if text == "-":
@@ -98,7 +98,7 @@ def _whole(word: str) -> int:
 
 
 def _ask_calibrations(question: str, values: dict[str, Any]) -> None:
-    """Ask for the calibration of each output; without an answer for one, all are left out."""
+    """Ask for the calibration of each output. Without an answer for one, all are left out."""
     several = values.get("elevator.outputs")
     if several is None:
         while (pairs := _pairs(question.format(values.get("elevator.output", "auto")))) is not None:

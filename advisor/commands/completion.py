@@ -1,4 +1,4 @@
-"""``advisor completion``: what a shell needs to complete commands, options and files."""
+"""``advisor completion``: script for a shell to complete commands, options and files."""
 
 import click
 from click.shell_completion import get_completion_class

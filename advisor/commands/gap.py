@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import click
 from click.core import ParameterSource
 
-from advisor.commands.exporting import export_option, listed, orders_of, write_exports
+from advisor.commands.improvement_export import export_option, listed, orders_of, write_exports
 from advisor.commands.options import (
     UNUSABLE,
     USAGE,

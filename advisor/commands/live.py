@@ -111,7 +111,7 @@ def command(
         raise ConfigurationError("LOG needs --resume, which continues the flight test of these logs.")
     from advisor.campaign.hand_decisions import NOTHING
     from advisor.campaign_file import CampaignFile
-    from advisor.commands.resuming import Speaking, start_of, started
+    from advisor.commands.flight_start import Speaking, start_of, started
     from advisor.mavlink.connection import parse_connection
     from advisor.mavlink.signing import read_key
     from advisor.yaml_file import read_yaml

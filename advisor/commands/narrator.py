@@ -25,7 +25,7 @@ from advisor import interrupt
 from advisor.ascii_output import speak_plainly
 from advisor.flight.messages import Columns
 from advisor.problems import UnusableInputError
-from advisor.tui.offspring import offspring, pause_s, said_of
+from advisor.tui.child_process import pause_s, said_of, start_child
 from advisor.tui.remote import Task
 from advisor.tui.source import Source
 
@@ -64,7 +64,7 @@ def narrate(task: Task, say: Callable[[str], object], warn: Callable[[str], obje
 
 def _narrate_once(task: Task, say: Callable[[str], object], said: "Counter[str]") -> int:
     repeated = said.copy()
-    with offspring("advisor.commands.narrator", shows_errors=True) as process:
+    with start_child("advisor.commands.narrator", shows_errors=True) as process:
         assert process.stdin is not None
         assert process.stdout is not None
         try:

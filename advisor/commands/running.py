@@ -1,4 +1,4 @@
-"""``--workers`` and ``--scheduler``: where tasks are done, and how far they are."""
+"""``--workers`` and ``--scheduler``: the place where tasks are done, and their progress."""
 
 import os
 import sys
@@ -18,15 +18,16 @@ if TYPE_CHECKING:
 F = TypeVar("F", bound=Callable[..., Any])
 
 _TELL_EVERY_S = 10.0
-"""Without a terminal, progress is told this often."""
+"""Time between two lines of progress without a terminal, s."""
 
 
 def running_options(command: F) -> F:
-    """``--workers N`` and ``--scheduler ADDRESS``, given to the command as ``workers``, ``scheduler``."""
+    """Add the options ``--workers N`` and ``--scheduler ADDRESS``, which the command receives by these
+    names."""
     workers = click.option(
         "--workers",
         type=click.IntRange(1),
-        help="Processes that work at the same time; one a core unless told.",
+        help="Number of processes. Default: one for each core.",
     )
     scheduler = click.option(
         "--scheduler", metavar="ADDRESS", help="Work on the Dask cluster at tcp://host:8786."
@@ -35,12 +36,12 @@ def running_options(command: F) -> F:
 
 
 def runner_of(workers: int | None, scheduler: str | None, guarded: bool = True) -> "Runner":
-    """The way to do tasks that the options ask for.
+    """Return the way to do tasks that the options ask for.
 
     Parameters
     ----------
     guarded
-        Whether a single worker is a process of its own, too, so that its death costs its task only.
+        Whether a single worker also gets a process of its own, so that its death costs its task only.
 
     Raises
     ------
@@ -64,14 +65,14 @@ def runner_of(workers: int | None, scheduler: str | None, guarded: bool = True) 
 
 
 class Progress:
-    """How far the work is, its rate, and when it ends, on standard error.
+    """Progress of the work on standard error: tasks done, rate and expected end.
 
     Parameters
     ----------
     total
-        How many there are.
+        Number of tasks.
     things
-        What is counted, in the plural: ``logs``.
+        Name of the tasks in the plural: ``logs``.
     """
 
     def __init__(self, total: int, things: str) -> None:
@@ -79,7 +80,7 @@ class Progress:
         self._began_s = self._told_s = time.monotonic()
 
     def advance(self, more: int = 1) -> None:
-        """So many more are done."""
+        """Count ``more`` tasks as done."""
         self._done += more
         now, last, watched = time.monotonic(), self._done >= self._total, sys.stderr.isatty()
         if not (watched or last or now - self._told_s > _TELL_EVERY_S):

@@ -1,4 +1,4 @@
-"""``advisor sample``: a flight to try everything on."""
+"""``advisor sample``: a flight for trying every command."""
 
 import shutil
 from pathlib import Path

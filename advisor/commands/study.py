@@ -61,7 +61,7 @@ def command(
 ) -> int:
     """Print Table 1 and Figure 5 of the paper, as medians and spread over many simulated campaigns.
 
-    The same seed gives the same study, whatever --workers and --scheduler are.
+    Equal seeds give equal studies, whatever --workers and --scheduler are.
 
     \b
     Example:
@@ -114,7 +114,7 @@ def _chosen(
 
 
 def _flown(study: "Study[Any, Any]", run: "Runner") -> "Report":
-    """Fly all campaigns, and tell how far they are."""
+    """Fly all campaigns, and print the progress."""
     from advisor.running.runner import results_in_order
 
     progress = Progress(sum(task.campaigns for task in study.tasks), "campaigns")

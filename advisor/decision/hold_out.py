@@ -1,4 +1,4 @@
-"""The response to a manoeuvre as the manoeuvres before it predict it, with the band of the prediction."""
+"""Prediction of a manoeuvre's response from the earlier manoeuvres, with its band."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from advisor.flight.record import Channel
 from advisor.oem.estimate import Estimate
 
 FEWEST = 2
-"""Manoeuvres that a prediction is made from: one alone has nothing that confirms its errors."""
+"""Fewest manoeuvres behind a prediction. A single manoeuvre has no confirmation of its errors."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,27 +22,27 @@ class PredictedOutput:
     """One output over the time of the manoeuvre, SI, at the stamps of its channel."""
 
     t: FloatArray
-    """(n,) s since boot."""
+    """Stamps, shape (n,), s since boot."""
     measured: FloatArray
-    """(n,)."""
+    """Measured output, shape (n,)."""
     predicted: FloatArray
-    """(n,) the response by the derivatives of the manoeuvres before, from this manoeuvre's own trim."""
+    """Response by the earlier manoeuvres' derivatives, from this manoeuvre's own trim, shape (n,)."""
     half: FloatArray
-    """(n,) half-width of its 95 % band: the errors of the derivatives alone."""
+    """Half-width of the 95 % band due to the errors of the derivatives alone, shape (n,)."""
     half_of_samples: FloatArray
-    """(n,) half-width of the band that holds 95 % of the samples: the noise of a sample, too."""
+    """Half-width of the band that holds 95 % of the samples, which includes their noise, shape (n,)."""
 
 
 def predict_last(usable: Sequence[Flown]) -> Mapping[str, PredictedOutput]:
-    """Predict the last of the usable manoeuvres from all before it, which know nothing of it.
+    """Predict the last of the usable manoeuvres from all earlier ones, which are independent of it.
 
-    Trim, initial state and biases are the manoeuvre's own. So they are taken from its own fit: what the fit
-    holds beyond the response from trim by its own derivatives.
+    Trim, initial state and biases belong to the manoeuvre itself. So they come from its own fit: the fit less
+    the response from trim by its own derivatives.
 
     Parameters
     ----------
     usable
-        Manoeuvres with an estimate each, in the order flown.
+        Manoeuvres, each with an estimate, in the order flown.
 
     Returns
     -------

@@ -7,16 +7,16 @@ from advisor.bundled import SAMPLE
 from advisor.doctor.examination import Examination
 
 NEW_FILE = "aircraft.yaml"
-"""Aircraft file that the commands name while there is none."""
+"""Aircraft file that the commands name where none exists."""
 RECORDING = "flight.tlog"
 """Recording of a live link that the commands name."""
 _USUAL_LINK = "udpin:0.0.0.0:14550"
-"""Where ground stations and simulators send telemetry unless told otherwise."""
+"""Default address to which ground stations and simulators send telemetry."""
 _SLOW = frozenset({"rate", "renewal", "no_pitch_rate", "no_alpha", "no_airspeed", "no_accelerometer"})
-"""Codes of limits that a request for faster streams mends."""
+"""Codes of limits that a request for faster streams remedies."""
 
 _NO_AIRCRAFT = frozenset({"no_vehicle", "multicopter"})
-"""Codes of limits of a log that no aircraft with an elevator has written."""
+"""Codes of limits of a log without an aircraft with an elevator."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,18 +29,18 @@ class Examined:
     aircraft_file: str | None = None
     target_system: int | None = None
     has_model: bool = False
-    """Whether the aircraft file says what the simulator believes."""
+    """Whether the aircraft file has the simulator's derivatives."""
 
 
 def next_commands(findings: Examination, examined: Examined) -> tuple[str, str, str]:
-    """Commands to type next, in their order.
+    """Return the next three commands, in their order.
 
     Parameters
     ----------
     findings
-        What the examination found.
+        Findings of the examination.
     examined
-        What was examined, and with which aircraft file.
+        Target of the examination, and its aircraft file.
     """
     return _after_log(findings, examined) if examined.is_log else _after_link(findings, examined)
 

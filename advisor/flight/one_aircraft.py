@@ -1,4 +1,4 @@
-"""Whether the flights of a campaign are those of one aircraft."""
+"""Comparison of a campaign's flights: whether all are those of one aircraft."""
 
 import numpy as np
 
@@ -7,25 +7,27 @@ from advisor.flight.vehicle import Vehicle
 from advisor.problems import Problem
 
 _PROBE_US = (1400.0, 1600.0)
-"""Pulses between which two elevators' scales are compared: within the travel of every servo."""
+"""Pulses between which two elevators' scales are compared, us: within the travel of every servo."""
 _SCALES_AGREE = 0.05
-"""Share by which the scale of one elevator may differ from flight to flight, as when a trim is set anew."""
+"""Relative difference of an elevator's scale between flights that counts as equal, as when a trim is set
+anew."""
 
 
 class OneAircraft:
-    """Compares the vehicle and the elevator of each flight with those of the first flight that has one."""
+    """Compares the vehicle and the elevator of each flight with those of the first flight with such a vehicle
+    or elevator."""
 
     def __init__(self) -> None:
         self._vehicle: tuple[str, Vehicle] | None = None
         self._elevator: tuple[str, Surface] | None = None
 
     def refuse(self, name: str, vehicle: Vehicle) -> Problem | None:
-        """Why the vehicle of a flight is another aircraft for certain; None where it need not be.
+        """Return a problem where the vehicle of a flight is certainly another aircraft; else None.
 
         Parameters
         ----------
         name
-            What the log is called.
+            Name of the log.
         """
         first_name, first = self._vehicle = self._vehicle or (name, vehicle)
         if _kind(vehicle) == _kind(first):
@@ -38,14 +40,16 @@ class OneAircraft:
         )
 
     def doubt(self, name: str, vehicle: Vehicle) -> str:
-        """A sentence where the vehicle's system id is not that of the first flight; else nothing."""
+        """Return a sentence where the vehicle's system id differs from that of the first flight; else an
+        empty one."""
         first_name, first = self._vehicle = self._vehicle or (name, vehicle)
         if vehicle.system == first.system:
             return ""
         return f"{name}: the vehicle is {vehicle}, and {first} in {first_name}; both count as one aircraft."
 
     def doubt_elevator(self, name: str, elevator: Surface) -> str:
-        """A sentence where the elevator is not driven as in the first flight; else nothing."""
+        """Return a sentence where the elevator is driven otherwise than in the first flight; else an empty
+        one."""
         first_name, first = self._elevator = self._elevator or (name, elevator)
         if elevator.outputs == first.outputs and _scales_agree(elevator, first):
             return ""
@@ -57,7 +61,7 @@ class OneAircraft:
 
 
 def _kind(vehicle: Vehicle) -> str:
-    """What no setting changes: the autopilot's make, and whether rotors alone steer."""
+    """Return properties that no setting changes: the autopilot's make, and whether rotors alone steer."""
     return f"{vehicle.autopilot} on a {'multicopter' if vehicle.is_multicopter else 'fixed wing'}"
 
 

@@ -12,7 +12,7 @@ WINDOW_S = 5.0
 LEAST_JUMP_S = 0.5
 """Least step back of the clock that counts, s. Packets that a radio delivers late lie closer."""
 FEWEST_JUMPS = 3
-"""Fewest steps back within the window. A reboot makes a single step."""
+"""Fewest steps back within the window. A reboot sets the clock back only once."""
 NO_PACKET_S = 5.0
 """Largest delay of a packet, s. A larger step back shows another clock, even once."""
 LARGEST_SPREAD_S, LEAST_SHARE = 0.5, 0.25

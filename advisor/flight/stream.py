@@ -311,7 +311,7 @@ class FlightStream:
         return [*events, *self._serving(mine)]
 
     def _serving(self, piece: Sequence[Columns]) -> list[FlightEvent]:
-        """Whether what arrives can serve, where that has changed."""
+        """Return the event of a change in the usability of the data; empty without a change."""
         return [replace(told, at_s=self._master_s) for told in self._service.advance(piece)]
 
     def _start_again(self, clock: BootClock) -> list[FlightEvent]:

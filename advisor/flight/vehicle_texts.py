@@ -22,7 +22,7 @@ _OWN = (READER, FOLLOW, TAKE)
 
 @dataclass(slots=True)
 class _Open:
-    """A text of which further chunks may come."""
+    """A text that may have further chunks."""
 
     id: int
     severity: int
@@ -37,7 +37,7 @@ class VehicleTexts:
         self._open: dict[tuple[int, int], _Open] = {}
 
     def heard(self, columns: Columns, at_s: float) -> Iterator[VehicleSaid]:
-        """Give the texts that are complete with these messages.
+        """Yield the texts that these messages complete.
 
         Parameters
         ----------
@@ -63,7 +63,7 @@ class VehicleTexts:
                 yield from _said(sender, severity, whole, at_s)
 
     def finish(self, at_s: float) -> Iterator[VehicleSaid]:
-        """Give the texts whose last chunk never came."""
+        """Yield the texts whose last chunk never came."""
         for sender, open_ in self._open.items():
             yield from _said(sender, open_.severity, open_.text, at_s)
         self._open.clear()

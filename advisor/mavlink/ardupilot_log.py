@@ -53,6 +53,8 @@ _TEXTS = {"Name", "Message"}
 """Fields that hold text. All others are numbers."""
 _SENSORS = {"ARSP": "Air speed", "IMU": "Angular rates and specific force"}
 """Record, of which a vehicle may carry several, to the quantities that the record holds."""
+_NOT_LOGGED = 255
+"""MAV_SEVERITY of a text of MSG, which does not keep the severity (0 to 7)."""
 
 
 def read_dataflash(path: Path, wanted: Iterable[str] | None = None) -> Iterator[list[Columns]]:
@@ -259,7 +261,7 @@ class _Translation:
             (one.order + 2 + k, one.time_us, READER + one.text.encode()) for k, one in enumerate(self._said)
         ]
         texts = np.array([*own, *read], dtype=[("order", "i8"), ("time_us", "i8"), ("text", "S256")])
-        fields: dict[str, ArrayLike] = {"severity": 6, "text": texts["text"]}
+        fields: dict[str, ArrayLike] = {"severity": _NOT_LOGGED, "text": texts["text"]}
         return self._made("STATUSTEXT", texts["order"], texts["time_us"], fields)
 
 

@@ -19,8 +19,8 @@ RENAMED = {
     "SYSID_MYGCS": "MAV_GCS_SYSID",
     **{f"SR0_{group}": f"MAV1_{group}" for group in STREAM_GROUPS},
 }
-"""Names of parameters up to ArduPilot 4.6 to later names. A vehicle has one or the other, so that both are
-requested."""
+"""Name of a parameter up to ArduPilot 4.6 to its later name. A vehicle knows one of the two names, so that
+both are requested."""
 
 
 class Questions(Protocol):

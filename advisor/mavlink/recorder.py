@@ -11,9 +11,11 @@ from pathlib import Path
 from advisor.mavlink.recording_file import create, take_up
 
 WRITE_EVERY_S = 0.05
-"""Time between two writes to the operating system, s. The death of this process costs no more."""
+"""Time between two writes to the operating system, s. The death of this process loses at most the records of
+this time."""
 SYNC_EVERY_S = 0.5
-"""Time between two synchronisations with the disk, s. A power cut costs no more, and one write."""
+"""Time between two synchronisations with the disk, s. A power cut loses at most the records of this time and
+of one write."""
 RETRY_EVERY_S = 1.0
 MOST_UNSAVED_BYTES = 64_000_000
 """Most bytes that wait in memory while the disk fails: 17 minutes of a link of 60 kB/s."""

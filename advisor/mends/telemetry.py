@@ -76,7 +76,7 @@ class Px4Telemetry:
         stream = _PX4_STREAMS.get(message, message)
         return (
             f"set mavlink stream -d DEVICE -s {stream} -r {GOOD_HZ} in etc/extras.txt on the SD card, with "
-            f"MAV_0_RATE high enough for the link (MAV_0_MODE Onboard sends more than Normal), "
+            f"MAV_0_RATE high enough for the link (MAV_0_MODE Onboard sends more than Normal); "
             f"or {_request(self.called(message))}"
         )
 

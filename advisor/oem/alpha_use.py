@@ -48,7 +48,7 @@ def why_left_out(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> str:
     if not all(has(m.channels, "alpha") for m in maneuvers):
         return "no alpha was measured"
     if all(m.channels["alpha"].source == DERIVED_ALPHA for m in maneuvers):
-        return "alpha derived from the climb rate is left out: a_z and the pitch rate tell more"
+        return "alpha derived from the climb rate is left out: a_z and the pitch rate hold more information"
     check = combine(
         [
             check_alpha(m, aircraft.airspeed_m_s, aircraft.accelerometer.arm_m, aircraft.alpha.vane_arm_m)

@@ -8,7 +8,7 @@ _WHITE_BOUND = 1.96
 """Standard deviations that hold 95 % of a normal distribution."""
 
 HIGH_CORRELATION = 0.9
-"""Size of the correlation of two parameters above which users are told that the input moved both alike."""
+"""Absolute correlation of two parameters above which a note says that the input moved both alike."""
 
 
 def autocorrelation(residual: FloatArray, lags: int) -> FloatArray:

@@ -51,9 +51,11 @@ class Edges:
 def large_steps(command: Signal) -> Edges:
     """Return the steps that stand alone between two stamps, placed in the middle."""
     change = np.abs(np.diff(command.y))
-    beside = np.maximum(np.append(change[1:], 0.0), np.append(0.0, change[:-1]))
+    next_to_it = np.maximum(np.append(change[1:], 0.0), np.append(0.0, change[:-1]))
     span = float(np.ptp(command.y))
-    interval = tuple(int(i) for i in np.flatnonzero((change > LARGE * span) & (beside < ISOLATED * change)))
+    interval = tuple(
+        int(i) for i in np.flatnonzero((change > LARGE * span) & (next_to_it < ISOLATED * change))
+    )
     middle = [(command.t[i] + command.t[i + 1]) / 2.0 for i in interval]
     return Edges(interval, np.array(middle))
 

@@ -18,10 +18,10 @@ from advisor.oem.instruments import (
     ACCELEROMETER_ARM,
     OF_ALPHA,
     SERVO_LAG,
+    Identified,
     Instrument,
-    Told,
     fit_instruments,
-    told_at,
+    identified_at,
 )
 from advisor.oem.notes import notes
 from advisor.oem.offset import with_offset
@@ -76,7 +76,7 @@ def _estimate(maneuvers: Sequence[Maneuver], aircraft: Aircraft, method: Method)
     if method != "gauss-newton":
         return report(solution, prepared, aircraft, lagged=_supposing_a_lag(solution, aircraft))
     fitted = fit_instruments(solution, unknown_instruments(prepared, aircraft))
-    instruments = tuple(told.instrument for told in fitted.told)
+    instruments = tuple(identified.instrument for identified in fitted.identified)
     solution = fitted.solution
     if servo_known:
         solution = with_offset(solution)
@@ -84,8 +84,10 @@ def _estimate(maneuvers: Sequence[Maneuver], aircraft: Aircraft, method: Method)
     lagged = None if SERVO_LAG in instruments else _supposing_a_lag(solution, aircraft)
     air = _air(solution, maneuvers, prepared)
     filtered = filter_error(solution, air.air, instruments) if air is not None else None
-    told = fitted.told if filtered is None else told_at(filtered, instruments)
-    return report(solution, prepared, aircraft, told=told, lagged=lagged, air=air, filtered=filtered)
+    identified = fitted.identified if filtered is None else identified_at(filtered, instruments)
+    return report(
+        solution, prepared, aircraft, identified=identified, lagged=lagged, air=air, filtered=filtered
+    )
 
 
 def _air(solution: Solution, maneuvers: Sequence[Maneuver], prepared: Prepared) -> Turbulence | None:
@@ -170,7 +172,7 @@ def report(
     prepared: Prepared,
     aircraft: Aircraft,
     *,
-    told: Sequence[Told] = (),
+    identified: Sequence[Identified] = (),
     lagged: FloatArray | None = None,
     air: Turbulence | None = None,
     filtered: Solution | None = None,
@@ -180,7 +182,7 @@ def report(
 
     Parameters
     ----------
-    told : instrument parameters that the data determine.
+    identified : instrument parameters that the data determine.
     lagged : (8,) the estimate under a servo lag of ``SUPPOSED_LAG_S``, for an unknown servo.
     air : moving air, where output error is not valid.
     filtered : solution of filter error, where moving air was allowed for.
@@ -200,9 +202,9 @@ def report(
         correlated=correlated(best.covariance_cr[:N, :N]),
         condition=solution.influence.condition,
         airspeed_m_s=solution.problem.reference_airspeed_m_s or prepared.airspeed_m_s,
-        notes=notes(solution, prepared, aircraft, told, lagged, best=best, priced=not quick),
+        notes=notes(solution, prepared, aircraft, identified, lagged, best=best, priced=not quick),
         theta_of_lowest_cost=None if best.theta is solution.theta else solution.theta,
-        instruments=tuple(InstrumentEstimate(x.instrument.name, x.value, x.std) for x in told),
+        instruments=tuple(InstrumentEstimate(x.instrument.name, x.value, x.std) for x in identified),
         gust_rad=air.gust_angle if air is not None and air.present else None,
         filtered=filtered is not None,
         servo_lag_s=best.problem.servo.lag_s,

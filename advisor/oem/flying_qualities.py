@@ -166,7 +166,7 @@ def _with_error(function: _Function, estimate: Estimate) -> Quality | str:
         n for n, g in zip(PARAMETERS, gradient, strict=True) if g != 0.0 and n in estimate.not_identifiable
     ]
     if unknown:
-        return f"{', '.join(unknown)} cannot be told by these manoeuvres"
+        return f"{', '.join(unknown)} cannot be determined from these manoeuvres"
     variance = float(gradient @ estimate.covariance @ gradient)
     if not (isfinite(value) and isfinite(variance)):
         return "the short period is statically unstable (det A ≤ 0)"

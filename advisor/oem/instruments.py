@@ -127,7 +127,7 @@ kept."""
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
+class Identified:
     """An instrument parameter that the data determine."""
 
     instrument: Instrument
@@ -141,8 +141,8 @@ class Fitted:
     """A solution with the instrument parameters that the data determine."""
 
     solution: Solution
-    """Solution whose ``extra`` columns are the derivatives by ``told``, in that order."""
-    told: tuple[Told, ...] = ()
+    """Solution whose ``extra`` columns are the derivatives by ``identified``, in that order."""
+    identified: tuple[Identified, ...] = ()
 
 
 class _Fit(NamedTuple):
@@ -182,7 +182,7 @@ def fit_instruments(plain: Solution, unknown: Sequence[Instrument]) -> Fitted:
         gains = [0.0 if is_small else gain for gain, is_small in zip(gains, small, strict=True)]
         weakest = int(np.argmin(gains))
         if gains[weakest] >= CLEARLY:
-            return Fitted(solution, told_at(solution, names))
+            return Fitted(solution, identified_at(solution, names))
         names, best = tuple(x for x in names if x is not names[weakest]), rivals[weakest][1]
     return Fitted(plain)
 
@@ -278,10 +278,10 @@ def _at(problem: Problem, near: _Fit) -> _Fit | None:
     return _Fit(problem, assembly, optimum) if optimum.status == CONVERGED else None
 
 
-def told_at(solution: Solution, names: Sequence[Instrument]) -> tuple[Told, ...]:
+def identified_at(solution: Solution, names: Sequence[Instrument]) -> tuple[Identified, ...]:
     """Return values and errors of instruments in a solution whose first extra columns are theirs."""
     std = np.sqrt(np.diag(solution.covariance)[N : N + len(names)])
-    return tuple(Told(x, x.read(solution.problem), float(s)) for x, s in zip(names, std, strict=True))
+    return tuple(Identified(x, x.read(solution.problem), float(s)) for x, s in zip(names, std, strict=True))
 
 
 def _solution(fit: _Fit, names: Sequence[Instrument]) -> Solution | None:

@@ -6,7 +6,7 @@ from advisor.aircraft import PARAMETERS, Aircraft
 from advisor.flight.messages import FloatArray
 from advisor.oem.correlation import HIGH_CORRELATION
 from advisor.oem.identifiability import SUPPOSED_LAG_S, correlated
-from advisor.oem.instruments import KNOWN_TO, Told
+from advisor.oem.instruments import KNOWN_TO, Identified
 from advisor.oem.missing import in_words, price
 from advisor.oem.prepare import Prepared
 from advisor.oem.solution import Solution
@@ -20,7 +20,7 @@ def notes(
     solution: Solution,
     prepared: Prepared,
     aircraft: Aircraft,
-    told: Sequence[Told],
+    identified: Sequence[Identified],
     lagged: FloatArray | None,
     *,
     best: Solution,
@@ -30,14 +30,14 @@ def notes(
 
     Parameters
     ----------
-    told : instrument parameters that the data determine.
+    identified : instrument parameters that the data determine.
     lagged : (8,) the estimate under a servo lag of ``SUPPOSED_LAG_S``, for an unknown servo.
     best : the solution of the values: ``solution``, the efficient one or filter error's.
     priced : state the cost of missing channels in numbers.
     """
     sentences = [
         _outputs(solution, prepared),
-        *(_instrument(x, solution) for x in told),
+        *(_instrument(x, solution) for x in identified),
         _servo(solution, lagged),
         _found_lag(aircraft),
         _airspeed(prepared),
@@ -62,21 +62,21 @@ def _outputs(solution: Solution, prepared: Prepared) -> str:
     )
 
 
-def _instrument(told: Told, solution: Solution) -> str:
+def _instrument(identified: Identified, solution: Solution) -> str:
     """Return a sentence about one instrument, with the line that puts its value into the aircraft file."""
-    value, half = told.value, 1.96 * told.std
-    match told.instrument.name:
+    value, half = identified.value, 1.96 * identified.std
+    match identified.instrument.name:
         case "servo_lag_s":
             return (
                 f"The servo's lag is estimated and used: {value:.3f} ± {half:.3f} s. A pure delay would look"
-                " nearly the same." + _line(told, f"elevator: {{lag_s: {value:.3f}}}")
+                " nearly the same." + _line(identified, f"elevator: {{lag_s: {value:.3f}}}")
             )
         case "vane_arm_m":
             speed = solution.problem.reference_airspeed_m_s or float(solution.assembly.grid.airspeed.mean())
             return (
                 f"alpha reads like a vane {value:.2f} ± {half:.2f} m ahead of the centre of gravity"
                 f" ({value / speed:.3f} s of pitch rate); the estimate allows for that."
-                + _line(told, f"alpha: {{vane_arm_m: {value:.2f}}}")
+                + _line(identified, f"alpha: {{vane_arm_m: {value:.2f}}}")
             )
         case "alpha_delay_s":
             return (
@@ -86,13 +86,13 @@ def _instrument(told: Told, solution: Solution) -> str:
         case "accelerometer_arm_m":
             return (
                 f"The accelerometer reads as if {value:.2f} ± {half:.2f} m ahead of the centre of gravity;"
-                " the estimate allows for that." + _line(told, f"accelerometer: {{arm_m: {value:.2f}}}")
+                " the estimate allows for that." + _line(identified, f"accelerometer: {{arm_m: {value:.2f}}}")
             )
 
 
-def _line(told: Told, line: str) -> str:
+def _line(identified: Identified, line: str) -> str:
     """Return the line for the aircraft file, where a value is known to a tenth."""
-    return f" For the aircraft file: {line}" if told.std < KNOWN_TO * abs(told.value) else ""
+    return f" For the aircraft file: {line}" if identified.std < KNOWN_TO * abs(identified.value) else ""
 
 
 def _servo(solution: Solution, lagged: FloatArray | None) -> str:
@@ -120,8 +120,8 @@ def _airspeed(prepared: Prepared) -> str:
     if prepared.airspeed_lag_s < NOTED_LAG_S:
         return ""
     return (
-        f"The air speed reads {prepared.airspeed_lag_s:.1f} s late relative to the accelerometers. Its"
-        " changes within a manoeuvre are taken from them."
+        f"The measured air speed lags the accelerometers by {prepared.airspeed_lag_s:.1f} s. Its changes"
+        " within a manoeuvre are computed from the accelerometers."
     )
 
 
@@ -131,9 +131,9 @@ def _scale(solution: Solution) -> str:
         return ""
     return (
         "Accelerations agree with the angle of attack if the true air speed differs by"
-        f" {100.0 * scale:+.1f} % from the measured one. An angle of attack that is wrong by as much, the"
-        " other way, looks the same. The fit of a_z allows for that; the speed of the derivatives stays as"
-        " measured."
+        f" {100.0 * scale:+.1f} % from the measured one. An angle of attack with a scale error of"
+        f" {-100.0 * scale:+.1f} % would look the same. The fit of a_z allows for either; the derivatives"
+        " refer to the measured air speed."
     )
 
 
@@ -141,8 +141,8 @@ def _held(prepared: Prepared) -> str:
     if not prepared.alpha_held:
         return ""
     return (
-        f"Angle of attack is renewed at {prepared.renewed_hz:.0f} Hz only, and repeated under fresh stamps"
-        " in between. The fit uses it at that rate."
+        f"The angle of attack has new values at {prepared.renewed_hz:.0f} Hz only; messages in between"
+        " repeat the last one. The fit uses each value once."
     )
 
 

@@ -37,7 +37,7 @@ class Prepared:
     renewed_hz: float
     """Rate of renewal of the angle of attack, Hz, the slowest of the manoeuvres; NaN where none is used."""
     alpha_held: bool
-    """Whether the angle of attack repeats old values under fresh stamps."""
+    """Whether the angle of attack repeats old values with new stamps."""
     alpha_left_out: str
     """Why no measured angle of attack is used, in words; empty where one is."""
     missing: tuple[str, ...]
@@ -154,7 +154,7 @@ def _servo(elevator: Elevator) -> Servo:
 def _renewed(signal: Signal) -> tuple[Signal, bool]:
     """Return the samples that bring a new value, and whether the channel is held between them.
 
-    A staircase under fresh stamps would count each value several times, and late.
+    Values repeated with new stamps would count several times, and late.
     """
     t, y = renewed(signal.t, signal.y, FEWEST_SAMPLES)
     return Signal(t, y), len(t) < len(signal.t)
@@ -232,8 +232,8 @@ def _reference(speeds: Sequence[Signal], aircraft: Aircraft, smooth: bool) -> fl
     reference = aircraft.reference_airspeed_m_s or float(np.mean(together))
     enough = SMOOTH_SPEED_CHANGE if smooth else SPEED_CHANGE
     moved = float(np.max(together) - np.min(together)) > enough * reference
-    apart = abs(float(np.mean(together)) / reference - 1.0) > enough / 2.0
-    return reference if moved or apart else None
+    differs = abs(float(np.mean(together)) / reference - 1.0) > enough / 2.0
+    return reference if moved or differs else None
 
 
 def _signal(channel: Channel) -> Signal:

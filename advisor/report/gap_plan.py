@@ -23,7 +23,7 @@ _OF_LINEAR = {"M_alpha2": "M_alpha", "Z_alpha2": "Z_alpha", "M_delta2": "M_delta
 
 _IN_WORDS = {"gain": "deg/s per deg", "M_throttle": "rad/s², full throttle", "M_thrust": "rad/s² of trim"}
 _NO_ALPHA = (
-    "Without an angle of attack, a flight is diagnosed only if VFR_HUD brings the data to derive one: "
+    "Without an angle of attack, a flight is diagnosed only if VFR_HUD brings data to derive one: "
     "climb rate and air speed, at 10 Hz."
 )
 _ALIKE = 2

@@ -1,1 +1,1 @@
-"""Tasks that do not know of one another: done here, in processes, or on a cluster, with equal results."""
+"""Independent tasks: done in this process, in processes, or on a cluster, with equal results."""

@@ -1,4 +1,4 @@
-"""Tasks on an existing Dask cluster: its scheduler hands them out, and again when a worker dies."""
+"""Tasks on an existing Dask cluster, whose scheduler repeats the tasks of a worker that dies."""
 
 import asyncio
 import logging
@@ -21,26 +21,26 @@ R = TypeVar("R")
 Versions = Mapping[str, str | None]
 
 CONNECT_S = 5.0
-"""A scheduler that does not answer for so long is not there; a cluster whose workers do not start, empty."""
+"""Time within which a scheduler must answer, s, and a cluster's workers must start."""
 _SAME = ("advisor", "python")
-"""With another version of these a worker's results are not those of this computer, or cannot be read."""
+"""Packages whose version must be equal in every worker. Otherwise its results differ or cannot be read."""
 _TOLD = ("distributed", "numba", "numpy", "scipy")
-"""Another version of these may change the last digits of a result."""
+"""Packages of which another version may change the last digits of a result."""
 
 
 def run_on_cluster(
     work: Callable[[T], R], tasks: Sequence[T], address: str, tell: Callable[[str], None]
 ) -> Iterator[tuple[T, R | Exception]]:
-    """Do all tasks; give each with its result, or with the error that ended it, as they are done.
+    """Do all tasks; yield each with its result, or with the error that ended it, in the order of completion.
 
     Parameters
     ----------
     work
-        Can be pickled, as tasks and results.
+        Function of a task. Function, tasks and results can be pickled.
     address
-        Of the scheduler: ``tcp://host:port``.
+        Address of the scheduler: ``tcp://host:port``.
     tell
-        Called with a sentence when versions differ that may change the last digits.
+        Called with a sentence where a difference of versions may change the last digits.
 
     Raises
     ------
@@ -122,9 +122,9 @@ def _connected(address: str) -> "Iterator[Client]":
 
 
 def _versions_on(client: "Client") -> dict[str, Any]:
-    """Return versions of the packages in the client and in each worker.
+    """Return the versions of the packages in the client and in each worker.
 
-    A cluster whose workers start, or start again after a death, has ``CONNECT_S`` for the first.
+    Workers that start, or start again after a death, have ``CONNECT_S`` for the first answer.
     """
     end = time.monotonic() + CONNECT_S
     while True:
@@ -135,7 +135,7 @@ def _versions_on(client: "Client") -> dict[str, Any]:
 
 
 async def _answer(address: str) -> None:
-    """Shake hands once; the client itself would wait for ever at a port that is silent."""
+    """Connect once. The client itself would wait for ever at a silent port."""
     from distributed.comm import connect
     from distributed.security import Security
 
@@ -153,14 +153,14 @@ def _cause(error: BaseException) -> str:
 
 
 def compare_versions(here: Versions, workers: Mapping[str, Versions]) -> str:
-    """Hold the versions in the workers against those of this computer.
+    """Compare the versions in the workers with those of this computer.
 
     Parameters
     ----------
     here
         Version of each package; None where one is missing.
     workers
-        The versions in each worker, by the worker's address.
+        Versions in each worker, by the worker's address.
 
     Returns
     -------
@@ -189,7 +189,7 @@ def compare_versions(here: Versions, workers: Mapping[str, Versions]) -> str:
 
 
 def _version(versions: Versions, name: str) -> str | None:
-    """Of a package; of Python without its last digits, which change no result."""
+    """Return the version of a package; for Python without its last digits, which change no result."""
     version = versions.get(name)
     return ".".join(version.split(".")[:2]) if version and name == "python" else version
 
@@ -211,7 +211,7 @@ def _outcome(future: "Future[R]", address: str) -> R | Exception:
 
 
 def _pinned(work: Callable[[T], R], task: T) -> R:
-    """Do a task in a worker, with one thread for linear algebra: the workers are the parallelism."""
+    """Do a task in a worker, with one thread for linear algebra, because the workers are the parallelism."""
     import scipy.linalg  # noqa: F401  # brings the libraries that are limited next
     from threadpoolctl import threadpool_limits
 

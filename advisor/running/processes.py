@@ -1,4 +1,4 @@
-"""Tasks in processes: a process that dies costs its own task only."""
+"""Tasks in processes. A process that dies costs only its own task."""
 
 import multiprocessing
 import os
@@ -15,7 +15,7 @@ R = TypeVar("R")
 
 
 def processes(workers: int) -> Executor:
-    """Return fresh processes, which leave signals to this one and end with it."""
+    """Return fresh processes, which leave signals to this process and end with it."""
     context = multiprocessing.get_context("spawn")
     return ProcessPoolExecutor(workers, mp_context=context, initializer=_begin_worker)
 
@@ -26,14 +26,14 @@ def run_in_processes(
     workers: int,
     executor: Callable[[int], Executor] = processes,
 ) -> Iterator[tuple[T, R | Exception]]:
-    """Do all tasks; give each with its result, or with the error that ended it, as they are done.
+    """Do all tasks; yield each with its result, or with the error that ended it, in the order of completion.
 
     Parameters
     ----------
     work
-        Can be pickled, as tasks and results.
+        Function of a task. Function, tasks and results can be pickled.
     executor
-        Gives so many workers.
+        Makes an executor with a given number of workers.
 
     Notes
     -----

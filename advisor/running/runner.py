@@ -1,4 +1,4 @@
-"""What every way of doing tasks has in common: tasks in; each with its result, or with its error, out."""
+"""Interface of all ways of doing tasks: each task comes back with its result or its error."""
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
@@ -9,10 +9,11 @@ R = TypeVar("R")
 
 
 class Runner(Protocol):
-    """Does all tasks, and gives each with its result, or with the error that ended it, as they are done."""
+    """Does all tasks, and yields each with its result, or with the error that ended it, in the order of
+    completion."""
 
     def __call__(self, work: Callable[[T], R], tasks: Sequence[T]) -> Iterator[tuple[T, R | Exception]]:
-        """Do all tasks; the work, the tasks and the results can be pickled."""
+        """Do all tasks. The work, the tasks and the results can be pickled."""
 
 
 def run_here(work: Callable[[T], R], tasks: Sequence[T]) -> Iterator[tuple[T, R | Exception]]:

@@ -106,9 +106,11 @@ def _measured(
 ) -> Diagnosis:
     """Return the diagnosis with the gap of the simulator itself, before and after the findings."""
     found = in_simulator(examined, flying, surrogate, as_flown, holdout)
-    told = examined.diagnosis
-    notes = (f"The effects stay on paper: {found.refused}", *told.notes) if found.refused else told.notes
-    return replace(told, in_simulator=found, notes=notes)
+    found_by_fit = examined.diagnosis
+    notes = found_by_fit.notes
+    if found.refused:
+        notes = (f"The simulator cannot take the effects: {found.refused}", *notes)
+    return replace(found_by_fit, in_simulator=found, notes=notes)
 
 
 def _linear(flying: Flying) -> dict[int, AsGiven]:

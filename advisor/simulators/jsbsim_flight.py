@@ -104,11 +104,6 @@ class Flight:
         self.fdm.set_trim_status(False)
         self.fdm["simulation/sim-time-sec"] = 0.0
 
-    @property
-    def writes_surface(self) -> bool:
-        """Whether the elevator bypasses the model's flight control."""
-        return self._curve is None
-
     def elevator(self, surface: float) -> None:
         """Move the elevator to ``surface``, rad."""
         if self._curve is None:

@@ -1,4 +1,5 @@
-"""What following the advice saves: campaigns flown as advised, and others that repeat the standard input."""
+"""Manoeuvres that the advice saves: campaigns flown as advised, against campaigns that repeat the standard
+input."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -17,15 +18,16 @@ from advisor.study.flying import Flight, Scene, as_maneuver, fly_named, follow, 
 from advisor.study.simulator import AIRFRAMES, UAV, NonlinearAircraft
 
 MOST = 25
-"""A campaign is given up after so many manoeuvres."""
+"""Number of manoeuvres after which a campaign is given up."""
 PLAN = CampaignPlan(rule="information", tolerance_percent=0.5)
-"""A tenth of the default tolerance, so that there is something to save: at the default two manoeuvres do."""
+"""Plan with a tenth of the default tolerance, so that the advice can save something: at the default two
+manoeuvres suffice."""
 HEIGHT_M = 100.0
 
 
 @cache
 def scenes() -> Mapping[str, Scene]:
-    """Return the paper's aircraft, and the bundled UAV as linear as its own linearisation is."""
+    """Return the paper's aircraft, and the linearised bundled UAV."""
     habits = AIRFRAMES["uav"][1]
     uav = NonlinearAircraft(UAV, habits.airspeed_m_s, HEIGHT_M).truth
     return {
@@ -48,13 +50,13 @@ class Saving:
     same_excursion: bool
     """Whether the advised inputs were held to the standard input's angles of attack."""
     standard: tuple[int, ...]
-    """Manoeuvres each campaign needed, repeating the standard input in alternating directions."""
+    """Manoeuvres that each campaign needed with the standard input in alternating directions."""
     advised: tuple[int, ...]
-    """Manoeuvres each campaign needed, flying what was advised after each one."""
+    """Manoeuvres that each campaign needed when each input was flown as advised."""
 
     @property
     def percent(self) -> float:
-        """Fewer manoeuvres on average, in percent."""
+        """Mean saving of manoeuvres, in percent."""
         return 100.0 * (1.0 - float(np.mean(self.advised) / np.mean(self.standard)))
 
 
@@ -64,7 +66,7 @@ CASES = (("twin jet", 10.0), ("UAV", 5.0))
 
 @dataclass(frozen=True, slots=True)
 class Pair:
-    """A campaign that is flown twice from the same first manoeuvre: by repetition and as advised."""
+    """A campaign that is flown twice from one first manoeuvre: by repetition and as advised."""
 
     aircraft: str
     noise_percent: float
@@ -74,7 +76,7 @@ class Pair:
 
 
 def pairs(campaigns: int, seed: int, cases: Sequence[tuple[str, float]] = CASES) -> list[Pair]:
-    """Every pair of campaigns of the study, each with a seed of its own."""
+    """Return every pair of campaigns of the study, each with a seed of its own."""
     return [
         Pair(name, noise, same, (seed, round(100 * noise), same, number))
         for name, noise in cases
@@ -84,7 +86,7 @@ def pairs(campaigns: int, seed: int, cases: Sequence[tuple[str, float]] = CASES)
 
 
 def savings(flown: Sequence[Pair], needed: Sequence[tuple[int, int]]) -> list[Saving]:
-    """What the advice saves in each case.
+    """Return the saving in each case.
 
     Parameters
     ----------
@@ -98,7 +100,7 @@ def savings(flown: Sequence[Pair], needed: Sequence[tuple[int, int]]) -> list[Sa
 
 
 def fly(pair: Pair) -> tuple[int, int]:
-    """Manoeuvres that the campaign needs when the standard input is repeated, and when flown as advised."""
+    """Return the manoeuvres that the campaign needs by repetition of the standard input, and as advised."""
     scene, rng = scenes()[pair.aircraft], np.random.default_rng(pair.seed)
     named = {name: fly_named(scene, name) for name in ("3211", "rev")}
     noise = 0.01 * pair.noise_percent * noise_scale(named["3211"], "std")
@@ -132,7 +134,7 @@ def _needed(
 
 
 def fly_input(scene: Scene, option: StepInput) -> Flight:
-    """Fly an advised input, with as long a free response as the standard input leaves."""
+    """Fly an advised input, with a free response as long as the standard input's."""
     free = scene.duration_s - scene.lead_s - 7.0 * scene.unit_s
     length = scene.lead_s + option.duration_s + free
     t = np.arange(round(length * scene.rate_hz) + 1) / scene.rate_hz
@@ -141,7 +143,7 @@ def fly_input(scene: Scene, option: StepInput) -> Flight:
 
 
 def _crew(scene: Scene, standard: Flight, same: bool) -> Aircraft:
-    """Return the aircraft file, with an angle-of-attack limit where excursions are held."""
+    """Return the aircraft file, with an angle-of-attack limit where excursions are limited."""
     limits = Limits()
     if same:
         # The advice keeps a margin of a tenth to the limit; the limit is set so that the standard
@@ -152,6 +154,6 @@ def _crew(scene: Scene, standard: Flight, same: bool) -> Aircraft:
 
 
 def _flown(scene: Scene, flight: Flight, noise: FloatArray, rng: np.random.Generator) -> Flown:
-    """Measure and estimate one manoeuvre, with what the advice looks at."""
+    """Measure and estimate one manoeuvre, with the data that the advice needs."""
     (estimate,) = estimate_copies(flight, noise, 1, rng)
     return Flown(estimate, maneuver=as_maneuver(flight))

@@ -4,9 +4,9 @@ from collections.abc import Iterator
 
 
 def blocks(campaigns: int, size: int) -> Iterator[tuple[int, int]]:
-    """Number and size of the blocks that campaigns are flown in.
+    """Yield the number and the size of each block of campaigns.
 
-    The size is a constant of the study, not a matter of the workers: a block has a seed of its own.
+    The size is a constant of the study and independent of the workers, because a block has a seed of its own.
     """
     for number, first in enumerate(range(0, campaigns, size)):
         yield number, min(size, campaigns - first)

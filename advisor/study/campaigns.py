@@ -1,4 +1,4 @@
-"""The paper's campaign flown many times: when each rule stops, and how far off it is then."""
+"""The paper's campaign, flown many times: each rule's stop, and the errors at the stop."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ from advisor.study.readings import needed_by_reading
 
 RULES: tuple[Rule, ...] = ("continuous", "separate", "information")
 BLOCK = 50
-"""Campaigns of a task: a third of a second of work."""
+"""Number of campaigns in a task: a third of a second of work."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,15 +29,15 @@ class Outcome:
     """One campaign under one rule."""
 
     needed: int | None
-    """Manoeuvres flown when the rule first said stop; None: not within the campaign."""
+    """Manoeuvres flown when the rule first said stop. None: no stop within the campaign."""
     theta: FloatArray
-    """(8,) the values then reported (or at the campaign's end)."""
+    """(8,) parameters reported at the stop, or at the campaign's end."""
     tolerance: FloatArray
-    """(8,) what the rule ``information`` allowed then; NaN under the other rules."""
+    """(8,) tolerances of the rule ``information`` at that time. NaN under the other rules."""
     history_percent: tuple[float | None, ...]
-    """The criterion after each manoeuvre; for ``information`` as far as the stop."""
+    """Criterion after each manoeuvre; for ``information`` up to the stop."""
     rejected: int
-    """Manoeuvres that the rule rejected, of all flown."""
+    """Number of flown manoeuvres that the rule rejected."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,17 +50,17 @@ class Block:
     seed: tuple[int, ...]
     reading: NoiseReading = "std"
     other_readings: bool = False
-    """Whether the campaigns are judged by other readings of the paper's rules, too."""
+    """Whether the campaigns are also judged by other readings of the paper's rules."""
 
 
 @dataclass(frozen=True, slots=True)
 class Judged:
-    """What came of a block of campaigns."""
+    """Results of a block of campaigns."""
 
     outcomes: Mapping[Rule, tuple[Outcome, ...]]
-    """By rule, campaign by campaign."""
+    """Rule to its outcomes, campaign by campaign."""
     needed: Mapping[tuple[str, Rule], tuple[int | None, ...]]
-    """Manoeuvres that each campaign needed, by name of the reading and rule; empty unless asked for."""
+    """Name of the reading and rule to the manoeuvres that each campaign needed; empty unless requested."""
 
 
 def table_blocks(
@@ -90,14 +90,14 @@ def judge(block: Block) -> Judged:
 
 
 def joined(judged: Sequence[Judged], rule: Rule) -> list[Outcome]:
-    """The outcomes of several blocks under one rule."""
+    """Return the outcomes of several blocks under one rule."""
     return [outcome for block in judged for outcome in block.outcomes[rule]]
 
 
 def fly_campaigns(block: Block) -> list[list[Estimate]]:
-    """Estimates of every manoeuvre of a block, campaign by campaign.
+    """Return the estimates of every manoeuvre of a block, campaign by campaign.
 
-    The noise is that of the first manoeuvre for all, as one set of instruments has one noise.
+    The noise of the first manoeuvre holds for all, because a set of instruments has one noise.
     """
     rng = np.random.default_rng(block.seed)
     flights = [fly_named(block.scene, name) for name in ORDER]
@@ -109,7 +109,7 @@ def fly_campaigns(block: Block) -> list[list[Estimate]]:
 def outcome(
     campaign: Sequence[Estimate], rule: Rule, plan: CampaignPlan, maneuvers: Sequence[Maneuver] = ()
 ) -> Outcome:
-    """When ``rule`` stops one campaign, by the same functions that judge in flight.
+    """Return the outcome of one campaign under ``rule``, by the functions that judge in flight.
 
     Parameters
     ----------
@@ -146,6 +146,6 @@ def outcome(
 
 
 def reported(taken: Sequence[Estimate], plan: CampaignPlan) -> FloatArray:
-    """Return the value a campaign of the paper ends with: the mean over the criterion's window."""
+    """Return the values that a campaign of the paper ends with: the mean over the criterion's window."""
     mean: FloatArray = np.mean([e.theta for e in taken[-plan.window :]], axis=0)
     return mean

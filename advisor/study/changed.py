@@ -1,4 +1,4 @@
-"""How soon a changed aircraft is noticed, and how often an unchanged one is suspected."""
+"""Detection of a changed aircraft, and false alarms of an unchanged one."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -20,7 +20,7 @@ LOST = ("M_alpha", "Z_alpha")
 BEFORE = 3
 """Manoeuvres flown before the change."""
 BLOCK = 25
-"""Campaigns of a task: half a second of work."""
+"""Number of campaigns in a task: half a second of work."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,13 +29,15 @@ class Detection:
 
     noise_percent: float
     lost: str | None
-    """The derivative that lost `LOSS`; None: nothing changed."""
+    """Derivative that lost `LOSS`. None: nothing changed."""
     suspected_percent: float
-    """Warned of after the first manoeuvre that followed (nothing changed: at any time)."""
+    """Share of campaigns with a warning after the first manoeuvre that followed (nothing changed: at any
+    time)."""
     confirmed_percent: float
-    """Confirmed after the second, with the right derivative named first (nothing changed: at any time)."""
+    """Share of campaigns that confirmed after the second, with the right derivative first (nothing changed:
+    at any time)."""
     sigma: float
-    """Median of how many standard deviations the derivative moved, as told; NaN without a change."""
+    """Median of the reported move of the derivative, in standard deviations. NaN without a change."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,18 +52,19 @@ class Block:
 
 @dataclass(frozen=True, slots=True)
 class Noticed:
-    """What a block of campaigns noticed."""
+    """Results of a block of campaigns."""
 
     suspected: int
-    """Campaigns that warned."""
+    """Number of campaigns that warned."""
     confirmed: int
-    """Campaigns that confirmed the change and named the right derivative first."""
+    """Number of campaigns that confirmed the change and named the right derivative first."""
     sigma: tuple[float, ...]
-    """By how many standard deviations the derivative moved, a confirmed campaign each."""
+    """Reported moves of the derivative in standard deviations, one for each confirmed campaign."""
 
 
 def change_blocks(campaigns: int, seed: int) -> list[Block]:
-    """Campaigns with and without a change at the paper's noise levels, each block with its own seed."""
+    """Return campaigns with and without a change at the paper's noise levels, each block with its own
+    seed."""
     return [
         Block(noise, lost, count, (seed, round(1000 * noise), kind, number))
         for noise in NOISE_PERCENT
@@ -84,7 +87,7 @@ def notice(block: Block) -> Noticed:
 
 
 def detections(flown: Sequence[Block], noticed: Sequence[Noticed]) -> list[Detection]:
-    """What the campaigns of each noise level and change noticed together."""
+    """Return the joint results of the campaigns of each noise level and change."""
     cases: dict[tuple[float, str | None], list[tuple[Block, Noticed]]] = {}
     for block, found in zip(flown, noticed, strict=True):
         cases.setdefault((block.noise_percent, block.lost), []).append((block, found))
@@ -106,7 +109,7 @@ def _together(noise_percent: float, lost: str | None, several: Sequence[tuple[Bl
 def _columns(
     scene: Scene, order: tuple[str, ...], noise: FloatArray, campaigns: int, rng: np.random.Generator
 ) -> list[list[Flown]]:
-    """Return manoeuvres of each campaign."""
+    """Return the manoeuvres of each campaign."""
     columns: list[list[Estimate]] = [
         estimate_copies(fly_named(scene, name), noise, campaigns, rng) for name in order
     ]
@@ -114,7 +117,7 @@ def _columns(
 
 
 def _unchanged(campaigns: Sequence[Sequence[Flown]]) -> Noticed:
-    """False alarms: looked for after every manoeuvre, as in flight."""
+    """Return the false alarms, looked for after every manoeuvre as in flight."""
     suspected = confirmed = 0
     for campaign in campaigns:
         changes = [find_change(campaign[: n + 1]) for n in range(len(campaign))]
@@ -124,7 +127,7 @@ def _unchanged(campaigns: Sequence[Sequence[Flown]]) -> Noticed:
 
 
 def _changed(before: Sequence[Sequence[Flown]], after: Sequence[Sequence[Flown]], lost: str) -> Noticed:
-    """Changes that are suspected after the first manoeuvre that follows, and confirmed after the second."""
+    """Return the changes suspected after the first manoeuvre that follows, and confirmed after the second."""
     suspected, sigma = 0, []
     for early, late in zip(before, after, strict=True):
         suspected += find_change([*early, late[0]]) is not None

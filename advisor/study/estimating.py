@@ -1,4 +1,4 @@
-"""Many noisy copies of one manoeuvre, each estimated by output error."""
+"""Estimates by output error from many noisy copies of one manoeuvre."""
 
 import numpy as np
 
@@ -35,7 +35,8 @@ def estimate_copies(
 
 
 def _correlation(flight: Flight, batch: Batch) -> FloatArray:
-    """Return (8, 8) correlation of the errors: a matter of the input, so that one copy speaks for all."""
+    """Return the (8, 8) correlation of the errors. The input determines the correlation, so that one copy
+    suffices."""
     step = float(flight.t[1] - flight.t[0])
     noise = (float(batch.noise[0, 0]), float(batch.noise[0, 1]))
     expected = expect(
@@ -47,7 +48,7 @@ def _correlation(flight: Flight, batch: Batch) -> FloatArray:
 
 
 def _estimate(flight: Flight, z: FloatArray, batch: Batch, i: int, correlation: FloatArray) -> Estimate:
-    """Return one row as the rules see it; the noise is white, so the plain bound is the covariance."""
+    """Return the estimate of one copy. The noise is white, so that the plain bound is the covariance."""
     covariance = correlation * np.outer(batch.std_cr[i], batch.std_cr[i])
     fits = {
         # The clean response stands for the fitted one, which differs by less than its error.

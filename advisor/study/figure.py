@@ -19,16 +19,17 @@ TICKS_PERCENT = (2, 5, 10, 25, 50, 100, 200)
 
 @dataclass(frozen=True, slots=True)
 class Curve:
-    """The criterion of one rule at one noise level over all campaigns."""
+    """Criterion of one rule at one noise level over all campaigns."""
 
     rule: Rule
     noise_percent: float
     quantiles: tuple[tuple[float, float, float] | None, ...]
-    """Per manoeuvre: 10 %, 50 %, 90 % over the campaigns that have a value; None where none has."""
+    """Quantiles 10 %, 50 %, 90 % over the campaigns with a value, for each manoeuvre. None where no campaign
+    has one."""
 
 
 def curve(rule: Rule, noise_percent: float, outcomes: Sequence[Outcome]) -> Curve:
-    """Collect the criterion's history, as if every campaign flew on to its end."""
+    """Collect the criterion's history, as if every campaign continued to its end."""
     quantiles: list[tuple[float, float, float] | None] = []
     for i in range(len(ORDER)):
         values = [
@@ -40,7 +41,7 @@ def curve(rule: Rule, noise_percent: float, outcomes: Sequence[Outcome]) -> Curv
 
 
 def refuse_undrawable(path: Path) -> None:
-    """Refuse before the work a figure that could not be drawn after it.
+    """Refuse, before any work, a figure that could not be drawn after it.
 
     Raises
     ------

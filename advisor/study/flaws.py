@@ -1,4 +1,4 @@
-"""The two flaws of the paper's rules that the study reveals, measured, because users must know them."""
+"""Measures of two flaws of the paper's rules that users must know."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -10,7 +10,7 @@ from advisor.study.flying import Scene
 from advisor.study.paper import ORDER
 
 MOST_CAMPAIGNS = 100
-"""Enough for a share of practically one."""
+"""Number of campaigns, enough for a share of practically one."""
 NOISE_PERCENT = 1.0
 
 
@@ -21,22 +21,22 @@ class Flaws:
     thrown_away_percent: float
     """Share of equally good manoeuvres, after the first, that Eq. (11) rejects."""
     near_zero_campaigns: int
-    """How many campaigns were flown with Z_q = 0."""
+    """Number of campaigns with Z_q = 0."""
     near_zero_never_percent: float
     """Share of campaigns at 1 % noise that Eq. (12) never ends when Z_q is zero."""
     near_zero_information: int | None
-    """Median number of manoeuvres the rule ``information`` needs for the same campaigns."""
+    """Median number of manoeuvres that the rule ``information`` needs in these campaigns."""
 
 
 def near_zero_blocks(campaigns: int, seed: int) -> list[Block]:
-    """Campaigns of an aircraft whose Z_q is zero."""
+    """Return campaigns of an aircraft whose Z_q is zero."""
     scene = Scene()
     scene = replace(scene, aircraft=replace(scene.aircraft, Z_q=0.0))
     return table_blocks(scene, NOISE_PERCENT, min(campaigns, MOST_CAMPAIGNS), seed)
 
 
 def measure(ordinary: Sequence[Judged], near_zero: Sequence[Judged]) -> Flaws:
-    """Both flaws: the first in the paper's campaigns, the second in those of an aircraft with Z_q = 0."""
+    """Return both flaws: the first in the paper's campaigns, the second in campaigns with Z_q = 0."""
     rejected = [one.rejected / (len(ORDER) - 1) for one in joined(ordinary, "separate")]
     never = [one.needed is None for one in joined(near_zero, "continuous")]
     needed = sorted(one.needed or np.inf for one in joined(near_zero, "information"))

@@ -1,4 +1,4 @@
-"""A study: tasks that do not know of one another, and the report that their results make together."""
+"""A study: independent tasks, and the report that their results make together."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -8,11 +8,11 @@ from advisor.study.figure import Curve
 
 
 class Task(Protocol):
-    """Some campaigns of a study, with everything that decides their result: the seed, too."""
+    """Some campaigns of a study, with everything that decides their result, including the seed."""
 
     @property
     def campaigns(self) -> int:
-        """How many campaigns the task flies."""
+        """Number of campaigns in the task."""
 
 
 T = TypeVar("T", bound=Task)
@@ -21,12 +21,12 @@ R = TypeVar("R")
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """What a study says."""
+    """Result of a study."""
 
     lines: list[str]
-    """To read."""
+    """Lines of text for people."""
     document: dict[str, object]
-    """To compute with."""
+    """Numbers for programs."""
     curves: tuple[Curve, ...] = ()
     """Figure 5, where the study has one."""
 
@@ -37,6 +37,6 @@ class Study(Generic[T, R]):
 
     tasks: Sequence[T]
     work: Callable[[T], R]
-    """A function of a module, so that other processes know it."""
+    """Function of a module, so that other processes know it."""
     report: Callable[[Sequence[R]], Report]
-    """Called with the results in the order of the tasks."""
+    """Function that is called with the results in the order of the tasks."""

@@ -1,6 +1,6 @@
-"""Other readings of the paper's rules, to see which reproduces its Table 1 best.
+"""Other readings of the paper's rules, compared by their reproduction of its Table 1.
 
-The advisor's own readings are the first of each list; the others exist only here.
+The first reading of each list is the advisor's. The others exist only here.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -21,12 +21,12 @@ Accepting = Callable[[Sequence[float]], list[bool]]
 
 
 def continuous_against_last_flown(costs: Sequence[float]) -> list[bool]:
-    """Eq. (10) with i − 1 the last manoeuvre flown, accepted or not."""
+    """Apply Eq. (10) with i − 1 the last manoeuvre flown, accepted or not."""
     return [i == 0 or cost < ALLOWED_INCREASE * costs[i - 1] for i, cost in enumerate(costs)]
 
 
 def separate_among_accepted(costs: Sequence[float]) -> list[bool]:
-    """Eq. (11) with only accepted manoeuvres under the median."""
+    """Apply Eq. (11) with only accepted manoeuvres in the median."""
     kept: list[float] = []
     verdicts = []
     for cost in costs:
@@ -42,23 +42,23 @@ def _ours(rule: Callable[[Costs], Sequence[RuleResult]]) -> Accepting:
 
 
 def population_scatter(theta: FloatArray) -> float:
-    """Eq. (12) with n instead of n − 1 under the standard deviation."""
+    """Apply Eq. (12) with n instead of n − 1 in the standard deviation."""
     return scatter_percent(theta) * float(np.sqrt((len(theta) - 1) / len(theta)))
 
 
 def largest_scatter(theta: FloatArray) -> float:
-    """Eq. (12) with the largest parameter instead of the Euclidean norm."""
+    """Apply Eq. (12) with the largest parameter instead of the Euclidean norm."""
     return 500.0 * float(np.max(theta.std(axis=0, ddof=1) / np.abs(theta.mean(axis=0))))
 
 
 def written_out(theta: FloatArray) -> float:
-    """Eq. (13)."""
+    """Apply Eq. (13)."""
     return scatter_percent(theta, "eq13")
 
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """One way to understand the paper; everything but one point as the advisor does."""
+    """One interpretation of the paper, which differs from the advisor's in a single point."""
 
     name: str
     accepting: Mapping[Rule, Accepting]
@@ -84,7 +84,7 @@ READINGS = (
 
 @dataclass(frozen=True, slots=True)
 class ReadingResult:
-    """How one reading fares in one row of Table 1."""
+    """Result of one reading in one row of Table 1."""
 
     reading: str
     rule: Rule
@@ -92,13 +92,14 @@ class ReadingResult:
     median: int | None
     never_percent: float
     as_paper_percent: float
-    """Share of campaigns that need exactly as many manoeuvres as the paper's."""
+    """Share of campaigns that need exactly the paper's number of manoeuvres."""
 
 
 def needed_by_reading(
     campaigns: Sequence[Sequence[Estimate]],
 ) -> dict[tuple[str, Rule], tuple[int | None, ...]]:
-    """Manoeuvres that each campaign needs under every reading; by the reading's name and the rule."""
+    """Return the manoeuvres that each campaign needs under every reading, by the reading's name and the
+    rule."""
     return {
         (reading.name, rule): tuple(_needed(campaign, accepting, reading) for campaign in campaigns)
         for reading in READINGS
@@ -109,7 +110,7 @@ def needed_by_reading(
 def compare(
     blocks: Sequence[Mapping[tuple[str, Rule], tuple[int | None, ...]]], noise_percent: float
 ) -> list[ReadingResult]:
-    """How every reading fares over all blocks of campaigns at one noise level."""
+    """Return the result of every reading over all blocks of campaigns at one noise level."""
     results = []
     for name, rule in blocks[0]:
         needed = [number for block in blocks for number in block[name, rule]]

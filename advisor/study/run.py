@@ -17,7 +17,7 @@ from advisor.study.table import as_document, row
 def table_1(
     campaigns: int, seed: int, reading: NoiseReading = "std", other_readings: bool = False
 ) -> Study[Block, Judged]:
-    """Table 1 and Figure 5, the paper's place in them, and the flaws of its rules."""
+    """Return the study of Table 1 and Figure 5, the paper's place in them, and the flaws of its rules."""
     scene = Scene()
     levels = [table_blocks(scene, noise, campaigns, seed, reading, other_readings) for noise in NOISE_PERCENT]
     near_zero = flaws.near_zero_blocks(campaigns, seed)
@@ -60,7 +60,7 @@ def table_1(
 
 
 def advice(campaigns: int, seed: int) -> Study[advised.Pair, tuple[int, int]]:
-    """What following the advice saves, on two aircraft."""
+    """Return the study of the manoeuvres that the advice saves, on two aircraft."""
     pairs = advised.pairs(campaigns, seed)
 
     def report(results: Sequence[tuple[int, int]]) -> Report:
@@ -83,7 +83,7 @@ def advice(campaigns: int, seed: int) -> Study[advised.Pair, tuple[int, int]]:
 
 
 def change(campaigns: int, seed: int) -> Study[changed.Block, changed.Noticed]:
-    """How soon a changed aircraft is noticed, and how often an unchanged one is suspected."""
+    """Return the study of changed aircraft: how soon noticed, and how often suspected without a change."""
     flown = changed.change_blocks(campaigns, seed)
 
     def report(results: Sequence[changed.Noticed]) -> Report:
@@ -105,7 +105,8 @@ def change(campaigns: int, seed: int) -> Study[changed.Block, changed.Noticed]:
 
 
 def early_stops(campaigns: int, seed: int) -> Study[stops.Block, stops.Stops]:
-    """How often the rule ``information`` stops too early, and what each rule needs."""
+    """Return the study of early stops by the rule ``information``, and of the manoeuvres that each rule
+    needs."""
     flown = stops.stop_blocks(campaigns, seed, stops.CASES)
 
     def report(results: Sequence[stops.Stops]) -> Report:

@@ -1,7 +1,7 @@
-"""How often the rule ``information`` stops too early, and how many manoeuvres each rule needs.
+"""Early stops of the rule ``information``, and the manoeuvres that each rule needs.
 
-A stop is false when the model that it leaves predicts the true response to the campaign's inputs worse than
-the tolerance: the largest error over time, in percent of the peak, of the worst output.
+A stop is false when the model then predicts the true response to the campaign's inputs worse than the
+tolerance. The error is the largest over time, in percent of the peak, of the worst output.
 """
 
 from collections.abc import Sequence
@@ -29,17 +29,18 @@ from advisor.study.paper import ORDER
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """What is flown and what disturbs it."""
+    """Input and disturbances of a campaign."""
 
     name: str
     noise_percent: float
     tolerance_percent: float = 5.0
     correlation_s: float = 0.0
-    """Correlation time of the noise, first order; 0: white."""
+    """Correlation time of the noise, s, first order. 0: white."""
     gust_percent: float = 0.0
-    """Gusts that move the aircraft, standard deviation of their angle in percent of the response's in α."""
+    """Standard deviation of the gusts' angle, in percent of that of the response in α."""
     lag_s: float = 0.0
-    """First-order lag of the servo, which the crew does not know: it is estimated jointly, as in flight."""
+    """First-order lag of the servo, s, which the crew does not know. It is estimated jointly, as in
+    flight."""
 
 
 CASES = (
@@ -55,13 +56,13 @@ CASES = (
     Case("servo lag 0.05 s unknown", 2.5, lag_s=0.05),
     Case("servo lag 0.14 s unknown", 2.5, lag_s=0.14),
 )
-"""The default tolerance, and tighter ones with which the rule has something to decide."""
+"""Cases with the default tolerance, and with tighter ones that need several manoeuvres."""
 BLOCK = 5
-"""Campaigns of a task: a second of work at most."""
+"""Number of campaigns in a task: a second of work at most."""
 GUST_S = 0.5
-"""Correlation time of the gusts."""
+"""Correlation time of the gusts, s."""
 KNOWN_FROM = 2
-"""Manoeuvres from which an unknown lag is estimated jointly."""
+"""Number of manoeuvres at which an unknown lag is first estimated jointly."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +71,7 @@ class Stops:
 
     case: Case
     needed: dict[Rule, tuple[int | None, ...]]
-    """Manoeuvres flown when each rule first said stop, a campaign each; None: not in seven."""
+    """Manoeuvres flown when each rule first said stop, for each campaign. None: no stop in seven."""
     error_percent: tuple[float, ...]
     """Error of the predicted response where ``information`` stopped, in percent of its peak."""
 
@@ -113,7 +114,7 @@ def stop_blocks(campaigns: int, seed: int, cases: Sequence[Case]) -> list[Block]
 
 
 def fly(block: Block) -> Stops:
-    """Fly a block, and see where each rule stops."""
+    """Fly a block, and return where each rule stops."""
     case, scene, rng = block.case, Scene(), np.random.default_rng(block.seed)
     flights = {name: _through(scene, fly_named(scene, name), case.lag_s) for name in set(ORDER)}
     noise = 0.01 * case.noise_percent * noise_scale(flights[ORDER[0]], "std")
@@ -143,7 +144,7 @@ def by_case(found: Sequence[Stops]) -> list[Stops]:
 
 
 def _through(scene: Scene, flight: Flight, lag_s: float) -> Flight:
-    """Return the same command, flown through a servo with a lag."""
+    """Return the flight with its command passed through a servo with a lag."""
     if lag_s <= 0.0:
         return flight
     surface, _, _ = Servo(lag_s).move(flight.t, flight.elevator, flight.t)
@@ -151,7 +152,7 @@ def _through(scene: Scene, flight: Flight, lag_s: float) -> Flight:
 
 
 def _copies(flight: Flight, noise: FloatArray, campaigns: int, rng: np.random.Generator) -> list[Flown]:
-    """Return the same manoeuvre of all campaigns, with white noise."""
+    """Return the manoeuvre of each campaign, with white noise."""
     maneuver = as_maneuver(flight)
     return [Flown(e, maneuver=maneuver) for e in estimate_copies(flight, noise, campaigns, rng)]
 
@@ -184,8 +185,7 @@ def _campaign(
 
 
 def _gusts(scene: Scene, flight: Flight, case: Case, rng: np.random.Generator) -> FloatArray | float:
-    """Return (n, 2) what gusts add to α and q: a gust acts through Z_alpha and M_alpha as an elevator
-    would."""
+    """Return the gusts' contributions to α and q, shape (n, 2). A gust acts through Z_alpha and M_alpha."""
     if case.gust_percent == 0.0:
         return 0.0
     size = 0.01 * case.gust_percent * float(np.std(flight.response[:, 0]))
@@ -202,7 +202,7 @@ def _measure(flight: Flight, disturbance: FloatArray) -> Maneuver:
 
 
 def _lag_found(maneuvers: Sequence[Maneuver]) -> float:
-    """Return the lag of the joint estimate; 0 where the data do not tell it from none."""
+    """Return the lag of the joint estimate; 0 where the data do not show one."""
     model = estimate_jointly(maneuvers, Aircraft())
     if isinstance(model, NoEstimate):
         raise ArithmeticError(model.text)
@@ -211,7 +211,7 @@ def _lag_found(maneuvers: Sequence[Maneuver]) -> float:
 
 
 def _coloured(flight: Flight, correlation_s: float, rng: np.random.Generator) -> FloatArray:
-    """Return (n, 2) noise of unit variance."""
+    """Return noise of unit variance, shape (n, 2)."""
     white = rng.standard_normal(flight.response.shape)
     if correlation_s == 0.0:
         return white
@@ -236,8 +236,7 @@ def _measured(case: Case, campaigns: Sequence[Sequence[Flown]], flights: Sequenc
 
 
 def _error_percent(flown: Sequence[Flown], flights: Sequence[Flight], plan: CampaignPlan) -> float:
-    """Return the largest error of the response that the model left by the stop predicts, in percent of its
-    peak."""
+    """Return the largest error of the response predicted at the stop, in percent of its peak."""
     derivatives = knowledge(flown, plan).posterior.shared.theta
     worst = 0.0
     for one, flight in zip(flown, flights, strict=True):

@@ -1,4 +1,4 @@
-"""The study in words: Table 1 beside the paper's, where the paper lies, the flaws."""
+"""The study in words: Table 1 with the paper's figures, the paper's place among ours, the flaws."""
 
 from collections.abc import Iterable, Sequence
 from textwrap import wrap
@@ -15,7 +15,7 @@ from advisor.study.stops import Stops
 from advisor.study.table import Row
 
 COMMON = (5.0, 95.0)
-"""A single realisation between these percentiles of ours is nothing out of the ordinary."""
+"""Percentiles of our campaigns between which a single realisation is ordinary."""
 
 
 _COLUMNS = 80
@@ -28,7 +28,7 @@ NAMED = CampaignPlan().parameters
 
 
 def heading(campaigns: int, scene: Scene, reading: NoiseReading) -> list[str]:
-    """What was flown."""
+    """Return lines on the campaigns flown."""
     degrees = np.degrees(scene.amplitude_rad)
     return [
         *_wrapped(
@@ -45,7 +45,7 @@ def heading(campaigns: int, scene: Scene, reading: NoiseReading) -> list[str]:
 
 
 def table(rows: Sequence[Row]) -> list[str]:
-    """Return a block a rule and noise: the median error, the range of the middle 80 %, the paper's error."""
+    """Return three lines for each row: the median error, the range of the middle 80 %, the paper's error."""
     names = "".join(f"{_symbol(name):>{_CELL}}" for name in PARAMETERS)
     lines = [
         *_wrapped(
@@ -79,7 +79,7 @@ def _numbers(label: str, values: Iterable[float]) -> str:
 
 
 def where_the_paper_lies(rows: Sequence[Row]) -> list[str]:
-    """Return a sentence a row on the paper's single realisation within our distribution."""
+    """Return a sentence for each row on the paper's single realisation within our distribution."""
     lines = ["Where the paper's single campaign lies among ours:"]
     for row in rows:
         if row.paper is None:
@@ -101,7 +101,7 @@ def where_the_paper_lies(rows: Sequence[Row]) -> list[str]:
 
 
 def tolerances(rows: Sequence[Row]) -> list[str]:
-    """Return how often the rule `information` was wrong."""
+    """Return lines on the errors of the rule `information`."""
     lines = []
     for row in rows:
         if row.outside_tolerance_percent is not None:
@@ -116,7 +116,7 @@ def tolerances(rows: Sequence[Row]) -> list[str]:
 
 
 def flaws(found: Flaws) -> list[str]:
-    """What users of the paper's rules must know."""
+    """Return lines on flaws of the paper's rules that users must know."""
     return [
         "Two flaws of the paper's rules:",
         *_wrapped(
@@ -133,7 +133,7 @@ def flaws(found: Flaws) -> list[str]:
 
 
 def readings(results: Iterable[ReadingResult]) -> list[str]:
-    """Return how other readings of the paper fare."""
+    """Return lines on other readings of the paper."""
     lines = _wrapped(
         "Other readings of the rules: median needed, never, share of campaigns that need exactly what the "
         "paper's did"
@@ -147,7 +147,7 @@ def readings(results: Iterable[ReadingResult]) -> list[str]:
 
 
 def savings(found: Sequence[Saving], campaigns: int) -> list[str]:
-    """Return manoeuvres needed with and without the advice."""
+    """Return lines on manoeuvres needed with and without the advice."""
     lines = _wrapped(
         f"Manoeuvres until the response is known to {PLAN.tolerance_percent:g} % of its peak, the named "
         f"derivatives accordingly (rule information), {campaigns} campaigns each, repeating the standard "
@@ -166,7 +166,7 @@ def savings(found: Sequence[Saving], campaigns: int) -> list[str]:
 
 
 def detections(found: Sequence[Detection], campaigns: int) -> list[str]:
-    """Return changes noticed, and false alarms."""
+    """Return lines on changes noticed, and on false alarms."""
     lines = [f"Something changed, {campaigns} campaigns each:"]
     for one in found:
         if one.lost is None:
@@ -184,7 +184,7 @@ def detections(found: Sequence[Detection], campaigns: int) -> list[str]:
 
 
 def early_stops(found: Sequence[Stops], campaigns: int) -> list[str]:
-    """False stops of the rule ``information``, and manoeuvres needed beside those of the paper's rules."""
+    """Return lines on false stops of the rule ``information``, and on manoeuvres needed under each rule."""
     lines = _wrapped(
         "Stops of the rule information. False: the predicted response is wrong by more than the tolerance; "
         "error: how wrong it is in 95 % of the stops at most. "

@@ -1,1 +1,1 @@
-"""The Textual application. Imports everything; nothing imports it."""
+"""The Textual application. The package imports all others, and none imports it."""

@@ -1,4 +1,4 @@
-"""The one word for the pilot, from the campaign's verdicts."""
+"""The pilot's one word, from the campaign's verdicts."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -11,7 +11,7 @@ Tone = Literal["good", "warn", "bad", "quiet"]
 
 @dataclass(frozen=True, slots=True)
 class Advice:
-    """Word, sentence, and how loud to say it."""
+    """Word and sentence for the pilot, with their urgency."""
 
     word: Word
     sentence: str
@@ -19,7 +19,8 @@ class Advice:
 
 
 def advise(view: View) -> Advice:
-    """What matters most now: a lost link, data that cannot serve, the manoeuvre in the air, the verdicts.
+    """Return the most important advice: a lost link, unusable data, the manoeuvre in the air, or the
+    verdicts.
 
     Once the flight test says stop, no further data are needed.
     """
@@ -40,7 +41,8 @@ def advise(view: View) -> Advice:
 
 
 def _another(view: View) -> str:
-    """Which other vehicles a key can follow; nothing once this one has flown, and in a replay."""
+    """Return a sentence on other vehicles that a key can follow; empty after this one has flown, and in a
+    replay."""
     others = view.state.other_vehicles
     if not others or view.state.maneuvers or view.tempo is not None:
         return ""
@@ -48,7 +50,7 @@ def _another(view: View) -> str:
 
 
 def _elevator(view: View) -> str:
-    """How keys tell which output is the elevator, where that is what is missing on a live link."""
+    """Return a sentence on the keys that choose the elevator's output, where it is missing on a live link."""
     if view.obstacles[0].code != "no_elevator" or view.tempo is not None:
         return ""
     guess = view.state.elevator_guess

@@ -1,4 +1,4 @@
-"""What the screens need of a campaign, so that tests may bring their own."""
+"""Interface between the screens and a campaign, so that tests may bring their own campaign."""
 
 from collections.abc import Sequence
 from typing import Protocol
@@ -10,37 +10,37 @@ from advisor.problems import Problem
 
 
 class CampaignLike(Protocol):
-    """The part of `advisor.campaign.Campaign` that is used here."""
+    """The part of `advisor.campaign.Campaign` that the screens use."""
 
     @property
     def by_hand(self) -> ByHand:
-        """Everything that has been decided by hand."""
+        """All decisions by hand so far."""
 
     @property
     def state(self) -> CampaignState:
-        """Everything a face may show."""
+        """State of the campaign for the screens."""
 
     @property
     def problems(self) -> Sequence[Problem]:
-        """Why this stream cannot be used, as far as it has been heard."""
+        """Reasons for which the stream so far cannot be used."""
 
     def feed(self, columns: Sequence[Columns]) -> Sequence[object]:
         """Take the next messages."""
 
     def finish(self) -> Sequence[object]:
-        """The stream has ended: judge what is still open."""
+        """Take the end of the stream, and judge open manoeuvres."""
 
     def exclude(self, number: int, because: str) -> None:
-        """Take a manoeuvre out of every decision."""
+        """Exclude a manoeuvre from every decision."""
 
     def include(self, number: int) -> None:
-        """Take it in again."""
+        """Include an excluded manoeuvre again."""
 
     def mark(self, text: str) -> None:
         """Set a mark at the present moment."""
 
     def begin_maneuver(self) -> None:
-        """Mark a manoeuvre from the present moment on."""
+        """Begin a manoeuvre's mark at the present moment."""
 
     def end_maneuver(self) -> None:
         """End the mark of a manoeuvre at the present moment."""

@@ -1,4 +1,4 @@
-"""What changed from one report to the next, to be sent from one process to another."""
+"""Differences between two reports, for sending from one process to another."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
@@ -11,7 +11,7 @@ from advisor.tui.conducting import Report
 
 @dataclass(frozen=True, slots=True)
 class Again:
-    """A manoeuvre sent before, judged anew: the samples and the estimate stay."""
+    """A manoeuvre that was sent earlier, with a new verdict. Samples and estimate stay."""
 
     index: int
     verdict: ManeuverVerdict
@@ -20,11 +20,11 @@ class Again:
 
     @classmethod
     def of(cls, index: int, judged: JudgedManeuver) -> "Again":
-        """What is judged of the manoeuvre now."""
+        """Return the new judgement of the manoeuvre."""
         return cls(index, judged.verdict, judged.excluded_because, judged.notes)
 
     def applied_to(self, maneuvers: Sequence[JudgedManeuver]) -> JudgedManeuver:
-        """The manoeuvre as judged now; the very object where nothing changed."""
+        """Return the manoeuvre with the new judgement; the identical object where nothing changed."""
         last = maneuvers[self.index]
         if self == Again.of(self.index, last):
             return last
@@ -33,20 +33,19 @@ class Again:
 
 @dataclass(frozen=True, slots=True)
 class Changes:
-    """Fields that hold another object than in the report before.
+    """Fields whose object differs from the earlier report's.
 
-    The samples of a manoeuvre are sent once, not with every verdict and ten times a second.
-    And whoever receives the changes keeps the very objects that did not change: by these, panes
-    know what need not be painted anew.
+    The samples of a manoeuvre are sent once, not with every verdict and ten times a second. The receiver
+    keeps the identical objects of unchanged fields. By their identity, panes know what needs no painting.
     """
 
     report: dict[str, Any]
     state: dict[str, Any]
     maneuvers: tuple[JudgedManeuver | Again, ...] | None = None
-    """The manoeuvres; None where none was judged."""
+    """The manoeuvres. None where none was judged."""
 
     def applied_to(self, last: Report) -> Report:
-        """The newer report."""
+        """Return the newer report."""
         state = dict(self.state)
         if self.maneuvers is not None:
             known = last.state.maneuvers
@@ -57,7 +56,7 @@ class Changes:
 
 
 def changes(last: Report, report: Report) -> Changes:
-    """What must be known besides ``last`` to have ``report``; the state's notices are in its log."""
+    """Return the changes that turn ``last`` into ``report``. The state's notices are in its log."""
     before, now = last.state.maneuvers, report.state.maneuvers
     return Changes(
         _changed(last, report, {"state"}),

@@ -1,4 +1,4 @@
-"""What the screens ask of whoever conducts the campaign, be it here or in a process of its own."""
+"""Interface between the screens and the conductor of the campaign, in this process or another."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,30 +12,31 @@ from advisor.tui.source import LinkHealth, Order, Playback, Tempo
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Report:
-    """One moment of the campaign, the link and the replay."""
+    """State of the campaign, the link and the replay at one moment."""
 
     state: CampaignState
     health: LinkHealth
     playback: Playback | None
     log: tuple[str, ...]
-    """What happened so far, oldest first."""
+    """Sentences of the event log, oldest first."""
     problems: tuple[Problem, ...] = ()
-    """Why nothing can be judged, while nothing has been."""
+    """Reasons for which nothing can be judged, while nothing has been judged."""
 
 
 Tell = Callable[[Report], object]
 
 
 class Conducting(Protocol):
-    """Runs a campaign over a source. All but ``run`` return at once, before what they ask for is done."""
+    """Runs a campaign over a source. Every method except ``run`` returns at once, before its request is
+    done."""
 
     def run(self, tell: Tell) -> None:
-        """Work until `stop`, in the calling thread; ``tell`` receives every report.
+        """Work until `stop`, in the calling thread. ``tell`` receives every report.
 
         Raises
         ------
         UnusableInputError
-            When the input can never serve.
+            The input can never serve.
         """
 
     def stop(self) -> None:
@@ -45,13 +46,13 @@ class Conducting(Protocol):
         """Exclude, include, note, mark, begin or end a marked manoeuvre."""
 
     def order(self, order: Order) -> None:
-        """Do what a crew wants of the link."""
+        """Carry out a crew's request to the link."""
 
     def jump(self, number: int) -> None:
-        """Play on, or from the beginning, to just before a manoeuvre."""
+        """Play on to just before a manoeuvre, or play to it from the beginning."""
 
     def play(self, tempo: Tempo) -> None:
-        """Hold a replay, let it go on, faster or slower."""
+        """Pause a replay, continue it, or change its speed."""
 
     def step(self) -> None:
-        """Play the next tenth of a second of a held replay."""
+        """Play the next tenth of a second of a paused replay."""

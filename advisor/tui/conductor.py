@@ -1,7 +1,7 @@
-"""The working side: feeds one campaign from one source and reports what it says.
+"""The conductor: feeds one campaign from one source and reports its results.
 
-No thread but the one in ``run`` touches the campaign; whoever asks by the methods
-below only leaves a request, and hears through ``tell``.
+Only the thread in ``run`` touches the campaign. The methods below only leave a request, whose result comes
+through ``tell``.
 """
 
 from collections.abc import Callable
@@ -27,11 +27,11 @@ class Conductor:
     Parameters
     ----------
     source : Source
-        Where the data come from.
+        Source of the data.
     make_campaign : callable
-        Makes a campaign from what was decided by hand; called by ``run``, and again for a rewind.
+        Makes a campaign from the decisions by hand. It is called by ``run``, and again for a rewind.
     by_hand : ByHand
-        What was decided by hand before.
+        Earlier decisions by hand.
     """
 
     def __init__(
@@ -50,7 +50,7 @@ class Conductor:
         self._told_s = -inf
 
     def run(self, tell: Tell) -> None:
-        """Work until `stop`; the calling thread is the working thread.
+        """Work until `stop`. The calling thread is the working thread.
 
         Parameters
         ----------
@@ -60,7 +60,7 @@ class Conductor:
         Raises
         ------
         UnusableInputError
-            When the input can never serve.
+            The input can never serve.
         """
         self._tell = tell
         try:
@@ -79,20 +79,20 @@ class Conductor:
         self._requests.put(lambda campaign: self._decide(campaign, decision))
 
     def order(self, order: Order) -> None:
-        """Do what a crew wants of the link."""
+        """Carry out a crew's request to the link."""
         self._requests.put(lambda campaign: self._source.order(order))
 
     def jump(self, number: int) -> None:
-        """Play on, or from the beginning, to just before a manoeuvre."""
+        """Play on to just before a manoeuvre, or play to it from the beginning."""
         self._requests.put(lambda campaign: self._jump(campaign, number))
 
     def play(self, tempo: Tempo) -> None:
-        """Hold a replay, let it go on, faster or slower."""
+        """Pause a replay, continue it, or change its speed."""
         if isinstance(self._source, Playable):
             self._source.play(tempo)
 
     def step(self) -> None:
-        """Play the next tenth of a second of a held replay."""
+        """Play the next tenth of a second of a paused replay."""
         if isinstance(self._source, Playable):
             self._source.step()
 
@@ -122,7 +122,7 @@ class Conductor:
                 self._report(campaign)
 
     def _answer(self, campaign: CampaignLike, timeout_s: float) -> None:
-        """Serve what the screens asked for, waiting for a first request."""
+        """Serve the requests of the screens, after waiting for a first one."""
         try:
             self._requests.get(timeout=timeout_s or None, block=timeout_s > 0.0)(campaign)
         except Empty:
@@ -139,7 +139,7 @@ class Conductor:
         self._told_s = monotonic()
 
     def _decide(self, campaign: CampaignLike, decision: HandDecision) -> None:
-        """Now, or after a jump back as soon as the manoeuvre it is about has been flown again."""
+        """Apply a decision now, or after a jump back as soon as its manoeuvre has been flown again."""
         self._pending.append(decision)
         self._decide_what_is_due(campaign)
 
@@ -151,7 +151,7 @@ class Conductor:
             self._keep(campaign)
 
     def _keep(self, campaign: CampaignLike) -> None:
-        """Remember for a rewind what was decided by hand, and keep it with the data."""
+        """Keep the decisions by hand for a rewind, and with the data."""
         if campaign.by_hand != self._by_hand:
             self._by_hand = campaign.by_hand
             where = self._source.keep(self._by_hand)
@@ -170,7 +170,7 @@ class Conductor:
         self._source.hurry(True)
 
     def _arrive(self) -> None:
-        """The jump is over, at its goal or at the end of the log."""
+        """End the jump, at its goal or at the end of the log."""
         if self._goal is not None and isinstance(self._source, Playable):
             self._source.hurry(False)
             self._goal = None

@@ -1,4 +1,4 @@
-"""Which keys work now, and the help for what has the focus."""
+"""Keys that work now, and the help for the focused pane."""
 
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
@@ -16,17 +16,18 @@ from advisor.tui.keys import ACTIONS, ENGINEER
 
 @dataclass(frozen=True, slots=True)
 class KeyAtHand:
-    """One key that works where the focus is."""
+    """One key that works at the present focus."""
 
     shown: str
     does: str
     name: str
-    """As settings call the action."""
+    """Name of the action in the settings."""
     run: Callable[[], Awaitable[Any]]
 
 
 def keys_at_hand(app: App[None], screen: Screen[Any] | None = None) -> list[KeyAtHand]:
-    """The keys of the table in `advisor.tui.keys` that are active on a screen; None: on the newest one."""
+    """Return the keys of the table in `advisor.tui.keys` that are active on a screen. None: on the newest
+    screen."""
     return [
         KeyAtHand(
             app.get_key_display(active.binding),
@@ -40,9 +41,10 @@ def keys_at_hand(app: App[None], screen: Screen[Any] | None = None) -> list[KeyA
 
 
 def commands(app: App[None], screen: Screen[Any]) -> list[SystemCommand]:
-    """Every action of the advisor for the palette: those at hand, then those of the engineer's screen.
+    """Return every action of the advisor for the palette: the active ones, then those of the engineer's
+    screen.
 
-    An action of the engineer's screen that is chosen elsewhere shows that screen first.
+    An action of the engineer's screen that is chosen elsewhere first shows that screen.
     """
     at_hand = keys_at_hand(app, screen)
     names = {key.name for key in at_hand}
@@ -66,7 +68,7 @@ async def _on_engineers_screen(app: App[None], action: str) -> None:
 
 
 def explanation(app: App[None]) -> Text:
-    """What the focused pane shows, what the screen is for, and the keys."""
+    """Return the help on the focused pane, the screen and the keys."""
     around = (app.focused or app.screen).ancestors_with_self
     page = help_page("\n\n".join([*(node.HELP for node in around if node.HELP), "# Keys"]))
     rows = [("key", "does", "name in settings"), *((k.shown, k.does, k.name) for k in keys_at_hand(app))]

@@ -1,4 +1,4 @@
-"""Where a jump in a replay ends."""
+"""Goal of a jump in a replay."""
 
 from dataclasses import dataclass
 
@@ -9,14 +9,15 @@ LEAD_S = 1.0
 
 @dataclass(frozen=True, slots=True)
 class Goal:
-    """Just before manoeuvre ``number`` is flown."""
+    """The moment just before manoeuvre ``number`` is flown."""
 
     number: int
     start: tuple[int, int, float] | None
-    """Flight, power-on and vehicle time of its first step when it was judged before; None: it lies ahead."""
+    """Flight, power-on and vehicle time of the first step, where the manoeuvre was judged before. None: it
+    lies ahead."""
 
     def reached(self, state: CampaignState) -> bool:
-        """Whether the replay has come there, or past it."""
+        """Return whether the replay has reached the goal, or passed it."""
         done = len(state.maneuvers)
         if done >= self.number:
             return True

@@ -1,4 +1,4 @@
-"""What an engineer decides by hand, on its way from a key to the campaign."""
+"""Decision by hand, on its way from a key to the campaign."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -7,7 +7,7 @@ from advisor.campaign.state import CampaignState
 from advisor.tui.campaign_like import CampaignLike
 
 Verb = Literal["exclude", "include", "note", "mark", "begin", "end"]
-"""``mark`` names a moment in the log; ``begin`` and ``end`` mark a manoeuvre."""
+"""Kind of decision: ``mark`` names a moment in the log; ``begin`` and ``end`` mark a manoeuvre."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -16,16 +16,16 @@ class HandDecision:
 
     verb: Verb
     text: str = ""
-    """The reason, the note or the moment's name."""
+    """Reason, note or name of the moment."""
     number: int = 0
-    """The manoeuvre it is about; 0 where it is about the present moment."""
+    """Number of the manoeuvre. 0 for a decision on the present moment."""
 
     def due(self, state: CampaignState) -> bool:
-        """Whether the flight has come to what the decision is about."""
+        """Return whether the flight has reached the subject of the decision."""
         return self.number == 0 or any(judged.maneuver.number == self.number for judged in state.maneuvers)
 
     def apply(self, campaign: CampaignLike) -> None:
-        """Tell the campaign, which recomputes every decision that follows from it."""
+        """Apply the decision to the campaign, which recomputes every dependent decision."""
         if self.verb == "exclude":
             campaign.exclude(self.number, self.text)
         elif self.verb == "include":

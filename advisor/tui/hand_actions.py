@@ -1,4 +1,4 @@
-"""What keys decide by hand about the present moment."""
+"""Keys that decide by hand about the present moment."""
 
 from abc import abstractmethod
 from math import isfinite
@@ -31,7 +31,7 @@ class HandActions(Base):
             self.screen.ask("Mark this moment as:", self._mark)
 
     def action_begin_maneuver(self) -> None:
-        """Call what is flown from now on a manoeuvre."""
+        """Begin a manoeuvre's mark at the present moment."""
         if not isfinite(self.view.state.now_s):
             self.say("nothing can be marked before the vehicle's clock is heard")
             return
@@ -39,7 +39,7 @@ class HandActions(Base):
         self.say("a manoeuvre is marked from here: finish it where it ends, or begin it anew")
 
     def action_end_maneuver(self) -> None:
-        """End the manoeuvre that is being marked."""
+        """End the mark of the open manoeuvre."""
         since_s = self.view.state.marking_since_s
         if since_s is None:
             self.say("no manoeuvre is being marked: begin one first")
@@ -52,7 +52,7 @@ class HandActions(Base):
 
     @abstractmethod
     def say(self, text: str, seconds: float = 3.0) -> None:
-        """Tell something on the last line of the screen, for a while."""
+        """Show a text on the last line of the screen, for a while."""
 
     def _mark(self, text: str) -> None:
         self.conductor.decide(HandDecision("mark", text))

@@ -12,9 +12,10 @@ _HEADING = Style(bold=True, underline=True)
 
 
 def help_page(text: str) -> Text:
-    """Set the marks of a help text, a small part of Markdown, as one text that wraps to any width.
+    """Return a help text, in a small part of Markdown, as one text that wraps to any width.
 
-    Textual's Markdown mounts a widget for every paragraph and cell: a third of a second for a page.
+    Textual's own Markdown mounts a widget for every paragraph and cell, which takes a third of a second for a
+    page.
     """
     page = Text()
     for block in _BLOCKS.split(text.strip()):

@@ -1,4 +1,4 @@
-"""Every action of the screens with its key: the one table that footers, help and settings read."""
+"""Every action of the screens with its key: the single table of footers, help and settings."""
 
 from textual.binding import Binding, BindingType
 
@@ -7,7 +7,7 @@ def _key(key: str, action: str, description: str, *, id: str, show: bool = False
     return Binding(key, action, description, id=id, show=show)
 
 
-# In the order of their worth: what a narrow footer has no room for is at the end.
+# In the order of importance: a narrow footer leaves out the last ones.
 EVERYWHERE: list[BindingType] = [
     _key("p", "face('pilot')", "Pilot", id="pilot", show=True),
     _key("e", "face('engineer')", "Engineer", id="engineer", show=True),
@@ -80,4 +80,4 @@ ACTIONS = frozenset(
     for binding in (*EVERYWHERE, *REPLAY, *SELDOM, *ENGINEER, *FIT)
     if isinstance(binding, Binding) and binding.id is not None
 )
-"""The names of all actions, as settings may rebind them."""
+"""Names of all actions, by which settings may rebind them."""

@@ -1,4 +1,4 @@
-"""What keys want of a live link."""
+"""Keys for a live link."""
 
 from abc import abstractmethod
 from typing import TYPE_CHECKING
@@ -24,7 +24,7 @@ class LinkActions(Base):
     view: View
 
     def action_follow_another(self) -> None:
-        """Follow the next of the other vehicles, as long as nothing of this one has been judged."""
+        """Follow the next of the other vehicles, unless a manoeuvre of this one has been judged."""
         state = self.view.state
         others = state.other_vehicles
         if not others:
@@ -36,15 +36,15 @@ class LinkActions(Base):
             self.say(f"manoeuvres of vehicle {here} are judged: start again with --target-system {system}")
             return
         self.conductor.order(Order("follow", system))
-        self.say(f"vehicle {system} is followed from here on")
+        self.say(f"vehicle {system} is followed now")
 
     def action_ask_for_outputs(self) -> None:
         """Ask the vehicle which output is its elevator."""
         self.conductor.order(Order("outputs"))
-        self.say("the vehicle is asked for SERVOn_*, which output does what; nothing else is sent", 5.0)
+        self.say("the vehicle is asked for SERVOn_* (the role of each output); nothing else is sent", 5.0)
 
     def action_take_guess(self) -> None:
-        """Take the output that is guessed to be the elevator."""
+        """Use the guessed output as the elevator."""
         guess = self.view.state.elevator_guess
         if guess is None:
             self.say("there is no guess of the elevator's output to take")
@@ -54,4 +54,4 @@ class LinkActions(Base):
 
     @abstractmethod
     def say(self, text: str, seconds: float = 3.0) -> None:
-        """Tell something on the last line of the screen, for a while."""
+        """Show a text on the last line of the screen, for a while."""

@@ -15,41 +15,41 @@ LOSS_PERCENT = 5.0
 
 
 class LinkLike(Protocol):
-    """A link as its readers see it, kept by this process or by one of its own."""
+    """A link as its readers see it, in this process or in another."""
 
     @property
     def statistics(self) -> LinkStatistics:
-        """How the link is doing now."""
+        """Health of the link now."""
 
     @property
     def catching_up(self) -> bool:
-        """Whether what was heard before is still being read."""
+        """Whether earlier records are still being read."""
 
     def read(self, timeout_s: float) -> list[Columns]:
-        """The next messages in order of arrival, or nothing when none came in time."""
+        """Return the next messages in order of arrival; empty when none came in time."""
 
     def take_notices(self) -> list[Notice]:
-        """What happened to the link since the last call, oldest first."""
+        """Return the notices since the last call, oldest first."""
 
     def follow(self, system: int) -> None:
-        """Let another vehicle be followed."""
+        """Follow another vehicle."""
 
     def take_output(self, output: int) -> None:
-        """Take an output for the elevator."""
+        """Use an output as the elevator."""
 
     def ask_for_outputs(self) -> None:
         """Ask the vehicle once which of its outputs is the elevator."""
 
 
 class LinkSource:
-    """Reads a link; ends only when told that the other side has.
+    """Reads a link. The source ends only when the far end has finished.
 
     Parameters
     ----------
     connection
-        Opens the link; entered by the first ``read``.
+        Context that opens the link, entered by the first ``read``.
     over
-        Says whether the far end has finished for good; a demonstration knows, a link never does.
+        Function that returns whether the far end has finished. Only a demonstration knows.
     """
 
     def __init__(
@@ -59,12 +59,12 @@ class LinkSource:
         self._link: LinkLike | None = None
 
     def read(self, timeout_s: float) -> Sequence[Columns] | None:
-        """The next batch; None when the far end has finished and all of it was read.
+        """Return the next batch; None when the far end has finished and everything was read.
 
         Raises
         ------
         UnusableInputError
-            When the connection cannot be opened.
+            The connection cannot be opened.
         """
         if self._link is None:
             self._link = self._connection.__enter__()
@@ -73,7 +73,7 @@ class LinkSource:
         return None if over and not columns else columns
 
     def health(self) -> LinkHealth:
-        """How the data arrive at this moment."""
+        """Return the state of the data's arrival."""
         if self._link is None:
             return LinkHealth("waiting", "Opening the connection.")
         statistics = self._link.statistics
@@ -85,11 +85,11 @@ class LinkSource:
         return LinkHealth(condition, sentence, _figures(statistics), statistics.recording_problem or "")
 
     def take_notices(self) -> Sequence[str]:
-        """What the link has to report since the last call."""
+        """Return the notices of the link since the last call."""
         return [notice.text for notice in self._link.take_notices()] if self._link is not None else ()
 
     def order(self, order: Order) -> None:
-        """Pass on what a crew wants."""
+        """Pass on a crew's request."""
         if self._link is None:
             return
         if order.what == "follow":
@@ -100,14 +100,14 @@ class LinkSource:
             self._link.ask_for_outputs()
 
     def keep(self, by_hand: ByHand) -> str:
-        """Keep the decisions beside the recording."""
+        """Keep the decisions next to the recording."""
         recording = self._link.statistics.recording if self._link is not None else None
         if recording is None:
             return "decisions by hand are not kept, for nothing is recorded: they hold until you quit"
         return keep_by_hand(recording, by_hand)
 
     def close(self) -> None:
-        """Stop listening; the recording is whole afterwards."""
+        """Stop listening. The recording is whole afterwards."""
         if self._link is not None:
             self._connection.__exit__(None, None, None)
 

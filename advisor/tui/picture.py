@@ -2,8 +2,8 @@
 
     python -m advisor.tui.picture logs/arduplane-calm.tlog --after 5 --out docs
 
-plays the log until so many manoeuvres are judged and the next is in the air, and writes
-``pilot.svg`` and ``engineer.svg``.
+The command plays the log until the given number of manoeuvres are judged and the next is in the air. The
+command then writes ``pilot.svg`` and ``engineer.svg``.
 """
 
 import argparse
@@ -27,7 +27,7 @@ SIZES: dict[Face, tuple[int, int]] = {"pilot": (100, 30), "engineer": (180, 50)}
 
 
 async def picture(log: Path, aircraft_file: Path | None, face: Face, after: int, theme: str) -> str:
-    """One screen as SVG, with manoeuvre ``after + 1`` in the air, or at the end of the log."""
+    """Return one screen as SVG, with manoeuvre ``after + 1`` in the air, or at the end of the log."""
     aircraft = load_aircraft(aircraft_file)
 
     def load() -> Sequence[Columns]:

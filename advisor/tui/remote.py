@@ -1,4 +1,4 @@
-"""A conductor in a process of its own, so that no estimate keeps the screens' interpreter busy."""
+"""A conductor in a separate process, so that no estimate delays the screens."""
 
 import pickle
 from collections.abc import Callable
@@ -11,40 +11,41 @@ from typing import IO
 from advisor.campaign.hand_decisions import NOTHING, ByHand
 from advisor.tui.campaign_like import CampaignLike
 from advisor.tui.changes import Changes
+from advisor.tui.child_process import pause_s, said_of, start_child
 from advisor.tui.conducting import Report, Tell
 from advisor.tui.hand import HandDecision
-from advisor.tui.offspring import offspring, pause_s, said_of
 from advisor.tui.source import LinkHealth, Order, Source, Tempo
 
 Request = tuple[str, tuple[object, ...]]
 """Name of a method of `Conducting`, and its arguments."""
 
 _ENOUGH: Request = ("", ())
-"""No request: ends the thread that passes requests on."""
+"""No request. It ends the thread that passes requests on."""
 
 
 @dataclass(frozen=True, slots=True)
 class Task:
-    """What to conduct; used in the other process, so all of it must be picklable."""
+    """Task of a conductor. The other process uses the task, so that all of it must be picklable."""
 
     open_source: Callable[[], Source]
     make_campaign: Callable[[ByHand], CampaignLike]
     by_hand: ByHand = NOTHING
-    """What was decided by hand before."""
+    """Earlier decisions by hand."""
     kept: Callable[[], ByHand] | None = None
-    """Reads what was decided by hand since; None: the source cannot be read from its beginning again."""
+    """Function that reads the decisions by hand since the start. None: the source cannot be read again from
+    its beginning."""
 
 
 class RemoteConductor:
-    """A `Conducting` that passes on what it is asked, and passes back what it is told.
+    """A `Conducting` that passes requests to another process, and reports back from it.
 
-    Where the source can be read from its beginning again, the death of the other process ends nothing:
-    it is started again, and the last report stands until the new process has caught up.
+    Where the source can be read again from its beginning, the death of the other process ends nothing. The
+    process is restarted, and the last report stands until the new process has caught up.
 
     Parameters
     ----------
     task : Task
-        Given to the process that ``run`` starts.
+        Task for the process that ``run`` starts.
     """
 
     def __init__(self, task: Task) -> None:
@@ -55,14 +56,14 @@ class RemoteConductor:
         self._stopped = Event()
 
     def run(self, tell: Tell) -> None:
-        """Start the process and hear it until it ends.
+        """Start the process and take its reports until it ends.
 
         Raises
         ------
         UnusableInputError
-            When the input can never serve; and whatever else broke the other side off.
+            The input can never serve. Any other error of the other process is raised as well.
         RuntimeError
-            When the process was ended from outside, and the source cannot be read again.
+            The process was ended from outside, and the source cannot be read again.
         """
         while code := self._conduct(tell):
             if self._stopped.is_set():
@@ -84,24 +85,24 @@ class RemoteConductor:
         self._requests.put(("decide", (decision,)))
 
     def order(self, order: Order) -> None:
-        """Do what a crew wants of the link."""
+        """Carry out a crew's request to the link."""
         self._requests.put(("order", (order,)))
 
     def jump(self, number: int) -> None:
-        """Play on, or from the beginning, to just before a manoeuvre."""
+        """Play on to just before a manoeuvre, or play to it from the beginning."""
         self._requests.put(("jump", (number,)))
 
     def play(self, tempo: Tempo) -> None:
-        """Hold a replay, let it go on, faster or slower."""
+        """Pause a replay, continue it, or change its speed."""
         self._requests.put(("play", (tempo,)))
 
     def step(self) -> None:
-        """Play the next tenth of a second of a held replay."""
+        """Play the next tenth of a second of a paused replay."""
         self._requests.put(("step", ()))
 
     def _conduct(self, tell: Tell) -> int:
-        """One process from its start to its end; the exit code."""
-        with offspring("advisor.tui.worker") as process:
+        """Run one process from its start to its end; return the exit code."""
+        with start_child("advisor.tui.worker") as process:
             assert process.stdin is not None
             assert process.stdout is not None
             asking = Thread(target=self._pass_on, args=(process.stdin,), daemon=True)
@@ -116,7 +117,8 @@ class RemoteConductor:
             return process.wait()
 
     def _pass_on(self, pipe: IO[bytes]) -> None:
-        """Hand over the task, then every request; what a process has not taken waits for the next one."""
+        """Send the task, then every request. A request that a process has not taken waits for the next
+        process."""
         request = _ENOUGH
         with suppress(BrokenPipeError, ValueError):
             pickle.dump(self._task, pipe)
@@ -128,7 +130,7 @@ class RemoteConductor:
             self._requests.put(request)
 
     def _keep_what_is_asked(self) -> None:
-        """Take out of the queue whatever was meant for the thread that has ended."""
+        """Remove the requests meant for the thread that has ended."""
         waiting = []
         with suppress(Empty):
             while True:
@@ -151,7 +153,7 @@ class RemoteConductor:
                 self._tell(last, tell)
 
     def _tell(self, report: Report, tell: Tell) -> None:
-        """Tell a report; of a process that still catches up, only how the link is doing."""
+        """Pass on a report. While a process catches up, pass on only the health of the link."""
         if self._deaths:
             report = replace(report, log=(*report.log, *self._deaths))
             if self._last is not None and report.health.condition == "waiting":

@@ -1,4 +1,4 @@
-"""Logs played like a flight: paused, stepped, sped up, always in its order of arrival."""
+"""Logs played like a flight: paused, stepped, sped up, always in the order of arrival."""
 
 from collections.abc import Callable, Sequence
 from math import inf
@@ -25,19 +25,19 @@ class LogPlayer:
     Parameters
     ----------
     title : str
-        The log's name.
+        Name of the log.
     load : callable
-        Returns the log's columns; called once, in the reading thread.
+        Returns the columns of the log. It is called once, in the reading thread.
     speed : float
-        Multiple of real time; infinite: as fast as it can.
+        Multiple of real time. Infinite: as fast as possible.
     wait : callable
-        ``wait(event, seconds)`` waits until the event is set or the time is over; tests have their own clock.
+        ``wait(event, seconds)`` waits until the event is set or the time is over. Tests pass their own clock.
     keep_beside : sequence of Path
-        The logs beside which decisions by hand are kept, flight by flight; none: they are not kept.
+        Logs next to which decisions by hand are kept, flight by flight. Empty: they are not kept.
     before : ByHand
-        What was decided by hand before.
+        Earlier decisions by hand.
     said : callable
-        Returns what is to be said of the logs once they are loaded.
+        Returns sentences on the logs after loading.
     """
 
     def __init__(
@@ -66,7 +66,7 @@ class LogPlayer:
         self._changed = Event()
 
     def read(self, timeout_s: float) -> Sequence[Columns] | None:
-        """The next stretch of the log when its time has come, see `Source.read`."""
+        """Return the next stretch of the log when its time has come, see `Source.read`."""
         if self._timeline is None:
             self._timeline = Timeline(self._load())
             self._notices = self._said()
@@ -94,7 +94,7 @@ class LogPlayer:
         return self._timeline.up_to(self._position_s)
 
     def health(self) -> LinkHealth:
-        """A log cannot get lost; it can only be over."""
+        """Return the state of the log, which can only be playing or over."""
         timeline = self._timeline
         if timeline is None:
             return LinkHealth("waiting", f"Reading {self._title}.")
@@ -104,12 +104,12 @@ class LogPlayer:
         return LinkHealth("good", "A recorded log is being played.", figures)
 
     def playback(self) -> Playback:
-        """Where it stands."""
+        """Return the position of the replay."""
         duration_s = self._timeline.duration_s if self._timeline else 0.0
         return Playback(self._position_s, duration_s, self._hurrying)
 
     def play(self, tempo: Tempo) -> None:
-        """Hold, go on, faster or slower."""
+        """Pause, continue, or change the speed."""
         self._tempo = tempo
         self._changed.set()
 
@@ -119,29 +119,29 @@ class LogPlayer:
         self._changed.set()
 
     def hurry(self, hurrying: bool) -> None:
-        """Play as fast as it can, or at the tempo again."""
+        """Play as fast as possible, or at the tempo again."""
         self._hurrying = hurrying
 
     def rewind(self) -> None:
-        """Start again with the first record. Only between two reads."""
+        """Start again with the first record. The call is allowed only between two reads."""
         self._position_s, self._ended = 0.0, False
         if self._timeline:
             self._timeline.rewind()
 
     def take_notices(self) -> Sequence[str]:
-        """What was found when the logs were loaded; nothing happens on the way from a file."""
+        """Return sentences on the logs after loading. A file gives no later notices."""
         notices, self._notices = self._notices, ()
         return notices
 
     def order(self, order: Order) -> None:
-        """A log has been flown: nothing can be asked of its vehicle."""
+        """Do nothing, because the vehicle of a log cannot be asked."""
 
     def keep(self, by_hand: ByHand) -> str:
-        """Keep each decision beside the log that it concerns."""
+        """Keep each decision next to its log."""
         if not self._keep_beside:
             return "decisions by hand are not kept: they hold until you quit"
         before, self._kept = self._kept, by_hand
         return keep_on_all(self._keep_beside, before, by_hand)
 
     def close(self) -> None:
-        """A log holds nothing open."""
+        """Do nothing, because a log holds nothing open."""

@@ -1,4 +1,4 @@
-"""What keys do to a replay."""
+"""Keys for a replay."""
 
 from abc import abstractmethod
 from dataclasses import replace
@@ -28,31 +28,31 @@ class ReplayActions(Base):
     view: View
 
     def action_pause(self) -> None:
-        """Hold the replay, or go on."""
+        """Pause the replay, or continue it."""
         self._play(replace(self._tempo, paused=not self._tempo.paused))
 
     def action_step(self) -> None:
-        """Hold the replay and play a tenth of a second."""
+        """Pause the replay and play a tenth of a second."""
         self._play(replace(self._tempo, paused=True))
         self.conductor.step()
 
     def action_faster(self) -> None:
-        """Next higher speed."""
+        """Choose the next higher speed."""
         speed = next((s for s in SPEEDS if s > self._tempo.speed), inf)
         self._play(replace(self._tempo, speed=speed))
 
     def action_slower(self) -> None:
-        """Next lower speed."""
+        """Choose the next lower speed."""
         speed = next((s for s in reversed(SPEEDS) if s < self._tempo.speed), SPEEDS[0])
         self._play(replace(self._tempo, speed=speed))
 
     def action_jump(self) -> None:
-        """Ask for a manoeuvre and go to where it begins."""
+        """Ask for a manoeuvre and go to its begin."""
         if isinstance(self.screen, Face):
             self.screen.ask("Jump to manoeuvre number:", lambda answer: self._jump(int(answer)), integer=True)
 
     def action_jump_by(self, step: int) -> None:
-        """Go to the next manoeuvre, or back to where the last one began."""
+        """Go to the next manoeuvre, or back to the begin of the last one."""
         flown = len(self.view.state.maneuvers)
         self._jump(flown + step if step > 0 else flown)
 
@@ -62,14 +62,14 @@ class ReplayActions(Base):
 
     @abstractmethod
     def say(self, text: str, seconds: float = 3.0) -> None:
-        """Tell something on the last line of the screen, for a while."""
+        """Show a text on the last line of the screen, for a while."""
 
     @property
     def _tempo(self) -> Tempo:
         return self.view.tempo or Tempo()
 
     def _play(self, tempo: Tempo) -> None:
-        """Show it at once, whatever the working side is busy with."""
+        """Show the tempo at once, however busy the conductor is."""
         self.conductor.play(tempo)
         self.show(replace(self.view, tempo=tempo))
 

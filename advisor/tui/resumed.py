@@ -1,4 +1,4 @@
-"""A link that goes on with a flight test whose earlier flights lie in logs."""
+"""A link that continues a flight test whose earlier flights are in logs."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -11,14 +11,14 @@ from advisor.tui.source import LinkHealth, Order, Source
 
 
 class ResumedSource:
-    """Delivers the logs of earlier flights, then what a link delivers, as the last flight.
+    """Delivers the logs of earlier flights, then the messages of a link as the last flight.
 
     Parameters
     ----------
     logs
-        Earlier flights, the oldest first; they are only read.
+        Logs of earlier flights, the oldest first, only read.
     link
-        The flight that is in the air.
+        Link to the flight in the air.
     """
 
     def __init__(self, logs: Sequence[Path], link: Source) -> None:
@@ -29,12 +29,12 @@ class ResumedSource:
         self._notices: list[str] = []
 
     def read(self, timeout_s: float) -> Sequence[Columns] | None:
-        """The next batch, of the earlier flights first.
+        """Return the next batch, those of the earlier flights first.
 
         Raises
         ------
         UnusableInputError
-            When the link can never serve.
+            The link can never serve.
         """
         if self._past is not None:
             batch = next(self._past, None)
@@ -46,22 +46,22 @@ class ResumedSource:
         return columns if columns is None else of_flight(columns, len(self._series.logs))
 
     def health(self) -> LinkHealth:
-        """How the data arrive at this moment."""
+        """Return the state of the data's arrival."""
         if self._past is not None:
             return LinkHealth("waiting", "The earlier flights are being read.")
         return self._link.health()
 
     def take_notices(self) -> Sequence[str]:
-        """What happened on the way since the last call."""
+        """Return the notices since the last call."""
         notices, self._notices = self._notices, []
         return [*notices, *self._link.take_notices()]
 
     def order(self, order: Order) -> None:
-        """Pass on what a crew wants of the link."""
+        """Pass on a crew's request to the link."""
         self._link.order(order)
 
     def keep(self, by_hand: ByHand) -> str:
-        """Keep each decision beside the log or recording that it concerns."""
+        """Keep each decision next to its log or recording."""
         before, self._kept = self._kept, by_hand
         said = keep_on_all(self._series.logs, before, by_hand)
         newest = self._link.keep(by_hand.on_flight(len(self._series.logs)))

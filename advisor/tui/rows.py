@@ -9,7 +9,7 @@ from math import isfinite
 from advisor.tui.plot.chart import Chart
 
 _DIGITS = 7
-"""Significant digits of a number: as many as a log keeps (float32)."""
+"""Significant digits of a number, as many as a log keeps (float32)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,7 +20,7 @@ class Rows:
     rows: tuple[tuple[object, ...], ...]
 
     def csv(self) -> str:
-        """Write a header line and one line a row; nothing stands where a number is not known."""
+        """Write a header line and one line for each row. An unknown number is an empty field."""
         text = StringIO()
         lines = csv.writer(text, lineterminator="\n")
         lines.writerow(self.header)
@@ -29,7 +29,7 @@ class Rows:
 
 
 def rows_of_charts(charts: Iterable[Chart]) -> Rows:
-    """Write every sample of every series as a row of its own: quantity, series, x, y."""
+    """Return every sample of every series as a row of its own: quantity, series, x, y."""
     rows: list[tuple[object, ...]] = []
     x_label = "x"
     for chart in charts:

@@ -1,4 +1,4 @@
-"""Settings of the screens: what a user may put into the settings file."""
+"""Settings of the screens, from the settings file of the user."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
@@ -24,13 +24,13 @@ class Settings:
     theme: str = "dark"
     """``dark``, ``light`` (cockpit sun), ``high contrast`` or ``colour-blind safe``."""
     screen: Face = "pilot"
-    """The screen to start with."""
+    """Screen at the start."""
     keys: Mapping[str, str] = field(default_factory=dict)
-    """Action to its key, or keys with commas between; ``?`` on a screen lists the actions."""
+    """Action to its key, or to keys with commas between. ``?`` on a screen lists the actions."""
 
 
 def settings_path() -> Path:
-    """Where the settings file belongs on this system, whether it exists or not."""
+    """Return the path of the settings file on this system, whether the file exists or not."""
     from platformdirs import user_config_path
 
     return user_config_path("inflight-advisor") / "settings.yaml"
@@ -42,7 +42,7 @@ def load_settings(path: Path | None = None) -> Settings:
     Raises
     ------
     ConfigurationError
-        Lists every mistake with its key and what is allowed there.
+        The file has mistakes. The message lists each with its key and the allowed values.
     """
     from advisor.yaml_file import read_yaml
 

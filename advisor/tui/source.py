@@ -1,4 +1,4 @@
-"""Where a screen's data come from: a link, a log, a demonstration - one narrow protocol for all."""
+"""Source of a screen's data: a link, a log or a demonstration behind one narrow protocol."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,50 +12,53 @@ Condition = Literal["good", "poor", "waiting", "lost", "ended"]
 
 @dataclass(frozen=True, slots=True)
 class LinkHealth:
-    """How the data arrive, for a glance and for a close look."""
+    """State of the data's arrival, for a glance and for a close look."""
 
     condition: Condition
     sentence: str
-    """What is wrong and what to do; or what is right."""
+    """Sentence on the fault and its remedy, or on the sound state."""
     figures: tuple[tuple[str, str], ...] = ()
     """Statistics for the engineer: (name, value with unit)."""
     alarm: str = ""
-    """What is being lost at this moment; empty while nothing is."""
+    """Loss at this moment; empty without one."""
 
 
 @dataclass(frozen=True, slots=True)
 class Order:
-    """Something a crew wants of the link."""
+    """A crew's request to the link."""
 
     what: Literal["follow", "outputs", "take"]
-    """Follow another vehicle; ask the vehicle once which output is its elevator; take an output for it."""
+    """Follow another vehicle; ask the vehicle once for its elevator's output; or use an output as the
+    elevator."""
     number: int = 0
-    """System id of the vehicle to follow, or number of the output to take."""
+    """System id of the vehicle to follow, or number of the output."""
 
 
 class Source(Protocol):
-    """Delivers batches of columns in order of arrival. All calls but ``health`` come from one thread."""
+    """Delivers batches of columns in order of arrival. All calls except ``health`` come from one thread."""
 
     def read(self, timeout_s: float) -> Sequence[Columns] | None:
-        """Wait at most ``timeout_s`` for the next batch; empty: nothing yet; None: the end.
+        """Wait at most ``timeout_s`` for the next batch; return an empty one for nothing yet, or None at the
+        end.
 
         Raises
         ------
         UnusableInputError
-            When the input can never serve; the message says how to mend it.
+            The input can never serve. The message names the remedy.
         """
 
     def health(self) -> LinkHealth:
-        """How the data arrive at this moment; any thread may ask."""
+        """Return the state of the data's arrival. Any thread may call."""
 
     def take_notices(self) -> Sequence[str]:
-        """What happened on the way since the last call: reconnected, rates granted, a second vehicle."""
+        """Return the notices since the last call: reconnected, rates granted, a second vehicle."""
 
     def order(self, order: Order) -> None:
-        """Do what a crew wants of the link; what is no link has nothing to do."""
+        """Carry out a crew's request to the link. Other sources do nothing."""
 
     def keep(self, by_hand: ByHand) -> str:
-        """Keep what was decided by hand with the data; a sentence says where, or why not."""
+        """Keep the decisions by hand with the data; return a sentence on the place, or on the reason of a
+        failure."""
 
     def close(self) -> None:
         """Release sockets and files."""
@@ -63,23 +66,23 @@ class Source(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Tempo:
-    """How the crew wants a replay to run."""
+    """Tempo of a replay."""
 
     paused: bool = False
     speed: float = 1.0
-    """1: as it was flown; infinite: as fast as it can."""
+    """Multiple of the flight's own speed. Infinite: as fast as possible."""
 
 
 @dataclass(frozen=True, slots=True)
 class Playback:
-    """Where a replay stands."""
+    """Position of a replay."""
 
     position_s: float
-    """Seconds since the first record, silences shortened."""
+    """Time since the first record with silences shortened, s."""
     duration_s: float
-    """Length on the same scale."""
+    """Length of the replay on that scale, s."""
     hurrying: bool = False
-    """On the way to where someone wants it to be, whatever its tempo."""
+    """Whether the replay hurries to a position, whatever its tempo."""
 
 
 @runtime_checkable
@@ -87,16 +90,16 @@ class Playable(Source, Protocol):
     """A source that can be paused, stepped, sped up and started again."""
 
     def playback(self) -> Playback:
-        """Where it stands."""
+        """Return the position of the replay."""
 
     def play(self, tempo: Tempo) -> None:
-        """Change the tempo; any thread may call."""
+        """Change the tempo. Any thread may call."""
 
     def step(self) -> None:
-        """While paused: deliver the next tenth of a second; any thread may call."""
+        """Deliver the next tenth of a second while paused. Any thread may call."""
 
     def hurry(self, hurrying: bool) -> None:
-        """Play as fast as it can, paused or not; afterwards the tempo holds again."""
+        """Play as fast as possible, paused or not. Afterwards the tempo holds again."""
 
     def rewind(self) -> None:
-        """Start again with the first record; the caller starts a new campaign."""
+        """Start again with the first record. The caller starts a new campaign."""

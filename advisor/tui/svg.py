@@ -68,7 +68,7 @@ def picture_of(strips: Sequence[Strip], width: int, title: str) -> str:
     width
         Cells of the widest line.
     title
-        Written over the picture.
+        Title over the picture.
     """
     console = Console(
         width=width,

@@ -14,18 +14,18 @@ from advisor.tui.svg import picture_of
 from advisor.tui.view import View
 
 WITHOUT_LOG = Path("advisor")
-"""Stands for a log where nothing is recorded: files go into the current folder under this name."""
+"""Name that replaces the log's where nothing is recorded. Files then go into the current folder."""
 
 
 def pane_name(pane: Pane, view: View) -> str:
-    """Name a pane for a file: ``fit-4`` for the fit of manoeuvre 4, ``history`` for what has no number."""
+    """Return a pane's name for a file: ``fit-4`` for the fit of manoeuvre 4, ``history`` without a number."""
     name = "-".join(pane.TITLE.split()[1:]).lower()
     judged = view.judged if pane.OF_SELECTED else None
     return f"{name}-{judged.maneuver.number}" if judged is not None else name
 
 
 def log_of(pane: Pane, view: View) -> Path:
-    """Choose the log that names the files: that of the selected manoeuvre, else the newest.
+    """Return the log that names the files: that of the selected manoeuvre, else the newest.
 
     A page in a browser knows the log of a replay by the title alone.
     """
@@ -37,7 +37,7 @@ def log_of(pane: Pane, view: View) -> Path:
 
 
 def files_of(pane: Pane, view: View) -> dict[str, str]:
-    """Give the files that hold a pane by name: CSV of its rows or its text, and SVG of its plots."""
+    """Return the files of a pane by name: CSV of its rows or its text, and SVG of its plots."""
     log, name = log_of(pane, view), pane_name(pane, view)
     stem = f"{log.stem}.{name}"
     files = {f"{stem}.csv" if pane.rows() is not None else f"{stem}.txt": pane.text()}
@@ -47,9 +47,10 @@ def files_of(pane: Pane, view: View) -> dict[str, str]:
 
 
 def save(pane: Pane, view: View) -> str:
-    """Write the files of a pane into the folder of the log; return a sentence that says where, or why not.
+    """Write the files of a pane into the folder of the log; return a sentence on the place, or on the
+    failure.
 
-    A file of an earlier save is replaced. A file that is half written never carries the name.
+    A file of an earlier save is replaced. A file that is half written never has the final name.
     """
     folder, files = log_of(pane, view).parent, files_of(pane, view)
     names = " and ".join(map(printable, files))

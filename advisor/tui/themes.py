@@ -13,8 +13,9 @@ _IN_EVERY_THEME = {
     "scrollbar-corner-color": _SCROLLBAR_BACKGROUND,
     "link-background-hover": _SCROLLBAR,
 }
-"""Grey stands out from light and from dark. Textual gives these colours to every widget, with a scroll bar or
-without, and each that changes with the theme refreshes all that the widget holds: most of a change's time."""
+"""Scroll bar colours of every theme: grey stands out from light and from dark. Textual gives these colours to
+every widget, with or without a scroll bar. A colour that changes with the theme refreshes the whole content
+of each widget, which would take most of the time of a change."""
 
 
 def _variables(
@@ -71,7 +72,7 @@ THEMES = (
         text_alpha=1.0,
         variables=_variables("#00ffff", "#ffff00", "#ff88ff", "#00ff00", "#ff5555", "#ffffff"),
     ),
-    # Okabe and Ito's palette: told apart with any of the common colour vision deficiencies.
+    # Okabe and Ito's palette, distinguishable with any of the common colour vision deficiencies.
     Theme(
         name="colour-blind safe",
         primary="#56b4e9",

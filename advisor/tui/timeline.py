@@ -7,16 +7,16 @@ import numpy as np
 from advisor.flight.messages import Columns, IntArray, cut
 
 LONGEST_SILENCE_S = 2.0
-"""Silences of a log, and the leaps of its clock, are played in at most this time."""
+"""Longest replay time of a silence in a log, or of a leap of its clock, s."""
 
 
 class Timeline:
-    """Columns cut into stretches of replay time, each message delivered once and in order.
+    """Columns cut into stretches of replay time. Each message is delivered once and in order.
 
     Parameters
     ----------
     columns : sequence of Columns
-        One whole log, or several, flight after flight; several pieces of one message type are allowed.
+        One whole log, or several logs, flight after flight. One message type may come in several pieces.
     """
 
     def __init__(self, columns: Sequence[Columns]) -> None:
@@ -40,7 +40,7 @@ class Timeline:
         return float(self._played_s[-1]) if len(self) else 0.0
 
     def up_to(self, position_s: float) -> list[Columns]:
-        """Everything not yet delivered with a replay time of at most ``position_s``."""
+        """Return the messages with a replay time of at most ``position_s`` that were not yet delivered."""
         count = int(np.searchsorted(self._played_s, position_s, side="right"))
         if count == 0:
             return []
@@ -54,12 +54,12 @@ class Timeline:
         return batch
 
     def rewind(self) -> None:
-        """Deliver from the first message again."""
+        """Begin again with the first message."""
         self._next = [0] * len(self._pieces)
 
 
 def _through(pieces: Sequence[Columns]) -> list[IntArray]:
-    """The order of arrival of each piece among the messages of all flights."""
+    """Return the order of arrival of each piece among the messages of all flights."""
     flights = sorted({piece.flight for piece in pieces})
     first, behind = {}, 0
     for flight in flights:

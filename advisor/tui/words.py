@@ -1,4 +1,4 @@
-"""How quantities are called and written for people: symbols, degrees, digits that mean something."""
+"""Names and forms of quantities for people: symbols, degrees, significant digits."""
 
 import re
 from math import isfinite
@@ -18,22 +18,22 @@ PARAMETERS = {
 
 
 def channel(name: str) -> Quantity:
-    """How a channel is written; one without an entry keeps its own name and SI."""
+    """Return the symbol and unit of a channel. A channel without an entry keeps its own name and SI."""
     return CHANNELS.get(name, Quantity(name, "SI"))
 
 
 def without_word(sentence: str) -> str:
-    """A verdict's sentence without the word before it, where the word stands in large letters already."""
+    """Return a verdict's sentence without its first word, which stands in large letters already."""
     return re.sub(r"^[A-Z ]+: ", "", sentence)
 
 
 def headline(sentence: str) -> str:
-    """What comes before the first colon or full stop: enough for a glance."""
+    """Return the text before the first colon or full stop, for a glance."""
     return re.split(r"[:;.](?:\s|$)", sentence, maxsplit=1)[0]
 
 
 def percent(value: float | None) -> str:
-    """A percentage for a glance: no decimals above 10."""
+    """Return a percentage for a glance, without decimals above 10."""
     if value is None or not isfinite(value):
         return "-"
     return f"{value:.1f} %" if abs(value) < 10.0 else f"{value:.0f} %"

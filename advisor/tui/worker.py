@@ -17,11 +17,12 @@ from advisor.tui.conducting import Report
 from advisor.tui.conductor import Conductor
 
 _GIVES_WAY = 5
-"""Where processors are scarce, an estimate may come a moment later; the answer to a key may not."""
+"""Niceness of the process. Where processors are scarce, an estimate may come later, but the answer to a key
+may not."""
 
 
 class Reporter:
-    """Writes the first report, then what changed in each."""
+    """Writes the first report, then the changes of each later one."""
 
     def __init__(self, pipe: IO[bytes]) -> None:
         self._pipe = pipe
@@ -33,13 +34,13 @@ class Reporter:
         self._last = report
 
     def send(self, message: object) -> None:
-        """Write at once."""
+        """Write a message at once."""
         pickle.dump(message, self._pipe, pickle.HIGHEST_PROTOCOL)
         self._pipe.flush()
 
 
 def serve(conductor: Conductor, requests: IO[bytes]) -> None:
-    """Do what is asked for; when nobody can ask any more, stop."""
+    """Carry out requests, and stop when nobody can send any more."""
     with suppress(EOFError):
         while True:
             name, arguments = pickle.load(requests)
@@ -48,13 +49,13 @@ def serve(conductor: Conductor, requests: IO[bytes]) -> None:
 
 
 def main() -> None:
-    """Conduct one campaign from its task to its end; what breaks it off is the last message."""
+    """Conduct one campaign from its task to its end. An error that ends the campaign is the last message."""
     os.nice(_GIVES_WAY)
     # A signal is for the screens, which then stop this process in order.
     interrupt.ignore()
-    # Closed at the end, upon which the other side closes the requests and ``serve`` returns.
+    # Closed at the end, after which the other side closes the requests and ``serve`` returns.
     with suppress(BrokenPipeError), os.fdopen(os.dup(sys.stdout.fileno()), "wb") as reports:
-        # What a library prints must not fall among the reports.
+        # A library's output must not fall among the reports.
         os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
         reporter = Reporter(reports)
         try:

@@ -60,7 +60,7 @@ class Site:
         self._pages: set[PageProcess] = set()
 
     def application(self) -> web.Application:
-        """Make the routes, behind the checks that all of them share."""
+        """Return the web application: its routes, and the checks before every route."""
         application = web.Application(middlewares=[self._guard])
         login = Login(self._access)
         application.add_routes(

@@ -5,9 +5,17 @@ from pathlib import Path
 import click
 import pytest
 
-from advisor.aircraft import Aircraft
+from advisor.aircraft import Aircraft, Elevator
 from advisor.aircraft_file.keys import KEYS
+from advisor.aircraft_file.log_facts import LogFacts
+from advisor.aircraft_file.proposal import proposed
 from advisor.config import load_aircraft
+from advisor.flight.ardupilot_wiring import WORDS
+from advisor.flight.elevator_guess import Guess
+from advisor.flight.elevator_outputs import find_elevator
+from advisor.flight.surfaces import Scale
+from advisor.flight.vehicle import Vehicle
+from advisor.flight.wiring import Role, Wiring
 from tests.conftest import Advisor
 
 CASES = Path(__file__).parents[1] / "cases"
@@ -124,3 +132,28 @@ def test_questions_without_answers_leave_no_file(
     assert run.returncode == 2
     assert "advisor aircraft new --from LOG" in run.stderr
     assert not (tmp_path / "a.yaml").exists()
+
+
+def test_elevons_are_found_by_the_parameters_and_both_are_described() -> None:
+    left, right = Role("elevon", "left"), Role("elevon", "right")
+    scale = Scale(1000.0, 1500.0, 2000.0, reversed=True)
+    wiring = Wiring(WORDS, {1: left, 2: right}, {1: scale, 2: scale}, frozenset({1, 2}))
+    surface = find_elevator(Elevator(), wiring)
+    vehicle = Vehicle(1, 1, "ardupilot", 1)
+    facts = LogFacts(vehicle, surface, None, wiring, {1: (1400.0, 1600.0)}, None, None, None, "unknown", ())
+    draft = proposed(facts, "a.tlog")
+    assert draft.values["elevator.output"] == "auto"
+    assert "1000/1500/2000 us, reversed" in draft.comments["elevator.calibration"]
+    assert "from 1400 to 1600 us" in draft.comments["elevator.calibration"]
+    assert draft.unsure == ["a.tlog has no air speed: write airspeed_m_s, the speed that was flown."]
+
+
+def test_a_guessed_elevator_is_marked_for_a_check() -> None:
+    vehicle, nothing = Vehicle(1, 1, "ardupilot", 1), Wiring(WORDS)
+    unknown = find_elevator(Elevator(), nothing)
+    guess = Guess(3, 0.6, 0.01)
+    facts = LogFacts(vehicle, unknown, guess, nothing, {}, (9.0, 10.0, 11.0), 1e5, None, "unknown", (10.5,))
+    draft = proposed(facts, "a.tlog")
+    assert (draft.values["elevator.output"], draft.values["reference_airspeed_m_s"]) == (3, 10.5)
+    assert draft.comments["elevator.output"].startswith("GUESS")
+    assert "1000 hPa" in draft.head[1]

@@ -97,7 +97,7 @@ def test_a_parameter_near_zero_is_named_as_what_keeps_the_criterion_up() -> None
     history = [Flown(drawn(rng, near_zero, std_percent=2.0)) for _ in range(6)]
     verdict = flight_test(history, PLAN)
     assert verdict.decision == "continue"
-    assert any("beside Z_q (" in w and "rule information" in w for w in verdict.warnings)
+    assert any("relative to Z_q (" in w and "rule information" in w for w in verdict.warnings)
     assert flight_test(history, replace(PLAN, rule="information")).decision == "stop"
 
 

@@ -1,8 +1,8 @@
 """A third coding of the aircraft, for the tests of the gap alone.
 
-Nonlinear longitudinal motion in body velocities u, w (neither the advisor's α, q form nor the
-simulator's code), integrated by Euler-Cromer at 0.5 ms, with one physical switch per effect.
-Used to develop and to test the diagnosis; it shares nothing with what it tests.
+The nonlinear longitudinal motion in body velocities u, w is integrated by Euler-Cromer at 0.5 ms, with one
+physical switch per effect. It is neither the advisor's α, q form nor the simulator's code. Used to develop
+and to test the diagnosis; it shares nothing with what it tests.
 """
 
 from dataclasses import dataclass, field
@@ -234,7 +234,7 @@ class Setup:
     engine_lag_s: float = 0.0
     """Of the thrust behind the throttle."""
     surge: float = 0.0
-    """Thrust that comes and goes of itself, relative; no throttle shows it ..."""
+    """Relative amplitude of thrust that surges without a command; no throttle shows it ..."""
     surge_hz: float = 0.6
     """... so many times a second."""
     logs_throttle: bool = False
@@ -253,13 +253,13 @@ class Setup:
     cg_drift: float = 0.0
     """Relative change of Cm_α from first to last manoeuvre."""
     cg_step: float = 0.0
-    """The same halfway."""
+    """Relative change of Cm_α halfway."""
     cg_course: tuple[float, ...] = ()
-    """The same, of each manoeuvre in turn; none: as the two before say."""
+    """Relative change of Cm_α by manoeuvre, in turn; none: ``cg_drift`` and ``cg_step`` apply."""
     mass_step: float = 0.0
     """Relative change of mass and inertia halfway."""
     inertia_of_mass: float = 1.0
-    """What the inertia changes by, of what the mass does."""
+    """Relative change of the inertia over that of the mass."""
     comes_at_s: float = 0.0
     """The steps of centre of gravity and mass come that much into the record halfway."""
     ice_after: int = 99
@@ -273,7 +273,7 @@ class Setup:
 
 
 def command_of(kind: int, unit: float, amplitude: float, t: np.ndarray, start: float) -> np.ndarray:
-    """3-2-1-1 with balanced areas, its reverse, or doublet, as a pilot's step input."""
+    """Return 3-2-1-1 with balanced areas, its reverse, or doublet, as a pilot's step input."""
     steps = {0: [(3, 0.8), (2, -1.0), (1, 1.1), (1, -1.5)], 1: [(3, -0.8), (2, 1.0), (1, -1.1), (1, 1.5)],
              2: [(2, 1.0), (2, -1.0)]}[kind]  # fmt: skip
     y, at = np.zeros_like(t), start
@@ -284,7 +284,7 @@ def command_of(kind: int, unit: float, amplitude: float, t: np.ndarray, start: f
 
 
 def throttle_wave(setup: Setup, i: int, t: np.ndarray, start: float) -> np.ndarray:
-    """Relative change of the throttle in a manoeuvre: opened for a second and a half."""
+    """Return the relative change of the throttle in a manoeuvre: opened for a second and a half."""
     moved = setup.thrust_amplitude if i in setup.thrust_moves_in else 0.0
     return moved * ((t > start + 1.5) & (t < start + 3.0))
 

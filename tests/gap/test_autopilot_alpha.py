@@ -15,7 +15,7 @@ pytestmark = pytest.mark.xdist_group("autopilot alpha")
 
 
 def estimated(maneuvers, late_s=0.025):
-    """The manoeuvres with an angle of attack of 10 Hz, late and smooth, from an estimator."""
+    """Return the manoeuvres with an angle of attack of 10 Hz, late and smooth, from an estimator."""
     found = []
     for m in maneuvers:
         alpha = m.channels["alpha"]

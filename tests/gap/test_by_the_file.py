@@ -1,4 +1,4 @@
-"""Two effects that look like another one and wrong numbers show as they are beside the file's numbers."""
+"""Two effects that resemble others, or wrong derivatives, are found by means of the file's derivatives."""
 
 import pytest
 
@@ -12,7 +12,7 @@ pytestmark = pytest.mark.study
 
 @pytest.fixture(scope="module")
 def plane() -> Aircraft:
-    """The aircraft file of what is flown, as a flight with nothing wrong tells it."""
+    """Return the aircraft file of the flown aircraft, estimated from a flight without a gap."""
     sound = diagnose(fly(Setup(maneuvers=6, noise=0.005, seed=24)), Aircraft())
     model = {name: number.value for name, number in sound.model.items()}
     return Aircraft(model=model, reference_airspeed_m_s=sound.reference_airspeed_m_s)

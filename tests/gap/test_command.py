@@ -25,7 +25,7 @@ maneuvers: ["3211", "rev", doublet, "rev"]
 
 
 def plain_model_of(scenario, folder):
-    """The data of a flight of the bundled aircraft, and the plain model fitted to them."""
+    """Return the data of a flight of the bundled aircraft, and the baseline fit."""
     (folder / "flown.yaml").write_text(scenario)
     record(flight_of(read_scenario(folder / "flown.yaml")), folder / "flown.tlog")
     maneuvers = maneuvers_of([folder / "flown.tlog"], Aircraft()).maneuvers
@@ -58,7 +58,7 @@ def test_a_delay_of_nearly_an_interval_is_not_taken_for_a_held_command_that_is_h
 
 
 def without(maneuver, lost):
-    """The manoeuvre with some stamps of its command lost on the way."""
+    """Return the manoeuvre without some stamps of its command."""
     elevator = maneuver.channels["elevator"]
     kept = replace(elevator, t=elevator.t[~lost], y=elevator.y[~lost])
     return replace(maneuver, channels={**maneuver.channels, "elevator": kept})

@@ -22,7 +22,7 @@ from tests.gap.generator import Setup, fly
 
 @pytest.fixture(scope="module")
 def late():
-    """The data of a flight with late accelerometers, and the lateness as an addition to the plain model."""
+    """Return the data of a flight with late accelerometers, and the delay as an addition to the baseline."""
     flights = prepare(fly(Setup(maneuvers=3, skew={"a_z": 0.02}, seed=61)), Aircraft())
     problem, plain = fit_baseline(flights, Aircraft())
     variant = next(v for v in variants_for(flights) if v.effect == "accelerometer_skew")
@@ -32,7 +32,7 @@ def late():
 
 
 def leaving(problem, *sizes):
-    """What a model leaves that misses every channel of each manoeuvre by so many times the noise."""
+    """Return the residual of a model that misses each manoeuvre's channels by multiples of the noise."""
     residuals = []
     for flight, size in zip(problem.flights.flights, sizes, strict=True):
         residual = np.empty(len(flight.stamps))

@@ -67,7 +67,7 @@ def test_when_the_autopilot_was_booted_is_no_part_of_the_answer():
 
 
 def booted_before(maneuver, seconds):
-    """The manoeuvre of a vehicle that had been on for so much longer."""
+    """Return the manoeuvre of a vehicle that was switched on earlier by this time."""
     span = maneuver.span
     later = replace(
         span,

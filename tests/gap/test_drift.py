@@ -16,7 +16,7 @@ HARD = Setup(maneuvers=8, gust_std=0.1, coloured=0.5, jitter=0.003, speed_change
 
 
 def through_a_vane(setup, lags_s):
-    """A flight whose vane has another lag in each manoeuvre."""
+    """Return a flight whose vane has another lag in each manoeuvre."""
     return [fly(replace(setup, switches={"vane_lag": lag}))[i] for i, lag in enumerate(lags_s)]
 
 

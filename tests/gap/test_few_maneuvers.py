@@ -1,4 +1,4 @@
-"""What a single manoeuvre and what two of them tell of a gap."""
+"""Diagnoses of a single manoeuvre and of two."""
 
 import pytest
 
@@ -15,7 +15,7 @@ MODEL = dict(zip(PARAMETERS, (0.04, -4.3, -0.03, -0.28, 0.0, -37.0, -4.8, -52.0)
 
 @pytest.fixture(scope="module")
 def once():
-    """One manoeuvre of an aircraft whose pitching moment is not the simulator's."""
+    """Return one manoeuvre of an aircraft whose pitching moment is not the simulator's."""
     return diagnose(fly(Setup(maneuvers=3, seed=4))[:1], Aircraft(model={**MODEL, "M_alpha": -25.0}))
 
 

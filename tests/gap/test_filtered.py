@@ -13,7 +13,7 @@ from tests.gap.generator import Setup, fly
 
 
 def through(channel, late_s, shape):
-    """What a filter 1/(1 + T p + c T² p²) makes of a channel."""
+    """Return a channel behind a filter 1/(1 + T p + c T² p²)."""
     t = np.arange(channel.t[0], channel.t[-1] + 1e-9, 0.002)
     bias = np.median(channel.y[:20])
     passed = lsim(

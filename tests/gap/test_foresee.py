@@ -1,4 +1,4 @@
-"""What a plan could show: every effect of the catalogue, with what to add where it cannot."""
+"""The foresight of a plan: every effect of the catalogue, and the additions that make more visible."""
 
 import io
 import json
@@ -76,7 +76,7 @@ def test_without_its_channel_an_effect_is_invisible_and_the_message_is_named(wit
 
 
 def flown_with(channel, reading):
-    """Two manoeuvres in which a channel reads always the same, or was not recorded (None)."""
+    """Return two manoeuvres with a channel that always reads one value, or is absent (None)."""
     maneuvers = fly(Setup(maneuvers=2, heights_m=(80.0, 80.0), thrust_amplitude=0.1))
     return prepare([replace(m, channels=_altered(m.channels, channel, reading)) for m in maneuvers], PLANE)
 

@@ -1,4 +1,4 @@
-"""What a fit of the others predicts of manoeuvres kept out of it."""
+"""The prediction of held-out manoeuvres by a fit of the others."""
 
 import numpy as np
 import pytest
@@ -15,7 +15,7 @@ from tests.gap.generator import Setup, fly
 
 @pytest.fixture(scope="module")
 def heavier():
-    """Nine manoeuvres, the aircraft heavier from the fifth on, and the plain model fitted to them."""
+    """Return nine manoeuvres, the last five with a heavier aircraft, and the baseline fit."""
     flights = prepare(fly(Setup(maneuvers=9, mass_step=0.25, noise=0.005, seed=3)), Aircraft())
     return fit_baseline(flights, Aircraft())
 

@@ -20,7 +20,7 @@ from tests.gap.generator import Setup, fly
 
 @pytest.fixture(scope="module")
 def filtered():
-    """A flight whose noise has a memory: innovations are not the errors."""
+    """Return a flight whose noise has a memory: innovations are not the errors."""
     problem, fitted = fit_baseline(
         prepare(fly(Setup(maneuvers=6, coloured=0.9, seed=33)), Aircraft()), Aircraft()
     )

@@ -27,7 +27,7 @@ CAMPAIGN = Path(__file__).parents[2] / "sim" / "scenarios" / "late-command.yaml"
 
 @pytest.fixture(scope="module")
 def diagnosed(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path, Path]:
-    """A flight with a late command, the simulator that knows nothing of it, and the improved one."""
+    """Return a flight with a late command, the simulator without the delay, and the improved one."""
     folder = tmp_path_factory.mktemp("late")
     flight, believed, improved = folder / "flight.tlog", folder / "believed.yaml", folder / "improved.yaml"
     flown = flight_of(scenario_from(yaml.safe_load(CAMPAIGN.read_text())))

@@ -22,7 +22,7 @@ def flown():
 
 
 def diagnosed(channel, change):
-    """The diagnosis of the flight with one of its channels changed."""
+    """Return the diagnosis of the flight with one of its channels changed."""
     maneuvers = [replace(m, channels={**m.channels, channel: change(m.channels[channel])}) for m in flown()]
     return diagnose(maneuvers, Aircraft(elevator=SERVO))
 

@@ -89,7 +89,7 @@ def test_where_nothing_else_is_a_vane_that_is_plainly_off_is_named_from_a_sixth_
 
 
 def sparse_estimate():
-    """A problem whose angle of attack comes ten times a second, from an estimator."""
+    """Return a problem whose angle of attack comes ten times a second, from an estimator."""
     seldom = []
     for m in flown():
         alpha = m.channels["alpha"]
@@ -172,7 +172,7 @@ def test_air_that_begins_to_sink_is_no_offset_of_the_angle_of_attack():
 
 
 def blown(maneuver, gradient):
-    """The manoeuvre in a wind that changes with height."""
+    """Return the manoeuvre in a wind that changes with height."""
     speed, climb = maneuver.channels["airspeed"], maneuver.channels["climb_rate"]
     height = np.concatenate(([0.0], np.cumsum(np.diff(climb.t) * (climb.y[1:] + climb.y[:-1]) / 2.0)))
     y = speed.y + gradient * np.interp(speed.t, climb.t, height)
@@ -190,7 +190,7 @@ def test_heights_that_explain_next_to_nothing_of_the_air_speeds_own_motion_are_n
 
 
 def late(maneuver, by_s):
-    """The same with an air speed that passes a filter."""
+    """Return the manoeuvre in a wind that changes with height, with a filtered air speed."""
     speed = maneuver.channels["airspeed"]
     y = speed.y.copy()
     for i in range(1, len(y)):

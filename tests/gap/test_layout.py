@@ -84,7 +84,7 @@ def _simulate(layout: int, numbers: int) -> np.ndarray:
 
 
 def _fly(root: Path) -> tuple[str, str]:
-    """The layout's first name, and a flight with numbers given by name, as text; without compiling."""
+    """Return the layout's first name, and a flight with numbers given by name, as text; without compiling."""
     plain = {"NUMBA_DISABLE_JIT": "1", "PYTHONPATH": os.pathsep.join([str(root), str(ROOT)])}
     run = subprocess.run(
         [sys.executable, "-W", "ignore", "-c", _FLY],

@@ -27,7 +27,7 @@ SYSTEM = np.array([-4.3, -0.03, -37.0, -4.8, 22.0])
 
 
 def merged(n: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
-    """Irregular stamps of all four channels in order of time."""
+    """Return irregular stamps of all four channels in order of time."""
     rng = np.random.default_rng(seed)
     t = np.sort(rng.uniform(0.0, 3.0, 4 * n))
     return t, rng.permutation(np.repeat(np.arange(4), n)).astype(np.int64)
@@ -115,7 +115,7 @@ def test_derivatives_are_right_although_a_gust_hit_every_third_manoeuvre():
 
 
 def test_noise_without_a_filter_is_given_in_the_units_of_the_channels_whatever_was_thought_at_first():
-    """An unseen delay looks like moving air at a first look, and like white noise at a second."""
+    """Check that an unseen delay looks like moving air at first, and like white noise after the fit."""
     flown = fly(Setup(maneuvers=9, rate_hz=20.0, switches={"delay": 0.05}, seed=5))
     problem, fitted = fit_baseline(prepare(flown, Aircraft()), Aircraft())
     assert not problem.knows_the_noise
@@ -138,7 +138,7 @@ def test_one_manoeuvre_seen_alone_keeps_what_changes_between_manoeuvres():
 
 
 def wandering(channel, share, memory_s, others=0.0):
-    """A flight in which an instrument wanders by a share of its largest motion, with a memory."""
+    """Return a flight in which an instrument wanders by a share of its largest motion, with a memory."""
     flown = []
     rng = np.random.default_rng(4)
     for maneuver in fly(Setup(seed=12)):
@@ -170,7 +170,7 @@ def test_an_instrument_that_wanders_alone_is_unknown_and_no_noise(channel, block
 
 @pytest.mark.parametrize("seed", [14, 15])
 def test_an_attitude_that_accelerations_pull_and_that_forgets_is_unknown(seed):
-    """An estimator of a gain that is too high: it leans towards what a plumb line would show, and returns."""
+    """Diagnose an estimator whose gain is too high: it leans towards the plumb line, and returns."""
     flown = []
     for maneuver in fly(Setup(maneuvers=6, seed=seed)):
         read, felt = maneuver.channels["theta"], maneuver.channels["a_x"]

@@ -44,7 +44,7 @@ def test_what_is_plotted_as_after_is_what_the_channel_read_where_its_offset_is_t
 
 @pytest.fixture(scope="module")
 def sound():
-    """A flight with nothing wrong, and what is said of it."""
+    """Return a flight without a gap, and its diagnosis."""
     flown = fly(Setup(maneuvers=4, seed=5))
     return flown, diagnose(flown, Aircraft())
 

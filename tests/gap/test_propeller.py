@@ -1,4 +1,4 @@
-"""What a propeller does to the tail is part of every aircraft that has one, and no gap."""
+"""The effect of a propeller on the tail is part of every propeller aircraft, and no gap."""
 
 import pytest
 

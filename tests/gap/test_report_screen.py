@@ -28,7 +28,7 @@ UNLIKELY = Cause(
 
 
 def diagnosis(**changes: object) -> Diagnosis:
-    """A diagnosis with as large numbers and as long names as there are."""
+    """Return a diagnosis with as large numbers and as long names as there are."""
     t = np.linspace(0.0, 9.0, 300)
     fit = (Yardsticks(0.123, 0.01, 0.02, 0.97, 0.8123, 0.55), Yardsticks(0.012, 0.0, 0.0, 1.0, 0.9999, 1.0))
     content: dict[str, object] = {
@@ -55,7 +55,7 @@ def diagnosis(**changes: object) -> Diagnosis:
 
 
 def printed(found: Diagnosis, columns: int) -> list[str]:
-    """The screen as plain text, line by line."""
+    """Return the screen as plain text, line by line."""
     out = io.StringIO()
     Console(file=out, width=columns, color_system=None, highlight=False).print(
         GapScreen(found, "better.yaml")

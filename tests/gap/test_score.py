@@ -1,4 +1,4 @@
-"""What is worth a name, and which of two descriptions of the same motion gets it."""
+"""Which effects are accepted, and which of two descriptions of one motion is chosen."""
 
 from dataclasses import replace
 
@@ -21,7 +21,7 @@ from tests.gap.generator import LIGHT_AIRCRAFT, UAV, Setup, fly
 
 @pytest.fixture(scope="module")
 def late():
-    """A flight with late accelerometers, its plain model, and the lateness as an addition to it."""
+    """Return a flight with late accelerometers, its baseline fit, and the delay as an addition to it."""
     flights = prepare(fly(Setup(maneuvers=6, skew={"a_z": 0.02}, seed=61)), Aircraft())
     problem, plain = fit_baseline(flights, Aircraft())
     variant = next(v for v in variants_for(flights) if v.effect == "accelerometer_skew")
@@ -130,7 +130,7 @@ def test_of_two_arms_that_are_one_in_the_data_the_file_tells(arm_m):
 
 
 def test_what_is_kept_out_is_predicted_alike_by_two_names_of_one_motion():
-    """An accelerometer off its place and a vane off its own are one motion in other derivatives."""
+    """Check that an accelerometer off its place and a vane off its own give one motion."""
     setup = Setup(airframe=LIGHT_AIRCRAFT, maneuvers=6, switches={"acc_arm": 1.5}, seed=63)
     flights = prepare(fly(setup), Aircraft())
     problem, plain = fit_baseline(flights, Aircraft())
@@ -179,7 +179,7 @@ def test_what_every_instrument_has_is_not_unknown_where_it_shows_beside_small_mo
 
 
 def gained_by_a_gyros_scale(thrust_arm):
-    """Of a gyro that reads 6 % too much, beside thrust that moved in one manoeuvre only, as ``gain``."""
+    """Return the judgement of a gyro that reads 6 % too much, with a thrust change in one manoeuvre."""
     flown = Setup(
         maneuvers=6, q_scale=0.06, thrust_amplitude=0.5, thrust_moves_in=(2,),
         switches={"thrust_arm": thrust_arm}, seed=4,

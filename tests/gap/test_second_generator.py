@@ -69,7 +69,7 @@ def test_it_imports_nothing_of_the_diagnosis_and_nothing_of_the_simulator():
 
 @pytest.fixture(scope="module")
 def quiet_case() -> Case:
-    """A case with nothing there, in still air."""
+    """Return a case without a gap, in still air."""
     for index in range(1, 20):
         case = draw_case(Assignment("none"), 3, index)
         if not case.troubles and case.recorder.low_pass is None:
@@ -79,7 +79,7 @@ def quiet_case() -> Case:
 
 @pytest.fixture(scope="module")
 def busy_flight() -> tuple[Experiment, Flown, Noise]:
-    """A low flight in which speed and power change, so that every effect has what it needs."""
+    """Return a low flight with changing speed and power, so that every effect is visible."""
     rng = np.random.default_rng(4)
     wishes = Wishes(speed_share=0.15, power_share=0.4, low=True)
     case = suitable_experiment(wishes, True, draw_wiring(rng), seed=2)
@@ -107,7 +107,7 @@ def test_a_tail_that_meets_rising_air_later_than_the_wing_lifts_the_nose():
 
 
 def pulse_response(aircraft: Aircraft) -> tuple[Floats, Floats, Floats, Floats]:
-    """Alpha and q off trim after a small pulse, by the nonlinear motion and by the linear model."""
+    """Return alpha and q off trim after a small pulse, by the nonlinear motion and by the linear model."""
     model = trimmed(plain_model(aircraft), HEIGHT_M)
     linear = linearised(model, HEIGHT_M)
     # Later the speed has changed, which the short period's linear model leaves out.
@@ -200,7 +200,8 @@ def test_set_has_its_quotas() -> None:
 
 
 def messages_of(log: bytes) -> list[mavlink.MAVLink_message]:
-    """The messages of a tlog of unsigned MAVLink 2 frames; every frame has to be valid, and in order."""
+    """Return the messages of a tlog of unsigned MAVLink 2 frames; every frame has to be valid, and in
+    order."""
     link = mavlink.MAVLink(None)
     found, at, before = [], 0, 0
     while at < len(log):

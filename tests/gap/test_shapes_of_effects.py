@@ -17,7 +17,7 @@ pytestmark = pytest.mark.study
 
 @pytest.fixture(scope="module")
 def plane() -> Aircraft:
-    """The aircraft file of what is flown, as a flight with nothing wrong tells it."""
+    """Return the aircraft file of the flown aircraft, estimated from a flight without a gap."""
     sound = diagnose(fly(Setup(maneuvers=5, noise=0.005, seed=9)), Aircraft())
     model = {name: number.value for name, number in sound.model.items()}
     return Aircraft(model=model, reference_airspeed_m_s=sound.reference_airspeed_m_s)

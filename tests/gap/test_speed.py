@@ -29,7 +29,7 @@ HEIGHTS = (80.0, 90.0, 85.0)
 
 
 def flights_with(speed_of, height_of):
-    """Three manoeuvres whose speed and height follow given courses of time."""
+    """Return three manoeuvres whose speed and height follow given courses of time."""
     found = prepare(fly(Setup(maneuvers=3, heights_m=HEIGHTS)), Aircraft())
     flights = []
     for flight in found.flights:

@@ -19,7 +19,7 @@ pytestmark = pytest.mark.study
 
 
 def remembering(rng, n, memory):
-    """Noise of variance 1, each sample correlated with the one before."""
+    """Return noise of variance 1, each sample correlated with the one before."""
     found, e = np.empty(n), rng.standard_normal(n)
     found[0] = e[0]
     for k in range(1, n):
@@ -75,7 +75,7 @@ def test_each_manoeuvre_has_three_numbers_for_it_where_it_was_measured_and_its_l
 
 
 def noisy_speed(maneuver, rng, size_m_s, rate_hz=5.0):
-    """The manoeuvre with an air speed as a pressure port gives it: seldom, and with noise that remembers."""
+    """Return the manoeuvre with the air speed of a pressure port: seldom, and with correlated noise."""
     speed = maneuver.channels["airspeed"]
     t = np.arange(speed.t[0], speed.t[-1], 1.0 / rate_hz)
     y = np.interp(t, speed.t, speed.y) + size_m_s * remembering(rng, len(t), 0.5)

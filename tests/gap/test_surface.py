@@ -31,7 +31,7 @@ def test_what_the_surface_reads_stands_first_so_that_entries_added_later_do_not_
 
 
 def in_small_steps(t_u, u, held, late, rate, lag, play, dead):
-    """Mean deflection over each step of ``H``: servo, linkage and band as they are defined."""
+    """Return the mean deflection over each step of ``H`` by the definitions of servo, linkage and band."""
     t = (np.arange(round(DURATION / SMALL)) + 0.5) * SMALL - late
     before = np.clip(np.searchsorted(t_u, t, side="right") - 1, 0, None)
     command = u[before] if held else np.interp(t, t_u, u)

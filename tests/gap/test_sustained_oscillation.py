@@ -1,4 +1,4 @@
-"""What swings of itself is a line of the spectrum: seen and placed, though the noise's filter knows of it."""
+"""A sustained oscillation is a spectral line: found and placed, although the noise filter models it."""
 
 from dataclasses import replace
 
@@ -87,7 +87,7 @@ def test_what_swung_before_the_stick_moved_was_not_set_off_by_it():
 
 
 def shaken(channel, amplitude):
-    """A flight with one channel that swings by itself."""
+    """Return a flight with an oscillation in one channel."""
     found = []
     for n, maneuver in enumerate(fly(Setup(maneuvers=6, seed=36))):
         y = maneuver.channels[channel]

@@ -1,4 +1,4 @@
-"""What has no name is called unknown, with the place it comes from; the file decides what data cannot."""
+"""A gap without a named effect is unknown, with its place; the file decides where data cannot."""
 
 from dataclasses import replace
 
@@ -54,7 +54,7 @@ def test_a_vane_that_jumps_now_and_then_is_unknown_in_the_vane_whatever_is_named
 
 
 def test_a_propeller_met_at_another_place_of_its_turn_is_no_accelerometer_that_jumps():
-    """A vibration at the rate of the samples stands still in them, but where one comes late."""
+    """Diagnose a vibration at the rate of the samples: it is seen only where a sample comes late."""
     maneuvers = []
     rng = np.random.default_rng(8)
     for maneuver in fly(Setup(maneuvers=6, noise=0.002, seed=24)):
@@ -98,7 +98,7 @@ def test_three_streams_that_are_late_alike_are_a_late_command_and_one_stream_tha
 
 @pytest.fixture(scope="module")
 def still_file():
-    """An aircraft file whose derivatives are right."""
+    """Return an aircraft file whose derivatives are right."""
     still = diagnose(fly(Setup(maneuvers=6, seed=24)), Aircraft())
     return Aircraft(model={name: still.model[name].value for name in PARAMETERS})
 
@@ -248,7 +248,7 @@ def test_a_record_that_was_filtered_beside_moving_air_names_the_air_alone():
 
 
 def flown_with(channel, change, **setup):
-    """Manoeuvres of which one channel is changed: a function of manoeuvre number, stamps and values."""
+    """Return manoeuvres with one channel changed: a function of manoeuvre number, stamps and values."""
     flown = fly(Setup(maneuvers=6, **setup))
     return [
         replace(m, channels={**m.channels, channel: change(k, m.channels[channel])})

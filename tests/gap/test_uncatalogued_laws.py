@@ -21,7 +21,7 @@ HARD = Setup(maneuvers=6, gust_std=0.12, coloured=0.5, jitter=0.004, speed_chang
 
 
 def with_reading(setup, channel, reading):
-    """The flight with one channel read as ``reading`` of what it is."""
+    """Return the flight with one channel replaced by ``reading`` of its true value."""
     flown = []
     for maneuver in fly(setup):
         read = maneuver.channels[channel]
@@ -31,7 +31,7 @@ def with_reading(setup, channel, reading):
 
 
 def scaled(setup, channel, factor):
-    """The flight with one channel read too high or too low."""
+    """Return the flight with one channel read too high or too low."""
     return with_reading(setup, channel, lambda y: factor * y)
 
 

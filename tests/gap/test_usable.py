@@ -20,7 +20,7 @@ def without(maneuver, *names):
 
 
 def ending(maneuver, name, seconds):
-    """The manoeuvre with a channel that ends so many seconds after the command's beginning."""
+    """Return the manoeuvre with a channel that ends so many seconds after the command begins."""
     channel = maneuver.channels[name]
     begun = maneuver.channels["elevator"].t[0]
     return replace(maneuver, channels={**maneuver.channels, name: channel.cut(-np.inf, begun + seconds)})

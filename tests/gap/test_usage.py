@@ -1,4 +1,4 @@
-"""What `advisor gap` says of its call: mistakes before any work, and what it left undone."""
+"""The messages of `advisor gap` about its call: mistakes before any work, and omissions after it."""
 
 import os
 from pathlib import Path
@@ -18,7 +18,7 @@ from tests.gap.test_report_screen import diagnosis
 
 
 def said(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, *arguments: object) -> tuple:
-    """Exit code and what stands on stderr."""
+    """Return the exit code and what stands on stderr."""
     monkeypatch.setattr("sys.argv", ["advisor", "gap", *map(str, arguments)])
     with pytest.raises(SystemExit) as ended:
         cli.main()

@@ -19,7 +19,7 @@ HARD = Setup(gust_std=0.12, coloured=0.5, jitter=0.004, speed_change=0.03, seed=
 
 
 def rubbed(angles, half_play):
-    """What a pointer shows that follows when the angle has run ahead of it by so much."""
+    """Return the angles of a pointer that follows once the vane has run ahead by half the play."""
     shown = [angles[0]]
     for angle in angles[1:]:
         ahead = angle - shown[-1]
@@ -28,7 +28,7 @@ def rubbed(angles, half_play):
 
 
 def through_the_vane(setup, reading):
-    """The flight with another vane, and its noise behind it."""
+    """Return the flight with another vane, and its noise behind it."""
     rng, flown = np.random.default_rng(5), []
     for maneuver in fly(replace(setup, noise=0.1 * setup.noise)):
         alpha = maneuver.channels["alpha"]
@@ -40,14 +40,14 @@ def through_the_vane(setup, reading):
 
 @pytest.fixture(scope="module")
 def flown():
-    """A manoeuvre ready to be simulated, its driving numbers, and the angle that a good vane shows."""
+    """Return a manoeuvre ready to be simulated, its driving numbers, and the angle that a good vane shows."""
     problem, fitted = fit_baseline(prepare(fly(Setup(maneuvers=2, seed=4)), Aircraft()), Aircraft())
     p, flight = problem.driving(fitted.point)[0], problem.flights.flights[0]
     return problem, flight, p, problem.fly(flight, p)[0]
 
 
 def shown_with(flown, **entries):
-    """The simulated angle of attack with some numbers of the vane."""
+    """Return the simulated angle of attack with some numbers of the vane."""
     problem, flight, p, _ = flown
     changed = p.copy()
     for name, value in entries.items():

@@ -200,6 +200,7 @@ class TestArduPilot:
         assert heartbeat.fields["custom_mode"].tolist() == [0, 0, 0]
         assert messages["PARAM_VALUE"].fields["param_id"].tolist()[0] == b"SERVO2_FUNCTION"
         assert messages["STATUSTEXT"].fields["text"].tolist() == [b"ArduPlane V4.5.6 (0123abcd)"]
+        assert messages["STATUSTEXT"].fields["severity"].tolist() == [255]
         assert messages["AUTOPILOT_VERSION"].fields["flight_sw_version"].tolist() == [0x040506FF]
         assert finite(messages["GLOBAL_POSITION_INT"], "relative_alt")[0] == 100_250.0
 

@@ -8,7 +8,7 @@ from advisor.model.mil_f_8785c import CATEGORIES, ShortPeriodFound, ShortPeriodL
 
 
 def levels_of(*numbers: float) -> str:
-    """Damping, CAP, frequency, n/α to the levels in the categories A, B and C."""
+    """Return damping, CAP, frequency, n/α to the levels in the categories A, B and C."""
     one = ShortPeriodLimits(*((number, number) for number in numbers))
     return "".join(str(assess(category, ShortPeriodFound(one, one)).level) for category in CATEGORIES)
 

@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 def elevator_3211(
     t: Array, *, trim: float, amplitude: float, unit_s: float = 1.0, begin_s: float = 1.0
 ) -> Array:
-    """A modified 3-2-1-1 that begins up."""
+    """Return a modified 3-2-1-1 that begins up."""
     u = np.full(len(t), trim)
     edge = begin_s
     for length, sign, size in ((3, 1, 0.8), (2, -1, 1.2), (1, 1, 1.1), (1, -1, 1.1)):
@@ -30,19 +30,19 @@ def elevator_3211(
 
 
 def trim_elevator(theta: Array) -> float:
-    """Elevator that holds q = 0."""
+    """Return the elevator that holds q = 0."""
     system = np.array([[theta[1], theta[3]], [theta[5], theta[7]]])
     return float(np.linalg.solve(system, -theta[[0, 4]])[1])
 
 
 def trim_alpha(theta: Array) -> float:
-    """Angle of attack at that elevator."""
+    """Return the angle of attack at that elevator."""
     system = np.array([[theta[1], theta[3]], [theta[5], theta[7]]])
     return float(np.linalg.solve(system, -theta[[0, 4]])[0])
 
 
 def simulate(theta: Array, x0: Sequence[float], t_input: Array, u: Array, t: Array) -> Array:
-    """(n, 3) α, q, ∫q of Eqs. (1)-(2) at ``t`` by the general matrix exponential, input linear.
+    """Return (n, 3) α, q, ∫q of Eqs. (1)-(2) at ``t`` by the general matrix exponential, input linear.
 
     Written without the advisor's own code: the state is [α, q, ∫q, δe, δ̇e, 1].
     """
@@ -72,7 +72,7 @@ def maneuver(
     elevator: tuple[Array, Array],
     channels: Mapping[str, tuple[Array, Array]],
 ) -> Maneuver:
-    """A manoeuvre out of plain arrays."""
+    """Return a manoeuvre out of plain arrays."""
     t, u = elevator
     span = Span(float(t[0]), float(t[0]) + 1.0, float(t[0]) + 8.0, float(t[-1]), "3-2-1-1", (), "quiet")
     parts = {"elevator": Channel("elevator", t, u)}
@@ -93,7 +93,8 @@ def flown(
     alpha_late_s: float = 0.003,
     seed: int = 0,
 ) -> Maneuver:
-    """A manoeuvre of the linear aircraft; α and q at own stamps, noise relative to the spread of each."""
+    """Return a manoeuvre of the linear aircraft; α and q at own stamps, noise relative to the spread of
+    each."""
     rng = np.random.default_rng(seed)
     t = np.arange(0.0, length_s, 1.0 / rate_hz)
     u = elevator_3211(t, trim=trim_elevator(theta), amplitude=sign * amplitude, unit_s=unit_s)
@@ -108,5 +109,5 @@ def flown(
 
 
 def by_name(theta: Array) -> dict[str, float]:
-    """The vector with its names."""
+    """Return the vector with its names."""
     return dict(zip(PARAMETERS, theta.tolist(), strict=True))

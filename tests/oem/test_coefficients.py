@@ -18,7 +18,7 @@ MOMENT = {"C_m_alpha": -0.6, "C_m_q": -11.0, "C_m_delta_e": -1.1}
 
 
 def flown() -> Estimate:
-    """Derivatives of an aircraft with these coefficients, by the definitions of force and moment."""
+    """Return derivatives of an aircraft with these coefficients, by the definitions of force and moment."""
     pressure = DENSITY * SPEED**2 / 2.0
 
     def lift(alpha: float, q: float, delta: float) -> float:

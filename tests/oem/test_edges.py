@@ -12,7 +12,7 @@ RATE = 50.0
 
 
 def flown_between_stamps(seed, share, sign, noise=0.02):
-    """The small aircraft; steps happen at ``share`` of the interval between stamps."""
+    """Return the small aircraft's manoeuvre; steps happen at ``share`` of the interval between stamps."""
     rng = np.random.default_rng(seed)
     t = np.arange(0.0, 8.0, 1.0 / RATE)
     fine = np.arange(0.0, 8.0, 0.0005)

@@ -115,7 +115,7 @@ def test_several_manoeuvres_are_weighed_together():
 
 @pytest.mark.parametrize("seed", range(3))
 def test_a_residual_that_is_no_noise_is_not_weighed_as_if_it_were(seed):
-    """The surface lags 60 ms behind the command: slow residuals that come from the model."""
+    """Check that a surface lag of 60 ms, which gives slow residuals from the model, is recognised."""
     t, u, _ = clean()
     late = np.interp(t - 0.06, t, u)
     behind = clean()[2] * 0.0
@@ -137,7 +137,7 @@ def test_a_residual_that_is_no_noise_is_not_weighed_as_if_it_were(seed):
 
 
 def test_a_step_longer_than_right_models_allow_is_not_believed():
-    """A slow wave that is in both outputs at once hides in the colour, and pulls the two estimates apart."""
+    """Check that a slow wave in both outputs, which resembles coloured noise, is recognised."""
     response, v = clean()[2], coloured_noise(5)
     wave = np.cos(1.5 * clean()[0])[:, None] * response.std(axis=0)
     right, bent = solution(response, v), solution(response + 0.3 * wave, v)

@@ -10,7 +10,7 @@ COLUMNS = np.column_stack([np.ones(600), np.linspace(-1, 1, 600), np.sin(np.aran
 
 
 def stretch(memory, share, seed, n=600):
-    """A residual: coloured and white noise, less what the columns can explain of it."""
+    """Return a residual: coloured and white noise, minus its projection on the columns."""
     rng = np.random.default_rng(seed)
     v = noise(rng, (n, 1), memory)[:, 0] + np.sqrt(share) * rng.standard_normal(n)
     explained = COLUMNS @ np.linalg.lstsq(COLUMNS, v, rcond=None)[0]

@@ -24,7 +24,8 @@ M_ALPHA, M_DELTA = 5, 7
 
 
 def flown(gust_rad: float, seed: int, memory_s: float = 0.6) -> Maneuver:
-    """A 3-2-1-1 through first-order Gauss-Markov gusts, by the general matrix exponential at 200 Hz."""
+    """Return a 3-2-1-1 through first-order Gauss-Markov gusts, by the general matrix exponential at 200
+    Hz."""
     rng = np.random.default_rng(seed)
     t = np.arange(0.0, 10.0, STEP_S)
     trim = trim_elevator(UAV)
@@ -49,7 +50,7 @@ def flown(gust_rad: float, seed: int, memory_s: float = 0.6) -> Maneuver:
 
 
 def solved(flight: Maneuver, aircraft: Aircraft = KNOWN_SERVO) -> Solution:
-    """Output error's solution."""
+    """Return output error's solution."""
     prepared = prepare([flight], aircraft)
     assert isinstance(prepared, Prepared)
     solution = solve(prepared.problem)
@@ -58,7 +59,7 @@ def solved(flight: Maneuver, aircraft: Aircraft = KNOWN_SERVO) -> Solution:
 
 
 def estimates(gust_rad: float, seeds: range) -> tuple[Array, Array, Array]:
-    """Output error's values, filter error's values and its standard deviations, each (n, 8)."""
+    """Return output error's values, filter error's values and its standard deviations, each (n, 8)."""
     output, filtered, std = [], [], []
     for seed in seeds:
         first = solved(flown(gust_rad, seed))

@@ -80,7 +80,7 @@ def test_what_is_not_given_is_named() -> None:
 def test_a_parameter_that_cannot_be_told_takes_along_only_what_depends_on_it() -> None:
     left_out = found(unknown={"Z_q": "collinear"}).left_out
     assert set(left_out) == {"natural_frequency", "damping", "n_alpha", "cap"}
-    assert left_out["damping"] == "Z_q cannot be told by these manoeuvres"
+    assert left_out["damping"] == "Z_q cannot be determined from these manoeuvres"
 
 
 def test_an_unstable_aircraft_has_no_frequency_and_no_level() -> None:

@@ -61,7 +61,7 @@ def test_an_overdamped_aircraft_with_unknown_servo_gets_a_reason_instead_of_numb
 
 
 def looped(theta, pilot, seed=0):
-    """The elevator follows angle of attack and pitch rate without delay, a pilot adds to it; Runge-Kutta."""
+    """Simulate, by Runge-Kutta, an elevator that feeds back α and q without delay, and a pilot's input."""
     h = 0.001
     t = np.arange(0.0, 10.0, h)
     stick = pilot * elevator_3211(t, trim=0.0, amplitude=0.03, unit_s=0.5)

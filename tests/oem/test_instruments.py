@@ -1,4 +1,4 @@
-"""What the log's instruments do to the estimate, and what the estimator does about it."""
+"""The effect of a log's instruments on the estimate, and its correction by the estimator."""
 
 from dataclasses import replace
 
@@ -32,7 +32,7 @@ def equipped(
     quantum=0.0,
     bias=0.0,
 ):
-    """The small aircraft at constant speed with α from a vane, θ and a_z; the servo moves finely."""
+    """Return a manoeuvre of the small aircraft at constant speed: α from a vane, θ, a_z, servo."""
     rng = np.random.default_rng(seed)
     t = np.arange(0.0, 9.0, 1.0 / RATE)
     u = elevator_3211(t, trim=trim_elevator(UAV), amplitude=0.02 * sign, unit_s=0.4)

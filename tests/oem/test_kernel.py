@@ -45,7 +45,7 @@ def test_a_long_step_is_divided_and_an_absurd_one_refused():
 
 
 def problem_with_everything():
-    """Two records with all outputs, speed, gravity, irregular stamps, gaps, servo, vane and accelerometer."""
+    """Return two records with all outputs, speed, irregular stamps, gaps, servo, vane and accelerometer."""
     rng = np.random.default_rng(3)
     records = []
     for k in range(2):

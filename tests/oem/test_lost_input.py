@@ -15,7 +15,7 @@ STEP_S = 0.02
 
 
 def flown(seed: int = 0) -> Record:
-    """A 3-2-1-1 at 50 Hz, linear between its samples, integrated by scipy."""
+    """Return a 3-2-1-1 at 50 Hz, linear between its samples, integrated by scipy."""
     t = np.arange(0.0, 6.0, STEP_S)
     command = np.zeros_like(t)
     for begin, end, level in ((1.0, 1.9, -1.0), (1.9, 2.5, 1.0), (2.5, 2.8, -1.0), (2.8, 3.1, 1.0)):

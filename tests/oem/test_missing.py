@@ -14,7 +14,7 @@ NOISE = 0.02
 
 
 def record(*outputs):
-    """The small aircraft with every channel equally clear, and of these only ``outputs`` handed on."""
+    """Return the small aircraft's manoeuvre: all channels equally clear, and ``outputs`` handed over."""
     rng = np.random.default_rng(3)
     t = np.arange(0.0, 8.0, 0.02)
     u = elevator_3211(t, trim=trim_elevator(UAV), amplitude=0.03, unit_s=0.4)

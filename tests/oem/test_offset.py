@@ -9,7 +9,7 @@ PERIOD = 0.02
 
 
 def smooth_flight(early_s, held, seed=1):
-    """The small aircraft under a smooth command that acts ``early_s`` before its stamps."""
+    """Return a manoeuvre of the small aircraft whose smooth command acts ``early_s`` before its stamps."""
     rng = np.random.default_rng(seed)
     t = np.arange(0.0, 8.0, PERIOD)
     u = trim_elevator(UAV) + 0.01 * (np.sin(3.0 * t) + np.sin(7.0 * t) + np.sin(11.0 * t))

@@ -1,4 +1,4 @@
-"""What a manoeuvre's channels become before anything is fitted."""
+"""The preparation of a manoeuvre's channels before a fit."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""What a first-order memory makes of samples."""
+"""The first-order recursion over samples."""
 
 import numpy as np
 import pytest

@@ -42,7 +42,7 @@ class Level:
 
 
 class Constant:
-    """The same increments in every state."""
+    """Increments that are equal in every state."""
 
     def __init__(self, force: float, moment: float) -> None:
         self._both = (force, moment)

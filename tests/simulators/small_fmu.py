@@ -16,7 +16,7 @@ STARTS = {"V": 30.0, "h": 500.0, "delta_e": -0.11}
 
 
 def build(folder: Path, fmi: int, fault: int | None = None, platform: str | None = None) -> Path:
-    """An FMU in ``folder``; ``platform`` names another folder of binaries than this computer's."""
+    """Return an FMU in ``folder``; ``platform`` names another folder of binaries than this computer's."""
     library = folder / f"ShortPeriod{fmpy.sharedLibraryExtension}"
     source, rest = HERE / "short_period.c", folder / "rest.c"
     rest.write_text(_rest(fmi, source.read_text()))
@@ -51,7 +51,7 @@ def described(fmi: int) -> str:
 
 
 def _rest(fmi: int, source: str) -> str:
-    """Source of the standard's functions that the small FMU has no use for: each refuses."""
+    """Return the source of the standard's functions that the small FMU has no use for: each refuses."""
     slave = FMU2Slave if fmi == 2 else FMU3Slave
     names = [name for name in dir(slave) if name.startswith(f"fmi{fmi}") and f" {name}(" not in source]
     return "".join(f"int {name}(void) {{ return 3; }}\n" for name in names)

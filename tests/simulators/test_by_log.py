@@ -13,7 +13,7 @@ from sim.scenario import Scenario
 
 
 def logged(folder: Path, name: str, seed: int, **effects: dict[str, float]) -> Path:
-    """A log of the bundled aircraft."""
+    """Return a log of the bundled aircraft."""
     path = folder / f"{name}.tlog"
     record(flight_of(Scenario(aircraft="uav", seed=seed, effects=effects)), path)
     return path
@@ -27,7 +27,7 @@ def logs(tmp_path_factory):
 
 
 def diagnosed(flight: Path, simulator: Path):
-    """The diagnosis of a flight beside the simulator that wrote a log."""
+    """Return the diagnosis of a flight relative to the simulator that wrote a log."""
     named = named_simulator(Aircraft(simulator=f"log:{simulator}"))
     return compare_logs([flight], Aircraft(), named).diagnosis
 

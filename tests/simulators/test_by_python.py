@@ -19,7 +19,7 @@ FACTORY = "python:tests.simulators.nonlinear:make"
 
 
 def said(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, *arguments: object) -> tuple:
-    """Exit code, stdout and stderr of ``advisor gap``."""
+    """Return the exit code, stdout and stderr of ``advisor gap``."""
     monkeypatch.setattr("sys.argv", ["advisor", "gap", *map(str, arguments)])
     with pytest.raises(SystemExit) as ended:
         cli.main()

@@ -19,12 +19,12 @@ PLAIN = Nonlinear()
 
 @cache
 def of(aircraft: Nonlinear, simulator: Nonlinear) -> Compared:
-    """The diagnosis of an aircraft against a simulator."""
+    """Return the diagnosis of an aircraft against a simulator."""
     return compare(flown(aircraft), simulator, Aircraft())
 
 
 def scaled(name: str, y: FloatArray) -> FloatArray:
-    """A vane that reads a tenth too much."""
+    """Return a vane that reads a tenth too much."""
     return TRIM_RAD + 1.1 * (y - TRIM_RAD) if name == "alpha" else y
 
 
@@ -166,4 +166,4 @@ def test_where_the_simulator_does_not_fly_with_the_effects_the_diagnosis_stands_
     found = compare(flown(replace(PLAIN, delay_s=0.05)), Fragile(), Aircraft()).diagnosis
     assert found.causes[0].effect == "transport_delay"
     assert found.in_simulator.after is None
-    assert found.notes[0] == "The effects stay on paper: It does not fly."
+    assert found.notes[0] == "The simulator cannot take the effects: It does not fly."

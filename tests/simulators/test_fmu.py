@@ -40,7 +40,8 @@ both = pytest.mark.parametrize("fmi", [2, 3])
 
 
 def exact(elevator: FloatArray, condition: Condition, force: float = 0.0, damping: float = 0.0) -> FloatArray:
-    """α, q and θ at multiples of 0.01 s, from the C model's equations by the midpoint rule at 0.1 ms."""
+    """Return α, q and θ at multiples of 0.01 s, from the C model's equations by the midpoint rule at 0.1
+    ms."""
     v = condition.airspeed_m_s
     # Steady: lift balances weight and the moment is zero.
     alpha, delta = np.linalg.solve([[LIFT * v, LIFT * v * C], [MA, MD]], [GRAVITY / v, -M0])

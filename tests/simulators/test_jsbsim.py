@@ -31,7 +31,7 @@ def inputs(seconds: float, elevator: FloatArray | None = None, **others: FloatAr
 
 
 def doublet(seconds: float) -> FloatArray:
-    """One second up, one second down, after half a second of rest."""
+    """Return one second up, one second down, after half a second of rest."""
     t = STEP_S * (np.arange(round(seconds / STEP_S)) + 0.5)
     return PULSE_RAD * (((t > 0.5) & (t < 1.5)) * 1.0 - ((t > 1.5) & (t < 2.5)) * 1.0)
 
@@ -41,7 +41,7 @@ def simulator(model: str) -> Jsbsim:
 
 
 def regressed(flown: Replay, elevator: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Rates of α and q regressed on constant, α, q, elevator, air speed and pitch angle."""
+    """Return rates of α and q regressed on constant, α, q, elevator, air speed and pitch angle."""
     moved = np.interp(flown.t, inputs(4.0).t, elevator)
     speed, pitch = flown.airspeed_m_s - flown.airspeed_m_s[0], flown.theta - flown.theta[0]
     columns = np.column_stack([np.ones(flown.t.size), flown.alpha, flown.q, moved, speed, pitch])

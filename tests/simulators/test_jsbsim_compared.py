@@ -27,7 +27,7 @@ def test_noise_that_coloured_instruments_explain_alone_is_no_moving_air(tmp_path
 
 
 def diagnosed(folder, **effects: dict[str, float]):
-    """The diagnosis of a Cessna of JSBSim beside JSBSim's own."""
+    """Return the diagnosis of a JSBSim Cessna relative to JSBSim's own Cessna."""
     log = folder / "c172p.tlog"
     scenario = Scenario(
         aircraft="c172p",

@@ -1,4 +1,4 @@
-"""What a specification names, and what is said of one that names nothing."""
+"""The simulators that a specification names, and the message for one that names none."""
 
 from pathlib import Path
 
@@ -14,7 +14,7 @@ from tests.simulators.test_increments import MODEL
 
 
 def nothing_read(log: Path) -> list:
-    """A log without manoeuvres."""
+    """Return a log without manoeuvres."""
     return []
 
 

@@ -17,6 +17,7 @@ from advisor.tui.screens.explain import Explain
 from advisor.tui.screens.pilot import PilotScreen
 from advisor.tui.settings import Settings
 from advisor.tui.source import LinkHealth
+from advisor.vehicle_time import clock
 from tests.tui import flights
 from tests.tui.stage import Stage, stage
 from tests.tui.stand_ins import HandFedSource, columns
@@ -183,6 +184,7 @@ async def test_a_replay_is_paused_stepped_and_sped_up_by_keys():
     async with stage(flights.state(2), source=player) as here:
         await here.press("space")
         await here.until(lambda: "paused" in here.words("ReplayBar"))
+        assert f"at {clock(here.app.view.state.now_s)}" in here.words("ReplayBar")
         at_s = player.playback().position_s
         await here.press("full_stop")
         await here.until(lambda: player.playback().position_s > at_s)

@@ -27,7 +27,7 @@ async def test_one_key_follows_another_vehicle_from_either_screen():
         async with stage(state, source=source, settings=Settings(screen=screen)) as here:
             await here.press("v")
             await here.until(lambda source=source: source.orders == [Order("follow", 2)])
-            assert "vehicle 2 is followed from here on" in said(here)
+            assert "vehicle 2 is followed now" in said(here)
 
 
 async def test_several_others_are_followed_one_after_the_other():

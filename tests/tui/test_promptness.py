@@ -11,7 +11,7 @@ from textual.widget import Widget
 
 from advisor.tui import app as application
 from advisor.tui.conducting import Report
-from advisor.tui.garbage import Garbage
+from advisor.tui.garbage_collection import Garbage
 from advisor.tui.plot.widget import Plot
 from advisor.tui.settings import Settings
 from advisor.tui.sheets import Sheets

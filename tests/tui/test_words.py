@@ -6,7 +6,7 @@ import pytest
 
 from advisor.aircraft import PARAMETERS as NAMES
 from advisor.tui.advice import Word
-from advisor.tui.letters import block_letters
+from advisor.tui.block_letters import block_letters
 from advisor.tui.panes.gauge import bar
 from advisor.tui.words import PARAMETERS, channel, percent
 

@@ -77,16 +77,10 @@ def ramps_and_steps(effect: str, block: str, flights: Flights, change: Change) -
         change(p, values[0] * (t - t[0]))
 
     steady = Variant(
-        effect,
-        block,
-        ("rate_per_s",),
-        ((0.0,),),
-        (0.005 / span,),
-        ((-0.9 / span, 3.0 / span),),
-        0.01 / span,
-        apply_with=drift,
+        effect, block, ("rate_per_s",), ((0.0,),), (0.005 / span,), ((-0.9 / span, 3.0 / span),),
+        0.01 / span, apply_with=drift,
         likewise=_longer(flights, step, course, lambda rate: (rate[0] * span, float(t[0]), span)),
-    )
+    )  # fmt: skip
     return [steady, *steps_in(flights, step, course)]
 
 

@@ -17,31 +17,19 @@ _DECAYS_M = (0.1, 50.0)
 large one."""
 _ICED = ("Z_alpha", "Z_delta_e", "M_alpha", "M_delta_e")
 CURVED_LIFT = Variant(
-    "nonlinear_lift",
-    BLOCK,
-    ("Z_alpha2", "Z_alpha3"),
-    ((0.0, 0.0),),
-    (0.5, 5.0),
-    ((-500.0, 500.0), (-1e4, 1e4)),
-    0.0,
-    entries=("Z_alpha2", "Z_alpha3"),
-)
+    "nonlinear_lift", BLOCK, ("Z_alpha2", "Z_alpha3"), ((0.0, 0.0),), (0.5, 5.0),
+    ((-500.0, 500.0), (-1e4, 1e4)), 0.0, entries=("Z_alpha2", "Z_alpha3"),
+)  # fmt: skip
 
 
 _FORCES, _MOMENTS = DERIVATIVES[:3], DERIVATIVES[3:]
 _MASS_AND_INERTIA = Variant(
     "mass_change", BLOCK, ("step", "inertia"), ((0.0, 0.0),), (0.005, 0.005), ((-0.9, 3.0), (-0.9, 3.0)), 0.01
-)
+)  # fmt: skip
 _UNSTEADY = Variant(
-    "unsteady_lift",
-    BLOCK,
-    ("share", "lag_s"),
-    ((0.1, 0.1), (0.3, 0.4)),
-    (0.005, 0.01),
-    ((0.0, 0.95), (0.01, 3.0)),
-    0.01,
-    entries=("lift_share", "lift_lag_s"),
-)
+    "unsteady_lift", BLOCK, ("share", "lag_s"), ((0.1, 0.1), (0.3, 0.4)), (0.005, 0.01),
+    ((0.0, 0.95), (0.01, 3.0)), 0.01, entries=("lift_share", "lift_lag_s"),
+)  # fmt: skip
 
 
 def _with_moment(p: FloatArray, values: Values, _: Flights) -> None:
@@ -72,45 +60,25 @@ def variants(flights: Flights) -> list[Variant]:
         *_icing(flights),
         # Mach number, elastic wings or a slipstream: forces grow with another power of the speed than V².
         Variant(
-            "airspeed_variation",
-            BLOCK,
-            ("exponent",),
-            ((0.0,),),
-            (0.02,),
-            ((-6.0, 6.0),),
-            0.1,
-            entries=("speed_power",),
-            needs=frozenset({"airspeed"}),
+            "airspeed_variation", BLOCK, ("exponent",), ((0.0,),), (0.02,), ((-6.0, 6.0),), 0.1,
+            entries=("speed_power",), needs=frozenset({"airspeed"}),
         ),
         # A tail in the wake of the wing or of a propeller: moments grow with another power than the lift.
         Variant(
-            "airspeed_variation",
-            BLOCK,
-            ("exponent_M", "exponent"),
-            ((0.0, 0.0),),
-            (0.02, 0.02),
-            ((-6.0, 6.0), (-6.0, 6.0)),
-            0.1,
-            apply_with=_powers,
-            needs=frozenset({"airspeed"}),
+            "airspeed_variation", BLOCK, ("exponent_M", "exponent"), ((0.0, 0.0),), (0.02, 0.02),
+            ((-6.0, 6.0), (-6.0, 6.0)), 0.1, apply_with=_powers, needs=frozenset({"airspeed"}),
         ),
         # Near the ground all lift grows by a share, or the trim alone changes.
         *(
             Variant(
-                "ground_effect",
-                BLOCK,
-                (lift, "M_h", "scale_m"),
-                tuple((0.0, 0.0, scale) for scale in _heights_of_decay(flights)),
-                (0.02, 0.2, 0.1),
-                (bounds, (-500.0, 500.0), _DECAYS_M),
-                0.0,
-                entries=(lift, "M_h", "scale_m"),
-                needs=frozenset({"height"}),
-                places=("scale_m",),
+                "ground_effect", BLOCK, (lift, "M_h", "scale_m"),
+                tuple((0.0, 0.0, scale) for scale in _heights_of_decay(flights)), (0.02, 0.2, 0.1),
+                (bounds, (-500.0, 500.0), _DECAYS_M), 0.0, entries=(lift, "M_h", "scale_m"),
+                needs=frozenset({"height"}), places=("scale_m",),
             )
             for lift, bounds in (("lift_h", (-0.9, 3.0)), ("Z_h", (-50.0, 50.0)))
         ),
-    ]
+    ]  # fmt: skip
 
 
 def _heights_of_decay(flights: Flights) -> list[float]:
@@ -165,7 +133,7 @@ def _stall(flights: Flights) -> list[Variant]:
             # A wing that is already stalled where the aircraft is trimmed.
             start_at_prior=(0.65 * trim, 25.0) if trim > 0.0 else None,
         )
-    ]
+    ]  # fmt: skip
 
 
 def _icing(flights: Flights) -> list[Variant]:

@@ -21,16 +21,9 @@ overshoot."""
 
 
 LATENCY = Variant(
-    "latency",
-    BLOCK,
-    ("latency_s",),
-    ((0.001,),),
-    (5e-4,),
-    ((-0.004, 0.005),),
-    0.0,
-    entries=("latency_s",),
-    is_nuisance=True,
-)
+    "latency", BLOCK, ("latency_s",), ((0.001,),), (5e-4,), ((-0.004, 0.005),), 0.0,
+    entries=("latency_s",), is_nuisance=True,
+)  # fmt: skip
 """Nuisance parameter of every model: stamps have a resolution, and a command takes effect after a few
 milliseconds."""
 
@@ -74,50 +67,25 @@ def _limited_from_midway(p: FloatArray, values: Values, flights: Flights) -> Non
 
 
 DELAY = Variant(
-    "transport_delay",
-    BLOCK,
-    ("delay_s",),
-    ((0.005,), (0.03,), (0.1,)),
-    (1e-3,),
-    ((0.0, 0.5),),
-    0.004,
+    "transport_delay", BLOCK, ("delay_s",), ((0.005,), (0.03,), (0.1,)), (1e-3,), ((0.0, 0.5),), 0.004,
     apply_with=_delay,
-)
+)  # fmt: skip
 LAG = Variant(
-    "actuator_lag",
-    BLOCK,
-    ("lag_s",),
-    ((0.02,), (0.1,)),
-    (1e-3,),
-    ((0.0, 1.0),),
-    0.004,
+    "actuator_lag", BLOCK, ("lag_s",), ((0.02,), (0.1,)), (1e-3,), ((0.0, 1.0),), 0.004,
     entries=("lag_s",),
-)
+)  # fmt: skip
 
 # The search uses the slowness 1/ρ: zero means no limit, and the cost is smooth there.
 _RATE_LIMIT = Variant(
-    "actuator_rate_limit",
-    BLOCK,
-    ("rate_rad_s",),
-    ((0.4,), (1.2,), (3.0,)),
-    (0.02,),
-    ((0.0, 30.0),),
-    0.05,
-    entries=("slowness_s_rad",),
-    inverted=True,
-)
+    "actuator_rate_limit", BLOCK, ("rate_rad_s",), ((0.4,), (1.2,), (3.0,)), (0.02,), ((0.0, 30.0),), 0.05,
+    entries=("slowness_s_rad",), inverted=True,
+)  # fmt: skip
 _DEADBAND = Variant(
-    "actuator_deadband",
-    BLOCK,
-    ("half_width_rad", "neutral_rad"),
-    ((0.0012, 0.0), (0.004, 0.0), (0.015, 0.0), (0.035, 0.0), (0.01, 0.006), (0.01, -0.006)),
-    (2e-4, 2e-4),
-    ((0.0, 0.1), (-0.1, 0.1)),
-    _SMALL_ANGLE,
-    _IF_BEYOND_DOUBT,
-    apply_with=_deadband,
+    "actuator_deadband", BLOCK, ("half_width_rad", "neutral_rad"),
+    ((0.0012, 0.0), (0.004, 0.0), (0.015, 0.0), (0.035, 0.0), (0.01, 0.006), (0.01, -0.006)), (2e-4, 2e-4),
+    ((0.0, 0.1), (-0.1, 0.1)), _SMALL_ANGLE, _IF_BEYOND_DOUBT, apply_with=_deadband,
     places=("neutral_rad",),
-)
+)  # fmt: skip
 _DEADBAND_ABOUT_TRIM = replace(
     _DEADBAND,
     starts=((0.0012, 0.0), (0.004, 0.0), (0.015, 0.0), (0.035, 0.0)),
@@ -135,29 +103,15 @@ def variants(flights: Flights) -> list[Variant]:
         DELAY,
         LAG,
         Variant(
-            "actuator_lag",
-            BLOCK,
-            ("lag_s",),
-            ((0.03,), (0.1,)),
-            (1e-3,),
-            ((0.0, 1.0),),
-            0.004,
-            apply_with=_second_order,
-            fixed={"damping": _DAMPING},
+            "actuator_lag", BLOCK, ("lag_s",), ((0.03,), (0.1,)), (1e-3,), ((0.0, 1.0),), 0.004,
+            apply_with=_second_order, fixed={"damping": _DAMPING},
         ),
         replace(_RATE_LIMIT, likewise=(replace(_RATE_LIMIT, apply_with=_limited_from_midway),)),
         Variant(
-            "actuator_backlash",
-            BLOCK,
-            ("half_width_rad",),
-            ((0.003,), (0.008,), (0.02,)),
-            (2e-4,),
-            ((0.0, 0.1),),
-            _SMALL_ANGLE,
-            _IF_BEYOND_DOUBT,
-            entries=("half_play_rad",),
+            "actuator_backlash", BLOCK, ("half_width_rad",), ((0.003,), (0.008,), (0.02,)), (2e-4,),
+            ((0.0, 0.1),), _SMALL_ANGLE, _IF_BEYOND_DOUBT, entries=("half_play_rad",),
             sides=("play_side", tuple(np.linspace(-1.0, 1.0, 8))),
         ),
         _DEADBAND,
         *([_DEADBAND_ABOUT_TRIM] if moves else []),
-    ]
+    ]  # fmt: skip

@@ -16,17 +16,10 @@ BLOCK = "moment_equation"
 
 
 PROPELLER = Variant(
-    "propeller",
-    BLOCK,
-    ("M_thrust", "washed_share", "blown_share"),
-    ((0.0, 0.0, 0.0),),
-    (0.05, 0.05, 0.05),
-    ((-100.0, 100.0), (-1.0, 2.0), (-10.0, 10.0)),
-    0.0,
-    entries=("M_thrust", "washed_share", "blown_share"),
-    prior_std=(5.0, 0.5, 3.0),
-    is_nuisance=True,
-)
+    "propeller", BLOCK, ("M_thrust", "washed_share", "blown_share"), ((0.0, 0.0, 0.0),),
+    (0.05, 0.05, 0.05), ((-100.0, 100.0), (-1.0, 2.0), (-10.0, 10.0)), 0.0,
+    entries=("M_thrust", "washed_share", "blown_share"), prior_std=(5.0, 0.5, 3.0), is_nuisance=True,
+)  # fmt: skip
 """Nuisance parameters of every model with a measured air speed. The thrust's share of the trim does not grow
 with V². An elevator in the propeller's wake meets more than the dynamic pressure of the stream, by thrust
 over disk area (Glauert's momentum theory). Thrust is drag, which grows with V², plus the acceleration along
@@ -34,25 +27,13 @@ the path. In a light single the wake adds about a fifth of the elevator's power.
 
 
 _CURVED_ELEVATOR = Variant(
-    "elevator_nonlinearity",
-    BLOCK,
-    ("M_delta2", "M_delta3"),
-    ((0.0, 0.0),),
-    (5.0, 100.0),
-    ((-2e4, 2e4), (-2e6, 2e6)),
-    0.0,
-    entries=("M_delta2", "M_delta3"),
-)
+    "elevator_nonlinearity", BLOCK, ("M_delta2", "M_delta3"), ((0.0, 0.0),), (5.0, 100.0),
+    ((-2e4, 2e4), (-2e6, 2e6)), 0.0, entries=("M_delta2", "M_delta3"),
+)  # fmt: skip
 _CURVED_MOMENT = Variant(
-    "nonlinear_pitching_moment",
-    BLOCK,
-    ("M_alpha2", "M_alpha3"),
-    ((0.0, 0.0),),
-    (5.0, 50.0),
-    ((-5e3, 5e3), (-1e5, 1e5)),
-    0.0,
-    entries=("M_alpha2", "M_alpha3"),
-)
+    "nonlinear_pitching_moment", BLOCK, ("M_alpha2", "M_alpha3"), ((0.0, 0.0),), (5.0, 50.0),
+    ((-5e3, 5e3), (-1e5, 1e5)), 0.0, entries=("M_alpha2", "M_alpha3"),
+)  # fmt: skip
 
 
 def _without_rate_of_alpha(
@@ -77,41 +58,20 @@ def variants(flights: Flights) -> list[Variant]:
         bent(_CURVED_ELEVATOR, flights),
         bent(_CURVED_MOMENT, flights),
         Variant(
-            "thrust_moment",
-            BLOCK,
-            ("M_throttle",),
-            ((0.0,),),
-            (0.05,),
-            ((-100.0, 100.0),),
-            0.0,
-            entries=("M_throttle",),
-            needs=frozenset({"throttle"}),
+            "thrust_moment", BLOCK, ("M_throttle",), ((0.0,),), (0.05,), ((-100.0, 100.0),), 0.0,
+            entries=("M_throttle",), needs=frozenset({"throttle"}),
         ),
         Variant(
-            "thrust_moment",
-            BLOCK,
-            ("M_throttle", "lag_s"),
-            ((0.0, 0.3), (0.0, 1.0)),
-            (0.05, 0.02),
-            ((-100.0, 100.0), (0.0, 5.0)),
-            0.0,
-            entries=("M_throttle", "engine_lag_s"),
-            needs=frozenset({"throttle"}),
-            places=("lag_s",),
+            "thrust_moment", BLOCK, ("M_throttle", "lag_s"), ((0.0, 0.3), (0.0, 1.0)), (0.05, 0.02),
+            ((-100.0, 100.0), (0.0, 5.0)), 0.0, entries=("M_throttle", "engine_lag_s"),
+            needs=frozenset({"throttle"}), places=("lag_s",),
         ),
         Variant(
-            "alpha_dot",
-            BLOCK,
-            ("M_alpha_dot",),
-            ((0.0,),),
-            (0.02,),
-            ((-20.0, 20.0),),
-            0.0,
-            entries=("M_alpha_dot",),
-            twin=_without_rate_of_alpha,
+            "alpha_dot", BLOCK, ("M_alpha_dot",), ((0.0,),), (0.02,), ((-20.0, 20.0),), 0.0,
+            entries=("M_alpha_dot",), twin=_without_rate_of_alpha,
         ),
         *_moved_weight(flights),
-    ]
+    ]  # fmt: skip
 
 
 def _moved_weight(flights: Flights) -> list[Variant]:

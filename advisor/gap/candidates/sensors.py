@@ -17,16 +17,12 @@ _LEAST_ARM_M, _OF_A_DELAY = 0.02, 0.75
 """Least arm that is named, m; and the least arm over the air speed, as a share of the least delay."""
 
 _MODE = Variant(
-    "structural_mode",
-    "pitch_rate_sensor",
-    ("gain", "rate_gain", "omega_rad_s", "damping"),
-    tuple((0.0, 0.0, 2.0 * np.pi * hz, 0.05) for hz in _MODES_HZ),
-    (0.02, 0.02, 0.1, 0.005),
-    ((-50.0, 50.0), (-50.0, 50.0), (12.0, 80.0), (0.003, 0.15)),
-    0.0,
+    "structural_mode", "pitch_rate_sensor", ("gain", "rate_gain", "omega_rad_s", "damping"),
+    tuple((0.0, 0.0, 2.0 * np.pi * hz, 0.05) for hz in _MODES_HZ), (0.02, 0.02, 0.1, 0.005),
+    ((-50.0, 50.0), (-50.0, 50.0), (12.0, 80.0), (0.003, 0.15)), 0.0,
     entries=("mode_gain", "mode_rate_gain", "mode_rad_s", "mode_damping"),
     places=("omega_rad_s", "damping"),
-)
+)  # fmt: skip
 
 
 def _with_attitude(p: FloatArray, values: Values, flights: Flights) -> None:
@@ -38,17 +34,9 @@ def _with_attitude(p: FloatArray, values: Values, flights: Flights) -> None:
 _MODE_OF_ALL = replace(_MODE, apply_with=_with_attitude, fixed={"with_attitude": 1.0})
 
 TRUE_AIR_SPEED = Variant(
-    "true_air_speed",
-    "accelerometer",
-    ("scale",),
-    ((0.0,),),
-    (0.002,),
-    ((-0.7, 3.0),),
-    0.0,
-    entries=("speed_scale",),
-    prior_std=(0.02,),
-    is_nuisance=True,
-)
+    "true_air_speed", "accelerometer", ("scale",), ((0.0,),), (0.002,), ((-0.7, 3.0),), 0.0,
+    entries=("speed_scale",), prior_std=(0.02,), is_nuisance=True,
+)  # fmt: skip
 """Nuisance parameter of every model with α and a_z: the relative excess of the true over the read air speed.
 The read speed may be an indicated one, and a static port reads a pressure that the wing changes."""
 
@@ -65,64 +53,28 @@ def variants(least_s: float, speed_m_s: float) -> list[Variant]:
     least_arm_m = max(_LEAST_ARM_M, _OF_A_DELAY * least_s * speed_m_s)
     return [
         Variant(
-            "alpha_lag",
-            "alpha_sensor",
-            ("lag_s",),
-            ((0.02,), (0.1,)),
-            (1e-3,),
-            ((0.0, 1.0),),
-            least_s,
+            "alpha_lag", "alpha_sensor", ("lag_s",), ((0.02,), (0.1,)), (1e-3,), ((0.0, 1.0),), least_s,
             entries=("alpha_lag_s",),
         ),
         Variant(
-            "alpha_scale",
-            "alpha_sensor",
-            ("scale",),
-            ((0.0,),),
-            (0.002,),
-            ((-0.8, 3.0),),
-            0.01,
+            "alpha_scale", "alpha_sensor", ("scale",), ((0.0,),), (0.002,), ((-0.8, 3.0),), 0.01,
             entries=("alpha_scale",),
         ),
         Variant(
-            "alpha_vane_offset",
-            "alpha_sensor",
-            ("arm_m",),
-            ((0.0,),),
-            (0.02,),
-            ((-20.0, 20.0),),
-            least_arm_m,
-            entries=("vane_arm_m",),
+            "alpha_vane_offset", "alpha_sensor", ("arm_m",), ((0.0,),), (0.02,), ((-20.0, 20.0),),
+            least_arm_m, entries=("vane_arm_m",),
         ),
         Variant(
-            "pitch_rate_bias",
-            "pitch_rate_sensor",
-            ("bias_rad_s",),
-            ((0.0,),),
-            (5e-4,),
-            ((-0.5, 0.5),),
-            _LEAST_BIAS_RAD_S,
-            entries=("q_bias",),
+            "pitch_rate_bias", "pitch_rate_sensor", ("bias_rad_s",), ((0.0,),), (5e-4,), ((-0.5, 0.5),),
+            _LEAST_BIAS_RAD_S, entries=("q_bias",),
         ),
         Variant(
-            "pitch_rate_scale",
-            "pitch_rate_sensor",
-            ("scale",),
-            ((0.0,),),
-            (0.002,),
-            ((-0.8, 3.0),),
-            0.01,
+            "pitch_rate_scale", "pitch_rate_sensor", ("scale",), ((0.0,),), (0.002,), ((-0.8, 3.0),), 0.01,
             entries=("q_scale",),
         ),
         replace(_MODE, likewise=(_MODE_OF_ALL,)),
         Variant(
-            "accelerometer_offset",
-            "accelerometer",
-            ("arm_m",),
-            ((0.0,),),
-            (0.01,),
-            ((-10.0, 10.0),),
-            least_arm_m,
-            entries=("imu_arm_m",),
+            "accelerometer_offset", "accelerometer", ("arm_m",), ((0.0,),), (0.01,), ((-10.0, 10.0),),
+            least_arm_m, entries=("imu_arm_m",),
         ),
-    ]
+    ]  # fmt: skip

@@ -28,17 +28,11 @@ def filters(flights: Flights) -> Variant:
     """Return the delays of an autopilot's filters relative to its pitch rate, as nuisance parameters."""
     channels = [c for c in flights.channels if c in _FILTERS_S]
     return Variant(
-        "filters",
-        BLOCK,
-        tuple(f"{c}_late_s" for c in channels),
-        ((0.0,) * len(channels),),
-        (1e-3,) * len(channels),
-        tuple((-2.0 * _FILTERS_S[c], 2.0 * _FILTERS_S[c]) for c in channels),
-        0.0,
+        "filters", BLOCK, tuple(f"{c}_late_s" for c in channels), ((0.0,) * len(channels),),
+        (1e-3,) * len(channels), tuple((-2.0 * _FILTERS_S[c], 2.0 * _FILTERS_S[c]) for c in channels), 0.0,
         entries=tuple(SKEWS[OUTPUTS.index(c)] for c in channels),
-        prior_std=tuple(_FILTERS_S[c] for c in channels),
-        is_nuisance=True,
-    )
+        prior_std=tuple(_FILTERS_S[c] for c in channels), is_nuisance=True,
+    )  # fmt: skip
 
 
 def _whole_skew(entry: str, p: FloatArray, values: Values, _: Flights) -> None:
@@ -57,18 +51,11 @@ def variants(flights: Flights, least_s: float) -> list[Variant]:
     rate."""
     found = [
         Variant(
-            effect,
-            BLOCK,
-            ("skew_s",),
-            ((0.02,), (-0.02,), (0.1,), (-0.1,)),
-            (1e-3,),
-            ((-0.4, 0.4),),
-            least_s,
-            apply_with=partial(_whole_skew, SKEWS[OUTPUTS.index(channel)]),
-            sets=True,
+            effect, BLOCK, ("skew_s",), ((0.02,), (-0.02,), (0.1,), (-0.1,)), (1e-3,), ((-0.4, 0.4),),
+            least_s, apply_with=partial(_whole_skew, SKEWS[OUTPUTS.index(channel)]), sets=True,
         )
         for effect, channel in _STREAMS
-    ]
+    ]  # fmt: skip
     if _in_one_message(flights):
         skew = next(v for v in found if v.effect == "attitude_skew")
         least_s = max(least_s, _MESSAGE_S)

@@ -158,8 +158,8 @@ def measured_in(problem: Problem, held: HeldOut, fitted: Fitted, sole_maneuvers:
 def sole_informative_maneuver(fitted: Fitted, index: int) -> int | None:
     """Return the one manoeuvre that determines a shared parameter; None where another could confirm it."""
     weights = 1.0 / fitted.noise
-    told = [own_eliminated(block, weights)[0][index, index] for block in fitted.linear]
-    return int(np.argmax(told)) if max(told) > _SOLE_SHARE * sum(told) else None
+    information = [own_eliminated(block, weights)[0][index, index] for block in fitted.linear]
+    return int(np.argmax(information)) if max(information) > _SOLE_SHARE * sum(information) else None
 
 
 def held_out(

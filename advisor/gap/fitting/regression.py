@@ -15,9 +15,9 @@ _SPAN = 10
 _RIDGE = 1e-6
 """Ridge of the regression, relative to the mean square of a regressor: bounds directions that a flight does
 not excite."""
-_IN_STEP = 0.01
-"""Product of the residual shares of both equations below which the channels are in step, and no shift is
-tried."""
+_SIMULTANEOUS = 0.01
+"""Product of the residual shares of both equations below which the channels are simultaneous, and no shift
+is tried."""
 _BETTER = 0.5
 """Residual share with one channel shifted, relative to that without, below which the shifted regression is a
 start too."""
@@ -48,7 +48,7 @@ def regressions(flights: Flights) -> list[FloatArray]:
     in sign. No search recovers from that. The regression with that channel shifted is then a start too.
     """
     as_stamped, left_share = _regressed(flights, Late())
-    if left_share < _IN_STEP:
+    if left_share < _SIMULTANEOUS:
         return [as_stamped]
     shifted, less = min((_regressed(flights, late) for late in _ONE_LATE), key=lambda found: found[1])
     return [as_stamped, shifted] if less < _BETTER * left_share else [as_stamped]

@@ -212,10 +212,8 @@ def _needed(signatures: Signatures, numbers: int) -> float:
     change."""
     price = numbers * float(np.log(signatures.rows))
     # A filter of moving air leaves far less of a change than the outputs show.
-    doubted = least_change(signatures.problem) * float(
-        np.mean(floor_margins(signatures.problem.flights) ** 2)
-    )
-    change = 0.0 if signatures.filtered else doubted * signatures.rows
+    least = least_change(signatures.problem) * float(np.mean(floor_margins(signatures.problem.flights) ** 2))
+    change = 0.0 if signatures.filtered else least * signatures.rows
     return max(_DETECTED_AT**2, 2.0 * LEAST_GAIN + price, change)
 
 

@@ -63,9 +63,7 @@ def foresee_plan(
     derivatives = prior_derivatives(aircraft)
     if derivatives is None:
         missing = ", ".join(name for name in PARAMETERS if name not in aircraft.model)
-        raise ConfigurationError(
-            f"foresee needs the aircraft file's model: {missing} missing; write what is missing under model."
-        )
+        raise ConfigurationError(f"foresee needs the aircraft file's model; add {missing} under model.")
     if aircraft.model["M_delta_e"] == 0.0:
         raise ConfigurationError(
             "model.M_delta_e: an elevator of no effect (0) shows nothing; give the moment it makes, in 1/s²."

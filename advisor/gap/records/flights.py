@@ -63,9 +63,6 @@ class Flight:
     """Factor of the covariance of the air speed's error, m/s: shape (3, 3) from
     ``airspeed.speed_error_factors``, (1, 1) for the level alone, (0, 0) where unknown."""
 
-    roll_rate: FloatArray | None = None
-    """Shape (n,) on the grid, rad/s; None where the log has none."""
-
     @property
     def alpha_trim(self) -> float:
         """Angle of attack at the start, rad."""

@@ -15,7 +15,7 @@ from advisor.gap.records.airspeed import (
     speed_error_factors,
 )
 from advisor.gap.records.edges import edges_of, held_from
-from advisor.gap.records.flights import Flight, Flights
+from advisor.gap.records.flights import Flight, Flights, Measured
 from advisor.gap.records.grid import STEP_S, smooth
 from advisor.gap.records.provenance import is_estimate
 from advisor.gap.records.smoothness import is_filtered, is_rough, is_smoothed, white_part
@@ -33,27 +33,11 @@ def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft, true_over_read: f
     unknown.
     """
     usable = usable_of(maneuvers)
-    speeds = [m.channels["airspeed"].y for m in usable if measures_speed(m)]
-    measured = bool(usable) and len(speeds) == len(usable)
-    shown = None
+    measured = bool(usable) and all(map(measures_speed, usable))
     if measured:
-        reference = aircraft.reference_airspeed_m_s or float(np.mean([np.mean(v) for v in speeds]))
+        reference, flights, moves = _at_measured_speed(usable, aircraft, true_over_read)
     else:
-        reference = aircraft.stated_airspeed_m_s or ASSUMED_M_S
-        shown = speeds_about(usable, reference)
-    levels = [None] * len(usable) if shown is None else [float(v) for v in shown.before_m_s]
-    flights = _about_their_mean(
-        _ready(m, reference, level, true_over_read) for m, level in zip(usable, levels, strict=True)
-    )
-    if shown is None:
-        moves = _largest_departure(flights)
-        flights = _with_speed_errors(flights, usable)
-    else:
-        moves = shown.moves
-        flights = tuple(
-            replace(f, speed_error_factor=np.array([[factor]]))
-            for f, factor in zip(flights, shown.std_m_s, strict=True)
-        )
+        reference, flights, moves = _at_speed_of_motion(usable, aircraft)
     common = set.intersection(*(set(f.outputs) for f in flights)) if flights else set()
     channels = tuple(name for name in OUTPUTS if name in common)
     flights = tuple(_with_rows(f, channels) for f in flights)
@@ -62,20 +46,52 @@ def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft, true_over_read: f
         for name in ("airspeed", "a_x", "bank", "throttle", "height", "climb_rate")
         if usable and all(name in m.channels and len(m.channels[name]) > 1 for m in usable)
     )
-
-    def quiet(channel: str) -> list[FloatArray]:
-        return [y for f in flights for y in f.quiet_stretches(channel)]
-
-    smoothed = "alpha" in channels and is_smoothed(quiet("alpha"))
-    # Where the whole record was filtered on the ground, a smooth α does not indicate an estimator.
-    rough = "alpha" in channels and is_rough(quiet("alpha"))
-    derived = any(is_estimate(m, smoothed and not is_filtered(quiet("q")), rough) for m in usable)
+    smoothed, derived = _kind_of_alpha(usable, flights, "alpha" in channels)
     whole = [[f.outputs[c].y for f in flights] for c in channels]
     white = np.array([white_part(series) for series in whole])
     peaks = np.array([np.median([_departure(y) for y in series]) for series in whole])
     return Flights(
         flights, channels, measured, reference, moves, derived, derived or smoothed, has, white, peaks
     )
+
+
+def _at_measured_speed(
+    usable: Sequence[Maneuver], aircraft: Aircraft, true_over_read: float
+) -> tuple[float, tuple[Flight, ...], float]:
+    """Return reference speed (m/s), flights, and largest relative change of speed, from the instrument."""
+    means = [np.mean(m.channels["airspeed"].y) for m in usable]
+    reference = aircraft.reference_airspeed_m_s or float(np.mean(means))
+    flights = _about_their_mean(_ready(m, reference, None, true_over_read) for m in usable)
+    return reference, _with_speed_errors(flights, usable), _largest_departure(flights)
+
+
+def _at_speed_of_motion(
+    usable: Sequence[Maneuver], aircraft: Aircraft
+) -> tuple[float, tuple[Flight, ...], float]:
+    """Return reference speed (m/s), flights, and largest relative change of speed, without an instrument."""
+    reference = aircraft.stated_airspeed_m_s or ASSUMED_M_S
+    shown = speeds_about(usable, reference)
+    flights = _about_their_mean(
+        _ready(m, reference, float(level), 1.0) for m, level in zip(usable, shown.before_m_s, strict=True)
+    )
+    factors = (np.array([[std]]) for std in shown.std_m_s)
+    flights = tuple(replace(f, speed_error_factor=e) for f, e in zip(flights, factors, strict=True))
+    return reference, flights, shown.moves
+
+
+def _kind_of_alpha(usable: Sequence[Maneuver], flights: Sequence[Flight], in_all: bool) -> tuple[bool, bool]:
+    """Return whether α was smoothed before it was stored, and whether it is an estimate.
+
+    ``in_all``: every manoeuvre has an angle of attack; otherwise its smoothness is not looked at.
+    """
+
+    def quiet(channel: str) -> list[FloatArray]:
+        return [y for f in flights for y in f.quiet_stretches(channel)]
+
+    smoothed, rough = in_all and is_smoothed(quiet("alpha")), in_all and is_rough(quiet("alpha"))
+    # Where the whole record was filtered on the ground, a smooth α does not indicate an estimator.
+    of_estimator = smoothed and not is_filtered(quiet("q"))
+    return smoothed, any(is_estimate(m, of_estimator, rough) for m in usable)
 
 
 def _departure(y: FloatArray) -> float:
@@ -152,20 +168,19 @@ def _ready(m: Maneuver, reference: float, level: float | None, true_over_read: f
     lead = (t_u >= 0.0) & (t_u < max(first - 0.02, 0.1))
     u_trim = float(np.median(u[lead])) if np.any(lead) else float(u[0])
 
-    def at_start(name: str, otherwise: float) -> float:
-        if name not in outputs:
-            return otherwise
-        out = outputs[name]
-        return float(np.mean(out.y[out.t <= max(first, out.t[0] + 0.1)]))
-
-    alpha = at_start("alpha", 0.0)
+    alpha = _at_start(outputs["alpha"], first) if "alpha" in outputs else 0.0
     trim = np.array([alpha, alpha, reference, 1.0])
     if "theta" in outputs:
         trim[THETA_FROM] = float(np.mean(outputs["theta"].y[:3]))
     return Flight(
         m.number, start, first, m.span.last_step_s - start, STEP_S, n, t_u, held_from(t_u), u, u_trim,
-        slow, trim, outputs, edges_of(t_u, u), roll_rate=on_grid("p", 0.0) if "p" in m.channels else None,
+        slow, trim, outputs, edges_of(t_u, u),
     )  # fmt: skip
+
+
+def _at_start(out: Measured, first_step_s: float) -> float:
+    """Return the mean of an output before the first step, or over its first 0.1 s where that is longer."""
+    return float(np.mean(out.y[out.t <= max(first_step_s, out.t[0] + 0.1)]))
 
 
 def _with_rows(flight: Flight, channels: Sequence[str]) -> Flight:

@@ -54,8 +54,6 @@ class Air:
     """Largest departure of the gust angle in that manoeuvre, rad."""
     gust_at_s: float
     """Vehicle time of the gust's peak, s."""
-    course: tuple[FloatArray, ...]
-    """Per manoeuvre, shape (knots,): likeliest gust angle, rad, every ``KNOTS_S``."""
     mean_square_beyond_air: FloatArray
     """Shape (channels,): mean square of the residual without the likeliest course of the air."""
     residuals: tuple[FloatArray, ...]
@@ -63,9 +61,6 @@ class Air:
     channels' units."""
     instruments: FloatArray
     """Shape (channels,): noise of the instruments in addition to moving air."""
-    power: float
-    """Power that the course explains: mean over channels of the mean square, relative to the instruments'
-    noise."""
 
 
 def moving_air(problem: Problem, fitted: Fitted) -> Air | None:
@@ -100,14 +95,12 @@ def moving_air(problem: Problem, fitted: Fitted) -> Air | None:
     number = int(np.argmax(peaks**2 * np.maximum(changed, 0.0)))
     at = int(np.argmax(np.abs(course.knots[number])))
     flight = problem.flights.flights[number]
-    beyond = _mean_square(problem, course.residuals)
-    taken = np.mean(before, axis=0) - beyond
     return Air(
         angle_std=found.gust_angle, gain=found.gain,
         gust=gust, gust_number=flight.number,
         gust_angle=float(course.knots[number][at]), gust_at_s=float(flight.started_s + KNOTS_S * (at + 1)),
-        course=course.knots, mean_square_beyond_air=beyond, residuals=course.residuals,
-        instruments=instruments, power=float(np.mean(taken / floor**2)),
+        mean_square_beyond_air=_mean_square(problem, course.residuals), residuals=course.residuals,
+        instruments=instruments,
     )  # fmt: skip
 
 

@@ -15,7 +15,7 @@ them."""
 _LOOKS_HELD = 0.3
 """Largest missing share where delay and lag amount to half an interval together. With a real delay a third
 would be missing: the variance of edges anywhere in an interval, relative to the square of half of it."""
-_IN_STEP = 0.05
+_ALL_LATE_ALIKE = 0.05
 """Largest missing share where delay and lag amount to between half an interval and a whole one. Edges
 anywhere in their intervals would leave more."""
 _HALF_S = 0.003
@@ -61,7 +61,7 @@ def read_command(linear: Problem, fitted: Fitted) -> tuple[Problem, Fitted]:
     without_delay = delays[True] < _HALF_S and abs(delays[False] - half) < _HALF_S
     # Steps of a fast loop, all at one place of their interval, are late by up to a whole interval together.
     in_step = half - _HALF_S < late < 2.0 * half + input.LATENCY.bounds[0][1]
-    nearest = best_of_all + _IN_STEP * (max(plain.values()) - best_of_all)
+    nearest = best_of_all + _ALL_LATE_ALIKE * (max(plain.values()) - best_of_all)
     steps_alike = in_step and plain[True] < min(nearest, plain[False])
     if is_held or looks_held or steps_alike or (without_delay and both[True] < both[False] + price):
         return held, plainly_held

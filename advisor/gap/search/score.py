@@ -68,7 +68,7 @@ def addition(
     sole_maneuver = sole_informative_maneuver(fitted, place.start) if variant.needs else None
     lone = sole_maneuver is not None
     known_before, known = held_before, held
-    if others := _told_alone(fitted, but=k):
+    if others := _sole_maneuvers(fitted, but=k):
         # The others cannot predict that manoeuvre, with or without this effect.
         known_before = measured_in(problem, held_before, before, others)
         known = measured_in(problem, held, fitted, others)
@@ -100,12 +100,12 @@ def addition(
     )  # fmt: skip
 
 
-def _told_alone(fitted: Fitted, but: int) -> set[int]:
+def _sole_maneuvers(fitted: Fitted, but: int) -> set[int]:
     """Return the manoeuvres that alone determine some effect of the model, other than the ``but``-th."""
     point = fitted.point
     others = [k for k, v in enumerate(point.effects) if v.needs and not v.is_nuisance and k != but]
-    told = (sole_informative_maneuver(fitted, point.place(k).start) for k in others)
-    return {number for number in told if number is not None}
+    found = (sole_informative_maneuver(fitted, point.place(k).start) for k in others)
+    return {number for number in found if number is not None}
 
 
 def price_of(variant: Variant, effective: FloatArray) -> float:

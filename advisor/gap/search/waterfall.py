@@ -55,8 +55,8 @@ def _leading_on(
     if not considered or considered[0].gain < BEYOND_DOUBT:
         return None, None
     first = considered[0]
-    beside = _judged(problem, first.fitted, first.held_out, variants)
-    return (first, beside) if any(j.is_accepted for j in beside) else (None, None)
+    with_it = _judged(problem, first.fitted, first.held_out, variants)
+    return (first, with_it) if any(j.is_accepted for j in with_it) else (None, None)
 
 
 def _judged(problem: Problem, fitted: Fitted, held: HeldOut, variants: Sequence[Variant]) -> list[Judged]:

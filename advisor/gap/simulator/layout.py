@@ -1,7 +1,7 @@
 """The vector of driving numbers of the gap's simulation: the meaning of each entry.
 
-The entries are six shared derivatives of Eqs. (1)-(2), four nuisance parameters of each manoeuvre (initial
-states and trim), and the parameters of every candidate effect. An entry of zero means that the effect is
+The entries are the six derivatives of Eqs. (1)-(2), which manoeuvres share, four nuisance parameters of each
+manoeuvre, and the parameters of every candidate effect. An entry of zero means that the effect is
 absent, so adding an effect means freeing its entries.
 """
 
@@ -17,8 +17,8 @@ from advisor.model import response
 
 DERIVATIVES = ("Z_alpha", "Z_q", "Z_delta_e", "M_alpha", "M_q", "M_delta_e")
 NUISANCES = ("alpha_start", "q_start", "Z_trim", "M_trim")
-"""Nuisance parameters of each manoeuvre: initial deviations of α (rad) and q (rad/s), and the trim terms of
-Eqs. (1)-(2) at the trimmed α and δe."""
+"""Nuisance parameters of each manoeuvre: initial deviations of α (rad) and q (rad/s), and the terms of
+Eqs. (1)-(2) at the trim point."""
 EFFECT_ENTRIES = (
     # input; latency is the delay of a few milliseconds between a command's stamp and its effect, in every
     # model

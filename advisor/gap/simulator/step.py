@@ -8,53 +8,9 @@ import numpy as np
 
 from advisor.compiled import kernel
 from advisor.flight.messages import FloatArray
+from advisor.gap.simulator import pack as row
 from advisor.gap.simulator.circle import cos_sin
 from advisor.gap.simulator.layout import AT, READ, SLOW
-from advisor.gap.simulator.pack import (
-    AIR,
-    AIRSPEED,
-    ALPHA,
-    ATTACHED,
-    BEND,
-    BEND_RATE,
-    COS_ALPHA,
-    DEFLECTION,
-    DOSE,
-    ENGINE,
-    ENGINE_DECAY,
-    FADE,
-    FOLLOWED,
-    GRAVITY,
-    HIGHEST,
-    KA,
-    KQ,
-    LIFT,
-    LIFT_DECAY,
-    LIFTING,
-    LOWEST,
-    M_REST,
-    MISSING,
-    MOMENT_SLOPE,
-    NEAR,
-    NORMAL_0,
-    POWER,
-    QDOT_0,
-    RATIO,
-    SEPARATED,
-    SHOWN,
-    SIN_ALPHA,
-    SOFTNESS,
-    SWING_COS,
-    SWING_SIN,
-    THETA,
-    TURNING,
-    VANE_BEFORE,
-    VANE_DECAY,
-    VANE_OUT,
-    VANE_RAMP,
-    Z_REST,
-    Q,
-)
 from advisor.standard_gravity import GRAVITY_M_S2
 
 _inlined = kernel(error_model="numpy", fastmath={"contract"}, inline="always")
@@ -76,13 +32,13 @@ def _separate(x: FloatArray, m: int, before: float, now: float) -> None:
 
     The angle is met within a step; the next step makes up for the part that was missed.
     """
-    x[MISSING, m] = x[SEPARATED, m]
-    if x[SEPARATED, m] == 0.0 and now > x[AT.separation_rad, m]:
+    x[row.MISSING, m] = x[row.SEPARATED, m]
+    if x[row.SEPARATED, m] == 0.0 and now > x[AT.separation_rad, m]:
         late = (now - x[AT.separation_rad, m]) / max(now - before, 1e-9)
-        x[SEPARATED, m], x[MISSING, m] = 1.0, 1.0 + min(late, 1.0)
-    elif x[SEPARATED, m] == 1.0 and now < x[AT.attachment_rad, m]:
+        x[row.SEPARATED, m], x[row.MISSING, m] = 1.0, 1.0 + min(late, 1.0)
+    elif x[row.SEPARATED, m] == 1.0 and now < x[AT.attachment_rad, m]:
         late = (x[AT.attachment_rad, m] - now) / max(before - now, 1e-9)
-        x[SEPARATED, m], x[MISSING, m] = 0.0, -min(late, 1.0)
+        x[row.SEPARATED, m], x[row.MISSING, m] = 0.0, -min(late, 1.0)
 
 
 @_inlined
@@ -106,12 +62,12 @@ def take_speed(
         bowed = x[AT.speed_slope_m_s, m] + along * x[AT.speed_bow_m_s, m]
         off = x[AT.speed_level_m_s, m] + along * bowed
         # Derivatives are given at the speed as it is read; the true speed bends the path.
-        x[AIRSPEED, m] = (speed + off) * (1.0 + x[AT.speed_scale, m])
-        x[RATIO, m] = (speed + off) / reference if scaled else 1.0
+        x[row.AIRSPEED, m] = (speed + off) * (1.0 + x[AT.speed_scale, m])
+        x[row.RATIO, m] = (speed + off) / reference if scaled else 1.0
     if powers:
         for m in range(lanes):
-            x[POWER, m] = x[RATIO, m] ** x[AT.speed_power, m]
-            x[TURNING, m] = x[POWER, m] * x[RATIO, m] ** x[AT.moment_power, m]
+            x[row.POWER, m] = x[row.RATIO, m] ** x[AT.speed_power, m]
+            x[row.TURNING, m] = x[row.POWER, m] * x[row.RATIO, m] ** x[AT.moment_power, m]
 
 
 @_inlined
@@ -123,7 +79,7 @@ def near_ground(x: FloatArray, lanes: int, height: float) -> None:
             scale = x[AT.scale_m, m]
             # Heights count from a place that may lie above the ground, and a trial scale may be tiny.
             near = np.exp(min(-height / max(scale, 1e-3), 3.0)) if scale > 0.0 else 0.0
-        x[NEAR, m] = near
+        x[row.NEAR, m] = near
 
 
 @_inlined
@@ -148,33 +104,33 @@ def hold_over_step(
     throttle, thrust = slow[SLOW.throttle], slow[SLOW.thrust]
     d_delta, d_force, d_moment = disturbed
     for m in range(lanes):
-        d = delta[m] + x[DOSE, m] * d_delta
-        v = x[RATIO, m]
+        d = delta[m] + x[row.DOSE, m] * d_delta
+        v = x[row.RATIO, m]
         vv = v * v
         z_d = x[AT.Z_delta_e, m]
         met = vv + x[AT.washed_share, m] * (1.0 - vv) + x[AT.blown_share, m] * thrust
-        m_d = x[AT.M_delta_e, m] * x[TURNING, m] * met
-        pressure = x[TURNING, m] * vv
-        lifting = x[POWER, m] * v * (1.0 + x[AT.lift_h, m] * x[NEAR, m])
-        ca, sa = cos_sin(x[ALPHA, m])
-        ct, st = cos_sin(x[THETA, m])
-        x[COS_ALPHA, m], x[SIN_ALPHA, m] = ca, sa
-        x[GRAVITY, m] = GRAVITY_M_S2 / x[AIRSPEED, m] * (ca * ct * level + sa * st)
-        x[LIFTING, m] = lifting
-        x[ENGINE, m] = throttle + x[ENGINE_DECAY, m] * (x[ENGINE, m] - throttle)
-        x[MOMENT_SLOPE, m] = pressure * x[AT.M_alpha, m]
-        x[DEFLECTION, m] = d
-        x[Z_REST, m] = v * x[AT.Z_h, m] * x[NEAR, m] + x[DOSE, m] * d_force + lifting * z_d * d
-        x[M_REST, m] = (
+        m_d = x[AT.M_delta_e, m] * x[row.TURNING, m] * met
+        pressure = x[row.TURNING, m] * vv
+        lifting = x[row.POWER, m] * v * (1.0 + x[AT.lift_h, m] * x[row.NEAR, m])
+        ca, sa = cos_sin(x[row.ALPHA, m])
+        ct, st = cos_sin(x[row.THETA, m])
+        x[row.COS_ALPHA, m], x[row.SIN_ALPHA, m] = ca, sa
+        x[row.GRAVITY, m] = GRAVITY_M_S2 / x[row.AIRSPEED, m] * (ca * ct * level + sa * st)
+        x[row.LIFTING, m] = lifting
+        x[row.ENGINE, m] = throttle + x[row.ENGINE_DECAY, m] * (x[row.ENGINE, m] - throttle)
+        x[row.MOMENT_SLOPE, m] = pressure * x[AT.M_alpha, m]
+        x[row.DEFLECTION, m] = d
+        x[row.Z_REST, m] = v * x[AT.Z_h, m] * x[row.NEAR, m] + x[row.DOSE, m] * d_force + lifting * z_d * d
+        x[row.M_REST, m] = (
             m_d * d
             + pressure * (x[AT.M_trim, m] + (x[AT.M_delta2, m] + x[AT.M_delta3, m] * d) * d * d)
-            + pressure * x[AT.M_h, m] * x[NEAR, m] + x[AT.M_throttle, m] * x[ENGINE, m]
-            + x[AT.M_thrust, m] * (1.0 - vv) + x[DOSE, m] * d_moment
+            + pressure * x[AT.M_h, m] * x[row.NEAR, m] + x[AT.M_throttle, m] * x[row.ENGINE, m]
+            + x[AT.M_thrust, m] * (1.0 - vv) + x[row.DOSE, m] * d_moment
         )  # fmt: skip
         # Outputs belong to the start of the step.
         ahead = above[m]
-        x[NORMAL_0, m], x[QDOT_0, m] = -lifting * z_d * ahead, -m_d * ahead
-        x[KA, m], x[KQ, m] = 0.0, 0.0
+        x[row.NORMAL_0, m], x[row.QDOT_0, m] = -lifting * z_d * ahead, -m_d * ahead
+        x[row.KA, m], x[row.KQ, m] = 0.0, 0.0
 
 
 @_inlined
@@ -182,8 +138,8 @@ def stall(x: FloatArray, lanes: int, h: float, d_air: float) -> None:
     """Write the attached share of the lift, half a step of ``h`` s ahead of the state."""
     for m in range(lanes):
         if x[AT.stall_sharpness, m] > 0.0:
-            a = x[ALPHA, m] + 0.5 * h * x[KA, m] + x[DOSE, m] * d_air
-            x[ATTACHED, m] = _attached(x[AT.stall_sharpness, m] * (a - x[AT.stall_rad, m]))
+            a = x[row.ALPHA, m] + 0.5 * h * x[row.KA, m] + x[row.DOSE, m] * d_air
+            x[row.ATTACHED, m] = _attached(x[AT.stall_sharpness, m] * (a - x[AT.stall_rad, m]))
 
 
 @_inlined
@@ -194,29 +150,29 @@ def rates(x: FloatArray, lanes: int, h: float, d_air: float, alpha_trim: float, 
     outputs.
     """
     for m in range(lanes):
-        a = x[ALPHA, m] + 0.5 * h * x[KA, m] + x[DOSE, m] * d_air
-        q = x[Q, m] + 0.5 * h * x[KQ, m]
+        a = x[row.ALPHA, m] + 0.5 * h * x[row.KA, m] + x[row.DOSE, m] * d_air
+        q = x[row.Q, m] + 0.5 * h * x[row.KQ, m]
         da = a - alpha_trim
-        behind = a - x[LIFT, m]
+        behind = a - x[row.LIFT, m]
         lagged, turned = da - x[AT.lift_share, m] * behind, da - x[AT.moment_share, m] * behind
         wing = (
             x[AT.Z_trim, m]
             + (x[AT.Z_alpha, m] + (x[AT.Z_alpha2, m] + x[AT.Z_alpha3, m] * lagged) * lagged) * lagged
         )
-        wing += x[AT.Z_memory, m] * (a - x[FOLLOWED, m]) + x[AT.Z_separated, m] * x[MISSING, m]
-        normal = x[Z_REST, m] + x[LIFTING, m] * x[ATTACHED, m] * wing + x[AT.Z_q, m] * q
-        ka = q + x[GRAVITY, m] + normal
-        v = x[RATIO, m]
+        wing += x[AT.Z_memory, m] * (a - x[row.FOLLOWED, m]) + x[AT.Z_separated, m] * x[row.MISSING, m]
+        normal = x[row.Z_REST, m] + x[row.LIFTING, m] * x[row.ATTACHED, m] * wing + x[AT.Z_q, m] * q
+        ka = q + x[row.GRAVITY, m] + normal
+        v = x[row.RATIO, m]
         bent = (x[AT.M_alpha2, m] + x[AT.M_alpha3, m] * da) * da
-        bent += x[AT.M_alpha_delta_e, m] * x[DEFLECTION, m]
-        slope = x[MOMENT_SLOPE, m] + x[TURNING, m] * v * v * bent
+        bent += x[AT.M_alpha_delta_e, m] * x[row.DEFLECTION, m]
+        slope = x[row.MOMENT_SLOPE, m] + x[row.TURNING, m] * v * v * bent
         damping = x[AT.M_q, m] + x[AT.M_alpha_q, m] * da + x[AT.M_q_q, m] * abs(q)
         damped = damping * q + x[AT.M_q_abs, m] * abs(q)
-        kq = x[M_REST, m] + slope * turned + v * (damped + x[AT.M_alpha_dot, m] * ka)
-        x[KA, m], x[KQ, m] = ka, kq
+        kq = x[row.M_REST, m] + slope * turned + v * (damped + x[AT.M_alpha_dot, m] * ka)
+        x[row.KA, m], x[row.KQ, m] = ka, kq
         if first:
-            x[NORMAL_0, m] += normal
-            x[QDOT_0, m] += kq
+            x[row.NORMAL_0, m] += normal
+            x[row.QDOT_0, m] += kq
 
 
 @_inlined
@@ -225,30 +181,32 @@ def read_sensors(
 ) -> None:
     """Write what the instruments read at the start of a step into ``out``, shape (4, LANES)."""
     for m in range(lanes):
-        alpha, q, air = x[ALPHA, m], x[Q, m], x[DOSE, m] * d_air
-        x[AIR, m] = air
-        vane = alpha + air - x[AT.vane_arm_m, m] * q / x[AIRSPEED, m]
+        alpha, q, air = x[row.ALPHA, m], x[row.Q, m], x[row.DOSE, m] * d_air
+        x[row.AIR, m] = air
+        vane = alpha + air - x[AT.vane_arm_m, m] * q / x[row.AIRSPEED, m]
         # The air may move after the first step, although the vane was steady at the start.
-        x[VANE_OUT, m] = (x[VANE_DECAY, m] * (x[VANE_OUT, m] - x[VANE_BEFORE, m]) + vane
-                          - x[VANE_RAMP, m] * (vane - x[VANE_BEFORE, m]))  # fmt: skip
-        x[VANE_BEFORE, m] = vane
-        shown = max(x[SHOWN, m], x[VANE_OUT, m] - x[AT.vane_play_rad, m])
-        x[SHOWN, m] = min(shown, x[VANE_OUT, m] + x[AT.vane_play_rad, m])
-        turned = min(max(x[SHOWN, m] - alpha_trim, x[LOWEST, m]), x[HIGHEST, m])
+        x[row.VANE_OUT, m] = (x[row.VANE_DECAY, m] * (x[row.VANE_OUT, m] - x[row.VANE_BEFORE, m]) + vane
+                          - x[row.VANE_RAMP, m] * (vane - x[row.VANE_BEFORE, m]))  # fmt: skip
+        x[row.VANE_BEFORE, m] = vane
+        shown = max(x[row.SHOWN, m], x[row.VANE_OUT, m] - x[AT.vane_play_rad, m])
+        x[row.SHOWN, m] = min(shown, x[row.VANE_OUT, m] + x[AT.vane_play_rad, m])
+        turned = min(max(x[row.SHOWN, m] - alpha_trim, x[row.LOWEST, m]), x[row.HIGHEST, m])
         bent = (x[AT.alpha_read2, m] + x[AT.alpha_read3, m] * turned) * turned
         out[READ.alpha, m] = alpha_trim + (1.0 + x[AT.alpha_scale, m] + bent) * turned
-        a_z = (x[AIRSPEED, m] * x[NORMAL_0, m] + a_x * x[SIN_ALPHA, m]) / x[COS_ALPHA, m]
-        a_z -= x[AT.imu_arm_m, m] * x[QDOT_0, m]
+        a_z = (x[row.AIRSPEED, m] * x[row.NORMAL_0, m] + a_x * x[row.SIN_ALPHA, m]) / x[row.COS_ALPHA, m]
+        a_z -= x[AT.imu_arm_m, m] * x[row.QDOT_0, m]
         pulled = a_z + GRAVITY_M_S2
         out[READ.q, m] = ((1.0 + x[AT.q_scale, m]) * q + x[AT.q_bias, m]
-                          + x[AT.mode_gain, m] * x[BEND, m]
-                          + x[AT.mode_rate_gain, m] * x[BEND_RATE, m] * x[SOFTNESS, m]
+                          + x[AT.mode_gain, m] * x[row.BEND, m]
+                          + x[AT.mode_rate_gain, m] * x[row.BEND_RATE, m] * x[row.SOFTNESS, m]
                           + (x[AT.q_pull, m] + x[AT.q_pull2, m] * pulled) * pulled)  # fmt: skip
         bent = (x[AT.a_z_read2, m] + x[AT.a_z_read3, m] * pulled) * pulled
         out[READ.a_z, m] = (1.0 + x[AT.a_z_scale, m]) * a_z + bent * pulled
         # The slope of the bent structure is the integral of the gyro's part of its rate.
-        slope = x[AT.mode_attitude, m] * x[AT.mode_rate_gain, m] * x[BEND, m] * x[SOFTNESS, m]
-        out[READ.theta, m] = theta_from + (1.0 + x[AT.theta_scale, m]) * (x[THETA, m] - theta_from) + slope
+        slope = x[AT.mode_attitude, m] * x[AT.mode_rate_gain, m] * x[row.BEND, m] * x[row.SOFTNESS, m]
+        out[READ.theta, m] = (
+            theta_from + (1.0 + x[AT.theta_scale, m]) * (x[row.THETA, m] - theta_from) + slope
+        )
 
 
 @_inlined
@@ -265,20 +223,20 @@ def advance(
         Whether the flow may separate in any lane.
     """
     for m in range(lanes):
-        alpha, q, theta = x[ALPHA, m], x[Q, m], x[THETA, m]
-        air, d = x[AIR, m], x[DEFLECTION, m]
+        alpha, q, theta = x[row.ALPHA, m], x[row.Q, m], x[row.THETA, m]
+        air, d = x[row.AIR, m], x[row.DEFLECTION, m]
         # A search may try an unstable aircraft: the clipped motion stays finite, and its cost rejects it.
-        x[ALPHA, m] = min(max(alpha + h * x[KA, m], -1.5), 1.5)
-        x[Q, m] = min(max(q + h * x[KQ, m], -15.0), 15.0)
-        x[THETA, m] = theta + h * (0.5 * (q + x[Q, m]) * level - turning)
-        keep = x[LIFT_DECAY, m]
-        x[LIFT, m] = keep * x[LIFT, m] + (1.0 - keep) * (0.5 * (alpha + x[ALPHA, m]) + air)
-        followed = max(x[FOLLOWED, m], x[ALPHA, m] + air - x[AT.memory_rad, m])
-        x[FOLLOWED, m] = min(followed, x[ALPHA, m] + air + x[AT.memory_rad, m])
+        x[row.ALPHA, m] = min(max(alpha + h * x[row.KA, m], -1.5), 1.5)
+        x[row.Q, m] = min(max(q + h * x[row.KQ, m], -15.0), 15.0)
+        x[row.THETA, m] = theta + h * (0.5 * (q + x[row.Q, m]) * level - turning)
+        keep = x[row.LIFT_DECAY, m]
+        x[row.LIFT, m] = keep * x[row.LIFT, m] + (1.0 - keep) * (0.5 * (alpha + x[row.ALPHA, m]) + air)
+        followed = max(x[row.FOLLOWED, m], x[row.ALPHA, m] + air - x[AT.memory_rad, m])
+        x[row.FOLLOWED, m] = min(followed, x[row.ALPHA, m] + air + x[AT.memory_rad, m])
         if separates:
-            before, now = alpha + air - alpha_trim, x[ALPHA, m] + air - alpha_trim
+            before, now = alpha + air - alpha_trim, x[row.ALPHA, m] + air - alpha_trim
             _separate(x, m, before, now)
-        off, rate, zeta = x[BEND, m] - d, x[BEND_RATE, m], x[AT.mode_damping, m]
-        swing, turn, fade = x[SWING_COS, m], x[SWING_SIN, m], x[FADE, m]
-        x[BEND, m] = d + fade * ((swing + zeta * turn) * off + turn * rate * x[SOFTNESS, m])
-        x[BEND_RATE, m] = fade * ((swing - zeta * turn) * rate - x[AT.mode_rad_s, m] * turn * off)
+        off, rate, zeta = x[row.BEND, m] - d, x[row.BEND_RATE, m], x[AT.mode_damping, m]
+        swing, turn, fade = x[row.SWING_COS, m], x[row.SWING_SIN, m], x[row.FADE, m]
+        x[row.BEND, m] = d + fade * ((swing + zeta * turn) * off + turn * rate * x[row.SOFTNESS, m])
+        x[row.BEND_RATE, m] = fade * ((swing - zeta * turn) * rate - x[AT.mode_rad_s, m] * turn * off)

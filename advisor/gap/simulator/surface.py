@@ -125,16 +125,9 @@ def surface(
             k -= 1
         total = area = 0.0
         while at < b - 1e-12:
-            if at < t_u[0]:
-                upto = min(b, t_u[0])
-                begin = end = u[0] - trim
-            else:
-                while k < last and t_u[k + 1] <= at + 1e-12:
-                    k += 1
-                upto = b if k == last else min(b, t_u[k + 1])
-                slope = 0.0 if held or k == last else (u[k + 1] - u[k]) / (t_u[k + 1] - t_u[k])
-                begin = u[k] + slope * (at - t_u[k]) - trim
-                end = begin + slope * (upto - at)
+            while k < last and t_u[k + 1] <= at + 1e-12:
+                k += 1
+            upto, begin, end = _piece(k, at, b, t_u, u, held, trim)
             begin, end, mean = _limited(begin, end, p)
             if np.isnan(servo):
                 servo = begin
@@ -170,6 +163,25 @@ def surface(
             mean = 0.5 * (before + link)
         out[i] = mean
     return out
+
+
+@kernel()
+def _piece(
+    k: int, at: float, until: float, t_u: FloatArray, u: FloatArray, held: bool, trim: float
+) -> tuple[float, float, float]:
+    """Return where the piece of the command ends that begins at time ``at``, and its values at both ends.
+
+    ``k`` is the index of the last stamp up to ``at``, ``until`` the end of the step. Values are relative to
+    trim, rad.
+    """
+    if at < t_u[0]:
+        return min(until, t_u[0]), u[0] - trim, u[0] - trim
+    if k == len(u) - 1:
+        return until, u[k] - trim, u[k] - trim
+    upto = min(until, t_u[k + 1])
+    slope = 0.0 if held else (u[k + 1] - u[k]) / (t_u[k + 1] - t_u[k])
+    begin = u[k] + slope * (at - t_u[k]) - trim
+    return upto, begin, begin + slope * (upto - at)
 
 
 @kernel()

@@ -11,7 +11,7 @@ from advisor.gap.candidates.sensors import TRUE_AIR_SPEED
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.fitting.uncertainty import effective_samples, shared_std
-from advisor.gap.uncatalogued.weight_check import WeightReading
+from advisor.gap.uncatalogued.weight_check import SIGMAS, WeightReading
 
 _REPORTED, _WRONG = 0.02, 0.06
 """Least relative difference that is reported, and least difference that shows an error."""
@@ -26,8 +26,6 @@ air speed."""
 _AS_MUCH = 0.05
 """Largest difference between the errors of curvature and weight for which both are the accelerometer's. An
 offset of the accelerometer contributes to one of them."""
-_SIGMAS = 5.0
-"""Least number of standard deviations of a difference that is reported."""
 _SIGMAS_IN_GUSTS = 8.0
 """Least number of standard deviations of a difference that shows an error in moving air. A wave in every
 manoeuvre looks like a wrong air speed."""
@@ -84,4 +82,4 @@ def airspeed_scale_of(problem: Problem, fitted: Fitted) -> AirspeedScale | None:
         shared_std(problem, fitted, effective_samples(problem, fitted.innovations))[point.place(k)][0]
     )
     scale = float(point.values[k][0])
-    return AirspeedScale(scale, std) if abs(scale) > max(_REPORTED, _SIGMAS * std) else None
+    return AirspeedScale(scale, std) if abs(scale) > max(_REPORTED, SIGMAS * std) else None

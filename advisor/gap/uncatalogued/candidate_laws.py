@@ -62,14 +62,8 @@ _READINGS = {
         _curve("alpha_curve", "alpha_sensor", "alpha", 0.05),
         # Dry friction in the vane's bearing, modelled as a play like that of the elevator's linkage.
         Variant(
-            _RUBS,
-            "alpha_sensor",
-            ("half_play_rad",),
-            ((0.002,), (0.006,), (0.02,)),
-            (1e-4,),
-            ((0.0, 0.1),),
-            0.00087,
-            entries=("vane_play_rad",),
+            _RUBS, "alpha_sensor", ("half_play_rad",), ((0.002,), (0.006,), (0.02,)), (1e-4,),
+            ((0.0, 0.1),), 0.00087, entries=("vane_play_rad",),
         ),
     ),
     "theta": (_scale("attitude_scale", "attitude_sensor", "theta"), _filter("attitude_sensor", "theta")),
@@ -77,17 +71,11 @@ _READINGS = {
         _filter("pitch_rate_sensor", "q"),
         # IEEE Std 1431: drift proportional to acceleration, and to its square.
         Variant(
-            _PULLED,
-            "pitch_rate_sensor",
-            ("per_m_s2", "per_m_s2_squared"),
-            ((0.0, 0.0),),
-            (1e-4, 1e-5),
-            ((-0.1, 0.1), (-0.02, 0.02)),
-            0.0,
-            entries=("q_pull", "q_pull2"),
+            _PULLED, "pitch_rate_sensor", ("per_m_s2", "per_m_s2_squared"), ((0.0, 0.0),), (1e-4, 1e-5),
+            ((-0.1, 0.1), (-0.02, 0.02)), 0.0, entries=("q_pull", "q_pull2"),
         ),
     ),
-}
+}  # fmt: skip
 _MOMENTS = (
     Variant(
         "damping_curve", "moment_equation", ("M_q_abs", "M_q_q"), ((0.0, 0.0),), (0.05, 0.1),

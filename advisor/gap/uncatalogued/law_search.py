@@ -67,9 +67,27 @@ class Law:
 def search_law(problem: Problem, stages: list[Stage]) -> Law | None:
     """Return the law that explains more than all named effects; None where there is none."""
     baseline, held = stages[0].fitted, stages[0].held_out
-    named_cost = stages[-1].fitted.cost
-    found = Screen(problem, baseline).quick_fits(laws_for(problem.flights), baseline.cost - named_cost)
+    fits = _fits(problem, stages)
+    if not fits:
+        return None
     samples = float(np.sum(effective_samples(problem, baseline.innovations)))
+    law, fitted = min(fits, key=lambda pair: pair[1].cost + penalty(pair[0], samples))
+    effective = effective_samples(problem, fitted.innovations)
+    judged = addition(problem, baseline, held, fitted, law.effect, effective)
+    if not _is_law(problem, stages, judged, effective):
+        return None
+    block = law.block
+    rivals = {j.block: _share(j, judged) for j in reversed(stages[0].considered)}
+    ranking = sorted(((b, s) for b, s in rivals.items() if b != block), key=lambda pair: -pair[1])
+    share = float(np.clip(1.0 - np.mean(judged.held_out.mean_square / held.mean_square), 0.0, 1.0))
+    unexplained = Unexplained(block, share, ((block, 1.0), *ranking), note=sentence_of(judged))
+    return Law(unexplained, fitted)
+
+
+def _fits(problem: Problem, stages: list[Stage]) -> list[tuple[Variant, Fitted]]:
+    """Return full fits of the laws that the screening promises, each with its variant."""
+    baseline, named_cost = stages[0].fitted, stages[-1].fitted.cost
+    found = Screen(problem, baseline).quick_fits(laws_for(problem.flights), baseline.cost - named_cost)
     best = min((s.cost for s in found), default=baseline.cost)
     most = baseline.cost - 2.0 * max(CERTAIN, 0.5 * _FITTED_SHARE * (baseline.cost - best))
     # A law that changes the derivatives takes more steps than a screening makes.
@@ -82,39 +100,30 @@ def search_law(problem: Problem, stages: list[Stage]) -> Law | None:
     noise = 0.0 if problem.instruments is None else problem.instruments
     missing = np.sqrt(np.maximum(stages[-1].held_out.mean_square - noise**2, 0.0))
     if np.any(missing > _MISSING * problem.flights.peaks):
-        # No small change leads to a servo that rings for the whole record: the search begins at every
-        # frequency.
+        # No small change leads to a servo that rings all along: the search begins at every frequency.
         points = [baseline.point.with_effect(RINGING, start) for start in RINGING.starts]
         fits += [(RINGING, fit(problem, p, baseline.noise, tolerance=0.5, beaten_by=lost)) for p in points]
-    if not fits:
-        return None
-    law, fitted = min(fits, key=lambda pair: pair[1].cost + penalty(pair[0], samples))
-    effective = effective_samples(problem, fitted.innovations)
-    judged = addition(problem, baseline, held, fitted, law.effect, effective)
-    # Effective sample sizes depend on the fit that gives them: both are compared with the same ones.
-    disputed = stages[-1].disputed
+    return fits
+
+
+def _is_law(problem: Problem, stages: list[Stage], judged: Judged, effective: FloatArray) -> bool:
+    """Return whether a law explains more than all named effects, and is not one of them in disguise."""
+    held, disputed = stages[0].held_out, stages[-1].disputed
+    # Effective sample sizes depend on the fit that gives them: both gains are computed with the same ones.
     named = max(_gain_of_all(problem, stages, effective), 0.0 if disputed is None else disputed.gain)
     if not judged.is_accepted or judged.gain < max(CERTAIN, named + _LIKELIER):
-        return None
+        return False
     after, before = (np.sum(h.by_maneuver / held.mean_square, axis=1) for h in (judged.held_out, held))
     if np.mean(after < before) < _IN_MOST or not _changes_visibly(problem, held, judged.held_out):
-        return None
+        return False
     alike = difference(problem, stages[-1].held_out, judged.held_out) < judged.least
     if alike and len(added_in(stages)) < _SEVERAL:
-        # The motion nearly equals that of the effects: a single effect stays; several in concert are less
-        # likely.
-        return None
+        # The motion nearly equals that of one effect, which stays. Several in concert would be less likely.
+        return False
     if len(stages) > 1 and _are_separate_causes(problem, stages, judged, effective):
-        return None
+        return False
     remaining_shares = judged.held_out.mean_square / held.mean_square
-    if law.effect in MUST_LEAVE_LITTLE and np.min(remaining_shares) > _LEAVES:
-        return None
-    block = law.block
-    rivals = {j.block: _share(j, judged) for j in reversed(stages[0].considered)}
-    ranking = sorted(((b, s) for b, s in rivals.items() if b != block), key=lambda pair: -pair[1])
-    share = float(np.clip(1.0 - np.mean(remaining_shares), 0.0, 1.0))
-    unexplained = Unexplained(block, share, ((block, 1.0), *ranking), note=sentence_of(judged))
-    return Law(unexplained, fitted)
+    return judged.effect not in MUST_LEAVE_LITTLE or bool(np.min(remaining_shares) <= _LEAVES)
 
 
 def _changes_visibly(problem: Problem, before: HeldOut, after: HeldOut) -> bool:

@@ -41,8 +41,8 @@ def sustained_oscillation(
     least = OF_PEAK if best.block in SENSOR_CHANNELS else _OF_PEAK_SWINGING
     if not np.any(line.power > np.maximum(least * problem.flights.peaks, tolerance) ** 2):
         return None
-    beside = line.power / instruments**2
-    if float(np.mean(beside)) < _VISIBLE or (_may_be_vibration(line) and np.max(beside) < _SHAKEN):
+    over_noise = line.power / instruments**2
+    if float(np.mean(over_noise)) < _VISIBLE or (_may_be_vibration(line) and np.max(over_noise) < _SHAKEN):
         return None
     powers = (rms_of(problem, last.innovations) / noise) ** 2
     taken = float(np.sum((rms_of(problem, first.innovations) / noise) ** 2 - powers))

@@ -23,8 +23,9 @@ _ENDS_S = 0.3
 """Length in s of the average over each end of an angle."""
 _LEAST = 0.15
 """Least departure of the share from 1 that no offset of an accelerometer explains."""
-_SIGMAS = 5.0
-"""Least number of standard errors of that departure, from the scatter between manoeuvres."""
+SIGMAS = 5.0
+"""Least number of standard errors of a difference that is reported, here from the scatter between
+manoeuvres."""
 
 
 @dataclass(frozen=True)
@@ -37,7 +38,7 @@ class WeightReading:
     @property
     def is_off(self) -> bool:
         """Whether the share differs from 1 by more than an accelerometer's offset."""
-        return abs(self.share - 1.0) > max(_LEAST, _SIGMAS * self.std)
+        return abs(self.share - 1.0) > max(_LEAST, SIGMAS * self.std)
 
     @property
     def sentence(self) -> str:

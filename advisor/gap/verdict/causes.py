@@ -87,12 +87,12 @@ def parameters_of(v: Variant, values: FloatArray, std: FloatArray) -> dict[str, 
 
 def with_model_errors(cause: Cause, problem: Problem) -> Cause:
     """Return the cause with errors that no fit shows: of the low-order description and of the time grid."""
-    doubted = {
+    widened = {
         name: Value(v.value, float(np.hypot(v.std, _model_error(name, v.value))))
         for name, v in cause.parameters.items()
         if v.std > 0.0
     }
-    return _with_edge_error(replace(cause, parameters={**cause.parameters, **doubted}), problem)
+    return _with_edge_error(replace(cause, parameters={**cause.parameters, **widened}), problem)
 
 
 def _model_error(name: str, value: float) -> float:
@@ -107,10 +107,10 @@ def _with_edge_error(cause: Cause, problem: Problem) -> Cause:
     intervals = [flight.edges[:, 2] for flight in problem.flights.flights if len(flight.edges)]
     if problem.held or not intervals or cause.effect not in _TIMING:
         return cause
-    doubt = float(np.median(np.concatenate(intervals))) / np.sqrt(12.0)
+    edge_std = float(np.median(np.concatenate(intervals))) / np.sqrt(12.0)
     name = _TIMING[cause.effect]
     value = cause.parameters[name]
-    parameters = {**cause.parameters, name: Value(value.value, float(np.hypot(value.std, doubt)))}
+    parameters = {**cause.parameters, name: Value(value.value, float(np.hypot(value.std, edge_std)))}
     return replace(cause, parameters=parameters)
 
 

@@ -67,8 +67,6 @@ class _Found:
     """Findings that speak for one verdict or another."""
 
     named: list[Judged]
-    final_gap: float
-    """Gap of the last model."""
     removed: float
     """Mean square that the named effects remove, relative to the floor's square."""
     derivatives: WrongDerivatives
@@ -118,13 +116,11 @@ def _found(e: Evidence, kinematics: KinematicCheck) -> _Found:
     if all(judged.effect != "airspeed_variation" for judged in named):
         speed = airspeed_cause(problem, e.constant_speed, last, floor)
     outweighs = _speed_outweighs(e, max(derivatives.gap, removed))
-    told = (named or bias or derivatives.are_wrong) and not outweighs
-    judge_speed = thrust_is_uncommanded if told else speed_is_a_cause
+    is_explained = (named or bias or derivatives.are_wrong) and not outweighs
+    judge_speed = thrust_is_uncommanded if is_explained else speed_is_a_cause
     if speed is not None and judge_speed(problem, e.constant_speed, last, still, e.air):
         outside_fit = (speed, *outside_fit)
-    return _Found(
-        named, final_gap, removed, derivatives, bias, speed, outweighs, outside_fit, e.unexplained is not None
-    )
+    return _Found(named, removed, derivatives, bias, speed, outweighs, outside_fit, e.unexplained is not None)
 
 
 def _ordered(e: Evidence, found: _Found) -> tuple[Cause, ...]:

@@ -34,8 +34,8 @@ def in_words(decision: Decision) -> str:
 def _of_stage(stage: Stage) -> list[Decision]:
     """Return why an effect was added, and why others with a positive gain were rejected."""
     refused = [judged for judged in stage.considered if judged.gain > 0.0 and not judged.is_accepted]
-    told = [decision for judged in refused for decision in _against(judged)]
-    return [*told, *(() if stage.added is None else stage.added.decisions)]
+    against = [decision for judged in refused for decision in _against(judged)]
+    return [*against, *(() if stage.added is None else stage.added.decisions)]
 
 
 def _against(judged: Judged) -> list[Decision]:

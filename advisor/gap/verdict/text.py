@@ -45,48 +45,67 @@ def sentence_of(
     of."""
     present = [c for c in causes if c.present]
     if verdict == "none":
-        if gap.before < VISIBLE:
-            left = "the gap is within the noise"
-        elif gap.after < 0.5 * gap.before:
-            percent = 100.0 * (1.0 - gap.after / gap.before)
-            left = (
-                f"its parameters are right to a few per cent; fitted ones remove {percent:.0f} % of the gap"
-            )
-        else:
-            left = "the residual above the noise is too small to name a cause"
-        return f"The simulator flies like the aircraft: {left}."
-    removed = f"{max(shrink.percent, 0.0):.0f} % of the gap" if shrink is not None else "the gap"
+        return _of_no_gap(gap)
     if verdict == "parameters":
-        if shrink is not None and shrink.beyond_air_percent is not None:
-            removed = f"{shrink.beyond_air_percent:.0f} % of the gap, and the air makes the rest"
-        wrong = f"wrong parameters: the eight fitted ones remove {removed}"
-        if shrink is not None and shrink.by_numbers_percent is not None and present:
-            besides = ", ".join(spelled(c.effect) for c in present)
-            return f"The simulator has {wrong}; {besides} explains little of it."
-        return f"The simulator has the right structure and {wrong}."
+        return _of_wrong_parameters(present, shrink)
     if verdict == "unknown":
-        tried = next((c for c in causes if c.probability > 0.02), None)
-        near = f"; the closest, {spelled(tried.effect)}, is not enough" if tried is not None else ""
-        if present:
-            near = f", in addition to what looks like {', '.join(spelled(c.effect) for c in present)}"
-        alike = [place(b) for b, score in where.ranking if b != where.block and score >= _AS_LIKELY]
-        places = " or ".join([place(where.block), *alike])
-        return f"Something acts {places} that no known effect explains{near}."
-    named, also = what(present[0], in_simulator), ""
-    if len(present) > 1:
-        also = "; also " + ", ".join(spelled(c.effect) for c in present[1:])
+        return _of_unknown(where, causes, present)
+    return _of_effects(present, shrink, in_simulator)
+
+
+def _of_no_gap(gap: Gap) -> str:
+    if gap.before < VISIBLE:
+        finding = "the gap is within the noise"
+    elif gap.after < 0.5 * gap.before:
+        percent = 100.0 * (1.0 - gap.after / gap.before)
+        finding = f"its parameters are right to a few per cent; fitted ones remove {percent:.0f} % of the gap"
+    else:
+        finding = "the residual above the noise is too small to name a cause"
+    return f"The simulator flies like the aircraft: {finding}."
+
+
+def _of_wrong_parameters(present: Sequence[Cause], shrink: Shrink | None) -> str:
+    removed = _removed(shrink)
+    if shrink is not None and shrink.beyond_air_percent is not None:
+        removed = f"{shrink.beyond_air_percent:.0f} % of the gap, and the air makes the rest"
+    wrong = f"wrong parameters: the eight fitted ones remove {removed}"
+    if shrink is not None and shrink.by_numbers_percent is not None and present:
+        return f"The simulator has {wrong}; {_listed(present)} explains little of it."
+    return f"The simulator has the right structure and {wrong}."
+
+
+def _of_unknown(where: Where, causes: Sequence[Cause], present: Sequence[Cause]) -> str:
+    tried = next((c for c in causes if c.probability > 0.02), None)
+    near = f"; the closest, {spelled(tried.effect)}, is not enough" if tried is not None else ""
+    if present:
+        near = f", in addition to what looks like {_listed(present)}"
+    alike = [place(b) for b, score in where.ranking if b != where.block and score >= _AS_LIKELY]
+    places = " or ".join([place(where.block), *alike])
+    return f"Something acts {places} that no known effect explains{near}."
+
+
+def _of_effects(present: Sequence[Cause], shrink: Shrink | None, in_simulator: frozenset[str]) -> str:
+    named, beyond_air = what(present[0], in_simulator), None if shrink is None else shrink.beyond_air_percent
     if present[0].block == "air" and len(present) == 1:
         also_wrong = ""
-        if shrink is not None and shrink.beyond_air_percent is not None:
-            also_wrong = (
-                f"; its parameters are wrong too, which makes {shrink.beyond_air_percent:.0f} % of the gap"
-            )
+        if beyond_air is not None:
+            also_wrong = f"; its parameters are wrong too, which makes {beyond_air:.0f} % of the gap"
         return f"{named}: that is the air, not the simulator{also_wrong}."
-    if shrink is not None and shrink.beyond_air_percent is not None:
-        removed = f"{shrink.beyond_air_percent:.0f} % of the gap that is not the air's"
+    removed = (
+        _removed(shrink) if beyond_air is None else f"{beyond_air:.0f} % of the gap that is not the air's"
+    )
     added = "adding it"
     if shrink is not None and shrink.by_numbers_percent is not None:
         # The share of fitted derivatives must not pass for the effect's.
         added = "adding it and refitting the eight parameters"
         removed += f" (the parameters alone {shrink.by_numbers_percent:.0f} %)"
+    also = f"; also {_listed(present[1:])}" if len(present) > 1 else ""
     return f"{named}; {added} removes {removed}{also}."
+
+
+def _removed(shrink: Shrink | None) -> str:
+    return "the gap" if shrink is None else f"{max(shrink.percent, 0.0):.0f} % of the gap"
+
+
+def _listed(causes: Sequence[Cause]) -> str:
+    return ", ".join(spelled(cause.effect) for cause in causes)

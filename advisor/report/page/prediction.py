@@ -1,4 +1,4 @@
-"""The last accepted manoeuvre as those before it predict it: what the model is for."""
+"""Prediction of the last accepted manoeuvre from the earlier ones."""
 
 from collections.abc import Iterator, Mapping
 
@@ -18,14 +18,14 @@ from advisor.report.quantities import CHANNELS, Quantity
 _EXPLAINED = (
     "Manoeuvre {last} is held out: manoeuvres {before} predict its response. "
     "Trim and initial state are those of manoeuvre {last} itself. "
-    "Grey: measured. Dark dashes: predicted, with the 95 % band that the errors of the derivatives leave. "
-    "Below: measured minus predicted, with the band of the prediction (dark) and the band that holds 95 % of "
-    "the samples where the prediction is right (light)."
+    "Grey: measured. Dark dashes: predicted, with the 95 % band due to the errors of the derivatives. "
+    "Below: measured minus predicted. Dark: the band of the prediction. "
+    "Light: the band that holds 95 % of the samples of a right prediction."
 )
 
 
 def prediction(content: Content) -> Section:
-    """A picture of each output of the held-out manoeuvre."""
+    """Return a picture of each output of the held-out manoeuvre."""
     return Section("prediction", "Prediction of a held-out manoeuvre", tuple(_blocks(content)))
 
 

@@ -1,4 +1,4 @@
-"""A line of many samples drawn by few: the picture stays, the file shrinks."""
+"""Drawing a line of many samples with few points, so that the file shrinks and the picture stays."""
 
 from itertools import pairwise
 
@@ -9,7 +9,8 @@ from advisor.flight.record import Channel
 
 
 def thinned(channel: Channel, bins: int) -> tuple[FloatArray, FloatArray]:
-    """Times and values that draw the same line: lowest and highest of each bin, a break in each gap.
+    """Return times and values that draw an equal line: lowest and highest of each bin, and a break in each
+    gap.
 
     Parameters
     ----------

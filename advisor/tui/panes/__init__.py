@@ -1,1 +1,1 @@
-"""Panes: one widget, one question of the crew."""
+"""Panes: each widget answers one question of the crew."""

@@ -1,4 +1,4 @@
-"""What is being lost at this moment, across the whole screen."""
+"""Warning across the whole screen of a loss at this moment."""
 
 from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.part import Part
@@ -6,7 +6,8 @@ from advisor.tui.view import View
 
 
 class Alarm(Part, Lines):
-    """One line that is there only while something is lost, for example while the disk takes no recording."""
+    """One line that is visible only while data are being lost, for example while the disk accepts no
+    recording."""
 
     def show(self, view: View) -> None:
         """Write the line, and show it."""

@@ -1,4 +1,4 @@
-"""A question with one line of answer, at the foot of the screen that it is about."""
+"""A question with one line of answer, at the foot of its screen."""
 
 from collections.abc import Callable
 from typing import ClassVar
@@ -11,9 +11,9 @@ from textual.widgets import Input, Label
 
 
 class Ask(Horizontal):
-    """Asks for a reason, a note or a number; escape leaves everything as it is.
+    """Asks for a reason, a note or a number. Escape leaves everything unchanged.
 
-    It is a line and no dialog, so that what the question is about stays in sight.
+    The widget is a line and no dialog, so that the subject of the question stays visible.
     """
 
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "leave", "Leave it")]
@@ -24,21 +24,21 @@ class Ask(Horizontal):
         self._focused_before: Widget | None = None
 
     def compose(self) -> ComposeResult:
-        """Question beside answer."""
+        """Yield the question and the answer, side by side."""
         yield Label(markup=False)
         yield Input(compact=True)
 
     def put(self, question: str, answered: Callable[[str], object], *, integer: bool = False) -> None:
-        """Show a question and take the keys; one still open is replaced.
+        """Show a question and take the keys. An open question is replaced.
 
         Parameters
         ----------
         question : str
-            What is asked.
+            Text of the question.
         answered : callable
-            Receives the answer; an empty one is not taken.
+            Receives the answer, unless it is empty.
         integer : bool
-            Take whole numbers only.
+            Whether only whole numbers are accepted.
         """
         if not self.has_class("-open"):
             self._focused_before = self.screen.focused
@@ -51,7 +51,7 @@ class Ask(Horizontal):
         answer.focus()
 
     def on_input_submitted(self, event: Input.Submitted) -> None:
-        """Hand the answer on."""
+        """Pass the answer on."""
         event.stop()
         answer = event.value.strip()
         if answer and (event.validation_result is None or event.validation_result.is_valid):
@@ -59,6 +59,6 @@ class Ask(Horizontal):
             self._answered(answer)
 
     def action_leave(self) -> None:
-        """Give the keys back."""
+        """Close the question and give the keys back."""
         self.screen.set_focus(self._focused_before)
         self.remove_class("-open")

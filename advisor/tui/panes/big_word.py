@@ -3,7 +3,7 @@
 from textual.events import Resize
 
 from advisor.tui.advice import advise
-from advisor.tui.letters import block_letters
+from advisor.tui.block_letters import block_letters
 from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.part import Part
 from advisor.tui.view import View
@@ -42,5 +42,5 @@ class Why(Part, Lines):
     """The sentence under the word."""
 
     def show(self, view: View) -> None:
-        """Write the advice's sentence."""
+        """Write the sentence of the advice."""
         self.write(without_word(advise(view).sentence))

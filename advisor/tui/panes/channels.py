@@ -1,4 +1,4 @@
-"""What arrives: the link, every channel, and where the angle of attack comes from."""
+"""Arriving data: the link, every channel, and the source of the angle of attack."""
 
 from textual.app import ComposeResult
 from textual.containers import VerticalScroll
@@ -21,13 +21,12 @@ class Channels(Pane):
     HELP = """\
 # Channels and link
 
-Where the angle of attack comes from - a *vane*, *derived* by the autopilot from speed and wind (blind to
-gusts), or *simulated* - and every channel with its source, the rate at which it arrives and its longest
-gap. Below: the link.
+The source of the angle of attack: a *vane*, *derived* by the autopilot from speed and wind (blind to
+gusts), or *simulated*. Then every channel with its source, its rate and its longest gap. Below: the link.
 """
 
     def compose(self) -> ComposeResult:
-        """Text that scrolls."""
+        """Yield the text in a scrolling container."""
         with VerticalScroll():
             yield Lines(id="problems")
             yield HangingLines("Nothing has arrived yet.", id="arriving")

@@ -1,4 +1,4 @@
-"""How the errors of the eight parameters go together."""
+"""Correlation of the errors of the eight parameters."""
 
 import numpy as np
 from rich.style import Style
@@ -103,7 +103,7 @@ grow at the cost of the other. An input with other frequencies tells them apart.
 
 
 def _matrix(estimate: Estimate | None) -> FloatArray:
-    """Correlations, shape (8, 8); all NaN without an estimate."""
+    """Return the correlations, shape (8, 8); all NaN without an estimate."""
     return np.full((8, 8), np.nan) if estimate is None else correlation_matrix(estimate.covariance)
 
 

@@ -1,4 +1,4 @@
-"""What else a pilot must know: what to fly next, where alpha comes from, what has changed."""
+"""Further notes for a pilot: the next input, the source of alpha, changes."""
 
 from advisor.aircraft import PARAMETERS as NAMES
 from advisor.tui.panes.hanging import HangingLines
@@ -8,7 +8,7 @@ from advisor.tui.words import PARAMETERS, headline
 
 
 def alpha_in_words(view: View) -> str:
-    """Source and provenance of the angle of attack in one line."""
+    """Return source and provenance of the angle of attack in one line."""
     alpha = view.state.channels.get("alpha")
     if alpha is None:
         return "no angle of attack heard yet"
@@ -16,7 +16,7 @@ def alpha_in_words(view: View) -> str:
 
 
 def flying_in_words(view: View) -> str:
-    """What is in the air now and how its estimate settles."""
+    """Return a line on the manoeuvre in the air and its estimate."""
     flying, settling, marked_s = view.state.flying, view.state.settling, view.state.marking_since_s
     if marked_s is not None:
         return f"marked by hand for {view.state.now_s - marked_s:.0f} s"
@@ -32,7 +32,7 @@ def flying_in_words(view: View) -> str:
 
 
 def _link_in_words(view: View) -> str:
-    """What is wrong with the link; a good one needs no moving numbers."""
+    """Return a line on the fault of the link; a sound link needs no moving numbers."""
     return "good" if view.health.condition == "good" else view.health.sentence
 
 

@@ -18,7 +18,7 @@ _Y, _X = "[% of limit]", "manoeuvre"
 
 
 class Criterion(Pane):
-    """One curve a rule against the limit, and what each rule says."""
+    """One curve for each rule against the limit, and each rule's decision."""
 
     TITLE = "6 Criterion"
     can_focus = False
@@ -28,7 +28,7 @@ class Criterion(Pane):
 
 The stop criterion after each manoeuvre for the three rules side by side, each as a share of its own limit, on
 a logarithmic axis: the test may stop below the dashed line, at 100 %. The rule that decides is marked **►**;
-what the others would have said is never hidden.
+the other rules are always shown as well.
 
 The rule information stops when the 95 % band of the predicted response, each named derivative and the
 prediction of the newest manoeuvre are within their tolerances; the lines above the curves tell how far.
@@ -41,7 +41,7 @@ prediction of the newest manoeuvre are within their tolerances; the lines above 
         yield Plot(_chart(None))
 
     def on_mount(self) -> None:
-        """Nothing is shown yet."""
+        """Begin without a curve."""
         super().on_mount()
         self._shown: FlightTestVerdict | None = None
 

@@ -1,4 +1,4 @@
-"""What happened, in order."""
+"""The event log: sentences in order of time."""
 
 from textual.app import ComposeResult
 from textual.containers import VerticalScroll
@@ -9,7 +9,7 @@ from advisor.tui.view import View
 
 _SHOWN = 200
 _TIME = 9
-"""Characters that a sentence begins with: its time and two blanks."""
+"""Number of characters before a sentence: its time and two blanks."""
 
 
 class EventLog(Pane):
@@ -30,7 +30,7 @@ begin anew where a line says that another power-on, flight or vehicle begins.
 """
 
     def compose(self) -> ComposeResult:
-        """Text that scrolls and stays at its end."""
+        """Yield a text that scrolls and stays at its end."""
         with VerticalScroll():
             yield HangingLines("Nothing has happened yet.")
 

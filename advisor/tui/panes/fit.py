@@ -38,7 +38,7 @@ _SHARE_OF_ELEVATOR = 8
 
 
 class Fit(Pane):
-    """The elevator, then two plots an output: measured with fitted, and what is left between them."""
+    """The elevator, then two plots for each output: measured with fitted, and the residual."""
 
     BINDINGS = keys.FIT
     TITLE = "4 Fit"
@@ -50,15 +50,15 @@ class Fit(Pane):
 The elevator of the selected manoeuvre; below it, for each output, what was measured (dots) and what the
 model says (line), and the residual (measured minus fitted). Time counts from the start of the input.
 **o** brings the next output to the top when not all have room; what the record lacks is left out. A
-residual without pattern is noise; one with a pattern is something the model does not know.
+residual without pattern is noise; one with a pattern shows an effect that the model lacks.
 
 **left/right** moves a cursor, with **shift** sample by sample; a click sets it. The first line of each
 plot reads the values there. **up/down**, **z/Z** or the wheel zooms in time, **<** and **>** move what is
 shown, **w** shows the whole record again.
 
 **l** lays a second manoeuvre over this one, aligned at the start of the input: the measured curves and
-the residuals of both. The selected one is drawn as before, the second as a pale line; **l** with 0 takes
-it away.
+the residuals of both. The selected manoeuvre keeps its colours, the second is a pale line below; **l**
+with 0 takes the second away.
 """
 
     def compose(self) -> ComposeResult:
@@ -97,7 +97,7 @@ it away.
         self._draw()
 
     def lay_over(self, number: int | None) -> None:
-        """Choose the manoeuvre that the next ``show`` lays over the selected one; None: none."""
+        """Choose the manoeuvre that the next ``show`` lays over the selected one. None: none."""
         self._over_number = number
 
     def rows(self) -> Rows | None:
@@ -162,7 +162,9 @@ it away.
         self._draw_elevator(elevator)
         for name in OUTPUTS:
             self._draw_output(name, name in shown, lowest=name == lowest, with_residual=residuals)
-        self.border_title = self.TITLE if count == len(there) else f"{self.TITLE}  (o: next output)"
+        aligned = "  both from the start of the input" if self._over is not None else ""
+        more = "" if count == len(there) else "  (o: next output)"
+        self.border_title = f"{self.TITLE}{aligned}{more}"
         self._write_subtitle()
 
     def _outputs(self) -> list[str]:
@@ -191,12 +193,12 @@ it away.
     def _write_subtitle(self) -> None:
         if self._judged is None or self._sight is None:
             return
-        number = self._judged.maneuver.number
-        said = [f"manoeuvre {number}"]
-        if self._over is not None:
-            said = [f"manoeuvres {number} and {self._over.maneuver.number}, both from the start of the input"]
-        if self._sight.cursor is not None:
-            said.append(f"t {signed(self._sight.cursor, 3)} s")
+        number, cursor = self._judged.maneuver.number, self._sight.cursor
+        said = [] if cursor is None else [f"t {signed(cursor, 3)} s"]
+        if self._over is None:
+            said.append(f"manoeuvre {number}")
+        else:
+            said.append(f"manoeuvres {number} and {self._over.maneuver.number}")
         if self._sight.window.zoomed:
             said.append("w: whole record")
         self.subtitle("  ".join(said))

@@ -7,7 +7,7 @@ import numpy as np
 from advisor.campaign.state import JudgedManeuver
 from advisor.flight.messages import FloatArray
 from advisor.oem.estimate import ChannelFit, Estimate
-from advisor.tui.plot.chart import Chart, Ink, Series
+from advisor.tui.plot.chart import Chart, Ink, Mark, Series
 from advisor.tui.rows import Rows
 from advisor.tui.words import channel
 
@@ -15,24 +15,25 @@ OUTPUTS = ("alpha", "q", "a_z", "theta")
 ELEVATOR = "elevator"
 _T = "t [s]"
 _GUTTER = 7
-"""Room for ``-12.50``: all plots of the pane begin in one column."""
+"""Columns left of the canvas, wide enough for ``-12.50``: all plots of the pane begin in one column."""
 
 Curve = tuple[FloatArray, FloatArray]
 """Seconds since the start of the input, shape (n,), and values in the unit for people, shape (n,)."""
 
 
 def since_start(judged: JudgedManeuver, t: FloatArray) -> FloatArray:
-    """Align stamps at the start of the input: seconds since the first elevator step, shape as ``t``."""
+    """Return stamps aligned at the start of the input: seconds since the first elevator step, shape as
+    ``t``."""
     return t - judged.maneuver.span.start_s
 
 
 def fits_of(judged: JudgedManeuver) -> dict[str, ChannelFit]:
-    """Look up the fits of a manoeuvre by output; none where there is no estimate."""
+    """Return the fits of a manoeuvre by output; empty without an estimate."""
     return dict(judged.estimate.fits[0]) if isinstance(judged.estimate, Estimate) else {}
 
 
 def measured(judged: JudgedManeuver, name: str) -> Curve | None:
-    """Take a channel as the fit used it, else as it was recorded; None where the record has none."""
+    """Return a channel as the fit used it, else as recorded; None where the record has none."""
     factor = channel(name).factor
     fit = fits_of(judged).get(name)
     if fit is not None:
@@ -44,7 +45,7 @@ def measured(judged: JudgedManeuver, name: str) -> Curve | None:
 
 
 def extent(judged: JudgedManeuver, over: JudgedManeuver | None) -> tuple[float, float]:
-    """Find the first and last time to draw, in seconds since the start of the input."""
+    """Return the first and last time to draw, in seconds since the start of the input."""
     spans = [one.maneuver.span for one in (judged, over) if one is not None]
     first = min(span.record_from_s - span.start_s for span in spans)
     last = max(span.end_s - span.start_s for span in spans)
@@ -52,7 +53,7 @@ def extent(judged: JudgedManeuver, over: JudgedManeuver | None) -> tuple[float, 
 
 
 def in_sight(chart: Chart, x_range: tuple[float, float], cursor: float | None, *, foot: bool) -> Chart:
-    """Show a stretch of a chart, with a cursor, in line with the other plots of the pane."""
+    """Return a stretch of a chart, with a cursor, aligned with the other plots of the pane."""
     return replace(chart, x_range=x_range, cursor=cursor, foot=foot, gutter=_GUTTER)
 
 
@@ -89,12 +90,12 @@ def residual_chart(name: str, judged: JudgedManeuver, over: JudgedManeuver | Non
     series = [Series(_named("residual", judged, over), *_residual(judged, fit), "residual")]
     second = fits_of(over).get(name) if over is not None else None
     if over is not None and second is not None:
-        series.append(Series(_named("residual", over, judged), *_residual(over, second), "prior"))
+        series.insert(0, Series(_named("residual", over, judged), *_residual(over, second), "prior"))
     return Chart(channel(name).label, _T, series=tuple(series))
 
 
 def no_fit(name: str, why: str) -> Chart:
-    """Say why there is nothing to draw of an output."""
+    """Return a chart with the reason for which an output has nothing to draw."""
     return Chart(channel(name).label, _T, why_empty=why)
 
 
@@ -125,15 +126,16 @@ def _overlaid(
     over: JudgedManeuver | None,
     name: str,
     ink: Ink,
-    mark: str,
+    mark: Mark,
 ) -> tuple[Series, ...]:
+    """Name the curves of one manoeuvre or of two; the selected one is last and painted over the other."""
     if curve is None:
         return ()
-    first = Series(_named(what, judged, over), *curve, ink, "points" if mark == "points" else "line")
+    first = Series(_named(what, judged, over), *curve, ink, mark)
     second = measured(over, name) if over is not None else None
     if over is None or second is None:
         return (first,)
-    return first, Series(_named(what, over, judged), *second, "prior")
+    return Series(_named(what, over, judged), *second, "prior"), first
 
 
 def _named(what: str, judged: JudgedManeuver, beside: JudgedManeuver | None) -> str:

@@ -1,4 +1,4 @@
-"""The stop criterion against its limit, and how far there is to go."""
+"""The stop criterion against its limit, and the expected number of further manoeuvres."""
 
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.rounding import distinct_texts
@@ -12,7 +12,8 @@ _LAST_SHOWN = 16
 
 
 def bar(value: float, limit: float, width: int) -> str:
-    """A bar from 0 to twice the limit with the limit marked in its middle; longer ones end in an arrow."""
+    """Return a bar from 0 to twice the limit, with the limit marked in its middle. A longer bar ends in an
+    arrow."""
     middle = width // 2
     filled = min(round(value / (2.0 * limit) * width), width)
     cells = ["█" if k < filled else "·" for k in range(width)]
@@ -23,7 +24,7 @@ def bar(value: float, limit: float, width: int) -> str:
 
 
 class Gauge(Part, HangingLines):
-    """Criterion, manoeuvres so far, and what is still expected."""
+    """Criterion, manoeuvres so far, and the expected number of further ones."""
 
     def show(self, view: View) -> None:
         """Write the two lines."""

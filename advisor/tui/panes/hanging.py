@@ -1,4 +1,4 @@
-"""Lines that are never cut: a text without room goes on below, under itself and not under its label."""
+"""Lines that are never cut: a text without room continues below, indented behind its label."""
 
 from collections.abc import Iterable
 from functools import lru_cache
@@ -12,18 +12,18 @@ Labelled = tuple[str, str]
 """A label, which stands once, and the text after it."""
 
 _LEAST = 20
-"""Fewest columns of text after a label; on less the text goes on from the left edge."""
+"""Fewest columns of text after a label. With fewer, the text continues at the left edge."""
 
 
 class HangingLines(Lines):
-    """Rows of label and text, wrapped at the width that the widget has."""
+    """Rows of label and text, wrapped at the width of the widget."""
 
     def __init__(self, text: str = "", *, id: str | None = None) -> None:
         super().__init__(text, id=id)
         self._labelled: tuple[Labelled, ...] = ()
 
     def write_rows(self, rows: Iterable[Labelled]) -> None:
-        """Show other rows; the same ones cost nothing."""
+        """Show other rows. Equal rows cost nothing."""
         self._labelled = tuple(rows)
         self._wrap()
 

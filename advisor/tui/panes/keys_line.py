@@ -1,4 +1,4 @@
-"""The last line of every screen: the keys that work now, or for a while what has just been done."""
+"""The last line of every screen: the keys that work now, or for a while a message."""
 
 from rich.style import Style
 from rich.text import Text
@@ -8,14 +8,14 @@ from textual.timer import Timer
 from textual.widgets import Static
 
 _MARGINS = 2
-"""Cells beside what is said."""
+"""Cells next to a message."""
 
 
 class KeysLine(Static):
-    """Key and what it does, in the order of their worth; a click on one presses it.
+    """Keys and their actions, in the order of importance. A click on an action presses its key.
 
-    One line of text where Textual's footer mounts a widget for every key anew whenever the focus moves. What
-    is said takes the same line and needs no new layout, where Textual's toasts come up a repaint later.
+    This is one line of text, where Textual's footer mounts a widget for every key anew whenever the focus
+    moves. A message uses this line and needs no new layout. Textual's toasts would come up a repaint later.
     """
 
     def __init__(self) -> None:
@@ -25,19 +25,19 @@ class KeysLine(Static):
         self._until: Timer | None = None
 
     def on_mount(self) -> None:
-        """Follow what has the focus."""
+        """Follow the focus."""
         self.screen.bindings_updated_signal.subscribe(self, self._follow)
 
     def on_resize(self) -> None:
-        """Show as many as have room."""
+        """Show as many keys as have room."""
         self._write()
 
     def has_room_for(self, text: str) -> bool:
-        """Whether a text can be told on the line without being cut."""
+        """Return whether a text fits on the line without being cut."""
         return len(text) + _MARGINS <= self.size.width
 
     def say(self, text: str, seconds: float) -> None:
-        """Tell something in place of the keys; what is still told is replaced."""
+        """Show a message in place of the keys. A message still shown is replaced."""
         if self._until is not None:
             self._until.stop()
         self._until = self.set_timer(seconds, self._said_enough)

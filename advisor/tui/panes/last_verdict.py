@@ -1,10 +1,10 @@
-"""Was that manoeuvre good: symbol, word and sentence."""
+"""The newest manoeuvre's verdict: symbol, word and sentence."""
 
 from textual.app import ComposeResult
 from textual.containers import Vertical
 
 from advisor.campaign.state import JudgedManeuver
-from advisor.tui.letters import HEIGHT, block_letters
+from advisor.tui.block_letters import HEIGHT, block_letters
 from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.part import Part
 from advisor.tui.view import View
@@ -12,7 +12,7 @@ from advisor.tui.words import without_word
 
 
 def symbol_and_word(judged: JudgedManeuver) -> tuple[str, str]:
-    """How a verdict is marked everywhere, readable without colour."""
+    """Return the symbol and the word of a verdict, readable without colour."""
     if judged.excluded_because is not None:
         return "∅", "EXCLUDED"
     return ("✓", "GOOD") if judged.verdict.accepted else ("✗", "REPEAT")
@@ -22,7 +22,7 @@ class LastVerdict(Part, Vertical):
     """The newest manoeuvre's verdict."""
 
     def compose(self) -> ComposeResult:
-        """The word, large where there is room; a line that names the manoeuvre, and the sentence."""
+        """Yield the word, large where there is room; a line that names the manoeuvre; and the sentence."""
         yield Lines(id="verdict-block")
         yield Lines("no manoeuvre yet", id="verdict-word")
         yield Lines("The verdict stands here a few seconds after a manoeuvre ends.", id="verdict-sentence")

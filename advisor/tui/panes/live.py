@@ -27,11 +27,11 @@ class Live(Pane):
 
 The manoeuvre in the air: measured (dots) and the model fitted so far (line), as it comes in,
 and the moment derivatives with their 95 % intervals as they settle. When further free response
-adds nothing, it says so: recover. Between manoeuvres nothing moves here; the last trace stays.
+adds nothing, the pane says so: recover. Between manoeuvres nothing moves here; the last trace stays.
 """
 
     def compose(self) -> ComposeResult:
-        """A line of numbers over three traces."""
+        """Yield a line of numbers over three traces."""
         yield Lines(
             "Nothing is being flown; the trace begins with the first step of the elevator.",
             id="settling",
@@ -41,7 +41,7 @@ adds nothing, it says so: recover. Between manoeuvres nothing moves here; the la
             yield Plot(empty, id=f"live-{name}")
 
     def show(self, view: View) -> None:
-        """Draw what is in the air; without anything, keep the last trace."""
+        """Draw the manoeuvre in the air. Without one, the last trace stays."""
         flying, settling = view.state.flying, view.state.settling
         if flying is None:
             self.subtitle("")

@@ -1,4 +1,4 @@
-"""Every manoeuvre with its verdict, and what each rule would have said."""
+"""Every manoeuvre with its verdict, and the result of every rule."""
 
 from textwrap import shorten
 
@@ -15,7 +15,8 @@ from advisor.tui.view import View
 from advisor.vehicle_time import clock
 
 Columns = tuple[tuple[str, int], ...]
-"""Name and width of each; the widths do not depend on the rows, so what grows pushes nothing about."""
+"""Name and width of each column. The widths do not depend on the rows, so that growing content moves
+nothing."""
 
 _FIRST: Columns = (("no.", 3), ("start", 7), ("input", 15))
 _MIDDLE: tuple[Columns, ...] = (
@@ -23,14 +24,14 @@ _MIDDLE: tuple[Columns, ...] = (
     (("", 2), ("csi", 3)),
     (("", 2),),
 )
-"""Columns between the input and the reason, the fullest first. The symbol alone is the least."""
+"""Columns between the input and the reason, the fullest choice first. The least is the symbol alone."""
 _REASON = 13
-"""Characters that the longest reason takes in a word (``free response``), and ``turbulence +1``."""
+"""Longest reason in one word, in characters (``free response``), with ``turbulence +1``."""
 _RULES = ("continuous", "separate", "information")
 
 
 class Maneuvers(Pane):
-    """The table of manoeuvres; the row under the cursor is what the other panes show."""
+    """Table of manoeuvres. The other panes show the manoeuvre under the cursor."""
 
     TITLE = "1 Manoeuvres"
     SHORT = "1 Man"
@@ -41,11 +42,11 @@ class Maneuvers(Pane):
 One row for each manoeuvre that was found. **up/down** selects the one that the verdict, fit and
 parameter panes show; on the last row they follow the newest.
 
-- **x** takes the selected manoeuvre out of every decision, or in again; the reason is asked and recorded.
+- **x** excludes the selected manoeuvre from every decision, or includes it again; the reason is recorded.
 - **n** adds a note to it.
 
 *start*: minutes:seconds since the vehicle's boot. *csi*: what the rules **c**ontinuous, **s**eparate and
-**i**nformation say of it. *reason*: the most telling one in a word, and how many more there are; the
+**i**nformation say of it. *reason*: the most important one in a word, and how many more there are; the
 verdict pane has them in sentences, with the cost J (det R of Eq. 7) and each rule's limit.
 """
 
@@ -61,7 +62,7 @@ verdict pane has them in sentences, with the cost J (det R of Eq. 7) and each ru
         yield DataTable(cursor_type="row", zebra_stripes=True, cell_padding=1)
 
     def on_mount(self) -> None:
-        """Say why the table is empty."""
+        """Show the reason for which the table is empty."""
         super().on_mount()
         self._shown: tuple[JudgedManeuver, ...] | None = None
         self._judged: JudgedManeuver | None = None
@@ -69,7 +70,7 @@ verdict pane has them in sentences, with the cost J (det R of Eq. 7) and each ru
         self.subtitle("none yet: a row appears when a manoeuvre has ended")
 
     def on_resize(self, event: Resize) -> None:
-        """Give the columns what room there is: no word is cut."""
+        """Give the columns the available room, without cutting a word."""
         table = self.query_one(DataTable)
         columns = _columns(table.size.width)
         if columns != self._columns:
@@ -90,7 +91,7 @@ verdict pane has them in sentences, with the cost J (det R of Eq. 7) and each ru
         self.subtitle(f"{len(maneuvers)} flown" + (f", {taken_out} excluded" if taken_out else ""))
 
     def _fill(self) -> None:
-        """Write every row, in the widths that the columns have."""
+        """Write every row, in the widths of the columns."""
         table, shown = self.query_one(DataTable), self._shown or ()
         if not self._columns:
             return
@@ -103,7 +104,7 @@ verdict pane has them in sentences, with the cost J (det R of Eq. 7) and each ru
                 table.move_cursor(row=shown.index(self._judged), scroll=True)
 
     def on_data_table_row_highlighted(self, event: DataTable.RowHighlighted) -> None:
-        """Tell the screen which manoeuvre the engineer looks at."""
+        """Tell the screen the manoeuvre under the cursor."""
         event.stop()
         if self._shown and event.row_key.value is not None:
             number = int(event.row_key.value)
@@ -112,7 +113,7 @@ verdict pane has them in sentences, with the cost J (det R of Eq. 7) and each ru
 
 
 def _columns(room: int) -> Columns:
-    """Choose the columns for a table of so many characters, its scroll bar included."""
+    """Return the columns for a table of ``room`` characters, including its scroll bar."""
     columns: Columns = ()
     for middle in _MIDDLE:
         columns = (*_FIRST, *middle)

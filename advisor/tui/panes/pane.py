@@ -12,7 +12,7 @@ from advisor.tui.rows import Rows, rows_of_charts
 
 
 class Pane(Part, Vertical):
-    """A framed part of a screen that can be focused, explained, shown a `View`, and taken away as text."""
+    """A framed part of a screen that can be focused, explained, shown a `View`, and copied as text."""
 
     TITLE: ClassVar[str] = ""
     SHORT: ClassVar[str] = ""
@@ -22,7 +22,8 @@ class Pane(Part, Vertical):
     HELP = ""
     """Content and use of the pane, for the help key."""
     can_focus = True
-    """Unless something in it takes the keys: a table, a text that scrolls."""
+    """Whether the pane takes the focus. A pane whose content takes the keys (a table, a scrolling text) does
+    not."""
 
     def on_mount(self) -> None:
         """Write the title into the frame."""
@@ -30,11 +31,11 @@ class Pane(Part, Vertical):
 
     @property
     def wants_showing(self) -> bool:
-        """Only panes in sight are updated."""
+        """Whether the pane is in sight. Only panes in sight are updated."""
         return bool(self.display)
 
     def subtitle(self, text: str) -> None:
-        """Write into the lower edge of the frame; the same text costs nothing."""
+        """Write into the lower edge of the frame. An equal text costs nothing."""
         if text != self.border_subtitle:
             self.border_subtitle = text
 

@@ -1,4 +1,4 @@
-"""Which pane is shown, on terminals too small for all of them."""
+"""Choice of the pane in sight, on terminals too small for all panes."""
 
 from collections.abc import Sequence
 
@@ -9,14 +9,14 @@ _BRACKETS = 2
 
 
 class PaneTabs(Static):
-    """The numbered names of the panes on one line, the chosen one marked with brackets.
+    """Numbered names of the panes on one line, with the chosen one in brackets.
 
     Parameters
     ----------
     titles
         Title of each pane.
     short
-        The titles for terminals on which the full ones have no room.
+        Titles for terminals without room for the full ones.
     """
 
     def __init__(self, titles: Sequence[str], short: Sequence[str]) -> None:
@@ -25,7 +25,7 @@ class PaneTabs(Static):
         self._chosen = 0
 
     def on_resize(self) -> None:
-        """Take the titles that have room."""
+        """Choose the titles that have room."""
         self._write()
 
     def choose(self, number: int) -> None:

@@ -16,7 +16,7 @@ from advisor.tui.plot.widget import Plot
 from advisor.tui.view import View
 from advisor.tui.words import PARAMETERS
 
-_COLUMNS = (("parameter", 11), ("model ± 95 %", 17), ("selected ± 95 %", 17), ("prior", 9), ("off by", 7))
+_COLUMNS = (("parameter", 11), ("model ± 95 %", 18), ("selected ± 95 %", 18), ("prior", 8), ("off by", 6))
 """Name and width, with a space at the end: what grows must not push the others about. The last ones are left
 away where they have no room: half a number would be another number."""
 _SCROLL_BAR = 1
@@ -33,10 +33,10 @@ class Parameters(Pane):
 
 *model*: the joint estimate over the accepted manoeuvres; *selected*: the selected manoeuvre alone; both
 with 95 % intervals (1.96 σ, corrected for coloured residuals). *prior*: the aircraft file's model; *off
-by*: how many σ it lies from the estimate. A column without room is left away.
+by*: how many σ it lies from the estimate. A column without room is left out.
 
 **up/down** chooses the parameter whose history is drawn: each manoeuvre's value with its interval, the
-prior as a dashed line. *not identifiable*: the input did not tell this parameter from the others; the
+prior as a dashed line. *not identifiable*: the input did not separate this parameter from the others; the
 verdict pane says why.
 """
 

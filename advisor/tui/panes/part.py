@@ -1,4 +1,4 @@
-"""What a screen is made of."""
+"""Parts of a screen."""
 
 from abc import abstractmethod
 
@@ -6,13 +6,13 @@ from advisor.tui.view import View
 
 
 class Part:
-    """Any widget that is shown a `View` whenever there is a new one."""
+    """Any widget that is shown each new `View`."""
 
     @property
     def wants_showing(self) -> bool:
-        """False while it is out of sight and would only waste time."""
+        """Whether the part is visible, so that painting is no waste of time."""
         return True
 
     @abstractmethod
     def show(self, view: View) -> None:
-        """Update to a new moment; cheap when nothing of the part's own changed."""
+        """Update to a new moment. The update is cheap where nothing of the part's own changed."""

@@ -1,4 +1,4 @@
-"""Where a replay stands; not shown on a live link."""
+"""Position of a replay; hidden on a live link."""
 
 from math import isinf
 
@@ -12,7 +12,7 @@ _WIDTH = 24
 
 
 class ReplayBar(Part, Lines):
-    """Playing or paused, speed, the place in the log, and the vehicle's time there."""
+    """Playing or paused, speed, position in the log, and the vehicle's time there."""
 
     def show(self, view: View) -> None:
         """Write the line when the source is a replay."""
@@ -26,7 +26,7 @@ class ReplayBar(Part, Lines):
         over = 0.0 < playback.duration_s <= playback.position_s
         state = "❚❚ paused" if tempo.paused else "■ at the end" if over else "► replay"
         jump = "  ►► jumping" if playback.hurrying else ""
-        self.write(f"{state}  {speed}  {place}  {share:4.0%}  at {_now(view)}{jump}")
+        self.write(f"{state}  {speed}  {place}  {100.0 * share:3.0f} %  at {_now(view)}{jump}")
 
 
 def _now(view: View) -> str:

@@ -1,4 +1,4 @@
-"""Whether the residuals of the selected manoeuvre are white noise."""
+"""Test whether the residuals of the selected manoeuvre are white noise."""
 
 from dataclasses import dataclass
 
@@ -87,11 +87,11 @@ lacks. A wave means a mode that the model misses. Intervals allow for coloured r
             fit = self._fits.get(name)
             chart = _chart(name, Whiteness.of(fit)) if fit is not None else _nothing(name, why)
             self.query_one(f"#white-{name}", Plot).chart = chart
-        self.subtitle(f"manoeuvre {judged.maneuver.number}  ╌╌ 95 % of white noise: ±1.96/√N")
+        self.subtitle(f"manoeuvre {judged.maneuver.number}  ╌╌ 95 % if white: ±1.96/√N")
         self._only_with_fit()
 
     def _only_with_fit(self) -> None:
-        """Hide what is no output of the fit; without any, one plot says why."""
+        """Hide plots that are no output of the fit. Without any output, one plot shows the reason."""
         shown = self._fits or OUTPUTS[:1]
         for name in OUTPUTS:
             self.query_one(f"#white-{name}").display = name in shown

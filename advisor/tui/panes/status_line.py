@@ -1,4 +1,4 @@
-"""The first line of every screen: which aircraft, in which mode, heard how."""
+"""The first line of every screen: aircraft, mode, and condition of the link."""
 
 from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.part import Part
@@ -14,10 +14,10 @@ CONDITIONS = {
 
 
 class StatusLine(Part, Lines):
-    """Aircraft, vehicle, mode and source at the left; the link's condition by symbol and word."""
+    """Aircraft, vehicle, mode and source at the left, and the link's condition by symbol and word."""
 
     def show(self, view: View) -> None:
-        """Write the line; colour follows the link's condition."""
+        """Write the line. Its colour follows the link's condition."""
         state = view.state
         vehicle = str(state.vehicle) if state.vehicle else "no vehicle yet"
         parts = [CONDITIONS[view.health.condition], view.aircraft.name, vehicle, state.mode, view.title]

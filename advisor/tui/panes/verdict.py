@@ -1,4 +1,4 @@
-"""Why the selected manoeuvre was judged as it was."""
+"""Reasons for the verdict on the selected manoeuvre."""
 
 from textual.app import ComposeResult
 from textual.containers import VerticalScroll
@@ -17,7 +17,7 @@ from advisor.vehicle_time import between
 
 
 class Verdict(Pane):
-    """Sentence, reasons with number beside limit, quality of the fit, cautions."""
+    """Sentence, reasons with numbers and limits, quality of the fit, cautions."""
 
     TITLE = "2 Verdict"
     SHORT = "2 Ver"
@@ -26,14 +26,14 @@ class Verdict(Pane):
     HELP = """\
 # Verdict
 
-The selected manoeuvre: the sentence the pilot saw, when it was flown, and each reason with its number beside
-the limit. Then the cost J (det R of Eq. 7) beside the limits of the paper's rules, and how well the model
+The selected manoeuvre: the sentence the pilot saw, when it was flown, and each reason with its number and
+limit. Then the cost J (det R of Eq. 7) with the limits of the paper's rules, and how well the model
 explains each output (R², Theil's coefficient TIC, lag-1 correlation of the residual: 0 is white). A line
 with **!** does not reject the manoeuvre but belongs on its verdict.
 """
 
     def compose(self) -> ComposeResult:
-        """Text that scrolls when there is much to say."""
+        """Yield a text that scrolls."""
         with VerticalScroll():
             yield HangingLines("No manoeuvre has ended yet.")
 

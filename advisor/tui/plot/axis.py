@@ -13,7 +13,7 @@ _FINENESS = 8
 
 @dataclass(frozen=True, slots=True)
 class Axis:
-    """A range with rounded ends, so that it stays put while data grow inside it, and its tick step."""
+    """A range with rounded ends, which stays while data grow inside it, and its tick step."""
 
     low: float
     high: float
@@ -21,13 +21,13 @@ class Axis:
 
     @property
     def ticks(self) -> list[float]:
-        """The multiples of ``step`` from ``low`` to ``high``."""
+        """Multiples of ``step`` from ``low`` to ``high``."""
         first, last = ceil(self.low / self.step - 1e-9), floor(self.high / self.step + 1e-9)
         return [k * self.step for k in range(first, last + 1)]
 
     @property
     def labels(self) -> list[str]:
-        """The ticks in as many decimals as the step needs."""
+        """Ticks with as many decimals as the step needs."""
         decimals = max(0, -floor(log10(self.step) + 1e-9))
         return [f"{tick:.{decimals}f}" for tick in self.ticks]
 

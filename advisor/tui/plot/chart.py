@@ -1,4 +1,4 @@
-"""The content of a plot: series with units, levels, and a sentence for when there is nothing."""
+"""Content of a plot: series with units, levels, and a sentence for an empty plot."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -6,6 +6,7 @@ from typing import Literal
 from advisor.flight.messages import FloatArray
 
 Ink = Literal["measured", "fitted", "residual", "input", "limit", "prior"]
+Mark = Literal["line", "points", "stems", "intervals"]
 INKS: tuple[Ink, ...] = ("measured", "fitted", "residual", "input", "limit", "prior")
 
 
@@ -47,17 +48,17 @@ class Chart:
     series: tuple[Series, ...] = ()
     levels: tuple[Level, ...] = ()
     why_empty: str = ""
-    """Shown when there is no series."""
+    """Sentence of a plot without series."""
     whole_x: bool = False
-    """Ticks only at whole numbers (counts)."""
+    """Whether ticks stand only at whole numbers (counts)."""
     log_y: bool = False
-    """Equal ratios of y take equal room: 25 and 2,500 both read. Only positive values are drawn, and no
-    intervals or stems."""
+    """Whether the y axis is logarithmic, so that 25 and 2,500 are both readable. Only positive values are
+    drawn, and no intervals or stems."""
     x_range: tuple[float, float] | None = None
-    """The ends of the x axis; None: rounded ends that hold all data. Only the former lets a mouse point."""
+    """Ends of the x axis. None: rounded ends that hold all data. The mouse can point only with given ends."""
     cursor: float | None = None
-    """Value of x at which a vertical line stands and the legend reads each series."""
+    """Value of x with a vertical line, at which the legend reads each series."""
     foot: bool = True
-    """Whether the x axis has labels; of plots above one another over one axis only the lowest needs them."""
+    """Whether the x axis has labels. Of plots above one another with one axis, only the lowest needs them."""
     gutter: int = 0
-    """The least width of the labels of the y axis, so that plots above one another begin in one column."""
+    """Least width of the labels of the y axis, so that plots above one another begin in one column."""

@@ -6,12 +6,13 @@ from advisor.tui.plot.axis import Axis, LogAxis
 
 
 def whole(axis: Axis) -> Axis:
-    """The same range with ticks at whole numbers only."""
+    """Return the axis with ticks at whole numbers only."""
     return Axis(floor(axis.low), ceil(axis.high), max(1.0, round(axis.step)))
 
 
 def down_the_side(axis: Axis | LogAxis, rows: int, gutter: int) -> list[str]:
-    """Labels of the y axis, one string of ``gutter`` characters a row, highest value first."""
+    """Return the labels of the y axis, one string of ``gutter`` characters for each row, highest value
+    first."""
     column = [" " * gutter] * rows
     for tick, label in zip(axis.ticks, axis.labels, strict=True):
         row = round((axis.high - tick) / (axis.high - axis.low) * (rows - 1))
@@ -20,7 +21,8 @@ def down_the_side(axis: Axis | LogAxis, rows: int, gutter: int) -> list[str]:
 
 
 def along_the_foot(axis: Axis, name: str, gutter: int, width: int) -> str:
-    """Labels of the x axis on one line with the axis's name at its end; crowded ones are left out."""
+    """Return the labels of the x axis on one line with the axis's name at its end. Crowded labels are left
+    out."""
     line = [" "] * width
     columns = width - gutter
     room_until = width - len(name) - 1

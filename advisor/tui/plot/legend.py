@@ -1,4 +1,4 @@
-"""The first line of a plot: quantity, unit, and what each mark means without its colour."""
+"""The first line of a plot: quantity, unit, and the meaning of each mark without its colour."""
 
 from rich.segment import Segment
 from rich.style import Style
@@ -10,14 +10,14 @@ _SAMPLE = {"line": "──", "joined": "──", "points": "∙∙", "stems": "�
 
 
 def legend(chart: Chart, read: list[str], width: int, style: Style, inks: list[Style]) -> Strip:
-    """Compose the line; what does not fit is left away from the right.
+    """Compose the line, from left to right as far as there is room.
 
     Parameters
     ----------
     chart
-        Says what there is to name.
+        Chart with the names.
     read
-        One text a series: its value at the cursor, empty where there is none.
+        One text for each series: its value at the cursor, empty without one.
     width
         Cells of the line.
     style, inks

@@ -47,7 +47,7 @@ def paint(chart: Chart, width: int, height: int, base: Style, inks: list[Style])
     Parameters
     ----------
     chart
-        What is shown.
+        Chart to paint.
     width, height
         Size in cells; where it is too small, a sentence says so.
     base, inks
@@ -102,7 +102,7 @@ def _logarithmic(chart: Chart) -> Chart:
 
 
 def _in_range(chart: Chart) -> Chart:
-    """Leave out what lies outside the range of x; a neighbour at each end lets lines run to the edge."""
+    """Remove samples outside the range of x. A neighbour at each end lets lines run to the edge."""
     if chart.x_range is None:
         return chart
     return replace(chart, series=tuple(_cut(s, *chart.x_range) for s in chart.series))

@@ -29,7 +29,7 @@ def readings(chart: Chart, y_axis: Axis | LogAxis) -> list[str]:
 
 
 def value_at(series: Series, x: float) -> float | None:
-    """Read the sample nearest to ``x``; None where it is further off than two samples are apart."""
+    """Return the sample nearest to ``x``; None where it is farther than two samples are apart."""
     if len(series.x) == 0:
         return None
     at = nearest(series.x, x)

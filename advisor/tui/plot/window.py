@@ -7,12 +7,12 @@ import numpy as np
 from advisor.flight.messages import FloatArray
 
 _LEAST_SHARE = 0.01
-"""The shortest stretch as a share of the whole: a hundredth of 12 s holds six samples at 50 Hz."""
+"""Shortest stretch, as a share of the whole: a hundredth of 12 s holds six samples at 50 Hz."""
 
 
 @dataclass(frozen=True, slots=True)
 class Window:
-    """A stretch of a longer range; every change keeps the stretch inside the range."""
+    """A stretch of a longer range. Every change keeps the stretch inside the range."""
 
     first: float
     last: float
@@ -33,7 +33,7 @@ class Window:
 
     @property
     def shown(self) -> tuple[float, float]:
-        """The ends of what is shown, lower first."""
+        """Ends of the stretch in sight, the lower first."""
         return self.low, self.high
 
     def zoom(self, factor: float, about: float) -> "Window":
@@ -57,7 +57,7 @@ class Window:
         return self._placed(low, length)
 
     def over(self, first: float, last: float) -> "Window":
-        """Take another range: what was whole stays whole, what was zoomed keeps its length and place."""
+        """Take another range. A whole stretch stays whole, and a zoomed one keeps its length and place."""
         if not self.zoomed:
             return Window.whole(first, last)
         return Window(first, last, self.low, self.high)._placed(self.low, self.high - self.low)

@@ -43,7 +43,7 @@ _COLUMNS: dict[str, tuple[type[Pane], ...]] = {
 }
 _WIDE, _MEDIUM = (160, 42), (110, 30)
 _LOW = 7
-"""Rows of the manoeuvres over a pane that stands alone."""
+"""Rows of the manoeuvres above a pane that stands alone."""
 _LOW_TABLE = 38
 """Rows of a terminal below which the table of parameters shows four of the eight at once."""
 
@@ -63,7 +63,7 @@ focus. On a small terminal one pane is shown with the manoeuvres. On a wide one 
 residuals, correlation and history share one place.
 
 **c** copies the pane that has the focus to the clipboard: its numbers as CSV, its words as text. **s**
-saves the same into a file beside the log or the recording, and its plots as a picture (SVG). A browser
+saves them into a file next to the log or the recording, and its plots as a picture (SVG). A browser
 is offered the files instead.
 """
 
@@ -136,7 +136,7 @@ is offered the files instead.
         self._refresh_panes()
 
     def _arrange(self) -> None:
-        """Show what there is room for. Classes would do it too, but style everything inside anew."""
+        """Show the panes that have room. Classes would restyle everything inside anew."""
         narrow = self.has_class("-narrow")
         shown = {Maneuvers, self._chosen} if narrow else {*_COLUMNS["left"], self._beside}
         if self.has_class("-wide"):
@@ -155,7 +155,7 @@ is offered the files instead.
         return focused or self.query_one(self._chosen)
 
     def action_exclude(self) -> None:
-        """Take the selected manoeuvre out of every decision, or in again; ask why."""
+        """Exclude the selected manoeuvre from every decision, or include it again; ask for the reason."""
         judged = self._view.judged if self._view else None
         if judged is None:
             self.say("There is no manoeuvre to exclude yet.")
@@ -175,7 +175,8 @@ is offered the files instead.
         self.ask(question, lambda text: self._decided(HandDecision(verb, text, number)))
 
     def _decided(self, decision: HandDecision) -> None:
-        """Hand it on, and say so: the table follows when everything has been computed anew."""
+        """Pass the decision on, and show a message. The table follows when everything has been computed
+        anew."""
         self.post_message(self.Decided(decision))
         if decision.verb != "note":
             self.say(f"{decision.verb} manoeuvre {decision.number}: every decision is made again")

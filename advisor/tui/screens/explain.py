@@ -11,7 +11,7 @@ from textual.widgets import Static
 
 
 class Explain(ModalScreen[None]):
-    """Shows a text; any of escape, q and ? closes it."""
+    """Shows a text. Each of escape, q and ? closes the page."""
 
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape,q,question_mark", "dismiss", "Close")]
 
@@ -20,6 +20,6 @@ class Explain(ModalScreen[None]):
         self._page = page
 
     def compose(self) -> ComposeResult:
-        """Text that scrolls."""
+        """Yield the text in a scrolling container."""
         with VerticalScroll(id="help"):
             yield Static(self._page)

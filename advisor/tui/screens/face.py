@@ -1,4 +1,4 @@
-"""The base of both faces."""
+"""The base of both screens."""
 
 from collections.abc import Callable
 from contextlib import suppress
@@ -21,14 +21,14 @@ class Face(Screen[None]):
     AUTO_FOCUS = ""
 
     class Decided(Message):
-        """Someone decided something by hand."""
+        """A crew member decided something by hand."""
 
         def __init__(self, decision: HandDecision) -> None:
             super().__init__()
             self.decision = decision
 
     async def on_event(self, event: Event) -> None:
-        """Come back as it was left: a theme changed meanwhile is applied by the switch itself."""
+        """Return to the state at leaving. A theme that changed meanwhile is applied by the switch itself."""
         if isinstance(event, ScreenResume):
             event.refresh_styles = False
         await super().on_event(event)
@@ -38,7 +38,7 @@ class Face(Screen[None]):
         self.query_one(Ask).put(question, answered, integer=integer)
 
     def say(self, text: str, seconds: float = 3.0) -> None:
-        """Tell something on the last line, for a while; what has no room there comes up above the line."""
+        """Show a text on the last line, for a while. A text without room there appears above the line."""
         line = self.query_one(KeysLine)
         if line.has_room_for(text):
             line.say(text, seconds)
@@ -46,7 +46,7 @@ class Face(Screen[None]):
             self.notify(text, timeout=seconds, markup=False)
 
     def show(self, view: View) -> None:
-        """Update every part that wants to be to a new moment."""
+        """Update every part in sight to a new moment."""
         # A report may still arrive while the screen is taken down, its innermost widgets first.
         with suppress(NoMatches):
             for node in self.walk_children():

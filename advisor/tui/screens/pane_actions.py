@@ -18,7 +18,7 @@ else:
     Base = object
 
 _SAY_S = 8.0
-"""Seconds for a sentence with a path in it: a path takes longer to read than a word."""
+"""Time for which a sentence with a path is shown, s. A path takes longer to read than a word."""
 
 
 class PaneActions(Base):

@@ -18,7 +18,7 @@ _TALL = 38
 
 
 class PilotScreen(Face):
-    """Word, verdict, progress, what to fly next; nothing moves unless it matters."""
+    """Word, verdict, progress and next input. Nothing moves without a reason."""
 
     HELP = """\
 # Pilot
@@ -26,17 +26,17 @@ class PilotScreen(Face):
 The large word is what to do now:
 
 - **CONTINUE**: fly the next manoeuvre.
-- **REPEAT**: the last one was of no use; the line below says why and what to change.
-- **RECOVER**: the manoeuvre in the air has told all it can.
+- **REPEAT**: the last manoeuvre is rejected; the line below gives the reason and the remedy.
+- **RECOVER**: further response of the manoeuvre in the air adds nothing.
 - **STOP TESTING**: the criterion fell below its limit.
 - **WAIT**, **NO LINK**: no vehicle is heard (any more).
 - **NO DATA**: the vehicle does not send what is needed; the line below says what to change.
 
-✓ a good manoeuvre, ✗ one to repeat, ∅ one taken out by hand.
+✓ a good manoeuvre, ✗ one to repeat, ∅ one excluded by hand.
 """
 
     def compose(self) -> ComposeResult:
-        """From top to bottom in the order of urgency."""
+        """Yield the parts from top to bottom, in the order of urgency."""
         yield StatusLine()
         yield Alarm()
         yield BigWord()
@@ -49,5 +49,5 @@ The large word is what to do now:
         yield KeysLine()
 
     def on_resize(self, event: Resize) -> None:
-        """On a tall terminal the verdict is written large too."""
+        """Write the verdict large as well on a tall terminal."""
         self.set_class(event.size.height >= _TALL, "-tall")

@@ -25,16 +25,16 @@ _LETTERS = {
 }
 
 _SCALES = ((4, 3), (4, 2), (3, 2), (2, 2), (2, 1), (1, 1))
-"""Cells across and down for each dot, largest first."""
+"""Cells across and down for each dot, the largest first."""
 
 
 def block_letters(word: str, width: int, height: int) -> str:
-    """Write a word as large as the space allows; in plain letters when it does not fit at all.
+    """Write a word as large as the space allows, or in plain letters where block letters do not fit.
 
     Raises
     ------
     KeyError
-        When a letter of the word has not been drawn.
+        A letter of the word has no drawing.
     """
     for across, down in _SCALES:
         for gap in ("  ", " "):

@@ -1,4 +1,4 @@
-"""Starting the processes that work for a face, and saying how they ended."""
+"""Child processes of a screen: their start, and sentences on their end."""
 
 import signal
 import sys
@@ -7,15 +7,15 @@ from subprocess import DEVNULL, PIPE, Popen
 _LONGEST_PAUSE_S = 10.0
 
 
-def offspring(module: str, shows_errors: bool = False) -> "Popen[bytes]":
-    """Start a module of the advisor as a process that is spoken to by pickles on its standard streams.
+def start_child(module: str, shows_errors: bool = False) -> "Popen[bytes]":
+    """Start a module of the advisor as a process that exchanges pickles over its standard streams.
 
     Parameters
     ----------
     module
-        Name of the module, as ``python -m`` takes it.
+        Name of the module for ``python -m``.
     shows_errors
-        Whether the process writes to the standard error of this one.
+        Whether the process shares this process's standard error.
     """
     return Popen(
         [sys.executable, "-m", module], stdin=PIPE, stdout=PIPE, stderr=None if shows_errors else DEVNULL
@@ -23,7 +23,7 @@ def offspring(module: str, shows_errors: bool = False) -> "Popen[bytes]":
 
 
 def said_of(code: int) -> str:
-    """How a process has ended, from its exit code."""
+    """Return a clause on the end of a process, from its exit code."""
     if code >= 0:
         return f"ended with exit code {code}"
     try:
@@ -33,5 +33,5 @@ def said_of(code: int) -> str:
 
 
 def pause_s(deaths: int) -> float:
-    """Seconds to wait before a process is started again: none at first, a second more after each death."""
+    """Return the pause before a process is restarted, s: none at first, a second more after each death."""
     return min(deaths - 1.0, _LONGEST_PAUSE_S)
