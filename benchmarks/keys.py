@@ -68,7 +68,7 @@ def dialogue(themes: Iterator[str]) -> Iterator[Key]:
     for title in _PANES:
         yield Key("pane", title[:1].encode(), says_focus(title))
         if title == "4 Fit":
-            yield Key("cursor", b"\x1b[C", says("  t "))
+            yield Key("cursor", b"\x1b[C", says("━ t "))
             yield Key("zoom", b"z", says("w: whole record"))
             yield Key("zoom", b"w", says_no_more("w: whole record"))
     yield Key("pane", b"\t", says_focus("1 Manoeuvres"))

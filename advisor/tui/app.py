@@ -57,7 +57,8 @@ class AdvisorApp(replay_actions.ReplayActions, link_actions.LinkActions, HandAct
     settings : Settings, optional
         Theme, first screen, keys.
     logs : sequence of Path
-        Logs and recordings, flight by flight, beside which panes are saved; none: in the current folder.
+        Logs and recordings, flight by flight. Panes are saved into their folders; without logs, into the
+        current folder.
     """
 
     TITLE = "inflight advisor"

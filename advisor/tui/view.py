@@ -31,7 +31,7 @@ class View:
     selected: int | None = None
     """Number of the manoeuvre chosen by hand; None: always the newest."""
     logs: tuple[Path, ...] = ()
-    """Logs and recordings, flight by flight, beside which files are written; none: in the current folder."""
+    """Logs and recordings, flight by flight. Panes are saved into their folders, else the current one."""
 
     @property
     def obstacles(self) -> tuple[Problem, ...]:

@@ -31,17 +31,17 @@ def test_equal_inputs_lie_over_one_another():
     first, second = elevator_chart(FIRST, FOURTH).series
     assert first.x == pytest.approx(second.x)
     assert first.y == pytest.approx(second.y)
-    assert (first.name, second.name) == ("elevator 1", "elevator 4")
+    assert (first.name, second.name) == ("elevator 4", "elevator 1")
 
 
 def test_of_two_manoeuvres_what_was_measured_and_the_residuals_are_drawn():
-    assert [s.name for s in fit_chart("q", FIRST, FOURTH).series] == ["measured 1", "measured 4"]
-    assert [s.name for s in residual_chart("q", FIRST, FOURTH).series] == ["residual 1", "residual 4"]
+    assert [s.name for s in fit_chart("q", FIRST, FOURTH).series] == ["measured 4", "measured 1"]
+    assert [s.name for s in residual_chart("q", FIRST, FOURTH).series] == ["residual 4", "residual 1"]
 
 
 def test_a_manoeuvre_without_an_estimate_is_laid_over_as_it_was_recorded():
     series = fit_chart("q", FIRST, flights.without_estimate(3)).series
-    assert [s.name for s in series] == ["measured 1", "measured 3"]
+    assert [s.name for s in series] == ["measured 3", "measured 1"]
     assert len(residual_chart("q", FIRST, flights.without_estimate(3)).series) == 1
 
 

@@ -33,7 +33,7 @@ async def test_the_keys_move_a_cursor_that_reads_every_curve():
         fit = await fit_of(here, 3)
         assert legend(here, "fit-alpha") == "α [deg]  ∙∙ measured  ── fitted"
         await here.press("right", *["shift+right"] * 10)
-        assert fit.border_subtitle == "manoeuvre 3  t 0.200 s"
+        assert fit.border_subtitle == "t 0.200 s  manoeuvre 3"
         assert legend(here, "fit-elevator") == "δe [deg]  ── elevator 2.000"
         judged = flights.judged(3).estimate.fits[0]["alpha"]
         measured = f"{57.29578 * judged.measured[110]:.2f}"
@@ -54,7 +54,7 @@ async def test_a_click_sets_the_cursor_and_the_wheel_zooms_about_the_mouse():
     async with stage(flights.state(3), settings=ENGINEER, size=(80, 24)) as here:
         fit = await fit_of(here, 3)
         await here.pilot.click("#fit-alpha", offset=(75, 2))
-        assert fit.border_subtitle == "manoeuvre 3  t 7.980 s"
+        assert fit.border_subtitle == "t 7.980 s  manoeuvre 3"
         plot = here.app.screen.query_one("#fit-alpha", Plot)
         plot.post_message(
             MouseScrollUp(
@@ -86,8 +86,9 @@ async def test_a_second_manoeuvre_is_laid_over_and_taken_away_again():
     async with stage(flights.state(4), settings=ENGINEER, size=(120, 40)) as here:
         fit = await fit_of(here, 4)
         await here.press("l", "1", "enter")
-        assert fit.border_subtitle == "manoeuvres 4 and 1, both from the start of the input"
-        assert legend(here, "fit-alpha") == "α [deg]  ∙∙ measured 4  ── measured 1"
+        assert fit.border_subtitle == "manoeuvres 4 and 1"
+        assert str(fit.border_title).startswith("4 Fit  both from the start of the input")
+        assert legend(here, "fit-alpha") == "α [deg]  ── measured 1  ∙∙ measured 4"
         await here.press("l", "9", "enter")
         assert "Choose another manoeuvre than 4, from 1 to 4." in here.page()
         await here.press("l", "0", "enter")

@@ -55,7 +55,7 @@ def test_without_a_log_at_hand_files_are_named_after_the_replay_or_the_advisor()
 async def test_every_pane_can_be_copied():
     async with stage(flights.state(4), settings=ENGINEER, size=(80, 24)) as here:
         copied = {}
-        for key in "1234567890h":
+        for key in "1234567890hu":
             await here.press(key, "c")
             copied[key] = here.app.clipboard
         assert table(copied["1"])[1]["verdict"] == "✗ REPEAT"
@@ -69,6 +69,7 @@ async def test_every_pane_can_be_copied():
         assert {row["output"] for row in table(copied["9"])} == {"alpha", "q", "a_z", "theta"}
         assert {row["estimate"] for row in table(copied["0"])} == {"joint", "manoeuvre 4"}
         assert {row["manoeuvre"] for row in table(copied["h"])} == {"1", "2", "3", "4"}
+        assert "lying qualities" in copied["u"]
 
 
 async def test_a_pane_is_saved_beside_the_log_as_numbers_and_as_a_picture(tmp_path: Path):

@@ -14,6 +14,9 @@ from advisor.tui.rows import Rows
 from advisor.tui.view import View
 from advisor.tui.words import PARAMETERS
 
+_MANY = 4
+"""Plots that stand side by side without room for the name of their x axis."""
+
 
 class Courses(Pane):
     """Eight small plots: each manoeuvre's estimate with its interval against the manoeuvre's number."""
@@ -57,10 +60,11 @@ drifts shows an aircraft that changes.
     def _draw(self) -> None:
         across = self.styles.grid_size_columns
         for k, name in enumerate(NAMES):
-            small = _small(history_chart(self._view, name), foot=k >= len(NAMES) - across)
+            lowest, roomy = k >= len(NAMES) - across, across < _MANY
+            small = _small(history_chart(self._view, name), "no." if roomy else "", foot=lowest)
             self.query_one(f"#course-{name}", Plot).chart = small
         if self._view and self._view.state.maneuvers:
-            self.subtitle("by manoeuvre: ├┤ estimate ± 95 %  ── joint  ╌╌ aircraft file")
+            self.subtitle("├┤ ± 95 %  ── joint  ╌╌ aircraft file")
 
     def rows(self) -> Rows:
         """Give one row for each manoeuvre and parameter."""
@@ -83,8 +87,8 @@ drifts shows an aircraft that changes.
         return Rows(header, tuple(rows))
 
 
-def _small(chart: Chart, *, foot: bool) -> Chart:
+def _small(chart: Chart, x_label: str, *, foot: bool) -> Chart:
     """Remove the names that the frame of the pane gives for all plots."""
     series = tuple(replace(one, name="") for one in chart.series)
     levels = tuple(replace(one, name="") for one in chart.levels)
-    return replace(chart, x_label="", foot=foot, series=series, levels=levels)
+    return replace(chart, x_label=x_label, foot=foot, series=series, levels=levels)

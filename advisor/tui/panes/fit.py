@@ -57,8 +57,8 @@ plot reads the values there. **up/down**, **z/Z** or the wheel zooms in time, **
 shown, **w** shows the whole record again.
 
 **l** lays a second manoeuvre over this one, aligned at the start of the input: the measured curves and
-the residuals of both. The selected one is drawn as before, the second as a pale line; **l** with 0 takes
-it away.
+the residuals of both. The selected manoeuvre keeps its colours, the second is a pale line below; **l**
+with 0 takes the second away.
 """
 
     def compose(self) -> ComposeResult:
@@ -162,7 +162,9 @@ it away.
         self._draw_elevator(elevator)
         for name in OUTPUTS:
             self._draw_output(name, name in shown, lowest=name == lowest, with_residual=residuals)
-        self.border_title = self.TITLE if count == len(there) else f"{self.TITLE}  (o: next output)"
+        aligned = "  both from the start of the input" if self._over is not None else ""
+        more = "" if count == len(there) else "  (o: next output)"
+        self.border_title = f"{self.TITLE}{aligned}{more}"
         self._write_subtitle()
 
     def _outputs(self) -> list[str]:
@@ -191,12 +193,12 @@ it away.
     def _write_subtitle(self) -> None:
         if self._judged is None or self._sight is None:
             return
-        number = self._judged.maneuver.number
-        said = [f"manoeuvre {number}"]
-        if self._over is not None:
-            said = [f"manoeuvres {number} and {self._over.maneuver.number}, both from the start of the input"]
-        if self._sight.cursor is not None:
-            said.append(f"t {signed(self._sight.cursor, 3)} s")
+        number, cursor = self._judged.maneuver.number, self._sight.cursor
+        said = [] if cursor is None else [f"t {signed(cursor, 3)} s"]
+        if self._over is None:
+            said.append(f"manoeuvre {number}")
+        else:
+            said.append(f"manoeuvres {number} and {self._over.maneuver.number}")
         if self._sight.window.zoomed:
             said.append("w: whole record")
         self.subtitle("  ".join(said))

@@ -7,7 +7,7 @@ import numpy as np
 from advisor.campaign.state import JudgedManeuver
 from advisor.flight.messages import FloatArray
 from advisor.oem.estimate import ChannelFit, Estimate
-from advisor.tui.plot.chart import Chart, Ink, Series
+from advisor.tui.plot.chart import Chart, Ink, Mark, Series
 from advisor.tui.rows import Rows
 from advisor.tui.words import channel
 
@@ -89,7 +89,7 @@ def residual_chart(name: str, judged: JudgedManeuver, over: JudgedManeuver | Non
     series = [Series(_named("residual", judged, over), *_residual(judged, fit), "residual")]
     second = fits_of(over).get(name) if over is not None else None
     if over is not None and second is not None:
-        series.append(Series(_named("residual", over, judged), *_residual(over, second), "prior"))
+        series.insert(0, Series(_named("residual", over, judged), *_residual(over, second), "prior"))
     return Chart(channel(name).label, _T, series=tuple(series))
 
 
@@ -125,15 +125,16 @@ def _overlaid(
     over: JudgedManeuver | None,
     name: str,
     ink: Ink,
-    mark: str,
+    mark: Mark,
 ) -> tuple[Series, ...]:
+    """Name the curves of one manoeuvre or of two; the selected one is last and painted over the other."""
     if curve is None:
         return ()
-    first = Series(_named(what, judged, over), *curve, ink, "points" if mark == "points" else "line")
+    first = Series(_named(what, judged, over), *curve, ink, mark)
     second = measured(over, name) if over is not None else None
     if over is None or second is None:
         return (first,)
-    return first, Series(_named(what, over, judged), *second, "prior")
+    return Series(_named(what, over, judged), *second, "prior"), first
 
 
 def _named(what: str, judged: JudgedManeuver, beside: JudgedManeuver | None) -> str:

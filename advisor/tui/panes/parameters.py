@@ -16,7 +16,7 @@ from advisor.tui.plot.widget import Plot
 from advisor.tui.view import View
 from advisor.tui.words import PARAMETERS
 
-_COLUMNS = (("parameter", 11), ("model ± 95 %", 17), ("selected ± 95 %", 17), ("prior", 9), ("off by", 7))
+_COLUMNS = (("parameter", 11), ("model ± 95 %", 18), ("selected ± 95 %", 18), ("prior", 8), ("off by", 6))
 """Name and width, with a space at the end: what grows must not push the others about. The last ones are left
 away where they have no room: half a number would be another number."""
 _SCROLL_BAR = 1

@@ -87,7 +87,7 @@ lacks. A wave means a mode that the model misses. Intervals allow for coloured r
             fit = self._fits.get(name)
             chart = _chart(name, Whiteness.of(fit)) if fit is not None else _nothing(name, why)
             self.query_one(f"#white-{name}", Plot).chart = chart
-        self.subtitle(f"manoeuvre {judged.maneuver.number}  ╌╌ 95 % of white noise: ±1.96/√N")
+        self.subtitle(f"manoeuvre {judged.maneuver.number}  ╌╌ 95 % if white: ±1.96/√N")
         self._only_with_fit()
 
     def _only_with_fit(self) -> None:

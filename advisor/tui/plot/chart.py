@@ -6,6 +6,7 @@ from typing import Literal
 from advisor.flight.messages import FloatArray
 
 Ink = Literal["measured", "fitted", "residual", "input", "limit", "prior"]
+Mark = Literal["line", "points", "stems", "intervals"]
 INKS: tuple[Ink, ...] = ("measured", "fitted", "residual", "input", "limit", "prior")
 
 
