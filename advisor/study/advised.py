@@ -91,7 +91,7 @@ def savings(flown: Sequence[Pair], needed: Sequence[tuple[int, int]]) -> list[Sa
     Parameters
     ----------
     needed
-        What :func:`fly` returned for each pair.
+        Result of :func:`fly` for each pair.
     """
     by_case: dict[tuple[str, float, bool], list[tuple[int, int]]] = {}
     for pair, numbers in zip(flown, needed, strict=True):

@@ -20,7 +20,7 @@ from advisor.problems import UnusableInputError
 from advisor.tui import keys, link_actions, replay_actions
 from advisor.tui.conducting import Conducting, Report
 from advisor.tui.explaining import commands, explanation
-from advisor.tui.garbage import Garbage
+from advisor.tui.garbage_collection import Garbage
 from advisor.tui.hand_actions import HandActions
 from advisor.tui.screens.engineer import EngineerScreen
 from advisor.tui.screens.explain import Explain
