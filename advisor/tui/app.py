@@ -35,34 +35,33 @@ from advisor.tui.view import View, view_before_first
 _TWICE_WITHIN_S = 3.0
 _AT_ONCE_S = 0.001
 _BREATH_S, _QUIET_S = 0.02, 0.5
-"""What would hold up a key is done so long after the answer to one, and when none has come for so long."""
+"""Delays after the answer to a key, and without any key, before work that would hold up a key, s."""
 
 _ANSWER_S = 0.03
-"""Reports wait so long behind a key, so that its answer is painted before all that they change."""
+"""Delay of reports behind a key, s, so that the key's answer is painted before the reports' changes."""
 
 
 class AdvisorApp(replay_actions.ReplayActions, link_actions.LinkActions, HandActions, App[None]):
-    """Shows what a campaign says of a link, a log or a demonstration, until the user leaves.
+    """Shows a campaign on a link, a log or a demonstration, until the user leaves.
 
     Parameters
     ----------
     conductor : Conducting
-        Runs the campaign; started after the first paint, in a thread that only listens to it.
+        Runs the campaign, started after the first paint in a thread that only listens.
     aircraft : Aircraft
         The aircraft file: name, prior model, stop criterion.
     title : str
-        What the source is called.
+        Name of the source.
     tempo : Tempo, optional
-        How a replay starts; None: the source is no replay.
+        Start settings of a replay. None: the source is no replay.
     settings : Settings, optional
         Theme, first screen, keys.
     logs : sequence of Path
-        Logs and recordings, flight by flight. Panes are saved into their folders; without logs, into the
-        current folder.
+        Logs and recordings, flight by flight, next to which panes are saved. Empty: in the current folder.
     """
 
     TITLE = "inflight advisor"
-    # Those of the screens too: read when a screen comes up, they would have the one before it styled anew.
+    # The screens' styles as well: read when a screen comes up, they would restyle the earlier screen.
     CSS_PATH: ClassVar[list[str | PurePath]] = [
         f"styles/{name}.tcss" for name in ("app", "pilot", "engineer", "explain")
     ]
@@ -77,14 +76,14 @@ class AdvisorApp(replay_actions.ReplayActions, link_actions.LinkActions, HandAct
     }
 
     class Told(Message):
-        """The conductor has something new."""
+        """The conductor has a new report."""
 
         def __init__(self, report: Report) -> None:
             super().__init__()
             self.report = report
 
         def can_replace(self, message: Message) -> bool:
-            """A newer report says all that this one does: on a slow terminal they do not pile up."""
+            """Let a newer report replace this one, so that reports do not pile up on a slow terminal."""
             return isinstance(message, type(self))
 
     def __init__(
@@ -101,23 +100,23 @@ class AdvisorApp(replay_actions.ReplayActions, link_actions.LinkActions, HandAct
         self.view = view_before_first(aircraft, title, tempo, tuple(logs))
         self.conductor = conductor
         self.failure: BaseException | None = None
-        """What the caller must answer for: why the thread broke off, or why the input could not be used."""
+        """Error for the caller: the thread's failure, or the reason for which the input could not be used."""
         self._leaving_s = self._pressed_s = -inf
         self._report: Report | None = None
-        """The newest one, while it waits."""
+        """Newest report, while it waits."""
         self._garbage = Garbage()
         self._sheets = Sheets(THEMES)
         for theme in THEMES:
             self.register_theme(theme)
         self.theme = self.settings.theme
         self.stylesheet = self._sheets.of(self.theme, self.stylesheet)
-        # The palette would offer Textual's own, which have no colours for plots.
+        # The palette would offer Textual's own themes, which have no colours for plots.
         for name in set(self.available_themes) - set(NAMES):
             self.unregister_theme(name)
         self.set_keymap(dict(self.settings.keys))
 
     async def on_mount(self) -> None:
-        """Paint first, then let the work begin."""
+        """Paint first, then start the conductor."""
         await self.action_face(self.settings.screen)
         run = partial(self.conductor.run, lambda report: self.post_message(self.Told(report)))
         self.call_after_refresh(self.run_worker, run, thread=True, exit_on_error=False)
@@ -125,12 +124,12 @@ class AdvisorApp(replay_actions.ReplayActions, link_actions.LinkActions, HandAct
         self.set_interval(_QUIET_S, self._tidy_if_quiet)
 
     def on_unmount(self) -> None:
-        """Let the work end."""
+        """Stop the conductor."""
         self.conductor.stop()
         self._garbage.end()
 
     async def on_event(self, event: Event) -> None:
-        """Answer a key; the moment after is the best one to tidy up."""
+        """Answer a key. The moment after the answer is the best time for tidying up."""
         await super().on_event(event)
         if isinstance(event, Key):
             self._pressed_s = monotonic()
@@ -142,12 +141,12 @@ class AdvisorApp(replay_actions.ReplayActions, link_actions.LinkActions, HandAct
             self._tidy()
 
     def _tidy(self) -> None:
-        """Do one piece of what would hold up a key."""
+        """Do one piece of the work that would hold up a key."""
         if not self._sheets.prepare(self.stylesheet):
             self._garbage.collect_if_due()
 
     def on_advisor_app_told(self, event: Told) -> None:
-        """Show the newest report, after the answer to a key if one is due."""
+        """Show the newest report, after a key's answer where one is due."""
         waiting, self._report = self._report is not None, event.report
         due_s = self._pressed_s + _ANSWER_S - monotonic()
         if due_s <= 0.0:
@@ -173,13 +172,13 @@ class AdvisorApp(replay_actions.ReplayActions, link_actions.LinkActions, HandAct
         self.show(view)
 
     def on_worker_state_changed(self, event: Worker.StateChanged) -> None:
-        """Leave when the input turns out to be unusable; the caller says why."""
+        """Leave when the input is found unusable. The caller prints the reason."""
         if event.state is WorkerState.ERROR:
             self.failure = event.worker.error
             self.exit()
 
     def on_face_decided(self, event: Face.Decided) -> None:
-        """Hand a decision to the campaign."""
+        """Pass a decision to the campaign."""
         self.conductor.decide(event.decision)
 
     def show(self, view: View) -> None:
@@ -190,7 +189,7 @@ class AdvisorApp(replay_actions.ReplayActions, link_actions.LinkActions, HandAct
                 screen.show(self.view)
 
     def say(self, text: str, seconds: float = 3.0) -> None:
-        """Tell something on the last line of the screen, for a while; over a dialog, beside it."""
+        """Show a text on the last line of the screen, for a while; over a dialog, next to it."""
         if isinstance(self.screen, Face):
             self.screen.say(text, seconds)
         else:
@@ -202,7 +201,7 @@ class AdvisorApp(replay_actions.ReplayActions, link_actions.LinkActions, HandAct
         return action not in only_elsewhere
 
     def get_system_commands(self, screen: Screen[object]) -> Iterable[SystemCommand]:
-        """Every action of the advisor, after those of Textual's own commands that it has not."""
+        """Yield every action of the advisor, after those of Textual's own commands that it lacks."""
         mine = commands(self, screen)
         names = {command.title for command in mine}
         yield from (own for own in super().get_system_commands(screen) if own.title not in names)
@@ -214,11 +213,12 @@ class AdvisorApp(replay_actions.ReplayActions, link_actions.LinkActions, HandAct
         self.show(self.view)
 
     def delay_update(self, delay: float = _AT_ONCE_S) -> None:
-        """Paint at once: by itself Textual hides transitions for 50 ms, which mounted screens do not have."""
+        """Paint at once. Textual alone would hide transitions for 50 ms, which mounted screens do not
+        have."""
         super().delay_update(_AT_ONCE_S)
 
     def refresh_css(self, animate: bool = True) -> None:
-        """Style everything by the sheet of the theme."""
+        """Style everything by the theme's sheet."""
         self.stylesheet = self._sheets.of(self.theme, self.stylesheet)
         super().refresh_css(animate)
 
@@ -230,19 +230,19 @@ class AdvisorApp(replay_actions.ReplayActions, link_actions.LinkActions, HandAct
         self.say(f"theme: {theme}")
 
     def action_explain(self) -> None:
-        """Help for what has the focus."""
+        """Show the help on the focused pane."""
         self.push_screen(Explain(explanation(self)))
 
     async def action_quit(self) -> None:
-        """Quit as the advisor does: Textual's own ctrl+q and palette would leave a live link at once."""
+        """Quit like the advisor. Textual's own ctrl+q and palette would leave a live link at once."""
         self.action_leave()
 
     def action_help_quit(self) -> None:
-        """Quit by ctrl+c too, which Textual only explains."""
+        """Quit by ctrl+c as well, which Textual only explains."""
         self.action_leave()
 
     def action_leave(self) -> None:
-        """Quit; on a live link only when asked twice."""
+        """Quit; on a live link only after a second request."""
         over = self.view.tempo is not None or self.view.health.condition == "ended"
         if over or monotonic() - self._leaving_s < _TWICE_WITHIN_S:
             self.exit()

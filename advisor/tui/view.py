@@ -1,6 +1,7 @@
-"""One moment as the panes see it."""
+"""State of one moment for the panes."""
 
 from dataclasses import dataclass
+from math import nan
 from pathlib import Path
 
 from advisor.aircraft import Aircraft
@@ -12,54 +13,55 @@ from advisor.tui.source import LinkHealth, Playback, Tempo
 
 @dataclass(frozen=True, slots=True, eq=False)
 class View:
-    """The campaign, the link, the replay, and which manoeuvre an engineer looks at."""
+    """Campaign, link, replay, and the manoeuvre that an engineer looks at."""
 
     state: CampaignState
     health: LinkHealth
     playback: Playback | None
-    """Where a replay stands; None on a live link, and before the log is read."""
+    """Position of a replay. None on a live link, and before the log is read."""
     aircraft: Aircraft
     title: str
-    """What the source is called."""
+    """Name of the source."""
     tempo: Tempo | None = None
-    """How a replay is wanted to run; None on a live link."""
+    """Tempo of a replay. None on a live link."""
     log: tuple[str, ...] = ()
-    """What happened so far, oldest first."""
+    """Sentences of the event log, oldest first."""
     problems: tuple[Problem, ...] = ()
-    """Why nothing can be judged of the whole stream, while nothing has been."""
+    """Reasons for which nothing can be judged of the whole stream, while nothing has been judged."""
     selected: int | None = None
     """Number of the manoeuvre chosen by hand; None: always the newest."""
     logs: tuple[Path, ...] = ()
-    """Logs and recordings, flight by flight. Panes are saved into their folders, else the current one."""
+    """Logs and recordings, flight by flight, next to which files are written. Empty: the current folder."""
 
     @property
     def obstacles(self) -> tuple[Problem, ...]:
-        """Why nothing can be judged: of what arrives at present; at the end, of the whole stream."""
+        """Reasons for which nothing can be judged: of the present data, and at the end of the whole
+        stream."""
         return self.problems if self.health.condition == "ended" else self.state.no_data
 
     @property
     def judged(self) -> JudgedManeuver | None:
-        """The manoeuvre to show in detail; None before the first."""
+        """Manoeuvre that is shown in detail. None before the first."""
         maneuvers = self.state.maneuvers
         newest = maneuvers[-1] if maneuvers else None
         return next((j for j in maneuvers if j.maneuver.number == self.selected), newest)
 
     @property
     def last(self) -> JudgedManeuver | None:
-        """The newest manoeuvre that nobody took out by hand."""
+        """Newest manoeuvre that is not excluded by hand."""
         return next((j for j in reversed(self.state.maneuvers) if j.excluded_because is None), None)
 
 
 def view_before_first(
     aircraft: Aircraft, title: str, tempo: Tempo | None, logs: tuple[Path, ...] = ()
 ) -> View:
-    """What there is to show before the first report: nothing flown, nothing heard."""
+    """Return the view before the first report: nothing flown, nothing heard."""
     plan = aircraft.campaign
     limit = limit_percent(plan.rule, plan)
     verdict = FlightTestVerdict(plan.rule, "continue", "No manoeuvre has been flown yet.", None, limit, None)
     state = CampaignState(
         vehicle=None,
-        now_s=0.0,
+        now_s=nan,
         duration_s=0.0,
         mode="",
         channels={},
