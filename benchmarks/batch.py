@@ -7,8 +7,8 @@ The logs are the beginning of ``logs/arduplane-calm.tlog``, up to the end of a m
 of its own at its end. ``advisor batch`` analyzes them as a user would, with an aircraft file that gives the
 servo's lag; counted is the CPU time of all its processes, so that other work on the machine changes little.
 
-Without the lag, the newest manoeuvres up to seven are estimated together after each one: a log of one
-manoeuvre takes half as much again, a log of seven 3.5 times as much, and from there on the cost is linear
+Without the lag, the newest manoeuvres up to seven are estimated together after each one. A log of two
+manoeuvres then takes 1.6 times as much, and a log of seven 3.5 times. With more than seven the cost is linear
 (``benchmarks/campaign.py``).
 """
 
