@@ -7,6 +7,7 @@ about its channels; the link itself reports a silence.
 """
 
 from collections.abc import Callable, Mapping, Sequence
+from math import nan
 
 import numpy as np
 
@@ -43,6 +44,7 @@ class Service:
     def __init__(self, judge: Judge) -> None:
         self._judge = judge
         self._arrivals: dict[tuple[str, str], list[float]] = {}
+        self._clock: list[tuple[float, float]] = []
         self._newest_s = -np.inf
         self._due_s = np.inf
         self._since_s: float | None = None
@@ -53,6 +55,7 @@ class Service:
     def begin(self) -> None:
         """Begin another vehicle or another power-on, and forget the earlier messages."""
         self._arrivals.clear()
+        self._clock.clear()
         self._newest_s = -np.inf
 
     def end(self) -> None:
@@ -62,6 +65,10 @@ class Service:
     def take(self, channel: str, source: str, arrival_s: FloatArray) -> None:
         """Take the times at which samples of a channel arrived from one source, shape (n,)."""
         self._arrivals.setdefault((channel, source), []).extend(arrival_s.tolist())
+
+    def take_clock(self, arrival_s: FloatArray, vehicle_s: FloatArray) -> None:
+        """Take the vehicle's clock, s since boot, at times of arrival, s; both of shape (n,)."""
+        self._clock.extend(zip(arrival_s.tolist(), vehicle_s.tolist(), strict=True))
 
     def advance(self, columns: Sequence[Columns]) -> list[NoData | DataAgain]:
         """Judge the stream at every moment that these messages have passed."""
@@ -89,6 +96,8 @@ class Service:
         oldest_s = self._newest_s - WINDOW_S - STEP_S
         for times in self._arrivals.values():
             del times[: next((i for i, t in enumerate(times) if t > oldest_s), len(times))]
+        # The newest reading stays, however long ago the clock stopped.
+        del self._clock[: sum(arrival_s <= oldest_s for arrival_s, _ in self._clock[:-1])]
 
     def _look(self, now_s: float) -> list[NoData | DataAgain]:
         found = tuple(self._judge(self._lately(now_s), now_s))
@@ -99,11 +108,15 @@ class Service:
         told = {problem.code for problem in self.problems}
         if told and not found and stood_s >= SERVED_AFTER_S:
             self.problems = ()
-            return [DataAgain()]
+            return [DataAgain(self._vehicle_s(now_s))]
         if standing == told or not found or stood_s < LAPSED_AFTER_S:
             return []
         self.problems = found
-        return [] if standing < told else [NoData(found)]
+        return [] if standing < told else [NoData(found, self._vehicle_s(now_s))]
+
+    def _vehicle_s(self, now_s: float) -> float:
+        """Return the vehicle's clock as heard at a time of arrival; NaN before its first reading."""
+        return max((t for arrival_s, t in self._clock if arrival_s <= now_s), default=nan)
 
     def _lately(self, now_s: float) -> dict[str, ChannelStatus]:
         """Return the arrival of every channel within the window, from its fastest source."""

@@ -26,7 +26,7 @@ from advisor.flight.identity import Identity
 from advisor.flight.maneuver import Maneuver
 from advisor.flight.markers import HEARD, MarkerWatch
 from advisor.flight.marks import Mark, Marks
-from advisor.flight.messages import Columns, FloatArray, arrivals
+from advisor.flight.messages import Columns, FloatArray, IntArray, arrivals
 from advisor.flight.mixing import Mixing
 from advisor.flight.modes import closes_pitch_loop
 from advisor.flight.pieces import pieces
@@ -312,7 +312,18 @@ class FlightStream:
 
     def _serving(self, piece: Sequence[Columns]) -> list[FlightEvent]:
         """Return the event of a change in the usability of the data; empty without a change."""
-        return [replace(told, at_s=self._master_s) for told in self._service.advance(piece)]
+        return list(self._service.advance(piece))
+
+    def _set_clock(self, part: Sequence[Columns], orders: IntArray, clock: FloatArray) -> None:
+        """Set the vehicle's clock by a part; readings of the clock have these orders, both of shape (n,)."""
+        if np.isnan(self._first_s) and len(clock) > 1:
+            self._first_s = float(clock[1])
+            self.marks.start_clock(self._first_s)
+        self._master_s = float(clock[-1])
+        for columns in part:
+            if columns.name == "ATTITUDE":
+                now = np.searchsorted(orders, columns.order, side="right") - 1
+                self._service.take_clock(columns.arrival_s, clock[now])
 
     def _start_again(self, clock: BootClock) -> list[FlightEvent]:
         """Begin another power-on, or another vehicle, and drop the earlier state."""
@@ -361,10 +372,7 @@ class FlightStream:
                         self._service.take(moved.channel, moved.source, arrivals(columns, moved.order))
                     else:
                         self._tracks.append(moved.combined())
-        if np.isnan(self._first_s) and len(master.t):
-            self._first_s = float(master.t[0])
-            self.marks.start_clock(self._first_s)
-        self._master_s = float(clock[-1])
+        self._set_clock(part, orders, clock)
         followed = self._path.feed(elevator, closes_pitch_loop(self._who.mode))
         if not isinstance(self.elevator, Problem) or not np.isfinite(self._master_s):
             return followed

@@ -2,9 +2,11 @@
 
 import multiprocessing
 import os
+import sys
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
+from multiprocessing import resource_tracker
 from multiprocessing.connection import wait as wait_for
 from typing import TypeVar
 
@@ -16,6 +18,7 @@ R = TypeVar("R")
 
 def processes(workers: int) -> Executor:
     """Return fresh processes, which leave signals to this process and end with it."""
+    _start_silent_tracker()
     context = multiprocessing.get_context("spawn")
     return ProcessPoolExecutor(workers, mp_context=context, initializer=_begin_worker)
 
@@ -85,6 +88,19 @@ def _alone(work: Callable[[T], R], task: T, executor: Callable[[int], Executor])
             return pool.submit(work, task).result()
         except Exception as error:
             return error
+
+
+def _start_silent_tracker() -> None:
+    """Start the process that removes the semaphores of an interrupted run, without its warning of them.
+
+    The tracker of `multiprocessing` takes the warning options of the interpreter that starts the tracker.
+    """
+    options = list(sys.warnoptions)
+    sys.warnoptions.append("ignore")
+    try:
+        resource_tracker.ensure_running()
+    finally:
+        sys.warnoptions[:] = options
 
 
 def _begin_worker() -> None:

@@ -19,7 +19,7 @@ from tests.link.live import Advising, fly, kill
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="processes are looked up in /proc")
 
 FLIGHT = records_of(SHIPPED / "bundled-demo.tlog")
-VERDICT = re.compile(r"^ *\d+ +[\d.]+ s .*(ACCEPTED|REPEAT)")
+VERDICT = re.compile(r"^ *\d+ +\d+:\d\d\.\d .*(ACCEPTED|REPEAT)")
 SPEED = 4.0
 
 
@@ -163,7 +163,8 @@ def test_a_resumed_flight_test_keeps_its_connection_rule_and_decisions(advising:
     fly(until(FLIGHT, 40.0), advising.port, 20.0, lambda now_s: None)
     wait_until(lambda: len(verdicts(advising.said)) == 1, 30.0)
     assert advising.end() == 130
-    start_s = float(verdicts(advising.said)[0].split()[1])
+    minutes, seconds = verdicts(advising.said)[0].split()[1].split(":")
+    start_s = 60.0 * float(minutes) + float(seconds)
     decided = advising.recording.with_suffix(".maneuvers.yaml")
     decided.write_text(f"excluded:\n- {{at_s: {start_s}, because: a gust}}\n")
     advising.resume()
