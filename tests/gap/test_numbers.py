@@ -90,20 +90,6 @@ def test_wrong_numbers_that_make_nearly_all_of_a_gap_are_the_answer_though_a_mom
     assert found.shrink.by_numbers_percent > 98.0
 
 
-def test_wrong_numbers_that_make_nearly_all_of_a_gap_are_the_answer_beside_a_small_moment_without_a_name(
-    sound,
-):
-    _, right = sound
-    model = {name: value.value for name, value in right.model.items()}
-    wrong = Aircraft(model={**model, "M_alpha": 0.6 * model["M_alpha"], "M_q": 1.3 * model["M_q"]})
-    bent = fly(Setup(maneuvers=6, switches={"cm_aq": -20.0}, seed=5))
-    found = diagnose(bent, wrong)
-    assert found.verdict == "parameters"
-    assert found.where.block == "moment_equation"
-    assert "Beside the wrong numbers something small in the pitching moment stays unexplained." in found.notes
-    assert diagnose(bent, Aircraft(model=model)).verdict == "unknown"
-
-
 @pytest.mark.parametrize(
     ("number", "block"), [("Z_alpha", "force_equation"), ("M_delta_e", "moment_equation")]
 )
