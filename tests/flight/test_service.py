@@ -1,5 +1,6 @@
 """NO DATA: what arrives at present is judged, at any time of the flight, and told once."""
 
+from functools import cache
 from itertools import pairwise
 
 import numpy as np
@@ -39,6 +40,16 @@ def send(wire, since_s, until_s, rate_hz, boot_s=50.0):
         heartbeat(wire, t + 4e-4)
 
 
+@cache
+def slow_for_twenty_seconds():
+    """A flight that is slow for 20 s after its manoeuvre, and what was told of it message by message."""
+    wire = Wire()
+    fly(wire, START_S, 50.0, [4.0], 20.0)
+    send(wire, START_S + 20.1, START_S + 40.0, 4.0)
+    send(wire, START_S + 40.0, START_S + 60.0, 50.0)
+    return wire, told(wire)
+
+
 def test_a_link_that_serves_is_never_told_of():
     wire = Wire()
     fly(wire, START_S, 50.0, [4.0], 30.0)
@@ -56,11 +67,7 @@ def test_a_slow_link_without_parameters_is_told_within_5_s_with_all_that_is_wron
 
 
 def test_a_link_that_becomes_slow_after_a_manoeuvre_is_told_within_5_s_and_told_once_when_it_serves_again():
-    wire = Wire()
-    fly(wire, START_S, 50.0, [4.0], 20.0)
-    send(wire, START_S + 20.1, START_S + 40.0, 4.0)
-    send(wire, START_S + 40.0, START_S + 60.0, 50.0)
-    (slow_s, slow), (again_s, again) = told(wire)
+    wire, ((slow_s, slow), (again_s, again)) = slow_for_twenty_seconds()
     assert isinstance(slow, NoData)
     assert slow_s - (START_S + 20.0) < SOON_S
     assert {problem.code for problem in slow.problems} == {"rate"}
@@ -141,12 +148,9 @@ def test_an_angle_that_only_flight_can_give_is_missed_in_flight_alone(over_groun
 
 
 def test_a_log_tells_the_same_as_a_link_however_its_messages_are_batched():
-    wire = Wire()
-    fly(wire, START_S, 50.0, [4.0], 20.0)
-    send(wire, START_S + 20.1, START_S + 40.0, 4.0)
-    send(wire, START_S + 40.0, START_S + 60.0, 50.0)
+    wire, by_message = slow_for_twenty_seconds()
     rows = list(range(len(wire)))
-    live = [event for _, event in told(wire)]
+    live = [event for _, event in by_message]
     for size in (7, 501, len(rows)):
         batches = [rows[i : i + size] for i in range(0, len(rows), size)]
         assert [event for _, event in told(wire, batches)] == live
