@@ -1,5 +1,6 @@
 """What tests of every folder may ask for, and the limit of what they may take."""
 
+import signal
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from subprocess import CompletedProcess
@@ -11,6 +12,10 @@ from advisor import cli
 
 Advisor = Callable[..., "CompletedProcess[str]"]
 """Called with the words that follow ``advisor`` on the command line."""
+
+# A shell has the programs that it starts in the background ignore Ctrl-C, which tests send to programs.
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 MOST_DIAGNOSES = 20
 """Whole diagnoses of flights that all tests without the mark ``study`` may make, seconds each."""
