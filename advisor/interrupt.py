@@ -7,6 +7,7 @@ open, a signal raises :class:`Interrupted` instead, which closes both.
 
 import os
 import signal
+import sys
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
@@ -60,10 +61,12 @@ def in_order(sentence: Callable[[], str] = lambda: STOPPED) -> Iterator[None]:
             signal.signal(kind, signal.SIG_IGN)
         said, code = sentence(), 128 + number
         _end_later(said, code)
+        sys.unraisablehook = _write_unless_interrupted
         raised.append(Interrupted(said, code))
         raise raised[0]
 
     raised: list[Interrupted] = []
+    hook = sys.unraisablehook
     heard = [kind for kind in _KINDS if signal.getsignal(kind) is not signal.SIG_IGN]
     if threading.current_thread() is not threading.main_thread():
         heard = []
@@ -75,6 +78,7 @@ def in_order(sentence: Callable[[], str] = lambda: STOPPED) -> Iterator[None]:
             raise raised[0] from error
         raise
     finally:
+        sys.unraisablehook = hook
         for kind, handler in zip(heard, before, strict=True):
             signal.signal(kind, handler)
 
@@ -87,6 +91,12 @@ def ignore() -> None:
 
 def _end_process(number: int, frame: FrameType | None) -> None:
     _say_and_exit(STOPPED, 128 + number)
+
+
+def _write_unless_interrupted(lost: "sys.UnraisableHookArgs") -> None:
+    """Write an exception that a callback from C has lost, unless a signal raised the exception."""
+    if not isinstance(lost.exc_value, Interrupted):
+        sys.__unraisablehook__(lost)
 
 
 def _end_later(sentence: str, code: int) -> None:
