@@ -114,7 +114,7 @@ def _is_law(problem: Problem, stages: list[Stage], judged: Judged, effective: Fl
     if not judged.is_accepted or judged.gain < max(CERTAIN, named + _LIKELIER):
         return False
     after, before = (np.sum(h.by_maneuver / held.mean_square, axis=1) for h in (judged.held_out, held))
-    if np.mean(after < before) < _IN_MOST or not _changes_visibly(problem, held, judged.held_out):
+    if np.mean(after < before) < _IN_MOST or _largest_change(problem, held, judged.held_out) <= _LITTLE:
         return False
     alike = difference(problem, stages[-1].held_out, judged.held_out) < judged.least
     if alike and len(added_in(stages)) < _SEVERAL:
@@ -126,11 +126,10 @@ def _is_law(problem: Problem, stages: list[Stage], judged: Judged, effective: Fl
     return judged.effect not in MUST_LEAVE_LITTLE or bool(np.min(remaining_shares) <= _LEAVES)
 
 
-def _changes_visibly(problem: Problem, before: HeldOut, after: HeldOut) -> bool:
-    """Return whether a law changes some channel of some manoeuvre by more than the accuracy of a
-    simulator."""
+def _largest_change(problem: Problem, before: HeldOut, after: HeldOut) -> float:
+    """Return the largest change that a law makes to a channel of a manoeuvre: rms relative to the peak."""
     changes = [a - b for a, b in zip(before.residuals, after.residuals, strict=True)]
-    return bool(np.any(np.sqrt(mean_squares(problem, changes)) > _LITTLE * problem.flights.peaks))
+    return float(np.max(np.sqrt(mean_squares(problem, changes)) / np.maximum(problem.flights.peaks, 1e-300)))
 
 
 def _gain_of_all(problem: Problem, stages: list[Stage], effective: FloatArray) -> float:
