@@ -18,9 +18,9 @@ $(STAMP): pyproject.toml constraints.txt
 	touch $@
 
 # Compiled before a user waits for it; what was compiled from another text is compiled anew by itself.
-KERNELS := $(shell grep -rl --include='*.py' '@kernel' advisor sim) advisor/compiled.py
+KERNELS := $(shell grep -rl --include='*.py' '@kernel' advisor sim) advisor/process/compiled.py
 .venv/.compiled: $(STAMP) $(KERNELS)
-	$(BIN)/python -m advisor.first_run
+	$(BIN)/python -m advisor.process.first_run
 	touch $@
 
 # What tests, checks and benchmarks need beyond running: installed only for them.
@@ -118,7 +118,7 @@ study-gap: .venv/.developed ## whole diagnoses of flights whose cause is known (
 	$(BIN)/python -m pytest -n 2 --dist loadgroup -m study tests/gap
 
 survival: .venv/.developed ## a live campaign in which fifty processes are killed (three minutes)
-	$(BIN)/python -m pytest -m study tests/link/test_never_lost.py
+	$(BIN)/python -m pytest -m study tests/mavlink/link/test_never_lost.py
 
 DAMAGE_CASES ?= 3400
 damage: .venv/.developed ## 10,000 damaged logs and more, read and analysed (DAMAGE_CASES of each of three kinds)

@@ -8,15 +8,15 @@ from importlib import import_module
 from typing import Any
 
 _PUBLIC = {
-    "Aircraft": "advisor.aircraft",
+    "Aircraft": "advisor.aircraft.aircraft",
     "CampaignState": "advisor.campaign.state",
-    "ConfigurationError": "advisor.problems",
+    "ConfigurationError": "advisor.words.problems",
     "Diagnosis": "advisor.gap.result",
     "Estimate": "advisor.oem.estimate",
     "Flight": "advisor.library",
-    "Maneuver": "advisor.flight.maneuver",
+    "Maneuver": "advisor.flight.maneuvers.maneuver",
     "NoEstimate": "advisor.oem.estimate",
-    "UnusableInputError": "advisor.problems",
+    "UnusableInputError": "advisor.words.problems",
     "diagnose": "advisor.library",
     "estimate": "advisor.library",
     "find": "advisor.library",

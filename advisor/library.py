@@ -8,23 +8,23 @@ from dataclasses import dataclass, field
 from os import PathLike
 from pathlib import Path
 
-from advisor.aircraft import Aircraft
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft_file.read import load_aircraft
+from advisor.analysis.gap import diagnose_logs
+from advisor.analysis.marks_file import read_by_hand
+from advisor.analysis.whole_flights import read_whole
 from advisor.campaign.state import CampaignState
-from advisor.config import load_aircraft
-from advisor.diagnosis import diagnose_logs
-from advisor.flight.events import ManeuverFlown
-from advisor.flight.maneuver import Maneuver
-from advisor.flight.power_on import PowerOn
-from advisor.flight.stream import FlightStream
-from advisor.flight.vehicle import Vehicle
+from advisor.flight.maneuvers.events import ManeuverFlown
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.power_on import PowerOn
+from advisor.flight.stream.stream import FlightStream
+from advisor.flight.vehicle.vehicle import Vehicle
 from advisor.gap.result import Diagnosis
-from advisor.marks_file import read_by_hand
-from advisor.mavlink.logs import open_log
+from advisor.mavlink.logs.logs import open_log
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import estimate as estimate_one
 from advisor.oem.estimator import estimate_jointly
-from advisor.problems import ConfigurationError, Problem, UnusableInputError
-from advisor.whole_flights import read_whole
+from advisor.words.problems import ConfigurationError, Problem, UnusableInputError
 
 
 @dataclass(frozen=True, slots=True)

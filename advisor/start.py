@@ -12,7 +12,7 @@ def main() -> None:
     -W``.
     """
     try:
-        from advisor.interrupt import end_at_once
+        from advisor.process.interrupt import end_at_once
 
         end_at_once()
     except KeyboardInterrupt:
@@ -20,7 +20,7 @@ def main() -> None:
         sys.exit(130)
     if not sys.warnoptions:
         warnings.simplefilter("ignore")
-    from advisor.cli import main as run
+    from advisor.cli.group import main as run
 
     try:
         run()

@@ -23,9 +23,9 @@ from numpy.typing import NDArray
 from scipy.linalg import expm
 from scipy.signal import lfilter
 
-from advisor.aircraft import PARAMETERS, Aircraft, Elevator
-from advisor.flight.maneuver import Maneuver, Span
-from advisor.flight.record import Channel
+from advisor.aircraft.aircraft import PARAMETERS, Aircraft, Elevator
+from advisor.flight.maneuvers.maneuver import Maneuver, Span
+from advisor.flight.signals.record import Channel
 from advisor.model.response import N_LOCAL, N_PARAMETERS, respond
 from advisor.oem.covariance import influence
 from advisor.oem.estimate import Estimate

@@ -18,15 +18,15 @@ from typing import Any
 
 import click
 
-from advisor.commands.running import Progress, runner_of, running_options
+from advisor.cli.running import Progress, runner_of, running_options
 
 
 def answer(case: Path) -> tuple[dict[str, Any], float]:
     """Return the document of ``advisor gap --json`` (empty without one), and the CPU time in s."""
-    from advisor.commands.options import read_aircraft
-    from advisor.diagnosis import compare_logs, named_simulator
+    from advisor.analysis.gap import compare_logs, named_simulator
+    from advisor.cli.options import read_aircraft
     from advisor.gap.document import gap_document
-    from advisor.problems import UnusableInputError
+    from advisor.words.problems import UnusableInputError
 
     began = time.process_time()
     aircraft = read_aircraft(case / "aircraft.yaml")

@@ -20,11 +20,11 @@ from tempfile import TemporaryDirectory
 
 import click
 
-from advisor.aircraft import Aircraft
-from advisor.flight.events import ManeuverFlown
-from advisor.flight.stream import FlightStream
-from advisor.mavlink.scan import STAMP_BYTES
-from advisor.mavlink.tlog import read_tlog
+from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.maneuvers.events import ManeuverFlown
+from advisor.flight.stream.stream import FlightStream
+from advisor.mavlink.logs.tlog import read_tlog
+from advisor.mavlink.wire.scan import STAMP_BYTES
 
 LOG = Path(__file__).parent.parent / "logs" / "arduplane-calm.tlog"
 COPIES = 3

@@ -14,11 +14,11 @@ from pathlib import Path
 
 import numpy as np
 
-from advisor.aircraft import Aircraft, Elevator
+from advisor.aircraft.aircraft import Aircraft, Elevator
 from advisor.campaign.campaign import Campaign, ManeuverJudged
 from advisor.campaign.state import JudgedManeuver
-from advisor.flight.messages import Columns
-from advisor.mavlink.logs import open_log
+from advisor.flight.signals.messages import Columns
+from advisor.mavlink.logs.logs import open_log
 from advisor.oem.estimate import Estimate
 from benchmarks.long_flight import cut, later
 

@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from advisor.commands.running import runner_of
+from advisor.cli.running import runner_of
 from benchmarks.answer_sealed import answer
 from benchmarks.second_generator import case_files as second
 from benchmarks.third_generator import files as third

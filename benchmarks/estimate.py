@@ -18,12 +18,12 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares, minimize
 from scipy.signal import lsim
 
-from advisor.aircraft import PARAMETERS, Aircraft, Elevator
-from advisor.flight.events import ManeuverFlown
-from advisor.flight.maneuver import Maneuver, Span
-from advisor.flight.record import Channel
-from advisor.flight.stream import FlightStream
-from advisor.mavlink.tlog import read_tlog
+from advisor.aircraft.aircraft import PARAMETERS, Aircraft, Elevator
+from advisor.flight.maneuvers.events import ManeuverFlown
+from advisor.flight.maneuvers.maneuver import Maneuver, Span
+from advisor.flight.signals.record import Channel
+from advisor.flight.stream.stream import FlightStream
+from advisor.mavlink.logs.tlog import read_tlog
 from advisor.model.response import N_PARAMETERS, respond
 from advisor.oem.batch import solve_many
 from advisor.oem.following import Follower

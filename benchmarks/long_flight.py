@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 
-from advisor.flight.messages import Columns
-from advisor.mavlink.logs import open_log
+from advisor.flight.signals.messages import Columns
+from advisor.mavlink.logs.logs import open_log
+from advisor.session.replay import LogPlayer
 from advisor.tui import conductor
-from advisor.tui.replay import LogPlayer
 
 
 def player(log: Path, minutes: float) -> LogPlayer:

@@ -24,8 +24,8 @@ os.environ["MAVLINK20"] = "1"
 from pymavlink import mavutil
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
-from advisor.flight.messages import Columns
-from advisor.mavlink.tlog import read_tlog
+from advisor.flight.signals.messages import Columns
+from advisor.mavlink.logs.tlog import read_tlog
 
 WANTED = [
     "HEARTBEAT",

@@ -19,12 +19,12 @@ from pathlib import Path
 
 import numpy as np
 
-from advisor.aircraft import Aircraft
+from advisor.aircraft.aircraft import Aircraft
 from advisor.campaign.campaign import Campaign
+from advisor.session.remote import RemoteConductor, Task
+from advisor.session.source import Tempo
 from advisor.tui.app import AdvisorApp
-from advisor.tui.remote import RemoteConductor, Task
 from advisor.tui.settings import Settings
-from advisor.tui.source import Tempo
 from benchmarks import long_flight
 from benchmarks.keys import SIZES, answers, says
 from benchmarks.terminal import resident_mb, terminal

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from advisor.compiled import kernel
+from advisor.process.compiled import kernel
 
 from .airframe import AIR_DENSITY_KG_M3, GRAVITY_M_S2
 

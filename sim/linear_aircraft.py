@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from advisor.compiled import kernel
+from advisor.process.compiled import kernel
 
 from .airframe import GRAVITY_M_S2
 from .linear import ShortPeriod

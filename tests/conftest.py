@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from advisor import cli
+from advisor.cli import group as cli
 
 Advisor = Callable[..., "CompletedProcess[str]"]
 """Called with the words that follow ``advisor`` on the command line."""

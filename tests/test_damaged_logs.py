@@ -14,12 +14,12 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from advisor.flight.messages import Columns
-from advisor.mavlink.logs import open_log
-from advisor.problems import Problem, UnusableInputError
+from advisor.flight.signals.messages import Columns
+from advisor.mavlink.logs.logs import open_log
+from advisor.words.problems import Problem, UnusableInputError
 from tests.conftest import Advisor
 from tests.flights import TWO, recorded
-from tests.mavlink.test_autopilot_logs import FIRST_STEP_S, dataflash_flight, px4_flight
+from tests.mavlink.ardupilot.test_autopilot_logs import FIRST_STEP_S, dataflash_flight, px4_flight
 
 CASES = int(os.environ.get("DAMAGE_CASES", "60"))
 """Cases of each kind of log that are read; one in twenty is analysed by the command as well."""

@@ -8,9 +8,9 @@ from tempfile import mkdtemp
 
 import pytest
 
-from advisor.aircraft import Aircraft, Alpha, Elevator
+from advisor.aircraft.aircraft import Aircraft, Alpha, Elevator
 from advisor.campaign.campaign import Campaign
-from advisor.mavlink.logs import open_log
+from advisor.mavlink.logs.logs import open_log
 from sim.flight import Flight
 from sim.hangar import UAV
 from sim.nonlinear_aircraft import NonlinearAircraft

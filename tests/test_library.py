@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import advisor as library
-from advisor.aircraft import PARAMETERS, Aircraft, Elevator
+from advisor.aircraft.aircraft import PARAMETERS, Aircraft, Elevator
 from tests.conftest import Advisor
 from tests.flights import FOUR, SHIPPED, recorded
 

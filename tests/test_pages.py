@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from advisor.aircraft import Aircraft
-from advisor.aircraft_effects import LEAST
-from advisor.cli import COMMANDS
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.aircraft_effects import LEAST
+from advisor.cli.group import COMMANDS
 from advisor.gap.candidates.traits import TRAITS
 from advisor.gap.result import Trace
 from benchmarks.pages import (

@@ -4,10 +4,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from advisor.aircraft import Aircraft
+from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft_file.keys import BY_PATH, KEYS
 from advisor.aircraft_file.log_facts import LogFacts
-from advisor.flight.surfaces import Surface
+from advisor.flight.vehicle.surfaces import Surface
 
 BEYOND_US = 20.0
 """Distance by which pulses may exceed a calibration's ends, us. A servo's trim and a transmitter's differ by

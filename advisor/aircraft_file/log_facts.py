@@ -5,17 +5,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.aircraft import Aircraft
-from advisor.flight.elevator_guess import Guess
-from advisor.flight.events import ManeuverFlown
-from advisor.flight.maneuver import Maneuver
-from advisor.flight.messages import Columns, FloatArray
-from advisor.flight.parameters import Parameters
-from advisor.flight.stream import FlightStream
-from advisor.flight.surfaces import Scale, Surface
-from advisor.flight.vehicle import Vehicle
-from advisor.flight.wiring import Wiring
-from advisor.problems import Problem, UnusableInputError
+from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.elevator.elevator_guess import Guess
+from advisor.flight.maneuvers.events import ManeuverFlown
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.messages import Columns, FloatArray
+from advisor.flight.stream.stream import FlightStream
+from advisor.flight.vehicle.parameters import Parameters
+from advisor.flight.vehicle.surfaces import Scale, Surface
+from advisor.flight.vehicle.vehicle import Vehicle
+from advisor.flight.vehicle.wiring import Wiring
+from advisor.words.problems import Problem, UnusableInputError
 
 FLYING_SHARE = 0.5
 """Share of the 95th percentile of the air speed above which an aircraft flies. A stall speed is above half of

@@ -5,10 +5,10 @@ from statistics import median
 
 from advisor.aircraft_file.log_facts import LogFacts
 from advisor.aircraft_file.text import Draft
-from advisor.flight.atmosphere import standard_density
-from advisor.flight.derived_alpha import DERIVED_ALPHA
-from advisor.flight.surfaces import Scale, joined_numbers
-from advisor.problems import Problem
+from advisor.flight.instruments.atmosphere import standard_density
+from advisor.flight.signals.derived_alpha import DERIVED_ALPHA
+from advisor.flight.vehicle.surfaces import Scale, joined_numbers
+from advisor.words.problems import Problem
 
 _FULL_STROKE_DEG = 25.0
 """Deflection assumed at the end point of a servo without a measurement, deg."""

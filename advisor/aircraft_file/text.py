@@ -36,7 +36,7 @@ def aircraft_text(draft: Draft) -> str:
 
     Returns
     -------
-    YAML that ``advisor.config.parse_aircraft`` reads. A key without a value is a comment.
+    YAML that ``advisor.aircraft_file.read.parse_aircraft`` reads. A key without a value is a comment.
     """
     lines = [line for sentence in draft.head for line in _commented(sentence)]
     section, values = "", draft.values

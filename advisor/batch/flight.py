@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 
 from advisor import __version__
-from advisor.aircraft import Aircraft
-from advisor.atomic_file import write_atomically
-from advisor.log_series import began_s
-from advisor.marks_file import path_beside
+from advisor.aircraft.aircraft import Aircraft
+from advisor.analysis.log_series import began_s
+from advisor.analysis.marks_file import path_beside
 from advisor.oem.estimate import Estimate
-from advisor.problems import ConfigurationError, Problem, UnusableInputError
+from advisor.process.atomic_file import write_atomically
 from advisor.report.document import analysis_document, number
+from advisor.words.problems import ConfigurationError, Problem, UnusableInputError
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,8 +90,8 @@ _KEPT = ("theta", "covariance_cr", "covariance")
 
 def analyze(task: Task) -> Analyzed:
     """Analyze a log like ``advisor analyze``. An unusable log has a result as well."""
+    from advisor.analysis.log_series import LogSeries
     from advisor.campaign.campaign import Campaign
-    from advisor.log_series import LogSeries
 
     series = LogSeries([task.log])
     campaign = Campaign(task.aircraft, by_hand=series.read_by_hand())
@@ -172,7 +172,7 @@ def sha256_of(log: Path) -> str:
     UnusableInputError
         There is no such file, or it cannot be read.
     """
-    from advisor.mavlink.unpack import beginning_of
+    from advisor.mavlink.logs.unpack import beginning_of
 
     beginning_of(log)
     try:

@@ -7,17 +7,17 @@ from importlib.resources import files
 from math import inf
 
 from advisor import __version__
-from advisor.aircraft import PARAMETERS
+from advisor.aircraft.aircraft import PARAMETERS
+from advisor.analysis.log_series import SINCE_1970_S
 from advisor.batch.flight import Analyzed
 from advisor.batch.picture import Point, trend_svg
 from advisor.batch.tables import aircraft_of, changes_of, estimates_of
 from advisor.batch.trend import ChangeOverFlights
 from advisor.decision.pooling import DERIVATIVES, common_airspeed, posteriors_at_one_speed
-from advisor.exporting.found import PARAMETER_UNITS
-from advisor.log_series import SINCE_1970_S
+from advisor.exports.flights.found import PARAMETER_UNITS
 from advisor.oem.estimate import Estimate
-from advisor.printable import printable
 from advisor.report.document import NORMAL_95
+from advisor.words.printable import printable
 
 _COLUMNS = ("Flight", "Log", "Begun, UTC", "Aircraft", "Accepted", "Result")
 

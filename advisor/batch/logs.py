@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from fnmatch import fnmatch
 from pathlib import Path
 
-from advisor.problems import ConfigurationError, UnusableInputError
-from advisor.yaml_file import read_yaml
+from advisor.process.yaml_file import read_yaml
+from advisor.words.problems import ConfigurationError, UnusableInputError
 
 ENDINGS = (".tlog", ".bin", ".ulg")
 PACKED = (".gz", ".zip")

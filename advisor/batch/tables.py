@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 
 from advisor import __version__
-from advisor.aircraft import PARAMETERS
+from advisor.aircraft.aircraft import PARAMETERS
+from advisor.analysis.log_series import SINCE_1970_S
 from advisor.batch.flight import Analyzed
 from advisor.batch.trend import ChangeOverFlights, change_over_flights
-from advisor.exporting.found import PARAMETER_UNITS
-from advisor.exporting.table import Column, Dataset, Table, numbers, texts
-from advisor.log_series import SINCE_1970_S
+from advisor.exports.flights.found import PARAMETER_UNITS
+from advisor.exports.flights.table import Column, Dataset, Table, numbers, texts
 from advisor.oem.estimate import Estimate
 
 

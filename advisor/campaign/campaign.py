@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
-from advisor.aircraft import Aircraft
+from advisor.aircraft.aircraft import Aircraft
 from advisor.campaign.hand_decisions import NOTHING, ByHand, Remark
 from advisor.campaign.joint_estimate import NEWEST, Together
 from advisor.campaign.journal import Journal
@@ -18,17 +18,17 @@ from advisor.decision.history import Flown
 from advisor.decision.judge import judge_campaign
 from advisor.decision.stopping import flight_test
 from advisor.decision.verdict import FlightTestVerdict
-from advisor.flight.events import Activity, FlightEvent, ManeuverAgain, ManeuverFlown, Notice
-from advisor.flight.flights import Flights
-from advisor.flight.identity import READER_NOTICE
-from advisor.flight.maneuver import Maneuver
-from advisor.flight.marks import MARK_NOTICES, Mark
-from advisor.flight.messages import Columns
-from advisor.flight.stream import FlightStream
+from advisor.flight.maneuvers.events import Activity, FlightEvent, ManeuverAgain, ManeuverFlown, Notice
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.maneuvers.marks import MARK_NOTICES, Mark
+from advisor.flight.signals.messages import Columns
+from advisor.flight.stream.flights import Flights
+from advisor.flight.stream.identity import READER_NOTICE
+from advisor.flight.stream.stream import FlightStream
 from advisor.oem.estimator import lag_is_unknown
 from advisor.oem.solution import Method
-from advisor.problems import Problem
-from advisor.vehicle_time import clock
+from advisor.words.problems import Problem
+from advisor.words.vehicle_time import clock
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,9 +8,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from advisor.flight.maneuver import Maneuver
-from advisor.flight.marks import Mark
-from advisor.flight.segmentation import LEAD_IN_S
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.maneuvers.marks import Mark
+from advisor.flight.maneuvers.segmentation import LEAD_IN_S
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,8 +9,8 @@ from the data alone.
 from collections.abc import Sequence
 from operator import is_
 
-from advisor.aircraft import Aircraft
-from advisor.flight.maneuver import Maneuver
+from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import estimate_jointly
 

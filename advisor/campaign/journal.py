@@ -2,8 +2,8 @@
 
 from math import inf, isfinite, nan
 
-from advisor.event_log import EventLog
-from advisor.flight.events import (
+from advisor.campaign.event_log import EventLog
+from advisor.flight.maneuvers.events import (
     DataAgain,
     FlightBegan,
     FlightEvent,
@@ -14,8 +14,8 @@ from advisor.flight.events import (
     VehicleFound,
     VehicleSaid,
 )
-from advisor.flight.vehicle import Vehicle
-from advisor.vehicle_time import CLOCK, clock
+from advisor.flight.vehicle.vehicle import Vehicle
+from advisor.words.vehicle_time import CLOCK, clock
 
 KEPT = 1000
 """Number of sentences kept, 0.1 kB each: enough for some hundred manoeuvres."""

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.aircraft import PARAMETERS, Aircraft
+from advisor.aircraft.aircraft import PARAMETERS, Aircraft
 from advisor.decision.verdict import ManeuverVerdict
 from advisor.model.short_period import SPEED_EXPONENTS
 from advisor.oem.estimate import Estimate, NoEstimate

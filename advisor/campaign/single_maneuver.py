@@ -2,13 +2,13 @@
 
 import math
 
-from advisor.aircraft import Aircraft
+from advisor.aircraft.aircraft import Aircraft
 from advisor.decision.history import Flown
 from advisor.decision.quality import judge_quality
-from advisor.flight.kinematics import check_alpha
-from advisor.flight.maneuver import Maneuver
-from advisor.flight.marked_input import MARKED
-from advisor.flight.modes import closes_pitch_loop
+from advisor.flight.instruments.kinematics import check_alpha
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.maneuvers.marked_input import MARKED
+from advisor.flight.vehicle.modes import closes_pitch_loop
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import estimate
 from advisor.oem.solution import Method

@@ -4,14 +4,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from advisor.decision.verdict import FlightTestVerdict, ManeuverVerdict
-from advisor.flight.elevator_guess import Guess
-from advisor.flight.events import Activity
-from advisor.flight.flights import FlightHeard
-from advisor.flight.maneuver import Maneuver
-from advisor.flight.track import ChannelStatus
-from advisor.flight.vehicle import Vehicle
+from advisor.flight.elevator.elevator_guess import Guess
+from advisor.flight.maneuvers.events import Activity
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.track import ChannelStatus
+from advisor.flight.stream.flights import FlightHeard
+from advisor.flight.vehicle.vehicle import Vehicle
 from advisor.oem.estimate import Estimate, NoEstimate
-from advisor.problems import Problem
+from advisor.words.problems import Problem
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ reading chosen for each equation, and the others tried, are in ``docs/explanatio
 from collections.abc import Callable, Mapping, Sequence
 from statistics import median
 
-from advisor.aircraft import Rule
+from advisor.aircraft.aircraft import Rule
 from advisor.decision.verdict import RuleResult
 
 ALLOWED_INCREASE = 2.0

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from advisor.aircraft import PARAMETERS, Aircraft, CampaignPlan
+from advisor.aircraft.aircraft import PARAMETERS, Aircraft, CampaignPlan
 from advisor.decision.choice import Choice, best_input
 from advisor.decision.conditions import Conditions, find_conditions
 from advisor.decision.course import Course
@@ -15,7 +15,7 @@ from advisor.decision.judge import accepted_estimates
 from advisor.decision.remaining import by_information, by_scatter, share_after, usable_share
 from advisor.decision.scatter import scattered_most, window
 from advisor.decision.verdict import NO_CURE_BY_INPUT, NextInput, Remaining
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.model.short_period import ShortPeriod
 
 PASSING = {"separate": 0.5}

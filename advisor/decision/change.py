@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import chdtri
 
-from advisor.aircraft import PARAMETERS
+from advisor.aircraft.aircraft import PARAMETERS
 from advisor.decision.consistency import outliers
 from advisor.decision.history import Flown
 from advisor.decision.inverses import information_of
@@ -26,7 +26,7 @@ from advisor.decision.pooling import (
     pooled_on_both_sides,
     posteriors_at_one_speed,
 )
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 
 FALSE_ALARM = 1e-5
 """Probability of a false alarm in one comparison. A campaign makes a few dozen comparisons, which are not

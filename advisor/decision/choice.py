@@ -7,7 +7,7 @@ import numpy as np
 from advisor.decision.conditions import Conditions
 from advisor.decision.foresight import expect
 from advisor.decision.inputs import ORDERS, StepInput, units_to_try
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.model.short_period import ShortPeriod
 
 Choice = tuple[StepInput, FloatArray]

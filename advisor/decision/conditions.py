@@ -5,14 +5,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.aircraft import Aircraft
+from advisor.aircraft.aircraft import Aircraft
 from advisor.decision.course import Course
 from advisor.decision.foresight import UNMEASURED, Instruments
 from advisor.decision.history import Flown, usable_ones
 from advisor.decision.pooling import DERIVATIVES
 from advisor.decision.prediction import response_to, trim_of
-from advisor.flight.maneuver import Maneuver
-from advisor.flight.messages import FloatArray
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.messages import FloatArray
 from advisor.oem.estimate import Estimate
 from advisor.oem.problem import Signal
 from advisor.oem.surface import Servo

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from operator import is_
 
-from advisor.aircraft import CampaignPlan
+from advisor.aircraft.aircraft import CampaignPlan
 from advisor.decision.history import Flown
 from advisor.decision.information import Knowledge, knowledge
 

@@ -8,13 +8,13 @@ from collections.abc import Collection
 
 import numpy as np
 
-from advisor.aircraft import Aircraft
+from advisor.aircraft.aircraft import Aircraft
 from advisor.decision.verdict import Reason
-from advisor.flight.maneuver import Maneuver, Span
-from advisor.flight.messages import FloatArray
-from advisor.flight.record import Channel
-from advisor.flight.trust import distrusted
-from advisor.rounding import distinct_texts
+from advisor.flight.maneuvers.maneuver import Maneuver, Span
+from advisor.flight.signals.messages import FloatArray
+from advisor.flight.signals.record import Channel
+from advisor.flight.signals.trust import distrusted
+from advisor.words.rounding import distinct_texts
 
 NEEDED = ("elevator", "q")
 SAMPLES_PER_PERIOD = 8.0

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from advisor.aircraft import PARAMETERS
+from advisor.aircraft.aircraft import PARAMETERS
 from advisor.decision.information import Knowledge
 from advisor.decision.pooling import DERIVATIVES
 from advisor.decision.prediction import Z95
-from advisor.rounding import distinct_texts
+from advisor.words.rounding import distinct_texts
 
 SPOKEN = {"alpha": "angle of attack", "q": "pitch rate", "a_z": "normal acceleration"}
 """Predicted output to its name for people."""

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from advisor.decision.verdict import Reason
-from advisor.flight.maneuver import Maneuver
+from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.surface import Servo
 

@@ -9,8 +9,8 @@ from advisor.decision.consistency import consensus
 from advisor.decision.history import Flown
 from advisor.decision.pooling import DERIVATIVES, Shared, common_airspeed, posteriors_at_one_speed
 from advisor.decision.prediction import PREDICTED, Z95, Response, measured, response_to
-from advisor.flight.messages import FloatArray
-from advisor.flight.record import Channel
+from advisor.flight.signals.messages import FloatArray
+from advisor.flight.signals.record import Channel
 from advisor.oem.estimate import Estimate
 
 FEWEST = 2

@@ -13,13 +13,13 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import chdtri
 
-from advisor.aircraft import PARAMETERS, CampaignPlan
+from advisor.aircraft.aircraft import PARAMETERS, CampaignPlan
 from advisor.decision.consistency import consensus, widened
 from advisor.decision.history import Flown, estimates_of
 from advisor.decision.pooling import Posterior, Shared, common_airspeed, disagreement, posteriors_at_one_speed
 from advisor.decision.prediction import Z95, Prediction, missed_percent, predict
 from advisor.decision.tolerance import tolerances
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 
 SURPRISING = 0.01
 """Probability below which a manoeuvre contradicts its prediction."""

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.oem.problem import Signal
 
 ORDERS: Mapping[str, tuple[int, ...]] = {

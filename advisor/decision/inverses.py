@@ -5,7 +5,7 @@ Both functions take one matrix or a stack of them.
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 
 
 def information_of(covariance: FloatArray) -> FloatArray:

@@ -3,7 +3,7 @@
 from collections.abc import Container, Mapping, Sequence
 from math import floor
 
-from advisor.aircraft import CampaignPlan, Rule
+from advisor.aircraft.aircraft import CampaignPlan, Rule
 from advisor.decision.acceptance import MANEUVER_RULES
 from advisor.decision.consistency import Outlier, outliers
 from advisor.decision.course import Course
@@ -12,7 +12,7 @@ from advisor.decision.larger import Larger, larger_and_agreeing
 from advisor.decision.pooling import posteriors_at_one_speed
 from advisor.decision.verdict import ManeuverVerdict, Reason, RuleResult
 from advisor.oem.estimate import Estimate, NoEstimate
-from advisor.rounding import distinct_texts
+from advisor.words.rounding import distinct_texts
 
 COLOURED = 0.5
 """Lag-1 correlation of a residual above which the residual counts as driven, by moving air or a model

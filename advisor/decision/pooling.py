@@ -12,12 +12,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from advisor.aircraft import PARAMETERS
+from advisor.aircraft.aircraft import PARAMETERS
+from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.decision.inverses import covariance_of, information_of
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.model.short_period import SPEED_EXPONENTS
 from advisor.oem.estimate import Estimate
-from advisor.standard_gravity import GRAVITY_M_S2
 
 INTERCEPTS = (PARAMETERS.index("Z_0"), PARAMETERS.index("M_0"))
 """Indices of Z_0 and M_0 in θ. Trim and speed differ between manoeuvres, so each has its own Z_0 and M_0."""

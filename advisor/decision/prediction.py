@@ -12,11 +12,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from advisor.aircraft import PARAMETERS
+from advisor.aircraft.aircraft import PARAMETERS
 from advisor.decision.history import Flown
 from advisor.decision.pooling import DERIVATIVES
-from advisor.flight.maneuver import Maneuver
-from advisor.flight.messages import FloatArray
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import N_LOCAL, N_PARAMETERS, SHARED, respond
 from advisor.model.short_period import SPEED_EXPONENTS
 from advisor.oem.estimate import Estimate

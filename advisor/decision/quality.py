@@ -15,14 +15,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.aircraft import PARAMETERS, Aircraft
+from advisor.aircraft.aircraft import PARAMETERS, Aircraft
 from advisor.decision.envelope import changed_speed, flown, incomplete, outside, too_quick
 from advisor.decision.verdict import NO_CURE_BY_INPUT, UNTRUSTED, Reason
-from advisor.flight.maneuver import Maneuver
-from advisor.flight.messages import FloatArray
-from advisor.flight.purpose import LEAST_PITCH_RATE_DEG_S
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.maneuvers.purpose import LEAST_PITCH_RATE_DEG_S
+from advisor.flight.signals.messages import FloatArray
 from advisor.oem.estimate import ChannelFit, Estimate, NoEstimate
-from advisor.rounding import distinct_texts
+from advisor.words.rounding import distinct_texts
 
 WIDEST_PREDICTION_PERCENT = 25.0
 """Largest half-width of the predicted pitch rate's 95 % band, % of its peak. A standard deviation of 12 % in

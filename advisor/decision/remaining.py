@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.special import nbdtr
 
-from advisor.aircraft import CampaignPlan
+from advisor.aircraft.aircraft import CampaignPlan
 from advisor.decision.history import Flown
 from advisor.decision.information import Knowledge
 from advisor.decision.inverses import covariance_of, information_of
@@ -13,7 +13,7 @@ from advisor.decision.pooling import DERIVATIVES, Posterior
 from advisor.decision.prediction import Z95
 from advisor.decision.scatter import SCATTER_FACTOR
 from advisor.decision.verdict import Remaining
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 
 MOST = 50
 """Largest number that is predicted. Beyond it there is no end in sight."""

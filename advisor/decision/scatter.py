@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from advisor.aircraft import PARAMETERS, CampaignPlan, Criterion
+from advisor.aircraft.aircraft import PARAMETERS, CampaignPlan, Criterion
 from advisor.decision.pooling import values_at_one_speed
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.oem.estimate import Estimate
 
 SCATTER_FACTOR = 5.0

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.aircraft import Aircraft, CampaignPlan, Rule
+from advisor.aircraft.aircraft import Aircraft, CampaignPlan, Rule
 from advisor.decision.acceptance import MANEUVER_RULES
 from advisor.decision.advice import next_input
 from advisor.decision.course import Course
@@ -17,7 +17,7 @@ from advisor.decision.scatter import scatter_percent, scattered_most, window
 from advisor.decision.verdict import FlightTestVerdict, RuleProgress, limit_percent
 from advisor.decision.warnings import warnings
 from advisor.oem.estimate import Estimate
-from advisor.rounding import distinct_texts
+from advisor.words.rounding import distinct_texts
 
 _NO_SCALE_PERCENT = 1000.0
 

@@ -4,10 +4,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from advisor.aircraft import PARAMETERS, CampaignPlan
+from advisor.aircraft.aircraft import PARAMETERS, CampaignPlan
 from advisor.decision.pooling import DERIVATIVES
 from advisor.decision.prediction import Prediction
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 
 NEAR_ZERO = 3.0
 """Multiple of the prediction's tolerance below which a derivative's whole effect counts as near zero."""

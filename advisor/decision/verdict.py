@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
-from advisor.aircraft import CampaignPlan, Rule
+from advisor.aircraft.aircraft import CampaignPlan, Rule
 
 INFORMATION_LIMIT_PERCENT = 100.0
 """Limit of the rule ``information``, whose criterion counts in percent of the tolerance."""

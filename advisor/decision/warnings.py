@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from advisor.aircraft import PARAMETERS, CampaignPlan
+from advisor.aircraft.aircraft import PARAMETERS, CampaignPlan
 from advisor.decision.change import find_change
 from advisor.decision.course import Course
 from advisor.decision.history import Flown, usable_ones

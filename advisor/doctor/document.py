@@ -5,9 +5,9 @@ from typing import Any
 
 from advisor.doctor.examination import Examination, Limit
 from advisor.doctor.expectation import RESPONSE_ALPHA_DEG, frequency
-from advisor.problems import Problem
 from advisor.report.document import NORMAL_95, number
 from advisor.report.text import UNITS
+from advisor.words.problems import Problem
 
 SCHEMA = "advisor.doctor/1"
 

@@ -6,7 +6,7 @@ from typing import Literal
 
 from advisor.doctor.expectation import Assumed, Expectation
 from advisor.doctor.survey import Arrival, Clocks
-from advisor.flight.vehicle import Vehicle
+from advisor.flight.vehicle.vehicle import Vehicle
 
 Verdict = Literal["ready", "usable with limits", "not usable"]
 

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from advisor.aircraft import PARAMETERS, Aircraft
+from advisor.aircraft.aircraft import PARAMETERS, Aircraft
 from advisor.doctor.examination import AlphaFound, ElevatorFound, Examination, Limit
 from advisor.doctor.expectation import NOISE, TYPICAL, Assumed, expect, frequency
 from advisor.doctor.instruments import (
@@ -19,19 +19,19 @@ from advisor.doctor.instruments import (
 )
 from advisor.doctor.pace import Paced, cost_of_missing, rate_limits, steadiness_limits
 from advisor.doctor.survey import Arrival, Survey, bank_name
-from advisor.flight.events import ManeuverFlown, Notice
-from advisor.flight.identity import READER_NOTICE
-from advisor.flight.maneuver import Maneuver
-from advisor.flight.messages import Columns
-from advisor.flight.stream import FlightStream
-from advisor.flight.suitability import problems
-from advisor.flight.surfaces import Surface
-from advisor.flight.track import ChannelStatus
-from advisor.flight.vehicle import Vehicle
+from advisor.flight.maneuvers.events import ManeuverFlown, Notice
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.messages import Columns
+from advisor.flight.signals.track import ChannelStatus
+from advisor.flight.stream.identity import READER_NOTICE
+from advisor.flight.stream.stream import FlightStream
+from advisor.flight.stream.suitability import problems
+from advisor.flight.vehicle.surfaces import Surface
+from advisor.flight.vehicle.vehicle import Vehicle
 from advisor.model.short_period import ShortPeriod
 from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import estimate_jointly
-from advisor.problems import Problem
+from advisor.words.problems import Problem
 
 _PLAUSIBLE_RAD_S = (0.5, 40.0)
 _EXPLAINED = 0.5

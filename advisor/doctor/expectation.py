@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from advisor.aircraft import PARAMETERS
-from advisor.flight.messages import FloatArray
+from advisor.aircraft.aircraft import PARAMETERS
+from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import LOCAL, N_LOCAL, N_SHARED, OUTPUTS, SHARED, respond
 from advisor.model.short_period import ShortPeriod
 from advisor.oem.covariance import cramer_rao, influence

@@ -2,15 +2,15 @@
 
 from collections.abc import Collection, Iterable
 
-from advisor.aircraft import Elevator
+from advisor.aircraft.aircraft import Elevator
 from advisor.doctor.examination import ElevatorFound, Limit
 from advisor.doctor.survey import Clocks
-from advisor.flight.surfaces import joined_numbers
-from advisor.flight.track import ChannelStatus
-from advisor.flight.trust import Distrust
-from advisor.flight.vehicle import Vehicle
-from advisor.problems import Problem
-from advisor.rounding import distinct_texts
+from advisor.flight.signals.track import ChannelStatus
+from advisor.flight.signals.trust import Distrust
+from advisor.flight.vehicle.surfaces import joined_numbers
+from advisor.flight.vehicle.vehicle import Vehicle
+from advisor.words.problems import Problem
+from advisor.words.rounding import distinct_texts
 
 COARSE_DEG = 0.5
 """Resolution of the command, deg, above which small steps are not reproduced as steps."""

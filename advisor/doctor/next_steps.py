@@ -3,8 +3,8 @@
 import shlex
 from dataclasses import dataclass
 
-from advisor.bundled import SAMPLE
 from advisor.doctor.examination import Examination
+from advisor.process.installed import SAMPLE
 
 NEW_FILE = "aircraft.yaml"
 """Aircraft file that the commands name where none exists."""

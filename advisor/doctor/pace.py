@@ -8,10 +8,10 @@ import numpy as np
 from advisor.doctor.examination import Limit
 from advisor.doctor.expectation import Assumed, Expectation, expect, frequency
 from advisor.doctor.survey import Arrival
-from advisor.flight.suitability import SLOWEST_HZ
-from advisor.flight.vehicle import Vehicle
-from advisor.mends import GOOD_HZ, Carrier
-from advisor.rounding import distinct_texts
+from advisor.flight.stream.suitability import SLOWEST_HZ
+from advisor.flight.vehicle.vehicle import Vehicle
+from advisor.words.mends import GOOD_HZ, Carrier
+from advisor.words.rounding import distinct_texts
 
 FEWEST_PER_PERIOD = 6.0
 """Samples in one natural period below which the short period cannot be followed."""

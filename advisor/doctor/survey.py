@@ -6,12 +6,12 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from advisor.flight.attitude import Attitudes
-from advisor.flight.channels import stamps
-from advisor.flight.clocks import BootClock
-from advisor.flight.messages import Columns, FloatArray, cut
-from advisor.flight.vehicle import Vehicle
-from advisor.vehicle_time import between
+from advisor.flight.signals.attitude import Attitudes
+from advisor.flight.signals.channels import stamps
+from advisor.flight.signals.clocks import BootClock
+from advisor.flight.signals.messages import Columns, FloatArray, cut
+from advisor.flight.vehicle.vehicle import Vehicle
+from advisor.words.vehicle_time import between
 
 # The field whose change shows that a message brings a new value.
 _TELLING = {

@@ -7,13 +7,13 @@ from rich.console import Console, ConsoleOptions, RenderResult
 from rich.table import Table
 from rich.text import Text
 
-from advisor.aircraft import PARAMETERS
+from advisor.aircraft.aircraft import PARAMETERS
 from advisor.doctor.examination import Examination, Limit
 from advisor.doctor.expectation import frequency
 from advisor.doctor.instruments import STRAYED_SHARE
-from advisor.printable import printable
 from advisor.report.document import NORMAL_95
 from advisor.report.text import UNITS, shown
+from advisor.words.printable import printable
 
 _SIGNS = {"ready": "✓", "usable with limits": "!", "not usable": "✗"}
 _STYLES = {"ready": "bold green", "usable with limits": "bold yellow", "not usable": "bold red"}

@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from advisor.aircraft import Aircraft
-from advisor.flight.kinematics import KinematicCheck, check_alpha, combine
-from advisor.flight.maneuver import Maneuver
+from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.instruments.kinematics import KinematicCheck, check_alpha, combine
+from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.explain import evidence_of_one_maneuver, explain
 from advisor.gap.fitting.prior_speed import prior_speed
 from advisor.gap.records.airspeed import measures_speed
@@ -25,7 +25,7 @@ from advisor.gap.uncatalogued.wind_shear import moves_along_path, wind_shear
 from advisor.gap.verdict.answer import answer
 from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.notes import left_out
-from advisor.problems import UnusableInputError
+from advisor.words.problems import UnusableInputError
 
 
 @dataclass(frozen=True)

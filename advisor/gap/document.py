@@ -6,7 +6,7 @@ from typing import Any
 
 from advisor.gap.decision import Decision
 from advisor.gap.result import Cause, Diagnosis, InSimulator, Qualification, Value, Yardsticks
-from advisor.problems import Problem
+from advisor.words.problems import Problem
 
 SCHEMA = "advisor.gap/1"
 _NOTHING: Mapping[str, Any] = {

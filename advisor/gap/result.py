@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
-from advisor.flight.kinematics import KinematicCheck
-from advisor.flight.messages import FloatArray
+from advisor.flight.instruments.kinematics import KinematicCheck
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.decision import Decision
 
 Verdict = Literal["none", "parameters", "effect", "unknown", "untested"]

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from advisor.aircraft import PARAMETERS, Aircraft
+from advisor.aircraft.aircraft import PARAMETERS, Aircraft
 from advisor.gap.foresight.plan import foresee_plan
 from advisor.gap.simulator.reading import differences, filtered, superposed
 

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.aircraft import PARAMETERS
-from advisor.flight.messages import FloatArray
+from advisor.aircraft.aircraft import PARAMETERS
+from advisor.flight.signals.messages import FloatArray
 
 SPEED_EXPONENTS: Mapping[str, int] = {
     "Z_0": 1,

@@ -9,8 +9,8 @@ pitch angle.
 
 import math
 
-from advisor.compiled import kernel
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
+from advisor.process.compiled import kernel
 
 ORDERS = 4
 """Number of functions φ₀ to φ₃."""

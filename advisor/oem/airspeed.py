@@ -14,10 +14,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.flight.derived_alpha import SLOWEST_FLIGHT_M_S
-from advisor.flight.messages import FloatArray
-from advisor.flight.motion import integrated, speed_rate_at
-from advisor.flight.record import Channel
+from advisor.flight.signals.derived_alpha import SLOWEST_FLIGHT_M_S
+from advisor.flight.signals.messages import FloatArray
+from advisor.flight.signals.motion import integrated, speed_rate_at
+from advisor.flight.signals.record import Channel
 from advisor.oem.problem import Signal
 
 LONGEST_LAG_S = 0.6

@@ -2,19 +2,19 @@
 
 Most small aircraft have no vane. With pitch rate, specific force, attitude and air speed the angle of attack
 is a state that need not be measured. An angle of attack that an autopilot derives is used only where the
-kinematics support it (``advisor.flight.kinematics``).
+kinematics support it (``advisor.flight.instruments.kinematics``).
 """
 
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from advisor.aircraft import Aircraft
-from advisor.flight.derived_alpha import DERIVED_ALPHA
-from advisor.flight.inferred_alpha import NEEDED, inferred_alpha
-from advisor.flight.kinematics import check_alpha, combine
-from advisor.flight.maneuver import Maneuver
-from advisor.flight.record import Channel
+from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.instruments.kinematics import check_alpha, combine
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.derived_alpha import DERIVED_ALPHA
+from advisor.flight.signals.inferred_alpha import NEEDED, inferred_alpha
+from advisor.flight.signals.record import Channel
 
 FEWEST_SAMPLES = 20
 """Least number of samples of a channel in a manoeuvre that is used."""

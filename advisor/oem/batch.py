@@ -8,15 +8,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.aircraft import PARAMETERS
-from advisor.compiled import kernel
-from advisor.flight.messages import FloatArray
+from advisor.aircraft.aircraft import PARAMETERS
+from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import N_SHARED, Grid, Index
 from advisor.oem.covariance import REPORTED
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.gauss_newton import CONVERGED, cholesky, descend, normal_equations, solve_lower
 from advisor.oem.problem import Problem, Record, Signal, assemble
 from advisor.oem.solution import noise_floor, solve
+from advisor.process.compiled import kernel
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,7 @@ explains the difference.
 import numpy as np
 from scipy.special import chdtri
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 
 CHANCE = 0.05
 """Probability of widening an error that is stated rightly."""

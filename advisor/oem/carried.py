@@ -12,10 +12,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from advisor.aircraft import PARAMETERS
-from advisor.flight.maneuver import Maneuver
-from advisor.flight.messages import FloatArray
-from advisor.flight.motion import bank_at
+from advisor.aircraft.aircraft import PARAMETERS
+from advisor.aircraft.standard_gravity import GRAVITY_M_S2
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.messages import FloatArray
+from advisor.flight.signals.motion import bank_at
 from advisor.model.response import LOCAL, N_PARAMETERS, N_SHARED, OUTPUTS, Grid, respond
 from advisor.oem.covariance import REPORTED
 from advisor.oem.estimate import ChannelFit, Estimate
@@ -24,7 +25,6 @@ from advisor.oem.prior import precision
 from advisor.oem.problem import STAMP_S, Signal, merged
 from advisor.oem.solution import Solution, noise_floor, reported
 from advisor.oem.sums import Sums
-from advisor.standard_gravity import GRAVITY_M_S2
 
 LONGEST_PROMISE = 2.0
 """Largest change of -2 log likelihood that a step may promise. Beyond it the model is solved again over all

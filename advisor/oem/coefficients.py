@@ -13,8 +13,8 @@ C_mq stands for C_mq + C_mα̇, because still air does not distinguish the two.
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from advisor.aircraft import PARAMETERS, Reference
-from advisor.flight.atmosphere import SEA_LEVEL_DENSITY_KG_M3, AirFlown
+from advisor.aircraft.aircraft import PARAMETERS, Reference
+from advisor.flight.instruments.atmosphere import SEA_LEVEL_DENSITY_KG_M3, AirFlown
 from advisor.oem.estimate import Estimate
 
 CONVENTION = "per radian; rates as q·c/(2·V) with the true air speed V"

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 
 _WHITE_BOUND = 1.96
 """Standard deviations that hold 95 % of a normal distribution."""

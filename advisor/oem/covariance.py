@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import stdtrit
 
-from advisor.aircraft import PARAMETERS
-from advisor.flight.messages import FloatArray
+from advisor.aircraft.aircraft import PARAMETERS
+from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import LOCAL, N_PARAMETERS, N_SHARED, OUTPUTS, SHARED
 from advisor.oem.colour import Colour, Stretch, find_colour, moved, product
 from advisor.oem.problem import Assembly

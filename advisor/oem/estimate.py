@@ -6,8 +6,8 @@ from typing import Literal
 
 import numpy as np
 
-from advisor.aircraft import PARAMETERS
-from advisor.flight.messages import FloatArray
+from advisor.aircraft.aircraft import PARAMETERS
+from advisor.flight.signals.messages import FloatArray
 
 
 @dataclass(frozen=True, slots=True)

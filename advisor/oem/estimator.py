@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from advisor.aircraft import PARAMETERS, Aircraft
-from advisor.flight.maneuver import Maneuver
-from advisor.flight.messages import FloatArray
+from advisor.aircraft.aircraft import PARAMETERS, Aircraft
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import OUTPUTS
 from advisor.oem.between import widened_by_scatter
 from advisor.oem.edges import large_steps, with_edges

@@ -17,11 +17,11 @@ from math import isfinite
 import numpy as np
 from numpy.typing import NDArray
 
-from advisor.aircraft import PARAMETERS, Reference
-from advisor.flight.atmosphere import AirFlown
+from advisor.aircraft.aircraft import PARAMETERS, Reference
+from advisor.aircraft.standard_gravity import GRAVITY_M_S2
+from advisor.flight.instruments.atmosphere import AirFlown
 from advisor.model.mil_f_8785c import CATEGORIES, LevelFound, ShortPeriodFound, ShortPeriodLimits, assess
 from advisor.oem.estimate import Estimate
-from advisor.standard_gravity import GRAVITY_M_S2
 
 NORMAL_95 = 1.959963984540054
 UNITS: Mapping[str, str] = {

@@ -7,8 +7,8 @@ the last optimum. The noise model, and the use of the angle of attack, are check
 
 import math
 
-from advisor.aircraft import Aircraft
-from advisor.flight.maneuver import Maneuver
+from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.carried import Carried
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import report

@@ -16,9 +16,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from advisor.compiled import kernel
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import N_LOCAL, N_PARAMETERS, N_SHARED, OUTPUTS, Grid, Index, respond
+from advisor.process.compiled import kernel
 
 FLAT = 1e-11
 """Promised change of log J below which a step ends the search; the remaining change is far smaller."""

@@ -16,8 +16,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from advisor.aircraft import PARAMETERS
-from advisor.flight.messages import FloatArray
+from advisor.aircraft.aircraft import PARAMETERS
+from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import OUTPUTS
 from advisor.model.short_period import ShortPeriod
 from advisor.oem.correlation import HIGH_CORRELATION, correlation_matrix

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import OUTPUTS
 from advisor.oem import kalman
 from advisor.oem.kalman import DIFFUSE

@@ -6,8 +6,8 @@ come in order of time, so that every update is by a scalar.
 
 import numpy as np
 
-from advisor.compiled import kernel
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
+from advisor.process.compiled import kernel
 
 STATES = 8
 DIFFUSE = 1e3

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import N_PARAMETERS, Index, respond
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.problem import Problem, Record, Signal, assemble

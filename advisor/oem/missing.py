@@ -8,8 +8,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.aircraft import PARAMETERS
-from advisor.flight.messages import FloatArray
+from advisor.aircraft.aircraft import PARAMETERS
+from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import N_PARAMETERS, OUTPUTS, respond
 from advisor.oem.covariance import cramer_rao, influence
 from advisor.oem.problem import Assembly, Signal, assemble

@@ -2,8 +2,8 @@
 
 from collections.abc import Sequence
 
-from advisor.aircraft import PARAMETERS, Aircraft
-from advisor.flight.messages import FloatArray
+from advisor.aircraft.aircraft import PARAMETERS, Aircraft
+from advisor.flight.signals.messages import FloatArray
 from advisor.oem.correlation import HIGH_CORRELATION
 from advisor.oem.identifiability import SUPPOSED_LAG_S, correlated
 from advisor.oem.instruments import KNOWN_TO, Identified

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import N_PARAMETERS, respond
 from advisor.oem.edges import CLOSE_ENOUGH, DIFFERENCE_S, large_steps
 from advisor.oem.gauss_newton import CONVERGED, Optimum

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import N_PARAMETERS, N_SHARED, SHARED, Index, respond
 from advisor.oem.instruments import Instrument, by_instruments
 from advisor.oem.problem import Assembly, Problem, assemble

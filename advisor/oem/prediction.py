@@ -10,8 +10,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from advisor.aircraft import PARAMETERS
-from advisor.flight.messages import FloatArray
+from advisor.aircraft.aircraft import PARAMETERS
+from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import N_SHARED, SHARED
 from advisor.oem.solution import Solution
 

@@ -5,11 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.aircraft import Aircraft, Elevator
-from advisor.flight.maneuver import Maneuver
-from advisor.flight.motion import bank_at, gravity_in_plane, integrated
-from advisor.flight.record import Channel
-from advisor.flight.renewal import renewed
+from advisor.aircraft.aircraft import Aircraft, Elevator
+from advisor.aircraft.standard_gravity import GRAVITY_M_S2
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.motion import bank_at, gravity_in_plane, integrated
+from advisor.flight.signals.record import Channel
+from advisor.flight.signals.renewal import renewed
 from advisor.oem.airspeed import Airspeed, airspeed
 from advisor.oem.alpha_use import FEWEST_SAMPLES, can_do_without, infer, lacking, why_left_out
 from advisor.oem.alpha_use import has as _has
@@ -17,7 +18,6 @@ from advisor.oem.estimate import NoEstimate
 from advisor.oem.lost_input import restored
 from advisor.oem.problem import Problem, Record, Signal
 from advisor.oem.surface import Servo
-from advisor.standard_gravity import GRAVITY_M_S2
 
 OUTPUTS = ("alpha", "q", "a_z")
 """Outputs of the fit. The attitude is the integral of the pitch rate, so its residual contains every error of

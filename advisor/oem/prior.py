@@ -10,7 +10,7 @@ aircraft. Both are small on every aircraft:
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import N_SHARED, SHARED
 from advisor.oem.problem import Problem
 

@@ -6,10 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.aircraft.standard_gravity import GRAVITY_M_S2
+from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import LOCAL, N_SHARED, OUTPUTS, SHARED, Grid, Index
 from advisor.oem.surface import Servo
-from advisor.standard_gravity import GRAVITY_M_S2
 
 STAMP_S = 1e-9
 """Distance of two stamps below which they are one event, s."""

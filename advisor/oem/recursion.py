@@ -7,7 +7,7 @@ takes half a second to import, a tenth of the time that a diagnosis may take.
 import numpy as np
 from scipy.linalg import solve_banded
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 
 
 def accumulated(samples: FloatArray, memory: float) -> FloatArray:

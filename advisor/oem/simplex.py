@@ -7,7 +7,7 @@ search stops 1-4 % above the optimum.
 import numpy as np
 from scipy.optimize import minimize
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import N_PARAMETERS, N_SHARED, Grid, Index, respond
 from advisor.oem.gauss_newton import CONVERGED, EXHAUSTED, OVERFLOW, Optimum, weigh
 

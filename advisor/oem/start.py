@@ -12,8 +12,8 @@ constants and initial states belong to one manoeuvre each.
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
-from advisor.flight.motion import integrated
+from advisor.flight.signals.messages import FloatArray
+from advisor.flight.signals.motion import integrated
 from advisor.model.response import N_LOCAL, N_SHARED
 from advisor.oem.problem import Problem, Record, Signal
 from advisor.oem.surface import Servo

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.compiled import kernel
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.oem.colour import Colour
+from advisor.process.compiled import kernel
 
 
 @dataclass(slots=True)

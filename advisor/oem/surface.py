@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.compiled import kernel
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
+from advisor.process.compiled import kernel
 
 LONGEST_STEP_S = 0.0105
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import OUTPUTS
 from advisor.oem import innovations
 from advisor.oem.innovations import A_Z, ALPHA, AirModel

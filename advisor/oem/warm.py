@@ -6,9 +6,9 @@ in a fraction of a second.
 
 import numpy as np
 
-from advisor.aircraft import Aircraft
-from advisor.flight.maneuver import Maneuver, Span
-from advisor.flight.record import Channel
+from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.maneuvers.maneuver import Maneuver, Span
+from advisor.flight.signals.record import Channel
 from advisor.oem.estimator import estimate_jointly
 from advisor.oem.filter_error import filter_error, moving_air
 from advisor.oem.following import Follower

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import OUTPUTS
 from advisor.oem.covariance import Coloured, influence
 from advisor.oem.gauss_newton import arrow_step, normal_equations

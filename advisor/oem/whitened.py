@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import N_PARAMETERS, Index
 from advisor.oem.innovations import AirModel, Gains, gains_of
 from advisor.oem.place import Place, free_of, in_time, speeds_of, system_of

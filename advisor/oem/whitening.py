@@ -15,8 +15,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.compiled import kernel
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
+from advisor.process.compiled import kernel
 
 
 @dataclass(frozen=True, slots=True)

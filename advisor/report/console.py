@@ -5,7 +5,7 @@ from typing import Any
 from rich.console import Console
 from rich.text import Text
 
-from advisor.ascii_output import plain
+from advisor.words.ascii_output import plain
 
 
 class PlainConsole(Console):

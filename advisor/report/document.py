@@ -6,13 +6,13 @@ from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
-from advisor.aircraft import PARAMETERS, Aircraft
+from advisor.aircraft.aircraft import PARAMETERS, Aircraft
 from advisor.campaign.state import CampaignState, JudgedManeuver
 from advisor.decision.verdict import FlightTestVerdict, RuleProgress, RuleResult
-from advisor.flight.flights import FlightHeard
+from advisor.flight.stream.flights import FlightHeard
 from advisor.oem.estimate import Estimate, NoEstimate
-from advisor.problems import Problem
 from advisor.report.qualities import coefficients_of, qualities_document, qualities_of
+from advisor.words.problems import Problem
 
 SCHEMA = "advisor.analyze/1"
 NORMAL_95 = 1.959963984540054

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator, Sequence
 
 from advisor.campaign.campaign import Campaign, CampaignEvent, ManeuverJudged
 from advisor.campaign.state import CampaignState
-from advisor.flight.events import (
+from advisor.flight.maneuvers.events import (
     DataAgain,
     FlightBegan,
     ManeuverAgain,
@@ -13,9 +13,9 @@ from advisor.flight.events import (
     Rebooted,
     VehicleFound,
 )
-from advisor.flight.messages import Columns
+from advisor.flight.signals.messages import Columns
 from advisor.report.text import maneuver_line, next_line, stop_line
-from advisor.vehicle_time import CLOCK, clock
+from advisor.words.vehicle_time import CLOCK, clock
 
 
 def follow(

@@ -11,7 +11,7 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from advisor.aircraft import Aircraft
+from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.foresight.foresee import CONFUSED_AT, Foreseen
 from advisor.gap.foresight.plan import TYPICAL_NOISE, foresee_plan
 from advisor.gap.result import spelled

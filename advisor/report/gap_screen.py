@@ -9,10 +9,10 @@ from rich.panel import Panel
 from rich.table import Table
 from rich.text import Text
 
-from advisor.bundled import SIMULATOR
 from advisor.gap.result import Diagnosis, spelled
 from advisor.gap.verdict.ledger import in_words
 from advisor.gap.verdict.text import place
+from advisor.process.installed import SIMULATOR
 from advisor.report.gap_causes import PRESENT, ranking, unseen
 from advisor.report.gap_fidelity import errors, worst_maneuver, yardsticks
 from advisor.report.gap_simulator import simulated

@@ -8,9 +8,9 @@ from rich.console import RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.gap.result import InSimulator, Qualification, spelled
 from advisor.report.gap_sizes import short
-from advisor.standard_gravity import GRAVITY_M_S2
 
 _UNITS = {
     "alpha": ("α", "deg", math.degrees(1.0)), "q": ("q", "deg/s", math.degrees(1.0)),

@@ -7,10 +7,10 @@ from typing import Any
 
 import yaml
 
-from advisor.aircraft import Aircraft
-from advisor.atomic_file import write_atomically
+from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.candidates.known import less_of_the_servo, together
 from advisor.gap.result import Diagnosis
+from advisor.process.atomic_file import write_atomically
 
 
 def improved_file(diagnosis: Diagnosis, aircraft: Aircraft) -> Mapping[str, Any]:

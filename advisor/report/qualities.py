@@ -3,9 +3,9 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from advisor.aircraft import Reference
+from advisor.aircraft.aircraft import Reference
 from advisor.campaign.state import CampaignState
-from advisor.flight.atmosphere import AirFlown, air_flown
+from advisor.flight.instruments.atmosphere import AirFlown, air_flown
 from advisor.model.mil_f_8785c import CATEGORIES, MANNED, SOURCE
 from advisor.oem.coefficients import CONVENTION, Coefficient, coefficients
 from advisor.oem.flying_qualities import UNITS, FlyingQualities, flying_qualities

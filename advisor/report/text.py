@@ -9,14 +9,14 @@ from rich.console import Console, ConsoleOptions, RenderResult
 from rich.table import Table
 from rich.text import Text
 
-from advisor.aircraft import PARAMETERS, Aircraft
+from advisor.aircraft.aircraft import PARAMETERS, Aircraft
 from advisor.campaign.state import CampaignState, JudgedManeuver
 from advisor.decision.verdict import FlightTestVerdict
-from advisor.flight.events import Activity
-from advisor.flight.track import ChannelStatus
+from advisor.flight.maneuvers.events import Activity
+from advisor.flight.signals.track import ChannelStatus
 from advisor.oem.estimate import Estimate
 from advisor.report.qualities import coefficients_of, qualities_of, quality_lines
-from advisor.vehicle_time import CLOCK, clock
+from advisor.words.vehicle_time import CLOCK, clock
 
 SYMBOLS = {
     "Z_0": "Z_0",

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.simulator.layout import EFFECT_ENTRIES, INDEX, SKEWS
 
 COMMAND = EFFECT_ENTRIES[: EFFECT_ENTRIES.index("M_delta2")]

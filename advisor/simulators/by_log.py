@@ -4,13 +4,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from advisor.aircraft import Aircraft
-from advisor.flight.maneuver import Maneuver
+from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.diagnose import diagnose
 from advisor.gap.result import Diagnosis, spelled
 from advisor.gap.simulator.layout import DERIVATIVES
-from advisor.problems import ConfigurationError, UnusableInputError
 from advisor.simulators.linear import LinearSimulator
+from advisor.words.problems import ConfigurationError, UnusableInputError
 
 _LEAST = 2
 """Least number of manoeuvres in a simulator's log. A single one names no effect, for lack of a hold-out."""

@@ -1,9 +1,9 @@
 """A simulator that a Python function makes: ``python:module:factory``, in a process of its own."""
 
-from advisor.aircraft import Aircraft
-from advisor.problems import ConfigurationError
+from advisor.aircraft.aircraft import Aircraft
 from advisor.simulators.isolated import Isolated
 from advisor.simulators.protocol import Simulator
+from advisor.words.problems import ConfigurationError
 
 _PARTS = 2
 

@@ -5,17 +5,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.records.flights import Flight, Flights
 from advisor.gap.records.usable import DEPARTED_RAD
 from advisor.gap.simulator.layout import INDEX, REFERENCE
-from advisor.problems import UnusableInputError
 from advisor.simulators.around import instruments, skewed
 from advisor.simulators.increments import Added, entries_of
 from advisor.simulators.inputs import as_flight, condition_of, inputs_of, on_grid
 from advisor.simulators.protocol import Increments, Replay, Simulator
 from advisor.simulators.surrogate import Surrogate, trimmed_at
+from advisor.words.problems import UnusableInputError
 
 Progress = Callable[[str, float], None]
 

@@ -10,12 +10,12 @@ from pathlib import Path
 
 import numpy as np
 
-from advisor.aircraft import Aircraft, FmuVariables
-from advisor.flight.messages import FloatArray
-from advisor.problems import ConfigurationError, UnusableInputError
+from advisor.aircraft.aircraft import Aircraft, FmuVariables
+from advisor.flight.signals.messages import FloatArray
 from advisor.simulators.fmu_instance import Fmu, Use
 from advisor.simulators.isolated import Isolated
 from advisor.simulators.protocol import Condition, Increments, Inputs, Replay, State
+from advisor.words.problems import ConfigurationError, UnusableInputError
 
 _STEP_S = 0.01
 _ANGULAR = ("elevator", "aileron", "rudder", "alpha", "q", "theta", "force_increment", "moment_increment")

@@ -6,7 +6,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, Literal
 
-from advisor.problems import UnusableInputError
+from advisor.words.problems import UnusableInputError
 
 _REAL = ("Real", "Float64")
 Use = Literal["output", "input", "start"]

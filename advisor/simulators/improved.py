@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.diagnose import Examined
 from advisor.gap.fitting.holdout import HeldOut, held_out, points_without
 from advisor.gap.fitting.measure import own_refitted, whole_gap
@@ -14,11 +14,11 @@ from advisor.gap.records.flights import Measured
 from advisor.gap.result import InSimulator
 from advisor.gap.simulator.layout import DERIVATIVES, INDEX, OUTPUTS
 from advisor.gap.verdict.holdout_numbers import kept_and_folds, over_maneuvers, with_offset
-from advisor.problems import UnusableInputError
 from advisor.simulators.flying import AsGiven, Flying, added, beyond, without_servo
 from advisor.simulators.inputs import at_reference
 from advisor.simulators.qualification import qualified
 from advisor.simulators.surrogate import Surrogate
+from advisor.words.problems import UnusableInputError
 
 DERIVATIVES_OF_IT, SERVO_OF_IT = "derivatives", "its own servo"
 EQUATIONS = ("force_equation", "moment_equation")

@@ -8,10 +8,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import cos, exp, sqrt
 
-from advisor.flight.messages import FloatArray
+from advisor.aircraft.standard_gravity import GRAVITY_M_S2
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, INDEX
 from advisor.simulators.protocol import State
-from advisor.standard_gravity import GRAVITY_M_S2
 
 CARRIED = (
     *DERIVATIVES, "Z_trim", "M_trim",

@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.aircraft.standard_gravity import GRAVITY_M_S2
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.records.flights import Flight, Flights, Measured
 from advisor.gap.simulator.layout import (
     A_X,
@@ -20,7 +21,6 @@ from advisor.gap.simulator.layout import (
 )  # fmt: skip
 from advisor.gap.simulator.surface import surface
 from advisor.simulators.protocol import Condition, Inputs, Replay
-from advisor.standard_gravity import GRAVITY_M_S2
 
 _RATE_S = 0.02
 """Interval of the stamps at which a replay is read where nothing was measured."""

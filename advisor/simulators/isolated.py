@@ -13,8 +13,8 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from advisor.problems import ConfigurationError, UnusableInputError
 from advisor.simulators.protocol import Condition, Increments, Inputs, Replay, Simulator
+from advisor.words.problems import ConfigurationError, UnusableInputError
 
 _SPAWN = multiprocessing.get_context("spawn")
 _GOODBYE_S = 1.0

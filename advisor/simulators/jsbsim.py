@@ -6,14 +6,14 @@ from pathlib import Path
 
 import numpy as np
 
-from advisor.aircraft import Aircraft
-from advisor.problems import UnusableInputError
+from advisor.aircraft.aircraft import Aircraft
 from advisor.simulators.isolated import Isolated
 from advisor.simulators.jsbsim_flight import FOOT_M, STEP_S, Flight, State
 from advisor.simulators.jsbsim_model import FORCE, MOMENT, find_model
 from advisor.simulators.jsbsim_trim import trim
 from advisor.simulators.protocol import Condition, Increments, Inputs, Replay
 from advisor.simulators.protocol import State as Motion
+from advisor.words.problems import UnusableInputError
 
 _PROBE = 1e-3
 """Departures for central differences: of α and of the elevator in rad, of q in rad/s."""

@@ -9,10 +9,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
-from advisor.problems import UnusableInputError
+from advisor.flight.signals.messages import FloatArray
 from advisor.simulators.jsbsim_model import AXIAL, FORCE, LOAD, LOAD_PLACE, WRITES, WRITTEN, load
 from advisor.simulators.protocol import Condition
+from advisor.words.problems import UnusableInputError
 
 FOOT_M = 0.3048
 POUND_KG = 0.45359237

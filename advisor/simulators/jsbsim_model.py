@@ -13,7 +13,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
-from advisor.problems import ConfigurationError, UnusableInputError
+from advisor.words.problems import ConfigurationError, UnusableInputError
 
 FORCE = "external_reactions/advisor-force"
 AXIAL = "external_reactions/advisor-axial"

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
-from advisor.problems import UnusableInputError
+from advisor.flight.signals.messages import FloatArray
 from advisor.simulators.jsbsim_flight import FOOT_M, Flight, State
 from advisor.simulators.protocol import Condition
+from advisor.words.problems import UnusableInputError
 
 _UNKNOWNS = ("alpha", "elevator", "phi", "aileron", "rudder")
 _LONGITUDINAL = (1, 3)

@@ -6,11 +6,11 @@ from math import cos, sin
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.aircraft.standard_gravity import GRAVITY_M_S2
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.gap.simulator.surface import above_start
 from advisor.simulators.protocol import Condition, Increments, Inputs, Replay, State
-from advisor.standard_gravity import GRAVITY_M_S2
 
 _FARTHEST_RAD = 1.5
 """Angle of attack, rad, at which the computation ends."""

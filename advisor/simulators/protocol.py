@@ -10,8 +10,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from advisor.aircraft import Aircraft
-from advisor.flight.messages import FloatArray
+from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.signals.messages import FloatArray
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,7 +89,7 @@ class Simulator(Protocol):
 
     Raises
     ------
-    advisor.problems.UnusableInputError
+    advisor.words.problems.UnusableInputError
         The model does not load, does not trim, or takes longer than its time limit. Each method may raise it.
     """
 
@@ -122,5 +122,5 @@ Factory = Callable[[str, Aircraft], Simulator]
 """Function that makes a simulator from the part of a specification behind the colon, and from the aircraft
 file.
 
-It raises ``advisor.problems.ConfigurationError`` where that part names nothing that can be loaded.
+It raises ``advisor.words.problems.ConfigurationError`` where that part names nothing that can be loaded.
 """

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.result import Qualification

@@ -6,13 +6,13 @@ from importlib.metadata import entry_points
 from importlib.util import find_spec
 from pathlib import Path
 
-from advisor.aircraft import Aircraft
-from advisor.flight.maneuver import Maneuver
+from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.simulator.layout import DERIVATIVES
-from advisor.problems import ConfigurationError
 from advisor.simulators.by_log import from_log
 from advisor.simulators.linear import LinearSimulator
 from advisor.simulators.protocol import Factory, Simulator
+from advisor.words.problems import ConfigurationError
 
 GROUP = "inflight_advisor.simulators"
 """Entry points of other packages: a kind, and an ``advisor.simulators.protocol.Factory``."""

@@ -6,8 +6,8 @@ from itertools import product
 
 import numpy as np
 
-from advisor.aircraft import Aircraft
-from advisor.flight.messages import FloatArray
+from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.input import DELAY, LAG
 from advisor.gap.fitting.fit import Fitted, fit
 from advisor.gap.fitting.problem import Point, Problem

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Literal
 
-from advisor.tui.view import View
+from advisor.session.view import View
 
 Word = Literal["CONTINUE", "REPEAT", "STOP TESTING", "RECOVER", "WAIT", "NO LINK", "NO DATA"]
 Tone = Literal["good", "warn", "bad", "quiet"]

@@ -15,10 +15,11 @@ from textual.message import Message
 from textual.screen import Screen
 from textual.worker import Worker, WorkerState
 
-from advisor.aircraft import Aircraft
-from advisor.problems import UnusableInputError
+from advisor.aircraft.aircraft import Aircraft
+from advisor.session.conducting import Conducting, Report
+from advisor.session.source import Tempo
+from advisor.session.view import View, view_before_first
 from advisor.tui import keys, link_actions, replay_actions
-from advisor.tui.conducting import Conducting, Report
 from advisor.tui.explaining import commands, explanation
 from advisor.tui.garbage_collection import Garbage
 from advisor.tui.hand_actions import HandActions
@@ -28,9 +29,8 @@ from advisor.tui.screens.face import Face
 from advisor.tui.screens.pilot import PilotScreen
 from advisor.tui.settings import Settings
 from advisor.tui.sheets import Sheets
-from advisor.tui.source import Tempo
 from advisor.tui.themes import NAMES, THEMES
-from advisor.tui.view import View, view_before_first
+from advisor.words.problems import UnusableInputError
 
 _TWICE_WITHIN_S = 3.0
 _AT_ONCE_S = 0.001

@@ -4,12 +4,12 @@ from abc import abstractmethod
 from math import isfinite
 from typing import TYPE_CHECKING
 
-from advisor.flight.marks import LONGEST_S
-from advisor.tui.conducting import Conducting
-from advisor.tui.hand import HandDecision
+from advisor.flight.maneuvers.marks import LONGEST_S
+from advisor.session.conducting import Conducting
+from advisor.session.hand import HandDecision
+from advisor.session.view import View
 from advisor.tui.screens.face import Face
-from advisor.tui.view import View
-from advisor.vehicle_time import clock
+from advisor.words.vehicle_time import clock
 
 if TYPE_CHECKING:
     from textual.app import App

@@ -3,9 +3,9 @@
 from abc import abstractmethod
 from typing import TYPE_CHECKING
 
-from advisor.tui.conducting import Conducting
-from advisor.tui.source import Order
-from advisor.tui.view import View
+from advisor.session.conducting import Conducting
+from advisor.session.source import Order
+from advisor.session.view import View
 
 if TYPE_CHECKING:
     from textual.app import App

@@ -12,15 +12,15 @@ from collections.abc import Sequence
 from math import inf
 from pathlib import Path
 
+from advisor.aircraft_file.read import load_aircraft
 from advisor.campaign.campaign import Campaign
-from advisor.config import load_aircraft
-from advisor.flight.messages import Columns
-from advisor.mavlink.logs import open_log
+from advisor.flight.signals.messages import Columns
+from advisor.mavlink.logs.logs import open_log
+from advisor.session.conductor import Conductor
+from advisor.session.replay import LogPlayer
+from advisor.session.source import Tempo
 from advisor.tui.app import AdvisorApp
-from advisor.tui.conductor import Conductor
-from advisor.tui.replay import LogPlayer
 from advisor.tui.settings import Face, Settings
-from advisor.tui.source import Tempo
 from advisor.tui.svg import drawn
 
 SIZES: dict[Face, tuple[int, int]] = {"pilot": (100, 30), "engineer": (180, 50)}

@@ -5,10 +5,10 @@ from dataclasses import replace
 from math import inf
 from typing import TYPE_CHECKING
 
-from advisor.tui.conducting import Conducting
+from advisor.session.conducting import Conducting
+from advisor.session.source import Tempo
+from advisor.session.view import View
 from advisor.tui.screens.face import Face
-from advisor.tui.source import Tempo
-from advisor.tui.view import View
 
 if TYPE_CHECKING:
     from textual.app import App

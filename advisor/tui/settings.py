@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any, Literal, get_args
 
-from advisor.problems import ConfigurationError
+from advisor.words.problems import ConfigurationError
 
 Face = Literal["pilot", "engineer"]
 
@@ -44,7 +44,7 @@ def load_settings(path: Path | None = None) -> Settings:
     ConfigurationError
         The file has mistakes. The message lists each with its key and the allowed values.
     """
-    from advisor.yaml_file import read_yaml
+    from advisor.process.yaml_file import read_yaml
 
     path = path or settings_path()
     if not path.exists():

@@ -6,12 +6,12 @@ from rich.style import Style
 from textual.geometry import Region
 from textual.strip import Strip
 
-from advisor.atomic_file import write_atomically
-from advisor.printable import printable
+from advisor.process.atomic_file import write_atomically
+from advisor.session.view import View
 from advisor.tui.panes.pane import Pane
 from advisor.tui.plot.widget import Plot
 from advisor.tui.svg import picture_of
-from advisor.tui.view import View
+from advisor.words.printable import printable
 
 WITHOUT_LOG = Path("advisor")
 """Name that replaces the log's where nothing is recorded. Files then go into the current folder."""

@@ -7,7 +7,7 @@ from hashlib import sha256
 from ipaddress import ip_address
 from urllib.parse import urlsplit
 
-from advisor.problems import ConfigurationError
+from advisor.words.problems import ConfigurationError
 
 _HERE = frozenset({"localhost", "127.0.0.1", "::1"})
 

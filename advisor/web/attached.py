@@ -3,10 +3,10 @@
 from multiprocessing.connection import Connection
 from threading import Event
 
-from advisor.tui.changes import Changes
-from advisor.tui.conducting import Report, Tell
-from advisor.tui.hand import HandDecision
-from advisor.tui.source import Order, Tempo
+from advisor.session.changes import Changes
+from advisor.session.conducting import Report, Tell
+from advisor.session.hand import HandDecision
+from advisor.session.source import Order, Tempo
 
 LOOK_EVERY_S = 0.1
 """Time after which a thread without news tests whether to stop, s."""

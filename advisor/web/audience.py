@@ -8,9 +8,9 @@ from threading import Event, Thread
 from types import TracebackType
 from typing import Self
 
-from advisor.mavlink.keeping import new_door
-from advisor.tui.changes import changes
-from advisor.tui.conducting import Conducting
+from advisor.mavlink.link.keeping import new_door
+from advisor.session.changes import changes
+from advisor.session.conducting import Conducting
 from advisor.web.showing import PATIENCE_S, Showing
 from advisor.web.viewing import Viewing
 

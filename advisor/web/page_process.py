@@ -10,7 +10,7 @@ from aiohttp import web
 from textual_serve.app_service import AppService
 from textual_serve.download_manager import DownloadManager
 
-from advisor.mavlink.keeping import Door
+from advisor.mavlink.link.keeping import Door
 from advisor.web.viewing import ADDRESS, KEY
 
 

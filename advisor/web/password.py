@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from advisor.problems import ConfigurationError
+from advisor.words.problems import ConfigurationError
 
 VARIABLE = "ADVISOR_PASSWORD"
 SHORTEST = 8

@@ -9,8 +9,8 @@ from typing import Self
 
 from aiohttp import web
 
-from advisor.problems import ConfigurationError
 from advisor.web.site import Site
+from advisor.words.problems import ConfigurationError
 
 PATIENCE_S = 4.0
 """Longest time for the end of all pages, s. The recording is closed after them, and a Ctrl-C waits 5 s in

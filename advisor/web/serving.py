@@ -11,12 +11,12 @@ from pathlib import Path
 
 import click
 
-from advisor.aircraft import Aircraft
-from advisor.problems import ConfigurationError
-from advisor.tui.remote import RemoteConductor, Task
-from advisor.tui.source import Tempo
+from advisor.aircraft.aircraft import Aircraft
+from advisor.session.remote import RemoteConductor, Task
+from advisor.session.source import Tempo
 from advisor.web.access import Access, checked_origin, on_this_computer
 from advisor.web.password import read_password
+from advisor.words.problems import ConfigurationError
 
 LOOK_EVERY_S = 0.2
 _LIVE_GOES_ON = "The advisor goes on, with its recording, as long as its command runs."

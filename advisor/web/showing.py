@@ -4,7 +4,7 @@ from threading import Condition, Thread
 from types import TracebackType
 from typing import Self
 
-from advisor.tui.conducting import Conducting, Report
+from advisor.session.conducting import Conducting, Report
 
 PATIENCE_S = 2.0
 """Longest time for the end of the estimating process, s. The process also ends when the server has gone."""

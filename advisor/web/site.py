@@ -10,7 +10,7 @@ import textual_serve
 from aiohttp import WSMsgType, web
 from textual_serve.server import Server
 
-from advisor.mavlink.keeping import Door
+from advisor.mavlink.link.keeping import Door
 from advisor.web.access import Access
 from advisor.web.login import Login
 from advisor.web.page_process import PageProcess

@@ -15,8 +15,8 @@ from typing import Any, ClassVar
 
 from textual.screen import Screen
 
-from advisor import interrupt
-from advisor.mavlink.keeping import Door
+from advisor.mavlink.link.keeping import Door
+from advisor.process import interrupt
 from advisor.tui import app as app_module
 from advisor.tui.app import AdvisorApp
 from advisor.tui.link_actions import ACTIONS as LINK_ACTIONS

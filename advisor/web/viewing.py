@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass
 
-from advisor.aircraft import Aircraft
+from advisor.aircraft.aircraft import Aircraft
+from advisor.session.source import Tempo
 from advisor.tui.settings import Settings
-from advisor.tui.source import Tempo
 
 ADDRESS, KEY = "ADVISOR_PAGE_ADDRESS", "ADVISOR_PAGE_KEY"
 """Environment variables with the address of the server's entrance and its key, for the process of a page.

@@ -20,10 +20,10 @@ _ORDER = 0
 
 def answer(case: Path) -> dict[str, Any]:
     """What the diagnosis says of a case, from log and aircraft file."""
-    from advisor.commands.options import read_aircraft
-    from advisor.diagnosis import diagnose_logs
+    from advisor.analysis.gap import diagnose_logs
+    from advisor.cli.options import read_aircraft
     from advisor.gap.document import gap_document
-    from advisor.problems import UnusableInputError
+    from advisor.words.problems import UnusableInputError
 
     try:
         found = gap_document(diagnose_logs([case / "flight.tlog"], read_aircraft(case / "aircraft.yaml")))
@@ -35,7 +35,7 @@ def answer(case: Path) -> dict[str, Any]:
 def run(corpus: Corpus, raw: Path, only: Sequence[str], limits: bool, processes: int) -> None:
     """Answer every case that ``raw`` has no answer of, with all rules and without each that speaks."""
     instrument.install(limits)
-    import advisor.diagnosis  # noqa: F401
+    import advisor.analysis.gap  # noqa: F401
     import advisor.gap.verdict.answer as numbers
 
     # What is said of effects that cannot be seen takes a fifth of the time and no part in a verdict.
@@ -79,7 +79,7 @@ def main() -> None:
         run(corpus, options.raw, options.only, options.limits, options.processes)
         return
     if options.what == "again":
-        import advisor.diagnosis  # noqa: F401
+        import advisor.analysis.gap  # noqa: F401
 
         for line in again(corpus, options.raw, options.write, options.deleted, answer):
             print(line, flush=True)

@@ -9,12 +9,12 @@ from collections.abc import Iterator, Mapping
 from dataclasses import MISSING, Field, fields, is_dataclass
 from typing import Any, Literal
 
-from advisor.aircraft import PARAMETERS, Aircraft
+from advisor.aircraft.aircraft import PARAMETERS, Aircraft
 
 _HEAD = """# Aircraft file
 
 The aircraft file is YAML. Every key may be left out, unknown keys are refused by name, and all mistakes are
-listed at once with their path. This page is made from `advisor/aircraft.py`.
+listed at once with their path. This page is made from `advisor/aircraft/aircraft.py`.
 [The how-to](../how-to/aircraft-file.md) says which keys to give first.
 
 `model`, `campaign.parameters` and `campaign.tolerance` know the parameters {parameters}. Their units are rad

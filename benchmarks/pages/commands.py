@@ -21,7 +21,7 @@ address of a link ([links](links.md)).
 | 129, 143 | ended by SIGHUP or SIGTERM while a link is heard or a screen is shown |
 | 130 | stopped by Ctrl-C |
 """
-_PROGRAMS = {"advisor": ("advisor.cli", "advisor"), "python -m sim": ("sim.__main__", "main")}
+_PROGRAMS = {"advisor": ("advisor.cli.group", "advisor"), "python -m sim": ("sim.__main__", "main")}
 """Name on the command line to the module of the program, and the name of its command there."""
 _WIDTH = 90
 

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from advisor.aircraft_effects import LEAST
+from advisor.aircraft.aircraft_effects import LEAST
 from advisor.gap.candidates.trait import Said, Trait
 from advisor.gap.candidates.traits import TRAITS
 from advisor.gap.candidates.variant import Variant

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from advisor.config import load_aircraft
-from advisor.diagnosis import diagnose_logs
+from advisor.aircraft_file.read import load_aircraft
+from advisor.analysis.gap import diagnose_logs
 from advisor.library import estimate, read
 from advisor.oem.estimate import Estimate
 from benchmarks.pages.figure import errors, residuals, response, stages, svg

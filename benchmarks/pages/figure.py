@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.flight.maneuver import Maneuver
-from advisor.flight.messages import FloatArray
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.result import Diagnosis, Trace
 from advisor.oem.estimate import Estimate
 

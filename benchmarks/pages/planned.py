@@ -6,9 +6,9 @@ from functools import cache
 
 import numpy as np
 
-from advisor.aircraft import Aircraft
-from advisor.flight.maneuver import Maneuver, Span
-from advisor.flight.record import Channel
+from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.maneuvers.maneuver import Maneuver, Span
+from advisor.flight.signals.record import Channel
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.variant import Variant
 from advisor.gap.records.prepare import prepare

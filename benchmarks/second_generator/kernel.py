@@ -4,7 +4,7 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-import advisor.compiled as compiled
+import advisor.process.compiled as compiled
 
 Floats = NDArray[Any]  # of 64-bit floats; NumPy's own annotations are not that exact
 

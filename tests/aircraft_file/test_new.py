@@ -5,17 +5,17 @@ from pathlib import Path
 import click
 import pytest
 
-from advisor.aircraft import Aircraft, Elevator
+from advisor.aircraft.aircraft import Aircraft, Elevator
 from advisor.aircraft_file.keys import KEYS
 from advisor.aircraft_file.log_facts import LogFacts
 from advisor.aircraft_file.proposal import proposed
-from advisor.config import load_aircraft
-from advisor.flight.ardupilot_wiring import WORDS
-from advisor.flight.elevator_guess import Guess
-from advisor.flight.elevator_outputs import find_elevator
-from advisor.flight.surfaces import Scale
-from advisor.flight.vehicle import Vehicle
-from advisor.flight.wiring import Role, Wiring
+from advisor.aircraft_file.read import load_aircraft
+from advisor.flight.elevator.elevator_guess import Guess
+from advisor.flight.elevator.elevator_outputs import find_elevator
+from advisor.flight.vehicle.ardupilot_wiring import WORDS
+from advisor.flight.vehicle.surfaces import Scale
+from advisor.flight.vehicle.vehicle import Vehicle
+from advisor.flight.vehicle.wiring import Role, Wiring
 from tests.conftest import Advisor
 
 CASES = Path(__file__).parents[1] / "cases"

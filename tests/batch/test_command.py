@@ -8,11 +8,11 @@ from pathlib import Path
 import pyarrow.parquet as pq
 import pytest
 
-from advisor.aircraft import PARAMETERS, Aircraft
+from advisor.aircraft.aircraft import PARAMETERS, Aircraft
 from advisor.batch.flight import Analyzed, Task, kept, sha256_of
 from advisor.batch.logs import AircraftMap, find_logs, read_map
 from advisor.batch.tables import aircraft_of, mixed_up
-from advisor.problems import ConfigurationError, UnusableInputError
+from advisor.words.problems import ConfigurationError, UnusableInputError
 from sim.effects.fitting import flight_of
 from sim.record import record
 from sim.scenario import Noise, Scenario

@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from advisor.aircraft import Aircraft
+from advisor.aircraft.aircraft import Aircraft
 from advisor.batch.flight import Analyzed, Task, failed
 from advisor.batch.index import index_page
 from advisor.batch.picture import Point, trend_svg
-from advisor.problems import Problem
+from advisor.words.problems import Problem
 from tests.batch.test_trend import flight as estimate_of
 from tests.report.page_reader import Page
 from tests.report.test_browser import BROWSER, WIDTHS, opened

@@ -8,15 +8,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from advisor.aircraft import Aircraft, Markers
+from advisor.aircraft.aircraft import Aircraft, Markers
+from advisor.analysis.gap import maneuvers_of
+from advisor.analysis.marks_file import read_by_hand, write_by_hand
 from advisor.campaign.campaign import Campaign
 from advisor.campaign.hand_decisions import NOTHING, ByHand, Remark
 from advisor.campaign.state import JudgedManeuver
-from advisor.diagnosis import maneuvers_of
-from advisor.flight.marks import Mark
-from advisor.marks_file import read_by_hand, write_by_hand
-from advisor.mavlink.logs import open_log
-from advisor.mavlink.tlog import read_tlog
+from advisor.flight.maneuvers.marks import Mark
+from advisor.mavlink.logs.logs import open_log
+from advisor.mavlink.logs.tlog import read_tlog
 from sim.flight import Flight
 from sim.record import record
 from sim.scenario import Noise, Scenario

@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft import Aircraft, Elevator
+from advisor.aircraft.aircraft import Aircraft, Elevator
 from advisor.campaign.campaign import Campaign
 from advisor.campaign.joint_estimate import NEWEST, Together
 from advisor.campaign.servo_lag import may_learn
 from advisor.campaign.state import CampaignState
-from advisor.flight.maneuver import Maneuver
-from advisor.mavlink.logs import open_log
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.mavlink.logs.logs import open_log
 from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import estimate_jointly
 from sim.scenario import Scenario

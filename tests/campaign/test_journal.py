@@ -4,13 +4,13 @@ from pathlib import Path
 
 import pytest
 
-from advisor.aircraft import Aircraft
+from advisor.aircraft.aircraft import Aircraft
 from advisor.campaign.campaign import Campaign
 from advisor.campaign.journal import KEPT, Journal
-from advisor.flight.events import FlightBegan, ModeChanged, Rebooted, VehicleFound, VehicleSaid
-from advisor.flight.pieces import between
-from advisor.flight.vehicle import Vehicle
-from advisor.mavlink.logs import open_log
+from advisor.flight.maneuvers.events import FlightBegan, ModeChanged, Rebooted, VehicleFound, VehicleSaid
+from advisor.flight.vehicle.pieces import between
+from advisor.flight.vehicle.vehicle import Vehicle
+from advisor.mavlink.logs.logs import open_log
 from tests.flights import TWO, recorded
 
 VEHICLE = Vehicle(1, 1, "ardupilot", 1)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft import Aircraft, Elevator
+from advisor.aircraft.aircraft import Aircraft, Elevator
 from advisor.campaign.servo_lag import learnt, reserved
 from advisor.decision.verdict import ManeuverVerdict
 from advisor.oem.estimate import InstrumentEstimate

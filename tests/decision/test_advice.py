@@ -5,19 +5,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft import PARAMETERS, Aircraft, CampaignPlan, Elevator, Limits
+from advisor.aircraft.aircraft import PARAMETERS, Aircraft, CampaignPlan, Elevator, Limits
+from advisor.bundled.study.estimating import estimate_copies
+from advisor.bundled.study.flying import Scene, follow
 from advisor.decision.advice import next_input
 from advisor.decision.foresight import Instruments, expect
 from advisor.decision.history import Flown
 from advisor.decision.inputs import StepInput
 from advisor.decision.stopping import flight_test
 from advisor.decision.verdict import NO_CURE_BY_INPUT, Reason, Remaining
-from advisor.flight.maneuver import Maneuver, Span
-from advisor.flight.record import Channel
-from advisor.flight.trust import Distrust
+from advisor.flight.maneuvers.maneuver import Maneuver, Span
+from advisor.flight.signals.record import Channel
+from advisor.flight.signals.trust import Distrust
 from advisor.oem.surface import Servo
-from advisor.study.estimating import estimate_copies
-from advisor.study.flying import Scene, follow
 from tests.decision.campaigns import THETA, estimate
 
 INSTRUMENTS = Instruments((0.02, 0.02), (np.radians(0.15), np.radians(0.5)), Servo())

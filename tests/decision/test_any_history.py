@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft import Aircraft, CampaignPlan, Limits, Rule
+from advisor.aircraft.aircraft import Aircraft, CampaignPlan, Limits, Rule
 from advisor.decision.history import Flown
 from advisor.decision.judge import judge_campaign
 from advisor.decision.stopping import flight_test

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from advisor.aircraft import CampaignPlan
+from advisor.aircraft.aircraft import CampaignPlan
+from advisor.bundled.study.flying import Scene, fly_named, respond
 from advisor.decision.change import find_change
 from advisor.decision.history import Flown
 from advisor.decision.stopping import flight_test
 from advisor.decision.verdict import Reason
-from advisor.flight.messages import FloatArray
-from advisor.study.flying import Scene, fly_named, respond
+from advisor.flight.signals.messages import FloatArray
 from sim.linear import ShortPeriod
 from tests.decision.campaigns import THETA, drawn, estimate, with_change
 

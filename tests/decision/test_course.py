@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft import CampaignPlan, Rule
+from advisor.aircraft.aircraft import CampaignPlan, Rule
 from advisor.decision.course import Course
 from advisor.decision.history import Flown
 from advisor.decision.judge import judge_campaign

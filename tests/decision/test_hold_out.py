@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from advisor.bundled.study.estimating import estimate_copies
+from advisor.bundled.study.flying import Scene, as_maneuver, fly_named, noise_scale
 from advisor.decision.history import Flown
 from advisor.decision.hold_out import predict_last
-from advisor.study.estimating import estimate_copies
-from advisor.study.flying import Scene, as_maneuver, fly_named, noise_scale
 
 SCENE = Scene()
 

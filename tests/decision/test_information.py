@@ -6,14 +6,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft import PARAMETERS, CampaignPlan
+from advisor.aircraft.aircraft import PARAMETERS, CampaignPlan
+from advisor.bundled.study.flying import Scene, as_maneuver, fly_named
 from advisor.decision.history import Flown
 from advisor.decision.information import Knowledge
 from advisor.decision.information import knowledge as known_from
 from advisor.decision.prediction import Z95
 from advisor.decision.stopping import flight_test
 from advisor.oem.estimate import Estimate
-from advisor.study.flying import Scene, as_maneuver, fly_named
 from tests.decision.campaigns import THETA, drawn, estimate, with_change
 
 PLAN = CampaignPlan(rule="information")

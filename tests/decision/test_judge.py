@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft import CampaignPlan
+from advisor.aircraft.aircraft import CampaignPlan
 from advisor.decision.history import Flown
 from advisor.decision.judge import accepted_estimates, judge, judge_campaign
 from advisor.decision.verdict import Reason

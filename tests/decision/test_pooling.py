@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft import PARAMETERS
+from advisor.aircraft.aircraft import PARAMETERS
 from advisor.decision.pooling import (
     DERIVATIVES,
     INTERCEPTS,
@@ -18,7 +18,7 @@ from advisor.decision.pooling import (
     pooled_without_each,
     posteriors_at_one_speed,
 )
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from tests.decision.campaigns import THETA, estimate
 
 

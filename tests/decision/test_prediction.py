@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from advisor.bundled.study.flying import Scene, as_maneuver, fly_named, follow
 from advisor.decision.history import Flown
 from advisor.decision.pooling import DERIVATIVES
 from advisor.decision.prediction import MOMENTS, Z95, missed_percent, predict, response_to
-from advisor.flight.messages import FloatArray
-from advisor.flight.record import Channel
+from advisor.flight.signals.messages import FloatArray
+from advisor.flight.signals.record import Channel
 from advisor.oem.surface import Servo
-from advisor.study.flying import Scene, as_maneuver, fly_named, follow
 from tests.decision.campaigns import THETA, estimate
 
 SCENE = Scene()

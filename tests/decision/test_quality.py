@@ -7,12 +7,12 @@ from io import BytesIO
 import numpy as np
 import pytest
 
-from advisor.aircraft import Aircraft, Elevator, Limits
+from advisor.aircraft.aircraft import Aircraft, Elevator, Limits
 from advisor.decision.quality import judge_quality, natural_period
-from advisor.flight.events import ManeuverFlown
-from advisor.flight.stream import FlightStream
-from advisor.flight.trust import Distrust
-from advisor.mavlink.frames import FrameScanner
+from advisor.flight.maneuvers.events import ManeuverFlown
+from advisor.flight.signals.trust import Distrust
+from advisor.flight.stream.stream import FlightStream
+from advisor.mavlink.wire.frames import FrameScanner
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.estimator import estimate
 from sim.effects.fitting import flight_of

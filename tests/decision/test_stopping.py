@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft import CampaignPlan
+from advisor.aircraft.aircraft import CampaignPlan
 from advisor.decision.history import Flown
 from advisor.decision.scatter import scatter_percent
 from advisor.decision.stopping import flight_test

@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft import CampaignPlan
+from advisor.aircraft.aircraft import CampaignPlan
+from advisor.bundled.study.flying import Scene, as_maneuver, fly_named
 from advisor.decision.history import Flown
 from advisor.decision.pooling import DERIVATIVES
 from advisor.decision.prediction import Prediction, missed_percent, predict
 from advisor.decision.tolerance import tolerances
-from advisor.flight.messages import FloatArray
-from advisor.study.flying import Scene, as_maneuver, fly_named
+from advisor.flight.signals.messages import FloatArray
 from tests.decision.campaigns import THETA, estimate
 
 PLAN = CampaignPlan(rule="information")

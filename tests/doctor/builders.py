@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from advisor.flight.messages import Columns, FloatArray
+from advisor.flight.signals.messages import Columns, FloatArray
 
 HOST_S = 1_790_000_000.0
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.conftest import Advisor
-from tests.link.builders import free_port
+from tests.mavlink.link.builders import free_port
 
 LOGS = Path(__file__).parents[2] / "logs"
 
@@ -16,7 +16,7 @@ LOGS = Path(__file__).parents[2] / "logs"
 def doctor(*arguments: str) -> subprocess.CompletedProcess[str]:
     """The command as a program of its own, beside a link's other end."""
     return subprocess.run(
-        [sys.executable, "-c", "from advisor.cli import main; main()", "doctor", *arguments],
+        [sys.executable, "-c", "from advisor.cli.group import main; main()", "doctor", *arguments],
         capture_output=True,
         text=True,
         timeout=60,

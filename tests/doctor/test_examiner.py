@@ -5,13 +5,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from advisor.aircraft import Aircraft, Elevator, ElevatorOutput
+from advisor.aircraft.aircraft import Aircraft, Elevator, ElevatorOutput
 from advisor.doctor.document import doctor_document
 from advisor.doctor.examination import Examination, Limit
 from advisor.doctor.examiner import Examiner
-from advisor.flight.messages import Columns
-from advisor.flight.stream import FlightStream
-from advisor.mavlink.logs import open_log
+from advisor.flight.signals.messages import Columns
+from advisor.flight.stream.stream import FlightStream
+from advisor.mavlink.logs.logs import open_log
 from tests.doctor.builders import flight, heartbeat
 
 LOGS = Path(__file__).parents[2] / "logs"

@@ -5,13 +5,13 @@ import re
 import numpy as np
 import pytest
 
-from advisor.aircraft import Elevator
+from advisor.aircraft.aircraft import Elevator
 from advisor.doctor.examination import ElevatorFound, Limit
 from advisor.doctor.expectation import NOISE, TYPICAL, Assumed, frequency
 from advisor.doctor.instruments import COARSE_DEG, LOSSY_PERCENT, elevator_limits, loss_limits, path_limits
 from advisor.doctor.pace import ENOUGH_PER_PERIOD, FEWEST_PER_PERIOD, Paced, rate_limits
-from advisor.flight.suitability import SLOWEST_HZ
-from advisor.flight.vehicle import Vehicle
+from advisor.flight.stream.suitability import SLOWEST_HZ
+from advisor.flight.vehicle.vehicle import Vehicle
 
 HAIR = 1e-4
 

@@ -9,7 +9,7 @@ import pytest
 from advisor.doctor.examination import Examination, Limit
 from advisor.doctor.expectation import NOISE, TYPICAL, Assumed
 from advisor.doctor.next_steps import Examined, next_commands
-from advisor.flight.vehicle import Vehicle
+from advisor.flight.vehicle.vehicle import Vehicle
 
 SLOW = Limit("rate", "too slow", "ask for more", stops=True)
 LOST = Limit("no_elevator", "no elevator", "name it", stops=True)
@@ -70,7 +70,7 @@ def test_a_link_that_serves_is_flown_on_at_once() -> None:
 def test_every_command_is_one_that_the_advisor_takes(limits: tuple[Limit, ...], examined: Examined) -> None:
     for line in next_commands(_found(*limits), examined):
         program, name, *words = shlex.split(line)
-        command = import_module(f"advisor.commands.{name}").command
+        command = import_module(f"advisor.cli.{name}").command
         if isinstance(command, click.Group):
             command, words = command.commands[words[0]], words[1:]
         assert program == "advisor"

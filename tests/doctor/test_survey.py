@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from advisor.doctor.survey import Arrival, Survey
-from advisor.flight.messages import Carrier, Columns
-from advisor.flight.vehicle import Vehicle
+from advisor.flight.signals.messages import Carrier, Columns
+from advisor.flight.vehicle.vehicle import Vehicle
 from tests.doctor.builders import among, aoa, attitude, columns, hud
 
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from advisor.flight.messages import Columns
+from advisor.flight.signals.messages import Columns
 
 
 class Wire:

@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from advisor.aircraft import Aircraft
-from advisor.flight.events import ManeuverFlown, Notice
-from advisor.flight.messages import Columns
-from advisor.flight.stream import FlightStream
-from advisor.mavlink.logs import open_log
+from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.maneuvers.events import ManeuverFlown, Notice
+from advisor.flight.signals.messages import Columns
+from advisor.flight.stream.stream import FlightStream
+from advisor.mavlink.logs.logs import open_log
 
 LOG = Path(__file__).parents[2] / "logs" / "bundled-demo.tlog"
 TRIM_US = 1500

@@ -9,9 +9,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from advisor.compiled import kernel
-from advisor.flight.maneuver import Maneuver, Span
-from advisor.flight.record import Channel
+from advisor.flight.maneuvers.maneuver import Maneuver, Span
+from advisor.flight.signals.record import Channel
+from advisor.process.compiled import kernel
 
 H = 0.0005
 G = 9.80665

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft import Aircraft
+from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.candidates.traits import OF_ONE_IMU
 from advisor.gap.diagnose import diagnose
 from tests.gap.generator import Setup, fly

@@ -2,7 +2,7 @@
 
 import pytest
 
-from advisor.aircraft import Aircraft
+from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.diagnose import diagnose
 from tests.gap.generator import Setup, fly
 

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft import Aircraft
-from advisor.diagnosis import maneuvers_of
+from advisor.aircraft.aircraft import Aircraft
+from advisor.analysis.gap import maneuvers_of
 from advisor.gap.diagnose import diagnose
 from advisor.gap.records.prepare import prepare
 from advisor.gap.records.usable import usable_of

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft import Aircraft
+from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.decision import Decision
 from advisor.gap.fitting.fit import fit

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 import yaml
 
-from advisor.aircraft import PARAMETERS, Aircraft, CampaignPlan, FmuTrim, FmuVariables, Limits
-from advisor.config import parse_aircraft
+from advisor.aircraft.aircraft import PARAMETERS, Aircraft, CampaignPlan, FmuTrim, FmuVariables, Limits
+from advisor.aircraft_file.read import parse_aircraft
 from advisor.gap.diagnose import diagnose
 from advisor.gap.document import gap_document
 from advisor.gap.foresight.plan import foresee_plan
-from advisor.problems import ConfigurationError
 from advisor.report.improved import improved_file, write_improved
+from advisor.words.problems import ConfigurationError
 from tests.gap.generator import LIGHT_AIRCRAFT, Setup, fly
 from tests.schemas import breaches
 

@@ -2,9 +2,9 @@
 
 import pytest
 
-from advisor.aircraft import PARAMETERS, Aircraft
+from advisor.aircraft.aircraft import PARAMETERS, Aircraft
 from advisor.gap.diagnose import diagnose
-from advisor.problems import UnusableInputError
+from advisor.words.problems import UnusableInputError
 from tests.gap.generator import Setup, fly
 
 # One diagnosis serves two tests.

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.signal import lsim
 
-from advisor.aircraft import Aircraft
+from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.diagnose import diagnose
 from advisor.gap.simulator.reading import filtered, lane, packed
 from tests.gap.generator import Setup, fly

@@ -9,8 +9,8 @@ import pytest
 from click.testing import CliRunner
 from rich.console import Console
 
-from advisor.aircraft import PARAMETERS, Aircraft
-from advisor.cli import advisor
+from advisor.aircraft.aircraft import PARAMETERS, Aircraft
+from advisor.cli.group import advisor
 from advisor.gap.candidates.traits import TRAITS
 from advisor.gap.diagnose import diagnose
 from advisor.gap.foresight.needs import need_of
@@ -18,8 +18,8 @@ from advisor.gap.foresight.plan import foresee_flights, foresee_plan
 from advisor.gap.records.prepare import prepare
 from advisor.gap.search.acceptance import LEAST_OFFSET_RAD
 from advisor.gap.search.baseline import prior_derivatives
-from advisor.problems import ConfigurationError
 from advisor.report.gap_plan import ForesightScreen, size_of
+from advisor.words.problems import ConfigurationError
 from tests.gap.generator import UAV, Setup, fly
 from tests.schemas import breaches
 

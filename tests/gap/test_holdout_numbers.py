@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter1d
 
-from advisor.aircraft import Aircraft
+from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.fit import rms_of
 from advisor.gap.fitting.holdout import hold_out, measured_in

@@ -7,9 +7,9 @@ import pytest
 import yaml
 from click.testing import CliRunner
 
-from advisor.aircraft import PARAMETERS
-from advisor.cli import advisor
-from advisor.config import load_aircraft
+from advisor.aircraft.aircraft import PARAMETERS
+from advisor.aircraft_file.read import load_aircraft
+from advisor.cli.group import advisor
 from sim.compare import distances
 from sim.effects.fitting import flight_of
 from sim.effects.terms import problems_with

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from advisor.aircraft import Aircraft, Elevator
-from advisor.diagnosis import maneuvers_of
+from advisor.aircraft.aircraft import Aircraft, Elevator
+from advisor.analysis.gap import maneuvers_of
 from advisor.gap.diagnose import diagnose
 
 LOGS = Path(__file__).parents[2] / "logs"

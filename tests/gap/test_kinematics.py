@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft import Aircraft
-from advisor.flight.alpha_offset import AlphaOffset
-from advisor.flight.coloured import coloured_covariance
-from advisor.flight.kinematics import KinematicCheck, check_alpha, combine
+from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.instruments.alpha_offset import AlphaOffset
+from advisor.flight.instruments.kinematics import KinematicCheck, check_alpha, combine
+from advisor.flight.signals.coloured import coloured_covariance
 from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.records.prepare import prepare

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft import Aircraft, Elevator
-from advisor.aircraft_effects import LEAST, mistakes_in
-from advisor.config import parse_aircraft
+from advisor.aircraft.aircraft import Aircraft, Elevator
+from advisor.aircraft.aircraft_effects import LEAST, mistakes_in
+from advisor.aircraft_file.read import parse_aircraft
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import beyond_known, together, with_known
 from advisor.gap.candidates.traits import OF_ONE_FLIGHT, TRAITS

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from advisor.aircraft import Aircraft
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.fit import fit
@@ -17,7 +18,6 @@ from advisor.gap.records.prepare import prepare
 from advisor.gap.search.air import moving_air
 from advisor.gap.search.baseline import fit_baseline
 from advisor.oem.innovations import DIFFUSE, AirModel, cost_of, gains_of
-from advisor.standard_gravity import GRAVITY_M_S2
 from tests.gap.generator import Setup, fly
 
 pytestmark = pytest.mark.study

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from advisor.aircraft import Aircraft
+from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.normal import solved_within
 from tests.gap.generator import Setup, fly

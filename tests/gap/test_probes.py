@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from advisor.aircraft import Aircraft
+from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.fitting.linear import unit_pulse
 from advisor.gap.noise.probes import DYNAMIC, probe_blocks
 from advisor.gap.noise.quiet import in_one_maneuver, instrument_noise, unfiltered

@@ -2,8 +2,8 @@
 
 import pytest
 
-from advisor.aircraft import Aircraft
-from advisor.diagnosis import diagnose_logs
+from advisor.aircraft.aircraft import Aircraft
+from advisor.analysis.gap import diagnose_logs
 from advisor.gap.diagnose import diagnose
 from sim.effects.fitting import flight_of
 from sim.record import record

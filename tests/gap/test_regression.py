@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from advisor.aircraft import Aircraft
+from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.regression import regressions
 from advisor.gap.records.prepare import prepare

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from advisor.flight.kinematics import KinematicCheck
+from advisor.flight.instruments.kinematics import KinematicCheck
 from advisor.gap.result import Cause, Diagnosis, Gap, Shrink, Trace, Unseen, Value, Where, Yardsticks
 from advisor.report.gap_causes import confusion_sentence
 from advisor.report.gap_screen import GapScreen

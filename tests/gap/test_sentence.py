@@ -2,8 +2,8 @@
 
 import pytest
 
-from advisor.aircraft import Accelerometer, Aircraft, Alpha
-from advisor.aircraft_effects import LEAST
+from advisor.aircraft.aircraft import Accelerometer, Aircraft, Alpha
+from advisor.aircraft.aircraft_effects import LEAST
 from advisor.gap.candidates.traits import TRAITS
 from advisor.gap.result import Cause, Value, Where
 from advisor.gap.verdict.statements import in_simulator, what

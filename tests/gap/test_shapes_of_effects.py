@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft import Aircraft
+from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.diagnose import diagnose
 from advisor.gap.simulator.layout import ENTRIES, INDEX
 from advisor.gap.simulator.surface import surface

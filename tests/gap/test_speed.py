@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft import Aircraft
-from advisor.flight.derived_alpha import SLOWEST_FLIGHT_M_S
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.standard_gravity import GRAVITY_M_S2
+from advisor.flight.signals.derived_alpha import SLOWEST_FLIGHT_M_S
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.holdout import hold_out
@@ -22,7 +23,6 @@ from advisor.gap.search.speed import swings
 from advisor.gap.simulator.layout import HEIGHT, SPEED, THRUST
 from advisor.oem.airspeed import airspeed
 from advisor.oem.recursion import accumulated
-from advisor.standard_gravity import GRAVITY_M_S2
 from tests.gap.generator import UAV, Setup, fly
 
 HEIGHTS = (80.0, 90.0, 85.0)

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft import Aircraft
-from advisor.diagnosis import maneuvers_of
+from advisor.aircraft.aircraft import Aircraft
+from advisor.analysis.gap import maneuvers_of
 from advisor.gap.diagnose import diagnose
 from advisor.gap.simulator.layout import EFFECT_ENTRIES, ENTRIES, INDEX
 from advisor.gap.simulator.surface import surface

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from advisor.aircraft import Aircraft
+from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.diagnose import diagnose
 from advisor.gap.records.prepare import prepare
 from advisor.gap.result import VISIBLE

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.signal import butter, lfilter, sosfiltfilt
 
-from advisor.aircraft import PARAMETERS, Aircraft, Alpha
+from advisor.aircraft.aircraft import PARAMETERS, Aircraft, Alpha
 from advisor.gap.candidates.between import shift_moments
 from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.prior import ERROR_IF_WRONG, log_prior, prior_precision

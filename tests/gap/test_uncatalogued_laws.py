@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft import Aircraft, Elevator
+from advisor.aircraft.aircraft import Aircraft, Elevator
 from advisor.gap.diagnose import diagnose
 from advisor.gap.records.prepare import prepare
 from advisor.gap.search.baseline import fit_baseline

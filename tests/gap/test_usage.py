@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from advisor import cli
-from advisor import diagnosis as reading
-from advisor.aircraft import PARAMETERS, Aircraft
-from advisor.flight.maneuver import Maneuver
+from advisor.aircraft.aircraft import PARAMETERS, Aircraft
+from advisor.analysis import gap as reading
+from advisor.cli import group as cli
+from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.diagnose import diagnose
 from advisor.gap.result import Diagnosis
 from advisor.simulators.compare import Compared

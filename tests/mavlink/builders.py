@@ -12,8 +12,8 @@ os.environ["MAVLINK20"] = "1"
 from pymavlink import mavutil
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
-from advisor.flight.messages import Columns
-from advisor.mavlink.definitions import DEFINITIONS
+from advisor.flight.signals.messages import Columns
+from advisor.mavlink.wire.definitions import DEFINITIONS
 
 mavutil.set_dialect("ardupilotmega")
 

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 
-from advisor.flight.messages import Columns
-from advisor.mavlink.tlog import read_tlog
-from advisor.standard_gravity import GRAVITY_M_S2
+from advisor.aircraft.standard_gravity import GRAVITY_M_S2
+from advisor.flight.signals.messages import Columns
+from advisor.mavlink.logs.tlog import read_tlog
 from tests.mavlink.autopilot_logs import dataflash_head, dataflash_record
 
 DEFAULT = {"IMU": 50.0, "ATT": 25.0, "RCOU": 25.0, "CTUN": 25.0, "XKF1": 25.0, "ARSP": 10.0, "AOA": 10.0}

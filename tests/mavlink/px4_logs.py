@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from advisor.aircraft import Aircraft
-from advisor.flight.events import ManeuverFlown, Notice
-from advisor.flight.stream import FlightStream
-from advisor.mavlink.logs import open_log
+from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.maneuvers.events import ManeuverFlown, Notice
+from advisor.flight.stream.stream import FlightStream
+from advisor.mavlink.logs.logs import open_log
 
 G = 9.80665
 SECONDS = 40.0

@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import expm
 
-from advisor.aircraft import PARAMETERS
-from advisor.flight.maneuver import Maneuver, Span
-from advisor.flight.record import Channel
+from advisor.aircraft.aircraft import PARAMETERS
+from advisor.flight.maneuvers.maneuver import Maneuver, Span
+from advisor.flight.signals.record import Channel
 
 JET = np.array([-0.009, -0.483, 0.104, 0.676, 0.475, -4.93, -2.01, -7.21])
 """The published short-period case of a twin-jet research aircraft."""

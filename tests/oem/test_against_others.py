@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from advisor.aircraft import PARAMETERS
+from advisor.aircraft.aircraft import PARAMETERS
 from advisor.model.short_period import ShortPeriod
 from advisor.oem.problem import Problem, Record, Signal
 from advisor.oem.solution import solve

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.aircraft import Aircraft, Elevator
-from advisor.flight.maneuver import Maneuver
+from advisor.aircraft.aircraft import Aircraft, Elevator
+from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.carried import Carried
 from advisor.oem.colour import Colour
 from advisor.oem.estimate import Estimate

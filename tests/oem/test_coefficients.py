@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft import Reference
-from advisor.flight.atmosphere import AirFlown
+from advisor.aircraft.aircraft import Reference
+from advisor.flight.instruments.atmosphere import AirFlown
 from advisor.oem.coefficients import coefficients
 from advisor.oem.estimate import Estimate
 

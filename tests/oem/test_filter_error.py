@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from advisor.aircraft import Aircraft, Elevator
+from advisor.aircraft.aircraft import Aircraft, Elevator
 from advisor.campaign.single_maneuver import assess, cautions_of
-from advisor.flight.maneuver import Maneuver
+from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import estimate
 from advisor.oem.filter_error import filter_error, moving_air

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from advisor.aircraft import Reference
-from advisor.flight.atmosphere import AirFlown
+from advisor.aircraft.aircraft import Reference
+from advisor.flight.instruments.atmosphere import AirFlown
 from advisor.oem.estimate import Estimate
 from advisor.oem.flying_qualities import FlyingQualities, flying_qualities
 

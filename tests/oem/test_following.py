@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from advisor.aircraft import Aircraft, Elevator
-from advisor.flight.maneuver import Maneuver
+from advisor.aircraft.aircraft import Aircraft, Elevator
+from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import estimate
 from advisor.oem.following import Follower

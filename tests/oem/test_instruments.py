@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft import Accelerometer, Aircraft, Alpha, Elevator
-from advisor.flight.record import Channel
+from advisor.aircraft.aircraft import Accelerometer, Aircraft, Alpha, Elevator
+from advisor.flight.signals.record import Channel
 from advisor.oem.airspeed import airspeed
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import estimate, estimate_jointly

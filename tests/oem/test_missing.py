@@ -2,7 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.aircraft import PARAMETERS, Aircraft, Elevator
+from advisor.aircraft.aircraft import PARAMETERS, Aircraft, Elevator
 from advisor.oem.estimator import estimate
 from advisor.oem.missing import in_words, price
 from advisor.oem.problem import Problem, Record, Signal

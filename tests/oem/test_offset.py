@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from advisor.aircraft import Aircraft, Elevator
+from advisor.aircraft.aircraft import Aircraft, Elevator
 from advisor.oem.estimator import estimate
 from tests.oem.builders import UAV, maneuver, simulate, trim_alpha, trim_elevator
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from advisor.aircraft import Aircraft
+from advisor.aircraft.aircraft import Aircraft
 from advisor.oem.prepare import SMOOTH_SPEED_CHANGE, SPEED_CHANGE, Prepared, prepare
 from tests.oem.builders import maneuver
 

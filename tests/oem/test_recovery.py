@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from advisor.aircraft import Aircraft
+from advisor.aircraft.aircraft import Aircraft
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import estimate, estimate_jointly
 from tests.oem.builders import JET, UAV, flown, maneuver

@@ -10,9 +10,9 @@ from typing import Any
 
 import pytest
 
-from advisor import cli
-from advisor.commands.page_content import gather
-from advisor.config import load_aircraft
+from advisor.aircraft_file.read import load_aircraft
+from advisor.cli import group as cli
+from advisor.cli.page_content import gather
 from advisor.report.page.content import Content
 from advisor.report.page.render import page
 from tests.flights import FOUR, TWO, recorded

@@ -5,10 +5,10 @@ from math import degrees
 
 import pytest
 
-from advisor.aircraft import PARAMETERS
+from advisor.aircraft.aircraft import PARAMETERS
 from advisor.report.page.render import page
 from advisor.report.qualities import coefficients_of, qualities_of, quality_lines
-from advisor.vehicle_time import clock
+from advisor.words.vehicle_time import clock
 from tests.report.conftest import Reported
 from tests.report.page_reader import with_interval
 

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from advisor.aircraft import Aircraft
-from advisor.commands.page_content import gather
+from advisor.aircraft.aircraft import Aircraft
+from advisor.cli.page_content import gather
 from advisor.report.page.drawing import draw
 from advisor.report.page.render import page
 from tests.conftest import Advisor

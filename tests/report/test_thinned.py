@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from advisor.flight.record import Channel
+from advisor.flight.signals.record import Channel
 from advisor.report.page.thinned import thinned
 
 

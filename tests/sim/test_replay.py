@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import yaml
 
-from advisor.aircraft_effects import LEAST
+from advisor.aircraft.aircraft_effects import LEAST
 from sim.compare import distances
 from sim.effects.fitting import flight_of
 from sim.linear import RESEARCH_JET

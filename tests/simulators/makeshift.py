@@ -6,8 +6,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from advisor.problems import UnusableInputError
 from advisor.simulators.protocol import Condition, Increments, Inputs, Replay, State
+from advisor.words.problems import UnusableInputError
 
 STANDARD_GRAVITY = 9.80665
 

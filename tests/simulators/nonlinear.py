@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.flight.maneuver import Maneuver, Span
-from advisor.flight.messages import FloatArray
-from advisor.flight.record import Channel
+from advisor.flight.maneuvers.maneuver import Maneuver, Span
+from advisor.flight.signals.messages import FloatArray
+from advisor.flight.signals.record import Channel
 from advisor.simulators.protocol import Condition, Increments, Inputs, Replay, State
 
 G = 9.80665

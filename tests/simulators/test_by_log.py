@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from advisor.aircraft import Aircraft
-from advisor.diagnosis import compare_logs, maneuvers_of, named_simulator
+from advisor.aircraft.aircraft import Aircraft
+from advisor.analysis.gap import compare_logs, maneuvers_of, named_simulator
 from advisor.simulators.by_log import IdentifiedSimulator
 from sim.effects.fitting import flight_of
 from sim.record import record

@@ -5,12 +5,12 @@ from pathlib import Path
 
 import pytest
 
-from advisor import cli
-from advisor.aircraft import Aircraft
-from advisor.config import load_aircraft
-from advisor.problems import ConfigurationError
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft_file.read import load_aircraft
+from advisor.cli import group as cli
 from advisor.simulators.compare import compare
 from advisor.simulators.specification import simulator_of
+from advisor.words.problems import ConfigurationError
 from tests.flights import recorded
 from tests.simulators.nonlinear import Nonlinear, flown
 from tests.simulators.test_specification import nothing_read

@@ -6,12 +6,12 @@ from functools import cache
 import numpy as np
 import pytest
 
-from advisor.aircraft import Aircraft
-from advisor.flight.messages import FloatArray
+from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.diagnose import diagnose
-from advisor.problems import UnusableInputError
 from advisor.simulators.compare import Compared, compare
 from advisor.simulators.linear import LinearSimulator
+from advisor.words.problems import UnusableInputError
 from tests.simulators.nonlinear import TRIM_RAD, Nonlinear, flown
 
 PLAIN = Nonlinear()

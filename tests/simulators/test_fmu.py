@@ -7,12 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from advisor.aircraft import Aircraft, FmuTrim, FmuVariables
-from advisor.config import parse_aircraft
-from advisor.flight.messages import FloatArray
-from advisor.problems import ConfigurationError, UnusableInputError
+from advisor.aircraft.aircraft import Aircraft, FmuTrim, FmuVariables
+from advisor.aircraft_file.read import parse_aircraft
+from advisor.flight.signals.messages import FloatArray
 from advisor.simulators.fmu import FmuSimulator, make_fmu
 from advisor.simulators.protocol import Condition, Inputs, Replay
+from advisor.words.problems import ConfigurationError, UnusableInputError
 from tests.simulators.makeshift import Constant, Damping
 from tests.simulators.small_fmu import build, described
 

@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from advisor.problems import ConfigurationError, UnusableInputError
 from advisor.simulators.isolated import Isolated
 from advisor.simulators.protocol import Condition, Inputs
+from advisor.words.problems import ConfigurationError, UnusableInputError
 from tests.simulators.makeshift import Constant
 
 HERE = "tests.simulators.makeshift"

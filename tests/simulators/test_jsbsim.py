@@ -6,12 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from advisor.aircraft import Aircraft
-from advisor.flight.messages import FloatArray
-from advisor.problems import ConfigurationError, UnusableInputError
+from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.signals.messages import FloatArray
 from advisor.simulators.jsbsim import Jsbsim, make_jsbsim
 from advisor.simulators.jsbsim_model import find_model
 from advisor.simulators.protocol import Condition, Inputs, Replay
+from advisor.words.problems import ConfigurationError, UnusableInputError
 from tests.simulators.makeshift import Constant, Damping
 
 STEP_S = 0.005

@@ -2,8 +2,8 @@
 
 import pytest
 
-from advisor.aircraft import Aircraft
-from advisor.diagnosis import compare_logs, named_simulator
+from advisor.aircraft.aircraft import Aircraft
+from advisor.analysis.gap import compare_logs, named_simulator
 from sim.effects.fitting import flight_of
 from sim.flight import Flight
 from sim.record import record

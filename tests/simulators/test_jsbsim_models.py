@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from advisor.aircraft import Aircraft
-from advisor.problems import ConfigurationError, UnusableInputError
+from advisor.aircraft.aircraft import Aircraft
 from advisor.simulators.jsbsim import Jsbsim, make_jsbsim
 from advisor.simulators.jsbsim_model import find_model
 from advisor.simulators.protocol import Condition, Inputs
+from advisor.words.problems import ConfigurationError, UnusableInputError
 from sim.jsbsim_aircraft import JsbsimAircraft
 from tests.simulators.makeshift import Damping
 

@@ -4,12 +4,12 @@ from pathlib import Path
 
 import pytest
 
-from advisor.aircraft import Aircraft
-from advisor.config import parse_aircraft
-from advisor.problems import ConfigurationError, UnusableInputError
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft_file.read import parse_aircraft
 from advisor.simulators import specification
 from advisor.simulators.linear import LinearSimulator
 from advisor.simulators.specification import simulator_of
+from advisor.words.problems import ConfigurationError, UnusableInputError
 from tests.simulators.test_increments import MODEL
 
 

@@ -6,14 +6,14 @@ from dataclasses import replace
 from math import inf
 from pathlib import Path
 
-from advisor.aircraft import Aircraft
+from advisor.aircraft.aircraft import Aircraft
 from advisor.campaign.campaign import Campaign
 from advisor.campaign.hand_decisions import NOTHING, ByHand
-from advisor.flight.messages import Columns
-from advisor.mavlink.logs import open_log
-from advisor.problems import UnusableInputError
-from advisor.tui.replay import LogPlayer
-from advisor.tui.source import LinkHealth
+from advisor.flight.signals.messages import Columns
+from advisor.mavlink.logs.logs import open_log
+from advisor.session.replay import LogPlayer
+from advisor.session.source import LinkHealth
+from advisor.words.problems import UnusableInputError
 from tests.tui import flights
 from tests.tui.stand_ins import HandFedSource, StagedCampaign
 

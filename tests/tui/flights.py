@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from advisor.aircraft import PARAMETERS, Aircraft, CampaignPlan
+from advisor.aircraft.aircraft import PARAMETERS, Aircraft, CampaignPlan
 from advisor.campaign.state import CampaignState, ChannelStatus, JudgedManeuver
 from advisor.decision.verdict import (
     FlightTestVerdict,
@@ -16,11 +16,11 @@ from advisor.decision.verdict import (
     RuleProgress,
     RuleResult,
 )
-from advisor.flight.maneuver import Maneuver, Span
-from advisor.flight.record import Channel
-from advisor.flight.vehicle import Vehicle
+from advisor.flight.maneuvers.maneuver import Maneuver, Span
+from advisor.flight.signals.record import Channel
+from advisor.flight.vehicle.vehicle import Vehicle
 from advisor.oem.estimate import ChannelFit, Estimate, NoEstimate
-from advisor.vehicle_time import clock
+from advisor.words.vehicle_time import clock
 
 TRUTH = np.array([0.04, -3.2, 0.02, -0.21, 0.47, -48.0, -4.2, -101.0])
 SPREAD = np.array([0.004, 0.15, 0.01, 0.05, 0.05, 1.9, 0.3, 4.0])

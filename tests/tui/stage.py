@@ -13,11 +13,11 @@ from textual.pilot import Pilot
 from textual.widget import Widget
 
 from advisor.campaign.state import CampaignState
+from advisor.session.conductor import Conductor
+from advisor.session.source import Playable, Source, Tempo
 from advisor.tui.app import AdvisorApp
-from advisor.tui.conductor import Conductor
 from advisor.tui.panes.lines import Lines
 from advisor.tui.settings import Settings
-from advisor.tui.source import Playable, Source, Tempo
 from tests.tui import flights
 from tests.tui.stand_ins import HandFedSource, StagedCampaign
 

@@ -8,11 +8,11 @@ import numpy as np
 
 from advisor.campaign.hand_decisions import NOTHING, ByHand, Remark
 from advisor.campaign.state import CampaignState, JudgedManeuver
-from advisor.flight.maneuver import Maneuver
-from advisor.flight.marks import Mark
-from advisor.flight.messages import Columns
-from advisor.problems import Problem
-from advisor.tui.source import LinkHealth, Order
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.maneuvers.marks import Mark
+from advisor.flight.signals.messages import Columns
+from advisor.session.source import LinkHealth, Order
+from advisor.words.problems import Problem
 from tests.tui import flights
 
 

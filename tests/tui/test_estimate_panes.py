@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 from rich.text import Text
 
-from advisor.aircraft import PARAMETERS
+from advisor.aircraft.aircraft import PARAMETERS
 from advisor.campaign.state import CampaignState
+from advisor.session.view import View, view_before_first
 from advisor.tui.panes.correlation import Correlation
 from advisor.tui.panes.courses import Courses
 from advisor.tui.panes.history import course, history_chart
 from advisor.tui.panes.residuals import Residuals
 from advisor.tui.plot.widget import Plot
 from advisor.tui.settings import Settings
-from advisor.tui.view import View, view_before_first
 from tests.tui import flights
 from tests.tui.stage import Stage, stage
 

@@ -5,10 +5,10 @@ from dataclasses import replace
 
 import pytest
 
-from advisor.problems import Problem, UnusableInputError
+from advisor.session.source import LinkHealth
 from advisor.tui.panes.alarm import Alarm
 from advisor.tui.panes.big_word import BigWord
-from advisor.tui.source import LinkHealth
+from advisor.words.problems import Problem, UnusableInputError
 from tests.tui import flights
 from tests.tui.stage import stage
 from tests.tui.stand_ins import HandFedSource

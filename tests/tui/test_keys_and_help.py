@@ -6,18 +6,18 @@ import pytest
 from textual.command import CommandPalette
 from textual.widgets import DataTable, Static
 
+from advisor.session.replay import LogPlayer
+from advisor.session.source import LinkHealth
 from advisor.tui import keys
 from advisor.tui.explaining import keys_at_hand
 from advisor.tui.panes.ask import Ask
 from advisor.tui.panes.keys_line import KeysLine
 from advisor.tui.panes.pane import Pane
-from advisor.tui.replay import LogPlayer
 from advisor.tui.screens.engineer import PANES, EngineerScreen
 from advisor.tui.screens.explain import Explain
 from advisor.tui.screens.pilot import PilotScreen
 from advisor.tui.settings import Settings
-from advisor.tui.source import LinkHealth
-from advisor.vehicle_time import clock
+from advisor.words.vehicle_time import clock
 from tests.tui import flights
 from tests.tui.stage import Stage, stage
 from tests.tui.stand_ins import HandFedSource, columns

@@ -2,15 +2,15 @@
 
 from dataclasses import replace
 
-from advisor.flight.elevator_guess import Guess
-from advisor.flight.vehicle import Vehicle
-from advisor.problems import Problem
+from advisor.flight.elevator.elevator_guess import Guess
+from advisor.flight.vehicle.vehicle import Vehicle
+from advisor.session.replay import LogPlayer
+from advisor.session.source import LinkHealth, Order
 from advisor.tui.explaining import keys_at_hand
 from advisor.tui.panes.big_word import BigWord
 from advisor.tui.panes.keys_line import KeysLine
-from advisor.tui.replay import LogPlayer
 from advisor.tui.settings import Settings
-from advisor.tui.source import LinkHealth, Order
+from advisor.words.problems import Problem
 from tests.tui import flights
 from tests.tui.stage import Stage, stage
 from tests.tui.stand_ins import HandFedSource, columns

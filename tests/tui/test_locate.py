@@ -3,7 +3,7 @@
 import pytest
 from click.testing import CliRunner
 
-from advisor.commands.locate import command
+from advisor.cli.locate import command
 from advisor.tui.settings import settings_path
 
 

@@ -8,18 +8,18 @@ from pathlib import Path
 
 import pytest
 
-from advisor.aircraft import Aircraft
+from advisor.aircraft.aircraft import Aircraft
+from advisor.analysis.marks_file import keep_by_hand, path_beside, read_by_hand
 from advisor.campaign.campaign import Campaign
 from advisor.campaign.hand_decisions import ByHand
-from advisor.marks_file import keep_by_hand, path_beside, read_by_hand
-from advisor.mavlink.logs import open_log
+from advisor.mavlink.logs.logs import open_log
+from advisor.session.conductor import Conductor
+from advisor.session.live import LinkSource
+from advisor.session.replay import LogPlayer
+from advisor.session.source import Tempo
 from advisor.tui.app import AdvisorApp
-from advisor.tui.conductor import Conductor
-from advisor.tui.live import LinkSource
 from advisor.tui.panes.keys_line import KeysLine
-from advisor.tui.replay import LogPlayer
 from advisor.tui.settings import Settings
-from advisor.tui.source import Tempo
 from tests.flights import TWO, recorded
 from tests.tui import flights
 from tests.tui.stage import Stage, stage

@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import pytest
 
-from advisor.problems import Problem
+from advisor.session.source import LinkHealth
+from advisor.session.view import View
 from advisor.tui.advice import advise
 from advisor.tui.panes.big_word import BigWord
-from advisor.tui.source import LinkHealth
-from advisor.tui.view import View
+from advisor.words.problems import Problem
 from tests.tui import flights
 from tests.tui.stage import stage
 from tests.tui.stand_ins import HandFedSource

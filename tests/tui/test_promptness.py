@@ -9,14 +9,14 @@ from textual.css import stylesheet
 from textual.events import Key
 from textual.widget import Widget
 
+from advisor.session.conducting import Report
+from advisor.session.view import View
 from advisor.tui import app as application
-from advisor.tui.conducting import Report
 from advisor.tui.garbage_collection import Garbage
 from advisor.tui.plot.widget import Plot
 from advisor.tui.settings import Settings
 from advisor.tui.sheets import Sheets
 from advisor.tui.themes import NAMES, THEMES
-from advisor.tui.view import View
 from benchmarks.keys import says
 from benchmarks.terminal import terminal
 from tests.tui import flights

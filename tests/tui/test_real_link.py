@@ -1,12 +1,12 @@
 """The application on a real link: the bundled aircraft flies as a process of its own, over UDP."""
 
-from advisor.aircraft import Aircraft
+from advisor.aircraft.aircraft import Aircraft
+from advisor.bundled.demo import Demonstration
 from advisor.campaign.campaign import Campaign
 from advisor.campaign.hand_decisions import ByHand
-from advisor.demo import Demonstration
+from advisor.session.conductor import Conductor
+from advisor.session.live import LinkSource
 from advisor.tui.app import AdvisorApp
-from advisor.tui.conductor import Conductor
-from advisor.tui.live import LinkSource
 from advisor.tui.panes.big_word import BigWord
 from advisor.tui.settings import Settings
 from tests.tui.stage import Stage

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from advisor.problems import ConfigurationError
 from advisor.tui.settings import Settings, load_settings
+from advisor.words.problems import ConfigurationError
 
 
 def written(folder: Path, text: str) -> Path:

@@ -4,8 +4,8 @@ import os
 import signal
 
 from advisor.campaign.hand_decisions import ByHand
-from advisor.tui.conducting import Report
-from advisor.tui.remote import RemoteConductor, Task
+from advisor.session.conducting import Report
+from advisor.session.remote import RemoteConductor, Task
 from tests.tui import elsewhere
 
 

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 from textual.app import App
 
+from advisor.session.source import Tempo
+from advisor.session.view import view_before_first
 from advisor.tui.panes.courses import Courses
 from advisor.tui.panes.fit import Fit
 from advisor.tui.rows import Rows
 from advisor.tui.settings import Settings
-from advisor.tui.source import Tempo
 from advisor.tui.taking import log_of
-from advisor.tui.view import view_before_first
 from tests.tui import flights
 from tests.tui.stage import Stage, stage
 

@@ -7,18 +7,18 @@ from threading import Thread
 
 import pytest
 
-from advisor.tui.conducting import Report
-from advisor.tui.conductor import Conductor
+from advisor.session.conducting import Report
+from advisor.session.conductor import Conductor
+from advisor.session.hand import HandDecision
+from advisor.session.source import Order
 from advisor.tui.explaining import keys_at_hand
-from advisor.tui.hand import HandDecision
 from advisor.tui.settings import Settings
-from advisor.tui.source import Order
 from advisor.web.attached import AttachedConductor, ServerGoneError
 from advisor.web.audience import Audience
 from advisor.web.showing import Showing
 from advisor.web.viewer import ViewerApp, WatchingApp
 from advisor.web.viewing import Viewing
-from tests.link.builders import wait_until
+from tests.mavlink.link.builders import wait_until
 from tests.tui import flights
 from tests.tui.stage import Stage
 from tests.tui.stand_ins import HandFedSource, StagedCampaign, staged

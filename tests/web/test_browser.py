@@ -8,7 +8,7 @@ from urllib.parse import urlsplit
 import pytest
 from playwright.sync_api import Browser
 
-from tests.link.builders import Sender, attitude, heartbeat, wait_until
+from tests.mavlink.link.builders import Sender, attitude, heartbeat, wait_until
 from tests.web.serving import BROWSER, Screen, Serving, a_browser
 
 LOGS = Path(__file__).parents[2] / "logs"
@@ -59,8 +59,8 @@ def test_two_pages_show_one_campaign_on_one_link_and_nothing_outlives_the_comman
             other.until(lambda: "gust" in other.text)
             started = serving.children
             assert sorted(name for _, name in started) == [
-                "advisor.mavlink.keeper",
-                "advisor.tui.worker",
+                "advisor.mavlink.link.keeper",
+                "advisor.session.worker",
                 "advisor.web.viewer",
                 "advisor.web.viewer",
             ]

@@ -6,11 +6,11 @@ from contextlib import contextmanager
 
 import pytest
 
-from advisor.mavlink.keeping import Door
-from advisor.problems import ConfigurationError
+from advisor.mavlink.link.keeping import Door
 from advisor.web.access import Access, checked_origin
 from advisor.web.server import WebServer, listening
 from advisor.web.site import Site
+from advisor.words.problems import ConfigurationError
 
 PASSWORD = "correct horse"
 NOWHERE = Door("/nowhere", b"")

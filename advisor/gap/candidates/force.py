@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.bent import bent
 from advisor.gap.candidates.between import divide, ramps_and_steps, steps_in
 from advisor.gap.candidates.variant import Values, Variant

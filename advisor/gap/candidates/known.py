@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from advisor.aircraft import Aircraft
-from advisor.flight.messages import FloatArray
+from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.bent import as_in_file
 from advisor.gap.candidates.moment import PROPELLER
 from advisor.gap.candidates.traits import OF_ONE_FLIGHT, TRAITS

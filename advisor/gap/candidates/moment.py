@@ -5,12 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.aircraft.standard_gravity import GRAVITY_M_S2
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.bent import bent
 from advisor.gap.candidates.between import ramps_and_steps, shift_moments, shift_stability
 from advisor.gap.candidates.variant import Variant
 from advisor.gap.records.flights import Flights
-from advisor.standard_gravity import GRAVITY_M_S2
 
 BLOCK = "moment_equation"
 

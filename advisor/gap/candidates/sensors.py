@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.variant import Values, Variant
 from advisor.gap.records.flights import Flights
 from advisor.gap.simulator.layout import INDEX

@@ -1,7 +1,7 @@
 """The table of effects: the prior knowledge of each effect, independent of its description in a fit.
 
 Parameters, bounds, steps and least sizes are in the variants of each block. Keys of the aircraft file are in
-``advisor.aircraft_effects``.
+``advisor.aircraft.aircraft_effects``.
 """
 
 from advisor.gap.candidates.trait import Need, Trait

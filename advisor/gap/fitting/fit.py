@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.linear import Linear, are_near, linearise
 from advisor.gap.fitting.problem import Point, Problem, counts, row_weights
 from advisor.gap.fitting.step import Step, solve_blocks

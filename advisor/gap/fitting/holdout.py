@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.fit import Fitted, rms_of
 from advisor.gap.fitting.normal import solved_within
 from advisor.gap.fitting.problem import Point, Problem

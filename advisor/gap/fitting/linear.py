@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.problem import Point, Problem
 from advisor.gap.records.flights import Flight
 from advisor.gap.simulator.layout import DISTURB_INPUT, INDEX, NUISANCES, OUTPUTS, SPEED

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.holdout import HeldOut, held_out
 from advisor.gap.fitting.linear import linearise

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.fit import Fitted, above_floor
 from advisor.gap.fitting.linear import shared_steps, shifted_points
 from advisor.gap.fitting.normal import solved, solved_within

@@ -4,7 +4,7 @@ bounds."""
 import numpy as np
 from scipy.linalg.lapack import dpotrf, dpotrs
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 
 _SOUND = 1e-2
 """Least pivot of a matrix with unit diagonal that shows it to be well conditioned: no singular value is below

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 
 ERROR_IF_RIGHT = 0.03
 """Relative standard deviation of derivatives that are right: they are linearised, at a nearby speed."""

@@ -6,7 +6,7 @@ from itertools import accumulate, pairwise
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.prior import ERROR_IF_FIXED, ERROR_IF_RIGHT, ERROR_IF_WRONG, prior_precision
 from advisor.gap.fitting.whitening import Filters, Whitening

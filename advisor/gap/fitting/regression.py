@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
-from advisor.flight.motion import integrated
+from advisor.flight.signals.messages import FloatArray
+from advisor.flight.signals.motion import integrated
 from advisor.gap.records.flights import Flight, Flights
 
 _STEP_S = 0.02

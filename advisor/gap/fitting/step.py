@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.linear import Linear
 from advisor.gap.fitting.normal import factored, solved, solved_within
 from advisor.gap.fitting.problem import Point, Problem

@@ -11,7 +11,7 @@ from typing import Protocol
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.records.flights import Flights
 from advisor.gap.simulator.layout import INDEX, SPEED, short_period
 from advisor.oem.innovations import ALPHA, AirModel, Gains, gains_of

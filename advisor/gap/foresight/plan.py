@@ -4,10 +4,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from advisor.aircraft import PARAMETERS, Aircraft
-from advisor.flight.maneuver import Maneuver, Span
-from advisor.flight.messages import FloatArray
-from advisor.flight.record import Channel
+from advisor.aircraft.aircraft import PARAMETERS, Aircraft
+from advisor.flight.maneuvers.maneuver import Maneuver, Span
+from advisor.flight.signals.messages import FloatArray
+from advisor.flight.signals.record import Channel
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import beyond_known, with_known
 from advisor.gap.candidates.traits import TRAITS
@@ -23,7 +23,7 @@ from advisor.gap.records.prepare import prepare
 from advisor.gap.records.usable import LEAST_SAMPLES
 from advisor.gap.search.baseline import base_entries, everywhere, prior_derivatives
 from advisor.gap.simulator.layout import NUISANCES, OUTPUTS, natural_frequency
-from advisor.problems import ConfigurationError
+from advisor.words.problems import ConfigurationError
 
 STEPS = {
     "3211": ((3, -0.8), (2, 1.2), (1, -1.1), (1, 1.1)),

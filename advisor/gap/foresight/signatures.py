@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.input import LATENCY
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.problem import Problem, row_weights

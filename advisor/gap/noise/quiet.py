@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.fit import Fitted, rms_of
 from advisor.gap.fitting.holdout import mean_squares
 from advisor.gap.fitting.linear import as_measured

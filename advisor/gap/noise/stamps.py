@@ -8,7 +8,7 @@ simulation's grid.
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.problem import Problem, counts
 from advisor.gap.records.grid import STEP_S

@@ -8,10 +8,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from advisor.flight.derived_alpha import SLOWEST_FLIGHT_M_S
-from advisor.flight.maneuver import Maneuver
-from advisor.flight.messages import FloatArray
-from advisor.flight.motion import integrated, speed_rate_at
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.derived_alpha import SLOWEST_FLIGHT_M_S
+from advisor.flight.signals.messages import FloatArray
+from advisor.flight.signals.motion import integrated, speed_rate_at
 from advisor.gap.records.grid import smooth
 from advisor.oem.airspeed import LARGEST_DISAGREEMENT
 

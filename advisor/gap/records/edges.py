@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from advisor.flight.maneuver import Maneuver
-from advisor.flight.messages import FloatArray
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.messages import FloatArray
 
 _STEEP, _SHORT_S = 0.15, 0.02
 """Least jump between two stamps that counts as an edge, as a share of the command's range. The share holds

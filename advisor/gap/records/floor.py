@@ -6,7 +6,7 @@ filtered before storage. A coloured residual has a smaller effective sample size
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.records.flights import Flights
 
 TOLERANCE = 0.02

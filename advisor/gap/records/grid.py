@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 
 STEP_S = 0.005
 """Step of the grid in s: a hundredth of the fastest short period, and as fine as stamps are known."""

@@ -5,9 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.aircraft import Aircraft
-from advisor.flight.maneuver import Maneuver
-from advisor.flight.messages import FloatArray
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.standard_gravity import GRAVITY_M_S2
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.records.airspeed import (
     airspeed_on,
     along_the_path,
@@ -23,7 +24,6 @@ from advisor.gap.records.unmeasured_speed import speed_without_instrument, speed
 from advisor.gap.records.usable import outputs_of, recorded, usable_of
 from advisor.gap.simulator.layout import OUTPUTS, SLOW, SPEED, THETA_FROM, THRUST
 from advisor.oem.place import ASSUMED_M_S
-from advisor.standard_gravity import GRAVITY_M_S2
 
 
 def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft, true_over_read: float = 1.0) -> Flights:

@@ -1,7 +1,7 @@
 """The source of the angle of attack: an instrument or an estimator."""
 
-from advisor.flight.maneuver import Maneuver
-from advisor.flight.renewal import renewed
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.renewal import renewed
 
 _ESTIMATED_HZ = 22.0
 """Rate in Hz below which α may be ArduPilot's estimate, which is renewed at most 20 times per second."""

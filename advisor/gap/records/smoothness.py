@@ -9,8 +9,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
-from advisor.flight.robust import robust_std
+from advisor.flight.signals.messages import FloatArray
+from advisor.flight.signals.robust import robust_std
 
 _WEIGHTS = np.array([1.0, -4.0, 6.0, -4.0, 1.0])
 _ROUGH = 1.6

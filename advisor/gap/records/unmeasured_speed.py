@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.flight.maneuver import Maneuver
-from advisor.flight.messages import FloatArray
-from advisor.flight.motion import bank_at, integrated, path_turning, speed_rate_at
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.messages import FloatArray
+from advisor.flight.signals.motion import bank_at, integrated, path_turning, speed_rate_at
 
 _BLOCK_S = 1.0
 """Length in s of the blocks over which errors of the motion are fully correlated, such as a gust or the rest

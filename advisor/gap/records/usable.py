@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from advisor.flight.maneuver import Maneuver
-from advisor.flight.messages import FloatArray
-from advisor.flight.renewal import renewed
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.messages import FloatArray
+from advisor.flight.signals.renewal import renewed
 from advisor.gap.records.edges import step_unseen
 from advisor.gap.records.flights import Measured
 from advisor.gap.simulator.layout import OUTPUTS

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.traits import TAKES
 from advisor.gap.candidates.variant import Variant
 from advisor.gap.decision import Decision

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
-from advisor.flight.robust import robust_std
+from advisor.flight.signals.messages import FloatArray
+from advisor.flight.signals.robust import robust_std
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.holdout import mean_squares
 from advisor.gap.fitting.problem import Problem

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.aircraft import Aircraft
-from advisor.flight.messages import FloatArray
+from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates import input, moment, sensors, timing
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import stated_in, with_known

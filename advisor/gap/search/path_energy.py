@@ -4,12 +4,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.aircraft.standard_gravity import GRAVITY_M_S2
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.records.flights import Flight, Flights
 from advisor.gap.records.grid import smooth
 from advisor.gap.simulator.layout import HEIGHT, SPEED, THROTTLE, THRUST
 from advisor.oem.recursion import accumulated
-from advisor.standard_gravity import GRAVITY_M_S2
 
 _ENGINES_S = (0.4, 1.5)
 """Lags of engines in s; engines with a lag between them are nearly mixtures of the two."""

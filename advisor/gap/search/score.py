@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.traits import BY_NATURE
 from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.fit import Fitted, rms_of

@@ -12,7 +12,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.aircraft.standard_gravity import GRAVITY_M_S2
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.fit import Fitted, fit
 from advisor.gap.fitting.holdout import HeldOut, hold_out
 from advisor.gap.fitting.measure import whole_gap
@@ -28,7 +29,6 @@ from advisor.gap.search.path_energy import (
     uncommanded_thrust,
 )
 from advisor.gap.simulator.layout import SPEED
-from advisor.standard_gravity import GRAVITY_M_S2
 
 _COSTS = 0.05
 """Least gap of a simulator at constant speed for a step of the waterfall."""

@@ -6,7 +6,7 @@ once (``advisor.gap.simulator.simulate``).
 
 import numpy as np
 
-from advisor.compiled import kernel
+from advisor.process.compiled import kernel
 
 
 @kernel(error_model="numpy", fastmath={"contract"})

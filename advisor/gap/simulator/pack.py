@@ -7,9 +7,9 @@ simulation.
 
 import numpy as np
 
-from advisor.compiled import kernel
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.simulator.layout import AT, TRIM
+from advisor.process.compiled import kernel
 
 LANES = 8
 """Number of simulations in a pack: as many as the widest registers hold doubles."""

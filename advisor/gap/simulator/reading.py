@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from advisor.compiled import kernel
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.simulator.layout import FILTERED
+from advisor.process.compiled import kernel
 
 
 @kernel(error_model="numpy")

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from advisor.compiled import kernel
+from advisor.process.compiled import kernel
 
 ARRIVED_RAD = 1e-9
 """Deflection error in rad below which the servo counts as arrived."""

@@ -21,8 +21,7 @@ the time of one.
 
 import numpy as np
 
-from advisor.compiled import kernel
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.simulator.layout import AT, DISTURBED, LAYOUT, OTHER_LAYOUT, READ, SLOW, TRIM
 from advisor.gap.simulator.pack import LANES, ROWS, begin
 from advisor.gap.simulator.step import (
@@ -34,6 +33,7 @@ from advisor.gap.simulator.step import (
     stall,
     take_speed,
 )
+from advisor.process.compiled import kernel
 
 
 @kernel(error_model="numpy", fastmath={"contract"})

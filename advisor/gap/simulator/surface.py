@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from advisor.compiled import kernel
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.simulator.layout import AT, LAYOUT, OTHER_LAYOUT
 from advisor.gap.simulator.servo import ARRIVED_RAD, through_friction, through_servo
+from advisor.process.compiled import kernel
 
 _READ = (
     AT.delay_s, AT.latency_s, AT.lag_s, AT.lag_damping, AT.slowness_s_rad,

@@ -9,7 +9,7 @@ reduces lift and elevator power, but no effect reduces elevator power alone.
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.between import steps_in
 from advisor.gap.candidates.variant import Values, Variant
 from advisor.gap.records.flights import Flights

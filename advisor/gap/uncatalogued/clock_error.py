@@ -6,7 +6,7 @@ values does not vanish where the channel's rate is zero.
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.noise.stamps import rates_of

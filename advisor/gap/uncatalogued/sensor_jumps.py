@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
-from advisor.flight.robust import robust_std
+from advisor.flight.signals.messages import FloatArray
+from advisor.flight.signals.robust import robust_std
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.noise.probes import SENSOR_CHANNELS

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.fit import Fitted, rms_of
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.noise.probes import SENSOR_CHANNELS

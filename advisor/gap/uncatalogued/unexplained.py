@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.decision import Decision
 from advisor.gap.fitting.fit import Fitted, rms_of
 from advisor.gap.fitting.problem import Problem

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.flight.maneuver import Maneuver
-from advisor.flight.messages import FloatArray
-from advisor.standard_gravity import GRAVITY_M_S2
+from advisor.aircraft.standard_gravity import GRAVITY_M_S2
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.messages import FloatArray
 
 _NEEDED = ("a_z", "alpha", "theta")
 _LEAST_MANEUVERS = 3

@@ -12,10 +12,10 @@ from itertools import combinations
 import numpy as np
 from scipy.special import stdtrit
 
-from advisor.flight.maneuver import Maneuver
-from advisor.flight.messages import FloatArray
-from advisor.flight.motion import bank_at, gravity_in_plane, integrated, speed_rate
-from advisor.standard_gravity import GRAVITY_M_S2
+from advisor.aircraft.standard_gravity import GRAVITY_M_S2
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.messages import FloatArray
+from advisor.flight.signals.motion import bank_at, gravity_in_plane, integrated, speed_rate
 
 _NEEDED = ("airspeed", "a_x", "a_z", "theta", "alpha")
 _LEAST_SAMPLES = 10

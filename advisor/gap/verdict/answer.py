@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.aircraft import Aircraft
-from advisor.flight.kinematics import KinematicCheck
-from advisor.flight.messages import FloatArray
+from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.instruments.kinematics import KinematicCheck
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.moment import PROPELLER
 from advisor.gap.fitting.fit import Fitted

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.problem import Problem
 from advisor.gap.search.air import Air

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from advisor.flight.kinematics import KinematicCheck
+from advisor.flight.instruments.kinematics import KinematicCheck
 from advisor.gap.decision import Decision
 from advisor.gap.fitting.holdout import HeldOut, held_out
 from advisor.gap.fitting.measure import whole_gap

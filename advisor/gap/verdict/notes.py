@@ -4,8 +4,8 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 
 import numpy as np
 
-from advisor.aircraft import Aircraft
-from advisor.flight.maneuver import Maneuver
+from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.candidates.known import left_aside
 from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.records.flights import Flights

@@ -5,8 +5,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from advisor.aircraft import PARAMETERS
-from advisor.flight.messages import FloatArray
+from advisor.aircraft.aircraft import PARAMETERS
+from advisor.aircraft.standard_gravity import GRAVITY_M_S2
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.fit import Fitted
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.measure import by_band, by_phase, gap_of, shrink_interval, whole_gap
@@ -19,7 +20,6 @@ from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.gap.uncatalogued.beyond_air import removed_beyond_air
 from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.yardsticks import yardsticks
-from advisor.standard_gravity import GRAVITY_M_S2
 
 _UNCHANGED = 0.1
 """Share of the change of the derivatives below which a manoeuvre counts as flown before the change."""

@@ -2,7 +2,7 @@
 
 import math
 
-from advisor.aircraft import Aircraft
+from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.candidates.known import stated_in
 from advisor.gap.candidates.traits import TRAITS
 from advisor.gap.result import Cause

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.fitting.prior import Distance
 from advisor.gap.fitting.uncertainty import CLEAR_GAP, distance_from_file

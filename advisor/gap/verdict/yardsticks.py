@@ -8,9 +8,9 @@ System Identification*, section 11.3). For the short period the tolerance is ±1
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.aircraft.standard_gravity import GRAVITY_M_S2
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.result import Yardsticks
-from advisor.standard_gravity import GRAVITY_M_S2
 
 BAND = {"theta": np.radians(1.5), "q": np.radians(2.0), "a_z": 0.10 * GRAVITY_M_S2}
 """Tolerance of simulator qualification for the short period, by channel, SI."""

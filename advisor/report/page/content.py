@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from advisor.aircraft import Aircraft
+from advisor.aircraft.aircraft import Aircraft
 from advisor.campaign.state import CampaignState
-from advisor.flight.power_on import PowerOn
+from advisor.flight.signals.power_on import PowerOn
 
 Document = Mapping[str, Any]
 

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from matplotlib.figure import Figure as Drawing
 
 from advisor.campaign.state import JudgedManeuver
-from advisor.flight.record import Channel
+from advisor.flight.signals.record import Channel
 from advisor.oem.estimate import ChannelFit, Estimate
 from advisor.report.document import NORMAL_95
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section

@@ -8,14 +8,14 @@ from matplotlib.figure import Figure as Drawing
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from advisor.campaign.state import JudgedManeuver
-from advisor.flight.power_on import PowerOn
-from advisor.flight.record import Channel
+from advisor.flight.signals.power_on import PowerOn
+from advisor.flight.signals.record import Channel
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section
 from advisor.report.page.content import Content
 from advisor.report.page.drawing import BLUE, ORANGE, picture
 from advisor.report.page.thinned import thinned
 from advisor.report.quantities import CHANNELS
-from advisor.vehicle_time import CLOCK, clock
+from advisor.words.vehicle_time import CLOCK, clock
 
 _SHOWN = ("elevator", "alpha", "q", "airspeed", "height")
 _BINS = 500

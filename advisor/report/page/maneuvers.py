@@ -6,7 +6,7 @@ from typing import Any
 from advisor.report.page.blocks import Section, Table, listing
 from advisor.report.page.content import Content
 from advisor.report.text import caution_lines
-from advisor.vehicle_time import CLOCK, clock
+from advisor.words.vehicle_time import CLOCK, clock
 
 _HYPHEN, _SPACE = "\N{NON-BREAKING HYPHEN}", "\N{NO-BREAK SPACE}"
 _HEAD = ("no.", "start", "input", "mode", "verdict", "why")

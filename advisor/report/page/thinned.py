@@ -4,8 +4,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
-from advisor.flight.record import Channel
+from advisor.flight.signals.messages import FloatArray
+from advisor.flight.signals.record import Channel
 
 
 def thinned(channel: Channel, bins: int) -> tuple[FloatArray, FloatArray]:

@@ -1,8 +1,8 @@
 """Warning across the whole screen of a loss at this moment."""
 
+from advisor.session.view import View
 from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.part import Part
-from advisor.tui.view import View
 
 
 class Alarm(Part, Lines):

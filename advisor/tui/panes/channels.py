@@ -3,13 +3,13 @@
 from textual.app import ComposeResult
 from textual.containers import VerticalScroll
 
+from advisor.session.view import View
 from advisor.tui.panes.crew_notes import alpha_in_words
 from advisor.tui.panes.hanging import HangingLines, Labelled
 from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.pane import Pane
 from advisor.tui.panes.status_line import CONDITIONS
-from advisor.tui.view import View
-from advisor.vehicle_time import clock
+from advisor.words.vehicle_time import clock
 
 
 class Channels(Pane):

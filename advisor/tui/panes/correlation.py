@@ -8,14 +8,14 @@ from textual.containers import VerticalScroll
 from textual.events import Resize
 from textual.widgets import Static
 
-from advisor.aircraft import PARAMETERS as NAMES
-from advisor.flight.messages import FloatArray
+from advisor.aircraft.aircraft import PARAMETERS as NAMES
+from advisor.flight.signals.messages import FloatArray
 from advisor.oem.correlation import HIGH_CORRELATION, correlation_matrix
 from advisor.oem.estimate import Estimate
 from advisor.report.digits import signed
+from advisor.session.view import View
 from advisor.tui.panes.pane import Pane
 from advisor.tui.rows import Rows
-from advisor.tui.view import View
 from advisor.tui.words import PARAMETERS
 
 _LABEL = 5

@@ -5,13 +5,13 @@ from dataclasses import replace
 from textual.app import ComposeResult
 from textual.events import Resize
 
-from advisor.aircraft import PARAMETERS as NAMES
+from advisor.aircraft.aircraft import PARAMETERS as NAMES
+from advisor.session.view import View
 from advisor.tui.panes.history import course, history_chart
 from advisor.tui.panes.pane import Pane
 from advisor.tui.plot.chart import Chart
 from advisor.tui.plot.widget import Plot
 from advisor.tui.rows import Rows
-from advisor.tui.view import View
 from advisor.tui.words import PARAMETERS
 
 _MANY = 4

@@ -1,9 +1,9 @@
 """Further notes for a pilot: the next input, the source of alpha, changes."""
 
-from advisor.aircraft import PARAMETERS as NAMES
+from advisor.aircraft.aircraft import PARAMETERS as NAMES
+from advisor.session.view import View
 from advisor.tui.panes.hanging import HangingLines
 from advisor.tui.panes.part import Part
-from advisor.tui.view import View
 from advisor.tui.words import PARAMETERS, headline
 
 

@@ -5,12 +5,12 @@ from textual.app import ComposeResult
 from textual.containers import VerticalScroll
 
 from advisor.decision.verdict import FlightTestVerdict
-from advisor.rounding import distinct_texts
+from advisor.session.view import View
 from advisor.tui.panes.hanging import HangingLines, Labelled
 from advisor.tui.panes.pane import Pane
 from advisor.tui.plot.chart import Chart, Ink, Level, Series
 from advisor.tui.plot.widget import Plot
-from advisor.tui.view import View
+from advisor.words.rounding import distinct_texts
 
 RULE_INKS: dict[str, Ink] = {"continuous": "measured", "separate": "residual", "information": "input"}
 

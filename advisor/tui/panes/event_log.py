@@ -3,9 +3,9 @@
 from textual.app import ComposeResult
 from textual.containers import VerticalScroll
 
+from advisor.session.view import View
 from advisor.tui.panes.hanging import HangingLines
 from advisor.tui.panes.pane import Pane
-from advisor.tui.view import View
 
 _SHOWN = 200
 _TIME = 9

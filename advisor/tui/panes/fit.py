@@ -5,8 +5,9 @@ from textual.app import ComposeResult
 from textual.events import Resize
 
 from advisor.campaign.state import JudgedManeuver
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.report.digits import signed
+from advisor.session.view import View
 from advisor.tui import keys
 from advisor.tui.panes.fit_charts import (
     ELEVATOR,
@@ -26,7 +27,6 @@ from advisor.tui.plot.sight import Sight
 from advisor.tui.plot.widget import Plot
 from advisor.tui.plot.window import Window
 from advisor.tui.rows import Rows
-from advisor.tui.view import View
 
 _ROWS_FOR_ONE = 11
 """Rows that an output and its residual need where several stand above one another."""

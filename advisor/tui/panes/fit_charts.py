@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.campaign.state import JudgedManeuver
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.oem.estimate import ChannelFit, Estimate
 from advisor.tui.plot.chart import Chart, Ink, Mark, Series
 from advisor.tui.rows import Rows

@@ -1,12 +1,12 @@
 """The stop criterion against its limit, and the expected number of further manoeuvres."""
 
 from advisor.decision.verdict import FlightTestVerdict
-from advisor.rounding import distinct_texts
+from advisor.session.view import View
 from advisor.tui.panes.hanging import HangingLines
 from advisor.tui.panes.last_verdict import symbol_and_word
 from advisor.tui.panes.part import Part
-from advisor.tui.view import View
 from advisor.tui.words import percent
+from advisor.words.rounding import distinct_texts
 
 _LAST_SHOWN = 16
 

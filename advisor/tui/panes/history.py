@@ -4,11 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.aircraft import PARAMETERS as NAMES
-from advisor.flight.messages import FloatArray
+from advisor.aircraft.aircraft import PARAMETERS as NAMES
+from advisor.flight.signals.messages import FloatArray
 from advisor.oem.estimate import Estimate
+from advisor.session.view import View
 from advisor.tui.plot.chart import Chart, Level, Series
-from advisor.tui.view import View
 from advisor.tui.words import PARAMETERS
 
 _MARGIN = 0.5

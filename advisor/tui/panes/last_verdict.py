@@ -4,10 +4,10 @@ from textual.app import ComposeResult
 from textual.containers import Vertical
 
 from advisor.campaign.state import JudgedManeuver
+from advisor.session.view import View
 from advisor.tui.block_letters import HEIGHT, block_letters
 from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.part import Part
-from advisor.tui.view import View
 from advisor.tui.words import without_word
 
 

@@ -3,14 +3,14 @@
 from textual.app import ComposeResult
 from textual.events import Resize
 
-from advisor.aircraft import PARAMETERS as NAMES
-from advisor.flight.maneuver import Maneuver
+from advisor.aircraft.aircraft import PARAMETERS as NAMES
+from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.estimate import Estimate
+from advisor.session.view import View
 from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.pane import Pane
 from advisor.tui.plot.chart import Chart, Ink, Series
 from advisor.tui.plot.widget import Plot
-from advisor.tui.view import View
 from advisor.tui.words import PARAMETERS, channel
 
 TRACES: dict[str, Ink] = {"alpha": "measured", "q": "measured", "elevator": "input"}

@@ -7,13 +7,13 @@ from textual.app import ComposeResult
 from textual.events import Resize
 from textual.widgets import DataTable
 
-from advisor.aircraft import PARAMETERS as NAMES
+from advisor.aircraft.aircraft import PARAMETERS as NAMES
 from advisor.oem.estimate import Estimate
 from advisor.report.digits import decimals_for, signed
+from advisor.session.view import View
 from advisor.tui.panes.history import history_chart
 from advisor.tui.panes.pane import Pane
 from advisor.tui.plot.widget import Plot
-from advisor.tui.view import View
 from advisor.tui.words import PARAMETERS
 
 _COLUMNS = (("parameter", 11), ("model ± 95 %", 18), ("selected ± 95 %", 18), ("prior", 8), ("off by", 6))

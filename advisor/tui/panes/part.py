@@ -2,7 +2,7 @@
 
 from abc import abstractmethod
 
-from advisor.tui.view import View
+from advisor.session.view import View
 
 
 class Part:

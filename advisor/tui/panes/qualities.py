@@ -5,9 +5,9 @@ from textual.containers import VerticalScroll
 
 from advisor.oem.estimate import Estimate
 from advisor.report.qualities import coefficients_of, qualities_of, quality_lines
+from advisor.session.view import View
 from advisor.tui.panes.hanging import HangingLines, Labelled
 from advisor.tui.panes.pane import Pane
-from advisor.tui.view import View
 
 _NONE_YET = "No manoeuvre is accepted yet; flying qualities come from the joint estimate."
 

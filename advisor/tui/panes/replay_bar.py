@@ -2,11 +2,11 @@
 
 from math import isinf
 
+from advisor.session.source import Playback
+from advisor.session.view import View
 from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.part import Part
-from advisor.tui.source import Playback
-from advisor.tui.view import View
-from advisor.vehicle_time import clock
+from advisor.words.vehicle_time import clock
 
 _WIDTH = 24
 

@@ -5,15 +5,15 @@ from dataclasses import dataclass
 import numpy as np
 from textual.app import ComposeResult
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.oem.correlation import autocorrelation, white_noise_bound
 from advisor.oem.estimate import ChannelFit, Estimate
+from advisor.session.view import View
 from advisor.tui.panes.fit_charts import OUTPUTS
 from advisor.tui.panes.pane import Pane
 from advisor.tui.plot.chart import Chart, Level, Series
 from advisor.tui.plot.widget import Plot
 from advisor.tui.rows import Rows
-from advisor.tui.view import View
 from advisor.tui.words import channel
 
 _LAGS_SHARE = 4

@@ -1,8 +1,8 @@
 """The first line of every screen: aircraft, mode, and condition of the link."""
 
+from advisor.session.view import View
 from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.part import Part
-from advisor.tui.view import View
 
 CONDITIONS = {
     "good": "✓ link good",

@@ -7,13 +7,13 @@ from advisor.campaign.state import JudgedManeuver
 from advisor.decision.verdict import ManeuverVerdict
 from advisor.oem.estimate import Estimate
 from advisor.report.digits import signed
-from advisor.rounding import distinct_texts
+from advisor.session.view import View
 from advisor.tui.panes.hanging import HangingLines, Labelled
 from advisor.tui.panes.last_verdict import symbol_and_word
 from advisor.tui.panes.pane import Pane
-from advisor.tui.view import View
 from advisor.tui.words import channel, without_word
-from advisor.vehicle_time import between
+from advisor.words.rounding import distinct_texts
+from advisor.words.vehicle_time import between
 
 
 class Verdict(Pane):

@@ -10,7 +10,7 @@ from rich.segment import Segment
 from rich.style import Style
 from textual.strip import Strip
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.tui.plot.axis import Axis, LogAxis, exact_axis, log_axis, round_axis
 from advisor.tui.plot.canvas import Canvas
 from advisor.tui.plot.chart import INKS, Chart, Series

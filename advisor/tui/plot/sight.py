@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 from advisor.tui.plot.window import Window, nearest
 
 _STEPS_ACROSS = 100

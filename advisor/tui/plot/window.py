@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.flight.messages import FloatArray
+from advisor.flight.signals.messages import FloatArray
 
 _LEAST_SHARE = 0.01
 """Shortest stretch, as a share of the whole: a hundredth of 12 s holds six samples at 50 Hz."""

@@ -6,8 +6,9 @@ from textual.app import ComposeResult
 from textual.containers import Container
 from textual.events import Resize
 
+from advisor.session.hand import HandDecision, Verb
+from advisor.session.view import View
 from advisor.tui import keys
-from advisor.tui.hand import HandDecision, Verb
 from advisor.tui.panes.alarm import Alarm
 from advisor.tui.panes.ask import Ask
 from advisor.tui.panes.channels import Channels
@@ -29,7 +30,6 @@ from advisor.tui.panes.status_line import StatusLine
 from advisor.tui.panes.verdict import Verdict
 from advisor.tui.screens.face import Face
 from advisor.tui.screens.pane_actions import PaneActions
-from advisor.tui.view import View
 
 # In the order of their numbers.
 PANES: tuple[type[Pane], ...] = (

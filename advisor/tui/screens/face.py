@@ -8,11 +8,11 @@ from textual.events import Event, ScreenResume
 from textual.message import Message
 from textual.screen import Screen
 
-from advisor.tui.hand import HandDecision
+from advisor.session.hand import HandDecision
+from advisor.session.view import View
 from advisor.tui.panes.ask import Ask
 from advisor.tui.panes.keys_line import KeysLine
 from advisor.tui.panes.part import Part
-from advisor.tui.view import View
 
 
 class Face(Screen[None]):

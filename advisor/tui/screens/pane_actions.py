@@ -5,10 +5,10 @@ from collections.abc import Callable
 from io import StringIO
 from typing import TYPE_CHECKING
 
+from advisor.session.view import View
 from advisor.tui.panes.fit import Fit
 from advisor.tui.panes.pane import Pane
 from advisor.tui.taking import files_of, pane_name, save
-from advisor.tui.view import View
 
 if TYPE_CHECKING:
     from textual.screen import Screen

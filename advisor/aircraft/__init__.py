@@ -1,0 +1,1 @@
+"""Statements of the crew about its aircraft, as data classes."""

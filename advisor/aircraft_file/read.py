@@ -1,0 +1,288 @@
+"""Reader of the aircraft file: YAML to :class:`advisor.aircraft.aircraft.Aircraft`, with every mistake
+listed at once."""
+
+from collections.abc import Iterator, Sequence
+from copy import deepcopy
+from dataclasses import fields, replace
+from difflib import get_close_matches
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+from pydantic import ConfigDict, TypeAdapter, ValidationError, with_config
+
+import advisor.aircraft.aircraft as parts
+from advisor.aircraft.aircraft import PARAMETERS, Aircraft, Elevator, FmuVariables, Markers, Pairs
+from advisor.aircraft.aircraft_effects import mistakes_in
+from advisor.process.yaml_file import read_yaml
+from advisor.words.printable import printable
+from advisor.words.problems import ConfigurationError
+
+
+def load_aircraft(path: Path | None) -> Aircraft:
+    """Read an aircraft file. Without a path, return the defaults.
+
+    Raises
+    ------
+    ConfigurationError
+        The file cannot be read, is not plain YAML, or holds unknown keys or unusable values.
+    """
+    if path is None:
+        return Aircraft()
+    content = read_yaml(path, _EXAMPLE)
+    return parse_aircraft({} if content is None else content, str(path), _EXAMPLE)
+
+
+def parse_aircraft(content: Any, origin: str = "aircraft file", mend: str = "") -> Aircraft:
+    """Turn the parsed YAML into an aircraft.
+
+    Parameters
+    ----------
+    content
+        Sections and keys.
+    origin
+        Name of the file, or of whatever the content comes from, for the sentence about mistakes.
+    mend
+        Sentence on what to do about them.
+
+    Raises
+    ------
+    ConfigurationError
+        Lists every mistake with its path, e.g. ``elevator.calibration[1]``.
+    """
+    reader = _reader()
+    content = _without_empty(content)
+    mistakes: list[str] = []
+    while True:
+        try:
+            found = reader.validate_python(content)
+        except ValidationError as error:
+            mistakes += dict.fromkeys(_sentence(item) for item in error.errors())
+            # The rest is read again, so that one wrong key does not hide another's mistake.
+            remainder = _without(content, [item["loc"] for item in error.errors()])
+            if remainder == content:
+                break
+            content = remainder
+        else:
+            mistakes += _beyond_types(found)
+            if not mistakes:
+                return replace(found, name=printable(found.name))
+            break
+    more = [f"and {len(mistakes) - _MOST_LISTED} more"] if len(mistakes) > _MOST_LISTED else []
+    listed = "; ".join([*mistakes[:_MOST_LISTED], *more])
+    raise ConfigurationError(f"{origin}: {listed}. {mend}".rstrip())
+
+
+def _without_empty(content: Any) -> Any:
+    # "elevator:" with nothing under it is a section that the user leaves for later.
+    return {k: v for k, v in content.items() if v is not None} if isinstance(content, dict) else content
+
+
+def _without(content: Any, locations: list[tuple[int | str, ...]]) -> Any:
+    kept = deepcopy(content)
+    for location in locations:
+        if isinstance(kept, dict) and location:
+            _take_out(kept, location)
+    return kept
+
+
+def _take_out(section: dict[Any, Any], location: Sequence[int | str]) -> None:
+    """Remove the innermost key that a location names. Its neighbours stay, for they may be wrong, too."""
+    key, *inside = location
+    within = section.get(key)
+    if isinstance(within, dict) and inside and inside[0] in within:
+        _take_out(within, inside)
+    else:
+        section.pop(key, None)
+
+
+def _reader() -> TypeAdapter[Aircraft]:
+    # The core's dataclasses stay free of pydantic. The rule that unknown keys are refused is attached here.
+    strict = with_config(ConfigDict(extra="forbid", allow_inf_nan=False))
+    for part in _PARTS:
+        strict(part)
+    return TypeAdapter(Aircraft)
+
+
+def _sentence(item: Any) -> str:
+    path = ""
+    # Union members add the member's type to the location. A user's file has no such key.
+    for step in item["loc"]:
+        if isinstance(step, int):
+            path += f"[{step}]"
+        elif (
+            not step.startswith(("literal[", "tuple[", "function-", "constrained-"))
+            and step not in _UNION_TAGS
+        ):
+            path += f".{step}" if path else str(step)
+    if item["type"] in ("unexpected_keyword_argument", "extra_forbidden"):
+        return f"{path or 'file'}: unknown key{_meant(str(item['loc'][-1]))}"
+    if item["type"] == "dataclass_type":
+        return f"{path or 'file'}: must hold keys with values"
+    return f"{path or 'file'}: {item['msg'][0].lower()}{item['msg'][1:]}"
+
+
+def _meant(key: str) -> str:
+    """Name the known key that an unknown one resembles, as a question; empty where none does."""
+    known = sorted({one.name for part in _PARTS for one in fields(part)})
+    near = get_close_matches(key, known, 1)
+    return f" (did you mean {near[0]}?)" if near else ""
+
+
+_PARTS = (
+    parts.ElevatorOutput,
+    parts.Elevator,
+    parts.Alpha,
+    parts.Accelerometer,
+    parts.Reference,
+    parts.FmuTrim,
+    parts.FmuVariables,
+    parts.CampaignPlan,
+    parts.Limits,
+    parts.Markers,
+    parts.Aircraft,
+)
+"""The sections of the file, innermost first."""
+_EXAMPLE = "To see every key with its meaning, type: advisor aircraft new --blank -o example.yaml."
+"""Next step after a file was refused."""
+_MOST_LISTED = 20
+"""Most mistakes that are listed. A user with more has repeated one mistake."""
+_MOST_POINTS = 500
+"""Most points of a calibration: one for every second microsecond of a servo's travel."""
+_LONGEST_WINDOW = 50
+"""Largest window of Eq. (12), in manoeuvres: more than any flight has."""
+_FARTHEST_CG_PERCENT = 200.0
+"""Largest distance of the centre of gravity from the leading edge, % of the chord. Canards fly ahead of the
+wing, and no aircraft flies two chords away."""
+_OUTPUTS = 32
+"""Number of servo outputs that SERVO_OUTPUT_RAW and ACTUATOR_OUTPUT_STATUS can carry."""
+_LONGEST_STEP_S = 0.1
+"""Longest communication step of an FMU, s. A short period of one second still has ten such steps."""
+_UNION_TAGS = frozenset({"int", "str", "float", "none"})
+
+
+def _beyond_types(aircraft: Aircraft) -> Iterator[str]:
+    """Yield mistakes that types do not show, as ``path: description``."""
+    yield from _elevator_mistakes(aircraft.elevator)
+    source = aircraft.alpha.source
+    if source not in ("auto", "aoa_ssa", "derived", "none") and not (
+        source.startswith("named_value:") and 1 <= len(source.split(":", 1)[1]) <= 10
+    ):
+        yield f"alpha.source: {source!r} is none of auto, aoa_ssa, derived, none, named_value:NAME"
+    positive = {
+        "airspeed_m_s": aircraft.airspeed_m_s,
+        "reference_airspeed_m_s": aircraft.reference_airspeed_m_s,
+        "reference.mass_kg": aircraft.reference.mass_kg,
+        "reference.wing_area_m2": aircraft.reference.wing_area_m2,
+        "reference.chord_m": aircraft.reference.chord_m,
+        "reference.iyy_kg_m2": aircraft.reference.iyy_kg_m2,
+        "campaign.limit_percent": aircraft.campaign.limit_percent,
+        "campaign.tolerance_percent": aircraft.campaign.tolerance_percent,
+        "limits.bank_deg": aircraft.limits.bank_deg,
+        "limits.airspeed_change_percent": aircraft.limits.airspeed_change_percent,
+        "limits.alpha_deg": aircraft.limits.alpha_deg,
+    }
+    for path, value in positive.items():
+        if value is not None and value <= 0.0:
+            yield f"{path}: must be above 0, is {value}"
+    cg = aircraft.reference.cg_percent_chord
+    if cg is not None and abs(cg) > _FARTHEST_CG_PERCENT:
+        yield f"reference.cg_percent_chord: {cg} is outside ±{_FARTHEST_CG_PERCENT:.0f} percent of the chord"
+    temperature = aircraft.reference.air_temperature_c
+    if temperature is not None and not -80.0 <= temperature <= 60.0:
+        yield f"reference.air_temperature_c: {temperature} is outside -80..60 degrees Celsius"
+    for name in aircraft.model:
+        if name not in PARAMETERS:
+            yield f"model.{name}: unknown key, the parameters are {' '.join(PARAMETERS)}"
+    yield from mistakes_in(aircraft.effects)
+    plan = aircraft.campaign
+    if not 2 <= plan.window <= _LONGEST_WINDOW:
+        yield (
+            "campaign.window: must be at least 2, for a scatter needs two values, and at most "
+            f"{_LONGEST_WINDOW}, is {plan.window}"
+        )
+    for i, name in enumerate(plan.parameters):
+        if name not in PARAMETERS:
+            yield f"campaign.parameters[{i}]: {name!r} is none of {' '.join(PARAMETERS)}"
+    for name, value in plan.tolerance.items():
+        if name not in PARAMETERS:
+            yield f"campaign.tolerance.{name}: unknown key, the parameters are {' '.join(PARAMETERS)}"
+        elif value <= 0.0:
+            yield f"campaign.tolerance.{name}: must be above 0, is {value}"
+    yield from _mistakes_in_markers(aircraft.markers)
+    if aircraft.fmu is not None:
+        yield from _mistakes_in_fmu(aircraft.fmu)
+
+
+def _elevator_mistakes(elevator: Elevator) -> Iterator[str]:
+    if isinstance(elevator.output, int) and not 1 <= elevator.output <= _OUTPUTS:
+        yield f"elevator.output: {elevator.output} is not a servo output 1..{_OUTPUTS} (or auto)"
+    if elevator.calibration is not None:
+        yield from _calibration_mistakes("elevator.calibration", elevator.calibration)
+    if elevator.outputs and (elevator.output != "auto" or elevator.calibration is not None):
+        yield (
+            "elevator.outputs: stands in place of elevator.output and elevator.calibration; "
+            "take these out, or the list"
+        )
+    if len(elevator.outputs) > _OUTPUTS:
+        yield f"elevator.outputs: lists {len(elevator.outputs)} outputs; there are {_OUTPUTS}"
+        return
+    for i, one in enumerate(elevator.outputs):
+        path = f"elevator.outputs[{i}]"
+        if not 1 <= one.output <= _OUTPUTS:
+            yield f"{path}.output: {one.output} is not a servo output 1..{_OUTPUTS}"
+        if one.output in [other.output for other in elevator.outputs[:i]]:
+            yield f"{path}.output: {one.output} is listed twice"
+        if one.weight <= 0.0:
+            yield f"{path}.weight: must be above 0, is {one.weight}"
+        if one.calibration is not None:
+            yield from _calibration_mistakes(f"{path}.calibration", one.calibration)
+        elif elevator.is_calibrated:
+            yield f"{path}.calibration: give one for every output, or for none"
+    for path, value in (("elevator.lag_s", elevator.lag_s), ("elevator.delay_s", elevator.delay_s)):
+        if value is not None and not 0.0 <= value <= 2.0:
+            yield f"{path}: {value} s is outside 0..2"
+
+
+def _calibration_mistakes(path: str, points: Pairs) -> Iterator[str]:
+    if len(points) > _MOST_POINTS:
+        yield f"{path}: has {len(points)} points; give at most {_MOST_POINTS}"
+        return
+    if len(points) < 2:
+        yield f"{path}: needs at least two points [PWM us, deflection deg]"
+    for i, (below, above) in enumerate(pairwise(points), start=1):
+        if above[0] <= below[0]:
+            yield f"{path}[{i}]: PWM must rise from point to point"
+    rises = {(b[1] > a[1]) - (b[1] < a[1]) for a, b in pairwise(points)}
+    if len(rises) > 1 or rises == {0}:
+        yield f"{path}: deflection must rise all the way or fall all the way"
+
+
+def _mistakes_in_markers(markers: Markers) -> Iterator[str]:
+    if markers.rc is not None and not 1 <= markers.rc <= 18:
+        yield f"markers.rc: {markers.rc} is not a channel 1..18 of RC_CHANNELS"
+    if not 800.0 <= markers.above_us <= 2200.0:
+        yield f"markers.above_us: {markers.above_us} us is outside 800..2200"
+    if markers.text is not None:
+        begins, ends = markers.text
+        if not begins.strip() or not ends.strip() or begins == ends:
+            yield "markers.text: needs two different texts, [begins, ends]"
+
+
+_FMU_VARIABLES = tuple(
+    one.name for one in fields(FmuVariables) if one.name not in ("units", "scale", "step_s", "trim")
+)
+
+
+def _mistakes_in_fmu(fmu: FmuVariables) -> Iterator[str]:
+    for name, factor in fmu.scale.items():
+        if name not in _FMU_VARIABLES:
+            yield f"fmu.scale.{name}: unknown key, the variables are {' '.join(_FMU_VARIABLES)}"
+        elif factor == 0.0:
+            yield f"fmu.scale.{name}: must not be 0"
+    if fmu.step_s is not None and not 0.0 < fmu.step_s <= _LONGEST_STEP_S:
+        yield f"fmu.step_s: {fmu.step_s} s is outside 0..{_LONGEST_STEP_S}"
+    if (fmu.force_increment is None) != (fmu.moment_increment is None):
+        yield "fmu.force_increment: goes with fmu.moment_increment; give both, or none"
+    if fmu.trim.theta is not None and fmu.trim.alpha is None:
+        yield "fmu.trim.theta: needs fmu.trim.alpha"

@@ -1,0 +1,193 @@
+"""From logs to a diagnosis: every manoeuvre counts once, then ``advisor.gap`` diagnoses."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.campaign.hand_decisions import ByHand
+from advisor.flight.maneuvers.events import ManeuverFlown, Notice
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.maneuvers.repeated_maneuver import are_one, is_fuller
+from advisor.flight.stream.identity import READER_NOTICE
+from advisor.flight.stream.stream import FlightStream
+from advisor.flight.vehicle.one_aircraft import OneAircraft
+from advisor.flight.vehicle.surfaces import Surface
+from advisor.gap.diagnose import diagnose
+from advisor.gap.result import Diagnosis
+from advisor.gap.search.baseline import prior_derivatives
+from advisor.gap.without_simulator import without_simulator
+from advisor.mavlink.logs.logs import open_log
+from advisor.simulators.compare import Compared, compare
+from advisor.simulators.protocol import Simulator
+from advisor.simulators.specification import simulator_of
+from advisor.words.printable import printable
+from advisor.words.problems import Problem, UnusableInputError
+
+_PAUSE_S = 60.0
+"""Time between the last manoeuvre of one log and the first of the next, s. No clock has measured this
+time."""
+
+
+@dataclass(frozen=True)
+class Flown:
+    """Manoeuvres of logs, ready for a diagnosis."""
+
+    maneuvers: list[Maneuver]
+    """Every manoeuvre once, numbered through and on one clock."""
+    again: int
+    """Number of repeated manoeuvres that were left out."""
+    notes: tuple[str, ...]
+    """Assumptions about the elevator, and the manoeuvres excluded by hand, as sentences."""
+
+
+def maneuvers_of(
+    logs: Sequence[Path],
+    aircraft: Aircraft,
+    target_system: int | None = None,
+    by_hand: Sequence[ByHand] = (),
+) -> Flown:
+    """Read the manoeuvres of all logs, with the decisions by hand on each log.
+
+    The clock begins as the first log's, and runs on where another log or the vehicle restarts.
+
+    Raises
+    ------
+    UnusableInputError
+        A log cannot be read or cannot serve.
+    """
+    recorded, notes = _recorded(logs, aircraft, target_system, by_hand or [ByHand()] * len(logs))
+    maneuvers = _on_one_clock(_each_once(recorded))
+    return Flown(maneuvers, len(recorded) - len(maneuvers), notes)
+
+
+def _recorded(
+    logs: Sequence[Path], aircraft: Aircraft, target_system: int | None, by_hand: Sequence[ByHand]
+) -> tuple[list[Maneuver], tuple[str, ...]]:
+    """Return the manoeuvres of the logs, log by log, and the assumptions made in reading them."""
+    found: list[Maneuver] = []
+    notes: list[str] = []
+    wrong: list[Problem] = []
+    one_aircraft = OneAircraft()
+    for flight, (log, decided) in enumerate(zip(logs, by_hand, strict=True)):
+        stream = FlightStream(aircraft, target_system, decided.marks)
+        events = [event for columns in open_log(log) for event in stream.feed(columns)]
+        events += stream.finish()
+        name = printable(log.name)
+        problems = stream.problems()
+        if stream.vehicle is not None and (foreign := one_aircraft.refuse(name, stream.vehicle)):
+            problems = [foreign]
+        elif stream.vehicle is not None:
+            notes.append(one_aircraft.doubt(name, stream.vehicle))
+        if isinstance(stream.elevator, Surface):
+            notes.append(one_aircraft.doubt_elevator(name, stream.elevator))
+        wrong += [Problem(p.code, f"{name}: {p.text}", p.fix) for p in problems]
+        notes += stream.elevator_notes
+        notes += [e.text for e in events if isinstance(e, Notice) and e.code == READER_NOTICE]
+        for maneuver in (e.maneuver for e in events if isinstance(e, ManeuverFlown)):
+            because = decided.excluded_because(maneuver)
+            if because is None:
+                found.append(replace(maneuver, flight=flight))
+            else:
+                notes.append(f"{name}: manoeuvre {maneuver.number} is excluded by hand: {because}.")
+    if wrong:
+        raise UnusableInputError.of(wrong)
+    return found, tuple(dict.fromkeys(filter(None, notes)))
+
+
+def _each_once(recorded: Sequence[Maneuver]) -> list[Maneuver]:
+    """Return the manoeuvres without repetitions, as from a copy of a log, which would confirm itself. The
+    fuller record stays."""
+    found: list[Maneuver] = []
+    for maneuver in recorded:
+        known = next((m for m in found if m.power_on != maneuver.power_on and are_one(maneuver, m)), None)
+        if known is None:
+            found.append(replace(maneuver, number=len(found) + 1))
+        elif is_fuller(maneuver, known):
+            found[known.number - 1] = replace(maneuver, number=known.number)
+    return found
+
+
+def _on_one_clock(maneuvers: Sequence[Maneuver]) -> list[Maneuver]:
+    """Return the manoeuvres with times that go on where the vehicle's clock goes back.
+
+    A quantity that drifts or steps between manoeuvres does so in the order of flying.
+    """
+    found: list[Maneuver] = []
+    ahead = 0.0
+    for maneuver in maneuvers:
+        if found and maneuver.span.record_from_s + ahead < found[-1].span.end_s:
+            ahead = found[-1].span.end_s + _PAUSE_S - maneuver.span.record_from_s
+        found.append(maneuver.later(ahead) if ahead else maneuver)
+    return found
+
+
+def diagnose_logs(
+    logs: Sequence[Path],
+    aircraft: Aircraft,
+    holdout: int | None = None,
+    target_system: int | None = None,
+    progress: Callable[[str, float], None] = lambda *_: None,
+    by_hand: Sequence[ByHand] = (),
+) -> Diagnosis:
+    """Read logs and diagnose their gap to the aircraft file's model."""
+    return compare_logs(logs, aircraft, None, holdout, target_system, progress, by_hand).diagnosis
+
+
+def compare_logs(
+    logs: Sequence[Path],
+    aircraft: Aircraft,
+    simulator: Simulator | None,
+    holdout: int | None = None,
+    target_system: int | None = None,
+    progress: Callable[[str, float], None] = lambda *_: None,
+    by_hand: Sequence[ByHand] = (),
+) -> Compared:
+    """Read logs and diagnose their gap to a simulator, or to the aircraft file's model where there is none.
+
+    Raises
+    ------
+    UnusableInputError
+        A log cannot be read or cannot serve, or the simulator does not fly.
+    """
+    progress("reading", 0.0)
+    flown = maneuvers_of(logs, aircraft, target_system, by_hand)
+    if simulator is not None:
+        compared = compare(flown.maneuvers, simulator, aircraft, holdout, progress)
+    else:
+        found = diagnose(flown.maneuvers, aircraft, holdout, progress)
+        told = found if prior_derivatives(aircraft) is not None else without_simulator(found)
+        compared = Compared(told, aircraft)
+    notes = list(flown.notes)
+    if flown.again:
+        every = len(flown.maneuvers) + flown.again
+        twice = f"{flown.again} of {every} manoeuvres came twice, as from the same log or a copy"
+        notes.insert(0, f"{twice}: they count once.")
+    every_note = (*notes, *compared.diagnosis.notes)
+    found = replace(compared.diagnosis, notes=every_note, height_m=_height_of(flown.maneuvers))
+    return replace(compared, diagnosis=found)
+
+
+def named_simulator(aircraft: Aircraft, target_system: int | None = None) -> Simulator | None:
+    """Open the simulator that the aircraft file names; None where the file names none.
+
+    Raises
+    ------
+    ConfigurationError
+        The specification names no simulator.
+    UnusableInputError
+        The log that a simulator wrote cannot serve.
+    """
+    if aircraft.simulator is None:
+        return None
+
+    def read(log: Path) -> list[Maneuver]:
+        return maneuvers_of([log], aircraft, target_system).maneuvers
+
+    return simulator_of(aircraft.simulator, aircraft, read)
+
+
+def _height_of(maneuvers: Sequence[Maneuver]) -> float | None:
+    """Return the mean height of all manoeuvres that have one, m."""
+    heights = [m.channels["height"].y.mean() for m in maneuvers if "height" in m.channels]
+    return float(sum(heights) / len(heights)) if heights else None

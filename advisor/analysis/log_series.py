@@ -1,0 +1,118 @@
+"""Several logs as one campaign, in the order of their true times. Each message carries the number of its
+flight.
+
+``Campaign.feed`` takes the columns of a series unchanged. A link that follows the logs is the next flight.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from advisor.analysis.marks_file import read_by_hand
+from advisor.campaign.hand_decisions import ByHand, on_all
+from advisor.flight.signals.messages import Columns
+from advisor.words.problems import Problem, UnusableInputError
+
+SINCE_1970_S = 1e9
+"""Least time of arrival that is a date, s since 1970 (a day in 2001). A log without a date counts from its
+boot and stays below."""
+
+
+class LogSeries:
+    """The logs of one campaign. Oldest first where every log has a date, else in the order given.
+
+    Parameters
+    ----------
+    logs
+        Paths of the logs.
+    """
+
+    def __init__(self, logs: Sequence[Path]) -> None:
+        self.logs = _oldest_first(logs) if len(logs) > 1 else list(logs)
+        """Paths of the logs in the order of flights."""
+        self.reordered = self.logs != list(logs)
+        """Whether the order differs from the order given."""
+        self.unreadable: dict[int, Problem] = {}
+        """Flight number to the reason for which its log could not be read to the end. Filled while
+        reading."""
+
+    @property
+    def names(self) -> list[str]:
+        """Name of each log: the file's name, or the path where two files have one name."""
+        names = [log.name for log in self.logs]
+        return [str(log) if names.count(log.name) > 1 else log.name for log in self.logs]
+
+    @property
+    def order_said(self) -> str:
+        """Sentence on the order where the order differs from the one given; else empty."""
+        listed = ", ".join(self.names)
+        return f"The logs are taken in the order of their times: {listed}." if self.reordered else ""
+
+    def batches(self) -> Iterator[list[Columns]]:
+        """Yield the messages of all logs. A log that cannot be read is left out and listed in
+        ``unreadable``."""
+        # The log reader takes longer to load than the first screen to paint.
+        from advisor.mavlink.logs.logs import open_log
+
+        for flight, log in enumerate(self.logs):
+            try:
+                for columns in open_log(log):
+                    yield of_flight(columns, flight)
+            except UnusableInputError as error:
+                self.unreadable[flight] = error.problem
+
+    def load(self) -> list[Columns]:
+        """Return the messages of all logs that can be read.
+
+        Raises
+        ------
+        UnusableInputError
+            No log can be read.
+        """
+        columns = [column for batch in self.batches() for column in batch]
+        if len(self.unreadable) == len(self.logs):
+            raise UnusableInputError.of(list(self.unreadable.values()))
+        return columns
+
+    def said(self) -> list[str]:
+        """Return sentences on the order of the logs, and on those that could not be read."""
+        wrong = [problem.about(self.names[flight]) for flight, problem in self.unreadable.items()]
+        return [*([self.order_said] if self.reordered else []), *wrong]
+
+    def read_by_hand(self) -> ByHand:
+        """Return the decisions by hand on every log.
+
+        Raises
+        ------
+        ConfigurationError
+            As :func:`advisor.analysis.marks_file.read_by_hand`.
+        """
+        return on_all([read_by_hand(log) for log in self.logs])
+
+
+def of_flight(columns: Sequence[Columns], flight: int) -> list[Columns]:
+    """Set the flight number of columns, and return the columns."""
+    return [replace(c, flight=flight) for c in columns] if flight else list(columns)
+
+
+def _oldest_first(logs: Sequence[Path]) -> list[Path]:
+    begun_s = [began_s(log) for log in logs]
+    if not all(at_s >= SINCE_1970_S for at_s in begun_s):
+        return list(logs)
+    return [log for _, log in sorted(zip(begun_s, logs, strict=True), key=lambda one: one[0])]
+
+
+def began_s(log: Path) -> float:
+    """Return the time at which a log began, s since 1970. A log without dates gives a smaller number, and an
+    unreadable log gives infinity."""
+    from advisor.mavlink.logs.logs import open_log
+
+    try:
+        first = next(open_log(log), [])
+    except UnusableInputError:
+        return np.inf
+    times = [c.arrival_s for c in first if len(c)]
+    # A low quantile instead of the earliest, because single stamps may be wrong.
+    return float(np.quantile(np.concatenate(times), 0.01)) if times else np.inf

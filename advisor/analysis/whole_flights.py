@@ -1,0 +1,110 @@
+"""Logs heard by the campaign, which drops samples, and as whole power-ons, which keep every sample."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.analysis.log_series import LogSeries
+from advisor.campaign.campaign import Campaign
+from advisor.campaign.hand_decisions import NOTHING, ByHand
+from advisor.campaign.state import CampaignState
+from advisor.flight.maneuvers.marks import Mark
+from advisor.flight.signals.power_on import PowerOn
+from advisor.flight.stream.stream import FlightStream
+from advisor.words.problems import Problem, UnusableInputError
+
+
+@dataclass(frozen=True, slots=True)
+class WholeFlights:
+    """Logs of one campaign: its results, and every sample."""
+
+    logs: tuple[Path, ...]
+    """Logs in the order in which their flights count."""
+    names: tuple[str, ...]
+    """Name of each log."""
+    order_said: str
+    """Sentence on the order of the logs where it differs from the given one; else empty."""
+    by_hand: ByHand
+    """Decisions by hand on the logs."""
+    state: CampaignState
+    """Campaign at the end of the logs, as in ``advisor analyze``."""
+    left_out: Mapping[int, tuple[Problem, ...]]
+    """Number of a flight to the reasons for which its log does not count."""
+    power_ons: tuple[tuple[int, PowerOn], ...]
+    """Every power-on with the number of its flight, 0 for the first."""
+
+    @property
+    def said(self) -> list[str]:
+        """Sentences on the order of the logs and on logs that do not count."""
+        problems = [p.about(self.names[flight]) for flight, several in self.left_out.items() for p in several]
+        return [*([self.order_said] if self.order_said else []), *problems]
+
+    @property
+    def notes(self) -> list[str]:
+        """Sentences on the logs, and on assumptions made in reading them."""
+        state = self.state
+        notes = (*self.said, *state.elevator_notes, *state.reader_notes, *state.mark_notes)
+        return list(dict.fromkeys(notes))
+
+
+def read_whole(
+    logs: Sequence[Path],
+    aircraft: Aircraft,
+    target_system: int | None = None,
+    marks: Sequence[Mark] = (),
+    *,
+    no_marks: bool = False,
+) -> WholeFlights:
+    """Read and analyze logs as one campaign, and keep every sample of their channels.
+
+    Parameters
+    ----------
+    logs
+        Paths of the logs, a flight each.
+    target_system
+        System id of the vehicle; None: the first one heard.
+    marks
+        Further stretches marked as manoeuvres, on a single log.
+    no_marks
+        Whether to ignore earlier decisions by hand on the logs.
+
+    Raises
+    ------
+    UnusableInputError
+        No log can be used. The error lists the reasons.
+    ConfigurationError
+        The file of decisions by hand that belongs to a log is wrong.
+    """
+    series = LogSeries(logs)
+    by_hand = NOTHING if no_marks else series.read_by_hand()
+    campaign = Campaign(aircraft, target_system, by_hand=by_hand, marks=marks, names=series.names)
+    streams: dict[int, FlightStream] = {}
+    for columns in series.batches():
+        campaign.feed(columns)
+        flight = columns[0].flight if columns else 0
+        if flight not in streams:
+            marked = [mark for mark in (*marks, *by_hand.marks) if mark.flight == flight]
+            streams[flight] = FlightStream(aircraft, target_system, marked, keep_all=True)
+        streams[flight].feed(columns)
+    left_out: dict[int, tuple[Problem, ...]] = {
+        flight: (problem,) for flight, problem in series.unreadable.items()
+    }
+    if len(left_out) < len(series.logs):
+        campaign.finish()
+        left_out |= {one.flight: one.problems for one in campaign.state.flights if one.problems}
+    left_out = dict(sorted(left_out.items()))
+    if len(left_out) == len(series.logs):
+        raise UnusableInputError.of([problem for several in left_out.values() for problem in several])
+    for stream in streams.values():
+        stream.finish()
+    power_ons = [(flight, one) for flight, stream in sorted(streams.items()) for one in stream.power_ons]
+    return WholeFlights(
+        logs=tuple(series.logs),
+        names=tuple(series.names),
+        order_said=series.order_said,
+        by_hand=by_hand,
+        state=campaign.state,
+        left_out=left_out,
+        power_ons=tuple(p for p in power_ons if p[1].channels),
+    )

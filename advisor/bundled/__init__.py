@@ -1,0 +1,1 @@
+"""Parts that need the bundled simulator: the demonstration and the study."""

@@ -1,0 +1,151 @@
+"""The paper's campaign, flown many times: each rule's stop, and the errors at the stop."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from advisor.aircraft.aircraft import CampaignPlan, Rule
+from advisor.bundled.study.blocks import blocks
+from advisor.bundled.study.estimating import estimate_copies
+from advisor.bundled.study.flying import NoiseReading, Scene, as_maneuver, fly_named, noise_scale
+from advisor.bundled.study.paper import ORDER
+from advisor.bundled.study.readings import needed_by_reading
+from advisor.decision.acceptance import MANEUVER_RULES
+from advisor.decision.history import Flown
+from advisor.decision.information import knowledge
+from advisor.decision.scatter import scatter_percent, window
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.messages import FloatArray
+from advisor.oem.estimate import Estimate
+
+RULES: tuple[Rule, ...] = ("continuous", "separate", "information")
+BLOCK = 50
+"""Number of campaigns in a task: a third of a second of work."""
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """One campaign under one rule."""
+
+    needed: int | None
+    """Manoeuvres flown when the rule first said stop. None: no stop within the campaign."""
+    theta: FloatArray
+    """(8,) parameters reported at the stop, or at the campaign's end."""
+    tolerance: FloatArray
+    """(8,) tolerances of the rule ``information`` at that time. NaN under the other rules."""
+    history_percent: tuple[float | None, ...]
+    """Criterion after each manoeuvre; for ``information`` up to the stop."""
+    rejected: int
+    """Number of flown manoeuvres that the rule rejected."""
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """Campaigns that are flown and judged together."""
+
+    scene: Scene
+    noise_percent: float
+    campaigns: int
+    seed: tuple[int, ...]
+    reading: NoiseReading = "std"
+    other_readings: bool = False
+    """Whether the campaigns are also judged by other readings of the paper's rules."""
+
+
+@dataclass(frozen=True, slots=True)
+class Judged:
+    """Results of a block of campaigns."""
+
+    outcomes: Mapping[Rule, tuple[Outcome, ...]]
+    """Rule to its outcomes, campaign by campaign."""
+    needed: Mapping[tuple[str, Rule], tuple[int | None, ...]]
+    """Name of the reading and rule to the manoeuvres that each campaign needed; empty unless requested."""
+
+
+def table_blocks(
+    scene: Scene,
+    noise_percent: float,
+    campaigns: int,
+    seed: int,
+    reading: NoiseReading = "std",
+    other_readings: bool = False,
+) -> list[Block]:
+    """Divide the campaigns at one noise level into blocks, each with a seed of its own."""
+    return [
+        Block(scene, noise_percent, count, (seed, round(1000 * noise_percent), k), reading, other_readings)
+        for k, count in blocks(campaigns, BLOCK)
+    ]
+
+
+def judge(block: Block) -> Judged:
+    """Fly the campaigns of a block, and end each by every rule."""
+    maneuvers = [as_maneuver(fly_named(block.scene, name)) for name in ORDER]
+    plan = CampaignPlan()
+    flown = fly_campaigns(block)
+    return Judged(
+        {rule: tuple(outcome(campaign, rule, plan, maneuvers) for campaign in flown) for rule in RULES},
+        needed_by_reading(flown) if block.other_readings else {},
+    )
+
+
+def joined(judged: Sequence[Judged], rule: Rule) -> list[Outcome]:
+    """Return the outcomes of several blocks under one rule."""
+    return [outcome for block in judged for outcome in block.outcomes[rule]]
+
+
+def fly_campaigns(block: Block) -> list[list[Estimate]]:
+    """Return the estimates of every manoeuvre of a block, campaign by campaign.
+
+    The noise of the first manoeuvre holds for all, because a set of instruments has one noise.
+    """
+    rng = np.random.default_rng(block.seed)
+    flights = [fly_named(block.scene, name) for name in ORDER]
+    noise = 0.01 * block.noise_percent * noise_scale(flights[0], block.reading)
+    columns = [estimate_copies(flight, noise, block.campaigns, rng) for flight in flights]
+    return [list(campaign) for campaign in zip(*columns, strict=True)]
+
+
+def outcome(
+    campaign: Sequence[Estimate], rule: Rule, plan: CampaignPlan, maneuvers: Sequence[Maneuver] = ()
+) -> Outcome:
+    """Return the outcome of one campaign under ``rule``, by the functions that judge in flight.
+
+    Parameters
+    ----------
+    maneuvers
+        What was flown, for the response that the rule ``information`` predicts; without it that rule asks
+        for the named derivatives alone.
+    """
+    accepted = [r.accepted for r in MANEUVER_RULES[rule]([e.cost for e in campaign])]
+    taken: list[Estimate] = []
+    flown = [
+        Flown(estimate, maneuver=maneuvers[i] if maneuvers else None) for i, estimate in enumerate(campaign)
+    ]
+    history: list[float | None] = []
+    needed = None
+    for number, (estimate, good) in enumerate(zip(campaign, accepted, strict=True), start=1):
+        if good:
+            taken.append(estimate)
+        if rule == "information":
+            known = knowledge(flown[:number], plan)
+            history.append(known.percent)
+            if known.sufficient or number == len(campaign):
+                needed = number if known.sufficient else None
+                return Outcome(needed, known.posterior.theta, known.tolerance, tuple(history), 0)
+            continue
+        members = window(taken, plan)
+        history.append(None if members is None else scatter_percent(members, plan.criterion))
+        value = history[-1]
+        if needed is None and value is not None and value < plan.limit_percent:
+            needed = number
+            theta = reported(taken, plan)
+    if needed is None:
+        theta = reported(taken, plan)
+    return Outcome(needed, theta, np.full(8, np.nan), tuple(history), len(campaign) - len(taken))
+
+
+def reported(taken: Sequence[Estimate], plan: CampaignPlan) -> FloatArray:
+    """Return the values that a campaign of the paper ends with: the mean over the criterion's window."""
+    mean: FloatArray = np.mean([e.theta for e in taken[-plan.window :]], axis=0)
+    return mean

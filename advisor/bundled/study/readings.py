@@ -1,0 +1,139 @@
+"""Other readings of the paper's rules, compared by their reproduction of its Table 1.
+
+The first reading of each list is the advisor's. The others exist only here.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from statistics import median
+
+import numpy as np
+
+from advisor.aircraft.aircraft import Rule
+from advisor.bundled.study.paper import TABLE_1
+from advisor.decision.acceptance import ALLOWED_INCREASE, Costs, continuous_improvement, separate_computation
+from advisor.decision.scatter import scatter_percent
+from advisor.decision.verdict import RuleResult
+from advisor.flight.signals.messages import FloatArray
+from advisor.oem.estimate import Estimate
+
+Accepting = Callable[[Sequence[float]], list[bool]]
+
+
+def continuous_against_last_flown(costs: Sequence[float]) -> list[bool]:
+    """Apply Eq. (10) with i − 1 the last manoeuvre flown, accepted or not."""
+    return [i == 0 or cost < ALLOWED_INCREASE * costs[i - 1] for i, cost in enumerate(costs)]
+
+
+def separate_among_accepted(costs: Sequence[float]) -> list[bool]:
+    """Apply Eq. (11) with only accepted manoeuvres in the median."""
+    kept: list[float] = []
+    verdicts = []
+    for cost in costs:
+        good = not kept or cost < median(kept)
+        verdicts.append(good)
+        if good:
+            kept.append(cost)
+    return verdicts
+
+
+def _ours(rule: Callable[[Costs], Sequence[RuleResult]]) -> Accepting:
+    return lambda costs: [result.accepted for result in rule(costs)]
+
+
+def population_scatter(theta: FloatArray) -> float:
+    """Apply Eq. (12) with n instead of n − 1 in the standard deviation."""
+    return scatter_percent(theta) * float(np.sqrt((len(theta) - 1) / len(theta)))
+
+
+def largest_scatter(theta: FloatArray) -> float:
+    """Apply Eq. (12) with the largest parameter instead of the Euclidean norm."""
+    return 500.0 * float(np.max(theta.std(axis=0, ddof=1) / np.abs(theta.mean(axis=0))))
+
+
+def written_out(theta: FloatArray) -> float:
+    """Apply Eq. (13)."""
+    return scatter_percent(theta, "eq13")
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """One interpretation of the paper, which differs from the advisor's in a single point."""
+
+    name: str
+    accepting: Mapping[Rule, Accepting]
+    criterion: Callable[[FloatArray], float] = scatter_percent
+    members: int = 3
+
+
+_OURS: Mapping[Rule, Accepting] = {
+    "continuous": _ours(continuous_improvement),
+    "separate": _ours(separate_computation),
+}
+
+READINGS = (
+    Reading("as the advisor does", _OURS),
+    Reading("(10): last flown", {**_OURS, "continuous": continuous_against_last_flown}),
+    Reading("(11): median of accepted", {**_OURS, "separate": separate_among_accepted}),
+    Reading("(12): n + 1 members", _OURS, members=4),
+    Reading("(12): divided by n", _OURS, population_scatter),
+    Reading("(12): largest, not norm", _OURS, largest_scatter),
+    Reading("(13) as written out", _OURS, written_out),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class ReadingResult:
+    """Result of one reading in one row of Table 1."""
+
+    reading: str
+    rule: Rule
+    noise_percent: float
+    median: int | None
+    never_percent: float
+    as_paper_percent: float
+    """Share of campaigns that need exactly the paper's number of manoeuvres."""
+
+
+def needed_by_reading(
+    campaigns: Sequence[Sequence[Estimate]],
+) -> dict[tuple[str, Rule], tuple[int | None, ...]]:
+    """Return the manoeuvres that each campaign needs under every reading, by the reading's name and the
+    rule."""
+    return {
+        (reading.name, rule): tuple(_needed(campaign, accepting, reading) for campaign in campaigns)
+        for reading in READINGS
+        for rule, accepting in reading.accepting.items()
+    }
+
+
+def compare(
+    blocks: Sequence[Mapping[tuple[str, Rule], tuple[int | None, ...]]], noise_percent: float
+) -> list[ReadingResult]:
+    """Return the result of every reading over all blocks of campaigns at one noise level."""
+    results = []
+    for name, rule in blocks[0]:
+        needed = [number for block in blocks for number in block[name, rule]]
+        ordered = sorted(np.inf if n is None else n for n in needed)
+        middle = ordered[len(ordered) // 2]
+        results.append(
+            ReadingResult(
+                name,
+                rule,
+                noise_percent,
+                None if np.isinf(middle) else int(middle),
+                100.0 * float(np.mean([n is None for n in needed])),
+                100.0 * float(np.mean([n == TABLE_1[rule, noise_percent].needed for n in needed])),
+            )
+        )
+    return results
+
+
+def _needed(campaign: Sequence[Estimate], accepting: Accepting, reading: Reading) -> int | None:
+    taken: list[FloatArray] = []
+    for number, good in enumerate(accepting([e.cost for e in campaign]), start=1):
+        if good:
+            taken.append(campaign[number - 1].theta)
+        if len(taken) >= reading.members and reading.criterion(np.array(taken[-reading.members :])) < 25.0:
+            return number
+    return None

@@ -1,0 +1,125 @@
+"""``advisor analyze``: verdicts on the manoeuvres of a log, as text or JSON."""
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+import click
+
+from advisor.aircraft.aircraft import Rule
+from advisor.campaign.hand_decisions import NOTHING
+from advisor.campaign.state import CampaignState
+from advisor.cli.options import (
+    UNUSABLE,
+    aircraft_option,
+    json_option,
+    maneuver_option,
+    no_marks_option,
+    read_aircraft,
+    refuse_marks_on_several,
+    rule_option,
+    target_system_option,
+)
+from advisor.words.printable import printable
+from advisor.words.problems import Problem
+
+if TYPE_CHECKING:
+    from advisor.analysis.log_series import LogSeries
+    from advisor.campaign.campaign import Campaign
+    from advisor.flight.maneuvers.marks import Mark
+
+
+@click.command
+@click.argument("logs", nargs=-1, required=True, type=click.Path(path_type=Path))
+@aircraft_option
+@rule_option
+@target_system_option
+@maneuver_option
+@no_marks_option
+@click.option(
+    "--method",
+    type=click.Choice(["gauss-newton", "nelder-mead"]),
+    default="gauss-newton",
+    show_default=True,
+    help="Search for each manoeuvre's optimum. nelder-mead is the paper's method, and far slower.",
+)
+@click.option(
+    "--all", "every_movement", is_flag=True, help="List also the elevator movements that were no test inputs."
+)
+@json_option
+def command(
+    logs: tuple[Path, ...],
+    aircraft_file: Path | None,
+    rule: Rule | None,
+    target_system: int | None,
+    marks: "tuple[Mark, ...]",
+    no_marks: bool,
+    method: Literal["gauss-newton", "nelder-mead"],
+    every_movement: bool,
+    as_json: bool,
+) -> int:
+    """Print every manoeuvre's verdict, the estimates, and stop or continue.
+
+    Several logs are one campaign of several flights. Manoeuvres are numbered through all logs, and a
+    manoeuvre that two logs hold counts once.
+
+    \b
+    Example:
+      advisor analyze flight.tlog --aircraft my-aircraft.yaml
+      advisor analyze battery-1.tlog battery-2.bin --aircraft my-aircraft.yaml
+      advisor analyze flight.tlog --maneuver +12:+24 --maneuver 312.5:320
+      advisor analyze flight.tlog --json | python -m json.tool
+    """
+    aircraft = read_aircraft(aircraft_file, rule)
+    refuse_marks_on_several(marks, logs)
+    from advisor.analysis.log_series import LogSeries
+
+    series = LogSeries(logs)
+    by_hand = NOTHING if no_marks else series.read_by_hand()
+    from advisor.campaign.campaign import Campaign
+
+    campaign = Campaign(
+        aircraft, target_system, method=method, by_hand=by_hand, marks=marks, names=series.names
+    )
+    state, left_out = _analyze(series, campaign)
+    usable = len(left_out) < len(logs)
+    said = [series.order_said] if series.order_said else []
+    for flight, problems in sorted(left_out.items()):
+        said += [problem.about(series.names[flight]) for problem in problems]
+    if as_json:
+        from advisor.report.document import analysis_document
+
+        files = [str(log) for log in series.logs]
+        document = analysis_document(state, files, aircraft, left_out, said)
+        click.echo(json.dumps(document, allow_nan=False, indent=1))
+    elif state is not None and usable:
+        from advisor.report.console import PlainConsole
+        from advisor.report.text import AnalysisText
+
+        shown = AnalysisText(state, list(map(printable, series.names)), aircraft, every_movement)
+        PlainConsole(soft_wrap=True).print(shown)
+    elif state is not None and every_movement:
+        from advisor.report.text import activity_line
+
+        for activity in state.activity:
+            click.echo(activity_line(activity))
+    for sentence in said:
+        click.echo(sentence, err=True)
+    return 0 if usable else UNUSABLE
+
+
+def _analyze(
+    series: "LogSeries", campaign: "Campaign"
+) -> "tuple[CampaignState | None, dict[int, tuple[Problem, ...]]]":
+    """Return the campaign at the end of its logs and, by flight, the reasons for which logs do not count. The
+    campaign is None without a readable log."""
+    for columns in series.batches():
+        campaign.feed(columns)
+    unreadable: dict[int, tuple[Problem, ...]] = {
+        flight: (problem,) for flight, problem in series.unreadable.items()
+    }
+    if len(unreadable) == len(series.logs):
+        return None, unreadable
+    campaign.finish()
+    state = campaign.state
+    return state, {one.flight: one.problems for one in state.flights if one.problems} | unreadable

@@ -1,0 +1,153 @@
+"""Questions on the terminal whose answers make an aircraft file, each checked by the file's own reader."""
+
+from typing import Any
+
+import click
+
+from advisor.aircraft_file.keys import KEYS
+from advisor.aircraft_file.read import parse_aircraft
+from advisor.words.problems import ConfigurationError
+
+_DEFAULTS = {
+    "name": "my aircraft",
+    "elevator.output": "auto",
+    "alpha.source": "auto",
+    "limits.bank_deg": "30",
+}
+"""Path of a key to its default answer. Without a default, Enter leaves the key out."""
+_TEXTS = frozenset({"name", "alpha.source"})
+
+
+def ask() -> dict[str, Any]:
+    """Ask for every key that a crew fills in.
+
+    Returns
+    -------
+    Path of the key to its value; a key that the user does not know is missing.
+
+    Raises
+    ------
+    ConfigurationError
+        The input ends before the last question.
+    """
+    click.echo("Enter takes the answer in brackets; '-' there means: not known, left out.", err=True)
+    values: dict[str, Any] = {}
+    for key in KEYS:
+        if key.path == "alpha.vane_arm_m" and not _has_vane(values):
+            continue
+        if key.path == "elevator.calibration":
+            _ask_calibrations(key.question, values)
+        elif key.question:
+            _put(key.path, key.question, values)
+    return values
+
+
+def nested(values: dict[str, Any]) -> dict[str, Any]:
+    """Return paths with values as the sections of the aircraft file."""
+    content: dict[str, Any] = {}
+    for path, value in values.items():
+        *sections, name = path.split(".")
+        section = content
+        for one in sections:
+            section = section.setdefault(one, {})
+        section[name] = value
+    return content
+
+
+def _has_vane(values: dict[str, Any]) -> bool:
+    return str(values.get("alpha.source", "")).startswith(("named_value:", "aoa_ssa"))
+
+
+def _put(path: str, question: str, values: dict[str, Any]) -> None:
+    """Ask until an answer is valid."""
+    while True:
+        text = _answer(question, _DEFAULTS.get(path, "-"))
+        if text == "-":
+            return
+        try:
+            found = _value(path, text)
+            parse_aircraft(nested(values | found), "This answer")
+        except (ValueError, ConfigurationError) as error:
+            click.echo(f"  {error}", err=True)
+        else:
+            values |= found
+            return
+
+
+def _value(path: str, text: str) -> dict[str, Any]:
+    if path in _TEXTS:
+        return {path: text}
+    if path == "elevator.output":
+        if text == "auto":
+            return {path: text}
+        numbers = [_whole(word) for word in text.replace(",", " ").split()]
+        if len(numbers) == 1:
+            return {path: numbers[0]}
+        return {"elevator.outputs": [{"output": number} for number in numbers]}
+    try:
+        return {path: float(text)}
+    except ValueError:
+        raise ValueError(f"{text} is no number: give one, or - to leave this out.") from None
+
+
+def _whole(word: str) -> int:
+    try:
+        return int(word)
+    except ValueError:
+        raise ValueError(f"{word} is no output: give a number, several (1 2), or auto.") from None
+
+
+def _ask_calibrations(question: str, values: dict[str, Any]) -> None:
+    """Ask for the calibration of each output. Without an answer for one, all are left out."""
+    several = values.get("elevator.outputs")
+    if several is None:
+        while (pairs := _pairs(question.format(values.get("elevator.output", "auto")))) is not None:
+            if _taken({**values, "elevator.calibration": pairs}):
+                values["elevator.calibration"] = pairs
+                return
+        return
+    measured = []
+    for one in several:
+        while (pairs := _pairs(question.format(one["output"]))) is not None:
+            trial = [{**one, "calibration": pairs}]
+            if _taken({"elevator.outputs": trial}):
+                measured += trial
+                break
+        if pairs is None:
+            return
+    values["elevator.outputs"] = measured
+
+
+def _taken(values: dict[str, Any]) -> bool:
+    try:
+        parse_aircraft(nested(values), "This answer")
+    except ConfigurationError as error:
+        click.echo(f"  {error}", err=True)
+        return False
+    return True
+
+
+def _pairs(question: str) -> list[list[float]] | None:
+    """Ask for pairs of PWM and deflection; None: not measured."""
+    while True:
+        text = _answer(question, "-")
+        if text == "-":
+            return None
+        try:
+            pairs = [[float(number) for number in word.split(":")] for word in text.replace(",", " ").split()]
+        except ValueError:
+            pairs = []
+        if pairs and all(len(pair) == 2 for pair in pairs):
+            return sorted(pairs)
+        click.echo("  Give pairs PWM:deg with a space between, e.g. 1100:-25 1500:0 1900:25.", err=True)
+
+
+def _answer(question: str, default: str) -> str:
+    try:
+        text: str = click.prompt(question, default=default, err=True)
+    except click.Abort as end:
+        raise ConfigurationError(
+            "The questions were not answered to the end, and nothing was written. Answer them on a terminal, "
+            "or let a log answer: advisor aircraft new --from LOG."
+        ) from end
+    return text.strip()

@@ -1,0 +1,185 @@
+"""``advisor batch``: many flights, each analyzed once."""
+
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.cli.options import (
+    UNUSABLE,
+    aircraft_option,
+    read_aircraft,
+    refuse_unwritable_folder,
+    writing,
+)
+from advisor.cli.running import Progress, runner_of, running_options
+from advisor.words.printable import printable
+from advisor.words.problems import ConfigurationError, Problem, UnusableInputError
+
+if TYPE_CHECKING:
+    from advisor.batch.flight import Analyzed, Task
+
+    Run = Callable[[Sequence[Task]], Iterator[tuple[Task, Analyzed | Exception]]]
+
+INDEX = "index.html"
+"""Name of the page of all flights."""
+KEPT = "flights"
+"""Folder of each log's result, by the key of the log."""
+
+
+@click.command
+@click.argument(
+    "places", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="LOGS-OR-FOLDERS..."
+)
+@click.option(
+    "-o",
+    "--out",
+    required=True,
+    type=click.Path(path_type=Path),
+    metavar="DIR",
+    help="Folder of the results.",
+)
+@aircraft_option
+@click.option(
+    "--aircraft-map",
+    "map_file",
+    type=click.Path(path_type=Path),
+    metavar="MAP.yaml",
+    help="For several aircraft: one line for each pattern of logs, with its aircraft file.",
+)
+@running_options
+def command(
+    places: tuple[Path, ...],
+    out: Path,
+    aircraft_file: Path | None,
+    map_file: Path | None,
+    workers: int | None,
+    scheduler: str | None,
+) -> int:
+    """Analyze every log once. Write a table of flights, a table of manoeuvres, and the changes over the
+    flights.
+
+    Each log's result is kept in DIR/flights. The next run with equal logs, configuration and advisor analyzes
+    only new logs.
+
+    \b
+    Example:
+      advisor batch flights/ -o results --aircraft my-aircraft.yaml --workers 8
+      advisor batch flights/ -o results --aircraft-map fleet.yaml
+      advisor batch /shared/flights -o results --scheduler tcp://10.0.0.5:8786
+    """
+    if aircraft_file is not None and map_file is not None:
+        raise ConfigurationError("Give --aircraft for one aircraft, or --aircraft-map for several, not both.")
+    refuse_unwritable_folder("-o", out)
+    from advisor.batch.flight import analyze, analyze_shared
+    from advisor.batch.logs import find_logs
+
+    run = partial(runner_of(workers, scheduler), analyze if scheduler is None else analyze_shared)
+    logs = find_logs(places if scheduler is None else [place.absolute() for place in places], out)
+    tasks, results = _tasks(logs, aircraft_file, map_file)
+    with writing("-o", out):
+        (out / KEPT).mkdir(parents=True, exist_ok=True)
+        results |= _analyzed(tasks, out, run)
+    return _told([results[log] for log in logs if log in results], out)
+
+
+def _tasks(
+    logs: Sequence[Path], aircraft_file: Path | None, map_file: Path | None
+) -> "tuple[list[Task], dict[Path, Analyzed]]":
+    """Return the logs to analyze, each once, and the results of logs that cannot be analyzed."""
+    from advisor.batch.flight import Task, failed, sha256_of
+    from advisor.batch.logs import read_map
+
+    chosen = read_map(map_file) if map_file is not None else None
+    described: dict[Path | None, Aircraft] = {}
+    tasks: dict[str, Task] = {}
+    results: dict[Path, Analyzed] = {}
+    for log in logs:
+        file = chosen.file_of(log) if chosen is not None else aircraft_file
+        if file not in described:
+            described[file] = read_aircraft(file)
+        task = Task(log, described[file], file.name if file else "", "")
+        if chosen is not None and file is None:
+            fix = "Add a line for the log, or a last one for '*'."
+            problem = Problem("no_aircraft", f"{log} matches no pattern in {map_file}.", fix)
+            results[log] = failed(task, [problem])
+            continue
+        try:
+            task = Task(log, described[file], task.aircraft_file, sha256_of(log))
+        except UnusableInputError as error:
+            results[log] = failed(task, error.problems)
+            continue
+        first = tasks.setdefault(task.key, task)
+        if first is not task:
+            click.echo(printable(f"{log} is a copy of {first.log}: it counts once."), err=True)
+    return list(tasks.values()), results
+
+
+def _analyzed(tasks: "Sequence[Task]", out: Path, run: "Run") -> "dict[Path, Analyzed]":
+    """Return the result of every task: kept from an earlier run, or made now and kept."""
+    from advisor.batch.flight import failed, keep, kept
+
+    places = {task.log: out / KEPT / f"{task.key}.json" for task in tasks}
+    results = {task.log: known for task in tasks if (known := kept(places[task.log]))}
+    to_do = [task for task in tasks if task.log not in results]
+    if results:
+        click.echo(f"{len(results)} of {len(tasks)} logs were analyzed before.", err=True)
+    progress = Progress(len(to_do), "logs")
+    for task, result in run(to_do):
+        if isinstance(result, Exception):
+            results[task.log] = failed(task, [_fault(task, result)])
+        else:
+            results[task.log] = result
+            keep(result, places[task.log])
+        progress.advance()
+    return results
+
+
+def _fault(task: "Task", error: Exception) -> Problem:
+    """Return the problem of a log whose analysis ended with an error."""
+    from concurrent.futures import BrokenExecutor
+
+    if isinstance(error, ConfigurationError):
+        return Problem("configuration", str(error), "")
+    if isinstance(error, BrokenExecutor):
+        return Problem(
+            "worker_died",
+            f"The process that analyzed {task.log} was ended every time, as for want of memory.",
+            "Repeat with fewer --workers, or analyze the log alone.",
+        )
+    return Problem(
+        "fault",
+        f"A fault of the advisor in {task.log}: {type(error).__name__}: {error}.",
+        "Please report it.",
+    )
+
+
+def _told(results: "Sequence[Analyzed]", out: Path) -> int:
+    """Write the tables, and print failures and changes."""
+    from advisor.batch.index import index_page
+    from advisor.batch.tables import changes_of, in_order, mixed_up, tables_of
+    from advisor.exports.flights.formats import write_formats
+    from advisor.exports.flights.staging import staged
+
+    flights = in_order(results)
+    form = "parquet" if find_spec("pyarrow") else "csv"
+    with staged(out) as stage:
+        write_formats(tables_of(flights), stage, [form])
+        (stage / INDEX).write_text(index_page(flights), encoding="utf-8")
+    failures = [flight for flight in flights if not flight.usable]
+    for flight in failures:
+        click.echo(printable(f"{flight.log}: {' '.join(flight.reasons)}"), err=True)
+    for sentence in mixed_up(flights):
+        click.echo(printable(sentence), err=True)
+    for name, change in changes_of(flights).items():
+        click.echo(printable(f"{name}: {change.sentence}"))
+    maneuvers = sum(len(flight.document["maneuvers"]) for flight in flights)
+    click.echo(
+        f"{printable(str(out))}: flights: {len(flights)}; manoeuvres: {maneuvers}; logs that cannot be used:"
+        f" {len(failures)}; tables: flights.{form}, maneuvers.{form}, changes.{form}; page: {INDEX}."
+    )
+    return UNUSABLE if len(failures) == len(flights) else 0

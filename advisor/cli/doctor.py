@@ -1,0 +1,151 @@
+"""``advisor doctor``: whether the telemetry is good enough, before a flight."""
+
+import json
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+from click.shell_completion import CompletionItem
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.cli.options import (
+    UNUSABLE,
+    aircraft_option,
+    json_option,
+    read_aircraft,
+    target_system_option,
+)
+from advisor.words.printable import printable
+from advisor.words.problems import Problem, UnusableInputError
+
+if TYPE_CHECKING:
+    from advisor.doctor.examination import Examination
+
+_LOG_ENDINGS = (".tlog", ".bin", ".ulg")
+
+
+@click.command
+@click.argument(
+    "target",
+    metavar="LOG|CONN",
+    shell_complete=lambda ctx, parameter, text: [CompletionItem(text, type="file")],
+)
+@click.option(
+    "--seconds", type=click.FloatRange(min=1.0), default=15.0, show_default=True, help="Time to listen, s."
+)
+@click.option(
+    "--request-rates",
+    is_flag=True,
+    help="First ask the vehicle for streams of 50 Hz and for its servo parameters.",
+)
+@aircraft_option
+@target_system_option
+@json_option
+def command(
+    target: str,
+    seconds: float,
+    request_rates: bool,
+    aircraft_file: Path | None,
+    target_system: int | None,
+    as_json: bool,
+) -> int:
+    """Check whether the telemetry is good enough to identify the aircraft, and say what to change.
+
+    The command reads a log, or listens to a live link. Nothing is sent unless --request-rates asks for it.
+
+    \b
+    Example:
+      advisor doctor udpin:0.0.0.0:14550 --aircraft my-aircraft.yaml
+      advisor doctor flight.tlog --json
+    """
+    aircraft = read_aircraft(aircraft_file)
+    findings, problem = None, None
+    try:
+        if _is_log(target):
+            findings = examine_log(Path(target), aircraft, target_system)
+        else:
+            findings = _examine_link(target, aircraft, target_system, seconds, request_rates)
+    except UnusableInputError as error:
+        problem = error.problem
+    commands: tuple[str, ...] = ()
+    if findings is not None:
+        from advisor.doctor.next_steps import Examined, next_commands
+
+        file = str(aircraft_file) if aircraft_file else None
+        has_model = bool(aircraft.model) or aircraft.simulator is not None
+        commands = next_commands(findings, Examined(target, _is_log(target), file, target_system, has_model))
+    if as_json:
+        from advisor.doctor.document import doctor_document
+
+        click.echo(json.dumps(doctor_document(findings, problem, commands), allow_nan=False, indent=1))
+    elif findings is not None:
+        from advisor.doctor.text import ExaminationText
+        from advisor.report.console import PlainConsole
+
+        PlainConsole(soft_wrap=True).print(ExaminationText(findings, commands))
+    sentence = problem or _first_obstacle(findings)
+    if sentence is None:
+        return 0
+    click.echo(sentence.about(target), err=True)
+    return UNUSABLE
+
+
+def _is_log(target: str) -> bool:
+    """Return whether the target is a file, or can only be meant as a file: neither a network address nor a
+    device."""
+    if Path(target).is_file() or target.lower().endswith(_LOG_ENDINGS):
+        return True
+    return ":" not in target and "," not in target and not target.startswith("/dev/")
+
+
+def _first_obstacle(findings: "Examination | None") -> Problem | None:
+    stopping = [limit for limit in findings.limits if limit.stops] if findings else []
+    return (
+        Problem(stopping[0].code, f"{stopping[0].text}.", f"Mend: {stopping[0].fix}.") if stopping else None
+    )
+
+
+def examine_log(log: Path, aircraft: Aircraft, target_system: int | None) -> "Examination":
+    """Examine the telemetry of a log.
+
+    Raises
+    ------
+    UnusableInputError
+        The log cannot be read.
+    """
+    from advisor.doctor.examiner import Examiner
+    from advisor.mavlink.logs.logs import open_log
+    from advisor.mavlink.wire.frames import FrameScanner, Received
+
+    examiner, scanner = Examiner(aircraft, target_system), FrameScanner()
+    for columns in open_log(log, scanner=scanner):
+        examiner.feed(columns)
+    vehicle = examiner.vehicle
+    senders = scanner.statistics.senders
+    came = senders.get((vehicle.system, vehicle.component), Received()) if vehicle else Received()
+    return examiner.findings(repeated_percent=came.repeated_percent, repeated_after_s=came.repeated_after_s)
+
+
+def _examine_link(
+    connection: str, aircraft: Aircraft, target_system: int | None, seconds: float, request_rates: bool
+) -> "Examination":
+    from advisor.doctor.examiner import Examiner
+    from advisor.mavlink.link.inquiry import Inquiry
+    from advisor.mavlink.link.link import Link
+    from advisor.mavlink.link.outgoing import Talker
+    from advisor.mavlink.link.rates import STREAMS, RateRequest
+
+    talkers: list[Talker] = []
+    if request_rates:
+        talkers = [RateRequest(dict.fromkeys(STREAMS, 50.0)), Inquiry()]
+    examiner = Examiner(aircraft, target_system)
+    with Link(connection, target_system=target_system, talkers=talkers) as link:
+        click.echo(f"Listening on {printable(connection)} for {seconds:g} s ...", err=True)
+        until_s = time.monotonic() + seconds
+        while time.monotonic() < until_s:
+            examiner.feed(link.read(0.1))
+        for notice in link.take_notices():
+            click.echo(notice.text, err=True)
+        came = link.statistics
+        return examiner.findings(came.lost_percent, came.repeated_percent, came.repeated_after_s)

@@ -1,0 +1,191 @@
+"""``advisor gap``: why the real aircraft does not fly like the simulator."""
+
+import json
+import os
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+from click.core import ParameterSource
+
+from advisor.cli.improvement_export import export_option, listed, orders_of, write_exports
+from advisor.cli.options import (
+    UNUSABLE,
+    USAGE,
+    aircraft_option,
+    decided_on,
+    json_option,
+    maneuver_option,
+    no_marks_option,
+    read_aircraft,
+    refuse_marks_on_several,
+    refuse_unwritable,
+    target_system_option,
+    writing,
+)
+from advisor.words.printable import printable
+from advisor.words.problems import ConfigurationError, UnusableInputError
+
+if TYPE_CHECKING:
+    from advisor.flight.maneuvers.marks import Mark
+
+_OF_A_FLIGHT = {
+    "holdout": "--holdout", "out": "--out", "target_system": "--target-system", "marks": "--maneuver",
+    "no_marks": "--no-marks", "why": "--why", "exports": "--export", "specification": "--simulator",
+}  # fmt: skip
+_OF_A_PLAN = {
+    "plan": "--plan", "rate_hz": "--rate", "amplitude_deg": "--amplitude-deg", "without": "--without"
+}  # fmt: skip
+
+
+@click.command
+@click.argument("logs", nargs=-1, type=click.Path(path_type=Path))
+@aircraft_option
+@target_system_option
+@maneuver_option
+@no_marks_option
+@click.option(
+    "--holdout",
+    type=click.IntRange(1),
+    help="Number of last manoeuvres to hold out: the gap is measured there, and the fit uses the others.",
+)
+@click.option(
+    "--simulator",
+    "specification",
+    metavar="SPEC",
+    help="Your own simulator: linear, jsbsim:MODEL, fmu:FILE, python:module:factory or log:FILE.",
+)
+@click.option("--out", type=click.Path(path_type=Path), help="File for the improved simulator.")
+@export_option
+@click.option(
+    "--why", is_flag=True, help="Print every decision on the way: its number, its limit, the margin."
+)
+@click.option(
+    "--foresee", is_flag=True, help="Read no log; say what a planned flight would show. Needs --aircraft."
+)
+@click.option(
+    "--plan",
+    default="3211,rev,rev,3211,rev,3211,rev",
+    show_default=True,
+    help="With --foresee: manoeuvres to fly.",
+)
+@click.option(
+    "--rate", "rate_hz", type=float, default=50.0, show_default=True, help="With --foresee: stream rate, Hz."
+)
+@click.option(
+    "--amplitude-deg", type=float, default=2.0, show_default=True, help="With --foresee: elevator step, deg."
+)
+@click.option("--without", default="", help="With --foresee: missing channels, e.g. a_z,theta.")
+@json_option
+def command(
+    logs: tuple[Path, ...],
+    aircraft_file: Path | None,
+    target_system: int | None,
+    marks: "tuple[Mark, ...]",
+    no_marks: bool,
+    holdout: int | None,
+    specification: str | None,
+    out: Path | None,
+    exports: tuple[str, ...],
+    why: bool,
+    foresee: bool,
+    plan: str,
+    rate_hz: float,
+    amplitude_deg: float,
+    without: str,
+    as_json: bool,
+) -> int:
+    """Diagnose the sim-to-real gap: where it lies, which effect causes it, how far it shrinks.
+
+    \b
+    Example:
+      advisor gap flight.tlog --aircraft my-aircraft.yaml
+      advisor gap flight-1.tlog flight-2.tlog --holdout 3 --json
+      advisor gap flight.tlog --maneuver +12:+24
+      advisor gap flight.tlog --aircraft my-aircraft.yaml --export matlab:short-period.m
+      advisor gap flight.tlog --simulator jsbsim:c172p
+      advisor gap --foresee --aircraft my-aircraft.yaml --rate 20 --without a_z
+    """
+    _refuse_foreign(foresee)
+    aircraft = read_aircraft(aircraft_file)
+    if foresee:
+        if logs:
+            raise ConfigurationError(
+                f"advisor gap --foresee plans a flight and reads no log: leave out {logs[0]}, "
+                "or leave out --foresee to diagnose it."
+            )
+        from advisor.report.gap_plan import print_foresight
+
+        return print_foresight(aircraft, plan, rate_hz, amplitude_deg, without, as_json)
+    if not logs:
+        raise ConfigurationError("advisor gap needs at least one log, or --foresee with an aircraft file.")
+    refuse_marks_on_several(marks, logs)
+    decided = [decided_on(log, no_marks) for log in logs]
+    by_hand = [replace(before, marks=(*marks, *before.marks)) for before in decided]
+    if out is not None:
+        refuse_unwritable("--out", out)
+        if aircraft_file is not None and out.resolve() == aircraft_file.resolve():
+            raise ConfigurationError(f"--out: {out} is the aircraft file itself; name another file.")
+    elif not os.access(Path(), os.W_OK):
+        raise ConfigurationError("This folder cannot be written to: name a file in another with --out.")
+    if specification is not None:
+        aircraft = replace(aircraft, simulator=specification)
+    orders = orders_of(exports, aircraft, [*logs, aircraft_file, out])
+    from advisor.analysis.gap import compare_logs, named_simulator
+    from advisor.gap.document import gap_document
+    from advisor.report.improved import improved_name, write_improved
+
+    watched = sys.stderr.isatty()
+    progress = _progress if watched else lambda *_: None
+    simulator = None
+    try:
+        simulator = named_simulator(aircraft, target_system)
+        compared = compare_logs(logs, aircraft, simulator, holdout, target_system, progress, by_hand)
+        found = compared.diagnosis
+    except UnusableInputError as error:
+        if as_json:
+            click.echo(json.dumps(gap_document(None, error.problems), indent=1))
+        click.echo(str(error), err=True)
+        return UNUSABLE
+    finally:
+        if simulator is not None:
+            simulator.close()
+        if watched:
+            click.echo("\r\033[K", nl=False, err=True)
+    improved = None
+    if found.verdict in ("effect", "parameters"):
+        place = out or Path(improved_name(found, aircraft_file))
+        with writing("--out", place):
+            improved = str(write_improved(found, compared.aircraft, place))
+    elif out is not None:
+        click.echo(
+            f"{printable(str(out))} was not written: no cause was named and no number found wrong.", err=True
+        )
+    # The simulator's own servo is no part of the improvement.
+    as_given = replace(compared.aircraft, simulator=aircraft.simulator, elevator=aircraft.elevator)
+    outcomes = write_exports(orders, found, as_given)
+    if as_json:
+        document = gap_document(found, (), improved) | {"exports": listed(outcomes)}
+        click.echo(json.dumps(document, allow_nan=False, indent=1))
+    else:
+        from advisor.report.console import PlainConsole
+        from advisor.report.gap_screen import GapScreen
+
+        PlainConsole().print(GapScreen(found, improved and printable(improved), why))
+    return USAGE if any(one.problem for one in outcomes) else 0
+
+
+def _refuse_foreign(foresee: bool) -> None:
+    """Refuse options of the other mode of the command, which would be ignored without a word."""
+    foreign = _OF_A_FLIGHT if foresee else _OF_A_PLAN
+    given = click.get_current_context().get_parameter_source
+    for name, option in foreign.items():
+        if given(name) is ParameterSource.COMMANDLINE:
+            where = "without --foresee" if foresee else "with --foresee"
+            raise ConfigurationError(f"{option} has a meaning {where} only: leave it out.")
+
+
+def _progress(what: str, share: float) -> None:
+    click.echo(f"\r\033[K{100 * share:3.0f} %  {what}", nl=False, err=True)

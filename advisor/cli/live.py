@@ -1,0 +1,180 @@
+"""``advisor live``: advice on a live link."""
+
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from advisor.aircraft.aircraft import Rule
+from advisor.cli.options import (
+    NEWEST,
+    aircraft_option,
+    no_marks_option,
+    rule_option,
+    target_system_option,
+)
+from advisor.cli.screen import Show, advise
+from advisor.process.interrupt import STOPPED, in_order
+from advisor.words.printable import printable
+from advisor.words.problems import ConfigurationError
+
+if TYPE_CHECKING:
+    from advisor.campaign.hand_decisions import ByHand
+    from advisor.mavlink.link.kept_link import KeptLink
+    from advisor.session.source import Source
+
+
+@click.command
+@click.argument("logs", nargs=-1, type=click.Path(path_type=Path))
+@click.option(
+    "--master",
+    metavar="CONN",
+    help="Connection, as in pymavlink: udpin:0.0.0.0:14550, tcp:host:port, /dev/ttyUSB0,57600.",
+)
+@click.option(
+    "--record",
+    "record_to",
+    metavar="FILE|DIR",
+    help="File or folder for the recording.",
+)
+@click.option("--no-record", is_flag=True, help="Keep no recording of the link.")
+@click.option(
+    "--resume",
+    is_flag=False,
+    flag_value=NEWEST,
+    metavar="[REC]",
+    help="Continue the flight test of a recording (default: the newest), with its options unless given anew.",
+)
+@click.option(
+    "--request-rates", is_flag=True, help="Ask the vehicle for streams of 50 Hz and its servo parameters."
+)
+@click.option(
+    "--announce", is_flag=True, help="Send each verdict and STOP to the ground stations (STATUSTEXT)."
+)
+@click.option(
+    "--announce-to",
+    metavar="CONN",
+    help="Send the announcements to this connection instead, e.g. to a --master of MAVProxy.",
+)
+@click.option(
+    "--signing-key",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="File with a key: sign sent packets, and refuse packets without its signature.",
+)
+@click.option(
+    "--source-system",
+    type=click.IntRange(1, 255),
+    default=254,
+    show_default=True,
+    help="System id of the advisor.",
+)
+@aircraft_option
+@rule_option
+@target_system_option
+@no_marks_option
+def command(
+    logs: tuple[Path, ...],
+    master: str | None,
+    record_to: str | None,
+    no_record: bool,
+    resume: str | None,
+    request_rates: bool,
+    announce: bool,
+    announce_to: str | None,
+    signing_key: Path | None,
+    source_system: int,
+    aircraft_file: Path | None,
+    rule: Rule | None,
+    target_system: int | None,
+    no_marks: bool,
+    show: Show | None = None,
+) -> None:
+    """Advise during a flight. Nothing is sent to the vehicle unless an option here asks for it.
+
+    The link and its recording run in a separate process. If this program ends unasked, that process goes on
+    recording, and --resume continues the flight test. Without a terminal, or with HEADLESS=1, the verdicts
+    come as text.
+
+    \b
+    Example:
+      advisor live --master udpin:0.0.0.0:14550 --aircraft my-aircraft.yaml
+      advisor live --master /dev/ttyUSB0,57600 --request-rates --announce
+      advisor live --resume
+    """
+    if no_record and (record_to is not None or resume is not None):
+        other = "--record" if record_to is not None else "--resume"
+        raise ConfigurationError(f"{other} and --no-record contradict each other; give one of them.")
+    if logs and resume is None:
+        raise ConfigurationError("LOG needs --resume, which continues the flight test of these logs.")
+    from advisor.campaign.hand_decisions import NOTHING
+    from advisor.cli.flight_start import Speaking, start_of, started
+    from advisor.mavlink.link.connection import parse_connection
+    from advisor.mavlink.wire.signing import read_key
+    from advisor.process.yaml_file import read_yaml
+    from advisor.session.campaign_file import CampaignFile
+
+    content = read_yaml(aircraft_file) if aircraft_file else None
+    asked = CampaignFile(master or "", rule, target_system, content)
+    start = start_of(asked, resume, logs, record_to, recorded=not no_record)
+    for connection in filter(None, (start.campaign.master, announce_to)):
+        parse_connection(connection)
+    aircraft = start.campaign.parsed_aircraft(str(aircraft_file or start.recording))
+    # A recording that exists and is not taken up is another flight's, and so are the decisions on it.
+    mine = start.goes_on or not (start.recording and start.recording.exists())
+    by_hand = NOTHING if no_marks else _decided((*start.earlier, start.recording if mine else None))
+    speaking = Speaking(
+        source_system, read_key(signing_key) if signing_key else None, request_rates, announce, announce_to
+    )
+    recordings: list[Path] = []
+    with in_order(partial(_ended, recordings)), started(start, speaking) as process:
+        recordings += [process.recording] if process.recording else []
+        click.echo(_recorded(recordings), err=True)
+        link = process.link(aircraft.elevator)
+        advise(
+            partial(_source, start.earlier, link),
+            start.campaign.master,
+            aircraft,
+            start.campaign.target_system,
+            partial(_announce, link) if announce or announce_to else None,
+            by_hand=by_hand,
+            kept=partial(_decided, (*start.earlier, process.recording)),
+            names=[*(printable(log.name) for log in start.earlier), start.campaign.master],
+            logs=[*start.earlier, *recordings],
+            show=show,
+        )
+
+
+def _recorded(recordings: Sequence[Path]) -> str:
+    return f"recording to {printable(str(recordings[0]))}" if recordings else "nothing is recorded"
+
+
+def _ended(recordings: Sequence[Path]) -> str:
+    """Return the sentence for the crew when a signal ends the command."""
+    return f"Stopped; the recording is {printable(str(recordings[0]))}." if recordings else STOPPED
+
+
+def _decided(flights: Sequence[Path | None]) -> "ByHand":
+    """Return the decisions by hand on these flights. Without a recording, nothing is kept."""
+    from advisor.analysis.marks_file import read_by_hand
+    from advisor.campaign.hand_decisions import NOTHING, on_all
+
+    return on_all([read_by_hand(flight) if flight else NOTHING for flight in flights])
+
+
+def _source(earlier: Sequence[Path], link: "KeptLink") -> "Source":
+    from advisor.session.live import LinkSource
+    from advisor.session.resumed import ResumedSource
+
+    return ResumedSource(earlier, LinkSource(link)) if earlier else LinkSource(link)
+
+
+def _announce(link: "KeptLink", event: object) -> None:
+    from advisor.campaign.campaign import ManeuverJudged
+
+    if isinstance(event, ManeuverJudged):
+        verdict = event.flight_test
+        stop = verdict.sentence if verdict.decision == "stop" else None
+        link.judged(event.judged.maneuver.number, event.judged.verdict.sentence, stop)

@@ -1,0 +1,27 @@
+"""``advisor locate``: the places of the user's files."""
+
+import click
+
+PLACES = ("config", "recordings")
+
+
+@click.command
+@click.argument("what", type=click.Choice(PLACES), default="config")
+def command(what: str) -> None:
+    """Print the path of the settings (config) or of the recordings of live links (recordings).
+
+    The settings file need not exist. Every key in the file is optional: theme, screen, keys.
+
+    \b
+    Example:
+      advisor locate config
+      ls "$(advisor locate recordings)"
+    """
+    if what == "config":
+        from advisor.tui.settings import settings_path
+
+        click.echo(settings_path())
+    else:
+        from advisor.mavlink.link.recording_file import recordings_folder
+
+        click.echo(recordings_folder())

@@ -1,0 +1,145 @@
+"""A campaign without a screen: estimated in a separate process, and printed line by line.
+
+    python -m advisor.cli.narrator
+
+When the estimating process dies, the next one reads the source from its beginning and comes to equal lines.
+Lines that were printed before are not printed again.
+"""
+
+import os
+import pickle
+import sys
+import traceback
+import warnings
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import closing, suppress
+from dataclasses import replace
+from threading import Thread
+from time import sleep
+from typing import IO, TYPE_CHECKING
+
+import click
+
+from advisor.flight.signals.messages import Columns
+from advisor.process import interrupt
+from advisor.session.child_process import pause_s, said_of, start_child
+from advisor.session.remote import Task
+from advisor.session.source import Source
+from advisor.words.ascii_output import speak_plainly
+from advisor.words.problems import UnusableInputError
+
+if TYPE_CHECKING:
+    from advisor.campaign.campaign import Campaign
+
+READ_S = 0.2
+
+
+def narrate(task: Task, say: Callable[[str], object], warn: Callable[[str], object]) -> None:
+    """Conduct a campaign in another process, to the end of its source.
+
+    Parameters
+    ----------
+    task
+        Campaign and source; the source can be read from its beginning again.
+    say
+        Takes one line of text.
+    warn
+        Takes one line on what goes wrong.
+
+    Raises
+    ------
+    UnusableInputError
+        The source can never serve, or has ended without anything to judge.
+    """
+    said: Counter[str] = Counter()
+    deaths = 0
+    while code := _narrate_once(task, say, said):
+        deaths += 1
+        warn(f"the estimating process {said_of(code)}; it is started again")
+        sleep(pause_s(deaths))
+        if task.kept is not None:
+            task = replace(task, by_hand=task.kept())
+
+
+def _narrate_once(task: Task, say: Callable[[str], object], said: "Counter[str]") -> int:
+    repeated = said.copy()
+    with start_child("advisor.cli.narrator", shows_errors=True) as process:
+        assert process.stdin is not None
+        assert process.stdout is not None
+        try:
+            with suppress(BrokenPipeError):
+                pickle.dump(task, process.stdin)
+                process.stdin.flush()
+            with suppress(EOFError, pickle.UnpicklingError):
+                while True:
+                    message = pickle.load(process.stdout)
+                    if isinstance(message, BaseException):
+                        raise message
+                    if repeated[message] > 0:
+                        repeated[message] -= 1
+                        continue
+                    said[message] += 1
+                    say(message)
+            return process.wait()
+        finally:
+            with suppress(BrokenPipeError):
+                process.stdin.close()  # upon which the other process ends, if it lives still
+
+
+def narrate_here(source: Source, campaign: "Campaign", say: Callable[[str], object]) -> None:
+    """Conduct a campaign in this process, to the end of its source.
+
+    Raises
+    ------
+    UnusableInputError
+        The source can never serve, or has ended without anything to judge.
+    """
+    from advisor.report.follow import follow
+
+    with closing(source):
+        follow(_batches(source), campaign, say)
+    if campaign.problems:
+        raise UnusableInputError.of(campaign.problems[:1])
+
+
+def _batches(source: Source) -> Iterator[Sequence[Columns]]:
+    while (columns := source.read(READ_S)) is not None:
+        for notice in source.take_notices():
+            click.echo(f"link: {notice}", err=True)
+        yield columns
+
+
+def _send(pipe: IO[bytes], message: object) -> None:
+    pickle.dump(message, pipe, pickle.HIGHEST_PROTOCOL)
+    pipe.flush()
+
+
+def _end_with(requests: IO[bytes]) -> None:
+    """End the work when the other process is gone, for then nobody reads the estimates."""
+    requests.read()
+    os._exit(0)
+
+
+def main() -> None:
+    """Conduct one campaign from its task to its end. An error that ends the campaign is the last message."""
+    from advisor.campaign.campaign import Campaign
+
+    interrupt.ignore()  # a signal is for the parent, which then closes the requests
+    speak_plainly()
+    warnings.simplefilter("ignore")  # as in the parent: warnings are for those who develop
+    with suppress(BrokenPipeError), os.fdopen(os.dup(sys.stdout.fileno()), "wb") as messages:
+        os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
+        try:
+            task: Task = pickle.load(sys.stdin.buffer)
+            Thread(target=_end_with, args=(sys.stdin.buffer,), daemon=True).start()
+            campaign = task.make_campaign(task.by_hand)
+            assert isinstance(campaign, Campaign)
+            narrate_here(task.open_source(), campaign, lambda line: _send(messages, line))
+        except Exception as failure:
+            failure.add_note(traceback.format_exc())
+            _send(messages, failure)
+
+
+if __name__ == "__main__":
+    main()

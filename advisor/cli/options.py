@@ -1,0 +1,236 @@
+"""Options that commands share, so that they read and behave alike in every command."""
+
+import os
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
+from itertools import combinations
+from math import isfinite, nan
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from advisor.aircraft.aircraft import Aircraft, Rule
+from advisor.words.problems import ConfigurationError
+
+if TYPE_CHECKING:
+    from advisor.campaign.hand_decisions import ByHand
+    from advisor.flight.maneuvers.marks import Mark
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+USAGE, UNUSABLE, INTERNAL = 2, 3, 70
+"""Exit codes: wrong usage or configuration; unusable input; a fault of the advisor itself."""
+NEWEST = "the newest"
+"""Value of ``--resume`` without a recording."""
+RULES = ("continuous", "separate", "information")
+
+
+def aircraft_option(command: F) -> F:
+    """Add the option ``--aircraft FILE``, which the command receives as ``aircraft_file``."""
+    return click.option(
+        "--aircraft",
+        "aircraft_file",
+        type=click.Path(path_type=Path),
+        metavar="FILE",
+        help="Aircraft file (YAML): elevator calibration, servo lag, limits, prior model.",
+    )(command)
+
+
+def json_option(command: F) -> F:
+    """Add the option ``--json``, which the command receives as ``as_json``."""
+    return click.option(
+        "--json", "as_json", is_flag=True, help="Print one JSON document on stdout, and nothing else there."
+    )(command)
+
+
+def rule_option(command: F) -> F:
+    """Add the option ``--rule``, which overrides the aircraft file's rule."""
+    return click.option("--rule", type=click.Choice(RULES), help="Rule that decides; the others are shown.")(
+        command
+    )
+
+
+def target_system_option(command: F) -> F:
+    """Add the option ``--target-system N``, named as in MAVProxy."""
+    return click.option(
+        "--target-system",
+        type=click.IntRange(1, 255),
+        metavar="N",
+        help="System id of the vehicle, where several are on the link.",
+    )(command)
+
+
+def maneuver_option(command: F) -> F:
+    """Add the option ``--maneuver START:END``, which the command receives as ``marks``."""
+    return click.option(
+        "--maneuver",
+        "marks",
+        multiple=True,
+        metavar="START:END",
+        callback=lambda ctx, parameter, texts: parse_marks(texts),
+        help="Mark this stretch as a manoeuvre: seconds since boot, or with + since the log's first ATTITUDE "
+        "(+12:+24). Minutes and seconds are understood too (1:20.4:1:33). Repeatable.",
+    )(command)
+
+
+def no_marks_option(command: F) -> F:
+    """Add the option ``--no-marks``, which the command receives as ``no_marks``."""
+    return click.option(
+        "--no-marks", is_flag=True, help="Ignore earlier decisions by hand (LOG.maneuvers.yaml)."
+    )(command)
+
+
+def parse_marks(texts: Sequence[str]) -> "tuple[Mark, ...]":
+    """Read several stretches ``START:END`` that do not overlap.
+
+    Raises
+    ------
+    ConfigurationError
+        As :func:`parse_mark`, and where two stretches share time.
+    """
+    marks = tuple(map(parse_mark, texts))
+    for a, b in combinations(marks, 2):
+        if a.from_log_start == b.from_log_start and a.overlaps(b.start_s, b.end_s):
+            raise ConfigurationError(f"{b.name} overlaps {a.name}: make one mark of both, or separate them.")
+    return marks
+
+
+def parse_mark(text: str) -> "Mark":
+    """Read ``START:END``.
+
+    Raises
+    ------
+    ConfigurationError
+        The text is no stretch of time that can be a manoeuvre.
+    """
+    from advisor.flight.maneuvers.marks import LONGEST_S, Mark
+
+    parts = text.split(":")
+    half = len(parts) // 2 if len(parts) in (2, 4) else len(parts)
+    relative = [part.strip().startswith("+") for part in (parts[0], parts[-half])]
+    start_s, end_s = _seconds(parts[:half]), _seconds(parts[half:])
+    if not (isfinite(start_s) and isfinite(end_s) and start_s >= 0.0 and relative[0] == relative[1]):
+        raise ConfigurationError(
+            f"--maneuver {text}: give START:END in seconds since boot, or both with + from the start of the "
+            "log, e.g. --maneuver +12:+24; minutes:seconds are understood too, e.g. --maneuver 1:20.4:1:33."
+        )
+    if end_s <= start_s:
+        raise ConfigurationError(f"--maneuver {text}: END must lie after START; exchange or correct them.")
+    if end_s - start_s > LONGEST_S:
+        raise ConfigurationError(
+            f"--maneuver {text}: a manoeuvre lasts {LONGEST_S:.0f} s at most; mark each input separately."
+        )
+    return Mark(start_s, end_s, from_log_start=relative[0], name=f"--maneuver {text}")
+
+
+def _seconds(parts: Sequence[str]) -> float:
+    """Read seconds, ``["80.4"]``, or minutes and seconds, ``["1", "20.4"]``; NaN where it is no time."""
+    try:
+        *minutes, seconds = map(float, parts)
+    except ValueError:
+        return nan
+    if len(minutes) > 1 or (minutes and not 0.0 <= seconds < 60.0):
+        return nan
+    return 60.0 * sum(minutes) + seconds
+
+
+def refuse_marks_on_several(marks: "Sequence[Mark]", logs: Sequence[Path]) -> None:
+    """Refuse marks of the command line on several logs.
+
+    Raises
+    ------
+    ConfigurationError
+        There are marks, and more than one log.
+    """
+    if marks and len(logs) > 1:
+        raise ConfigurationError(
+            "--maneuver does not say in which of several logs: write the marks into LOG.maneuvers.yaml "
+            "next to each log."
+        )
+
+
+def decided_on(log: Path, no_marks: bool) -> "ByHand":
+    """Return the decisions by hand on a log, from the file next to the log.
+
+    Raises
+    ------
+    ConfigurationError
+        As :func:`advisor.analysis.marks_file.read_by_hand`.
+    """
+    from advisor.analysis.marks_file import read_by_hand
+    from advisor.campaign.hand_decisions import NOTHING
+
+    return NOTHING if no_marks else read_by_hand(log)
+
+
+def read_aircraft(aircraft_file: Path | None, rule: Rule | None = None) -> Aircraft:
+    """Read the aircraft file, and let the rule of the command line override the file's.
+
+    Raises
+    ------
+    ConfigurationError
+        As :func:`advisor.aircraft_file.read.load_aircraft`.
+    """
+    aircraft = Aircraft()
+    if aircraft_file is not None:
+        from advisor.aircraft_file.read import load_aircraft
+
+        aircraft = load_aircraft(aircraft_file)
+    if rule is None:
+        return aircraft
+    return replace(aircraft, campaign=replace(aircraft.campaign, rule=rule))
+
+
+def refuse_unwritable(option: str, path: Path) -> None:
+    """Refuse, before any work, a path that could not be written after it.
+
+    Raises
+    ------
+    ConfigurationError
+        The path is a folder, or lies in none, or may not be written.
+    """
+    if path.is_dir():
+        raise ConfigurationError(f"{option}: {path} is a folder; name a file in it.")
+    if not path.parent.is_dir():
+        raise ConfigurationError(
+            f"{option}: there is no folder {path.parent}; make it, or name a file elsewhere."
+        )
+    if not os.access(path if path.exists() else path.parent, os.W_OK):
+        raise ConfigurationError(f"{option}: {path} cannot be written to; name a file elsewhere.")
+
+
+def refuse_unwritable_folder(option: str, folder: Path) -> None:
+    """Refuse before the work a folder that is none, and one that could not be made or written to.
+
+    Raises
+    ------
+    ConfigurationError
+        The path is a file, lies below one, or may not be written.
+    """
+    if folder.exists() and not folder.is_dir():
+        raise ConfigurationError(f"{option}: {folder} is a file; name a folder.")
+    there = next((one for one in (folder, *folder.absolute().parents) if one.exists()), Path("/"))
+    if not there.is_dir():
+        raise ConfigurationError(f"{option}: {folder} lies below the file {there}; name a folder elsewhere.")
+    if not os.access(there, os.W_OK | os.X_OK):
+        raise ConfigurationError(f"{option}: {folder} cannot be written to; name a folder elsewhere.")
+
+
+@contextmanager
+def writing(option: str, path: Path) -> Iterator[None]:
+    """Say in one sentence that what an option names could not be written after all: the disk is full.
+
+    Raises
+    ------
+    ConfigurationError
+        The block ended with an OSError.
+    """
+    try:
+        yield
+    except OSError as error:
+        raise ConfigurationError(
+            f"{option}: {path} cannot be written to: {error.strerror or error}."
+            " Make room or name another place."
+        ) from None

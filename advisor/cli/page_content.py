@@ -1,0 +1,104 @@
+"""Content of the page of ``advisor report``: logs heard as one campaign, telemetry examined, gap
+diagnosed."""
+
+import hashlib
+import platform
+import shlex
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from importlib.metadata import version
+from pathlib import Path
+
+from advisor import __version__
+from advisor.aircraft.aircraft import Aircraft
+from advisor.analysis.gap import compare_logs, named_simulator
+from advisor.analysis.whole_flights import WholeFlights, read_whole
+from advisor.cli.doctor import examine_log
+from advisor.doctor.document import doctor_document
+from advisor.gap.document import gap_document
+from advisor.report.document import analysis_document
+from advisor.report.page.content import Content, Document, Origin
+from advisor.words.printable import printable
+from advisor.words.problems import UnusableInputError
+
+_COUNTED = ("numpy", "scipy", "matplotlib", "jinja2", "pymavlink")
+"""Libraries that numbers and pictures depend on; the page lists their versions."""
+
+
+def gather(
+    logs: Sequence[Path],
+    aircraft: Aircraft,
+    aircraft_file: Path | None,
+    target_system: int | None,
+    no_marks: bool,
+    with_gap: bool,
+) -> tuple[Content, list[str]]:
+    """Return the content of the page, and sentences on logs that do not count.
+
+    Raises
+    ------
+    UnusableInputError
+        No log can be used.
+    ConfigurationError
+        As :func:`advisor.analysis.marks_file.read_by_hand`.
+    """
+    flights = read_whole(logs, aircraft, target_system, no_marks=no_marks)
+    said = flights.said
+    content = Content(
+        state=flights.state,
+        analysis=analysis_document(
+            flights.state, [str(log) for log in flights.logs], aircraft, flights.left_out, said
+        ),
+        names=tuple(map(printable, flights.names)),
+        aircraft=aircraft,
+        power_ons=flights.power_ons,
+        doctor=tuple(_examined(log, aircraft, target_system) for log in flights.logs),
+        gap=_gap(flights, aircraft, target_system) if with_gap else None,
+        origin=Origin(
+            _hashes(flights, aircraft_file),
+            dict(_versions()),
+            printable(shlex.join(["advisor", *sys.argv[1:]])),
+        ),
+    )
+    return content, said
+
+
+def _examined(log: Path, aircraft: Aircraft, target_system: int | None) -> Document:
+    try:
+        return doctor_document(examine_log(log, aircraft, target_system))
+    except UnusableInputError as error:
+        return doctor_document(None, error.problem)
+
+
+def _gap(flights: WholeFlights, aircraft: Aircraft, target_system: int | None) -> Document:
+    usable = [flight for flight in range(len(flights.logs)) if flight not in flights.left_out]
+    logs = [flights.logs[flight] for flight in usable]
+    decided = [flights.by_hand.on_flight(flight) for flight in usable]
+    simulator = None
+    try:
+        simulator = named_simulator(aircraft, target_system)
+        compared = compare_logs(logs, aircraft, simulator, target_system=target_system, by_hand=decided)
+    except UnusableInputError as error:
+        return gap_document(None, error.problems)
+    finally:
+        if simulator is not None:
+            simulator.close()
+    return gap_document(compared.diagnosis)
+
+
+def _hashes(flights: WholeFlights, aircraft_file: Path | None) -> Mapping[str, str]:
+    """Return the SHA-256 of every input file, by the file's name."""
+    named = [*zip(flights.names, flights.logs, strict=True)]
+    named += [(aircraft_file.name, aircraft_file)] if aircraft_file else []
+    return {printable(name): _sha256(path) for name, path in named if path.is_file()}
+
+
+def _sha256(path: Path) -> str:
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+def _versions() -> Iterator[tuple[str, str]]:
+    yield "inflight-advisor", __version__
+    yield "Python", platform.python_version()
+    yield from ((name, version(name)) for name in _COUNTED)

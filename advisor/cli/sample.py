@@ -1,0 +1,37 @@
+"""``advisor sample``: a flight for trying every command."""
+
+import shutil
+from pathlib import Path
+
+import click
+
+from advisor.process.installed import SAMPLE, SAMPLES
+from advisor.words.problems import ConfigurationError
+
+
+@click.command
+@click.argument("folder", type=click.Path(path_type=Path, file_okay=False), default=Path())
+def command(folder: Path) -> None:
+    """Write a sample flight and its aircraft file into FOLDER, by default the current one.
+
+    The flight holds seven elevator 3-2-1-1 of an ArduPlane in calm air. Files of these names are kept.
+
+    \b
+    Example:
+      advisor sample
+      advisor analyze arduplane-calm.tlog --aircraft arduplane-calm.yaml
+    """
+    log, aircraft = (folder / f"{SAMPLE}{ending}" for ending in (".tlog", ".yaml"))
+    for target in (log, aircraft):
+        if target.exists():
+            raise ConfigurationError(f"{target} exists: name another folder, e.g. advisor sample trial.")
+    folder.mkdir(parents=True, exist_ok=True)
+    for target in (log, aircraft):
+        shutil.copyfile(SAMPLES / target.name, target)
+    click.echo(f"Wrote {log} and {aircraft}. Next:")
+    for line in (
+        f"advisor doctor {log} --aircraft {aircraft}",
+        f"advisor replay {log} --aircraft {aircraft}",
+        f"advisor gap {log} --aircraft {aircraft}",
+    ):
+        click.echo(f"  {line}")

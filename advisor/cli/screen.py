@@ -1,0 +1,121 @@
+"""Run of a campaign on screens, or as lines of text where there is no screen."""
+
+import os
+import sys
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import TYPE_CHECKING
+
+import click
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.process.interrupt import in_order
+from advisor.session.source import Source, Tempo
+from advisor.words.problems import UnusableInputError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from advisor.campaign.campaign import Campaign
+    from advisor.campaign.hand_decisions import ByHand
+    from advisor.flight.maneuvers.marks import Mark
+    from advisor.session.remote import Task
+
+Listener = Callable[[object], object]
+Show = Callable[["Task", Aircraft, str, Tempo | None], object]
+"""Shows the campaign of a task until it is left: aircraft, title, and how a replay starts."""
+
+
+def headless() -> bool:
+    """Return whether the campaign is printed as lines: without a terminal on stdout, or with
+    ``HEADLESS=1``."""
+    return os.environ.get("HEADLESS", "") not in ("", "0") or not sys.stdout.isatty()
+
+
+def advise(
+    open_source: Callable[[], Source],
+    title: str,
+    aircraft: Aircraft,
+    target_system: int | None = None,
+    tell: Listener | None = None,
+    tempo: Tempo | None = None,
+    by_hand: "ByHand | None" = None,
+    marks: "Sequence[Mark]" = (),
+    kept: "Callable[[], ByHand] | None" = None,
+    names: Sequence[str] = (),
+    logs: "Sequence[Path]" = (),
+    show: "Show | None" = None,
+) -> None:
+    """Run a campaign on a source: on screens, as lines of text, or as ``show`` does.
+
+    Parameters
+    ----------
+    open_source
+        Makes the source in the estimating process. Both ``open_source`` and ``tell`` must be picklable.
+    title
+        Name of the source on the screens.
+    tell
+        Called with every event of the campaign, in the estimating process.
+    tempo
+        Start settings of a replay. None: the source is no replay.
+    by_hand
+        Earlier decisions by hand on this flight.
+    marks
+        Marks of the command line.
+    kept
+        Reads the decisions by hand since the start, for a source that can be read again from its
+        beginning. Such a source survives the death of the estimating process.
+    names
+        Names of the campaign's logs, in their order.
+    logs
+        Logs and recordings, flight by flight; panes are saved into the folder of theirs.
+    show
+        Shows the campaign elsewhere; None: the terminal does, or lines of text come without a terminal.
+
+    Raises
+    ------
+    UnusableInputError
+        The source can never serve, or has ended without anything to judge.
+    """
+    from advisor.campaign.hand_decisions import NOTHING
+    from advisor.cli.narrator import narrate, narrate_here
+    from advisor.session.remote import Task
+
+    before = by_hand or NOTHING
+    make_campaign = partial(_campaign, aircraft, target_system, tell, tuple(marks), tuple(names))
+    if show is not None or not headless():
+        task = Task(open_source, partial(make_campaign, True), before, kept)
+        (show or partial(_show, tuple(logs)))(task, aircraft, title, tempo)
+    elif kept is not None:
+        task = Task(open_source, partial(make_campaign, False), before, kept)
+        narrate(task, click.echo, partial(click.echo, err=True))
+    else:
+        narrate_here(open_source(), make_campaign(False, before), click.echo)
+
+
+def _campaign(
+    aircraft: Aircraft,
+    target_system: int | None,
+    tell: Listener | None,
+    marks: "Sequence[Mark]",
+    names: Sequence[str],
+    settle: bool,
+    by_hand: "ByHand",
+) -> "Campaign":
+    from advisor.campaign.campaign import Campaign
+
+    return Campaign(aircraft, target_system, settle, tell, by_hand=by_hand, marks=marks, names=names)
+
+
+def _show(logs: "Sequence[Path]", task: "Task", aircraft: Aircraft, title: str, tempo: Tempo | None) -> None:
+    from advisor.session.remote import RemoteConductor
+    from advisor.tui.app import AdvisorApp
+    from advisor.tui.settings import load_settings
+
+    app = AdvisorApp(RemoteConductor(task), aircraft, title, tempo, load_settings(), logs)
+    with in_order():
+        app.run()
+    if app.failure is not None:
+        raise app.failure
+    if tempo is not None and app.view.problems:
+        raise UnusableInputError.of(app.view.problems[:1])

@@ -1,0 +1,139 @@
+"""``advisor serve``: the screens in a browser."""
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any, TypeVar
+
+import click
+
+from advisor.cli import live, replay
+from advisor.process.interrupt import in_order
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+@click.group
+def command() -> None:
+    """Show the screens of live and replay in a browser, for several viewers at once.
+
+    Only this computer reaches the pages unless --host names another address. Another address needs a
+    password. The password comes from --password-file, from ADVISOR_PASSWORD, or from a prompt.
+
+    \b
+    Example:
+      advisor serve live --master udpin:0.0.0.0:14550
+      advisor serve replay logs/arduplane-calm.tlog --port 8080
+      advisor serve live --master udpin:0.0.0.0:14550 --host 0.0.0.0 --password-file crew.txt
+    """
+
+
+def _web_options(command: F) -> F:
+    """Add the options of ``advisor.web.serving.place``: where pages are served, and to whom."""
+    for option in reversed(
+        [
+            click.option(
+                "--host", default="127.0.0.1", show_default=True, help="Address on which pages are served."
+            ),
+            click.option(
+                "--port",
+                type=click.IntRange(0, 65535),
+                default=8000,
+                show_default=True,
+                help="Port; 0: any that is free.",
+            ),
+            click.option(
+                "--password-file",
+                type=click.Path(path_type=Path),
+                metavar="FILE",
+                help="The password is the first line of this file.",
+            ),
+            click.option(
+                "--origin",
+                metavar="URL",
+                help="Address that browsers see, with a TLS proxy before this server: https://flight.example.",
+            ),
+            click.option(
+                "--viewers",
+                type=click.IntRange(1, 64),
+                default=8,
+                show_default=True,
+                help="Largest number of pages at once.",
+            ),
+        ]
+    ):
+        command = option(command)
+    return command
+
+
+@command.command("live", params=list(live.command.params))
+@_web_options
+@click.option("--watch-only", is_flag=True, help="No page decides by hand or asks the link for anything.")
+def on_link(
+    host: str,
+    port: int,
+    password_file: Path | None,
+    origin: str | None,
+    viewers: int,
+    watch_only: bool,
+    **options: Any,
+) -> None:
+    """Advise on a live link, in browsers. All pages show one campaign on one link.
+
+    The link is opened once, however many pages there are, and is recorded as by advisor live. A mark or an
+    exclusion made on one page is seen on all. Closing a page ends nothing; Ctrl-C here ends everything.
+
+    \b
+    Example:
+      advisor serve live --master udpin:0.0.0.0:14550 --aircraft my-aircraft.yaml
+      advisor serve live --resume --host 0.0.0.0 --password-file crew.txt --watch-only
+    """
+    from advisor.web.serving import place, serve
+
+    assert live.command.callback is not None
+    with place(host, port, password_file, origin, viewers, watch_only) as here:
+        live.command.callback(**options, show=partial(serve, here))
+
+
+@command.command("replay", params=list(replay.command.params))
+@_web_options
+def of_logs(
+    logs: Sequence[Path],
+    host: str,
+    port: int,
+    password_file: Path | None,
+    origin: str | None,
+    viewers: int,
+    **options: Any,
+) -> None:
+    """Replay logs in browsers. Each page has a replay of its own, with its own pause, speed and marks.
+
+    A decision by hand holds until its page is closed. Nothing is written to the folder of the log.
+
+    \b
+    Example:
+      advisor serve replay logs/arduplane-calm.tlog --speed 10
+    """
+    from advisor.web.serving import place, serve
+
+    assert replay.command.callback is not None
+    _refuse_unreadable(logs)
+    with place(host, port, password_file, origin, viewers) as here, in_order():
+        replay.command.callback(logs, **options, show=partial(serve, here))
+
+
+def _refuse_unreadable(logs: Sequence[Path]) -> None:
+    """Refuse logs of which none can be read, before a page does.
+
+    Raises
+    ------
+    UnusableInputError
+        Nothing can be read.
+    """
+    from advisor.analysis.log_series import LogSeries
+    from advisor.words.problems import UnusableInputError
+
+    series = LogSeries(logs)
+    next(series.batches(), None)
+    if len(series.unreadable) == len(logs):
+        raise UnusableInputError.of(list(series.unreadable.values()))

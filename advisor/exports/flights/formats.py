@@ -1,0 +1,55 @@
+"""Formats of an export by name, each imported only on use."""
+
+from collections.abc import Sequence
+from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from advisor.words.problems import ConfigurationError
+
+if TYPE_CHECKING:
+    from advisor.exports.flights.table import Dataset
+
+WRITERS = {
+    "csv": ("csv_files", "write_csv"),
+    "parquet": ("parquet_files", "write_parquet"),
+    "mat": ("mat_file", "write_mat"),
+    "mcap": ("mcap_files", "write_mcap"),
+}
+"""Format to the module of its writer and the writer's name."""
+_NEEDS = {"parquet": "pyarrow", "mcap": "mcap"}
+
+
+def parse_formats(text: str) -> tuple[str, ...]:
+    """Read names of formats, separated by commas, each once.
+
+    Raises
+    ------
+    ConfigurationError
+        A format is unknown, or its library is not installed.
+    """
+    formats = tuple(dict.fromkeys(part.strip() for part in text.split(",") if part.strip()))
+    unknown = [name for name in formats if name not in WRITERS]
+    if unknown or not formats:
+        given = f"{unknown[0]} is no format" if unknown else "no format is given"
+        raise ConfigurationError(f"--format: {given}; the formats are {', '.join(WRITERS)}.")
+    for name in formats:
+        if name in _NEEDS and find_spec(_NEEDS[name]) is None:
+            raise ConfigurationError(
+                f"--format {name} needs {_NEEDS[name]}: pip install 'inflight-advisor[export]'."
+            )
+    return formats
+
+
+def write_formats(data: "Dataset", folder: Path, formats: Sequence[str]) -> None:
+    """Write a dataset in several formats into a folder, with a layout for PlotJuggler where it reads the
+    format."""
+    from advisor.exports.flights.plotjuggler import write_layouts
+
+    for name in formats:
+        module, writer = WRITERS[name]
+        getattr(import_module(f"advisor.exports.flights.{module}"), writer)(data, folder)
+    readable = [name for name in formats if name in ("csv", "parquet")]
+    if readable:
+        write_layouts(data, folder, readable[0])

@@ -1,0 +1,173 @@
+"""Findings of the flights as tables: manoeuvres with verdicts, estimates, residuals."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from advisor.aircraft.aircraft import PARAMETERS
+from advisor.campaign.state import CampaignState, JudgedManeuver
+from advisor.exports.flights.table import Column, Table, numbers, texts
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.record import UNITS
+from advisor.model.response import OUTPUTS
+from advisor.oem.estimate import ChannelFit, Estimate
+
+PARAMETER_UNITS = dict(
+    zip(PARAMETERS, ("rad/s", "1/s", "1", "1/s", "rad/s^2", "1/s^2", "1/s", "1/s^2"), strict=True)
+)
+"""SI units of θ, Eqs. (1)-(3)."""
+JOINT = 0
+"""Number of the joint estimate over the accepted manoeuvres."""
+_BY_ROW = "the column unit"
+_MEASURES = {
+    "rms": "root mean square of the residual",
+    "tic": "Theil's inequality coefficient, 0 to 1",
+    "r2": "share of the measured variance explained",
+}
+
+
+def maneuvers(state: CampaignState, record_of: Mapping[tuple[int, int], int]) -> Table:
+    """Return a table with a row for each manoeuvre: verdict, reasons and fit.
+
+    Parameters
+    ----------
+    record_of
+        (Flight, power-on), each counted from 0, to the number of the record.
+    """
+    judged = state.maneuvers
+    spans = [one.maneuver.span for one in judged]
+    verdicts = [one.verdict for one in judged]
+    columns = [
+        Column("maneuver", np.array([m.maneuver.number for m in judged], np.int64), "", "number"),
+        Column(
+            "record", _records([m.maneuver.power_on for m in judged], record_of), "", "number of the record"
+        ),
+        Column(
+            "record_from_boot_s", numbers([s.record_from_s for s in spans]), "s", "first stamp of the fit"
+        ),
+        Column("start_boot_s", numbers([s.start_s for s in spans]), "s", "onset of the first elevator step"),
+        Column("last_step_boot_s", numbers([s.last_step_s for s in spans]), "s", "onset of the last step"),
+        Column("end_boot_s", numbers([s.end_s for s in spans]), "s", "end of the free response"),
+        Column("input", texts([s.kind for s in spans]), "", "kind of input"),
+        Column("mode", texts([m.maneuver.mode for m in judged]), "", "flight mode"),
+        Column(
+            "accepted", np.array([v.accepted for v in verdicts], np.bool_), "", "whether the verdict accepts"
+        ),
+        Column("sentence", texts([v.sentence for v in verdicts]), "", "verdict as the pilot reads it"),
+        Column(
+            "reason_codes", texts([" ".join(r.code for r in v.reasons) for v in verdicts]), "", "stable codes"
+        ),
+        Column(
+            "reasons", texts(["; ".join(r.text for r in v.reasons) for v in verdicts]), "", "why rejected"
+        ),
+        Column(
+            "cautions",
+            texts(["; ".join(v.cautions) for v in verdicts]),
+            "",
+            "what else belongs on the verdict",
+        ),
+        Column(
+            "excluded_because", texts([m.excluded_because or "" for m in judged]), "", "why excluded by hand"
+        ),
+        Column("closed_by", texts([s.closed_by for s in spans]), "", "why the record ends"),
+        Column(
+            "cost", numbers([e.cost if (e := _estimate(m)) else None for m in judged]), "", "J of Eq. (7)"
+        ),
+    ]
+    for output in OUTPUTS:
+        fits = [e.fits[0].get(output) if (e := _estimate(m)) else None for m in judged]
+        columns += _measures(output, fits) if any(fits) else []
+    return Table("maneuvers", "A row is a manoeuvre.", tuple(columns))
+
+
+def estimates(state: CampaignState) -> Table:
+    """Return a table with a row for each parameter of each estimate, and its row of the covariance."""
+    found = [(one.maneuver.number, e) for one in state.maneuvers if (e := _estimate(one))]
+    if state.model is not None:
+        found.append((JOINT, state.model))
+    rows = [(number, e, name) for number, e in found for name in PARAMETERS]
+
+    def told(values: str, *of: int) -> NDArray[np.float64]:
+        """Return an attribute of the estimates by row, shape (n,); NaN for an unidentifiable parameter."""
+        return numbers(
+            [
+                None if name in e.not_identifiable else getattr(e, values)[(PARAMETERS.index(name), *of)]
+                for _, e, name in rows
+            ]
+        )
+
+    units = texts([PARAMETER_UNITS[name] for _, _, name in rows])
+    reasons = texts([e.not_identifiable.get(name, "") for _, e, name in rows])
+    speeds = numbers([e.airspeed_m_s for _, e, _ in rows])
+    which = f"number; {JOINT} is the joint estimate over the accepted manoeuvres"
+    columns = [
+        Column("maneuver", np.array([number for number, _, _ in rows], np.int64), "", which),
+        Column("parameter", texts([name for _, _, name in rows]), "", "name in Eqs. (1)-(3)"),
+        Column("unit", units, "", "SI unit of the value"),
+        Column("value", told("theta"), _BY_ROW, "estimate"),
+        Column("std", told("std"), _BY_ROW, "standard deviation, coloured residuals allowed for"),
+        Column("std_cr", told("std_cr"), _BY_ROW, "plain Cramér-Rao bound"),
+        Column("reason", reasons, "", "why there is no value"),
+        Column("airspeed_m_s", speeds, "m/s", "air speed at which the derivatives are given"),
+    ]
+    for k, name in enumerate(PARAMETERS):
+        unit = f"{_BY_ROW} times {PARAMETER_UNITS[name]}"
+        columns.append(Column(f"covariance_{name}", told("covariance", k), unit, f"covariance with {name}"))
+    return Table("estimates", "A row is one parameter of one estimate.", tuple(columns))
+
+
+def residuals(state: CampaignState, record_of: Mapping[tuple[int, int], int]) -> tuple[Table, ...]:
+    """Return a table for each output: measured, fitted and residual of every accepted manoeuvre, at their own
+    stamps."""
+    accepted = [
+        (one.maneuver, e) for one in state.maneuvers if one.verdict.accepted and (e := _estimate(one))
+    ]
+    tables = []
+    for output in OUTPUTS:
+        fits = [(maneuver, e.fits[0][output]) for maneuver, e in accepted if output in e.fits[0]]
+        if not fits:
+            continue
+        sizes, unit = [len(fit.t) for _, fit in fits], UNITS[output]
+
+        def joined(name: str, fits: Sequence[tuple[Maneuver, ChannelFit]] = fits) -> NDArray[np.float64]:
+            return np.concatenate([getattr(fit, name) for _, fit in fits])
+
+        columns = (
+            Column("maneuver", np.repeat([m.number for m, _ in fits], sizes).astype(np.int64), "", "number"),
+            Column(
+                "record",
+                np.repeat(_records([m.power_on for m, _ in fits], record_of), sizes),
+                "",
+                "number of the record",
+            ),
+            Column("t_boot_s", joined("t"), "s", "vehicle time since boot"),
+            Column("measured", joined("measured"), unit, f"measured {output}"),
+            Column("fitted", joined("fitted"), unit, f"{output} of the fit of lowest cost"),
+            Column("residual", joined("residual"), unit, "measured minus fitted"),
+        )
+        tables.append(Table(f"residuals_{output}", f"A row is a sample of {output}.", columns))
+    return tuple(tables)
+
+
+def _estimate(judged: JudgedManeuver) -> Estimate | None:
+    return judged.estimate if isinstance(judged.estimate, Estimate) else None
+
+
+def _records(
+    power_ons: Sequence[tuple[int, int]], record_of: Mapping[tuple[int, int], int]
+) -> NDArray[np.int64]:
+    return np.array([record_of[power_on] for power_on in power_ons], dtype=np.int64)
+
+
+def _measures(output: str, fits: Sequence[ChannelFit | None]) -> list[Column]:
+    """Return the columns with measures of an output's fit."""
+    return [
+        Column(
+            f"{measure}_{output}",
+            numbers([getattr(fit, measure) if fit else None for fit in fits]),
+            UNITS[output] if measure == "rms" else "1",
+            f"{about}, {output}",
+        )
+        for measure, about in _MEASURES.items()
+    ]

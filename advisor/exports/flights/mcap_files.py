@@ -1,0 +1,92 @@
+"""MCAP: one file for each power-on, JSON messages with JSON schemas, log times from the vehicle's clock."""
+
+import json
+from collections.abc import Iterator
+from heapq import merge
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from mcap.writer import Writer
+
+from advisor import __version__
+from advisor.exports.flights.table import Column, Dataset, Recording, Table
+
+_TYPES = {"f": "number", "i": "integer", "b": "boolean", "U": "string"}
+_TIMES = {"maneuvers": "end_boot_s"}
+"""Column with the stamps of a table's messages, for tables without ``t_boot_s``."""
+
+
+def write_mcap(data: Dataset, folder: Path) -> None:
+    """Write a dataset as ``record_N.mcap``: a topic for each channel, ``/maneuvers``, ``/residuals_OUTPUT``.
+
+    The time of a message is the vehicle's time since boot, in ns. The estimates follow at the end of the last
+    record, one message for each parameter. The schemas hold units and meanings. Unknown numbers are null.
+    """
+    for number, recording in enumerate(data.recordings, start=1):
+        tables = [*recording.channels, *(_of_record(t, number) for t in data.tables if _is_of_record(t))]
+        estimates = [data.table("estimates")] if number == len(data.recordings) else []
+        with (folder / f"{recording.name}.mcap").open("wb") as file:
+            _write(file, data, [t for t in tables if len(t)], estimates, _end_s(recording))
+
+
+def _write(file: Any, data: Dataset, tables: list[Table], at_end: list[Table], end_s: float) -> None:
+    writer = Writer(file)
+    writer.start(profile="", library=f"inflight-advisor {__version__}")
+    writer.add_metadata("advisor", {"about": json.dumps(data.about, ensure_ascii=False)})
+    streams = [_messages(t, _register(writer, t), t[_TIMES.get(t.name, "t_boot_s")]) for t in tables]
+    ends = [_messages(t, _register(writer, t), np.full(len(t), end_s)) for t in at_end]
+    for sequence, (at_ns, topic, message) in enumerate(merge(*streams, *ends, key=lambda one: one[0])):
+        text = json.dumps(message, ensure_ascii=False, allow_nan=False).encode()
+        writer.add_message(topic, log_time=at_ns, publish_time=at_ns, sequence=sequence, data=text)
+    writer.finish()  # type: ignore[no-untyped-call]
+
+
+def _register(writer: Writer, table: Table) -> int:
+    schema = {
+        "title": table.name,
+        "description": table.about,
+        "type": "object",
+        "properties": {column.name: _property(column) for column in table.columns},
+    }
+    text = json.dumps(schema, ensure_ascii=False).encode()
+    schema_id = writer.register_schema(f"advisor.{table.name}", "jsonschema", text)
+    return writer.register_channel(f"/{table.name}", "json", schema_id)
+
+
+def _property(column: Column) -> dict[str, Any]:
+    kind = _TYPES[column.values.dtype.kind]
+    return {
+        "type": ["number", "null"] if kind == "number" else kind,
+        "description": f"{column.about} [{column.unit}]" if column.unit else column.about,
+        "unit": column.unit,
+    }
+
+
+def _messages(
+    table: Table, topic: int, at_s: np.ndarray[Any, Any]
+) -> Iterator[tuple[int, int, dict[str, Any]]]:
+    names = [column.name for column in table.columns]
+    rows = zip(*(column.values.tolist() for column in table.columns), strict=True)
+    for at_ns, row in zip(np.round(at_s * 1e9).astype(np.int64).tolist(), rows, strict=True):
+        yield at_ns, topic, {name: _known(value) for name, value in zip(names, row, strict=True)}
+
+
+def _known(value: Any) -> Any:
+    return None if isinstance(value, float) and not np.isfinite(value) else value
+
+
+def _is_of_record(table: Table) -> bool:
+    return table.name not in ("channels", "estimates")
+
+
+def _of_record(table: Table, number: int) -> Table:
+    """Return the rows of one record, in the order of their times."""
+    rows = np.flatnonzero(table["record"] == number)
+    rows = rows[np.argsort(table[_TIMES.get(table.name, "t_boot_s")][rows], kind="stable")]
+    columns = tuple(Column(c.name, c.values[rows], c.unit, c.about) for c in table.columns)
+    return Table(table.name, table.about, columns)
+
+
+def _end_s(recording: Recording) -> float:
+    return max(float(table["t_boot_s"][-1]) for table in recording.channels)

@@ -1,0 +1,60 @@
+"""Effects of force and pitching moment as functions of a JSBSim aircraft.
+
+The curves are those of the aircraft file's ``effects``. Squares and cubes are of α or of the elevator; a
+moment is by the rate of α. They count from ``about_rad`` or else from the trim. All are proportional to the
+dynamic pressure.
+"""
+
+from collections.abc import Mapping
+
+from advisor.exports.models.jsbsim.slopes import Slopes
+from advisor.exports.models.jsbsim.source import AXES, PLAIN, SURFACES, Added
+
+CURVES = {
+    "nonlinear_pitching_moment": ("alpha", {"M_alpha2": 2, "M_alpha3": 3}),
+    "nonlinear_lift": ("alpha", {"Z_alpha2": 2, "Z_alpha3": 3}),
+    "elevator_nonlinearity": ("delta_e", {"M_delta2": 2, "M_delta3": 3}),
+}
+"""Effect to its variable, and to its parameters with their powers of that variable."""
+
+
+def functions_of(
+    effects: Mapping[str, Mapping[str, float]], slopes: Slopes, surface: str
+) -> tuple[list[Added], list[str]]:
+    """Return the functions, and the names of the effects that the functions carry completely.
+
+    Parameters
+    ----------
+    effects
+        Effects of the aircraft file.
+    slopes
+        Slopes of the aircraft that receives the functions.
+    surface
+        Property of the elevator's position.
+    """
+    functions: list[Added] = []
+    carried = []
+    for effect, values in effects.items():
+        variable, powers = CURVES.get(effect, ("", {}))
+        unit = SURFACES.get(surface) if variable == "delta_e" else 1.0
+        if effect == "alpha_dot":
+            strength = values["M_alpha_dot"] * slopes.inertia / slopes.pressure_psf / slopes.chord_time_s
+            functions.append(Added(effect, "PITCH", strength, "aero/alphadot-rad_sec", further="aero/ci2vel"))
+            carried.append(effect)
+        elif powers and values.keys() <= {*powers, "about_rad"} and unit is not None:
+            # A separated flow has further parameters, which no square and no cube expresses.
+            about = unit * values["about_rad"] if "about_rad" in values else slopes.trim[variable]
+            functions += [
+                Added(
+                    name,
+                    AXES[name[0]],
+                    values[name] / unit**power / (slopes.per_force(name[0]) * slopes.pressure_psf),
+                    surface if variable == "delta_e" else PLAIN[variable],
+                    about,
+                    power,
+                )
+                for name, power in powers.items()
+                if values.get(name)
+            ]
+            carried.append(effect)
+    return functions, carried

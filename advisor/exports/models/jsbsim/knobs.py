@@ -1,0 +1,90 @@
+"""Numbers in a corrected aircraft that set its derivatives, and their search.
+
+Lift acts on the pitching moment by its arm, and a term moves the trim. So the aircraft is corrected and
+measured in turn until each derivative has its target value.
+"""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from advisor.exports.models.jsbsim.slopes import COLUMNS, Slopes
+from advisor.exports.models.jsbsim.source import AXES, PLAIN, Added, Factor
+
+ROUNDS = 8
+"""Number of rounds in which the numbers settle. Each round divides the error by ten or more."""
+WITHIN = 1e-3
+"""Relative error of a derivative at which the corrected aircraft counts as settled."""
+
+
+@dataclass(frozen=True)
+class Knob:
+    """One number in the corrected aircraft that moves one derivative."""
+
+    parameter: str
+    change: Factor | Added
+    gain: float
+    """Change of the derivative by the number."""
+
+    def turned(self, missing: float) -> "Knob":
+        """Return the knob with the number that adds the missing part of the derivative."""
+        return replace(self, change=replace(self.change, value=self.change.value + missing / self.gain))
+
+
+def knob_for(parameter: str, terms: Sequence[str], first: Slopes, surface: str) -> Knob:
+    """Return a knob that changes nothing yet."""
+    axis, variable = AXES[parameter[0]], parameter[2:]
+    per_force = first.per_force(parameter[0])
+    share = per_force * sum(first.shares[name][COLUMNS.index(variable)] for name in terms)
+    if share != 0.0:
+        return Knob(parameter, Factor(parameter, axis, tuple(terms), 1.0), share)
+    property_ = surface if variable == "delta_e" else PLAIN[variable]
+    added = Added(parameter, axis, 0.0, property_, first.trim[variable])
+    return Knob(parameter, added, per_force * first.pressure_psf)
+
+
+def _turned(knob: Knob, missing: float, first: Slopes, surface: str) -> Knob:
+    """Return the knob turned by the missing part. A factor below zero becomes an added function."""
+    turned = knob.turned(missing)
+    if isinstance(turned.change, Added) or turned.change.value > 0.0:
+        return turned
+    instead = knob_for(knob.parameter, (), first, surface)
+    return instead.turned(missing + (knob.change.value - 1.0) * knob.gain)
+
+
+def settled(
+    knobs: Sequence[Knob],
+    first: Slopes,
+    targets: Mapping[str, float],
+    surface: str,
+    measured: Callable[[Sequence[Knob]], Slopes],
+) -> tuple[list[Knob], Slopes]:
+    """Turn the knobs until the aircraft has its target derivatives, or ``ROUNDS`` are over.
+
+    Parameters
+    ----------
+    first
+        Slopes of the aircraft before any correction, measured with the given knobs.
+    targets
+        Derivative to its value, one for each knob.
+    surface
+        Property of the elevator's position.
+    measured
+        Measures the aircraft with given knobs.
+    """
+    now, turned = first, list(knobs)
+    for _ in range(ROUNDS):
+        if not missed(now, targets):
+            break
+        missing = {p: target - now.derivatives[p] for p, target in targets.items()}
+        turned = [_turned(knob, missing[knob.parameter], first, surface) for knob in turned]
+        now = measured(turned)
+    return turned, now
+
+
+def missed(now: Slopes, targets: Mapping[str, float]) -> list[str]:
+    """Return the derivatives that miss their target values."""
+    return [
+        p for p, target in targets.items()
+        if not math.isclose(now.derivatives[p], target, rel_tol=WITHIN, abs_tol=1e-6)
+    ]  # fmt: skip

@@ -1,0 +1,217 @@
+"""Text of a JSBSim aircraft: parsed, and written with corrected coefficients and a servo.
+
+The terms of the axes LIFT and PITCH are classified by the properties that they depend on. The first property
+found decides, in the order of pitch rate, rate of α, elevator, α.
+"""
+
+import re
+import xml.etree.ElementTree as ET
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from advisor.exports.models.exported import xml_comment
+from advisor.exports.models.servo import Servo
+from advisor.words.problems import ConfigurationError
+
+VARIABLES = {
+    "q": re.compile(r"velocities/q(-aero)?-rad_sec"),
+    "alpha_dot": re.compile(r"aero/alphadot-(rad|deg)_sec"),
+    "delta_e": re.compile(r"fcs/elevator-pos-(rad|deg|norm)"),
+    "alpha": re.compile(r"aero/alpha-(rad|deg)"),
+}
+"""Variable of the short period to the properties that represent it, in the order of testing."""
+AXES = {"Z": "LIFT", "M": "PITCH"}
+SURFACES = {"fcs/elevator-pos-rad": 1.0, "fcs/elevator-pos-deg": 57.29577951308232}
+"""Property of the surface to its number of units in a radian. The position from -1 to 1 has none."""
+PLAIN = {"alpha": "aero/alpha-rad", "q": "velocities/q-aero-rad_sec", "delta_e": "fcs/elevator-pos-rad"}
+
+
+@dataclass(frozen=True)
+class Added:
+    """A function that is added to an axis: dynamic pressure times a power of one variable."""
+
+    name: str
+    axis: str
+    value: float
+    """Value of the function for a dynamic pressure of 1 psf and a power of 1, lbs or lbs·ft."""
+    property: str
+    about: float = 0.0
+    """Value of the property from which the variable counts."""
+    power: int = 1
+    further: str = ""
+    """Further property that multiplies the function."""
+
+
+@dataclass(frozen=True)
+class Factor:
+    """A factor on terms of an axis."""
+
+    parameter: str
+    axis: str
+    terms: tuple[str, ...]
+    value: float
+
+
+def parse(content: bytes, name: str) -> ET.Element:
+    """Read a JSBSim aircraft with its comments.
+
+    Raises
+    ------
+    ConfigurationError
+        The content is no XML, or another XML than an aircraft of JSBSim with LIFT and PITCH.
+    """
+    try:
+        root = ET.fromstring(content, ET.XMLParser(target=ET.TreeBuilder(insert_comments=True)))
+    except ET.ParseError as error:
+        raise ConfigurationError(
+            f"--export jsbsim: {name} is no XML ({error}); name a JSBSim aircraft."
+        ) from (error)
+    axes = {axis.get("name") for axis in root.iterfind("aerodynamics/axis")}
+    if root.tag != "fdm_config" or not set(AXES.values()) <= axes:
+        raise ConfigurationError(
+            f"--export jsbsim: {name} has no aerodynamics with the axes LIFT and PITCH; "
+            "use --export matlab or aircraft."
+        )
+    return root
+
+
+def terms_of(root: ET.Element) -> Mapping[str, tuple[str, ...]]:
+    """Return each derivative with the names of the model's functions that make it, in the order of the
+    file."""
+    found: dict[str, tuple[str, ...]] = {}
+    for letter, axis in AXES.items():
+        for function in _functions(root, axis):
+            variable = _variable(function)
+            name = function.get("name")
+            if variable is not None and name is not None:
+                parameter = f"{letter}_{variable}"
+                found[parameter] = (*found.get(parameter, ()), name)
+    return found
+
+
+def surface_of(root: ET.Element) -> str:
+    """Return the property of the elevator's position that the pitching moment depends on."""
+    for function in _functions(root, "PITCH"):
+        for text in _properties(function):
+            if VARIABLES["delta_e"].fullmatch(text):
+                return text
+    return "fcs/elevator-pos-rad"
+
+
+def corrected(content: bytes, name: str, changes: Sequence[Factor | Added], servo: Servo, note: str) -> str:
+    """Return the aircraft's text with all changes made and the servo behind the elevator's command.
+
+    Raises
+    ------
+    ConfigurationError
+        The content is no aircraft (see ``parse``), or the model's elevator position is no angle.
+    """
+    root = parse(content, name)
+    for change in changes:
+        axis = next(a for a in root.iterfind("aerodynamics/axis") if a.get("name") == change.axis)
+        if isinstance(change, Added):
+            axis.append(_function(change))
+            continue
+        for function in axis.iterfind("function"):
+            if function.get("name") in change.terms:
+                _multiply(function, change)
+    if not servo.is_quick:
+        _insert(servo, root)
+    prolog = content.split(b"<fdm_config")[0].decode("utf-8", "replace")
+    comments = re.findall(r"<!--.*?-->", prolog, re.DOTALL)
+    head = ['<?xml version="1.0" encoding="utf-8"?>', *comments, xml_comment(note)]
+    return "\n".join([*head, ET.tostring(root, encoding="unicode")]) + "\n"
+
+
+def _functions(root: ET.Element, axis: str) -> Iterator[ET.Element]:
+    for one in root.iterfind("aerodynamics/axis"):
+        if one.get("name") == axis:
+            yield from one.iterfind("function")
+
+
+def _properties(function: ET.Element) -> list[str]:
+    tags = ("property", "p", "independentVar")
+    return [(e.text or "").strip().removeprefix("-") for e in function.iter() if e.tag in tags]
+
+
+def _variable(function: ET.Element) -> str | None:
+    properties = _properties(function)
+    for variable, pattern in VARIABLES.items():
+        if any(pattern.fullmatch(text) for text in properties):
+            return variable
+    return None
+
+
+def _multiply(function: ET.Element, factor: Factor) -> None:
+    """Multiply a function's result by the factor."""
+    said = ("description", "documentation", "notes")
+    computed = [e for e in function if e.tag not in said and isinstance(e.tag, str)]
+    product = ET.Element("product")
+    product.append(ET.Comment(f" advisor gap: {factor.parameter} as flown "))
+    product.append(_element("value", f"{factor.value:.8g}"))
+    for element in computed:
+        function.remove(element)
+        product.append(element)
+    function.append(product)
+
+
+def _function(added: Added) -> ET.Element:
+    function = ET.Element("function", {"name": f"aero/advisor/{added.name}"})
+    function.append(_element("description", f"advisor gap: {added.name} as flown"))
+    product = ET.SubElement(function, "product")
+    product.append(_element("value", f"{added.value:.8g}"))
+    for name in ("aero/qbar-psf", added.further):
+        if name:
+            product.append(_element("property", name))
+    raised = ET.SubElement(product, "pow")
+    departure = ET.SubElement(raised, "difference")
+    departure.append(_element("property", added.property))
+    departure.append(_element("value", f"{added.about:.8g}"))
+    raised.append(_element("value", str(added.power)))
+    return function
+
+
+def _insert(servo: Servo, root: ET.Element) -> None:
+    """Add JSBSim's actuator in a channel of its own, after everything that moves the elevator, from and to
+    one property."""
+    surface = surface_of(root)
+    unit = SURFACES.get(surface)
+    bounded = servo.rate_rad_s or servo.play_rad or servo.deadband_rad
+    if unit is None and bounded:
+        raise ConfigurationError(
+            f"--export jsbsim: the model moves by {surface}, which is no angle: rate limit, backlash and "
+            "dead band cannot be given; let its moment depend on fcs/elevator-pos-rad."
+        )
+    control = root.find("flight_control")
+    if control is None:
+        control = ET.SubElement(root, "flight_control", {"name": "FCS"})
+    channel = ET.SubElement(control, "channel", {"name": "Elevator as flown"})
+    scale, commanded = unit or 1.0, surface
+    lag_s = servo.lag_s
+    if servo.damping and lag_s > 0.0:
+        # JSBSim's trim passes through actuators but not through filters of second order, hence two lags in a
+        # row.
+        lag_s *= 0.5
+        commanded = "fcs/advisor/elevator-lagged"
+        first = ET.SubElement(channel, "actuator", {"name": commanded})
+        first.append(_element("input", surface))
+        first.append(_element("lag", f"{1.0 / lag_s:.8g}"))
+    actuator = ET.SubElement(channel, "actuator", {"name": "fcs/advisor/elevator-servo"})
+    actuator.append(_element("input", commanded))
+    numbers = {
+        "lag": 1.0 / lag_s if lag_s > 0.0 else 0.0,
+        "rate_limit": scale * (servo.rate_rad_s or 0.0),
+        "deadband_width": scale * servo.deadband_rad,
+        "hysteresis_width": scale * servo.play_rad,
+        "delay": servo.delay_s,
+    }
+    for tag, number in numbers.items():
+        if number > 0.0:
+            actuator.append(_element(tag, f"{number:.8g}"))
+    actuator.append(_element("output", surface))
+
+
+def _element(tag: str, text: str) -> ET.Element:
+    element = ET.Element(tag)
+    element.text = text
+    return element

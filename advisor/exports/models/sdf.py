@@ -1,0 +1,75 @@
+"""Gazebo: two ``gz::sim::systems::LiftDrag`` plugins, a wing and a tail, with the derivatives found.
+
+A LiftDrag surface has lift C = cla·(a0 + α) + control_joint_rad_to_cl·δ at its centre of pressure. There the
+surface meets the air that the rotation moves. A surface has no damping of its own, and Gazebo's source resets
+the moment of ``cma`` to zero. Two surfaces of the wing's area S need neither. The wing (w) lies at the centre
+of gravity, and the tail (t) at the distance x ahead of it (x is negative).
+
+    C_Lα = a_w + a_t        C_mα = a_t·x/c        C_mq = -2·a_t·x²/c²        C_mδe = e·x/c
+
+So x = -c·C_mq/(2·C_mα), a_t = C_mα·c/x, a_w = C_Lα - a_t and e = C_mδe·c/x. The zero-lift angles follow from
+C_L0 = a_w·a0_w + a_t·a0_t and C_m0 = a_t·a0_t·x/c. The resulting C_Lδe = e and C_Lq = -2·C_mα may differ from
+the estimates.
+"""
+
+from advisor.exports.models.exported import Exported, effects_beside, xml_comment
+from advisor.exports.models.improvement import Improvement
+from advisor.words.problems import ConfigurationError
+
+
+def block_text(improvement: Improvement) -> Exported:
+    """Return the two plugins, to be put into a ``<model>``.
+
+    Raises
+    ------
+    ConfigurationError
+        Reference data are missing, or no tail behind the centre of gravity has such derivatives.
+    """
+    c = {name: one.value for name, one in improvement.coefficients().items()}
+    reference = improvement.reference
+    chord, area = reference.chord_m or 0.0, reference.wing_area_m2 or 0.0
+    if not (c["C_m_alpha"] < 0.0 and c["C_m_q"] < 0.0):
+        raise ConfigurationError(
+            "--export sdf: a wing and a tail need M_alpha and M_q below zero, and here one is not; "
+            "use --export matlab or ardupilot."
+        )
+    behind = -0.5 * chord * c["C_m_q"] / c["C_m_alpha"]
+    tail = c["C_m_alpha"] * chord / behind
+    wing = c["C_L_alpha"] - tail
+    if wing <= 0.0:
+        raise ConfigurationError(
+            "--export sdf: the tail that gives C_m_alpha and C_m_q would lift more than the whole aircraft; "
+            "use --export matlab or ardupilot."
+        )
+    control = c["C_m_delta_e"] * chord / behind
+    tail_zero = c["C_m_0"] / c["C_m_alpha"]
+    wing_zero = (c["C_L_0"] - tail * tail_zero) / wing
+    servo = ", ".join(improvement.servo.lines()) or "none"
+    notes = [
+        f"{improvement.name}: lift and pitching moment found by advisor gap. Put both plugins into <model>.",
+        "Link frame: x ahead, y left, z up; cp is relative to the centre of mass. Rename link and joint.",
+        f"The link needs {reference.mass_kg:.6g} kg and iyy {reference.iyy_kg_m2:.6g} kg m2.",
+        "The joint is positive where the trailing edge is down.",
+        f"{improvement.density_note} Drag is not found by the diagnosis: add your own cda.",
+        "C_L and C_m per radian: " + ", ".join(f"{name} {value:.6g}" for name, value in c.items()) + ".",
+        f"Kept: C_L_alpha, C_m_alpha, C_m_q, C_m_delta_e. Implied: C_L_delta_e {control:.6g}, "
+        f"C_L_q {-2.0 * c['C_m_alpha']:.6g}.",
+        f"Before the joint's command, and no part of LiftDrag: {servo}.",
+    ]
+    text = "".join(xml_comment(note) + "\n" for note in notes)
+    common = {"area": area, "air_density": improvement.density_kg_m3}
+    joint = {"control_joint_name": "elevator_joint", "control_joint_rad_to_cl": f"{control:.8g}"}
+    text += _plugin({"a0": wing_zero, "cla": wing, **common}, 0.0, {})
+    text += _plugin({"a0": tail_zero, "cla": tail, **common}, behind, joint)
+    return Exported(text, (*improvement.servo.lines(), *effects_beside(improvement)))
+
+
+def _plugin(numbers: dict[str, float], ahead_m: float, joint: dict[str, str]) -> str:
+    """Return the plugin of one surface, with its control joint."""
+    texts = {name: f"{value:.8g}" for name, value in numbers.items()} | joint
+    inside = "".join(f" <{name}>{text}</{name}>\n" for name, text in texts.items())
+    return (
+        '<plugin filename="gz-sim-lift-drag-system" name="gz::sim::systems::LiftDrag">\n'
+        f" <link_name>base_link</link_name>\n{inside}"
+        f" <cp>{ahead_m:.8g} 0 0</cp>\n <forward>1 0 0</forward>\n <upward>0 0 1</upward>\n</plugin>\n"
+    )

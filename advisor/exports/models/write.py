@@ -1,0 +1,135 @@
+"""From an order for a file to the file: its format, its needs, and the one place that writes."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.exports.models import ardupilot, matlab, sdf
+from advisor.exports.models.exported import Exported
+from advisor.exports.models.improvement import (
+    REFERENCE_KEYS,
+    Improvement,
+    improvement_of,
+    require_reference,
+)
+from advisor.exports.models.jsbsim.aircraft import aircraft_text
+from advisor.exports.models.jsbsim.run import Model, model_of
+from advisor.gap.result import Diagnosis
+from advisor.process.atomic_file import write_atomically
+from advisor.report.improved import write_improved
+from advisor.words.problems import ConfigurationError
+
+FORMATS = ("jsbsim", "ardupilot", "sdf", "matlab", "aircraft")
+SERVO_FILES = (".parm", ".param")
+"""Endings of ArduPilot's parameter files."""
+NOTHING = "no cause was named and no number found wrong"
+
+
+@dataclass(frozen=True)
+class Order:
+    """One requested file."""
+
+    format: str
+    file: Path
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """Result of an order."""
+
+    order: Order
+    left_out: tuple[str, ...] = ()
+    """Parts of the improvement that the format does not carry."""
+    problem: str = ""
+    """Reason for which the file was not written; empty for a written file."""
+
+
+def order_of(text: str) -> Order:
+    """Read ``FORMAT:FILE``.
+
+    Raises
+    ------
+    ConfigurationError
+        The format is unknown, or the file is missing.
+    """
+    name, colon, file = text.partition(":")
+    if name not in FORMATS:
+        raise ConfigurationError(f"--export: {name!r} is none of the formats {', '.join(FORMATS)}.")
+    if not colon or not file:
+        raise ConfigurationError(f"--export {name}: name the file behind a colon, as in {name}:FILE.")
+    return Order(name, Path(file))
+
+
+def refuse(order: Order, aircraft: Aircraft) -> None:
+    """Refuse, before the diagnosis, an order that could not be carried out after it.
+
+    Raises
+    ------
+    ConfigurationError
+        The aircraft file lacks what the format needs, or the file's ending fits no content.
+    """
+    if order.format == "sdf":
+        require_reference(aircraft.reference, REFERENCE_KEYS)
+    elif order.format == "jsbsim":
+        model = _model(aircraft)
+        if order.file.resolve() == model.file:
+            raise ConfigurationError(
+                f"--export jsbsim: {order.file} is the simulator's own aircraft; name another file."
+            )
+    elif order.format == "ardupilot" and order.file.suffix == ".json":
+        require_reference(aircraft.reference, REFERENCE_KEYS)
+        ardupilot.elevator_line(aircraft.elevator)
+    elif order.format == "ardupilot" and order.file.suffix not in SERVO_FILES:
+        raise ConfigurationError(
+            f"--export ardupilot: {order.file} must end in .json (coefficients) or .parm (servo)."
+        )
+
+
+def carry_out(orders: Sequence[Order], diagnosis: Diagnosis, aircraft: Aircraft) -> list[Outcome]:
+    """Write each file as a whole. The failure of one file does not hinder the others."""
+    found = []
+    for order in orders:
+        try:
+            found.append(_carried_out(order, diagnosis, aircraft))
+        except ConfigurationError as error:
+            found.append(Outcome(order, problem=str(error)))
+        except OSError as error:
+            reason = error.strerror or str(error)
+            found.append(Outcome(order, problem=f"--export: {order.file} was not written: {reason}."))
+    return found
+
+
+def _carried_out(order: Order, diagnosis: Diagnosis, aircraft: Aircraft) -> Outcome:
+    if order.format in ("jsbsim", "aircraft") and diagnosis.verdict not in ("effect", "parameters"):
+        return Outcome(order, problem=f"--export: {order.file} was not written: {NOTHING}.")
+    if order.format == "aircraft":
+        write_improved(diagnosis, aircraft, order.file)
+        return Outcome(order)
+    improvement = improvement_of(diagnosis, aircraft)
+    if order.format == "jsbsim":
+        made = aircraft_text(improvement, _model(aircraft))
+    else:
+        made = _maker(order)(improvement)
+    write_atomically(order.file, made.text)
+    return Outcome(order, made.left_out)
+
+
+def _maker(order: Order) -> Callable[[Improvement], Exported]:
+    if order.format == "ardupilot" and order.file.suffix in SERVO_FILES:
+        return ardupilot.servo_text
+    makers: Mapping[str, Callable[[Improvement], Exported]] = {
+        "ardupilot": ardupilot.model_text, "sdf": sdf.block_text, "matlab": matlab.script_text,
+    }  # fmt: skip
+    return makers[order.format]
+
+
+def _model(aircraft: Aircraft) -> Model:
+    """Return the user's JSBSim aircraft, from the specification of the simulator."""
+    kind, _, what = (aircraft.simulator or "").partition(":")
+    if kind != "jsbsim" or not what:
+        raise ConfigurationError(
+            "--export jsbsim corrects a JSBSim aircraft: give yours with simulator: jsbsim:MODEL in the "
+            "aircraft file."
+        )
+    return model_of(what)

@@ -1,0 +1,1 @@
+"""The elevator: its outputs, their mixing, sign and guess."""

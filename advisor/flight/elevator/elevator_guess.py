@@ -1,0 +1,149 @@
+"""A guess of the elevator's output where no parameter states it: the output that the pitch rate answers
+to."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from advisor.flight.maneuvers.events import FlightEvent, Notice
+from advisor.flight.signals.messages import Columns, FloatArray
+from advisor.flight.signals.record import Channel
+
+KEEP_S = 60.0
+"""Stretch from which a guess is made, s: two test inputs with their pauses."""
+EVERY_S = 10.0
+"""Vehicle time between two guesses, s."""
+LATE_S = 1.0
+"""Newest stretch that a guess leaves out, s, because its packets may still be on the way."""
+SHORTEST_S = 5.0
+"""Shortest stretch for a guess, s."""
+LEAST_TRAVEL_US = 10.0
+"""Least travel of an output that exceeds the resolution of a pulse, us."""
+LEAST_SHARE = 0.05
+"""Least share of the pitch rate's one-step prediction error that an output must explain. On the recorded
+flights of this project elevators explain 0.06 (turbulence) to 0.9, all other outputs at most 0.02."""
+LEAST_LEAD = 5.0
+"""Least ratio of the best output's share to the next one's. At 4 Hz a wrong output led by 2.7."""
+_OUTPUTS = 16
+_MEMORY = 2
+"""Past samples of pitch rate and output in the prediction, two because a short period is of second order."""
+
+
+@dataclass(frozen=True, slots=True)
+class Guess:
+    """Output that may be the elevator."""
+
+    output: int
+    share: float
+    """Share of the pitch rate's one-step prediction error that the output explains."""
+    next_share: float
+    """Largest share of any other output."""
+
+    def __str__(self) -> str:
+        return (
+            f"output {self.output} is a guess: it explains {100.0 * self.share:.0f} % of what moves the "
+            f"pitch rate, the next output {100.0 * self.next_share:.0f} %"
+        )
+
+
+class ElevatorGuess:
+    """Keeps the outputs' movements and compares them with the pitch rate."""
+
+    def __init__(self) -> None:
+        self._t = np.empty(0)
+        self._pulses = np.empty((0, _OUTPUTS))
+
+    def hear(self, columns: Columns, t: FloatArray) -> None:
+        """Take SERVO_OUTPUT_RAW messages of the first bank at these vehicle times, shape (n,)."""
+        if columns.name != "SERVO_OUTPUT_RAW":
+            return
+        idle = np.zeros(len(columns))
+        pulses = np.stack([columns.fields.get(f"servo{n}_raw", idle) for n in range(1, _OUTPUTS + 1)], axis=1)
+        good = np.isfinite(t) & (np.asarray(columns.fields["port"]) == 0)
+        self._t = np.concatenate((self._t, t[good]))
+        self._pulses = np.concatenate((self._pulses, pulses[good].astype(np.float64)))
+        if len(self._t):
+            kept = self._t > self._t[-1] - 2.0 * KEEP_S
+            self._t, self._pulses = self._t[kept], self._pulses[kept]
+
+    def made(self, q: Channel | None) -> Guess | None:
+        """Return the guess from this stretch of the pitch rate and its outputs; None where no output is good
+        enough."""
+        if q is None or len(q) < 2:
+            return None
+        inside = (self._t >= q.t[0]) & (self._t <= q.t[-1])
+        t, rows = np.unique(self._t[inside], return_index=True)
+        if len(t) < 2 or t[-1] - t[0] < SHORTEST_S:
+            return None
+        step_s = max(float(np.median(np.diff(q.t))), float(np.median(np.diff(t))))
+        grid = np.arange(t[0], t[-1], step_s)
+        rate = np.interp(grid, q.t, q.y)
+        shares = np.zeros(_OUTPUTS)
+        for i, pulses in enumerate(self._pulses[inside][rows].T):
+            if pulses.min() > 0.0 and np.ptp(pulses) >= LEAST_TRAVEL_US:
+                shares[i] = _share(rate, np.interp(grid, t, pulses))
+        best, following = (int(i) for i in np.argsort(shares)[::-1][:2])
+        if shares[best] < LEAST_SHARE or shares[best] < LEAST_LEAD * shares[following]:
+            return None
+        return Guess(best + 1, float(shares[best]), float(shares[following]))
+
+
+class ElevatorGuesses:
+    """Makes guesses at fixed vehicle times, independent of batches."""
+
+    def __init__(self) -> None:
+        self.newest: Guess | None = None
+        """Newest guess. The guess outlives a power-on, because the wiring does."""
+        self.begin()
+
+    def begin(self) -> None:
+        """Begin another power-on, or another vehicle."""
+        self._outputs = ElevatorGuess()
+        self._at_s = -np.inf
+
+    def hear(self, columns: Columns, t: FloatArray) -> None:
+        """Take messages of outputs at these vehicle times, shape (n,)."""
+        self._outputs.hear(columns, t)
+
+    def advance(
+        self, first_s: float, now_s: float, cut: Callable[[str, float, float], Channel | None]
+    ) -> list[FlightEvent]:
+        """Make every guess that is due, and report a new one.
+
+        Parameters
+        ----------
+        first_s, now_s
+            Vehicle times of the first and of the newest message since boot, s.
+        cut
+            Gives a stretch of a channel: name, start and end, s.
+        """
+        events: list[FlightEvent] = []
+        next_s = max(self._at_s + EVERY_S, EVERY_S * np.ceil(first_s / EVERY_S))
+        for at_s in np.arange(next_s, now_s, EVERY_S).tolist():
+            self._at_s = at_s
+            guess = self._outputs.made(cut("q", at_s - KEEP_S, at_s - LATE_S))
+            if guess is not None and (self.newest is None or guess.output != self.newest.output):
+                events.append(Notice("elevator_guess", f"Nothing says which is the elevator; {guess}."))
+            self.newest = guess or self.newest
+        return events
+
+
+def _share(rate: FloatArray, moved: FloatArray) -> float:
+    """Return the share of the one-step prediction error of the pitch rate that the past output explains."""
+    alone = _left(rate[_MEMORY:], _past(rate))
+    both = _left(rate[_MEMORY:], [*_past(rate), *_past(moved)])
+    return 1.0 - both / alone if alone > 0.0 else 0.0
+
+
+def _past(y: FloatArray) -> list[FloatArray]:
+    centred = y - np.mean(y)
+    return [centred[_MEMORY - k : len(y) - k] for k in range(1, _MEMORY + 1)]
+
+
+def _left(y: FloatArray, regressors: Sequence[FloatArray]) -> float:
+    """Return the residual sum of squares of a linear combination of the regressors and a constant."""
+    columns = np.column_stack([*regressors, np.ones(len(y))])
+    solution, *_ = np.linalg.lstsq(columns, y, rcond=None)
+    left: float = float(np.sum((y - columns @ solution) ** 2))
+    return left

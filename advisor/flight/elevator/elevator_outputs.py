@@ -1,0 +1,215 @@
+"""The elevator: its servo outputs, their mixing, and the sentences for the user on both.
+
+Elevons, the halves of a V-tail or A-tail and differential spoilers all follow the pitch demand upwards. They
+follow the other demand in opposite directions (ArduPlane, ``servos.cpp``; PX4's control allocation). The mean
+of the left and the right side is therefore the elevator, and the other demand cancels.
+"""
+
+from collections.abc import Collection, Sequence
+
+from advisor.aircraft.aircraft import Elevator, ElevatorOutput, Pairs
+from advisor.flight.vehicle.surfaces import Calibration, Part, Surface, in_shares, joined_numbers, listed
+from advisor.flight.vehicle.wiring import ELEVATOR, Role, Wiring
+from advisor.words.problems import Problem
+
+_CANCELS = {
+    "elevon": "what they do in roll cancels",
+    "V-tail": "what they do in yaw cancels",
+    "A-tail": "what they do in yaw cancels",
+    "differential spoiler": "what they do in roll and yaw cancels",
+}
+
+
+def find_elevator(
+    elevator: Elevator, wiring: Wiring, why: str = "as the aircraft file says"
+) -> Surface | Problem:
+    """Return the outputs of the elevator with their scales, or a problem.
+
+    Parameters
+    ----------
+    elevator
+        Elevator of the aircraft file.
+    wiring
+        Roles and scales of outputs by the vehicle's parameters; may be empty.
+    why
+        Reason for the value of ``elevator.output``, in words.
+    """
+    if elevator.outputs:
+        return _as_listed(elevator.outputs, wiring)
+    if elevator.output != "auto":
+        return _as_given(elevator.output, elevator.calibration, wiring, why)
+    return _as_found(elevator.calibration, wiring)
+
+
+def _as_listed(outputs: Sequence[ElevatorOutput], wiring: Wiring) -> Surface | Problem:
+    if len(outputs) == 1:
+        return _as_given(outputs[0].output, outputs[0].calibration, wiring, "as the aircraft file says")
+    parts = in_shares(
+        Part(
+            one.output,
+            Calibration(one.calibration) if one.calibration else wiring.scale(one.output),
+            one.weight,
+            one.calibration is not None or _has_known_direction(one.output, wiring),
+        )
+        for one in outputs
+    )
+    calibrated = outputs[0].calibration is not None
+    halves = {wiring.roles[n] for n in _numbers(parts) if _is_half(n, wiring)}
+    said = [_formed(parts, "as the aircraft file says", sorted({half.surface for half in halves}))]
+    said += [
+        f"Only one side of the {kind} pair is among them: its other axis counts as elevator as well."
+        for kind in _one_sided(halves)
+    ]
+    return Surface(parts, calibrated, " ".join(said if calibrated else [*said, _assumed(wiring)]))
+
+
+def _as_given(output: int, calibration: Pairs | None, wiring: Wiring, why: str) -> Surface | Problem:
+    mixed = wiring.roles[output].surface if _is_half(output, wiring) else ""
+    if calibration is None:
+        if mixed:
+            return Problem(
+                "no_elevator",
+                f"Output {output} is one half of a mixed {mixed} pair, not an elevator.",
+                "Set elevator.output to auto: both halves are then read together. "
+                "Or list both in elevator.outputs.",
+            )
+        return _uncalibrated(Part(output, wiring.scale(output)), why, wiring)
+    said = (
+        f"Output {output} is one half of a mixed {mixed} pair, calibrated as an elevator in the aircraft "
+        "file. Its part for the other axis counts as elevator as well."
+    )
+    return Surface((Part(output, Calibration(calibration)),), True, said if mixed else "")
+
+
+def _as_found(calibration: Pairs | None, wiring: Wiring) -> Surface | Problem:
+    # Groups of outputs that each make a whole elevator: all plain ones, and all pairs of one kind.
+    kinds = dict.fromkeys(role.surface for role in wiring.roles.values() if role.side)
+    groups = [[wiring.outputs_of(ELEVATOR)]]
+    groups += [
+        [wiring.outputs_of(Role(kind, "left")), wiring.outputs_of(Role(kind, "right"))] for kind in kinds
+    ]
+    whole = [sides for sides in groups if all(sides)]
+    if not whole:
+        return _nothing_found(wiring)
+    parts = in_shares(
+        Part(n, wiring.scale(n), 1.0 / (len(sides) * len(side)), _has_known_direction(n, wiring))
+        for sides in whole
+        for side in sides
+        for n in side
+    )
+    found = list(dict.fromkeys(wiring.roles[n].surface for n in _numbers(parts) if _is_half(n, wiring)))
+    if calibration is not None:
+        return _carried_over(calibration, parts, found, wiring)
+    if len(parts) == 1:
+        return _uncalibrated(parts[0], _why(found, wiring), wiring)
+    return Surface(parts, False, f"{_formed(parts, _why(found, wiring), found)} {_assumed(wiring)}")
+
+
+def _carried_over(
+    calibration: Pairs, parts: Sequence[Part], kinds: Sequence[str], wiring: Wiring
+) -> Surface | Problem:
+    """Return the first output's calibration, carried over to the other outputs found."""
+    first, *others = _numbers(parts)
+    if not others:
+        return Surface((Part(first, Calibration(calibration)),), True, "")
+    unknown = [n for n in (first, *others) if n not in wiring.known_directions]
+    if unknown:
+        return Problem(
+            "no_elevator",
+            f"elevator.calibration describes one output, but outputs {joined_numbers((first, *others))} act "
+            f"together, and {wiring.words.sense.format(n=unknown[0])} is not known.",
+            "Give elevator.outputs in place of it, with a calibration for each output.",
+        )
+    measured = wiring.scale(first)
+    found = tuple(
+        Part(
+            part.output,
+            Calibration(calibration).carried_over(measured, wiring.scale(part.output)),
+            part.share,
+        )
+        for part in parts
+    )
+    turned = [n for n in others if wiring.scale(n).reversed != measured.reversed]
+    way = (
+        f", the other way round for {joined_numbers(turned)} ({wiring.words.sense.format(n='n')})"
+        if turned
+        else ""
+    )
+    said = (
+        f"elevator.calibration is taken for output {first} and carried over to {joined_numbers(others)}, "
+        f"counted from {wiring.words.trim}{way}; elevator.outputs can hold one for each."
+    )
+    return Surface(found, True, f"{_formed(found, _why(kinds, wiring), kinds)} {said}")
+
+
+def _uncalibrated(part: Part, why: str, wiring: Wiring) -> Surface:
+    said = (
+        f"No elevator.calibration: output {part.output} ({why}) is scaled by {wiring.words.limits} "
+        "as full strokes of 25 deg, so Z_delta_e and M_delta_e are per assumed degree."
+    )
+    return Surface((part,), False, said)
+
+
+def _assumed(wiring: Wiring) -> str:
+    return (
+        f"No calibration: they are scaled by {wiring.words.limits} as full strokes of 25 deg, so Z_delta_e "
+        "and M_delta_e are per assumed degree."
+    )
+
+
+def _is_half(n: int, wiring: Wiring) -> bool:
+    """Return whether output ``n`` is known to be one half of a mixed pair."""
+    return n in wiring.roles and bool(wiring.roles[n].side)
+
+
+def _has_known_direction(n: int, wiring: Wiring) -> bool:
+    """Return whether the parameters give the direction in which a pitch demand moves output ``n``."""
+    return (wiring.roles.get(n) == ELEVATOR or _is_half(n, wiring)) and n in wiring.known_directions
+
+
+def _formed(parts: Sequence[Part], why: str, kinds: Sequence[str]) -> str:
+    """Return a sentence on the outputs that make the elevator."""
+    shares = [part.share for part in parts]
+    if max(shares) - min(shares) < 1e-9:
+        made = f"the mean of outputs {joined_numbers(_numbers(parts))}"
+    else:
+        made = listed([f"{100.0 * part.share:.0f} % of output {part.output}" for part in parts])
+    cancels = "".join(f"; {_CANCELS[kind]}" for kind in kinds)
+    return f"The elevator is {made} ({why}){cancels}."
+
+
+def _why(kinds: Sequence[str], wiring: Wiring) -> str:
+    return listed([f"{kind} pair" for kind in kinds]) or wiring.assumed or wiring.words.elevator
+
+
+def _one_sided(halves: Collection[Role]) -> list[str]:
+    kinds = sorted(half.surface for half in halves)
+    return [kind for kind in kinds if kinds.count(kind) == 1]
+
+
+def _nothing_found(wiring: Wiring) -> Problem:
+    words = wiring.words
+    mixed = [n for n in wiring.roles if _is_half(n, wiring)]
+    if mixed:
+        kinds = listed(sorted({wiring.roles[n].surface for n in mixed}))
+        return Problem(
+            "no_elevator",
+            f"Output {joined_numbers(mixed)} is one side of a {kinds} pair without the other.",
+            f"Record all {words.function}, or list the elevator's outputs in elevator.outputs.",
+        )
+    if wiring.roles:
+        return Problem(
+            "no_elevator",
+            f"No output has {words.elevator} (elevator), nor an elevon or V-tail pair.",
+            "Set elevator.output and elevator.calibration, or elevator.outputs, in the aircraft file.",
+        )
+    return Problem(
+        "no_elevator",
+        words.unknown,
+        f"Set elevator.output in the aircraft file ({words.usual}; several: elevator.outputs), "
+        "or record the parameters.",
+    )
+
+
+def _numbers(parts: Sequence[Part]) -> tuple[int, ...]:
+    return tuple(part.output for part in parts)

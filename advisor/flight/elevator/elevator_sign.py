@@ -1,0 +1,76 @@
+"""Sign of an elevator without calibration, from the aircraft's answer."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from advisor.flight.maneuvers.events import Notice
+from advisor.flight.maneuvers.maneuver import InputKind, Maneuver
+from advisor.flight.signals.messages import FloatArray
+from advisor.flight.signals.motion import integrated
+
+_SURELY = 10.0
+"""Least absolute value of M_δe, in standard errors under white noise, at which its sign is certain."""
+_EXPLAINED = 0.7
+"""Least share of the pitch rate that the regression must explain, in addition."""
+_OTHER: dict[InputKind, InputKind] = {"3-2-1-1": "reverse 3-2-1-1", "reverse 3-2-1-1": "3-2-1-1"}
+
+SAID = (
+    "The nose went the other way than the elevator's output suggests: its deflections count with the other "
+    "sign. Give a calibration if that is wrong, as for a canard."
+)
+
+
+class ElevatorSign:
+    """Gives an elevator of assumed scale its sign: trailing edge down pitches down.
+
+    An autopilot's parameters give the direction of an output, not of the surface linked to it. The first
+    conclusive manoeuvre decides for all later ones.
+    """
+
+    def __init__(self) -> None:
+        self.backwards: bool | None = None
+        """Whether the sign is reversed. None before the first conclusive manoeuvre."""
+
+    def right(self, maneuver: Maneuver) -> tuple[Maneuver, list[Notice]]:
+        """Return the manoeuvre with the elevator's sign corrected, and a notice when a reversed sign is
+        found."""
+        found = []
+        if self.backwards is None:
+            self.backwards = answers_backwards(maneuver)
+            if self.backwards:
+                found = [Notice("elevator_backwards", SAID)]
+        return (turned(maneuver) if self.backwards else maneuver), found
+
+
+def turned(maneuver: Maneuver) -> Maneuver:
+    """Return the manoeuvre with the elevator's deflections reversed."""
+    elevator = maneuver.channels["elevator"]
+    span = replace(
+        maneuver.span,
+        kind=_OTHER.get(maneuver.span.kind, maneuver.span.kind),
+        steps=tuple((onset, -level) for onset, level in maneuver.span.steps),
+    )
+    return replace(
+        maneuver, span=span, channels={**maneuver.channels, "elevator": replace(elevator, y=-elevator.y)}
+    )
+
+
+def answers_backwards(maneuver: Maneuver) -> bool | None:
+    """Return whether a trailing edge that goes down lifts the nose, M_δe > 0; None where uncertain.
+
+    Least squares of the pitch rate on the integrals of elevator, pitch rate and angle of attack.
+    """
+    channels = maneuver.channels
+    if "q" not in channels or len(channels["q"]) < 20:
+        return None
+    t, q = channels["q"].t, channels["q"].y
+    motion = [np.interp(t, channels[n].t, channels[n].y) for n in ("elevator", "q", "alpha") if n in channels]
+    X = np.column_stack([*(integrated(t, x - x[0]) for x in motion), t - t[0], np.ones(len(t))])
+    scale = np.maximum(np.max(np.abs(X), axis=0), 1e-12)
+    found, *_ = np.linalg.lstsq(X / scale, q, rcond=None)
+    left: FloatArray = q - (X / scale) @ found
+    variance = float(left @ left) / (len(q) - len(found))
+    std = np.sqrt(variance * np.linalg.pinv((X / scale).T @ (X / scale))[0, 0])
+    sure = abs(found[0]) > _SURELY * std and np.var(left) < (1.0 - _EXPLAINED) * np.var(q)
+    return bool(found[0] > 0.0) if sure else None

@@ -1,0 +1,157 @@
+"""Elevator samples from several outputs, each with the sign of the aircraft's answer.
+
+Where neither a calibration nor a parameter gives the sign of an output, adding outputs could cancel them.
+Their samples then wait, at most a minute of the vehicle's clock, until the pitch rate has shown the signs.
+All decisions follow the order of arrival, so that live and replay decide at one sample.
+"""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from advisor.flight.elevator.commanded import Commanded, joined
+from advisor.flight.elevator.output_signs import pitch_signs
+from advisor.flight.maneuvers.events import Notice
+from advisor.flight.signals.channels import Decoded
+from advisor.flight.signals.tracks import Tracks
+from advisor.flight.vehicle.surfaces import Surface, joined_numbers
+from advisor.words.problems import Problem
+
+_WINDOW_S = 15.0
+"""Length of the newest flight in which the answer is sought, s: a test input of a slow aircraft."""
+_EVERY_S = 1.0
+"""Time between two searches for the answer, s."""
+_WAIT_S = 60.0
+"""Longest time that samples wait for the answer, s: half of the time that the channels keep."""
+_CHECK_SIGNS = (
+    "Check the signs of the calibrations in elevator.outputs: a deflection that lowers the nose is positive."
+)
+
+
+class Mixing:
+    """Forms the elevator's samples.
+
+    Parameters
+    ----------
+    tracks
+        Channels of the vehicle.
+    """
+
+    def __init__(self, tracks: Tracks) -> None:
+        self._tracks = tracks
+        self._lifts: dict[int, bool] = {}
+        self._answered = ""
+        self.contradiction: Problem | None = None
+        """Problem where the signs of the aircraft file make the outputs cancel; else None."""
+        self.begin()
+
+    def begin(self) -> None:
+        """Begin another power-on of the vehicle."""
+        self._recent: list[Commanded] = []
+        self._waiting: list[Commanded] = []
+        self._next_s = -np.inf
+        self._open_since_s = -np.inf
+
+    def said(self, surface: Surface) -> str:
+        """Return a sentence on the known signs of several outputs; empty where nothing is in doubt."""
+        if self._answered or not surface.unsure:
+            return self._answered
+        listed = joined_numbers(surface.unsure)
+        moves = f"outputs {listed} move" if len(surface.unsure) > 1 else f"output {listed} moves"
+        return f"Nothing says which way {moves} the nose; the aircraft's answer in MANUAL decides."
+
+    def take(self, new: Commanded, loop_is_closed: bool) -> Iterator[Decoded | Notice]:
+        """Yield the elevator's samples with known signs, and notices on the signs.
+
+        Parameters
+        ----------
+        new
+            Newest samples of the outputs.
+        loop_is_closed
+            Whether an autopilot closes a loop, so that the elevator answers the pitch rate.
+        """
+        surface = new.surface
+        if self._waiting and self._waiting[0].surface != surface:
+            yield from self.finish()
+        if self._is_settled(surface):
+            yield new.combined(self._turned(surface))
+            return
+        for piece, is_due in self._pieces(new):
+            self._recent.append(piece)
+            self._waiting.append(piece)
+            if is_due and not self._is_settled(surface):
+                yield from self._listen(surface, loop_is_closed)
+            if not surface.unsure or self._is_settled(surface):
+                yield from self.finish()
+            elif is_due:
+                yield from self._given_up(float(piece.t[-1]) - _WAIT_S)
+
+    def finish(self) -> list[Decoded]:
+        """Return all waiting samples, each output with its present sign."""
+        if not self._waiting:
+            return []
+        waiting, self._waiting = joined(self._waiting), []
+        return [waiting.combined(self._turned(waiting.surface))]
+
+    def _is_settled(self, surface: Surface) -> bool:
+        """Return whether an answer could neither decide nor contradict the signs any more."""
+        is_asked = len(surface.parts) > 1 and (surface.calibrated or surface.unsure)
+        return not is_asked or all(n in self._lifts for n in surface.outputs)
+
+    def _turned(self, surface: Surface) -> list[int]:
+        """Return outputs whose sign is reversed, only where no other source gives the signs of all."""
+        return [n for n in surface.outputs if self._lifts.get(n, False)] if surface.unsure else []
+
+    def _pieces(self, new: Commanded) -> Iterator[tuple[Commanded, bool]]:
+        """Yield the samples up to each time at which the answer is sought, and whether a search is due."""
+        start = 0
+        while start < len(new.t):
+            late = np.flatnonzero(new.t[start:] >= self._next_s)
+            stop = start + int(late[0]) + 1 if len(late) else len(new.t)
+            if len(late):
+                self._next_s = float(new.t[stop - 1]) + _EVERY_S
+            yield new.rows(slice(start, stop)), bool(len(late))
+            start = stop
+
+    def _given_up(self, before_s: float) -> list[Decoded]:
+        """Return the samples that have waited too long."""
+        waiting = joined(self._waiting)
+        old = waiting.t < before_s
+        self._waiting = [waiting.rows(~old)]
+        return [waiting.rows(old).combined(self._turned(waiting.surface))] if old.any() else []
+
+    def _listen(self, surface: Surface, loop_is_closed: bool) -> list[Notice]:
+        """Look for the aircraft's answer to each output in the newest flight."""
+        window = joined([piece for piece in self._recent if piece.surface == surface])
+        now_s = float(window.t[-1])
+        if loop_is_closed:
+            self._open_since_s = now_s
+        window = window.rows(window.t >= max(now_s - _WINDOW_S, self._open_since_s))
+        self._recent = [window]
+        t, first = np.unique(window.t, return_index=True)
+        q, alpha = (self._tracks.cut(name, t[0], t[-1], int(window.order[-1])) for name in ("q", "alpha"))
+        if q is not None:
+            shares = [part.share for part in surface.parts]
+            told = pitch_signs(t, window.angles[first], shares, q, alpha, singly=bool(surface.unsure))
+            for n, lifts in zip(surface.outputs, told, strict=True):
+                if lifts is not None:
+                    self._lifts.setdefault(n, lifts)
+        return self._tell(surface) if self._is_settled(surface) else []
+
+    def _tell(self, surface: Surface) -> list[Notice]:
+        turned = [n for n in surface.outputs if self._lifts[n]]
+        listed = joined_numbers(turned)
+        if surface.unsure:
+            self._answered = (
+                f"The aircraft's answer in pitch decides: the sign of output {listed} is turned."
+                if turned
+                else "The aircraft's answer in pitch decides: no output's sign is turned."
+            )
+        elif turned and len(turned) < len(surface.outputs):
+            others = joined_numbers([n for n in surface.outputs if n not in turned])
+            self._answered = (
+                f"The aircraft answers in pitch to output {listed} the other way than to output {others}, so "
+                "they cancel."
+            )
+            self.contradiction = Problem("elevator_signs", self._answered, _CHECK_SIGNS)
+        return [Notice("elevator_mixing", self._answered)] if self._answered else []

@@ -1,0 +1,1 @@
+"""Instruments as models: what the motion alone tells about them."""

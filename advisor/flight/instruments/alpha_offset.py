@@ -1,0 +1,95 @@
+"""Mean offset of an angle of attack, from attitude and climb rate alone."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from advisor.aircraft.standard_gravity import GRAVITY_M_S2
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.messages import FloatArray
+from advisor.flight.signals.motion import bank_at, gravity_in_plane
+
+_BEGIN_S, _STAYS, _SCATTERS = 1.0, 0.5, 3.0
+"""Length of a record's beginning, s. Largest difference between the offsets of beginning and whole, as a
+share of the offset, in the mean of all manoeuvres. Multiple of the manoeuvres' scatter that a larger
+difference must exceed."""
+
+
+@dataclass(frozen=True, slots=True)
+class AlphaOffset:
+    """Mean of α minus (θ − flight-path angle), rad. NaN where unknown."""
+
+    rad: float = float("nan")
+    std_rad: float = float("nan")
+    change_rad: float = float("nan")
+    """Offset over the record minus the offset in its first second; 0 within three times the scatter of
+    manoeuvres. An instrument's offset is there from the first second, and air that begins to sink is not."""
+
+    @property
+    def stays(self) -> bool:
+        """Whether the offset may have been there from the beginning."""
+        return not abs(self.change_rad) >= _STAYS * abs(self.rad)
+
+
+UNKNOWN = AlphaOffset()
+
+
+def offset_of(maneuver: Maneuver, airspeed_m_s: float | None) -> AlphaOffset:
+    """Return the mean of α − (θ − γ), its error, and its change, from the climb rate. NaN without a climb
+    rate.
+
+    Parameters
+    ----------
+    maneuver
+        Manoeuvre with channels ``alpha`` and ``theta``. ``bank`` is used where present.
+    airspeed_m_s
+        Air speed for a log without one.
+    """
+    found = maneuver.channels
+    if "climb_rate" not in found or len(found["climb_rate"]) < 4:
+        return UNKNOWN
+    climb = found["climb_rate"]
+
+    def at(name: str) -> FloatArray:
+        return np.interp(climb.t, found[name].t, found[name].y)
+
+    speed = speed_at(climb.t, maneuver, airspeed_m_s)
+    assert speed is not None
+    speed = np.maximum(speed, 1.0)
+    up, size = gravity_in_plane(at("theta"), bank_at(climb.t, found))
+    apart = at("alpha") - (up - np.arcsin(np.clip(climb.y / speed * GRAVITY_M_S2 / size, -0.9, 0.9)))
+    # The climb rate is slow and smoothed, so that one reading a second counts as independent.
+    independent = max(2.0, climb.t[-1] - climb.t[0])
+    change = float(np.mean(apart) - np.mean(apart[climb.t <= climb.t[0] + _BEGIN_S]))
+    return AlphaOffset(float(np.mean(apart)), float(np.std(apart) / np.sqrt(independent)), change)
+
+
+def mean_offset(offsets: Sequence[AlphaOffset]) -> AlphaOffset:
+    """Return one offset for the aircraft from those of its manoeuvres. Unknown ones do not count."""
+    told = [o for o in offsets if np.isfinite(o.rad)]
+    if not told:
+        return UNKNOWN
+    changes = np.array([o.change_rad for o in told])
+    scatter = np.std(changes) / np.sqrt(max(len(changes) - 1, 1))
+    change = float(np.mean(changes))
+    plain = len(changes) > 1 and abs(change) > _SCATTERS * scatter
+    return AlphaOffset(*weighted([o.rad for o in told], [o.std_rad for o in told]), change if plain else 0.0)
+
+
+def speed_at(t: FloatArray, maneuver: Maneuver, otherwise: float | None) -> FloatArray | None:
+    """Return the logged air speed, else the given one, shape (n,); None without either."""
+    logged = maneuver.channels.get("airspeed")
+    if logged is not None and len(logged) > 1:
+        return np.interp(t, logged.t, logged.y)
+    return None if otherwise is None else np.full(len(t), otherwise)
+
+
+def weighted(values: Sequence[float], stds: Sequence[float]) -> tuple[float, float]:
+    """Return the mean of values weighted by their errors, and its error, widened where the values scatter
+    more."""
+    y, s = np.array(values), np.maximum(np.array(stds), 1e-12)
+    w = 1.0 / s**2
+    mean = float(np.sum(w * y) / np.sum(w))
+    chi2 = float(np.sum(w * (y - mean) ** 2)) / max(len(y) - 1, 1)
+    return mean, float(np.sqrt(max(chi2, 1.0) / np.sum(w)))

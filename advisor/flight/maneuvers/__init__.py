@@ -1,0 +1,1 @@
+"""Manoeuvres: their finding in the elevator's samples, their marks, and the events that tell of them."""

@@ -1,0 +1,162 @@
+"""Events that the stream of messages gives to the flight test, in the order in which they became known."""
+
+from dataclasses import dataclass, replace
+from math import nan
+
+from advisor.flight.maneuvers.maneuver import InputKind, Maneuver
+from advisor.flight.vehicle.vehicle import Vehicle
+from advisor.words.printable import printable
+from advisor.words.problems import Problem
+
+_SOON_S = 30.0
+"""Largest time between similar movements that are listed as one, s. Nobody reads a list of single
+corrections."""
+
+
+@dataclass(frozen=True, slots=True)
+class VehicleFound:
+    """The vehicle to be followed has sent its first heartbeat."""
+
+    vehicle: Vehicle
+
+
+@dataclass(frozen=True, slots=True)
+class Rebooted:
+    """The vehicle's clock has restarted, which begins another power-on."""
+
+    boot: int
+
+
+@dataclass(frozen=True, slots=True)
+class ModeChanged:
+    """The autopilot is in another flight mode."""
+
+    mode: str
+    at_s: float
+    """Vehicle time, s. NaN before the first stamped message."""
+
+
+@dataclass(frozen=True, slots=True)
+class ManeuverStarted:
+    """A test input has been recognised, and its free response is being recorded."""
+
+    at_s: float
+    """Onset of the input's first step, s since boot."""
+    kind: InputKind
+
+
+@dataclass(frozen=True, slots=True)
+class ManeuverFlown:
+    """A manoeuvre is complete, with its data."""
+
+    maneuver: Maneuver
+
+
+@dataclass(frozen=True, slots=True)
+class ManeuverAgain:
+    """A known manoeuvre came again, in another log or power-on. A manoeuvre counts once."""
+
+    maneuver: Maneuver
+    """New record, numbered as the known one."""
+    takes_place: bool
+    """Whether the new record holds more samples than the known one, and replaces it."""
+
+
+@dataclass(frozen=True, slots=True)
+class FlightBegan:
+    """Another log or link of the campaign begins."""
+
+    flight: int
+    """Number of the log or link, 0 for the first."""
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Activity:
+    """A movement of the elevator that was no test input."""
+
+    start_s: float
+    """Begin of the movement, s since boot."""
+    end_s: float
+    reason: str
+    """``autopilot``, ``ground``, ``hover``, ``small``, ``no_information`` or ``unsettled``."""
+    text: str
+    """Sentence for people."""
+    stay_s: float
+    """Begin of the vehicle's present flight mode, s since boot, which distinguishes one stay in a mode from
+    the next."""
+    boot: int = 0
+    """Number of the vehicle's power-on."""
+    flight: int = 0
+    """Number of the campaign's log or link, 0 for the first."""
+
+    def joined(self, earlier: "Activity") -> "Activity | None":
+        """Return one activity for this and the earlier one; None where reason, boot or mode differ."""
+        stay = (self.reason, self.flight, self.boot, self.stay_s)
+        if stay != (earlier.reason, earlier.flight, earlier.boot, earlier.stay_s):
+            return None
+        if self.reason != "autopilot" and (
+            self.text != earlier.text or self.start_s > earlier.end_s + _SOON_S
+        ):
+            return None
+        return replace(earlier, end_s=max(self.end_s, earlier.end_s))
+
+
+@dataclass(frozen=True, slots=True)
+class Notice:
+    """A sentence for the event log."""
+
+    code: str
+    text: str
+
+    def __post_init__(self) -> None:
+        # Some of these sentences hold texts from a vehicle.
+        object.__setattr__(self, "text", printable(self.text))
+
+
+@dataclass(frozen=True, slots=True)
+class VehicleSaid:
+    """A vehicle, or another sender on the link, said something in words (STATUSTEXT)."""
+
+    text: str
+    """Printable, on one line, of bounded length."""
+    severity: str
+    """Name of MAV_SEVERITY; empty where a log does not keep the severity."""
+    system: int
+    component: int
+    at_s: float
+    """Vehicle time, s since boot; NaN before the first stamped message."""
+
+
+@dataclass(frozen=True, slots=True)
+class NoData:
+    """The present data cannot serve."""
+
+    problems: tuple[Problem, ...]
+    """At least one problem: missing or slow messages, the most fundamental first."""
+    at_s: float = nan
+    """Vehicle time, s since boot; NaN before the first stamped message."""
+
+
+@dataclass(frozen=True, slots=True)
+class DataAgain:
+    """The present data can serve again."""
+
+    at_s: float = nan
+    """Vehicle time, s since boot."""
+
+
+FlightEvent = (
+    VehicleFound
+    | FlightBegan
+    | Rebooted
+    | ModeChanged
+    | ManeuverStarted
+    | ManeuverFlown
+    | ManeuverAgain
+    | Activity
+    | Notice
+    | VehicleSaid
+    | NoData
+    | DataAgain
+)

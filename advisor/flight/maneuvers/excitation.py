@@ -1,0 +1,116 @@
+"""Information of an elevator movement about the short period, from the pitch rate alone.
+
+A pilot or an autopilot that steadies the aircraft moves the elevator with its motion. Let e be the part of
+the elevator that no linear feedback of pitch rate q, pitch angle θ and its integral explains. Only e
+separates cause from effect: e is the external input of closed-loop identification (Ljung, System
+Identification, 1999, ch. 13). The short period makes a linear recursion of second order of q and e,
+
+    q[k] = a1·q[k−1] + a2·q[k−2] + b0·e[k] + b1·e[k−1] + b2·e[k−2] + c + d·k + ε[k],
+
+on means over intervals of equal length. A servo's lag spreads over b0, b1, b2. The statistic F tests whether
+b0, b1 and b2 explain more than chance (Draper & Smith, Applied Regression Analysis, 1998, ch. 6). Angle of
+attack and acceleration are not needed.
+"""
+
+from dataclasses import dataclass
+from itertools import pairwise
+from math import inf, sqrt
+
+import numpy as np
+
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.messages import FloatArray
+from advisor.flight.signals.motion import integrated
+
+_INPUTS = 3
+"""Number of the elevator's terms in the recursion."""
+_FEWEST = 14
+"""Fewest intervals for the recursion with its seven terms, which leaves five degrees of freedom."""
+_LONGEST_S = 0.3
+"""Longest interval, s: a fifth of the natural period of a slow aircraft at 0.5 Hz."""
+_PER_STEP = 4.0
+"""Number of intervals in the shortest step. A step is matched to the short period."""
+_MANY = 40.0
+"""Number of intervals in a record, where its sampling allows so many."""
+
+
+@dataclass(frozen=True, slots=True)
+class Excitation:
+    """Effect of the elevator on the pitch rate."""
+
+    pitch_rate: float
+    """Half of the range of the pitch rate, rad/s."""
+    relative_error: float
+    """Relative standard error of the elevator's effect: one over the root of 3·F. Infinite without an
+    effect."""
+    external_error: float
+    """Relative standard error for the external input alone, as in a closed loop."""
+
+
+def excitation(maneuver: Maneuver) -> Excitation | None:
+    """Measure the information of a movement about the short period.
+
+    Parameters
+    ----------
+    maneuver
+        Record with channels ``elevator`` and ``q``. Without ``theta`` the integral of ``q`` serves.
+
+    Returns
+    -------
+    Excitation or None
+        None where the pitch rate is missing or never changes. The error is infinite for too
+        few samples.
+    """
+    elevator, q = maneuver.channels.get("elevator"), maneuver.channels.get("q")
+    if elevator is None or q is None or len(elevator) < 3 or len(q) < 3 or np.ptp(q.y) == 0.0:
+        return None
+    start, end = max(elevator.t[0], q.t[0]), min(elevator.t[-1], q.t[-1])
+    lasting = [b - a for (a, _), (b, _) in pairwise(maneuver.span.steps)]
+    coarse = max(float(np.median(np.diff(elevator.t))), float(np.median(np.diff(q.t))))
+    wanted = min(min(lasting, default=inf) / _PER_STEP, (end - start) / _MANY, _LONGEST_S)
+    pitch_rate = 0.5 * float(np.ptp(q.y))
+    edges = np.arange(start, end, max(coarse, wanted))
+    if len(edges) <= _FEWEST:
+        return Excitation(pitch_rate, inf, inf)
+    rate, moved = _means(edges, q.t, q.y), _means(edges, elevator.t, elevator.y - np.mean(elevator.y))
+    external = _means(edges, elevator.t, _external(maneuver))
+    return Excitation(pitch_rate, _relative_error(rate, moved), _relative_error(rate, external))
+
+
+def _external(maneuver: Maneuver) -> FloatArray:
+    """Return the part of the elevator that no linear feedback of the motion explains, at the elevator's
+    stamps."""
+    elevator, q = maneuver.channels["elevator"], maneuver.channels["q"]
+    rate = np.interp(elevator.t, q.t, q.y)
+    theta = maneuver.channels.get("theta")
+    if theta is not None and len(theta) > 2:
+        pitch = np.interp(elevator.t, theta.t, theta.y)
+    else:
+        pitch = integrated(elevator.t, rate)
+    off = pitch - np.mean(pitch)
+    fed_back = [rate, off, integrated(elevator.t, off)]
+    trim = [elevator.t - elevator.t[0], np.ones(len(rate))]
+    return _left(np.column_stack([*fed_back, *trim]), elevator.y)
+
+
+def _means(edges: FloatArray, t: FloatArray, y: FloatArray) -> FloatArray:
+    """Return the means of a signal over the intervals between the edges."""
+    means: FloatArray = np.diff(np.interp(edges, t, integrated(t, y))) / np.diff(edges)
+    return means
+
+
+def _relative_error(q: FloatArray, elevator: FloatArray) -> float:
+    """Return the relative standard error of the elevator's effect, from F of the elevator's three terms."""
+    n = len(q) - 2
+    own = np.column_stack([q[1:-1], q[:-2], np.ones(n), np.linspace(-1.0, 1.0, n)])
+    full = np.column_stack([own, elevator[2:], elevator[1:-1], elevator[:-2]])
+    without, left = (float(rest @ rest) for rest in (_left(own, q[2:]), _left(full, q[2:])))
+    explained = max(0.0, without - left)
+    return sqrt(left / (n - full.shape[1]) / explained) if explained > 0.0 else inf
+
+
+def _left(terms: FloatArray, y: FloatArray) -> FloatArray:
+    """Return the residual of a signal after least squares on these terms."""
+    scaled = terms / np.maximum(np.abs(terms).max(axis=0), 1e-12)
+    left: FloatArray = y - scaled @ np.linalg.lstsq(scaled, y, rcond=None)[0]
+    return left

@@ -1,0 +1,67 @@
+"""A manoeuvre: the stretch of flight behind one estimate."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Literal
+
+from advisor.flight.signals.record import Channel
+from advisor.flight.signals.trust import Distrust
+
+InputKind = Literal["3-2-1-1", "reverse 3-2-1-1", "doublet", "pulse", "multisine", "other"]
+
+
+@dataclass(frozen=True, slots=True)
+class Span:
+    """Extent of a manoeuvre in the stream of elevator samples, as the segmenter found it."""
+
+    record_from_s: float
+    """First stamp of the record, s. The record begins with a lead-in before the first step, which the fit
+    uses."""
+    start_s: float
+    """Onset of the first elevator step, s."""
+    last_step_s: float
+    """Onset of the last elevator step (the return to trim), s."""
+    end_s: float
+    """End of the free response and last stamp of the record, s."""
+    kind: InputKind
+    steps: tuple[tuple[float, float], ...]
+    """Steps of the input: (onset in s, level in rad from trim) for each."""
+    closed_by: str
+    """Reason of the end: ``quiet``, ``mode change``, ``next input``, ``gap``, ``end of log`` or ``no rest``.
+    A marked stretch has ``marked by hand``, ``marked by a switch`` or ``marked by a text of the vehicle``."""
+
+
+@dataclass(frozen=True, slots=True)
+class Maneuver:
+    """A span with its data. ``channels`` holds at least ``elevator``, and every channel keeps its own
+    stamps."""
+
+    number: int
+    boot: int
+    """Number of the vehicle's power-on, 0 for the first in the log or link."""
+    span: Span
+    channels: Mapping[str, Channel]
+    mode: str = ""
+    """Flight mode of the manoeuvre, by the autopilot's name or number."""
+    distrusts: tuple[Distrust, ...] = ()
+    """Channels that cannot be right. A frozen specific force is left out of ``channels``."""
+    flight: int = 0
+    """Number of the campaign's log or link, 0 for the first."""
+
+    @property
+    def power_on(self) -> tuple[int, int]:
+        """Flight and power-on in which the manoeuvre was recorded."""
+        return self.flight, self.boot
+
+    def later(self, by_s: float) -> "Maneuver":
+        """Return the manoeuvre with all times ``by_s`` later."""
+        span = replace(
+            self.span,
+            record_from_s=self.span.record_from_s + by_s,
+            start_s=self.span.start_s + by_s,
+            last_step_s=self.span.last_step_s + by_s,
+            end_s=self.span.end_s + by_s,
+            steps=tuple((onset + by_s, level) for onset, level in self.span.steps),
+        )
+        channels = {name: replace(c, t=c.t + by_s) for name, c in self.channels.items()}
+        return replace(self, span=span, channels=channels)

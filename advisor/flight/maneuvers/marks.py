@@ -1,0 +1,245 @@
+"""Stretches of flight marked as manoeuvres: by hand, by a switch, or by a text of the vehicle.
+
+A mark replaces every input that the finder finds in its stretch. A mark set while the stream runs gives the
+manoeuvre that results when the mark is known before the stream begins.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from advisor.flight.maneuvers.events import Notice
+from advisor.flight.maneuvers.maneuver import Span
+from advisor.words.problems import Problem
+from advisor.words.vehicle_time import between, clock
+
+Marker = Literal["hand", "switch", "text"]
+
+LONGEST_S = 100.0
+"""Longest mark, s. With its lead-in a mark must fit into the two minutes of channels that a stream keeps."""
+MARK_NOTICES = frozenset({"mark_length", "marked_already", "mark_dropped"})
+"""Codes of the notices on marks that cannot be used."""
+EDGE_S = 2.0
+"""Largest distance by which a mark may exceed the log, s. A power cut loses the last second of a
+recording."""
+
+
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """A stretch of flight marked as a manoeuvre."""
+
+    start_s: float
+    """Begin of the stretch, s since boot."""
+    end_s: float
+    """End of the stretch, s since boot."""
+    boot: int | None = None
+    """Number of the power-on, 0 for the first in the log. None: the first power-on that holds the stretch."""
+    from_log_start: bool = False
+    """Whether the times count from the first sample of the log, not from the boot."""
+    by: Marker = "hand"
+    """Source of the mark."""
+    name: str = "A mark"
+    """Beginning of a sentence about the mark."""
+    flight: int = 0
+    """Number of the campaign's log or link, 0 for the first."""
+
+    def overlaps(self, start_s: float, end_s: float) -> bool:
+        """Return whether the mark shares time with a stretch of its power-on."""
+        return self.start_s < end_s and start_s < self.end_s
+
+
+@dataclass(frozen=True, slots=True)
+class Switched:
+    """A switch or a text of the vehicle that begins or ends a mark."""
+
+    order: int
+    """Order of arrival among all messages."""
+    at_s: float
+    """Vehicle time, s since boot."""
+    by: Marker
+    on: bool
+    """Whether a mark begins. False: a mark ends."""
+
+
+@dataclass(frozen=True, slots=True)
+class Due:
+    """Marks, spans and notices that have become final."""
+
+    marks: tuple[Mark, ...] = ()
+    """Complete marks in seconds since boot, the one that ended first before the others."""
+    spans: tuple[tuple[Span, int | None], ...] = ()
+    """Spans of the finder that an open mark held back and no mark has replaced, each with its order of
+    arrival."""
+    notices: tuple[Notice, ...] = ()
+    """Sentences on marks that cannot be used."""
+
+
+class Marks:
+    """The marks of one stream: the complete ones, and the spans of the finder that they replace.
+
+    Parameters
+    ----------
+    given
+        Marks that are known before the stream begins.
+    """
+
+    def __init__(self, given: Sequence[Mark] = ()) -> None:
+        self._given = list(given)
+        self._heard: list[tuple[float, float]] = []
+        self.start_boot(0, 0.0)
+
+    def start_boot(self, boot: int, earlier_s: float) -> None:
+        """Begin another power-on, after ``earlier_s`` seconds of the log."""
+        self._boot, self._earlier_s = boot, earlier_s
+        self._first_s = np.nan
+        self._switched: list[Switched] = []
+        self._open: dict[Marker, float] = {}
+        self._waiting: dict[Mark, Mark | None] = {}
+        self._closed: list[Mark] = []
+        self._held: list[tuple[Span, int | None]] = []
+        self._notices: list[Notice] = []
+
+    def start_clock(self, first_s: float) -> None:
+        """Take the first reading of this power-on's clock, ``first_s`` since boot."""
+        self._first_s = first_s
+        for mark in tuple(self._given):
+            by_s = first_s - self._earlier_s if mark.from_log_start else 0.0
+            start_s, end_s = mark.start_s + by_s, mark.end_s + by_s
+            if mark.boot not in (None, self._boot) or start_s < first_s - EDGE_S or end_s <= first_s:
+                continue
+            here = replace(mark, start_s=max(start_s, first_s), end_s=end_s, from_log_start=False)
+            refused = self._refused(here)
+            if refused is not None:
+                self._given.remove(mark)
+                self._notices.append(refused)
+            else:
+                self._waiting[here] = mark
+
+    def hear(self, switched: Iterable[Switched]) -> None:
+        """Take switches or texts of one message type, in order of arrival."""
+        self._switched = sorted([*self._switched, *switched], key=lambda one: one.order)
+
+    def begin_by_hand(self, at_s: float) -> None:
+        """Begin a mark. A mark that is already open is dropped."""
+        self._open["hand"] = at_s
+
+    def end_by_hand(self, at_s: float) -> Mark | Notice:
+        """End the open mark, or return a notice with the reason why that is impossible."""
+        if "hand" not in self._open:
+            return Notice("no_mark", "No mark is open: begin one first.")
+        mark = Mark(self._open.pop("hand"), at_s, self._boot)
+        refused = self._refused(mark)
+        if refused is None:
+            self._waiting[mark] = None
+        return refused or mark
+
+    @property
+    def by_hand_since_s(self) -> float | None:
+        """Begin of the open mark by hand, s since boot. None without one."""
+        return self._open.get("hand")
+
+    def since_s(self, now_s: float) -> float | None:
+        """Return the begin of the mark that is open at ``now_s``, s since boot; None between marks."""
+        begun = [m.start_s for m in self._waiting if m.start_s <= now_s <= m.end_s]
+        return min([*begun, *self._open.values()], default=None)
+
+    def advance(self, order: int) -> None:
+        """Note that everything that arrived before ``order`` has been heard."""
+        while self._switched and self._switched[0].order <= order:
+            switched = self._switched.pop(0)
+            if switched.on:
+                self._open.setdefault(switched.by, switched.at_s)
+            elif switched.by in self._open:
+                self._close(switched.by, switched.at_s)
+
+    def hides(self, span: Span, order: int | None) -> bool:
+        """Return whether a mark replaces a span of the finder, or an open mark may still do so.
+
+        A mark replaces the inputs that it touches, but not an input whose free response it ends.
+        """
+        if any(m.overlaps(span.start_s, span.last_step_s) for m in (*self._waiting, *self._closed)):
+            return True
+        waits = any(since_s < span.end_s for since_s in self._open.values())
+        if waits:
+            self._held.append((span, order))
+        return waits
+
+    def before(self, span: Span) -> Span:
+        """Return the span of an input outside of all marks, with its free response ended where a mark
+        begins."""
+        begin_s = [m.start_s for m in (*self._waiting, *self._closed)]
+        within = [at_s for at_s in begin_s if span.last_step_s <= at_s < span.end_s]
+        return replace(span, end_s=min(within), closed_by="next input") if within else span
+
+    def due(self, arrived_s: float) -> Due:
+        """Return the final marks and spans when every channel has arrived up to ``arrived_s``, s since
+        boot."""
+        ready = [m for m in self._waiting if m.end_s <= arrived_s]
+        return self._due(ready) if ready or self._held or self._notices else Due()
+
+    def finish(self, last_s: float) -> Due:
+        """Return the final marks and spans at the end of the power-on at ``last_s``, s since boot. A switch
+        that is on ends its mark there.
+
+        A mark by hand that has not ended is dropped.
+        """
+        self.advance(self._switched[-1].order if self._switched else 0)
+        begun_s = self._open.pop("hand", None)
+        if begun_s is not None:
+            said = "is dropped: the vehicle's clock began anew before its end."
+            self._notices.append(Notice("mark_dropped", f"The mark begun at {clock(begun_s)} {said}"))
+        for by in tuple(self._open):
+            self._close(by, last_s)
+        self._heard.append((self._first_s, last_s))
+        within = [m for m in self._waiting if m.start_s < last_s and m.end_s <= last_s + EDGE_S]
+        return self._due(within, last_s)
+
+    def _due(self, complete: Sequence[Mark], last_s: float = np.inf) -> Due:
+        ready = sorted(complete, key=lambda m: (m.end_s, m.start_s))
+        for mark in ready:
+            given = self._waiting.pop(mark)
+            if given is not None:
+                self._given.remove(given)
+        self._closed += ready
+        held, self._held = self._held, []
+        released = tuple((span, order) for span, order in held if not self.hides(span, order))
+        notices, self._notices = tuple(self._notices), []
+        return Due(tuple(replace(m, end_s=min(m.end_s, last_s)) for m in ready), released, notices)
+
+    def _close(self, by: Marker, at_s: float) -> None:
+        mark = Mark(self._open.pop(by), at_s, self._boot, by=by)
+        refused = self._refused(mark)
+        if refused is None:
+            self._waiting[mark] = None
+        else:
+            self._notices.append(refused)
+
+    def _refused(self, mark: Mark) -> Notice | None:
+        """Return the reason for which a mark that has just ended cannot be used; None for a usable mark."""
+        length_s = mark.end_s - mark.start_s
+        where = f"The mark from {between(mark.start_s, mark.end_s)}"
+        if not 0.0 < length_s <= LONGEST_S:
+            most = f"is {length_s:.1f} s long: a mark lasts more than 0 and at most {LONGEST_S:.0f} s."
+            return Notice("mark_length", f"{where} {most}")
+        others = [m.start_s for m in (*self._closed, *self._waiting) if m.overlaps(mark.start_s, mark.end_s)]
+        hand_s = self._open.get("hand", np.inf)
+        if hand_s < mark.end_s:
+            others.append(hand_s)
+        if others:
+            said = f"another mark begins at {clock(min(others))} and shares time with it."
+            return Notice("marked_already", f"{where} is left out: {said}")
+        return None
+
+    def problems(self) -> list[Problem]:
+        """Return a problem for each mark that no power-on of the whole stream holds."""
+        heard = " and ".join(f"{a:.1f} to {b:.1f} s" for a, b in self._heard if np.isfinite(a))
+        return [
+            Problem(
+                "mark_outside",
+                f"{mark.name} lies outside of the log, which holds {heard or 'no'} vehicle time.",
+                "Give a stretch within the log, in seconds since boot or with + from its start (+12:+24).",
+            )
+            for mark in self._given
+        ]

@@ -1,0 +1,167 @@
+"""Description of an elevator movement: its begin and end, its levels, and a name for the input.
+
+The name is a label. A movement's acceptance as a test input does not depend on the name.
+"""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from advisor.flight.maneuvers.maneuver import InputKind
+from advisor.flight.maneuvers.rest import median, without_spikes
+from advisor.flight.signals.messages import FloatArray
+
+BAND = 0.3
+"""Distance from trim, as a share of the amplitude, within which a movement counts as at trim."""
+_RETURNED = 0.45
+"""Largest distance between the rest after and the rest before, as a share of the amplitude, that counts as a
+return to trim. A farther rest is a step."""
+_LEAVING = 0.1
+"""Departure from trim, as a share of the amplitude, with which a movement begins."""
+_EDGE_S = 0.6
+"""Longest edge of a step, s. Hand-flown edges take 0.2 to 0.4."""
+_LEAST_LEVEL = 0.4
+"""Least lobe of a pattern of steps, as a share of its largest lobe."""
+_TIMING = 0.45
+"""Tolerance of the durations of a 3-2-1-1, in units of time. Hand-flown ones differ by a third."""
+_ON_LEVEL = 0.4
+"""Least share of its time that an input of steps spends on its levels. Steps whose edges take half of their
+time spend half on levels, multisines a third."""
+_SWEPT_LOBES = 5
+"""Fewest lobes of a movement without levels that is called a multisine."""
+
+
+@dataclass(frozen=True, slots=True)
+class Movement:
+    """Movement of the elevator between two rests."""
+
+    kind: InputKind
+    start_s: float
+    """Time at which the elevator leaves trim, s."""
+    last_step_s: float
+    """Onset of the last step, s: back to trim, or to the level of the following rest."""
+    over_s: float
+    """Time at which the elevator reaches that rest, s."""
+    trim: float
+    """Level of that rest, rad."""
+    amplitude: float
+    """Largest deviation from the levels before and after, rad."""
+    quiet: float
+    """Standard deviation in the rest after the movement, rad; 0 where no rest followed."""
+    steps: tuple[tuple[float, float], ...]
+    """Steps as (onset in s, level in rad from trim). The last one is back at trim."""
+    is_stepped: bool
+    """Whether the elevator spends a good part of the movement on levels."""
+
+
+def describe(t: FloatArray, u: FloatArray, before: float, rest: FloatArray | None) -> Movement | None:
+    """Describe the movement in a stretch that begins at rest.
+
+    Parameters
+    ----------
+    t, u
+        Shape (n,): stamps (s) and elevator (rad), from the earlier rest to the newest sample.
+    before
+        Level of the earlier rest, rad.
+    rest
+        Newest samples of ``u`` that are at rest. None where the movement was cut off.
+
+    Returns
+    -------
+    Movement or None
+        None where the elevator did not move.
+    """
+    after = before if rest is None else median(rest)
+    quiet = 0.0 if rest is None else float(np.std(rest))
+    smooth = without_spikes(u)
+    returned = abs(after - before) <= _RETURNED * float(np.abs(smooth - before).max())
+    d = smooth - (0.5 * (before + after) if returned else before)
+    level = 0.0 if returned else after - before
+    amplitude = float(np.abs(d).max())
+    moving = np.flatnonzero(np.abs(d - level) > BAND * amplitude)
+    away = np.flatnonzero(np.abs(d) > BAND * amplitude)
+    if len(away) == 0 or len(moving) == 0:
+        return None
+    first, last = int(away[0]), int(moving[-1])
+    at_trim = np.flatnonzero(np.abs(smooth[: first + 1] - before) <= _LEAVING * amplitude)
+    start_s = float(t[at_trim[-1]] if len(at_trim) else t[0])
+    over = min(last + 1, len(t) - 1)
+    arrival_s = 0.5 * float(t[over] + t[over - 1])
+    steps = _steps(t, d, (first, last if returned else over), amplitude, level, arrival_s)
+    stepped = _is_stepped(t, d, steps)
+    kind = _name(t, steps, stepped) if returned and rest is not None else "other"
+    last_step_s = max(steps[-1][0], start_s)
+    return Movement(kind, start_s, last_step_s, float(t[over]), after, amplitude, quiet, steps, stepped)
+
+
+def _steps(
+    t: FloatArray, d: FloatArray, extent: tuple[int, int], amplitude: float, level: float, arrival_s: float
+) -> tuple[tuple[float, float], ...]:
+    """Return the lobes on either side of trim as steps, with onset at half of the way, and the median as
+    level.
+
+    Parameters
+    ----------
+    t, d
+        Shape (n,): stamps (s) and deviation from trim (rad).
+    extent
+        First and last sample away from trim.
+    amplitude
+        Largest deviation, rad.
+    level
+        Level of the rest at the end, rad from trim; 0 after a return.
+    arrival_s
+        Time at which the elevator reaches that rest, s.
+    """
+    first, last = extent
+    out = np.flatnonzero(np.abs(d[first : last + 1]) > BAND * amplitude) + first
+    above = d[out] > 0.0
+    turns = np.flatnonzero(above[1:] != above[:-1])
+    starts = [int(out[0]), *(int(out[k + 1]) for k in turns)]
+    ends = [*(int(out[k]) for k in turns), int(out[-1])]
+    levels = [median(d[a : b + 1]) for a, b in zip(starts, ends, strict=True)]
+    around = [0.0, *levels, *([] if level else [0.0])]
+    onsets = []
+    for k, (old, new) in enumerate(pairwise(around)):
+        back = max(0, starts[0] - 1) if k == 0 else ends[k - 1]
+        until = starts[k] if k < len(starts) else min(ends[-1] + 1, len(d) - 1)
+        passed = np.flatnonzero((d[back : until + 1] - 0.5 * (old + new)) * np.sign(new - old) >= 0.0)
+        j = back + int(passed[0]) if len(passed) else until
+        onsets.append(float(0.5 * (t[j] + t[max(j - 1, 0)])))
+    steps = list(zip(onsets, around[1:], strict=True))
+    if level and arrival_s - onsets[-1] > _EDGE_S:
+        steps.append((arrival_s, level))
+    elif level:
+        steps[-1] = (onsets[-1], level)
+    return tuple(steps)
+
+
+def _name(t: FloatArray, steps: tuple[tuple[float, float], ...], is_stepped: bool) -> InputKind:
+    """Return the pilots' name of the input."""
+    levels = np.array([level for _, level in steps[:-1]])
+    lasting = np.diff([onset for onset, _ in steps])
+    share = np.abs(levels) / max(float(np.max(np.abs(levels))), 1e-12)
+    if len(levels) == 4 and np.min(share) >= _LEAST_LEVEL:
+        unit = float(np.sum(lasting)) / 7.0
+        step_s = float(np.max(np.diff(t)))
+        off = np.abs(lasting - unit * np.array([[3, 2, 1, 1], [1, 1, 2, 3]]))
+        forwards, backwards = np.all(off <= _TIMING * unit + step_s, axis=1)
+        if forwards or backwards:
+            return "3-2-1-1" if forwards and levels[0] < 0.0 else "reverse 3-2-1-1"
+    if len(levels) >= _SWEPT_LOBES and not is_stepped:
+        return "multisine"
+    if len(levels) == 1:
+        return "pulse"
+    even = len(levels) == 2 and np.min(share) >= _LEAST_LEVEL
+    return "doublet" if even and 0.4 <= lasting[0] / max(lasting[1], 1e-9) <= 2.5 else "other"
+
+
+def _is_stepped(t: FloatArray, d: FloatArray, steps: tuple[tuple[float, float], ...]) -> bool:
+    """Return whether the elevator stays on levels between the steps, or passes through them."""
+    edges = np.searchsorted(t, [onset for onset, _ in steps])
+    on = sum(
+        int(np.count_nonzero(np.abs(d[i:j] - level) <= 0.12 * abs(level)))
+        for (_, level), i, j in zip(steps, edges, edges[1:], strict=False)
+    )
+    return on >= _ON_LEVEL * max(1, int(edges[-1] - edges[0]))

@@ -1,0 +1,138 @@
+"""Classification of an elevator movement: an identifiable input, or an activity with a reason.
+
+The shape does not matter. The criteria are whether the aircraft flew, who moved the elevator, and how well
+the pitch rate shows the elevator's effect.
+"""
+
+from dataclasses import dataclass
+from itertools import pairwise
+from math import degrees, isfinite, radians
+
+import numpy as np
+
+from advisor.flight.maneuvers.excitation import excitation
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.maneuvers.rest import SMALLEST_RAD
+from advisor.flight.signals.derived_alpha import SLOWEST_FLIGHT_M_S
+from advisor.flight.vehicle.modes import closes_pitch_loop, has_an_errand, hovers, is_manual
+from advisor.words.rounding import distinct_texts
+
+LEAST_PITCH_RATE_DEG_S = 1.0
+"""Least answer of the pitch rate to a test input, deg/s. Smaller ones drown in light turbulence. The gentlest
+test input on record has 1.3 (a jet); a correction between inputs of another jet has 0.7."""
+LARGEST_ERROR = 0.3
+"""Largest relative standard error of the elevator's effect on the pitch rate; 0.3 is significant at 2 %. Test
+inputs on record have 0.01 to 0.12 in calm air and 0.16 in gusts of 0.5 m/s. Where only the external input
+counts they have up to 0.21, and an attitude hold in such gusts has 0.3 to 2."""
+_SHARP_S = 0.06
+"""Half of the time within which a step of an external input happens, s. Feedback of the aircraft's motion
+takes longer."""
+_SLOWEST_S = 0.15
+"""Largest interval of elevator samples, s, at which the sharpness of a step is still visible."""
+_SHARP = 0.5
+"""Least share of a sharp step that happens within twice ``_SHARP_S``."""
+_FEWEST_SHARP = 3
+"""Least number of sharp steps. The loop itself makes one where it is switched on, and one where its demand
+jumps."""
+
+_WHAT = {
+    "ground": "movements without flight",
+    "small": "corrections",
+    "no_information": "movements without a visible effect",
+    "unsettled": "movements that never came to rest",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Because:
+    """Reason for which a movement is no test input."""
+
+    reason: str
+    """``autopilot``, ``ground``, ``hover``, ``small``, ``no_information`` or ``unsettled``."""
+    text: str
+    """Sentence on the reason, with its number and limit."""
+
+    @property
+    def what(self) -> str:
+        """Kind of movement in words, without numbers."""
+        return _WHAT.get(self.reason, self.text)
+
+
+def not_an_input(maneuver: Maneuver, on_ground: str | None = None) -> Because | None:
+    """Return the reason for which an elevator movement is no test input; None where it may be one.
+
+    Parameters
+    ----------
+    maneuver
+        Record of the movement. Channels ``q`` and ``airspeed`` are used where present.
+    on_ground
+        Other evidence in words that the aircraft did not fly. None: no such evidence.
+    """
+    if on_ground is not None:
+        return Because("ground", f"the elevator moved on the ground: {on_ground}")
+    if _is_on_ground(maneuver):
+        return Because("ground", "the elevator moved while the aircraft did not fly")
+    if hovers(maneuver.mode):
+        return Because("hover", f"the elevator moved in {maneuver.mode}, where rotors carry the aircraft")
+    because = _tells_nothing(maneuver)
+    inside = has_an_errand(maneuver.mode) or not _is_external(maneuver)
+    if closes_pitch_loop(maneuver.mode) and (because or inside):
+        return Because("autopilot", f"the elevator moved in {maneuver.mode}; not a test input")
+    return because
+
+
+def _tells_nothing(maneuver: Maneuver) -> Because | None:
+    """Return the reason for which the pitch rate cannot show the elevator's effect; None where it can, or is
+    missing."""
+    if maneuver.span.closed_by == "no rest":
+        return Because("unsettled", "the elevator never came to rest; not a test input")
+    found = excitation(maneuver)
+    if found is None:
+        return None
+    rate = degrees(found.pitch_rate)
+    if found.pitch_rate < radians(LEAST_PITCH_RATE_DEG_S):
+        shown, least = distinct_texts(rate, LEAST_PITCH_RATE_DEG_S, 2, "g")
+        return Because(
+            "small", f"a correction: the pitch rate moved by {shown} deg/s only (at least {least})"
+        )
+    # For an elevator moved from outside, no other evidence is needed to separate cause from effect.
+    outside = is_manual(maneuver.mode) or _is_external(maneuver)
+    error = found.relative_error if outside else found.external_error
+    if error > LARGEST_ERROR:
+        known = "not at all"
+        if isfinite(error) and error < 1.0:
+            shown, most = distinct_texts(100.0 * error, 100.0 * LARGEST_ERROR)
+            known = f"to {shown} % only (limit {most})"
+        return Because("no_information", f"the elevator's effect on the pitch rate is known {known}")
+    return None
+
+
+def _is_on_ground(maneuver: Maneuver) -> bool:
+    airspeed = maneuver.channels.get("airspeed")
+    if airspeed is None or len(airspeed) == 0:
+        return False
+    typical = float(np.median(airspeed.y))
+    if typical != 0.0:
+        return typical < SLOWEST_FLIGHT_M_S
+    # An aircraft without an air speed sensor also sends exactly zero.
+    q = maneuver.channels.get("q")
+    return q is not None and len(q) > 0 and 0.5 * float(np.ptp(q.y)) < radians(LEAST_PITCH_RATE_DEG_S)
+
+
+def _is_external(maneuver: Maneuver) -> bool:
+    """Return whether the elevator moves in sharp steps, which no feedback of the aircraft's motion makes.
+
+    A step of less than two of the smallest movements is sharp only by the resolution of the output.
+    """
+    elevator = maneuver.channels["elevator"]
+    interval_s = float(np.median(np.diff(elevator.t))) if len(elevator) > 1 else np.inf
+    if interval_s > _SLOWEST_S:
+        return False
+    reach = max(_SHARP_S, 1.01 * interval_s)
+    steps = [(maneuver.span.start_s, 0.0), *maneuver.span.steps]
+    sharp = 0
+    for (_, old), (onset, new) in pairwise(steps):
+        before, after = np.interp([onset - reach, onset + reach], elevator.t, elevator.y)
+        done = (after - before) * np.sign(new - old)
+        sharp += abs(new - old) >= 2.0 * SMALLEST_RAD and done >= _SHARP * abs(new - old)
+    return sharp >= max(_FEWEST_SHARP, 0.6 * (len(steps) - 1))

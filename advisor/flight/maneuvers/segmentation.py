@@ -1,0 +1,291 @@
+"""The segmenter: finds every movement of the elevator in the stream of its samples, as the movement ends.
+
+A movement begins where the elevator leaves its rest. It ends where the elevator rests again: at the earlier
+level, or for long at another one. Rest is measured relative to the movement itself (`rest`). So one rule
+serves steps, slewed edges, pulses and multisines, of fast aircraft and slow ones. The free response follows
+until it has lasted long enough or an event ends it. The movement is classified where the other channels are
+at hand (`purpose`). The work per sample is bounded. A result depends on the samples alone, not on their
+delivery.
+"""
+
+import numpy as np
+
+from advisor.flight.maneuvers.free_response import FreeResponse
+from advisor.flight.maneuvers.maneuver import Span
+from advisor.flight.maneuvers.movement import Movement, describe
+from advisor.flight.maneuvers.rest import SMALLEST_RAD, is_still, median, without_spikes
+from advisor.flight.signals.messages import FloatArray
+from advisor.flight.signals.samples import Samples
+
+LEAD_IN_S = 1.0
+"""Length of flight before the first step that belongs to the record, s."""
+_REACH_S = 60.0
+"""Longest movement, s. A longer one is reported in pieces."""
+_OVERLAP_S = 10.0
+"""Age of a piece's end at its report, s. An input that has begun since is whole in the next piece."""
+_CHECK_S = 0.1
+"""Time between two tests for rest, s."""
+_RESTING_S = 0.5
+"""Time for which the elevator must rest at the end of a movement, s."""
+_FIRST_LEVEL_S = 0.1
+"""Time over which a stream that has just begun counts as at rest, s."""
+_NEAR = 0.4
+"""Largest distance of a rest from the earlier level, as a share of the amplitude, that counts as a return."""
+_HOLD_S = (8.0, 20.0)
+"""Length of a rest at another level that ends a movement, s. The second value is for a single step, so that a
+long pulse is one input."""
+_LONGER = 1.2
+"""Factor on the longest earlier rest at another level, beyond which a rest ends a movement. A slow input has
+long steps."""
+_FAR = 0.3
+"""Distance from the earlier level, as a share of the amplitude, at which a movement has begun. The first step
+of a 3-2-1-1 with balanced areas has half of the amplitude."""
+_LEAST_REST_S = 0.3
+"""Least length of a rest before the movement, s, where an earlier movement exists."""
+_KEEP_S = _REACH_S + 30.0
+"""Time for which samples are kept, s: a movement and its free response."""
+GAP_S = 1.0
+"""Least gap, s, that ends a free response, where ``MANY_INTERVALS`` samples are missing."""
+MANY_INTERVALS = 5.0
+"""Least gap, in intervals of the samples, that ends a free response."""
+_LONGEST_GAP_S = 3.0
+"""Longest gap, s, within a movement. After a shorter gap the input is recognised and refused for the gap; a
+longer gap drops the movement."""
+
+
+class Segmenter:
+    """Takes elevator samples in the order of their stamps, and gives spans as they end."""
+
+    def __init__(self) -> None:
+        self._samples = Samples(_KEEP_S)
+        self._ended: list[Span] = []
+        self._begin_anew(-np.inf)
+
+    def _begin_anew(self, from_s: float) -> None:
+        """Forget the elevator's rest before ``from_s``."""
+        self._new_from_s = from_s
+        self._base: float | None = None
+        self._leaving = 0.5 * SMALLEST_RAD
+        self._pending: FreeResponse | None = None
+        self._set_out(None, 0.0)
+        self._next_check_s = -np.inf
+
+    def _set_out(self, from_s: float | None, amplitude: float) -> None:
+        """Set the state: at rest, or moving since the sample at ``from_s``."""
+        self._moved_from_s, self._amplitude = from_s, amplitude
+        self._held_since_s: float | None = None
+        self._held_rad = 0.0
+        self._longest_hold_s = 0.0
+
+    @property
+    def onset_s(self) -> float | None:
+        """Begin of the movement, or of the manoeuvre in its free response, s. None at rest."""
+        if self._pending:
+            return self._pending.movement.start_s
+        return self._moved_from_s if self._amplitude >= SMALLEST_RAD else None
+
+    @property
+    def recognised(self) -> Movement | None:
+        """Movement whose free response is awaited."""
+        return self._pending.movement if self._pending else None
+
+    def push(self, t: float, u: float) -> list[Span]:
+        """Take one sample, stamp (s, rising) and elevator (rad); return the spans that end with it."""
+        if self._samples.size:
+            last = float(self._samples.t[-1])
+            if t <= last:
+                return []
+            if t - last > GAP_S and t - last > MANY_INTERVALS * self._samples.interval_s():
+                self._interrupt(last, whole=t - last > _LONGEST_GAP_S)
+        self._samples.append(t, u)
+        self._advance(self._samples.size - 1)
+        return self._drain()
+
+    def mode_changed(self, t: float) -> list[Span]:
+        """Take a change of the flight mode, at ``t`` at the earliest; return the spans that end there."""
+        if self._pending is not None:
+            pending = self._pending.movement
+            if pending.start_s >= t:
+                return []
+            self._end(pending, "mode change", max(t, pending.last_step_s))
+            t = max(t, pending.over_s)
+        elif self._moved_from_s is not None and self._moved_from_s < t:
+            self._cut_off("mode change", t)
+        self._restart(t)
+        return self._drain()
+
+    def finish(self) -> list[Span]:
+        """Return the spans that end with the samples."""
+        if self._samples.size:
+            last = float(self._samples.t[-1])
+            if self._pending is not None:
+                self._end(self._pending.movement, "end of log", last)
+            else:
+                self._cut_off("end of log", last)
+        self._forget_all()
+        return self._drain()
+
+    def _drain(self) -> list[Span]:
+        ended, self._ended = self._ended, []
+        return ended
+
+    def _restart(self, from_s: float) -> None:
+        """Follow the stored samples since ``from_s`` once more, as if the stream began there."""
+        self._begin_anew(from_s)
+        for i in range(self._samples.index(from_s), self._samples.size):
+            self._advance(i)
+
+    def _interrupt(self, last_s: float, whole: bool) -> None:
+        """Take a silence of the link after ``last_s``: long, or very long where ``whole`` is set."""
+        if self._pending is not None:
+            self._end(self._pending.movement, "gap", last_s)
+            self._begin_anew(last_s)
+        elif whole:
+            self._cut_off("gap", last_s)
+        if whole:
+            self._forget_all()
+
+    def _advance(self, i: int) -> None:
+        """Take the stored sample ``i`` into account."""
+        samples = self._samples
+        t, u = float(samples.t[i]), float(samples.y[i])
+        if self._base is None:
+            begun = samples.index(self._new_from_s)
+            if i - begun >= 2 and t - samples.t[begun] >= _FIRST_LEVEL_S:
+                self._base = median(samples.y[begun : i + 1])
+            return
+        if self._pending is not None:
+            self._follow(self._pending, t, u)
+            return
+        # A single sample is no movement.
+        deviation = min(abs(u - self._base), abs(float(samples.y[i - 1]) - self._base))
+        if self._moved_from_s is not None:
+            self._amplitude = max(self._amplitude, deviation)
+        elif deviation > self._leaving:
+            self._set_out(float(samples.t[max(i - 2, 0)]), deviation)
+        if t >= self._next_check_s:
+            self._next_check_s = t + _CHECK_S
+            if self._moved_from_s is None:
+                if abs(u - self._base) <= self._leaving:
+                    self._watch_rest(i, t)
+            else:
+                self._look(i, t, self._moved_from_s, self._base)
+
+    def _watch_rest(self, i: int, t: float) -> None:
+        """Follow the slow motion of the rest's level and the elevator's movements at rest."""
+        recent = self._samples.since(max(t - LEAD_IN_S, self._new_from_s), i + 1)
+        if len(recent) > 2:
+            self._base = median(recent)
+            self._leaving = min(max(4.0 * float(recent.std()), 0.5 * SMALLEST_RAD), 2.0 * SMALLEST_RAD)
+
+    def _look(self, i: int, t: float, from_s: float, base: float) -> None:
+        """Test whether the moving elevator has come to rest, at the earlier level or for long at another
+        one."""
+        if t - from_s > _REACH_S:
+            self._cut_off("no rest", t - _OVERLAP_S)
+            self._restart(t - _OVERLAP_S)
+            return
+        rest = self._samples.since(t - _RESTING_S, i + 1)
+        if t - from_s < _RESTING_S or not is_still(rest, self._amplitude):
+            self._let_go(t)
+            return
+        level = median(rest)
+        if abs(level - base) <= _NEAR * self._amplitude:
+            movement = self._described(i + 1, rest)
+            if movement is not None:
+                self._pending = FreeResponse(movement, base, self._samples)
+            else:
+                self._base = level
+                self._set_out(None, 0.0)
+        elif self._held_since_s is None or abs(level - self._held_rad) > _NEAR * self._amplitude:
+            self._let_go(t)
+            self._held_since_s, self._held_rad = t - _RESTING_S, level
+        elif t - self._held_since_s >= self._longest_hold(from_s, base):
+            held = self._described(i + 1, rest)
+            self._base = level
+            if held is not None:
+                self._end(held, "quiet", t)
+            self._set_out(None, 0.0)
+
+    def _let_go(self, t: float) -> None:
+        """Note that the elevator has left a rest away from trim."""
+        if self._held_since_s is not None:
+            self._longest_hold_s = max(self._longest_hold_s, t - self._held_since_s)
+            self._held_since_s = None
+
+    def _longest_hold(self, from_s: float, base: float) -> float:
+        """Return the longest rest away from trim within a movement, s."""
+        u = without_spikes(self._samples.since(from_s))
+        low, high = min(base, self._held_rad), max(base, self._held_rad)
+        beyond = max(low - float(u.min()), float(u.max()) - high)
+        single = beyond <= _NEAR * self._amplitude and self._longest_hold_s == 0.0
+        return _HOLD_S[1] if single else max(_HOLD_S[0], _LONGER * self._longest_hold_s)
+
+    def _follow(self, response: FreeResponse, t: float, u: float) -> None:
+        """Take a sample of a free response into account."""
+        ended = response.take(t, u)
+        if ended is None:
+            return
+        self._pending = None
+        if ended.why == "same input":
+            return
+        movement = response.movement
+        self._end(movement, ended.why, ended.at_s)
+        self._base = movement.trim
+        if ended.why == "quiet":
+            self._set_out(None, 0.0)
+        else:
+            before = max(self._samples.index(ended.at_s) - 1, 0)
+            self._set_out(float(self._samples.t[before]), abs(u - movement.trim))
+
+    def _cut_off(self, why: str, at_s: float) -> None:
+        """End a movement before the elevator has come to rest, for a given reason."""
+        if self._moved_from_s is None or self._base is None:
+            return
+        until = self._samples.index(float(np.nextafter(at_s, np.inf)))
+        rest = self._samples.since(at_s - _RESTING_S, until)
+        movement = self._described(until, rest if is_still(rest, self._amplitude) else None)
+        if movement is not None:
+            self._end(movement, why, max(at_s, movement.last_step_s))
+
+    def _described(self, until: int, rest: FloatArray | None) -> Movement | None:
+        """Return the movement up to the sample ``until``; None where it is smaller than any input."""
+        begin, base = self._rest_before(until)
+        if until - begin < 3:
+            return None
+        t, u = self._samples.t[begin:until], self._samples.y[begin:until]
+        movement = describe(t, u, base, rest)
+        return movement if movement is not None and movement.amplitude >= SMALLEST_RAD else None
+
+    def _rest_before(self, until: int) -> tuple[int, float]:
+        """Return the position of the elevator's last rest before it went far, and the level of that rest."""
+        samples, base = self._samples, self._base or 0.0
+        begin = samples.index(self._moved_from_s or 0.0)
+        far = np.flatnonzero(np.abs(samples.y[begin:until] - base) > _FAR * self._amplitude)
+        end = float(samples.t[begin + int(far[0]) if len(far) else begin])
+        while (i := samples.index(end - _LEAST_REST_S)) > begin:
+            window = samples.y[i : samples.index(end) + 1]
+            if is_still(window, 0.5 * self._amplitude):
+                return i, median(window)
+            end -= 0.5 * _CHECK_S
+        return begin, base
+
+    def _end(self, movement: Movement, why: str, at_s: float) -> None:
+        past_s = at_s if why == "next input" else float(np.nextafter(at_s, np.inf))
+        end_s = float(self._samples.t[max(0, self._samples.index(past_s) - 1)])
+        record_from_s = max(movement.start_s - LEAD_IN_S, float(self._samples.t[0]))
+        self._ended.append(
+            Span(
+                record_from_s,
+                movement.start_s,
+                movement.last_step_s,
+                end_s,
+                movement.kind,
+                movement.steps,
+                why,
+            )
+        )
+
+    def _forget_all(self) -> None:
+        self._samples.clear()
+        self._begin_anew(-np.inf)

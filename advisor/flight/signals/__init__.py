@@ -1,0 +1,1 @@
+"""From messages to physical quantities, each at its own stamps on the vehicle's clock."""

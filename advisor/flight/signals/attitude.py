@@ -1,0 +1,80 @@
+"""ATTITUDE made from ATTITUDE_QUATERNION, for vehicles that send no ATTITUDE."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from advisor.flight.signals.messages import Columns, FloatArray
+
+_QUATERNION = ("q1", "q2", "q3", "q4")
+
+
+class Attitudes:
+    """Converts quaternions to ATTITUDE for each component that sends no ATTITUDE.
+
+    For a component that sends both messages, the quaternions count until its first ATTITUDE. The order of
+    arrival decides, so that batches of any size give equal results.
+    """
+
+    def __init__(self) -> None:
+        self._senders: set[tuple[int, int]] = set()
+        """Systems and components that have sent an ATTITUDE."""
+
+    def of(self, columns: Sequence[Columns]) -> Sequence[Columns]:
+        """Return the columns, with an ATTITUDE for every quaternion that arrived before any ATTITUDE."""
+        sent = {_sender(c): c for c in columns if c.name == "ATTITUDE" and len(c)}
+        stand_ins: dict[tuple[int, int], Columns] = {}
+        for c in columns:
+            sender = _sender(c)
+            if c.name != "ATTITUDE_QUATERNION" or sender in self._senders:
+                continue
+            rows = int(np.searchsorted(c.order, sent[sender].order[0])) if sender in sent else len(c)
+            if rows:
+                early = _as_attitude(c, rows)
+                stand_ins[sender] = _joined(early, sent[sender]) if sender in sent else early
+        self._senders.update(sent)
+        if not stand_ins:
+            return columns
+        others = [c for c in columns if c.name != "ATTITUDE" or _sender(c) not in stand_ins]
+        return [*stand_ins.values(), *others]
+
+
+def euler_angles(q: FloatArray) -> dict[str, FloatArray]:
+    """Return the roll, pitch and yaw of attitude quaternions, rad, each of shape (n,).
+
+    Parameters
+    ----------
+    q
+        Shape (4, n): Shape (4, n): w, x, y, z of the rotation from north-east-down into body axes.
+    """
+    w, x, y, z = q
+    return {
+        "roll": np.arctan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y)),
+        "pitch": np.arcsin(np.clip(2.0 * (w * y - z * x), -1.0, 1.0)),
+        "yaw": np.arctan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)),
+    }
+
+
+def _sender(c: Columns) -> tuple[int, int]:
+    return c.system, c.component
+
+
+def _as_attitude(c: Columns, rows: int) -> Columns:
+    """Return the given rows as ATTITUDE; ``q1`` to ``q4`` are w, x, y, z of the rotation into body axes."""
+    fields = {name: values[:rows] for name, values in c.fields.items()}
+    angles = euler_angles(np.array([fields[name] for name in _QUATERNION], dtype=np.float64))
+    kept = {name: values for name, values in fields.items() if name not in (*_QUATERNION, "repr_offset_q")}
+    return replace(
+        c, name="ATTITUDE", order=c.order[:rows], arrival_s=c.arrival_s[:rows], fields=kept | angles
+    )
+
+
+def _joined(first: Columns, then: Columns) -> Columns:
+    """Return two batches of one type, one after the other."""
+    return replace(
+        then,
+        order=np.concatenate([first.order, then.order]),
+        arrival_s=np.concatenate([first.arrival_s, then.arrival_s]),
+        fields={name: np.concatenate([first.fields[name], values]) for name, values in then.fields.items()},
+    )

@@ -1,0 +1,104 @@
+"""Servo outputs from several banks, completed to one sample.
+
+SERVO_OUTPUT_RAW carries sixteen outputs, and its ``port`` names the bank. A surface whose outputs lie in two
+banks needs two messages for one sample.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from advisor.flight.signals.messages import Columns, FloatArray, IntArray
+
+_OUTPUTS = 16
+"""Number of outputs in one SERVO_OUTPUT_RAW (MAVLink's common.xml)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Pulses:
+    """Pulses of the servo outputs, grouped by the messages that brought them."""
+
+    columns: Columns
+    """The messages, n of them."""
+    ports: IntArray
+    """Shape (m + n,), bank of each message. The first m messages came before ``columns``."""
+    raw: FloatArray
+    """Shape (m + n, outputs of a bank), pulse widths, us."""
+
+    def of(self, outputs: Sequence[int]) -> FloatArray:
+        """Return the pulses of these outputs, shape (n, number of outputs), us.
+
+        A message of the last bank makes a sample, with the newest pulses of the other banks. NaN marks a
+        message of another bank. NaN also marks a sample for which another bank was silent since the previous
+        one.
+        """
+        size = self.raw.shape[1]
+        banks = [(n - 1) // size for n in outputs]
+        rows = np.arange(len(self.ports))
+        of_last = self.ports == max(banks)
+        before = np.concatenate(([-1], np.maximum.accumulate(np.where(of_last, rows, -1))[:-1]))
+        pulses = np.full((len(rows), len(outputs)), np.nan)
+        for k, (n, bank) in enumerate(zip(outputs, banks, strict=True)):
+            newest = np.maximum.accumulate(np.where(self.ports == bank, rows, -1))
+            known = of_last & (newest > before)
+            pulses[known, k] = self.raw[newest[known], (n - 1) % size]
+        return pulses[len(rows) - len(self.columns.order) :]
+
+    def source(self, outputs: Sequence[int]) -> str:
+        """Return ``MESSAGE.field+field`` of these outputs."""
+        if self.columns.name == "ACTUATOR_OUTPUT_STATUS":
+            return f"{self.columns.name}.actuator" + "+".join(f"[{n - 1}]" for n in outputs)
+        banks = {(n - 1) // _OUTPUTS for n in outputs}
+        names = [
+            f"port{(n - 1) // _OUTPUTS}.servo{(n - 1) % _OUTPUTS + 1}_raw"
+            if len(banks) > 1
+            else f"servo{(n - 1) % _OUTPUTS + 1}_raw"
+            for n in outputs
+        ]
+        return f"{self.columns.name}." + "+".join(names)
+
+
+def merged(part: Sequence[Columns]) -> list[Columns]:
+    """Return the columns with the SERVO_OUTPUT_RAW of one sender merged, which some logs separate by bank."""
+    senders: dict[int, list[Columns]] = {}
+    for c in part:
+        if c.name == "SERVO_OUTPUT_RAW":
+            senders.setdefault(c.component, []).append(c)
+    kept = [c for c in part if c.name != "SERVO_OUTPUT_RAW"]
+    return kept + [_in_order(banks) if len(banks) > 1 else banks[0] for banks in senders.values()]
+
+
+def _in_order(banks: Sequence[Columns]) -> Columns:
+    order = np.concatenate([c.order for c in banks])
+    rows = np.argsort(order)
+    fields = {
+        name: np.concatenate([c.fields[name] for c in banks])[rows]
+        for name in banks[0].fields
+        if all(name in c.fields for c in banks)
+    }
+    arrival_s = np.concatenate([c.arrival_s for c in banks])[rows]
+    return replace(banks[0], order=order[rows], arrival_s=arrival_s, fields=fields)
+
+
+class Banks:
+    """Keeps the last message of every bank."""
+
+    def __init__(self) -> None:
+        self._ports: IntArray = np.empty(0, dtype=np.int64)
+        self._raw: FloatArray = np.empty((0, _OUTPUTS))
+
+    def together(self, columns: Columns) -> Pulses:
+        """Return the pulses of SERVO_OUTPUT_RAW or ACTUATOR_OUTPUT_STATUS messages, completed by earlier
+        messages."""
+        if columns.name == "ACTUATOR_OUTPUT_STATUS":
+            every = np.asarray(columns.fields["actuator"], dtype=np.float64)
+            return Pulses(columns, np.zeros(len(every), dtype=np.int64), every)
+        silent = np.zeros(len(columns.order))
+        fields = [columns.fields.get(f"servo{k}_raw", silent) for k in range(1, _OUTPUTS + 1)]
+        ports = np.concatenate((self._ports, np.asarray(columns.fields["port"], dtype=np.int64)))
+        raw = np.concatenate((self._raw, np.stack(fields, axis=1).astype(np.float64)))
+        last = [int(np.flatnonzero(ports == port)[-1]) for port in np.unique(ports)]
+        kept = np.sort(last)
+        self._ports, self._raw = ports[kept], raw[kept]
+        return Pulses(columns, ports, raw)

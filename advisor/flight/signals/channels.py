@@ -1,0 +1,154 @@
+"""From messages to physical quantities: units, signs and sources, each sample at its own stamp."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from advisor.aircraft.standard_gravity import GRAVITY_M_S2
+from advisor.flight.signals.clocks import place
+from advisor.flight.signals.messages import Columns, FloatArray
+
+_ARMED = 128
+"""MAV_MODE_FLAG_SAFETY_ARMED, MAVLink common.xml."""
+_MILLI_G = GRAVITY_M_S2 / 1000.0
+
+# The counters that stamp messages (field, length of a tick in s); MAVLink common.xml, ardupilotmega.xml.
+_BOOT_MS = ("time_boot_ms", 1e-3)
+_USEC = ("time_usec", 1e-6)
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """One physical quantity in one message."""
+
+    channel: str
+    message: str
+    field: str
+    value: Callable[[NDArray[Any]], FloatArray]
+    """Conversion of the field's raw values to SI."""
+    provenance: str = "measured"
+
+    @property
+    def source(self) -> str:
+        """``MESSAGE.field``."""
+        return f"{self.message}.{self.field}"
+
+
+def _scaled(factor: float) -> Callable[[NDArray[Any]], FloatArray]:
+    return lambda raw: np.asarray(raw, dtype=np.float64) * factor
+
+
+READINGS = (
+    Reading("q", "ATTITUDE", "pitchspeed", _scaled(1.0)),
+    Reading("p", "ATTITUDE", "rollspeed", _scaled(1.0)),
+    Reading("r", "ATTITUDE", "yawspeed", _scaled(1.0)),
+    Reading("theta", "ATTITUDE", "pitch", _scaled(1.0)),
+    Reading("bank", "ATTITUDE", "roll", _scaled(1.0)),
+    Reading("alpha", "AOA_SSA", "AOA", np.radians, "derived"),
+    Reading("airspeed", "VFR_HUD", "airspeed", _scaled(1.0)),
+    Reading("climb_rate", "VFR_HUD", "climb", _scaled(1.0)),
+    Reading("throttle", "VFR_HUD", "throttle", _scaled(0.01)),
+    *(
+        Reading(channel, message, field, _scaled(_MILLI_G))
+        for message in ("RAW_IMU", "SCALED_IMU")
+        for channel, field in (("a_x", "xacc"), ("a_z", "zacc"))
+    ),
+    Reading("a_x", "HIGHRES_IMU", "xacc", _scaled(1.0)),
+    Reading("a_z", "HIGHRES_IMU", "zacc", _scaled(1.0)),
+    # Second and third sensors of an autopilot, used where the first is not sent.
+    *(
+        Reading(channel, message, field, _scaled(_MILLI_G))
+        for message in ("SCALED_IMU2", "SCALED_IMU3")
+        for channel, field in (("a_x", "xacc"), ("a_z", "zacc"))
+    ),
+    Reading("height", "GLOBAL_POSITION_INT", "relative_alt", _scaled(1e-3)),
+    Reading("altitude", "GLOBAL_POSITION_INT", "alt", _scaled(1e-3)),
+    Reading("static_pressure", "SCALED_PRESSURE", "press_abs", _scaled(100.0)),
+    Reading("groundspeed", "VFR_HUD", "groundspeed", _scaled(1.0)),
+    Reading("landed_state", "EXTENDED_SYS_STATE", "landed_state", _scaled(1.0)),
+    Reading("armed", "HEARTBEAT", "base_mode", lambda raw: (np.asarray(raw) & _ARMED > 0).astype(np.float64)),
+)
+"""Sources of each channel, the best first where several messages carry the channel."""
+
+_STAMPS = {
+    "ATTITUDE": _BOOT_MS,
+    "ATTITUDE_QUATERNION": _BOOT_MS,
+    "AOA_SSA": _USEC,
+    "RAW_IMU": _USEC,
+    "SCALED_IMU": _BOOT_MS,
+    "SCALED_IMU2": _BOOT_MS,
+    "SCALED_IMU3": _BOOT_MS,
+    "SCALED_PRESSURE": _BOOT_MS,
+    "HIGHRES_IMU": _USEC,
+    "GLOBAL_POSITION_INT": _BOOT_MS,
+    "SERVO_OUTPUT_RAW": _USEC,
+    "ACTUATOR_OUTPUT_STATUS": _USEC,
+    "NAMED_VALUE_FLOAT": _BOOT_MS,
+    "RC_CHANNELS": _BOOT_MS,
+    "VFR_HUD": _USEC,
+}
+"""Message to its stamp's field. VFR_HUD of a link has no stamp and takes that of the last ATTITUDE.
+Autopilots' own logs stamp VFR_HUD."""
+
+GIVEN_AIRSPEED = "airspeed_m_s of the aircraft file"
+
+
+@dataclass(frozen=True, slots=True)
+class Decoded:
+    """Samples of one channel from one source, in order of arrival."""
+
+    channel: str
+    source: str
+    provenance: str
+    t: FloatArray
+    y: FloatArray
+    order: NDArray[np.int64]
+
+
+def stamps(columns: Columns, master_s: FloatArray) -> FloatArray:
+    """Return the vehicle time of each message, shape (n,), s since boot; NaN for a stamp that is not
+    plausible.
+
+    Parameters
+    ----------
+    columns
+        Messages of one type.
+    master_s
+        Shape (n,), master clock at the arrival of each message.
+    """
+    field, tick_s = _STAMPS.get(columns.name, ("", 0.0))
+    if field not in columns.fields:
+        return master_s
+    return place(columns.fields[field], tick_s, master_s)
+
+
+def quantities(columns: Columns, t: FloatArray) -> Iterator[Decoded]:
+    """Yield every quantity of ``READINGS`` that these messages carry."""
+    for reading in READINGS:
+        if reading.message == columns.name and reading.field in columns.fields:
+            y = reading.value(columns.fields[reading.field])
+            yield _decoded(reading.channel, reading.source, reading.provenance, t, y, columns)
+
+
+def named_value(columns: Columns, t: FloatArray, name: str) -> Decoded:
+    """Return the angle of attack from NAMED_VALUE_FLOAT messages with this name, in the sender's unit."""
+    mine = np.array(
+        [raw.rstrip(b"\0") == name.encode() for raw in columns.fields["name"].tolist()], dtype=bool
+    )
+    y = np.where(mine, np.asarray(columns.fields["value"], dtype=np.float64), np.nan)
+    return _decoded("alpha", f"NAMED_VALUE_FLOAT.{name}", "vane", t, y, columns)
+
+
+def given_airspeed(attitude: Columns, t: FloatArray, airspeed_m_s: float) -> Decoded:
+    """Return the aircraft file's air speed at the stamps of ATTITUDE, for a log without air speed."""
+    return _decoded("airspeed", GIVEN_AIRSPEED, "given", t, np.full(len(t), airspeed_m_s), attitude)
+
+
+def _decoded(
+    channel: str, source: str, provenance: str, t: FloatArray, y: FloatArray, columns: Columns
+) -> Decoded:
+    good = np.isfinite(t) & np.isfinite(y)
+    return Decoded(channel, source, provenance, t[good], y[good], columns.order[good])

@@ -1,0 +1,145 @@
+"""The vehicle's clock: seconds since boot, unwrapped, from counters that wrap and restart.
+
+``ATTITUDE.time_boot_ms`` is the master clock. Every other stamp is placed on the master clock. A 32-bit
+counter of microseconds is the true time less a multiple of 71.6 minutes, and the master gives the multiple.
+SERVO_OUTPUT_RAW has such a counter, and AOA_SSA as ArduPilot fills it. No state is kept for a message, so
+that silences, duplicates and late packets do no harm. A clock that goes back by less than `_OLD_MS` is no
+reboot, because nobody tests in the first seconds after one.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from advisor.flight.signals.messages import FloatArray, IntArray
+
+_MS = 1e-3
+_WRAP_MS = 2**32
+_LATE_MS = 2000
+"""Age relative to the newest master stamp, ms, below which a stamp is a late packet in its right place."""
+_OLD_MS = 20_000
+"""Age relative to the newest master stamp, ms, below which a stamp came by a second path and is dropped.
+Radios hold packets up to 15 s."""
+_SILENCE_MS = 10_000
+"""Advance of a master stamp beyond the last one, ms, above which the stamp waits for confirmation."""
+_CONFIRM = 3
+"""Number of consecutive stamps that confirm a jump: backwards a reboot, forwards a silence."""
+_TIME_OF_DAY_S = 1e9
+"""Least stamp, s, that counts from 1970. No counter since boot comes so far."""
+_NEAR_S = 5.0
+"""Largest distance of a stamp from the master clock at the arrival of its message, s."""
+
+
+@dataclass(frozen=True, slots=True)
+class MasterStamps:
+    """Master clock from a row of ``time_boot_ms``."""
+
+    t: FloatArray
+    """Shape (n,), seconds since boot. NaN for a stamp that is not confirmed."""
+    boot: IntArray
+    """Shape (n,), number of the boot, rising."""
+
+
+class BootClock:
+    """Unwraps ``time_boot_ms`` and notices reboots.
+
+    Parameters
+    ----------
+    boot
+        Number of the first power-on.
+    """
+
+    def __init__(self, boot: int = 0) -> None:
+        self.boot = boot
+        """Number of the boot, 0 for the first."""
+        self._newest_ms: int | None = None
+        self._doubt: list[int] = []
+
+    @property
+    def newest_s(self) -> float:
+        """Newest confirmed stamp, s since boot. NaN before the first."""
+        return float("nan") if self._newest_ms is None else self._newest_ms * _MS
+
+    def advance(self, time_boot_ms: IntArray) -> MasterStamps:
+        """Take stamps in order of arrival.
+
+        Parameters
+        ----------
+        time_boot_ms
+            Shape (n,), as received.
+        """
+        newest_ms = time_boot_ms[:1] if self._newest_ms is None else self._newest_ms
+        ahead_ms = np.diff(time_boot_ms, prepend=newest_ms)
+        if len(ahead_ms) and np.all((ahead_ms >= 0) & (ahead_ms <= _SILENCE_MS)):
+            # In order and without a silence, as nearly always: all stamps are confirmed.
+            self._newest_ms = int(time_boot_ms[-1])
+            self._doubt.clear()
+            return MasterStamps(time_boot_ms.astype(np.float64) * _MS, np.full(len(time_boot_ms), self.boot))
+        t = np.full(len(time_boot_ms), np.nan)
+        boot = np.empty(len(time_boot_ms), dtype=np.int64)
+        for i, raw in enumerate(time_boot_ms.tolist()):
+            believed_ms = self._believe(raw)
+            if believed_ms is not None:
+                t[i] = believed_ms * _MS
+            boot[i] = self.boot
+        return MasterStamps(t, boot)
+
+    def _believe(self, raw: int) -> int | None:
+        """Return the unwrapped milliseconds of this stamp; None while the stamp is unconfirmed."""
+        if self._newest_ms is None:
+            self._newest_ms = raw
+            return raw
+        ahead = _signed(raw - self._newest_ms)
+        if -_LATE_MS <= ahead <= _SILENCE_MS:
+            self._doubt.clear()
+            return self._unwrap(ahead)
+        if -_OLD_MS <= ahead < 0:
+            return None
+        if self._doubt and not 0 <= _signed(raw - self._doubt[-1]) <= _SILENCE_MS:
+            self._doubt.clear()
+        self._doubt.append(raw)
+        if len(self._doubt) < _CONFIRM:
+            return None
+        self._doubt.clear()
+        if ahead > 0:
+            return self._unwrap(ahead)
+        self.boot += 1
+        self._newest_ms = raw
+        return raw
+
+    def _unwrap(self, ahead_ms: int) -> int:
+        assert self._newest_ms is not None
+        stamp = self._newest_ms + ahead_ms
+        self._newest_ms = max(self._newest_ms, stamp)
+        return stamp
+
+
+def place(ticks: IntArray, tick_s: float, master_s: FloatArray) -> FloatArray:
+    """Put stamps of any counter of 32 bits or more on the master clock.
+
+    Parameters
+    ----------
+    ticks
+        Shape (n,), stamps as received: since boot, possibly wrapped at 2**32 ticks.
+    tick_s
+        Length of a tick, s.
+    master_s
+        Shape (n,), master clock when each message arrived, s since boot.
+
+    Returns
+    -------
+    FloatArray
+        Shape (n,), s since boot. NaN where no number of wraps brings the stamp near the master clock
+        (another clock, or a message of an earlier boot). The master clock replaces a stamp that is
+        zero or a time of day.
+    """
+    wrap_s = 2.0**32 * tick_s
+    raw_s = ticks.astype(np.float64) * tick_s
+    t = raw_s + wrap_s * np.round((master_s - raw_s) / wrap_s)
+    placed = np.where(np.abs(t - master_s) <= _NEAR_S, t, np.nan)
+    return np.where((ticks == 0) & (master_s > _NEAR_S) | (raw_s > _TIME_OF_DAY_S), master_s, placed)
+
+
+def _signed(difference_ms: int) -> int:
+    """Return the difference of two 32-bit stamps, the shorter way round."""
+    return (difference_ms + _WRAP_MS // 2) % _WRAP_MS - _WRAP_MS // 2

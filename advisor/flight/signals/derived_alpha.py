@@ -1,0 +1,134 @@
+"""The angle of attack in still air, derived from attitude, climb rate and air speed at equal times.
+
+Each of the three arrives at its own stamps. Attitude and air speed are interpolated at the stamps of the
+climb rate. So neither the order of messages nor their delay enters the angle.
+"""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from advisor.aircraft.standard_gravity import GRAVITY_M_S2
+from advisor.flight.signals.messages import Columns, FloatArray, IntArray
+from advisor.flight.signals.motion import gravity_in_plane
+from advisor.flight.signals.record import Channel
+from advisor.flight.signals.track import ChannelStatus, Track
+
+DERIVED_ALPHA = "theta - asin(VFR_HUD.climb / airspeed)"
+SLOWEST_FLIGHT_M_S = 4.0
+"""Air speed, m/s, below which nothing flies, so that no angle of attack can be derived."""
+_AROUND_S = 2.0
+"""Margin around a stretch within which its neighbouring samples lie, s. Air speed may come once a second
+(PX4's airspeed_validated)."""
+
+
+class DerivedAlpha:
+    """Angle of attack in the form of a track.
+
+    Parameters
+    ----------
+    track
+        Gives the track of a channel's best source; None for a channel without samples.
+    airspeed_m_s
+        Air speed where none is measured, m/s. None: unknown.
+    """
+
+    def __init__(self, track: Callable[[str], Track | None], airspeed_m_s: float | None) -> None:
+        self._track = track
+        self._airspeed_m_s = airspeed_m_s
+
+    @property
+    def exists(self) -> bool:
+        """Whether an angle of attack can be derived so far."""
+        if self._track("climb_rate") is None or self._track("theta") is None:
+            return False
+        airspeed = self._track("airspeed")
+        fastest = -np.inf if airspeed is None else airspeed.highest
+        return max(fastest, self._airspeed_m_s or 0.0) > SLOWEST_FLIGHT_M_S
+
+    @property
+    def newest_s(self) -> float:
+        """Newest stamp, s since boot."""
+        return min(track.newest_s for track in (self._track("climb_rate"), self._track("theta")) if track)
+
+    @property
+    def status(self) -> ChannelStatus:
+        """Arrival of the angle, which follows the climb rate."""
+        climb = self._track("climb_rate")
+        assert climb is not None
+        return replace(
+            climb.status, source=DERIVED_ALPHA, provenance="derived", lowest=-np.inf, highest=np.inf
+        )
+
+    def cut(self, start_s: float, end_s: float, up_to_order: int | None = None) -> Channel:
+        """Return the angle with ``start_s <= t <= end_s`` from messages up to ``up_to_order``."""
+        climb = self._track("climb_rate")
+        assert climb is not None
+        at = climb.cut(start_s, end_s, up_to_order)
+        around = {
+            name: track.cut(start_s - _AROUND_S, end_s + _AROUND_S, up_to_order)
+            for name in ("theta", "bank", "airspeed")
+            if (track := self._track(name)) is not None
+        }
+        t, alpha = _angles(at, around, self._airspeed_m_s)
+        return Channel("alpha", t, alpha, DERIVED_ALPHA, "derived")
+
+
+def derived_alpha(
+    climb_m_s: FloatArray, airspeed_m_s: FloatArray, theta: FloatArray, bank: FloatArray
+) -> FloatArray:
+    """Return θ − γ with sin γ = climb rate / air speed, in rad; in a bank, the α that gives γ. NaN below
+    flying speed.
+
+    Parameters
+    ----------
+    climb_m_s, airspeed_m_s, theta, bank
+        Shape (n,), each at the same n times; angles in rad.
+    """
+    flying = airspeed_m_s > SLOWEST_FLIGHT_M_S
+    sine = np.divide(climb_m_s, airspeed_m_s, out=np.zeros_like(airspeed_m_s), where=flying)
+    up, size = gravity_in_plane(theta, bank)
+    path = np.arcsin(np.clip(sine * GRAVITY_M_S2 / size, -1.0, 1.0))
+    return np.where(flying, up - path, np.nan)
+
+
+def promised(hud: Columns, airspeed_m_s: float | None) -> IntArray:
+    """Return the orders of those VFR_HUD that give an angle, or will once the aircraft flies.
+
+    While the aircraft stands, no angle of attack can be derived, which is no fault of the stream.
+
+    Parameters
+    ----------
+    hud
+        Messages VFR_HUD. Those of an autopilot's own log may hold the climb rate alone.
+    airspeed_m_s
+        Air speed where none is measured, m/s; None: not known.
+    """
+    if "climb" not in hud.fields:
+        return hud.order[:0]
+    if "airspeed" not in hud.fields or airspeed_m_s is not None:
+        return hud.order
+    flies = np.asarray(hud.fields["airspeed"]) > SLOWEST_FLIGHT_M_S
+    stands = np.asarray(hud.fields.get("groundspeed", np.inf)) <= SLOWEST_FLIGHT_M_S
+    return hud.order[flies | stands]
+
+
+def _angles(
+    climb: Channel, around: dict[str, Channel], airspeed_m_s: float | None
+) -> tuple[FloatArray, FloatArray]:
+    """Return stamps and angles where the attitude is known before and after."""
+    theta, bank, speed = around.get("theta"), around.get("bank"), around.get("airspeed")
+    if theta is None or len(theta) == 0:
+        return np.empty(0), np.empty(0)
+    known = (climb.t >= theta.t[0]) & (climb.t <= theta.t[-1])
+    t = climb.t[known]
+    v = np.full(len(t), np.nan)
+    if speed is not None and len(speed):
+        v = np.interp(t, speed.t, speed.y)
+    if airspeed_m_s is not None:
+        v = np.where(v > SLOWEST_FLIGHT_M_S, v, airspeed_m_s)
+    rolled = np.interp(t, bank.t, bank.y) if bank is not None and len(bank) else np.zeros(len(t))
+    alpha = derived_alpha(climb.y[known], v, np.interp(t, theta.t, theta.y), rolled)
+    good = np.isfinite(alpha)
+    return t[good], alpha[good]

@@ -1,0 +1,81 @@
+"""Motion of any aircraft, whatever its aerodynamics: gravity, and the rate of the speed."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from advisor.aircraft.standard_gravity import GRAVITY_M_S2
+from advisor.flight.signals.messages import FloatArray
+from advisor.flight.signals.record import Channel
+
+
+def bank_at(t: FloatArray, channels: Mapping[str, Channel]) -> FloatArray:
+    """Return the bank angle at times ``t`` in s, shape (n,), rad; zero where the log has none."""
+    bank = channels.get("bank")
+    return np.zeros(len(t)) if bank is None or len(bank) == 0 else np.interp(t, bank.t, bank.y)
+
+
+def gravity_in_plane(theta: FloatArray, bank: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return gravity in the aircraft's plane of symmetry: the direction of up, and the size.
+
+    In a bank the other component pulls sideways. Along the path gravity is −size · sin(up − α), across it
+    size · cos(up − α). With level wings ``up`` is the pitch angle.
+
+    Parameters
+    ----------
+    theta, bank
+        Attitude in rad, shape (n,).
+
+    Returns
+    -------
+    up
+        Shape (n,), rad from the body's x axis.
+    size
+        Shape (n,), m/s².
+    """
+    along, down = np.sin(theta), np.cos(theta) * np.cos(bank)
+    return np.arctan2(along, down), GRAVITY_M_S2 * np.hypot(along, down)
+
+
+def path_turning(
+    a_x: FloatArray, a_z: FloatArray, theta: FloatArray, alpha: FloatArray, bank: FloatArray
+) -> FloatArray:
+    """Return specific force and gravity across the path, down, m/s². Divided by the speed, the sum is α̇ − q.
+
+    a_z cos α − a_x sin α + g cos γ; specific force in m/s², angles in rad, all of shape (n,).
+    """
+    up, size = gravity_in_plane(theta, bank)
+    return np.asarray(a_z * np.cos(alpha) - a_x * np.sin(alpha) + size * np.cos(up - alpha))
+
+
+def speed_rate(
+    a_x: FloatArray, a_z: FloatArray, theta: FloatArray, alpha: FloatArray, bank: FloatArray
+) -> FloatArray:
+    """Return the rate of the speed by the accelerometers, m/s², valid in steadily moving air.
+
+    V̇ = a_x cos α + a_z sin α − g sin γ; specific force in m/s², angles in rad, all of shape (n,).
+    """
+    up, size = gravity_in_plane(theta, bank)
+    return np.asarray(a_x * np.cos(alpha) + a_z * np.sin(alpha) - size * np.sin(up - alpha))
+
+
+def speed_rate_at(t: FloatArray, channels: Mapping[str, Channel]) -> FloatArray:
+    """Return the rate of the speed, m/s², from the channels a_x, a_z, theta, alpha and bank.
+
+    Parameters
+    ----------
+    t
+        Shape (n,), s.
+    channels
+        Channels by name. All but the bank are needed.
+    """
+    a_x, a_z, theta, alpha = (
+        np.interp(t, channels[name].t, channels[name].y) for name in ("a_x", "a_z", "theta", "alpha")
+    )
+    return speed_rate(a_x, a_z, theta, alpha, bank_at(t, channels))
+
+
+def integrated(t: FloatArray, rate: FloatArray) -> FloatArray:
+    """Return the running integral by trapezoids over stamps ``t`` in s, shape (n,), 0 at the first."""
+    total: FloatArray = np.concatenate(([0.0], np.cumsum(np.diff(t) * (rate[1:] + rate[:-1]) / 2.0)))
+    return total

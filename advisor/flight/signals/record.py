@@ -1,0 +1,64 @@
+"""Channels: physical quantities with units, each at its own time stamps on the vehicle's clock."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from advisor.flight.signals.messages import FloatArray
+
+# Channels that the advisor knows, with SI units. Alpha, pitch rate and pitch are positive nose up; elevator
+# is positive trailing edge down; body z points down.
+UNITS = {
+    "elevator": "rad",
+    "aileron": "rad",
+    "rudder": "rad",
+    "throttle": "1",
+    "alpha": "rad",
+    "q": "rad/s",
+    "p": "rad/s",
+    "r": "rad/s",
+    "theta": "rad",
+    "bank": "rad",
+    "a_x": "m/s^2",
+    "a_z": "m/s^2",
+    "airspeed": "m/s",
+    "climb_rate": "m/s",
+    "height": "m",
+}
+AIR_UNITS = {"altitude": "m", "static_pressure": "Pa"}
+"""Channels that give only the density of the air. The altitude is above mean sea level."""
+ALL_UNITS = UNITS | AIR_UNITS
+"""Every channel that a manoeuvre or a whole flight may hold."""
+
+
+@dataclass(frozen=True, slots=True)
+class Channel:
+    """One quantity over time. A gap is a longer interval between stamps, because nothing is resampled."""
+
+    name: str
+    t: FloatArray
+    """Shape (n,), strictly increasing seconds since boot."""
+    y: FloatArray
+    """Shape (n,), SI."""
+    source: str = ""
+    """Message and field of the channel, e.g. ``AOA_SSA.AOA``."""
+    provenance: str = "unknown"
+    """``vane``, ``derived``, ``simulated``, ``measured``, ``commanded`` or ``unknown``."""
+
+    def __len__(self) -> int:
+        return len(self.t)
+
+    def cut(self, start_s: float, end_s: float) -> "Channel":
+        """Return the stretch with ``start_s <= t <= end_s``."""
+        i, j = np.searchsorted(self.t, [start_s, np.nextafter(end_s, np.inf)])
+        return Channel(self.name, self.t[i:j], self.y[i:j], self.source, self.provenance)
+
+    @property
+    def rate_hz(self) -> float:
+        """Median sampling rate, NaN with fewer than two samples."""
+        return float(1.0 / np.median(np.diff(self.t))) if len(self.t) > 1 else float("nan")
+
+    @property
+    def largest_gap_s(self) -> float:
+        """Longest time between two stamps, infinite with fewer than two samples."""
+        return float(np.max(np.diff(self.t))) if len(self.t) > 1 else float("inf")

@@ -1,0 +1,20 @@
+"""Standard deviation of noise in the presence of outliers."""
+
+import numpy as np
+
+from advisor.flight.signals.messages import FloatArray
+
+_MEDIAN = 0.6745
+"""Median absolute value of a normal variable with unit variance."""
+
+
+def robust_std(departures: FloatArray) -> float:
+    """Return the standard deviation of normal noise from the median absolute departure, which few outliers
+    change.
+
+    Parameters
+    ----------
+    departures
+        Shape (n,), n > 0: samples less their centre.
+    """
+    return float(np.median(np.abs(departures))) / _MEDIAN

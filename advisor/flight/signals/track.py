@@ -1,0 +1,130 @@
+"""A track: the samples of one channel from one source as they arrive, with bounded memory."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from advisor.flight.signals.best_rate import BestRate
+from advisor.flight.signals.messages import FloatArray, IntArray
+from advisor.flight.signals.record import Channel
+
+
+@dataclass(frozen=True, slots=True)
+class ChannelStatus:
+    """Arrival of one channel."""
+
+    source: str
+    provenance: str
+    rate_hz: float
+    """Samples per second over the newest ten seconds of the channel."""
+    largest_gap_s: float
+    """Longest time between two stamps since boot."""
+    last_s: float
+    """Vehicle time of the newest sample."""
+    best_hz: float = np.nan
+    """Samples per second over the best ten seconds since boot."""
+    lowest: float = np.nan
+    """Smallest value since boot, SI."""
+    highest: float = np.nan
+    """Largest value since boot, SI."""
+
+    def at_best(self, earlier: "ChannelStatus | None" = None) -> "ChannelStatus":
+        """Return the status with the best ten seconds' rate, and the range, of this source over all boots.
+
+        Parameters
+        ----------
+        earlier
+            Earlier result of this method for the channel.
+        """
+        best = replace(self, rate_hz=self.best_hz)
+        if earlier is None or earlier.source != self.source:
+            return best if earlier is None or not self.best_hz <= earlier.rate_hz else earlier
+        return replace(
+            best,
+            rate_hz=float(np.fmax(self.best_hz, earlier.rate_hz)),
+            lowest=float(np.fmin(self.lowest, earlier.lowest)),
+            highest=float(np.fmax(self.highest, earlier.highest)),
+        )
+
+
+class Track:
+    """Buffer that grows at its end and drops its beginning.
+
+    Late packets are kept, and sorted in when a stretch is cut. Duplicates are dropped there.
+    """
+
+    def __init__(self, name: str, source: str, provenance: str) -> None:
+        self.name = name
+        self.source = source
+        self.provenance = provenance
+        self.newest_s = -np.inf
+        self.largest_gap_s = 0.0
+        self._best = BestRate()
+        self.lowest, self.highest = np.inf, -np.inf
+        """Smallest and largest value since boot."""
+        self._t = np.empty(1024)
+        self._y = np.empty(1024)
+        self._order = np.empty(1024, dtype=np.int64)
+        self._size = 0
+        self._keep_from_s = -np.inf
+
+    def append(self, t: FloatArray, y: FloatArray, order: IntArray) -> None:
+        """Take samples in order of arrival."""
+        if len(t) == 0:
+            return
+        before = self.newest_s if self._size else float(t[0])
+        newest = np.maximum.accumulate(np.concatenate(([before], t)))
+        self.largest_gap_s = max(self.largest_gap_s, float((newest[1:] - newest[:-1]).max()))
+        self.newest_s = float(newest[-1])
+        self._best.add(t)
+        self.lowest = min(self.lowest, float(y.min()))
+        self.highest = max(self.highest, float(y.max()))
+        self._make_room(len(t))
+        new = slice(self._size, self._size + len(t))
+        self._t[new], self._y[new], self._order[new] = t, y, order
+        self._size = new.stop
+
+    def forget(self, before_s: float) -> None:
+        """Drop samples older than ``before_s`` when room is needed."""
+        self._keep_from_s = before_s
+
+    def cut(self, start_s: float, end_s: float, up_to_order: int | None = None) -> Channel:
+        """Return the samples with ``start_s <= t <= end_s`` that had arrived by ``up_to_order``."""
+        t, y = self._t[: self._size], self._y[: self._size]
+        wanted = (t >= start_s) & (t <= end_s)
+        if up_to_order is not None:
+            wanted &= self._order[: self._size] <= up_to_order
+        t, y = t[wanted], y[wanted]
+        t, first = np.unique(t, return_index=True)
+        return Channel(self.name, t, y[first], self.source, self.provenance)
+
+    @property
+    def status(self) -> ChannelStatus:
+        """Arrival of the channel."""
+        recent = self.cut(self.newest_s - 10.0, self.newest_s)
+        gap = self.largest_gap_s if self._size > 1 else float("inf")
+        span = float(recent.t[-1] - recent.t[0]) if len(recent) > 1 else 0.0
+        rate = (len(recent) - 1) / span if span > 0.0 else float("nan")
+        return ChannelStatus(
+            self.source,
+            self.provenance,
+            rate,
+            gap,
+            self.newest_s,
+            self._best.rate_hz,
+            self.lowest,
+            self.highest,
+        )
+
+    def _make_room(self, n: int) -> None:
+        if self._size + n <= len(self._t):
+            return
+        kept = self._t[: self._size] >= self._keep_from_s
+        size = int(np.count_nonzero(kept))
+        capacity = max(1024, 2 * (size + n))
+        for name in ("_t", "_y", "_order"):
+            old = getattr(self, name)
+            grown = np.empty(capacity, dtype=old.dtype)
+            grown[:size] = old[: self._size][kept]
+            setattr(self, name, grown)
+        self._size = size

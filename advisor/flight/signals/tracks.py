@@ -1,0 +1,118 @@
+"""All tracks of one vehicle, and the choice of each channel's source."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from advisor.flight.signals.channels import GIVEN_AIRSPEED, READINGS, Decoded
+from advisor.flight.signals.derived_alpha import DERIVED_ALPHA, DerivedAlpha
+from advisor.flight.signals.record import UNITS, Channel
+from advisor.flight.signals.track import ChannelStatus, Track
+
+
+class Tracks:
+    """All tracks of one vehicle, and the choice of each channel's source.
+
+    Parameters
+    ----------
+    alpha_source
+        Source in the aircraft file: ``auto``, ``aoa_ssa``, ``derived``, ``named_value:NAME`` or ``none``.
+        With ``none`` the channel is kept as with ``auto``, but no estimate uses it.
+    airspeed_m_s
+        Air speed of the aircraft file, for a log without air speed.
+    """
+
+    def __init__(self, alpha_source: str, airspeed_m_s: float | None = None) -> None:
+        self._tracks: dict[tuple[str, str], Track] = {}
+        self._derived = DerivedAlpha(self._best, airspeed_m_s)
+        self._sources: dict[str, list[str]] = {}
+        for reading in READINGS:
+            self._sources.setdefault(reading.channel, []).append(reading.source)
+        self._sources["airspeed"].append(GIVEN_AIRSPEED)
+        named = alpha_source.removeprefix("named_value:")
+        self._sources["alpha"] = {
+            "auto": ["AOA_SSA.AOA", DERIVED_ALPHA],
+            "none": ["AOA_SSA.AOA", DERIVED_ALPHA],
+            "aoa_ssa": ["AOA_SSA.AOA"],
+            "derived": [DERIVED_ALPHA],
+        }.get(alpha_source, [f"NAMED_VALUE_FLOAT.{named}"])
+
+    def clear(self) -> None:
+        """Drop all samples before another boot."""
+        self._tracks.clear()
+
+    def forget(self, before_s: float) -> None:
+        """Drop samples older than ``before_s`` when room is needed."""
+        for track in self._tracks.values():
+            track.forget(before_s)
+
+    def append(self, new: Decoded) -> None:
+        """Take samples of one channel from one source."""
+        key = (new.channel, new.source)
+        if len(new.t) == 0:
+            return
+        if key not in self._tracks:
+            self._tracks[key] = Track(new.channel, new.source, new.provenance)
+        self._tracks[key].append(new.t, new.y, new.order)
+
+    def serves(self, new: Decoded) -> bool:
+        """Return whether this source may give the channel."""
+        return new.source in self._sources.get(new.channel, (new.source,))
+
+    @property
+    def derives_alpha(self) -> bool:
+        """Whether the angle of attack may be derived."""
+        return DERIVED_ALPHA in self._sources["alpha"]
+
+    def cut(self, name: str, start_s: float, end_s: float, up_to_order: int | None = None) -> Channel | None:
+        """Return a stretch of a channel from its best source with samples there; None without one."""
+        spare = None
+        for track in self._candidates(name):
+            channel = track.cut(start_s, end_s, up_to_order)
+            if len(channel) < 2:
+                continue
+            if np.ptp(channel.y) > 0.0:
+                return _in_radians(channel)
+            spare = spare or channel
+        return spare
+
+    def recent(self, name: str, seconds: float) -> Channel | None:
+        """Return the newest stretch of a channel; None without samples."""
+        newest = max((track.newest_s for track in self._candidates(name)), default=None)
+        return None if newest is None else self.cut(name, newest - seconds, newest)
+
+    def statuses(self) -> dict[str, ChannelStatus]:
+        """Return the arrival of every channel, from its best source."""
+        found = {name: next(iter(self._candidates(name)), None) for name in UNITS}
+        return {name: track.status for name, track in found.items() if track is not None}
+
+    def _candidates(self, name: str) -> list[Track | DerivedAlpha]:
+        """Return tracks of a channel, the preferred source first."""
+        preferred = self._sources.get(name)
+        if preferred is None:
+            return [track for (channel, _), track in self._tracks.items() if channel == name]
+        found: list[Track | DerivedAlpha] = []
+        for source in preferred:
+            if (name, source) in self._tracks:
+                found.append(self._tracks[name, source])
+            elif source == DERIVED_ALPHA and self._derived.exists:
+                found.append(self._derived)
+        return found
+
+    def _best(self, name: str) -> Track | None:
+        """Return the track of the best measured source of a channel; None without samples."""
+        found = (self._tracks.get((name, source)) for source in self._sources[name])
+        return next((track for track in found if track is not None), None)
+
+
+_LARGEST_ALPHA_RAD = 0.7
+"""Largest angle of attack in radians, rad. Nobody flies a short period at 40 degrees, so that a larger named
+value is in degrees."""
+
+
+def _in_radians(channel: Channel) -> Channel:
+    """Return a vane's channel in radians. A named value carries no unit; its size shows degrees or
+    radians."""
+    if not channel.source.startswith("NAMED_VALUE_FLOAT") or np.max(np.abs(channel.y)) <= _LARGEST_ALPHA_RAD:
+        return channel
+    return replace(channel, y=np.radians(channel.y))

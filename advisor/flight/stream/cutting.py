@@ -1,0 +1,124 @@
+"""From elevator movements to manoeuvres with their channels, or to activities with their reasons."""
+
+from collections import Counter
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from advisor.flight.elevator.elevator_sign import ElevatorSign, turned
+from advisor.flight.maneuvers.events import Activity, FlightEvent, ManeuverFlown
+from advisor.flight.maneuvers.ground import why_on_ground
+from advisor.flight.maneuvers.maneuver import Maneuver, Span
+from advisor.flight.maneuvers.marked_input import marked_span
+from advisor.flight.maneuvers.marks import Mark
+from advisor.flight.maneuvers.purpose import not_an_input
+from advisor.flight.maneuvers.segmentation import LEAD_IN_S
+from advisor.flight.signals.record import AIR_UNITS, UNITS
+from advisor.flight.signals.tracks import Tracks
+from advisor.flight.signals.trust import distrusted
+from advisor.flight.stream.identity import Identity
+from advisor.flight.vehicle.modes import closes_pitch_loop
+
+
+class Cutting:
+    """Cuts manoeuvres out of the tracks of one vehicle.
+
+    Parameters
+    ----------
+    tracks, who
+        Channels and identity of the vehicle.
+    calibrated
+        Whether the aircraft file gives the elevator's sign.
+    """
+
+    def __init__(self, tracks: Tracks, who: Identity, calibrated: bool) -> None:
+        self._tracks, self._who = tracks, who
+        self._sign = None if calibrated else ElevatorSign()
+        self._modes = [(-np.inf, who.mode)]
+        self._released = (0, -np.inf)
+        self.maneuvers = 0
+        """Number of manoeuvres found."""
+        self.activities: Counter[str] = Counter()
+        """Movements that were no test inputs: their description to their number."""
+
+    @property
+    def is_backwards(self) -> bool:
+        """Whether the elevator was found to move opposite to its output's nominal sign."""
+        return self._sign is not None and bool(self._sign.backwards)
+
+    def begin(self, mode: str) -> None:
+        """Begin a flight mode without earlier manoeuvres."""
+        self._modes = [(-np.inf, mode)]
+
+    def change(self, mode: str, since_s: float) -> None:
+        """Begin another flight mode."""
+        self._modes.append((since_s, mode))
+
+    def so_far(self, span: Span, boot: int) -> Maneuver:
+        """Return the manoeuvre that would result if the movement ended here."""
+        maneuver = self._cut(span, boot, None)
+        return turned(maneuver) if self.is_backwards else maneuver
+
+    def flown(self, span: Span, boot: int, up_to_order: int | None) -> list[FlightEvent]:
+        """Return the event of a movement that has ended: a manoeuvre, or an activity with its reason."""
+        maneuver = self._cut(span, boot, up_to_order)
+        because = not_an_input(maneuver, self.why_on_ground(span, up_to_order))
+        if because is not None:
+            self.activities[because.what] += 1
+            stay_s, _ = self._stay(_middle_s(span))
+            return [Activity(span.start_s, span.end_s, because.reason, because.text, stay_s, boot)]
+        return self._counted(maneuver)
+
+    def marked(self, mark: Mark, boot: int, up_to_order: int | None) -> list[FlightEvent]:
+        """Return the manoeuvre of a marked stretch, which counts without the finder's criteria."""
+        elevator = self._tracks.cut("elevator", mark.start_s - LEAD_IN_S, mark.end_s, up_to_order)
+        return self._counted(self._cut(marked_span(mark, elevator), boot, up_to_order))
+
+    def _counted(self, maneuver: Maneuver) -> list[FlightEvent]:
+        self.maneuvers += 1
+        self._released = (maneuver.boot, maneuver.span.end_s)
+        if self._sign is None or "elevator" not in maneuver.channels:
+            return [ManeuverFlown(maneuver)]
+        maneuver, found = self._sign.right(maneuver)
+        return [*found, ManeuverFlown(maneuver)]
+
+    def why_on_ground(self, span: Span, up_to_order: int | None = None) -> str | None:
+        """Return evidence that the aircraft was on the ground during a movement; None without evidence."""
+        return why_on_ground(span, partial(self._tracks.cut, up_to_order=up_to_order))
+
+    def pilot_flies(self, at_s: float) -> bool:
+        """Return whether the pilot moves the elevator at this time, by the flight mode."""
+        return not closes_pitch_loop(self._stay(at_s)[1])
+
+    def _stay(self, at_s: float) -> tuple[float, str]:
+        """Return the flight mode at this time, and the time since which the vehicle was in that mode."""
+        return next(stay for stay in reversed(self._modes) if stay[0] <= at_s)
+
+    def _cut(self, span: Span, boot: int, up_to_order: int | None) -> Maneuver:
+        earlier_boot, earlier_s = self._released
+        if earlier_boot == boot and earlier_s > span.record_from_s:
+            # The lead-in does not reach into the record of another manoeuvre.
+            span = replace(span, record_from_s=min(earlier_s, span.start_s))
+        channels = {}
+        for name in UNITS:
+            channel = self._tracks.cut(name, span.record_from_s, span.end_s, up_to_order)
+            if channel is not None:
+                channels[name] = replace(
+                    channel, provenance=self._who.provenance(channel.source, channel.provenance)
+                )
+        distrusts = self._who.distrusts(distrusted(channels))
+        for still in distrusts:
+            if still.channel == "a_z":
+                # An estimate can do without a specific force; a frozen one would spoil the estimate.
+                del channels["a_z"]
+        for name in AIR_UNITS:
+            if (air := self._tracks.cut(name, span.record_from_s, span.end_s, up_to_order)) is not None:
+                channels[name] = air
+        mode = self._stay(_middle_s(span))[1]
+        return Maneuver(self.maneuvers + 1, boot, span, channels, mode, tuple(distrusts))
+
+
+def _middle_s(span: Span) -> float:
+    """Return the middle of the movement. A heartbeat reports a new flight mode up to two seconds late."""
+    return 0.5 * (span.start_s + span.end_s)

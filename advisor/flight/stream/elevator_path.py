@@ -1,0 +1,132 @@
+"""Path of the elevator's samples: from its outputs to the finder, and from movements to events."""
+
+from collections.abc import Sequence
+
+from advisor.flight.elevator.commanded import Commanded
+from advisor.flight.elevator.elevator_watch import SETTLE_S, ElevatorWatch
+from advisor.flight.elevator.mixing import Mixing
+from advisor.flight.maneuvers.events import FlightEvent, Notice
+from advisor.flight.maneuvers.maneuver import Maneuver, Span
+from advisor.flight.maneuvers.marks import Due, Marks
+from advisor.flight.maneuvers.segmentation import LEAD_IN_S
+from advisor.flight.signals.channels import Decoded
+from advisor.flight.signals.tracks import Tracks
+from advisor.flight.stream.cutting import Cutting
+
+
+class ElevatorPath:
+    """Forms the elevator from its outputs, finds its movements, and has each cut.
+
+    Parameters
+    ----------
+    tracks
+        Tracks that keep the elevator's samples.
+    mixing
+        Forms the elevator from several outputs.
+    marks
+        Marked stretches. A movement in a marked stretch is not found separately.
+    cutting
+        Turns movements into manoeuvres and activities.
+    """
+
+    def __init__(self, tracks: Tracks, mixing: Mixing, marks: Marks, cutting: Cutting) -> None:
+        self._tracks, self._mixing, self._marks, self._cutting = tracks, mixing, marks, cutting
+        self.begin(0)
+
+    def begin(self, boot: int) -> None:
+        """Begin another power-on, or another vehicle."""
+        self._boot = boot
+        self._watch = ElevatorWatch()
+        self._message: str | None = None
+
+    @property
+    def newest_s(self) -> float:
+        """Vehicle time of the elevator's newest sample, s since boot."""
+        return self._watch.newest_s
+
+    def mode_changed(self, earliest_s: float, order: int) -> None:
+        """Take a change of the flight mode by the message of this order, at ``earliest_s`` at the
+        earliest."""
+        self._watch.mode_changed(earliest_s, order)
+
+    def so_far(self) -> Maneuver | None:
+        """Return the manoeuvre being flown, cut at the newest sample; None between manoeuvres."""
+        now = self._watch.newest_s
+        marked_s = self._marks.since_s(now)
+        onset = self._watch.onset_s if marked_s is None else marked_s
+        if onset is None or not now > onset:
+            return None
+        if marked_s is None and not self._cutting.pilot_flies(onset):
+            return None
+        span = Span(onset - LEAD_IN_S, onset, now, now, "other", (), "still flying")
+        if marked_s is None and self._cutting.why_on_ground(span) is not None:
+            return None
+        return self._cutting.so_far(span, self._boot)
+
+    def feed(self, moved: Sequence[Commanded], closes_loop: bool) -> list[FlightEvent]:
+        """Form the elevator's samples from its outputs, and follow them.
+
+        Parameters
+        ----------
+        moved
+            Samples of the outputs.
+        closes_loop
+            Whether the autopilot closes a loop over the elevator.
+        """
+        events: list[FlightEvent] = []
+        arrived = [new for new in moved if len(new.t)]
+        if self._message is None and arrived:
+            # Some vehicles report their outputs in two messages. The first message to arrive counts.
+            self._message = min(arrived, key=lambda new: int(new.order[0])).message
+        for new in arrived:
+            if new.message == self._message:
+                for known in self._mixing.take(new, closes_loop):
+                    events += [known] if isinstance(known, Notice) else self._follow([known])
+        return events
+
+    def finish(self, master_s: float) -> list[FlightEvent]:
+        """Take the end of the samples, and close every open movement.
+
+        Parameters
+        ----------
+        master_s
+            Vehicle time of the newest message, s since boot.
+        """
+        events = self._follow(self._mixing.finish())
+        due = self._marks.finish(master_s)
+        for span in self._watch.finish():
+            events += self._found(span, None)
+        return [*events, *self._marked(due, None)]
+
+    def _follow(self, decoded: Sequence[Decoded]) -> list[FlightEvent]:
+        """Give the finder its samples in the order of their stamps, and cut movements that have ended."""
+        events: list[FlightEvent] = []
+        arrived: list[tuple[int, float, float]] = []
+        for new in decoded:
+            self._tracks.append(new)
+            arrived += zip(new.order.tolist(), new.t.tolist(), new.y.tolist(), strict=True)
+        for order, t, y in sorted(arrived):
+            self._marks.advance(order)
+            for found in self._watch.push(t, order, y):
+                if isinstance(found, Span):
+                    events += self._found(found, order)
+                elif self._cutting.pilot_flies(found.at_s):
+                    events.append(found)
+            events += self._marked(self._marks.due(self._watch.newest_s - SETTLE_S), order)
+        return events
+
+    def _found(self, span: Span, up_to_order: int | None) -> list[FlightEvent]:
+        """Return the events of a movement that the finder has found, unless the movement lies in a marked
+        stretch."""
+        return [] if self._marks.hides(span, up_to_order) else self._flown(span, up_to_order)
+
+    def _marked(self, due: Due, up_to_order: int | None) -> list[FlightEvent]:
+        events: list[FlightEvent] = list(due.notices)
+        for span, order in due.spans:
+            events += self._flown(span, order)
+        for mark in due.marks:
+            events += self._cutting.marked(mark, self._boot, up_to_order)
+        return events
+
+    def _flown(self, span: Span, up_to_order: int | None) -> list[FlightEvent]:
+        return self._cutting.flown(self._marks.before(span), self._boot, up_to_order)

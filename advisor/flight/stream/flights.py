@@ -1,0 +1,219 @@
+"""The flights of a campaign, one log or link after the other. Each manoeuvre has a number and counts once."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import groupby
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.maneuvers.events import (
+    Activity,
+    FlightBegan,
+    FlightEvent,
+    ManeuverAgain,
+    ManeuverFlown,
+    Notice,
+    VehicleFound,
+)
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.maneuvers.marks import Mark
+from advisor.flight.maneuvers.repeated_maneuver import are_one, is_fuller
+from advisor.flight.signals.messages import Columns
+from advisor.flight.signals.track import ChannelStatus
+from advisor.flight.stream.stream import FlightStream
+from advisor.flight.vehicle.one_aircraft import OneAircraft
+from advisor.flight.vehicle.surfaces import Surface
+from advisor.flight.vehicle.vehicle import Vehicle
+from advisor.words.problems import Problem
+
+
+@dataclass(frozen=True, slots=True)
+class FlightHeard:
+    """Summary of one log or link of the campaign."""
+
+    flight: int
+    """Number of the flight, 0 for the first."""
+    name: str
+    """Name of the log or link, as the user knows it."""
+    vehicle: Vehicle | None
+    duration_s: float
+    """Vehicle time heard, over all power-ons, s."""
+    channels: Mapping[str, ChannelStatus]
+    again: int = 0
+    """Number of its manoeuvres that another log or power-on also holds."""
+    problems: tuple[Problem, ...] = ()
+    """Reasons for which the flight does not count, known at its end."""
+
+
+class Flights:
+    """Follows the vehicle through several logs, and then through a link.
+
+    Each flight is heard as if it were alone, so that a log's manoeuvres do not depend on its neighbours.
+
+    Parameters
+    ----------
+    aircraft, target_system
+        Arguments of `FlightStream`.
+    marks
+        Stretches marked as manoeuvres, each on its flight.
+    names
+        Names of the logs, in their order; empty for a single log.
+    """
+
+    def __init__(
+        self,
+        aircraft: Aircraft,
+        target_system: int | None = None,
+        marks: Sequence[Mark] = (),
+        names: Sequence[str] = (),
+    ) -> None:
+        self._aircraft, self._target_system = aircraft, target_system
+        self._marks, self._names = tuple(marks), tuple(names) if len(names) > 1 else ()
+        self._found: list[Maneuver] = []
+        self._past: list[FlightHeard] = []
+        self._notes: list[str] = []
+        self._one_aircraft = OneAircraft()
+        self._begin(0)
+        self._told_of = -1
+
+    def _begin(self, flight: int) -> None:
+        self.flight = flight
+        marks = [mark for mark in self._marks if mark.flight == flight]
+        self.stream = FlightStream(self._aircraft, self._target_system, marks)
+        """Stream of the present flight."""
+        self._again = 0
+        self._foreign: Problem | None = None
+
+    @property
+    def maneuvers(self) -> int:
+        """Number of manoeuvres found, each counted once."""
+        return len(self._found)
+
+    @property
+    def duration_s(self) -> float:
+        """Vehicle time heard so far, over all flights, s."""
+        return sum(past.duration_s for past in self._past) + self.stream.duration_s
+
+    @property
+    def elevator_notes(self) -> tuple[str, ...]:
+        """Composition of the elevator, and assumptions about elevator and aircraft, over all flights."""
+        return tuple(dict.fromkeys((*self._notes, *self.stream.elevator_notes)))
+
+    def heard(self, channels: Mapping[str, ChannelStatus], over: bool = False) -> tuple[FlightHeard, ...]:
+        """Return the summary of every flight so far; ``channels`` are those of the present flight."""
+        return (*self._past, self._so_far(channels, over))
+
+    def so_far(self) -> Maneuver | None:
+        """Return the manoeuvre being flown, cut at the newest sample; None between manoeuvres."""
+        flying = self.stream.so_far() if self._foreign is None else None
+        return flying and replace(flying, number=len(self._found) + 1, flight=self.flight)
+
+    def problems(self) -> list[Problem]:
+        """Return the reasons for which none of the flights so far can be used; empty when one can."""
+        now = self._problems()
+        if not now or any(not past.problems for past in self._past):
+            return []
+        name = self._name(self.flight)
+        here = [replace(p, text=f"{name}: {p.text}") for p in now] if name else now
+        before = [replace(p, text=f"{one.name}: {p.text}") for one in self._past for p in one.problems]
+        return [*before, *here]
+
+    def feed(self, columns: Sequence[Columns]) -> list[FlightEvent]:
+        """Take messages, of one flight after the other; return the events that they cause."""
+        events: list[FlightEvent] = []
+        filled = sorted((c for c in columns if len(c)), key=lambda c: c.flight)
+        for flight, part in groupby(filled, key=lambda c: c.flight):
+            if flight != self.flight:
+                events += self._end()
+                self._begin(flight)
+            if flight != self._told_of:
+                self._told_of = flight
+                events += [FlightBegan(flight, self._name(flight))] if self._names else []
+            if self._foreign is None:
+                events += self._through(self.stream.feed(list(part)))
+        return events
+
+    def finish(self) -> list[FlightEvent]:
+        """Take the end of the messages, and close every open movement."""
+        if self._foreign is not None:
+            return []
+        events = [*self._through(self.stream.finish()), *self._compare_elevators()]
+        if self._names:
+            events += [Notice(p.code, p.about(self.name)) for p in self.stream.problems()]
+        return events
+
+    def _end(self) -> list[FlightEvent]:
+        """End a flight before the next one begins."""
+        events = self.finish()
+        if self.flight == self._told_of:
+            self._past.append(self._so_far(self.stream.channels, over=True))
+            self._notes += self.stream.elevator_notes
+        return events
+
+    def _so_far(self, channels: Mapping[str, ChannelStatus], over: bool) -> FlightHeard:
+        return FlightHeard(
+            self.flight,
+            self._name(self.flight),
+            self.stream.vehicle,
+            self.stream.duration_s,
+            channels,
+            self._again,
+            tuple(self._problems()) if over else (),
+        )
+
+    def _problems(self) -> list[Problem]:
+        return [self._foreign] if self._foreign is not None else self.stream.problems()
+
+    def _name(self, flight: int) -> str:
+        return self._names[flight] if flight < len(self._names) else ""
+
+    @property
+    def name(self) -> str:
+        """Name of the present log; empty for a single log."""
+        return self._name(self.flight)
+
+    def _through(self, events: Sequence[FlightEvent]) -> list[FlightEvent]:
+        """Return the events of one flight, renumbered as those of the campaign."""
+        through: list[FlightEvent] = []
+        for event in events:
+            match event:
+                case ManeuverFlown(maneuver):
+                    through.append(self._once(replace(maneuver, flight=self.flight)))
+                case Activity():
+                    through.append(replace(event, flight=self.flight))
+                case VehicleFound(vehicle):
+                    through += [event, *self._compare_vehicles(vehicle)]
+                    if self._foreign is not None:
+                        return through
+                case _:
+                    through.append(event)
+        return through
+
+    def _once(self, maneuver: Maneuver) -> FlightEvent:
+        """Return the event of a manoeuvre with its number in the campaign: a new manoeuvre, or a known
+        one."""
+        for i, known in enumerate(self._found):
+            if known.power_on != maneuver.power_on and are_one(maneuver, known):
+                self._again += 1
+                again = replace(maneuver, number=known.number)
+                takes_place = is_fuller(again, known)
+                if takes_place:
+                    self._found[i] = again
+                return ManeuverAgain(again, takes_place)
+        self._found.append(replace(maneuver, number=len(self._found) + 1))
+        return ManeuverFlown(self._found[-1])
+
+    def _compare_vehicles(self, vehicle: Vehicle) -> Iterator[FlightEvent]:
+        """Yield notices on a vehicle that differs from the first flight's. Another aircraft is refused."""
+        self._foreign = self._one_aircraft.refuse(self.name, vehicle)
+        if self._foreign is not None:
+            yield Notice(self._foreign.code, f"{self.name}: {self._foreign}")
+        elif said := self._one_aircraft.doubt(self.name, vehicle):
+            self._notes.append(said)
+            yield Notice("other_system", said)
+
+    def _compare_elevators(self) -> Iterator[FlightEvent]:
+        """Yield notices on an elevator that is driven otherwise than in the first flight."""
+        elevator = self.stream.elevator
+        if isinstance(elevator, Surface) and (said := self._one_aircraft.doubt_elevator(self.name, elevator)):
+            self._notes.append(said)
+            yield Notice("other_elevator", said)

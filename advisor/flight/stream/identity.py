@@ -1,0 +1,288 @@
+"""Identity of the vehicle by its own messages: autopilot, firmware, mode, and roles of its outputs."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from math import isfinite, nan
+
+from advisor.aircraft.aircraft import Elevator
+from advisor.flight.elevator.elevator_outputs import find_elevator
+from advisor.flight.maneuvers.events import FlightEvent, Notice, VehicleFound
+from advisor.flight.signals.messages import Columns
+from advisor.flight.signals.trust import Distrust
+from advisor.flight.vehicle.following import FOLLOW, TAKE, Following, chosen
+from advisor.flight.vehicle.modes import in_hover, mode_name
+from advisor.flight.vehicle.parameters import Parameters, read_by
+from advisor.flight.vehicle.surfaces import Surface
+from advisor.flight.vehicle.vehicle import Vehicle, VehicleFinder
+from advisor.flight.vehicle.wiring import AILERON, RUDDER, Wiring
+from advisor.words.printable import printable
+from advisor.words.problems import Problem
+from advisor.words.vehicle_time import clock
+
+_BUNDLED = b"Bundled aircraft"
+"""Beginning of the STATUSTEXT with which this project's simulator introduces itself."""
+
+_RELEASES = ((255, ""), (192, "-rc"), (128, "-beta"), (64, "-alpha"), (0, "-dev"))
+"""Least FIRMWARE_VERSION_TYPE (MAVLink common.xml), the lowest byte of a version, with its suffix for
+users."""
+
+READER = b"Log reader: "
+"""Beginning of a STATUSTEXT with which a reader of logs gives a sentence to the user."""
+
+READER_NOTICE = "log_reader"
+"""Code of the notice with such a sentence, or with the treatment of a parameter's change in flight."""
+_ON_ROTORS = (1, 2, 3)
+"""MAV_VTOL_STATE: transition to forward flight, transition to hover, hover; 4 is forward flight."""
+_GROUND_STATION = 190
+"""Component (MAV_COMP_ID_MISSIONPLANNER) under which a ground station stores parameters fetched as a file."""
+
+
+class Identity:
+    """Collects the messages that identify the vehicle.
+
+    Parameters
+    ----------
+    elevator
+        Elevator of the aircraft file.
+    target_system
+        System id to follow; None: the first vehicle heard.
+    """
+
+    def __init__(self, elevator: Elevator, target_system: int | None) -> None:
+        self._elevator = elevator
+        self._finder = VehicleFinder(target_system)
+        self._firmware: dict[int, str] = {}
+        self._parameters = Parameters()
+        self._taken: Elevator | None = None
+        self._said = ""
+        self._mode = ""
+        self._hovers = False
+        self._changes_said: set[tuple[str, float]] = set()
+        self._following = Following(self._has_elevator)
+        self.simulated = False
+        """Whether the bundled aircraft has introduced itself, whose vane is simulated."""
+        self.elevator: Surface | Problem = find_elevator(elevator, self._wiring())
+        """Outputs and scale of the elevator, or the reason for their absence."""
+        self.surfaces: dict[str, Surface] = {}
+        """Elevator, aileron and rudder, where known."""
+
+    @property
+    def vehicle(self) -> Vehicle | None:
+        """Vehicle that is followed. None before its first heartbeat."""
+        vehicle = self._finder.vehicle
+        if vehicle is not None and vehicle.system in self._firmware:
+            return vehicle.with_firmware(self._firmware[vehicle.system])
+        return vehicle
+
+    @property
+    def mode(self) -> str:
+        """Flight mode of the newest heartbeat, with a note where rotors carry a VTOL aircraft."""
+        return in_hover(self._mode) if self._hovers and self._mode else self._mode
+
+    @property
+    def other_systems(self) -> frozenset[int]:
+        """System ids of the other vehicles heard."""
+        return frozenset(self._finder.others)
+
+    def provenance(self, source: str, stated: str) -> str:
+        """Return the provenance of a channel, by the vehicle's identity.
+
+        On ArduPilot, AOA_SSA is derived from inertial speed and estimated wind. Elsewhere its origin is
+        unknown.
+        """
+        if source != "AOA_SSA.AOA" or self.vehicle is None:
+            return stated
+        if self.simulated:
+            return "simulated"
+        return "derived" if self.vehicle.autopilot == "ardupilot" else "unknown"
+
+    def distrusts(self, found: Sequence[Distrust]) -> list[Distrust]:
+        """Return the channels that are wrong, among those that cannot be right: the paper's model has one air
+        speed."""
+        return [d for d in found if not (self.simulated and d.channel == "airspeed")]
+
+    def learn(self, piece: Sequence[Columns], now_s: float = nan, flown: bool = False) -> list[FlightEvent]:
+        """Take messages among which at most the first changes anything.
+
+        Parameters
+        ----------
+        piece
+            Messages in order of arrival.
+        now_s
+            Vehicle time of the newest sample, s since boot.
+        flown
+            Whether a test input has been flown, after which the elevator's scale stays.
+        """
+        events = self._choose(piece)
+        for columns in piece:
+            if columns.name == "HEARTBEAT":
+                events += self._heartbeat(columns)
+            elif columns.name == "PARAM_VALUE":
+                events += self._parameter(columns, now_s, flown)
+            elif columns.name == "EXTENDED_SYS_STATE":
+                self._flies_on(columns)
+            elif columns.name == "AUTOPILOT_VERSION":
+                self._version(columns)
+            elif columns.name == "STATUSTEXT":
+                events += self._text(columns)
+        return events
+
+    @property
+    def may_choose(self) -> bool:
+        """Whether another vehicle may be followed later."""
+        return self._finder.may_choose
+
+    def _choose(self, piece: Sequence[Columns]) -> list[FlightEvent]:
+        """Follow another vehicle where the present one cannot serve and another one clearly can."""
+        before = self._finder.vehicle
+        if before is None or not piece:
+            return []
+        better = self._following.better(piece, before, list(self._finder.heard.values()))
+        return self._follow(better) if better is not None and self.may_choose else []
+
+    def _follow(self, vehicle: Vehicle) -> list[FlightEvent]:
+        before = self._finder.vehicle
+        assert before is not None
+        self._finder.follow(vehicle)
+        self._taken = None
+        self._mode, self._hovers = "", False
+        return [
+            VehicleFound(vehicle),
+            Notice(
+                "vehicle_changed",
+                f"Vehicle {vehicle.system} is now followed in place of vehicle {before.system}; "
+                f"--target-system {before.system} keeps to that one.",
+            ),
+            *self._settle_surfaces(),
+        ]
+
+    def _has_elevator(self, vehicle: Vehicle) -> bool:
+        wiring = self._parameters.wiring(_speakers(vehicle), vehicle.autopilot)
+        return isinstance(find_elevator(self._elevator, wiring), Surface)
+
+    def _heartbeat(self, columns: Columns) -> list[FlightEvent]:
+        events: list[FlightEvent] = []
+        known = len(self._finder.others)
+        if self._finder.hear(columns):
+            assert self._finder.vehicle is not None
+            events += [VehicleFound(self._finder.vehicle), *self._settle_surfaces()]
+        if len(self._finder.others) > known:
+            others = ", ".join(str(n) for n in sorted(self._finder.others))
+            events.append(
+                Notice(
+                    "several_vehicles",
+                    f"Other vehicles are heard too (system {others}): --target-system picks one.",
+                )
+            )
+        vehicle = self._finder.vehicle
+        if vehicle and (columns.system, columns.component) == (vehicle.system, vehicle.component):
+            custom = int(columns.fields["custom_mode"][0])
+            self._mode = mode_name(vehicle.autopilot, vehicle.type, custom)
+        return events
+
+    def _parameter(self, columns: Columns, now_s: float, flown: bool) -> list[FlightEvent]:
+        vehicle, sender = self._finder.vehicle, (columns.system, columns.component)
+        autopilot = vehicle.autopilot if vehicle else ""
+        events: list[FlightEvent] = []
+        changed = False
+        for name, before, stated in self._parameters.news(columns):
+            self._parameters.keep(sender, name, stated)
+            if before is not None and self._scales_elevator():
+                was, is_ = read_by(autopilot, before), read_by(autopilot, stated)
+                events += self._rescaled(name, was, is_, now_s, flown)
+                if flown:
+                    self._parameters.keep(sender, name, before)
+                    continue
+            changed = True
+        if changed and vehicle and (columns.system, columns.component) in _speakers(vehicle):
+            events += self._settle_surfaces()
+        return events
+
+    def _wiring(self) -> Wiring:
+        vehicle = self._finder.vehicle
+        if vehicle is None:
+            return self._parameters.wiring((), "")
+        return self._parameters.wiring(_speakers(vehicle), vehicle.autopilot)
+
+    def _scales_elevator(self) -> bool:
+        """Return whether parameters have changed the scale of the elevator's pulses."""
+        return (
+            isinstance(self.elevator, Surface)
+            and find_elevator(self._elevator, self._wiring()) != self.elevator
+        )
+
+    def _rescaled(
+        self, name: str, before: float, value: float, now_s: float, flown: bool
+    ) -> list[FlightEvent]:
+        """Return a notice on the change of a known parameter of the elevator, once for each value."""
+        if (name, value) in self._changes_said:
+            return []
+        self._changes_said.add((name, value))
+        at = f" at {clock(now_s)}" if isfinite(now_s) else ""
+        used = (
+            f"the elevator is counted with {before:g} all the same, for its linkage has not changed"
+            if flown
+            else f"the elevator is counted with {value:g} after that"
+        )
+        return [Notice(READER_NOTICE, f"{name} changed from {before:g} to {value:g}{at}: {used}.")]
+
+    def _settle_surfaces(self) -> list[FlightEvent]:
+        wiring = self._wiring()
+        self.elevator = find_elevator(self._elevator, wiring)
+        if isinstance(self.elevator, Problem) and self._taken is not None:
+            self.elevator = find_elevator(self._taken, wiring, "by a guess that a hand has taken")
+        found = {
+            "elevator": self.elevator,
+            "aileron": wiring.surface(AILERON),
+            "rudder": wiring.surface(RUDDER),
+        }
+        self.surfaces = {name: surface for name, surface in found.items() if isinstance(surface, Surface)}
+        said = self.elevator.said if isinstance(self.elevator, Surface) else ""
+        if not said or said == self._said:
+            return []
+        self._said = said
+        return [Notice("elevator_scale", said)]
+
+    def _flies_on(self, columns: Columns) -> None:
+        vehicle = self._finder.vehicle
+        if vehicle and (columns.system, columns.component) == (vehicle.system, vehicle.component):
+            self._hovers = int(columns.fields["vtol_state"][0]) in _ON_ROTORS
+
+    def _version(self, columns: Columns) -> None:
+        packed = int(columns.fields["flight_sw_version"][0])
+        if packed:
+            kind = next((name for least, name in _RELEASES if packed & 0xFF >= least), "")
+            version = f"{packed >> 24 & 0xFF}.{packed >> 16 & 0xFF}.{packed >> 8 & 0xFF}{kind}"
+            self._version_told(columns.system, version)
+
+    def _version_told(self, system: int, version: str) -> None:
+        """Keep the fuller spelling: a text says 4.8.0-beta1 where the message says 4.8.0-beta."""
+        if not self._firmware.get(system, "").startswith(version):
+            self._firmware[system] = version
+
+    def _text(self, columns: Columns) -> list[FlightEvent]:
+        text = bytes(columns.fields["text"][0])
+        if text.startswith(READER):
+            said = text.removeprefix(READER).decode("utf-8", "replace")
+            return [Notice(READER_NOTICE, f"{said}.")]
+        taken = chosen(text, TAKE)
+        if taken is not None and self._finder.vehicle is not None:
+            self._taken = replace(self._elevator, output=taken)
+            return self._settle_surfaces()
+        other = self._finder.heard.get(chosen(text, FOLLOW) or 0)
+        if other is not None and other != self._finder.vehicle:
+            return self._follow(other)
+        if text.startswith(_BUNDLED):
+            self.simulated = True
+        words = text.split()
+        if len(words) > 1 and words[0].startswith(b"Ardu") and words[1][:1] == b"V":
+            told = printable(words[1][1:].decode("ascii", "replace"))
+            if told.startswith(self._firmware.get(columns.system, "")):
+                self._version_told(columns.system, told)
+        return []
+
+
+def _speakers(vehicle: Vehicle) -> tuple[tuple[int, int], ...]:
+    """Return the senders (system, component) that state the vehicle's parameters. The vehicle comes last and
+    overrides."""
+    return (vehicle.system, _GROUND_STATION), (vehicle.system, vehicle.component)

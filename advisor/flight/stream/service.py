@@ -1,0 +1,129 @@
+"""Usability of the stream at this moment: its newest stretch, judged by the times of arrival.
+
+A stream that served at the first manoeuvre may become too slow, or lose its elevator, at any time. Times of
+arrival decide, because the vehicle's clock stands still when ATTITUDE stops. Judgements happen at fixed steps
+of arrival, so that a log and a live link agree for any batches. A link that is wholly silent says nothing
+about its channels; the link itself reports a silence.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from math import nan
+
+import numpy as np
+
+from advisor.flight.maneuvers.events import DataAgain, NoData
+from advisor.flight.signals.messages import Columns, FloatArray
+from advisor.flight.signals.track import ChannelStatus
+from advisor.words.problems import Problem
+
+WINDOW_S = 3.0
+"""Stretch over which rates are counted, s: two dozen samples of a channel at the slowest rate allowed."""
+STEP_S = 0.5
+"""Time between two judgements, s."""
+LAPSED_AFTER_S = 1.0
+"""Time for which a problem must persist before its report, s. With ``WINDOW_S`` the report comes within 5
+s."""
+SERVED_AFTER_S = 5.0
+"""Time without any problem before its end is reported, s, so that a rate near its limit causes no alternating
+reports."""
+PAUSE_S = 2.5
+"""Silence of the vehicle after which counting restarts, s: two heartbeats, one of them lost."""
+
+Judge = Callable[[Mapping[str, ChannelStatus], float], Sequence[Problem]]
+
+
+class Service:
+    """Watches the arriving messages, and reports when they cannot serve and when they can again.
+
+    Parameters
+    ----------
+    judge
+        Gives the problems of a stream with these channels, as they arrived lately, at a time of arrival, s.
+    """
+
+    def __init__(self, judge: Judge) -> None:
+        self._judge = judge
+        self._arrivals: dict[tuple[str, str], list[float]] = {}
+        self._clock: list[tuple[float, float]] = []
+        self._newest_s = -np.inf
+        self._due_s = np.inf
+        self._since_s: float | None = None
+        self._standing: frozenset[str] = frozenset()
+        self.problems: tuple[Problem, ...] = ()
+        """Reasons for which the stream cannot serve now; empty when it can, or is not yet known."""
+
+    def begin(self) -> None:
+        """Begin another vehicle or another power-on, and forget the earlier messages."""
+        self._arrivals.clear()
+        self._clock.clear()
+        self._newest_s = -np.inf
+
+    def end(self) -> None:
+        """End the watch: no further message comes or is wanted."""
+        self.problems = ()
+
+    def take(self, channel: str, source: str, arrival_s: FloatArray) -> None:
+        """Take the times at which samples of a channel arrived from one source, shape (n,)."""
+        self._arrivals.setdefault((channel, source), []).extend(arrival_s.tolist())
+
+    def take_clock(self, arrival_s: FloatArray, vehicle_s: FloatArray) -> None:
+        """Take the vehicle's clock, s since boot, at times of arrival, s; both of shape (n,)."""
+        self._clock.extend(zip(arrival_s.tolist(), vehicle_s.tolist(), strict=True))
+
+    def advance(self, columns: Sequence[Columns]) -> list[NoData | DataAgain]:
+        """Judge the stream at every moment that these messages have passed."""
+        if not columns:
+            return []
+        newest_s = max(float(c.arrival_s[-1]) for c in columns)
+        if newest_s < min(self._due_s, self._newest_s + PAUSE_S):
+            # As nearly always: no moment of judgement has passed.
+            self._newest_s = max(self._newest_s, newest_s)
+            return []
+        told: list[NoData | DataAgain] = []
+        for now_s in np.unique(np.concatenate([c.arrival_s for c in columns])).tolist():
+            if now_s > self._newest_s + PAUSE_S:
+                self._due_s = now_s + WINDOW_S
+                self._since_s = None
+            while self._due_s <= now_s:
+                told += self._look(self._due_s)
+                self._due_s += STEP_S
+            self._newest_s = max(self._newest_s, now_s)
+        self._forget()
+        return told
+
+    def _forget(self) -> None:
+        """Drop times of arrival that no later judgement needs."""
+        oldest_s = self._newest_s - WINDOW_S - STEP_S
+        for times in self._arrivals.values():
+            del times[: next((i for i, t in enumerate(times) if t > oldest_s), len(times))]
+        # The newest reading stays, however long ago the clock stopped.
+        del self._clock[: sum(arrival_s <= oldest_s for arrival_s, _ in self._clock[:-1])]
+
+    def _look(self, now_s: float) -> list[NoData | DataAgain]:
+        found = tuple(self._judge(self._lately(now_s), now_s))
+        standing = frozenset(problem.code for problem in found)
+        if standing != self._standing or self._since_s is None:
+            self._standing, self._since_s = standing, now_s
+        stood_s = now_s - self._since_s
+        told = {problem.code for problem in self.problems}
+        if told and not found and stood_s >= SERVED_AFTER_S:
+            self.problems = ()
+            return [DataAgain(self._vehicle_s(now_s))]
+        if standing == told or not found or stood_s < LAPSED_AFTER_S:
+            return []
+        self.problems = found
+        return [] if standing < told else [NoData(found, self._vehicle_s(now_s))]
+
+    def _vehicle_s(self, now_s: float) -> float:
+        """Return the vehicle's clock as heard at a time of arrival; NaN before its first reading."""
+        return max((t for arrival_s, t in self._clock if arrival_s <= now_s), default=nan)
+
+    def _lately(self, now_s: float) -> dict[str, ChannelStatus]:
+        """Return the arrival of every channel within the window, from its fastest source."""
+        found: dict[str, ChannelStatus] = {}
+        for (channel, source), times in self._arrivals.items():
+            newest = [t for t in times if now_s - WINDOW_S < t <= now_s]
+            rate_hz = len(newest) / WINDOW_S
+            if len(newest) and (channel not in found or rate_hz > found[channel].rate_hz):
+                found[channel] = ChannelStatus(source, "", rate_hz, WINDOW_S, newest[-1])
+        return found

@@ -1,0 +1,386 @@
+"""The stream of one vehicle: columns of messages in, channels and manoeuvres out.
+
+Every decision follows the order of arrival and the vehicle's clock, never the batches. So a live link,
+message by message, and a whole log end in equal events. Memory is bounded by two minutes of channels.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.elevator.commanded import Commanded, commanded
+from advisor.flight.elevator.elevator_guess import ElevatorGuesses, Guess
+from advisor.flight.elevator.elevator_sign import SAID
+from advisor.flight.elevator.mixing import Mixing
+from advisor.flight.maneuvers.events import FlightEvent, ModeChanged, Rebooted
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.maneuvers.markers import HEARD, MarkerWatch
+from advisor.flight.maneuvers.marks import Mark, Marks
+from advisor.flight.signals.attitude import Attitudes
+from advisor.flight.signals.banks import Banks, merged
+from advisor.flight.signals.channels import Decoded, given_airspeed, named_value, quantities, stamps
+from advisor.flight.signals.clocks import BootClock
+from advisor.flight.signals.derived_alpha import DERIVED_ALPHA, promised
+from advisor.flight.signals.messages import Columns, FloatArray, IntArray, arrivals
+from advisor.flight.signals.power_on import PowerOn
+from advisor.flight.signals.record import ALL_UNITS, Channel
+from advisor.flight.signals.track import ChannelStatus
+from advisor.flight.signals.tracks import Tracks
+from advisor.flight.signals.trust import Distrust, frozen
+from advisor.flight.stream.cutting import Cutting
+from advisor.flight.stream.elevator_path import ElevatorPath
+from advisor.flight.stream.identity import Identity
+from advisor.flight.stream.service import Service
+from advisor.flight.stream.suitability import problems, with_guess
+from advisor.flight.stream.vehicle_texts import VehicleTexts
+from advisor.flight.vehicle.boots import Master, by_boot
+from advisor.flight.vehicle.modes import closes_pitch_loop
+from advisor.flight.vehicle.pieces import pieces
+from advisor.flight.vehicle.senders import SenderWatch
+from advisor.flight.vehicle.surfaces import Surface
+from advisor.flight.vehicle.vehicle import Vehicle
+from advisor.words.problems import Problem
+
+KEEP_S = 120.0
+"""Time for which channels are kept, s: longer than any manoeuvre with its lead-in."""
+_OUTPUTS = ("SERVO_OUTPUT_RAW", "ACTUATOR_OUTPUT_STATUS")
+_HEARTBEAT_S = 2.2
+"""Longest time since the last heartbeat within which a mode has changed, s. One heartbeat may be lost."""
+
+
+class FlightStream:
+    """Follows one vehicle.
+
+    Parameters
+    ----------
+    aircraft
+        The aircraft file: elevator output and calibration, source of the angle of attack.
+    target_system
+        System id to follow; None: the first vehicle heard.
+    marks
+        Stretches marked as manoeuvres before the stream begins.
+    keep_all
+        Whether to keep every sample, for ``power_ons``. Memory then grows with the length of the flight.
+    """
+
+    def __init__(
+        self,
+        aircraft: Aircraft,
+        target_system: int | None = None,
+        marks: Sequence[Mark] = (),
+        *,
+        keep_all: bool = False,
+    ) -> None:
+        self._aircraft = aircraft
+        self._keep_s = np.inf if keep_all else KEEP_S
+        self._clock_heard: list[Master] = []
+        self.power_ons: list[PowerOn] = []
+        """Every power-on that is over, whole; empty without ``keep_all``."""
+        self._who = Identity(aircraft.elevator, target_system)
+        self._texts = VehicleTexts()
+        self._attitudes = Attitudes()
+        self._clock = BootClock()
+        self._tracks = Tracks(aircraft.alpha.source, aircraft.airspeed_m_s)
+        self._cutting = Cutting(self._tracks, self._who, aircraft.elevator.is_calibrated)
+        self._mixing = Mixing(self._tracks)
+        self.marks = Marks(marks)
+        """Marks by hand, by a switch and by texts."""
+        self._markers = MarkerWatch(aircraft.markers)
+        self._path = ElevatorPath(self._tracks, self._mixing, self.marks, self._cutting)
+        self._over = False
+        self.boot = 0
+        """Number of the power-on, 0 for the first in the stream."""
+        self._guesses = ElevatorGuesses()
+        self._start_boot()
+        self.seen: set[str] = set()
+        """Names of the messages that the vehicle has sent."""
+        self._past: dict[str, ChannelStatus] = {}
+        self._service = Service(self._wanting)
+        self._senders = SenderWatch()
+        self._system: int | None = None
+        self._earlier_s = 0.0
+
+    def _start_boot(self) -> None:
+        self._tracks.clear()
+        self._clock_heard.clear()
+        self._path.begin(self.boot)
+        self._banks = Banks()
+        self._mixing.begin()
+        self._cutting.begin(self._who.mode)
+        self._first_s = np.nan
+        self._flown_before = self._cutting.maneuvers
+        self._master_s = np.nan
+        self._heartbeat_s = -np.inf
+        self._guesses.begin()
+
+    @property
+    def vehicle(self) -> Vehicle | None:
+        """Vehicle that is followed. None before its first heartbeat."""
+        return self._who.vehicle
+
+    @property
+    def other_systems(self) -> frozenset[int]:
+        """System ids of the other vehicles heard."""
+        return self._who.other_systems
+
+    @property
+    def maneuvers(self) -> int:
+        """Number of manoeuvres found."""
+        return self._cutting.maneuvers
+
+    @property
+    def mode(self) -> str:
+        """Flight mode of the newest heartbeat."""
+        return self._who.mode
+
+    @property
+    def elevator(self) -> Surface | Problem:
+        """Outputs and scale of the elevator, or the reason for their absence."""
+        return self._who.elevator
+
+    @property
+    def elevator_notes(self) -> tuple[str, ...]:
+        """Composition of the elevator and assumptions about its scale and sign, as sentences."""
+        backwards = SAID if self._cutting.is_backwards else ""
+        if not isinstance(self.elevator, Surface):
+            return (backwards,) if backwards else ()
+        sentences = (self.elevator.said, self._mixing.said(self.elevator), backwards)
+        return tuple(said for said in sentences if said)
+
+    @property
+    def now_s(self) -> float:
+        """Vehicle time of the newest sample, s since boot; NaN before the first."""
+        return self._clock.newest_s
+
+    @property
+    def duration_s(self) -> float:
+        """Vehicle time heard so far, over all boots, s."""
+        return self._earlier_s + (self._master_s - self._first_s if np.isfinite(self._master_s) else 0.0)
+
+    @property
+    def channels(self) -> Mapping[str, ChannelStatus]:
+        """Arrival of every channel from its present source; at the end of the stream, its best arrival."""
+        arriving = self._past if self._over else {**self._past, **self._tracks.statuses()}
+        return {
+            name: replace(status, provenance=self._who.provenance(status.source, status.provenance))
+            for name, status in arriving.items()
+        }
+
+    def problems(self) -> list[Problem]:
+        """Return the reasons for which the stream so far cannot be used; empty for a usable stream."""
+        flown = self._cutting
+        found = problems(
+            self.vehicle,
+            self.other_systems,
+            self.elevator,
+            self._at_best(),
+            flown.maneuvers,
+            flown.activities,
+            self.frozen,
+            self.seen,
+        )
+        wrong = self._mixing.contradiction
+        if self.guess is not None and isinstance(self.elevator, Problem):
+            found = [with_guess(problem, self.guess) for problem in found]
+        return [
+            *(self.marks.problems() if self._over else ()),
+            *([self.two_senders] if self.two_senders and not flown.maneuvers else ()),
+            *([wrong] if wrong and not flown.maneuvers else ()),
+            *found,
+        ]
+
+    @property
+    def guess(self) -> Guess | None:
+        """Guess of the elevator's output, while no parameter states the output."""
+        return self._guesses.newest
+
+    @property
+    def no_data(self) -> tuple[Problem, ...]:
+        """Reasons for which the present data cannot serve; empty while they can."""
+        return self._service.problems
+
+    def _wanting(self, channels: Mapping[str, ChannelStatus], now_s: float) -> list[Problem]:
+        """Return the problems of a stream with these channels, whatever was flown on it."""
+        wrong = self._mixing.contradiction if not self._cutting.maneuvers else None
+        two = self._senders.problem(self._system, now_s) if self._system is not None else None
+        # Problems of the vehicle followed come first. The screens offer the other vehicles themselves.
+        others = self.other_systems if self.vehicle is None else ()
+        found = problems(self.vehicle, others, self.elevator, channels, 1, {}, (), self.seen)
+        return [*(problem for problem in (two, wrong) if problem), *found]
+
+    @property
+    def two_senders(self) -> Problem | None:
+        """Problem of two senders under the vehicle's id, once they were detected."""
+        return self._senders.seen
+
+    @property
+    def frozen(self) -> list[Distrust]:
+        """Channels that have stood still in flight."""
+        ranges = {name: (status.lowest, status.highest) for name, status in self._at_best().items()}
+        return self._who.distrusts(frozen(ranges))
+
+    def recent(self, name: str, seconds: float) -> Channel | None:
+        """Return the newest stretch of a channel; None without samples."""
+        return self._tracks.recent(name, seconds)
+
+    def so_far(self) -> Maneuver | None:
+        """Return the manoeuvre being flown, cut at the newest sample; None between manoeuvres."""
+        return self._path.so_far()
+
+    def feed(self, columns: Sequence[Columns]) -> list[FlightEvent]:
+        """Take messages; return the events that they cause, in order."""
+        events: list[FlightEvent] = []
+        several = self._who.may_choose or len({c.system for c in columns if c.name == "HEARTBEAT"}) > 1
+        for piece in pieces(self._attitudes.of(columns), by_second=several):
+            events += self._feed_piece(piece)
+        return events
+
+    def finish(self) -> list[FlightEvent]:
+        """Take the end of the messages, and close every open movement."""
+        events = self._finish_boot()
+        self._service.end()
+        self._over = True
+        return events
+
+    def _finish_boot(self) -> list[FlightEvent]:
+        events = [*self._path.finish(self._master_s), *self._texts.finish(self._master_s)]
+        self._past = self._at_best()
+        if self._keep_s == np.inf:
+            self.power_ons.append(self._power_on())
+        return events
+
+    def _power_on(self) -> PowerOn:
+        """Return everything that was heard since the vehicle's clock began."""
+        found = {name: self._tracks.cut(name, -np.inf, np.inf) for name in ALL_UNITS}
+        channels = {
+            name: replace(c, provenance=self._who.provenance(c.source, c.provenance))
+            for name, c in found.items()
+            if c is not None
+        }
+        if self._cutting.is_backwards and "elevator" in channels:
+            channels["elevator"] = replace(channels["elevator"], y=-channels["elevator"].y)
+        heard = [(master.order, master.t) for master in self._clock_heard if len(master.t)]
+        order, t = map(np.concatenate, zip(*heard, strict=True)) if heard else (np.empty(0, int), np.empty(0))
+        return PowerOn(self.boot, channels, order, t)
+
+    def _at_best(self) -> dict[str, ChannelStatus]:
+        """Return the arrival of each channel at its fastest, over all power-ons."""
+        now = {name: status.at_best(self._past.get(name)) for name, status in self._tracks.statuses().items()}
+        return {**self._past, **now}
+
+    def _feed_piece(self, piece: Sequence[Columns]) -> list[FlightEvent]:
+        """Take columns within which neither vehicle nor parameters nor mode change."""
+        mode = self._who.mode
+        flown = self._cutting.maneuvers > self._flown_before
+        events: list[FlightEvent] = [
+            said
+            for columns in piece
+            if columns.name == "STATUSTEXT"
+            for said in self._texts.heard(columns, self._master_s)
+        ]
+        events += self._who.learn(piece, self._master_s, flown)
+        vehicle = self._who.vehicle
+        if vehicle is None:
+            return [*events, *self._serving(piece)]
+        if vehicle.system != self._system:
+            left = self._start_again(BootClock(self.boot + 1)) if self._system is not None else []
+            events = [*left, *events]
+            self._system = vehicle.system
+            self._service.begin()
+        if self._who.mode != mode:
+            events.append(ModeChanged(self._who.mode, self._master_s))
+            if np.isfinite(self._master_s):
+                order = min(int(c.order[0]) for c in piece)
+                earliest_s = max(self._heartbeat_s, self._master_s - _HEARTBEAT_S)
+                self._path.mode_changed(earliest_s, order)
+                # A pilot who takes over and flies an input at once did so before the heartbeat that reports
+                # the mode.
+                closed = closes_pitch_loop(self._who.mode)
+                self._cutting.change(self._who.mode, self._master_s if closed else earliest_s)
+            else:
+                self._cutting.begin(self._who.mode)
+        mine = [c for c in piece if c.system == vehicle.system]
+        self.seen.update(c.name for c in mine)
+        for part, master in by_boot(mine, vehicle.component, self._clock, self.boot):
+            if master.boot != self.boot:
+                events += [*self._start_again(self._clock), Rebooted(self.boot)]
+            events += self._feed_part(part, master, vehicle)
+        self._senders.hear(mine, vehicle.component)
+        return [*events, *self._serving(mine)]
+
+    def _serving(self, piece: Sequence[Columns]) -> list[FlightEvent]:
+        """Return the event of a change in the usability of the data; empty without a change."""
+        return list(self._service.advance(piece))
+
+    def _set_clock(self, part: Sequence[Columns], orders: IntArray, clock: FloatArray) -> None:
+        """Set the vehicle's clock by a part; readings of the clock have these orders, both of shape (n,)."""
+        if np.isnan(self._first_s) and len(clock) > 1:
+            self._first_s = float(clock[1])
+            self.marks.start_clock(self._first_s)
+        self._master_s = float(clock[-1])
+        for columns in part:
+            if columns.name == "ATTITUDE":
+                now = np.searchsorted(orders, columns.order, side="right") - 1
+                self._service.take_clock(columns.arrival_s, clock[now])
+
+    def _start_again(self, clock: BootClock) -> list[FlightEvent]:
+        """Begin another power-on, or another vehicle, and drop the earlier state."""
+        events = self._finish_boot()
+        self._earlier_s = self.duration_s
+        self._clock = clock
+        self.boot = clock.boot
+        self._start_boot()
+        self.marks.start_boot(self.boot, self._earlier_s)
+        self._markers.start_boot()
+        self._service.begin()
+        return events
+
+    def _feed_part(self, part: Sequence[Columns], master: Master, vehicle: Vehicle) -> list[FlightEvent]:
+        """Take columns of one boot: channels first, then the elevator sample by sample."""
+        self._tracks.forget(max(self._path.newest_s, self._master_s) - self._keep_s)
+        orders = np.concatenate(([-1], master.order))
+        # A late ATTITUDE states its own time, not the present time.
+        clock = np.fmax.accumulate(np.concatenate(([self._master_s], master.t)))
+        if self._keep_s == np.inf:
+            self._clock_heard.append(replace(master, t=clock[1:]))
+        elevator: list[Commanded] = []
+        for columns in merged(part):
+            now = np.searchsorted(orders, columns.order, side="right") - 1
+            if columns.name in HEARD:
+                self.marks.hear(self._markers.heard(columns, stamps(columns, clock[now])))
+            if columns.component != vehicle.component and columns.name != "NAMED_VALUE_FLOAT":
+                continue
+            t = clock[now] if columns.component != vehicle.component else stamps(columns, clock[now])
+            if columns.name == "HEARTBEAT" and np.isfinite(t[-1]):
+                self._heartbeat_s = float(t[-1])
+            for new in self._decode(columns, t):
+                self._tracks.append(new)
+                if self._tracks.serves(new):
+                    self._service.take(new.channel, new.source, arrivals(columns, new.order))
+            if columns.name == "VFR_HUD" and self._tracks.derives_alpha:
+                bring = promised(columns, self._aircraft.airspeed_m_s)
+                self._service.take("alpha", DERIVED_ALPHA, arrivals(columns, bring))
+            if columns.name in _OUTPUTS:
+                if isinstance(self.elevator, Problem):
+                    self._guesses.hear(columns, t)
+                pulses = self._banks.together(columns)
+                for moved in commanded(self._who.surfaces, pulses, t, vehicle.autopilot):
+                    if moved.channel == "elevator":
+                        elevator.append(moved)
+                        self._service.take(moved.channel, moved.source, arrivals(columns, moved.order))
+                    else:
+                        self._tracks.append(moved.combined())
+        self._set_clock(part, orders, clock)
+        followed = self._path.feed(elevator, closes_pitch_loop(self._who.mode))
+        if not isinstance(self.elevator, Problem) or not np.isfinite(self._master_s):
+            return followed
+        return [*followed, *self._guesses.advance(self._first_s, self._master_s, self._tracks.cut)]
+
+    def _decode(self, columns: Columns, t: FloatArray) -> Iterator[Decoded]:
+        yield from quantities(columns, t)
+        if columns.name == "ATTITUDE" and self._aircraft.airspeed_m_s is not None:
+            yield given_airspeed(columns, t, self._aircraft.airspeed_m_s)
+        if columns.name == "NAMED_VALUE_FLOAT" and self._aircraft.alpha.source.startswith("named_value:"):
+            yield named_value(columns, t, self._aircraft.alpha.source.removeprefix("named_value:"))

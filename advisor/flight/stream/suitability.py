@@ -1,0 +1,240 @@
+"""Reasons for which a stream cannot serve to identify a short period: missing or slow messages, with
+remedies.
+
+The necessary rate depends on the aircraft. Before an estimate exists, only a floor can be demanded. A 3-2-1-1
+is matched to the short period, and its shortest step is about a third of the natural period. With fewer than
+four samples to that step, neither the step nor its answer can be placed. The floor is eight samples a second.
+A slow jet passes at 10 Hz, and the default rates of autopilots (2 to 4 Hz) fail. With an estimate, each
+manoeuvre is judged against its own natural frequency (`advisor.decision.quality`).
+"""
+
+from collections.abc import Collection, Mapping
+from math import isfinite, nan
+
+from advisor.flight.elevator.elevator_guess import Guess
+from advisor.flight.signals.channels import READINGS
+from advisor.flight.signals.track import ChannelStatus
+from advisor.flight.signals.trust import Distrust
+from advisor.flight.vehicle.surfaces import Surface, joined_numbers, listed
+from advisor.flight.vehicle.vehicle import Vehicle
+from advisor.words.mends import GOOD_HZ, sentence
+from advisor.words.problems import Problem
+from advisor.words.rounding import distinct_texts
+
+SLOWEST_HZ = 8.0
+"""Least rate of elevator, pitch rate and angle of attack for any aircraft, Hz."""
+_MOTION = ("a_z", "airspeed", "theta")
+"""Channels that replace an angle of attack, in addition to the pitch rate."""
+
+
+def problems(
+    vehicle: Vehicle | None,
+    other_systems: Collection[int],
+    elevator: Surface | Problem,
+    channels: Mapping[str, ChannelStatus],
+    maneuvers: int,
+    activities: Mapping[str, int],
+    still: Collection[Distrust] = (),
+    seen: Collection[str] = (),
+) -> list[Problem]:
+    """Return every problem that keeps a stream from being used, the most fundamental first.
+
+    Parameters
+    ----------
+    vehicle, other_systems
+        Vehicle that is followed, and system ids of the other vehicles heard.
+    elevator
+        Outputs of the elevator, or the reason for their absence.
+    channels
+        Best arrival of every channel.
+    maneuvers
+        Number of manoeuvres found.
+    activities
+        Number of elevator movements that were no test inputs, by the reason in words.
+    still
+        Channels that are frozen in flight.
+    seen
+        Names of the messages that the vehicle has sent.
+    """
+    if vehicle is None:
+        return [_no_vehicle(other_systems)]
+    if vehicle.is_multicopter and isinstance(elevator, Problem):
+        found = [_no_surfaces(vehicle)]
+    else:
+        # A frozen angle of attack has a replacement: the one derived from climb rate and air speed.
+        dead = {distrust.channel for distrust in still} & {"a_z"}
+        alive = {name: status for name, status in channels.items() if name not in dead}
+        found = [
+            *_missing(elevator, alive, vehicle, seen),
+            *(Problem(d.code, f"{d.sentence}.", f"Mend: {d.fix}.") for d in still if d.stops),
+            *_too_slow(alive, vehicle),
+        ]
+    if not found and maneuvers == 0:
+        found.append(_no_maneuver(activities))
+    if found and other_systems:
+        found.insert(0, _perhaps_another(vehicle, other_systems))
+    return found
+
+
+def with_guess(problem: Problem, guess: Guess) -> Problem:
+    """Return the problem of an unknown elevator output with a guess added; any other problem unchanged."""
+    if problem.code != "no_elevator":
+        return problem
+    return Problem(problem.code, problem.text, f"{problem.fix.rstrip('.')}; {guess}.")
+
+
+def _no_surfaces(vehicle: Vehicle) -> Problem:
+    return Problem(
+        "multicopter",
+        f"{vehicle} is a multicopter: it has no elevator.",
+        "Give the log or link of an aircraft with an elevator.",
+    )
+
+
+def _no_maneuver(activities: Mapping[str, int]) -> Problem:
+    if not activities:
+        return Problem(
+            "no_maneuver",
+            "No test manoeuvre was found: the elevator kept still.",
+            "Fly a 3-2-1-1 on the elevator in MANUAL, the stick still for a second before and some after.",
+        )
+    counted = "; ".join(f"{text} ({n} times)" if n > 1 else text for text, n in activities.items())
+    return Problem(
+        "no_maneuver",
+        f"No test manoeuvre was found among the movements of the elevator: {counted}.",
+        "Fly a 3-2-1-1 on the elevator in MANUAL, large enough to see in the pitch rate; "
+        "analyze --all lists each movement.",
+    )
+
+
+def _perhaps_another(vehicle: Vehicle, other_systems: Collection[int]) -> Problem:
+    others = ", ".join(str(n) for n in sorted(other_systems))
+    return Problem(
+        "other_vehicles",
+        f"Vehicle {vehicle.system} was followed, which cannot be used; heard too: {others}.",
+        f"Choose the one that flew the manoeuvres, e.g. --target-system {min(other_systems)}.",
+    )
+
+
+def _no_vehicle(other_systems: Collection[int]) -> Problem:
+    if other_systems:
+        others = ", ".join(str(n) for n in sorted(other_systems))
+        return Problem(
+            "no_vehicle",
+            f"The target system sent no heartbeat; heard were the vehicles {others}.",
+            f"Choose one of them, e.g. --target-system {min(other_systems)}.",
+        )
+    return Problem(
+        "no_vehicle",
+        "No vehicle was heard: there is no HEARTBEAT of an autopilot.",
+        "Check that the log or link is that of an aircraft, not of a ground station alone.",
+    )
+
+
+def _missing(
+    elevator: Surface | Problem,
+    channels: Mapping[str, ChannelStatus],
+    vehicle: Vehicle,
+    seen: Collection[str],
+) -> list[Problem]:
+    mends = vehicle.mends
+    found = [elevator] if isinstance(elevator, Problem) else []
+    if vehicle.carrier != "telemetry":
+        return [*found, *_not_logged(elevator, channels, vehicle)]
+    if "q" not in channels:
+        # Its stamps are the vehicle's clock: without it no other channel can be placed either.
+        text = f"There is no pitch rate: no {mends.called('ATTITUDE')} arrived."
+        found.append(Problem("no_pitch_rate", text, sentence(mends.faster("ATTITUDE"))))
+        channels = _sent(seen)
+    if isinstance(elevator, Surface) and "elevator" not in channels:
+        outputs = joined_numbers(elevator.outputs)
+        found.append(
+            Problem(
+                "no_elevator",
+                f"Servo output {outputs}, the elevator, never carried a pulse "
+                f"({mends.called('SERVO_OUTPUT_RAW')}).",
+                f"{sentence(mends.present(['SERVO_OUTPUT_RAW']), '')}, "
+                "or set elevator.output in the aircraft file.",
+            )
+        )
+    if "alpha" not in channels and not motion_stands_in(channels):
+        absent = " nor ".join(name for name in _MOTION if name not in channels)
+        or_else = ", or for AOA_SSA" if vehicle.autopilot == "ardupilot" else ""
+        found.append(
+            Problem(
+                "no_alpha",
+                f"There is no angle of attack, and the motion cannot replace it: no {absent} arrived.",
+                f"{sentence(mends.present(['RAW_IMU', 'VFR_HUD']), or_else)}; "
+                f"a vane may send {mends.called('NAMED_VALUE_FLOAT')} (alpha.source).",
+            )
+        )
+    return found
+
+
+def _sent(seen: Collection[str]) -> dict[str, ChannelStatus]:
+    """Return channels whose messages came, although none could be placed in time."""
+    sources = {reading.channel: reading.message for reading in READINGS if reading.message in seen}
+    if not {"SERVO_OUTPUT_RAW", "ACTUATOR_OUTPUT_STATUS"}.isdisjoint(seen):
+        sources["elevator"] = "SERVO_OUTPUT_RAW"
+    # The attitude comes with the pitch rate, which is requested anyway.
+    sources["theta"] = "ATTITUDE"
+    return {name: ChannelStatus(source, "", nan, nan, nan) for name, source in sources.items()}
+
+
+def _not_logged(
+    elevator: Surface | Problem, channels: Mapping[str, ChannelStatus], vehicle: Vehicle
+) -> list[Problem]:
+    """Return one problem with everything that a log of the autopilot lacks."""
+    lacks: dict[str, tuple[str, str]] = {}
+    if "q" not in channels:
+        lacks["no_pitch_rate"] = ("pitch rate", "ATTITUDE")
+    if isinstance(elevator, Surface) and "elevator" not in channels:
+        lacks["no_elevator"] = (
+            f"pulse of servo output {joined_numbers(elevator.outputs)}",
+            "SERVO_OUTPUT_RAW",
+        )
+    if "alpha" not in channels and not motion_stands_in(channels):
+        lacks["no_alpha"] = ("angle of attack", "AOA_SSA")
+        if "airspeed" not in channels:
+            lacks["no_airspeed"] = ("air speed", "VFR_HUD")
+    if not lacks:
+        return []
+    if "a_z" not in channels:
+        lacks["no_accelerometer"] = ("specific force", "HIGHRES_IMU")
+    told = listed([f"no {what} ({vehicle.mends.called(message)})" for what, message in lacks.values()])
+    fix = vehicle.mends.present([message for _, message in lacks.values()])
+    given = "; or give airspeed_m_s in the aircraft file" if "no_airspeed" in lacks else ""
+    return [Problem(next(iter(lacks)), f"The log holds {told}.", f"{sentence(fix, given)}.")]
+
+
+def motion_stands_in(channels: Collection[str]) -> bool:
+    """Return whether an estimate needs no angle of attack, because specific force, air speed and attitude
+    arrive."""
+    return all(name in channels for name in _MOTION)
+
+
+def _too_slow(channels: Mapping[str, ChannelStatus], vehicle: Vehicle) -> list[Problem]:
+    if "q" not in channels:
+        return []
+    names = ("elevator", "q") if motion_stands_in(channels) else ("elevator", "q", "alpha")
+    needed = [channels[name] for name in names if name in channels]
+    slow = {_message(status): status.rate_hz for status in needed if not status.rate_hz >= SLOWEST_HZ}
+    mends = vehicle.mends
+    return [
+        Problem(
+            "rate",
+            f"{mends.called(message)} arrives {_at(rate_hz)}, too slow to identify a short period "
+            f"(at least {SLOWEST_HZ:g} Hz, better {GOOD_HZ} Hz).",
+            sentence(mends.faster(message)),
+        )
+        for message, rate_hz in slow.items()
+    ]
+
+
+def _at(rate_hz: float) -> str:
+    return f"at {distinct_texts(rate_hz, SLOWEST_HZ, 1)[0]} Hz" if isfinite(rate_hz) else "hardly at all"
+
+
+def _message(status: ChannelStatus) -> str:
+    """Return the name of the message that sets the rate of a channel."""
+    return "VFR_HUD" if status.source.startswith("theta") else status.source.partition(".")[0]

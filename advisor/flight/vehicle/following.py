@@ -1,0 +1,104 @@
+"""Choice among several vehicles, decided from the stream alone, so that a log and a link agree.
+
+The first vehicle heard is followed. A vehicle that falls silent, or has no elevator, is left for the only
+other vehicle that sends and has an elevator. A vehicle that has served for a while is kept, however long it
+is silent. Its flight test must not end in that of another aircraft. Where several vehicles qualify, the crew
+is asked.
+"""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from advisor.flight.signals.messages import Columns
+from advisor.flight.vehicle.vehicle import Vehicle
+
+GIVEN_UP_AFTER_S = 15.0
+"""Time for which a vehicle may be silent, or its elevator unknown, before another is followed, s. Parameters
+and streams take about so long to arrive."""
+LATELY_S = 5.0
+"""Time within which all needed messages must have come from a vehicle that counts as sending, s."""
+SERVED_S = 60.0
+"""Total time of service after which a vehicle is kept, s: two manoeuvres with their pauses."""
+
+FOLLOW = b"Advisor follows vehicle "
+"""Text that the advisor writes into its own stream when a hand chooses another vehicle; a number ends the
+text."""
+
+TAKE = b"Advisor takes for the elevator output "
+"""Text that the advisor writes into its own stream when a hand accepts a guess; the output's number ends the
+text."""
+
+_OUTPUTS = frozenset({"SERVO_OUTPUT_RAW", "ACTUATOR_OUTPUT_STATUS"})
+_ATTITUDES = frozenset({"ATTITUDE", "ATTITUDE_QUATERNION"})
+
+
+def chosen(text: bytes, what: bytes) -> int | None:
+    """Return the number in one of the advisor's texts, ``FOLLOW`` or ``TAKE``; None for any other text."""
+    number = text.removeprefix(what)
+    return int(number) if text.startswith(what) and number.isdigit() else None
+
+
+class Following:
+    """Compares the vehicles once a second of arrival.
+
+    Parameters
+    ----------
+    has_elevator
+        Whether the elevator's outputs of a vehicle are known.
+    """
+
+    def __init__(self, has_elevator: Callable[[Vehicle], bool]) -> None:
+        self._has_elevator = has_elevator
+        self._second: int | None = None
+        self._heard: dict[int, dict[str, float]] = {}
+        self._served: dict[int, int] = {}
+        self._useless_since_s: float | None = None
+
+    def better(
+        self, piece: Sequence[Columns], vehicle: Vehicle, all_heard: Sequence[Vehicle]
+    ) -> Vehicle | None:
+        """Return the vehicle that replaces ``vehicle`` after this piece; None to keep ``vehicle``.
+
+        Parameters
+        ----------
+        piece
+            Messages of one second of arrival, from all senders.
+        vehicle
+            Vehicle that is followed so far.
+        all_heard
+            Every vehicle that has sent a heartbeat.
+        """
+        second = int(min(float(c.arrival_s[0]) for c in piece))
+        found = None
+        if self._second is not None and second > self._second:
+            found = self._weigh(float(second), vehicle, all_heard)
+        self._second = max(second, self._second or second)
+        for c in piece:
+            kind = "output" if c.name in _OUTPUTS else "attitude" if c.name in _ATTITUDES else ""
+            newest = self._heard.setdefault(c.system, {})
+            newest[""] = newest[kind] = float(c.arrival_s[-1])
+        return found
+
+    def _weigh(self, now_s: float, vehicle: Vehicle, all_heard: Sequence[Vehicle]) -> Vehicle | None:
+        if self._qualifies(vehicle, now_s):
+            self._served[vehicle.system] = self._served.get(vehicle.system, 0) + 1
+            self._useless_since_s = None
+            return None
+        if self._useless_since_s is None:
+            self._useless_since_s = now_s
+        if (
+            self._served.get(vehicle.system, 0) >= SERVED_S
+            or now_s - self._useless_since_s < GIVEN_UP_AFTER_S
+        ):
+            return None
+        others = [v for v in all_heard if v.system != vehicle.system and self._qualifies(v, now_s)]
+        if len(others) != 1:
+            return None
+        self._useless_since_s = None
+        return others[0]
+
+    def _qualifies(self, vehicle: Vehicle, now_s: float) -> bool:
+        heard = self._heard.get(vehicle.system, {})
+        sends = all(now_s - heard.get(kind, -np.inf) <= LATELY_S for kind in ("output", "attitude"))
+        return sends and not vehicle.is_multicopter and self._has_elevator(vehicle)

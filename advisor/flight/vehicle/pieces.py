@@ -1,0 +1,75 @@
+"""Cuts of a batch of columns at changes that affect all later messages."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+
+from advisor.flight.signals.messages import Columns
+from advisor.flight.vehicle.parameters import names_in, tells_of_outputs
+
+_EVERY = 100_000
+"""Longest piece in arrival orders (bytes of a log), so that memory stays bounded for any batch."""
+
+_STATES = {"HEARTBEAT": "custom_mode", "EXTENDED_SYS_STATE": "vtol_state"}
+"""Message that repeats a state, to the field of the state."""
+
+
+def pieces(columns: Sequence[Columns], by_second: bool = False) -> Iterator[list[Columns]]:
+    """Yield the batch in order of arrival, cut before every change of vehicle, mode or parameter.
+
+    Parameters
+    ----------
+    columns
+        Messages of all senders.
+    by_second
+        Whether to cut at each second of arrival as well, at which several vehicles are compared.
+    """
+    filled = [c for c in columns if len(c)]
+    if not filled:
+        return
+    first = min(int(c.order[0]) for c in filled)
+    past = max(int(c.order[-1]) for c in filled) + 1
+    cuts = {first, past, *range(first, past, _EVERY)}
+    for c in filled:
+        cuts.update(_turning_points(c))
+    if by_second:
+        cuts.update(_seconds(filled))
+    edges = sorted(cuts)
+    for a, b in pairwise(edges):
+        yield between(filled, a, b)
+
+
+def _seconds(columns: Sequence[Columns]) -> list[int]:
+    """Return the orders of the messages with which a second of arrival begins."""
+    order = np.concatenate([c.order for c in columns])
+    rows = np.argsort(order)
+    second = np.floor(np.concatenate([c.arrival_s for c in columns])[rows])
+    begins = np.concatenate(([False], np.diff(np.maximum.accumulate(second)) > 0))
+    return [int(n) for n in order[rows][begins]]
+
+
+def between(columns: Sequence[Columns], first: int, past: int) -> list[Columns]:
+    """Return the rows with ``first <= order < past``, without types that have no such row."""
+    found = []
+    for c in columns:
+        i, j = np.searchsorted(c.order, [first, past])
+        if j > i:
+            rows = slice(int(i), int(j))
+            fields = {name: values[rows] for name, values in c.fields.items()}
+            found.append(replace(c, order=c.order[rows], arrival_s=c.arrival_s[rows], fields=fields))
+    return found
+
+
+def _turning_points(c: Columns) -> list[int]:
+    if c.name in _STATES:
+        state = np.asarray(c.fields[_STATES[c.name]], dtype=np.int64)
+        changed = np.concatenate(([True], state[1:] != state[:-1]))
+        return [int(n) for n in c.order[changed]]
+    if c.name == "PARAM_VALUE":
+        telling = [tells_of_outputs(name) for name in names_in(c)]
+        return [int(n) for n in c.order[np.array(telling, dtype=bool)]]
+    if c.name in ("STATUSTEXT", "AUTOPILOT_VERSION"):
+        return [int(n) for n in c.order]
+    return []

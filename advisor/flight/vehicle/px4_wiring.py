@@ -1,0 +1,160 @@
+"""Roles and scales of servo outputs from PX4's parameters: CA_SV_CSn_* for surfaces, PWM_MAIN_* for outputs.
+
+Surface ``n`` is servo ``n``, counted from 0. An output whose function is 201 + n drives that servo. A
+positive command of an elevator lifts the nose where its torque effectiveness CA_SV_CSn_TRQ_P is positive.
+(PX4 since 1.13: ActuatorEffectivenessControlSurfaces.hpp, mixer_module.cpp.)
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+from advisor.flight.vehicle.surfaces import Scale
+from advisor.flight.vehicle.wiring import AILERON, ELEVATOR, RUDDER, Parameters, Role, Wiring, Words
+
+GROUPS = {
+    "PWM_MAIN": Scale(1000.0, 1500.0, 2000.0),
+    "PWM_AUX": Scale(1000.0, 1500.0, 2000.0),
+    "UAVCAN_SV": Scale(0.0, 500.0, 1000.0),
+    "SIM_GZ_SV": Scale(0.0, 500.0, 1000.0),
+    "HIL_ACT": Scale(1000.0, 1500.0, 2000.0),
+}
+"""Group of outputs, by the beginning of its parameters' names, to its default limits."""
+FOLLOWS_PITCH = "READER_PITCH"
+"""``READER_PITCHn`` is 1 or -1 where a reader of logs has found that output n follows the pitch command or
+its opposite. PX4 before 1.13 mixes its outputs by files, which no log holds."""
+STANDS_FOR_ELEVATOR = 2.0
+"""Value of such a parameter where the pulses are the pitch command itself, with 500 us for full command."""
+PREFIXES = ("CA_SV_CS", *GROUPS, FOLLOWS_PITCH)
+"""Beginnings of these parameters' names."""
+OUTPUTS = range(1, 17)
+"""Numbers of the outputs of one group."""
+_SURFACES = range(8)
+_SERVO_1 = 201
+"""Output function of servo 0. Functions 101 to 112 are motors."""
+_SERVOS = range(16)
+_ROLES = {
+    1: AILERON,
+    2: AILERON,
+    3: ELEVATOR,
+    4: RUDDER,
+    5: Role("elevon", "left"),
+    6: Role("elevon", "right"),
+    7: Role("V-tail", "left"),
+    8: Role("V-tail", "right"),
+    13: Role("A-tail", "left"),
+    14: Role("A-tail", "right"),
+    15: AILERON,
+}
+"""Value of CA_SV_CSn_TYPE to the role of the surface."""
+_CUSTOM = 12
+_AXES = {AILERON: "R", RUDDER: "Y"}
+"""Axis about which a surface acts that does not pitch."""
+
+WORDS = Words(
+    function="CA_SV_CSn_TYPE",
+    elevator="CA_SV_CSn_TYPE 3",
+    limits="PWM_MAIN_MINn/MAXn",
+    trim="the middle of PWM_MAIN_MINn and MAXn",
+    sense="CA_SV_CSn_TRQ_P and PWM_MAIN_REV of output {n}",
+    unknown="Nothing says which servo output is the elevator: no CA_SV_CSn_TYPE was received, and no output "
+    "follows a pitch command.",
+    usual="its place in actuator_outputs, from 1",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class ServoOutput:
+    """Output that drives a servo."""
+
+    number: int
+    """Number from 1 over all groups that drive anything, with 16 outputs to a group."""
+    servo: int
+    """Number of the servo, from 0."""
+    scale: Scale
+    """Limits and direction of the output, whatever surface the servo moves."""
+
+
+def banks(parameters: Parameters) -> list[str]:
+    """Return the groups with an output that has a function. Outputs 1 to 16 are of the first group, 17 to 32
+    of the next."""
+    return [group for group in GROUPS if any(parameters.get(f"{group}_FUNC{k}", 0.0) for k in OUTPUTS)]
+
+
+def servo_outputs(parameters: Parameters) -> list[ServoOutput]:
+    """Return the first output of each servo. Servo n is on output n + 1 where no output's function is
+    known."""
+    found: dict[int, ServoOutput] = {}
+    for bank, group in enumerate(banks(parameters)):
+        for k in OUTPUTS:
+            servo = int(parameters.get(f"{group}_FUNC{k}", 0.0)) - _SERVO_1
+            if servo in _SERVOS:
+                output = ServoOutput(16 * bank + k, servo, _scale(group, k, parameters))
+                found.setdefault(servo, output)
+    if not banks(parameters):
+        found = {servo: ServoOutput(servo + 1, servo, GROUPS["PWM_MAIN"]) for servo in _SERVOS}
+    return list(found.values())
+
+
+def px4_wiring(parameters: Parameters) -> Wiring:
+    """Return the outputs by the surfaces that they drive, else by the findings of a reader of logs."""
+    surfaces = dict(_surfaces(parameters))
+    if not surfaces:
+        return _followers(parameters)
+    carried = [output for output in servo_outputs(parameters) if output.servo in surfaces]
+    return Wiring(
+        WORDS,
+        {output.number: surfaces[output.servo] for output in carried},
+        {output.number: _turned(output, surfaces[output.servo], parameters) for output in carried},
+        frozenset(output.number for output in carried if _effect(output.servo, "P", parameters)),
+    )
+
+
+def _surfaces(parameters: Parameters) -> Iterator[tuple[int, Role]]:
+    """Yield the servo and the role of each surface that is in use."""
+    count = int(parameters.get("CA_SV_CS_COUNT", len(_SURFACES)))
+    for n in _SURFACES:
+        kind = int(parameters.get(f"CA_SV_CS{n}_TYPE", 0.0))
+        if n < count and kind:
+            pitches_alone = _effect(n, "P", parameters) and not any(
+                _effect(n, axis, parameters) for axis in "RY"
+            )
+            yield n, ELEVATOR if kind == _CUSTOM and pitches_alone else _ROLES.get(kind, Role(""))
+
+
+def _effect(n: int, axis: str, parameters: Parameters) -> float:
+    """Return the torque of surface ``n`` in roll, pitch or yaw (R, P, Y); 0 where unknown."""
+    return parameters.get(f"CA_SV_CS{n}_TRQ_{axis}", 0.0)
+
+
+def _turned(output: ServoOutput, role: Role, parameters: Parameters) -> Scale:
+    """Return the scale of an output, reversed where its surface acts in reverse about its main axis."""
+    lowers = _effect(output.servo, _AXES.get(role, "P"), parameters) < 0.0
+    return replace(output.scale, reversed=output.scale.reversed != lowers)
+
+
+def _scale(group: str, k: int, parameters: Parameters) -> Scale:
+    default = GROUPS[group]
+    ends = sorted(
+        parameters.get(f"{group}_{end}{k}", usual)
+        for end, usual in (("MIN", default.low_us), ("MAX", default.high_us))
+    )
+    centre = parameters.get(f"{group}_CENT{k}", -1.0)
+    trim = centre if ends[0] < centre < ends[1] else 0.5 * sum(ends)
+    return Scale(ends[0], trim, ends[1], bool(int(parameters.get(f"{group}_REV", 0.0)) >> (k - 1) & 1))
+
+
+def _followers(parameters: Parameters) -> Wiring:
+    numbered = ((n, parameters.get(f"{FOLLOWS_PITCH}{n}")) for n in range(1, 49))
+    senses = {n: sense for n, sense in numbered if sense is not None}
+    assumed = ""
+    if senses:
+        assumed = "a guess: it follows the pitch command"
+    if STANDS_FOR_ELEVATOR in senses.values():
+        assumed = "the pitch command, which stands for it"
+    return Wiring(
+        WORDS,
+        dict.fromkeys(senses, ELEVATOR),
+        {n: replace(GROUPS["PWM_MAIN"], reversed=sense < 0.0) for n, sense in senses.items()},
+        frozenset(senses),
+        assumed,
+    )

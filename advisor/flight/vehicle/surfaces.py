@@ -1,0 +1,155 @@
+"""Control surfaces: the servo outputs that move each, and the meaning of their pulse widths.
+
+The deflection is that of the *command*. The estimator models the servo's answer.
+
+Signs: an output that is not reversed rises with the demand, and a positive pitch demand lifts the nose. So
+more PWM is trailing edge up unless the output is reversed. The elevator channel counts trailing edge down as
+positive, which explains the minus in `Scale.deflection`.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from advisor.flight.signals.messages import FloatArray
+
+_FULL_STROKE_RAD = np.radians(25.0)
+_UNUSED_PX4 = 900.0
+
+
+@dataclass(frozen=True, slots=True)
+class Scale:
+    """Pulses of one output at full strokes, taken as 25 degrees, and at zero deflection."""
+
+    low_us: float = 1100.0
+    trim_us: float = 1500.0
+    high_us: float = 1900.0
+    reversed: bool = False
+
+    def deflection(self, pwm_us: FloatArray) -> FloatArray:
+        """Return the surface angle in rad, trailing edge down positive, clipped at the ends."""
+        up = np.interp(pwm_us, [self.low_us, self.trim_us, self.high_us], [-1.0, 0.0, 1.0])
+        return np.asarray((_FULL_STROKE_RAD if self.reversed else -_FULL_STROKE_RAD) * up)
+
+
+@dataclass(frozen=True, slots=True)
+class Calibration:
+    """Pairs (PWM in us, deflection in deg) of the aircraft file, with linear interpolation and no
+    extrapolation."""
+
+    pairs: tuple[tuple[float, float], ...]
+
+    def deflection(self, pwm_us: FloatArray) -> FloatArray:
+        """Return the surface angle in rad, trailing edge down positive, held at the last pair beyond the
+        ends."""
+        pwm, deg = zip(*sorted(self.pairs), strict=True)
+        return np.asarray(np.radians(np.interp(pwm_us, pwm, deg)))
+
+    def carried_over(self, measured: Scale, other: Scale) -> "Calibration":
+        """Return this calibration for another output of the linkage: counted from TRIM, turned by REVERSED.
+
+        Parameters
+        ----------
+        measured
+            Scale of the output with the calibration.
+        other
+            Scale of the other output.
+        """
+        turn = 1.0 if measured.reversed == other.reversed else -1.0
+        moved = ((other.trim_us + turn * (pwm - measured.trim_us), deg) for pwm, deg in self.pairs)
+        return Calibration(tuple(sorted(moved)))
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """One servo output that moves a surface."""
+
+    output: int
+    """Number of the output, 1..32."""
+    scale: Scale | Calibration
+    share: float = 1.0
+    """Share of the surface's deflection. The shares of one surface sum to 1."""
+    sure: bool = True
+    """Whether a calibration or a parameter gives the output's sign."""
+
+
+@dataclass(frozen=True, slots=True)
+class Surface:
+    """One control surface: its outputs, each with a scale and a share."""
+
+    parts: tuple[Part, ...]
+    calibrated: bool
+    """Whether a calibration exists. Without one, the parameters' limits and an assumed 25 deg give the
+    scale."""
+    said: str
+    """Sentence for the user on the outputs and their scale."""
+
+    @property
+    def outputs(self) -> tuple[int, ...]:
+        """Servo outputs 1..32. Elevons, a V-tail, a split elevator or a stabilator with a tab have
+        several."""
+        return tuple(part.output for part in self.parts)
+
+    @property
+    def ports(self) -> tuple[int, ...]:
+        """SERVO_OUTPUT_RAW.port of the banks of 16 that hold the outputs, rising."""
+        return tuple(sorted({(n - 1) // 16 for n in self.outputs}))
+
+    @property
+    def unsure(self) -> tuple[int, ...]:
+        """Outputs, of several, whose sign is unknown. A single output has the surface's sign."""
+        return tuple(part.output for part in self.parts if not part.sure) if len(self.parts) > 1 else ()
+
+    def angles(self, pwm_us: FloatArray) -> FloatArray:
+        """Return the angle that each output commands, rad, from pulses; both of shape (n, number of
+        outputs)."""
+        columns = [part.scale.deflection(pwm_us[:, k]) for k, part in enumerate(self.parts)]
+        return np.stack(columns, axis=1)
+
+    def combined(self, angles: FloatArray, turned: Iterable[int] = ()) -> FloatArray:
+        """Return the surface angle in rad, shape (n,), from the angles of the outputs.
+
+        Parameters
+        ----------
+        angles
+            Shape (n, number of outputs), rad.
+        turned
+            Outputs with the opposite sign.
+        """
+        total = np.zeros(len(angles))
+        # Column by column, because a product of matrices may round differently for another n.
+        for k, part in enumerate(self.parts):
+            total += (-part.share if part.output in turned else part.share) * angles[:, k]
+        return total
+
+    def deflection(self, pwm_us: FloatArray) -> FloatArray:
+        """Return the surface angle in rad from pulses of shape (n, number of outputs)."""
+        return self.combined(self.angles(pwm_us))
+
+
+def driven(pwm_us: FloatArray, autopilot: str) -> NDArray[np.bool_]:
+    """Return the rows in which every output carries a pulse. 0, 65535 and NaN mean none; on PX4, 900 as
+    well."""
+    alive = (pwm_us > 0) & (pwm_us < 65535)
+    if autopilot == "px4":
+        alive &= pwm_us != _UNUSED_PX4
+    return np.asarray(np.all(alive, axis=1))
+
+
+def in_shares(parts: Iterable[Part]) -> tuple[Part, ...]:
+    """Return the parts of one surface, in the order of their outputs, with shares that sum to 1."""
+    ordered = sorted(parts, key=lambda part: part.output)
+    total = sum(part.share for part in ordered)
+    return tuple(replace(part, share=part.share / total) for part in ordered)
+
+
+def joined_numbers(outputs: Sequence[int]) -> str:
+    """Return numbers as a sentence lists them: ``1``, ``1 and 2``, ``1, 2 and 3``."""
+    return listed([str(n) for n in outputs])
+
+
+def listed(words: Sequence[str]) -> str:
+    """Return words as a sentence lists them: ``a``, ``a and b``, ``a, b and c``."""
+    return " and ".join(filter(None, (", ".join(words[:-1]), *words[-1:])))

@@ -1,0 +1,98 @@
+"""Identity of the vehicle: the heartbeat that belongs to an aircraft."""
+
+from dataclasses import dataclass, replace
+
+from advisor.flight.signals.messages import Columns
+from advisor.words.mends import Carrier, Mends, mends_of
+
+# Numbers of MAV_AUTOPILOT and MAV_TYPE, MAVLink common.xml.
+_AUTOPILOT_INVALID = 8
+_AUTOPILOTS = {0: "generic", 3: "ardupilot", 12: "px4", 4: "openpilot", 15: "armazila", 18: "smartap"}
+_PERIPHERALS = frozenset({5, 6, 18, 26, 27, 30, 31, 32, 33, 34, 36, 37, 38, 39, 40, 41, 42})
+"""Types that are no vehicle: antenna tracker, ground station, onboard controller, gimbal, ADS-B, camera, and
+other parts."""
+_MULTICOPTERS = frozenset({2, 13, 14, 15, 29, 35})
+"""Aircraft on four, six, eight, three, twelve and ten rotors."""
+
+
+@dataclass(frozen=True, slots=True)
+class Vehicle:
+    """Autopilot whose messages count."""
+
+    system: int
+    component: int
+    autopilot: str
+    """``ardupilot``, ``px4``, or another name or number of MAV_AUTOPILOT."""
+    type: int
+    """MAV_TYPE of the heartbeat."""
+    firmware: str | None = None
+    """Version that the vehicle states. None before the first statement."""
+    carrier: Carrier = "telemetry"
+    """Kind of record or link that brings the messages, which decides on the remedies."""
+
+    def __str__(self) -> str:
+        return f"{self.autopilot} {self.system}/{self.component}"
+
+    @property
+    def is_multicopter(self) -> bool:
+        """Whether rotors alone steer the vehicle."""
+        return self.type in _MULTICOPTERS
+
+    @property
+    def mends(self) -> Mends:
+        """Remedies for missing or slow messages, in the words of this autopilot."""
+        return mends_of(self.autopilot, self.carrier)
+
+    def with_firmware(self, firmware: str) -> "Vehicle":
+        """Return the vehicle with a known version."""
+        return replace(self, firmware=firmware)
+
+
+def is_aircraft(autopilot: int, kind: int) -> bool:
+    """Return whether a heartbeat with this MAV_AUTOPILOT and MAV_TYPE is that of a vehicle."""
+    return autopilot != _AUTOPILOT_INVALID and kind not in _PERIPHERALS
+
+
+class VehicleFinder:
+    """Chooses the vehicle among all senders of heartbeats.
+
+    Parameters
+    ----------
+    target_system
+        System id that the user asked for. None: the first vehicle heard.
+    """
+
+    def __init__(self, target_system: int | None = None) -> None:
+        self._target = target_system
+        self.vehicle: Vehicle | None = None
+        self.others: set[int] = set()
+        """System ids of the other vehicles on the stream."""
+        self.heard: dict[int, Vehicle] = {}
+        """Every vehicle by its system id, from its first heartbeat."""
+
+    def hear(self, heartbeat: Columns) -> bool:
+        """Take the first row of one sender's heartbeats; return True when it decides the vehicle."""
+        autopilot = int(heartbeat.fields["autopilot"][0])
+        kind = int(heartbeat.fields["type"][0])
+        if not is_aircraft(autopilot, kind):
+            return False
+        name = _AUTOPILOTS.get(autopilot, f"autopilot {autopilot}")
+        vehicle = Vehicle(heartbeat.system, heartbeat.component, name, kind, carrier=heartbeat.carrier)
+        self.heard.setdefault(heartbeat.system, vehicle)
+        if self.vehicle is None and self._target in (None, heartbeat.system):
+            self.follow(vehicle)
+            return True
+        if self.vehicle is None or heartbeat.system != self.vehicle.system:
+            self.others.add(heartbeat.system)
+        return False
+
+    @property
+    def may_choose(self) -> bool:
+        """Whether nobody asked for a vehicle, and there is more than one."""
+        return self._target is None and self.vehicle is not None and bool(self.others)
+
+    def follow(self, vehicle: Vehicle) -> None:
+        """Follow another vehicle."""
+        self.others |= {other for other in self.heard if self.vehicle is not None}
+        self.others.discard(vehicle.system)
+        self.vehicle = vehicle

@@ -1,0 +1,74 @@
+"""Roles, travels and directions of servo outputs, from an autopilot's parameters."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+from advisor.flight.vehicle.surfaces import Part, Scale, Surface, in_shares
+
+Parameters = Mapping[str, float]
+"""Name to the value of each of the vehicle's parameters."""
+
+
+@dataclass(frozen=True, slots=True)
+class Role:
+    """Surface that an output moves."""
+
+    surface: str
+    """``elevator``, ``aileron``, ``rudder``, or a mixed pair: ``elevon``, ``V-tail``, ``A-tail``,
+    ``differential spoiler``."""
+    side: Literal["", "left", "right"] = ""
+    """Half of a mixed pair; empty for a plain surface."""
+
+
+ELEVATOR, AILERON, RUDDER = Role("elevator"), Role("aileron"), Role("rudder")
+
+
+@dataclass(frozen=True, slots=True)
+class Words:
+    """Names of the outputs' parameters for the users of an autopilot."""
+
+    function: str
+    """Parameter of the surface that an output moves."""
+    elevator: str
+    """Setting that makes an output the elevator."""
+    limits: str
+    """Parameters of the pulses at full strokes."""
+    trim: str
+    """Parameter of the pulse at zero deflection."""
+    sense: str
+    """Parameter of an output's direction; ``{n}`` stands for its number."""
+    unknown: str
+    """Sentence with the reason for which no output is the elevator."""
+    usual: str
+    """Usual place of the elevator."""
+
+
+@dataclass(frozen=True, slots=True)
+class Wiring:
+    """Known roles, scales and directions of the servo outputs."""
+
+    words: Words
+    roles: Mapping[int, Role] = field(default_factory=dict)
+    """Output number, from 1, to its role where known. Outputs that move no surface have a role without a
+    name."""
+    scales: Mapping[int, Scale] = field(default_factory=dict)
+    known_directions: frozenset[int] = frozenset()
+    """Outputs whose direction the parameters give."""
+    assumed: str = ""
+    """Sentence on guesses among the roles."""
+
+    def scale(self, n: int) -> Scale:
+        """Return the scale of output ``n``, with ArduPilot's defaults for unknown parameters."""
+        return self.scales.get(n, Scale())
+
+    def outputs_of(self, role: Role) -> list[int]:
+        """Return the outputs with this role, rising."""
+        return sorted(n for n, mine in self.roles.items() if mine == role)
+
+    def surface(self, role: Role) -> Surface | None:
+        """Return the surface of the outputs with this role; None without such a parameter, or for two
+        banks."""
+        outputs = self.outputs_of(role)
+        surface = Surface(in_shares([Part(n, self.scale(n)) for n in outputs]), False, "")
+        return surface if len(surface.ports) == 1 else None

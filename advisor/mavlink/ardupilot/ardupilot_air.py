@@ -1,0 +1,94 @@
+"""Air data of an ArduPilot log: air speed, climb rate, throttle, each at its own stamps."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from advisor.flight.signals.messages import FloatArray, IntArray
+from advisor.mavlink.ardupilot.sensors import Said
+from advisor.mavlink.records.dataflash import Table
+from advisor.mavlink.records.equivalent import nearest
+
+_AIR_SPEED = {"ARSP": "Airspeed", "CTUN": "As", "NTUN": "Arspd"}
+"""Record with the air speed to its field, the best record first."""
+_CLIMB = ("XKF1", "NKF1", "EKF1")
+"""Records of the estimators, whose VD is the rate of descent. The newest estimator comes first."""
+
+
+@dataclass(frozen=True, slots=True)
+class Air:
+    """Air data, and the sentences about their sources."""
+
+    records: list[dict[str, NDArray[Any]]]
+    """Places in the order of arrival, stamps in us and values of one field, each of shape (n,)."""
+    said: list[Said]
+
+
+def air(tables: Mapping[str, Table], interrupted: bool) -> Air:
+    """Return the air data in these records.
+
+    Parameters
+    ----------
+    tables
+        Records by name, of ARSP those of the sensor that flew.
+    interrupted
+        Whether there were times at which no air speed sensor was healthy.
+    """
+    speed, said = _airspeed(tables, interrupted)
+    descent = _first(tables, [(record, "VD") for record in _CLIMB])
+    climb = _first(tables, [("BARO", "CRt")]) if descent is None else (descent[0], -descent[1])
+    found = {"climb": climb, "throttle": _first(tables, [("CTUN", "ThO")])}
+    others = [
+        # The orders of one record are consecutive: CTUN may hold air speed and throttle.
+        {"order": one[0].order + place, "time_usec": one[0].time_us, field: one[1]}
+        for place, (field, one) in enumerate(found.items(), start=2)
+        if one is not None
+    ]
+    return Air([*speed, *others], said)
+
+
+def _airspeed(
+    tables: Mapping[str, Table], interrupted: bool
+) -> tuple[list[dict[str, NDArray[Any]]], list[Said]]:
+    """Return the air speed of the best record, and of the next one where no sensor was healthy."""
+    sources = [
+        (tables[name], field)
+        for name, field in _AIR_SPEED.items()
+        if name in tables and field in tables[name].fields
+    ]
+    if not sources:
+        return [], []
+    (best, field), *spare = sources
+    order, time_us, speed = best.order, best.time_us, best.fields[field].astype(np.float64)
+    said = []
+    if interrupted and spare:
+        # The autopilot's own air speed goes on without a sensor.
+        stand_in, spare_field = spare[0]
+        rows = _away_from(time_us, stand_in.time_us)
+        text = f"Air speed: the autopilot's own ({spare_field}) stands in where no sensor was healthy"
+        said.append(Said(int(stand_in.order[0]), int(stand_in.time_us[0]), text))
+        order = np.concatenate([order, stand_in.order[rows]])
+        time_us = np.concatenate([time_us, stand_in.time_us[rows]])
+        speed = np.concatenate([speed, stand_in.fields[spare_field][rows]])
+    return [{"order": order + 1, "time_usec": time_us, "airspeed": speed}], said
+
+
+def _first(tables: Mapping[str, Table], places: Iterable[tuple[str, str]]) -> tuple[Table, FloatArray] | None:
+    """Return the first record that has its field, and the field's values; None without one."""
+    for name, field in places:
+        if name in tables and field in tables[name].fields:
+            table = tables[name].first_instance()
+            return table, table.fields[field].astype(np.float64)
+    return None
+
+
+def _away_from(time_us: IntArray, other_us: IntArray) -> NDArray[np.bool_]:
+    """Return whether each other time is farther from all times than three intervals of these."""
+    if len(time_us) < 2:
+        return np.ones(len(other_us), dtype=np.bool_)
+    apart_us = np.abs(other_us - time_us[nearest(other_us, time_us)])
+    far: NDArray[np.bool_] = apart_us > 3.0 * float(np.median(np.diff(time_us)))
+    return far

@@ -1,0 +1,115 @@
+"""Records of every firmware since 2013 under today's names, each with its time since boot.
+
+Firmware of 2013 to 2015 stamped records in milliseconds and numbered channels ``Chan1`` or ``Ch1``. A second
+sensor had a record of its own, and some records had no time at all (ArduPilot, DataFlash.h and
+ArduPlane/Log.cpp of those years).
+"""
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from advisor.flight.signals.messages import IntArray
+from advisor.mavlink.records.dataflash import Table
+
+SENSORS_APART = {
+    "IMU": ("IMU2", "IMU3"),
+    "ARSP": ("ASP2",),
+    "GYR": ("GYR1", "GYR2", "GYR3"),
+    "ACC": ("ACC1", "ACC2", "ACC3"),
+}
+"""Today's record, with a sensor's number in the field I, to the former records of the further sensors."""
+_RENAMED = {
+    "CTUN": {"ThrOut": "ThO"},
+    "GPS": {"Week": "GWk", "TimeMS": "GMS"},
+    "IMU": {"GyHlt": "GH", "AcHlt": "AH"},
+}
+_CHANNEL = re.compile(r"(?:Chan|Ch)(\d+)")
+_1970_US = 10**15
+"""Least stamp, us, that counts from 1970 and not from boot: 31 years."""
+
+
+@dataclass(frozen=True, slots=True)
+class Clocked:
+    """The records of a log on one clock."""
+
+    tables: Mapping[str, Table]
+    """Tables by today's names. Every table has TimeUS, int64."""
+    epoch_s: int
+    """Seconds since 1970 at TimeUS 0 for a log that counted from 1970; 0 for a log that counts from boot."""
+
+
+def in_todays_names(tables: Mapping[str, Table]) -> Clocked:
+    """Return all records of a log, renamed, on one clock, with several records of one kind of sensor
+    joined."""
+    named = {name: _renamed(name, table) for name, table in tables.items()}
+    timed = _timed(named)
+    stamps = np.concatenate([table.time_us for table in timed.values()]) if timed else np.zeros(0, np.int64)
+    epoch_s = 0
+    if len(stamps) and np.median(stamps) > _1970_US:
+        epoch_s = int(np.min(stamps[stamps > _1970_US])) // 1_000_000
+        timed = {name: _at(table, table.time_us - 1_000_000 * epoch_s) for name, table in timed.items()}
+    return Clocked(_joined(timed), epoch_s)
+
+
+def _renamed(name: str, table: Table) -> Table:
+    """Return the fields under today's names, with TimeUS where the record states its time since boot in any
+    unit."""
+    fields = dict(table.fields)
+    if "TimeUS" in fields:
+        fields["TimeUS"] = fields["TimeUS"].astype(np.int64)
+    else:
+        # TimeMS of GPS is the time of the week, and T the time since boot.
+        stated = "T" if name == "GPS" else "TimeMS"
+        if stated in fields:
+            fields["TimeUS"] = 1000 * fields[stated].astype(np.int64)
+    renamed = _RENAMED.get(name, {})
+    channels = name in ("RCOU", "RCIN")
+    found = {}
+    for field, values in fields.items():
+        numbered = _CHANNEL.fullmatch(field) if channels else None
+        found[f"C{numbered[1]}" if numbered else renamed.get(field, field)] = values
+    return replace(table, fields=found)
+
+
+def _timed(tables: Mapping[str, Table]) -> dict[str, Table]:
+    """Return the tables with a time for each record. A record without time takes that of the stamped record
+    before it."""
+    stamped = [table for table in tables.values() if "TimeUS" in table.fields]
+    if not stamped:
+        return {}
+    order = np.concatenate([table.order for table in stamped])
+    time_us = np.concatenate([table.time_us for table in stamped])
+    rows = np.argsort(order)
+    order, time_us = order[rows], time_us[rows]
+    found = {}
+    for name, table in tables.items():
+        if "TimeUS" not in table.fields:
+            before = np.searchsorted(order, table.order, side="right") - 1
+            table = _at(table, time_us[np.maximum(before, 0)])
+        found[name] = table
+    return found
+
+
+def _at(table: Table, time_us: IntArray) -> Table:
+    return replace(table, fields={**table.fields, "TimeUS": np.maximum(time_us, 0)})
+
+
+def _joined(tables: Mapping[str, Table]) -> dict[str, Table]:
+    """Return the tables with former records of further sensors as further numbers in the field I of the
+    first."""
+    found = dict(tables)
+    for name, apart in SENSORS_APART.items():
+        further = [found.pop(other) for other in apart if other in found]
+        if not further:
+            continue
+        sensors = ([found[name]] if name in found else []) + further
+        shared = set.intersection(*(set(table.fields) for table in sensors)) - {"I"}
+        numbers = [np.full(len(table), number, np.int64) for number, table in enumerate(sensors)]
+        order = np.concatenate([table.order for table in sensors])
+        rows = np.argsort(order)
+        fields = {f: np.concatenate([table.fields[f] for table in sensors])[rows] for f in shared}
+        found[name] = Table(order[rows], {**fields, "I": np.concatenate(numbers)[rows]})
+    return found

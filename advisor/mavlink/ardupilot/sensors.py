@@ -1,0 +1,178 @@
+"""Choice among several sensors of one kind in an ArduPilot log: healthy, in use, and primary."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from advisor.flight.signals.messages import IntArray
+from advisor.mavlink.records.dataflash import Table
+from advisor.mavlink.records.equivalent import latest
+from advisor.words.vehicle_time import between, clock
+
+BoolArray = NDArray[np.bool_]
+
+_HEALTH = ("H", "GH", "AH")
+"""Fields of health (air speed, gyro and accelerometer), 1 for healthy."""
+_IN_USE = "U"
+"""Field that is 1 where the autopilot uses the sensor."""
+_MOVING = ("GyrX", "GyrY", "GyrZ", "AccX", "AccY", "AccZ")
+"""Fields of IMU. Noise moves at least one of them from sample to sample."""
+_FROZEN_S = 0.5
+"""Time, s, of constant values after which an inertial sensor counts as dead, whatever its health says. A
+sound sensor repeats its values at most once, when records come faster than samples."""
+
+
+def flown(table: Table) -> Table:
+    """Return the records of the sensor in use at each time; none where no sensor was healthy.
+
+    ARSP.Pri names the primary sensor. Where that sensor is not both healthy and in use, the lowest-numbered
+    such sensor counts. Without one, the lowest-numbered healthy sensor counts. (ArduPilot log messages ARSP
+    and IMU.)
+    """
+    if len(table) == 0:
+        return table
+    instance = _numbers(table)
+    numbers = np.unique(instance)
+    worth = _healthy(table, instance).astype(np.int64) * (1 + _used(table))
+    state = np.zeros((len(numbers), len(table)), dtype=np.int64)
+    for row, number in enumerate(numbers):
+        own = instance == number
+        known = latest(table.order, table.order[own], worth[own])
+        state[row] = np.where(np.isnan(known), worth[own][0], known)
+    place = np.argmax(state, axis=0)
+    if "Pri" in table.fields:
+        primary = np.searchsorted(numbers, table.fields["Pri"].astype(np.int64)).clip(0, len(numbers) - 1)
+        named = numbers[primary] == table.fields["Pri"]
+        place = np.where(named & (state[primary, np.arange(len(table))] == 2), primary, place)
+    mine = (instance == numbers[place]) & (worth > 0)
+    return table if np.all(mine) else table[mine]
+
+
+@dataclass(frozen=True, slots=True)
+class Said:
+    """One sentence about the sensor in use, with the record that the sentence belongs to."""
+
+    order: int
+    """Position of the record in the file, bytes."""
+    time_us: int
+    """Microseconds since boot."""
+    text: str
+
+
+def said(every: Table, table: Table, quantity: str) -> list[Said]:
+    """Return sentences on the first sensor in use, on each change of sensor, and on times without a healthy
+    one.
+
+    Where sensor 0 is in use throughout, there is no sentence.
+
+    Parameters
+    ----------
+    every
+        Records of all sensors.
+    table
+        Records of the sensor in use, from :func:`flown`.
+    quantity
+        Name of the measured quantity.
+    """
+    return [*_doubts(every, quantity), *_changes(table, quantity), *_silences(every, table, quantity)]
+
+
+def _doubts(every: Table, quantity: str) -> list[Said]:
+    """Return a sentence where no record states any sensor as healthy. All sensors then count as healthy."""
+    if len(every) == 0 or _spoken_for(every) == _stated(every):
+        return []
+    text = f"{quantity}: no sensor is ever stated to be healthy, and they are used all the same"
+    return [Said(int(every.order[0]), int(every.time_us[0]), text)]
+
+
+def _changes(table: Table, quantity: str) -> list[Said]:
+    instance = _numbers(table)
+    rows = np.flatnonzero(np.diff(instance, prepend=-1))
+    if instance[rows].tolist() in ([], [0]):
+        return []
+    sentences = []
+    for row in rows.tolist():
+        since = f" since {clock(table.time_us[row] / 1e6)}" if row else ""
+        text = f"{quantity}: sensor {instance[row]} flew{since}"
+        sentences.append(Said(int(table.order[row]), int(table.time_us[row]), text))
+    return sentences
+
+
+def _silences(every: Table, table: Table, quantity: str) -> list[Said]:
+    sentences = []
+    for first, last in silent(every, table):
+        start_s, end_s = every.time_us[[first, last]] / 1e6
+        text = f"{quantity}: no sensor was healthy from {between(start_s, end_s)} and none is used there"
+        sentences.append(Said(int(every.order[first]), int(every.time_us[first]), text))
+    return sentences
+
+
+def silent(every: Table, table: Table) -> list[tuple[int, int]]:
+    """Return stretches with records but without a healthy sensor: rows of ``every``, first and last.
+
+    Parameters
+    ----------
+    every
+        Records of all sensors.
+    table
+        Records of the sensor in use, from :func:`flown`.
+    """
+    if len(table) == len(every):
+        return []
+    # A stretch without a healthy sensor is longer than the interval of the records of the sensor in use.
+    usual_us = float(np.median(np.diff(table.time_us))) if len(table) > 1 else 0.0
+    edges = np.concatenate(([every.time_us[0] - usual_us], table.time_us, [every.time_us[-1] + usual_us]))
+    found = []
+    for gap in np.flatnonzero(np.diff(edges) > 3.0 * max(usual_us, 1.0)).tolist():
+        within = np.flatnonzero((every.time_us > edges[gap]) & (every.time_us < edges[gap + 1]))
+        if len(within):
+            found.append((int(within[0]), int(within[-1])))
+    return found
+
+
+def _numbers(table: Table) -> IntArray:
+    """Return the sensor number of each record, shape (n,)."""
+    if "I" not in table.fields:
+        return np.zeros(len(table), dtype=np.int64)
+    return table.fields["I"].astype(np.int64)
+
+
+def _used(table: Table) -> BoolArray:
+    return np.asarray(table.fields.get(_IN_USE, np.ones(len(table))) != 0)
+
+
+def _healthy(table: Table, instance: IntArray) -> BoolArray:
+    good = np.ones(len(table), dtype=np.bool_)
+    for name in _spoken_for(table):
+        good &= table.fields[name] != 0
+    if set(_MOVING) <= table.fields.keys():
+        for number in np.unique(instance):
+            own = np.flatnonzero(instance == number)
+            good[own] &= ~_frozen(table[own])
+    return good
+
+
+def _stated(table: Table) -> list[str]:
+    """Return the fields of health in the records."""
+    return [name for name in _HEALTH if name in table.fields]
+
+
+def _spoken_for(table: Table) -> list[str]:
+    """Return the fields that ever state a healthy sensor. A field that never does cannot distinguish sensors
+    or times."""
+    return [name for name in _stated(table) if np.any(table.fields[name] != 0)]
+
+
+def _frozen(table: Table) -> BoolArray:
+    """Return records of one inertial sensor that belong to a stretch of ``_FROZEN_S`` without any change."""
+    values = np.stack([table.fields[name] for name in _MOVING], axis=1)
+    moved = np.concatenate(([True], np.any(np.diff(values, axis=0) != 0.0, axis=1)))
+    stretch = np.cumsum(moved) - 1
+    first = np.flatnonzero(moved)
+    last = np.concatenate((first[1:], [len(table)])) - 1
+    lasts_us = table.time_us[last] - table.time_us[first]
+    # A model without noise at rest has no rates either, but it has its weight.
+    at_rest = np.all(values[:, :3] == 0.0, axis=1) & np.any(values[:, 3:] != 0.0, axis=1)
+    frozen: BoolArray = (lasts_us >= 1e6 * _FROZEN_S)[stretch] & ~at_rest
+    return frozen

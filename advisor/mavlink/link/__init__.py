@@ -1,0 +1,1 @@
+"""The live link: opened, kept alive, recorded, asked."""

@@ -1,0 +1,95 @@
+"""Messages of the advisor on a link, and their distribution to those who need them."""
+
+from collections.abc import Callable, Iterable
+from typing import Any
+
+from pymavlink.dialects.v20 import ardupilotmega as dialect
+
+from advisor.mavlink.link.intake import HEARTBEAT
+from advisor.mavlink.link.outgoing import Ids, Packer, Talker
+from advisor.mavlink.wire.framing import Frame
+from advisor.mavlink.wire.signing import signing_time
+
+Send = Callable[[bytes], bool]
+"""Function that sends one frame, and returns False without a receiver."""
+
+
+class Conversation:
+    """All talkers of one link, packed under their ids.
+
+    Parameters
+    ----------
+    talkers
+        Talkers of the link.
+    own
+        Ids of the advisor.
+    key
+        32-byte signing key; None: frames are not signed.
+    """
+
+    def __init__(self, talkers: Iterable[Talker], own: Ids, key: bytes | None) -> None:
+        self._talkers = list(talkers)
+        self._own = own
+        self._packer = Packer(key)
+
+    def join(self, talker: Talker) -> None:
+        """Add a talker."""
+        self._talkers.append(talker)
+
+    def hear(self, frames: list[Frame], vehicle: Ids | None, now_s: float) -> list[str]:
+        """Pass the vehicle's frames and every heartbeat to the talkers; return sentences for the crew, each
+        once."""
+        system = vehicle[0] if vehicle is not None else None
+        heard = [frame for frame in frames if frame.system == system or frame.message_id == HEARTBEAT]
+        said = []
+        for talker in self._talkers:
+            for frame in heard:
+                talker.hear(frame, now_s)
+            said += talker.report()
+        return said
+
+    def speak(
+        self, vehicle: Ids | None, reachable: bool, now_s: float, unix_s: float, send: Send
+    ) -> list[bytes]:
+        """Send the due messages; return the frames that could be sent.
+
+        Parameters
+        ----------
+        vehicle
+            Vehicle that is followed. None before the first heartbeat.
+        reachable
+            Whether the vehicle receives messages.
+        now_s, unix_s
+            The reader's monotonic time, and the host's time since 1970, s.
+        send
+            Sends one frame.
+        """
+        hearing = vehicle if reachable else None
+        return [
+            raw
+            for talker in self._talkers
+            for raw in self._send(talker, talker.speak(hearing, now_s), vehicle, unix_s, send)
+        ]
+
+    def leave(self, vehicle: Ids | None, now_s: float, unix_s: float, send: Send) -> list[bytes] | None:
+        """Send the talkers' last messages before the link is closed; None: no answer is awaited any more."""
+        last = [talker.leave(now_s) for talker in self._talkers]
+        if all(messages is None for messages in last):
+            return None
+        return [
+            raw
+            for talker, messages in zip(self._talkers, last, strict=True)
+            for raw in self._send(talker, messages or [], vehicle, unix_s, send)
+        ]
+
+    def note(self, text: bytes, unix_s: float) -> bytes:
+        """Return a frame with a text of the advisor for its own stream alone. Nothing is sent."""
+        message = dialect.MAVLink_statustext_message(dialect.MAV_SEVERITY_INFO, text)
+        return self._packer.pack(message, self._own, signing_time(unix_s))
+
+    def _send(
+        self, talker: Talker, messages: Iterable[Any], vehicle: Ids | None, unix_s: float, send: Send
+    ) -> list[bytes]:
+        source = talker.source(self._own, vehicle or self._own)
+        frames = [self._packer.pack(message, source, signing_time(unix_s)) for message in messages]
+        return [raw for raw in frames if send(raw)]

@@ -1,0 +1,88 @@
+"""Health of a link: counted frame by frame, read as one snapshot."""
+
+import math
+from collections import Counter, deque
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from advisor.mavlink.wire.framing import Frame
+
+RATE_WINDOW_S = 2.0
+
+
+@dataclass(frozen=True, slots=True)
+class Notice:
+    """A message about the link for the crew."""
+
+    at_s: float
+    """Host time, seconds since 1970."""
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class LinkStatistics:
+    """Counts of a link at one moment."""
+
+    connected: bool = False
+    vehicle: tuple[int, int] | None = None
+    """System and component of the followed vehicle. None before the first heartbeat of an autopilot."""
+    messages: int = 0
+    """Frames taken from every system."""
+    messages_per_s: float = 0.0
+    """Rate of frames over the last two seconds."""
+    vehicle_messages: int = 0
+    """Frames taken from the vehicle, each counted once."""
+    lost: int = 0
+    """Frames of the vehicle missing by its sequence numbers."""
+    repeated: int = 0
+    """Frames of the vehicle that a second path brought again."""
+    repeated_after_s: float = math.nan
+    """Mean delay of a repeat after the first copy, s."""
+    late: int = 0
+    """Frames of the vehicle that arrived after a younger one."""
+    bad_crc: int = 0
+    garbage_bytes: int = 0
+    refused: Mapping[str, int] = field(default_factory=dict)
+    """Refused frames by reason: ``unsigned``, ``forged``, ``replayed``."""
+    silent_s: float = 0.0
+    """Time since the vehicle was last heard."""
+    reconnects: int = 0
+    recording: Path | None = None
+    recorded_bytes: int = 0
+    recording_problem: str | None = None
+    """Reason for which the disk accepts nothing at this moment."""
+
+    @property
+    def lost_percent(self) -> float:
+        """Share of the vehicle's frames that never came."""
+        sent = self.vehicle_messages + self.lost
+        return 100.0 * self.lost / sent if sent else 0.0
+
+    @property
+    def repeated_percent(self) -> float:
+        """Share of the vehicle's frames that came twice."""
+        return 100.0 * self.repeated / self.vehicle_messages if self.vehicle_messages else 0.0
+
+
+class LinkCounters:
+    """Counts behind ``LinkStatistics``. Times are the monotonic seconds of the reader."""
+
+    def __init__(self) -> None:
+        self.messages = 0
+        self.refused: Counter[str] = Counter()
+        self._recent: deque[tuple[float, int]] = deque()
+
+    def add(self, frames: list[Frame], now_s: float) -> None:
+        """Count a batch of accepted frames."""
+        self.messages += len(frames)
+        self._recent.append((now_s, len(frames)))
+        self._forget(now_s)
+
+    def _forget(self, now_s: float) -> None:
+        while self._recent and self._recent[0][0] < now_s - RATE_WINDOW_S:
+            self._recent.popleft()
+
+    def rate(self, now_s: float) -> float:
+        """Return frames per second over the last ``RATE_WINDOW_S``."""
+        return sum(n for t, n in tuple(self._recent) if t >= now_s - RATE_WINDOW_S) / RATE_WINDOW_S

@@ -1,0 +1,121 @@
+"""Questions to the vehicle: the roles of its outputs, and its firmware."""
+
+from typing import Any
+
+from pymavlink.dialects.v20 import ardupilotmega as dialect
+
+from advisor.mavlink.link.outgoing import Talker
+from advisor.mavlink.link.questions import ArduPilotQuestions, Px4Questions, Questions
+from advisor.mavlink.wire.framing import Frame
+
+ANSWER_WITHIN_S = 1.0
+MOST_TRIES = 3
+AT_ONCE = 10
+
+_HEARTBEAT, _PARAM_VALUE = dialect.MAVLINK_MSG_ID_HEARTBEAT, dialect.MAVLINK_MSG_ID_PARAM_VALUE
+
+
+class Inquiry(Talker):
+    """Reads the parameters that give the elevator's output and its scale.
+
+    ArduPilot's questions are asked until a heartbeat shows PX4. A few questions are open at a time. An
+    unanswered one is repeated and then given up, because a vehicle does not answer for a parameter that it
+    lacks. The answers reach the advisor like every other message of the link. Here they only decide on the
+    next question. Another vehicle is asked anew.
+
+    Parameters
+    ----------
+    outputs_only
+        Whether to ask for the outputs alone, not for stream rates, the ground station's id and the firmware.
+    """
+
+    def __init__(self, outputs_only: bool = False) -> None:
+        self._outputs_only = outputs_only
+        self._vehicle: tuple[int, int] | None = None
+        self._begin()
+
+    def _begin(self) -> None:
+        self._questions: Questions = ArduPilotQuestions()
+        self._to_ask = self._first_questions()
+        self._standing: dict[str, tuple[float, int]] = {}
+        self._firmware_asked = self._outputs_only
+        self._told = False
+        self.parameters: dict[str, float] = {}
+        """Answers so far."""
+
+    def _first_questions(self) -> list[str]:
+        return list(self._questions.outputs if self._outputs_only else self._questions.first)
+
+    @property
+    def done(self) -> bool:
+        """Whether every question was answered or given up."""
+        return not self._to_ask and not self._standing
+
+    def hear(self, frame: Frame, now_s: float) -> None:
+        """Take an answer, or the autopilot's heartbeat."""
+        payload = frame.payload.ljust(25, b"\0")
+        if frame.message_id == _HEARTBEAT:
+            is_px4 = payload[5] == dialect.MAV_AUTOPILOT_PX4
+            if is_px4 and not isinstance(self._questions, Px4Questions):
+                self._questions = Px4Questions()
+                self._to_ask = [name for name in self._first_questions() if name not in self.parameters]
+                self._standing.clear()
+        if frame.message_id != _PARAM_VALUE:
+            return
+        name = payload[8:24].partition(b"\0")[0].decode("ascii", "replace")
+        known = name in self.parameters
+        value = self.parameters[name] = self._questions.value(payload)
+        self._standing.pop(name, None)
+        if name in self._to_ask:
+            self._to_ask.remove(name)
+        if not known:
+            details = self._questions.follow(name, value)
+            self._to_ask += [detail for detail in details if detail not in self.parameters]
+
+    def speak(self, vehicle: tuple[int, int] | None, now_s: float) -> list[Any]:
+        """Return the questions that are due."""
+        if vehicle is None:
+            return []
+        if self._vehicle not in (None, vehicle):
+            self._begin()
+        self._vehicle = vehicle
+        questions = []
+        if not self._firmware_asked:
+            self._firmware_asked = True
+            questions.append(_ask_for_firmware(vehicle))
+        for name, (asked_s, tries) in list(self._standing.items()):
+            if now_s - asked_s < ANSWER_WITHIN_S:
+                continue
+            if tries == MOST_TRIES:
+                del self._standing[name]
+            else:
+                self._standing[name] = (now_s, tries + 1)
+                questions.append(_ask_for_parameter(vehicle, name))
+        while self._to_ask and len(self._standing) < AT_ONCE:
+            name = self._to_ask.pop(0)
+            self._standing[name] = (now_s, 1)
+            questions.append(_ask_for_parameter(vehicle, name))
+        return questions
+
+    def report(self) -> list[str]:
+        """Return a sentence on the answers, once everything was asked."""
+        if self._told or not self.done:
+            return []
+        self._told = True
+        if not self.parameters:
+            return ["the vehicle was asked which output is the elevator and did not answer"]
+        return [f"{len(self.parameters)} parameters of the vehicle heard"]
+
+
+def _ask_for_parameter(vehicle: tuple[int, int], name: str) -> Any:
+    return dialect.MAVLink_param_request_read_message(*vehicle, name.encode(), -1)
+
+
+def _ask_for_firmware(vehicle: tuple[int, int]) -> Any:
+    return dialect.MAVLink_command_long_message(
+        *vehicle,
+        dialect.MAV_CMD_REQUEST_MESSAGE,
+        0,
+        dialect.MAVLINK_MSG_ID_AUTOPILOT_VERSION,
+        *[0.0] * 6,
+    )

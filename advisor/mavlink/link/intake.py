@@ -1,0 +1,117 @@
+"""From pieces of a connection to accepted frames, and to the vehicle that sends them."""
+
+from collections.abc import Mapping
+
+from advisor.flight.vehicle.vehicle import is_aircraft
+from advisor.mavlink.link.ground_stations import is_ground_station
+from advisor.mavlink.link.health import LinkCounters
+from advisor.mavlink.link.transport import Peer
+from advisor.mavlink.wire.framing import Frame, FrameCutter
+from advisor.mavlink.wire.signing import RADIO_STATUS, SignatureCheck
+
+HEARTBEAT = 0
+MOST_PEERS = 64
+
+
+class Intake:
+    """Cuts, checks and counts frames; knows the vehicle and its network address.
+
+    Parameters
+    ----------
+    crc_extra
+        Message id to the checksum's seed.
+    target_system
+        System id of the vehicle; None: the first autopilot heard.
+    signatures
+        Check of signatures. None: unsigned frames are accepted.
+    """
+
+    def __init__(
+        self, crc_extra: Mapping[int, int], target_system: int | None, signatures: SignatureCheck | None
+    ) -> None:
+        self._crc_extra = crc_extra
+        self._target_system = target_system
+        self._signatures = signatures
+        self._cutters: dict[Peer, FrameCutter] = {}
+        self._bad_crc = 0
+        self._garbage_bytes = 0
+        self.counters = LinkCounters()
+        self.ground_stations: set[int] = set()
+        """System ids of ground stations heard."""
+        self.vehicle: tuple[int, int] | None = None
+        self._peers: dict[int, Peer] = {}
+        self.other_vehicles: set[int] = set()
+        """System ids of other autopilots than the vehicle."""
+
+    def take(self, pieces: list[tuple[Peer, bytes]], now_s: float) -> list[Frame]:
+        """Return the frames that these pieces complete, of every system, in order of arrival."""
+        taken: list[Frame] = []
+        for peer, data in pieces:
+            frames = [frame for frame in self._cutter(peer).feed(data) if self._believed(frame)]
+            for frame in frames:
+                if frame.message_id == HEARTBEAT:
+                    self._meet(frame)
+            self._peers.update((frame.system, peer) for frame in frames)
+            taken += frames
+        self.counters.add(taken, now_s)
+        return taken
+
+    @property
+    def vehicle_peer(self) -> Peer | None:
+        """Network address of the vehicle."""
+        return self._peers.get(self.vehicle[0]) if self.vehicle is not None else None
+
+    def follow(self, vehicle: tuple[int, int]) -> None:
+        """Follow another vehicle."""
+        if self.vehicle is not None:
+            self.other_vehicles.add(self.vehicle[0])
+        self.other_vehicles.discard(vehicle[0])
+        self.vehicle = vehicle
+
+    def forget_pieces(self) -> None:
+        """Drop incomplete frames after a cut of the connection."""
+        for cutter in self._cutters.values():
+            self._bad_crc += cutter.bad_crc
+            self._garbage_bytes += cutter.garbage_bytes
+        self._cutters.clear()
+
+    @property
+    def bad_crc(self) -> int:
+        """Frames with a wrong checksum."""
+        return self._bad_crc + sum(cutter.bad_crc for cutter in tuple(self._cutters.values()))
+
+    @property
+    def garbage_bytes(self) -> int:
+        """Bytes outside any frame."""
+        return self._garbage_bytes + sum(cutter.garbage_bytes for cutter in tuple(self._cutters.values()))
+
+    def _cutter(self, peer: Peer) -> FrameCutter:
+        cutter = self._cutters.get(peer)
+        if cutter is None:
+            if len(self._cutters) >= MOST_PEERS:  # somebody changes his port with every packet
+                self.forget_pieces()
+            cutter = self._cutters[peer] = FrameCutter(self._crc_extra)
+        return cutter
+
+    def _believed(self, frame: Frame) -> bool:
+        if self._signatures is None or frame.message_id == RADIO_STATUS:
+            return True
+        verdict = self._signatures.verdict(frame.raw)
+        if verdict != "ok":
+            self.counters.refused[verdict] += 1
+        return verdict == "ok"
+
+    def _meet(self, heartbeat: Frame) -> None:
+        if is_ground_station(heartbeat):
+            self.ground_stations.add(heartbeat.system)
+            return
+        payload = heartbeat.payload.ljust(9, b"\0")
+        kind, autopilot = payload[4], payload[5]
+        if not is_aircraft(autopilot, kind):
+            return
+        if self._target_system is not None and heartbeat.system != self._target_system:
+            return
+        if self.vehicle is None:
+            self.vehicle = (heartbeat.system, heartbeat.component)
+        elif heartbeat.system != self.vehicle[0]:
+            self.other_vehicles.add(heartbeat.system)

@@ -1,0 +1,132 @@
+"""Task of the link's process, and its messages to and from its readers."""
+
+import contextlib
+import os
+import secrets
+import tempfile
+from dataclasses import dataclass, field
+from multiprocessing.connection import Client, Connection
+from pathlib import Path
+from typing import Literal
+
+from advisor.mavlink.link.health import LinkStatistics, Notice
+
+
+@dataclass(frozen=True, slots=True)
+class Door:
+    """Address of a link's process. Only holders of the key are let in."""
+
+    address: str
+    key: bytes = field(repr=False)
+
+    def open(self) -> Connection:
+        """Connect to the process.
+
+        Raises
+        ------
+        OSError
+            No process answers there.
+        """
+        return Client(self.address, authkey=self.key)
+
+    def clear(self) -> None:
+        """Remove the files of a local socket."""
+        if os.name != "nt":
+            with contextlib.suppress(OSError):
+                Path(self.address).unlink(missing_ok=True)
+                Path(self.address).parent.rmdir()
+
+
+def new_door() -> Door:
+    """Return a new private address: a local socket in a folder of its own, or a named pipe on Windows."""
+    name = secrets.token_hex(8)
+    if os.name == "nt":
+        return Door(rf"\\.\pipe\advisor-{name}", secrets.token_bytes(32))
+    return Door(str(Path(tempfile.mkdtemp(prefix="advisor-")) / "link"), secrets.token_bytes(32))
+
+
+@dataclass(frozen=True, slots=True)
+class Keeping:
+    """Description of a link and its recording, for the process of the link."""
+
+    master: str
+    """Connection, as in pymavlink."""
+    door: Door
+    source_system: int
+    target_system: int | None = None
+    record_to: Path | None = None
+    goes_on: bool = False
+    """Whether the recording exists and is appended to."""
+    signing_key: bytes | None = field(default=None, repr=False)
+    request_rates: bool = False
+    announce: bool = False
+    announce_to: str | None = None
+    """Connection to a ground station for announcements. None: announcements go over the link."""
+    inherited: int | None = None
+    """File descriptor of an earlier process's UDP socket, in which packets wait. None: open one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Hello:
+    """First answer to a reader, with the position in the recording."""
+
+    recording: Path | None
+    written: int
+    """Bytes of the recording that the reader finds in the file."""
+    unsaved: bytes
+    """Records that follow and are not in the file yet."""
+    before: int
+    """Bytes at the start of the recording from an earlier flight."""
+
+
+@dataclass(frozen=True, slots=True)
+class Heard:
+    """The next records, for every reader."""
+
+    at: int
+    """Position of the records in the recording, bytes from its start."""
+    records: bytes
+
+
+@dataclass(frozen=True, slots=True)
+class Told:
+    """Health of the link, several times a second, with the notices since the last one."""
+
+    statistics: LinkStatistics
+    notices: tuple[Notice, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Judged:
+    """Asks the process of the link to announce a verdict, where announcements are on."""
+
+    maneuver: int
+    sentence: str
+    stop: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class Order:
+    """Asks for a call of one of the link's methods, with a request of a crew or a reader."""
+
+    method: Literal["listen_to", "follow", "take_output", "ask_for_outputs"]
+    arguments: tuple[object, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Listen:
+    """Asks for everything heard so far, and for all later records."""
+
+
+@dataclass(frozen=True, slots=True)
+class Guard:
+    """Says that the sender looks after the process. When the sender goes without ``Stop``, the process is
+    alone.
+
+    The answer says whether the descriptor of a UDP socket follows.
+    """
+
+
+@dataclass(frozen=True, slots=True)
+class Stop:
+    """Asks the process to close the link and the recording, and to end."""

@@ -1,0 +1,172 @@
+"""Supervision of a link's process by the process with the screens."""
+
+import contextlib
+import os
+import pickle
+import subprocess
+import sys
+import threading
+from dataclasses import replace
+from multiprocessing.connection import Connection
+from multiprocessing.reduction import recv_handle
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+from advisor.aircraft.aircraft import Elevator
+from advisor.mavlink.link.keeping import Guard, Keeping, Stop
+from advisor.mavlink.link.kept_link import KeptLink
+from advisor.mavlink.link.running_links import RunningLink
+from advisor.process.interrupt import hung_up
+
+RETRY_EVERY_S = 1.0
+PATIENCE_S = 10.0
+"""Longest time that a process may take to close its recording, s."""
+
+
+class LinkProcess:
+    """Starts the process of a link, restarts it after any unwanted end, and stops it.
+
+    Parameters
+    ----------
+    keeping
+        Description of the link and its recording.
+    running
+        Running process that keeps this link and that nobody looks after. None: start one.
+    """
+
+    def __init__(self, keeping: Keeping, running: RunningLink | None = None) -> None:
+        self._keeping = keeping
+        self._running = running
+        self._process: subprocess.Popen[bytes] | None = None
+        self._socket: int | None = None
+        self._guard: Connection | None = None
+        self._stopping = threading.Event()
+        self._thread = threading.Thread(target=self._look_after, name="guard", daemon=True)
+        self.recording: Path | None = running.recording if running else None
+        """File of the recording; None where nothing is recorded."""
+
+    def link(self, elevator: Elevator | None = None) -> KeptLink:
+        """Return a new reader of the link, which can be handed to another process before its first read.
+
+        Parameters
+        ----------
+        elevator
+            Elevator of the aircraft file, which shows which of several vehicles has one. None: by
+            parameters.
+        """
+        return KeptLink(self._keeping.door, elevator, self._keeping.target_system)
+
+    @property
+    def master(self) -> str:
+        """Connection of the link."""
+        return self._keeping.master
+
+    @property
+    def pid(self) -> int | None:
+        """Id of the process. None for a process that another advisor has started."""
+        return self._process.pid if self._process else None
+
+    def __enter__(self) -> Self:
+        """Start the process.
+
+        Raises
+        ------
+        UnusableInputError
+            The connection cannot be opened, or the recording cannot be made.
+        """
+        if self._running is None:
+            self._start()
+            # After a restart the process goes on with the recording that the first process made.
+            goes_on = self.recording is not None
+            self._keeping = replace(self._keeping, record_to=self.recording, goes_on=goes_on)
+        self._guard = self._stand_guard()
+        self._thread.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._stopping.set()
+        if hung_up(error):
+            return  # nobody has asked for an end: the link goes on recording by itself
+        _ask_to_stop(self._guard)
+        self._thread.join(PATIENCE_S)
+        if self._process is not None:
+            try:
+                self._process.wait(PATIENCE_S)
+            except subprocess.TimeoutExpired:
+                self._process.kill()
+                self._process.wait()
+        self._let_go()
+
+    def _start(self) -> None:
+        process = subprocess.Popen(
+            [sys.executable, "-m", "advisor.mavlink.link.keeper"],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            # The recording must not depend on a terminal's end or an interrupt in it.
+            start_new_session=True,
+            pass_fds=[] if self._socket is None else [self._socket],
+        )
+        assert process.stdin is not None
+        assert process.stdout is not None
+        with process.stdin as task, process.stdout as answers:
+            pickle.dump(self._keeping, task)
+            task.close()
+            try:
+                answer = pickle.load(answers)
+            except EOFError:
+                answer = RuntimeError(f"The process of the link ended with exit code {process.wait()}.")
+        if isinstance(answer, Exception):
+            process.wait()
+            raise answer
+        self._process, self.recording = process, answer
+
+    def _stand_guard(self) -> Connection:
+        """Tell the process that somebody looks after it, and hold its UDP socket for the next process."""
+        connection = self._keeping.door.open()
+        connection.send(Guard())
+        if connection.recv():
+            self._let_go()
+            self._socket = recv_handle(connection)
+            self._keeping = replace(self._keeping, inherited=self._socket)
+        return connection
+
+    def _let_go(self) -> None:
+        if self._socket is not None:
+            os.close(self._socket)
+            self._socket = None
+
+    def _look_after(self) -> None:
+        """Wait for the end of the process, and restart the process after an unwanted end."""
+        while not self._stopping.is_set():
+            with contextlib.suppress(OSError, EOFError):
+                if self._guard is not None:
+                    self._guard.recv()  # nothing is sent: this returns when the process has ended
+            if self._stopping.is_set():
+                return
+            if self._process is not None:
+                self._process.wait()
+            try:
+                self._start()
+                self._guard = self._stand_guard()
+            except Exception:
+                self._guard = None
+                self._stopping.wait(RETRY_EVERY_S)
+
+
+def end(running: RunningLink) -> None:
+    """End a link that runs alone. Its recording is whole afterwards."""
+    with contextlib.suppress(OSError, EOFError):
+        connection = running.door.open()
+        _ask_to_stop(connection)
+        if connection.poll(PATIENCE_S):
+            connection.recv()  # nothing is sent: this returns when the process ends
+
+
+def _ask_to_stop(connection: Connection | None) -> None:
+    with contextlib.suppress(OSError):
+        if connection is not None:
+            connection.send(Stop())

@@ -1,0 +1,91 @@
+"""Sentences for the crew about its link: silence, cuts, recovery, a second vehicle."""
+
+from advisor.mavlink.link.intake import Intake
+from advisor.mavlink.link.ratewatch import RateWatch
+from advisor.mavlink.link.reboot import RebootWatch
+from advisor.mavlink.wire.framing import Frame
+
+SILENCE_S = 5.0
+
+_REFUSED = {
+    "unsigned": "unsigned packets are refused; the vehicle must sign with this key",
+    "forged": "packets signed with another key are refused",
+    "replayed": "signed packets with an old time are refused: a replay, or a sender whose clock was set back",
+}
+
+
+class LinkWatch:
+    """Turns arriving frames, and their absence, into sentences. Times are the reader's monotonic seconds."""
+
+    def __init__(self, connection: str) -> None:
+        self._connection = connection
+        self._heard_s = 0.0
+        self._silence_told = False
+        self._cut_s: float | None = None
+        self._others_told: set[int] = set()
+        self._refusals_told: set[str] = set()
+        self._rates = RateWatch()
+        self._reboots = RebootWatch()
+        self.reconnects = 0
+
+    def begin(self, now_s: float) -> None:
+        """Take the opening of the connection, at which silence begins to count."""
+        self._heard_s = now_s
+
+    def start_again(self) -> None:
+        """Forget the rates after another vehicle was chosen."""
+        self._rates.restart()
+        self._reboots = RebootWatch()
+
+    def silent_s(self, now_s: float) -> float:
+        """Return the time since the vehicle was last heard; without a vehicle, since any sender was."""
+        return max(0.0, now_s - self._heard_s)
+
+    def cut(self, why: str, now_s: float) -> str:
+        """Take a cut of the connection; return the sentence on it."""
+        if self._cut_s is None:
+            self._cut_s = now_s
+        return f"{self._connection}: connection lost ({why}), trying again"
+
+    def look(self, intake: Intake, frames: list[Frame], now_s: float) -> list[str]:
+        """Return sentences on these frames, or on their absence."""
+        said = []
+        vehicle = intake.vehicle
+        relevant = [frame for frame in frames if vehicle is None or frame.system == vehicle[0]]
+        if relevant:
+            said += self._heard(now_s)
+            for frame in relevant if vehicle else []:
+                if self._reboots.hear(frame):
+                    self._rates.restart()
+            said += self._rates.look(relevant if vehicle else [], now_s, intake.ground_stations)
+        elif not self._silence_told and self._cut_s is None and self.silent_s(now_s) >= SILENCE_S:
+            self._silence_told = True
+            who = f"vehicle {vehicle[0]} is" if vehicle else f"{self._connection}: no vehicle heard,"
+            said.append(f"{who} silent for {SILENCE_S:.0f} s{_instead(intake)}")
+        for system in sorted(intake.other_vehicles - self._others_told):
+            said.append(f"vehicle {system} is heard too and ignored; choose with --target-system")
+        self._others_told |= intake.other_vehicles
+        refused = intake.counters.refused.keys() - self._refusals_told
+        said += [f"{self._connection}: {_REFUSED[why]}" for why in sorted(refused)]
+        self._refusals_told |= refused
+        return said
+
+    def _heard(self, now_s: float) -> list[str]:
+        said = []
+        if self._cut_s is not None:
+            self.reconnects += 1
+            said.append(f"{self._connection}: reconnected after {now_s - self._cut_s:.1f} s")
+        elif self._silence_told:
+            said.append(f"{self._connection}: heard again after {self.silent_s(now_s):.1f} s")
+        self._cut_s = None
+        self._silence_told = False
+        self._heard_s = now_s
+        return said
+
+
+def _instead(intake: Intake) -> str:
+    """Return a clause on following another vehicle that is heard."""
+    others = sorted(intake.other_vehicles)
+    if intake.vehicle is None or not others:
+        return ""
+    return f"; heard is vehicle {', '.join(map(str, others))}: --target-system {others[0]} follows it"

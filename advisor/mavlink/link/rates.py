@@ -1,0 +1,215 @@
+"""Requests for message rates, and a watch on the rates then delivered."""
+
+import struct
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from pymavlink.dialects.v20 import ardupilotmega as dialect
+
+from advisor.mavlink.link.delivery import Delivery
+from advisor.mavlink.link.ground_stations import is_ground_station, who_sets_rates
+from advisor.mavlink.link.message_request import LONGEST_REST_S, MOST_TRIES, MessageRequest
+from advisor.mavlink.link.outgoing import Talker
+from advisor.mavlink.link.reboot import RebootWatch
+from advisor.mavlink.wire.definitions import DEFINITIONS
+from advisor.mavlink.wire.framing import Frame
+
+STREAMS = ("ATTITUDE", "AOA_SSA", "SERVO_OUTPUT_RAW", "RAW_IMU", "VFR_HUD", "GLOBAL_POSITION_INT")
+"""Messages that identification needs, the indispensable first."""
+
+ANSWER_WITHIN_S = 1.0
+MEASURE_S = 3.0
+ENOUGH = 0.6
+"""Share of the requested rate below which a stream counts as slowed down."""
+SHORTEST_LIFE_S = 10.0
+"""Least time between two reboots, s. Two senders with one system id would seem to reboot alternately."""
+PUT_BACK_AGAIN_S = 0.2
+"""Time for the vehicle's answers before rates are restored once more, s."""
+MOST_PUT_BACK = 3
+
+_COMMAND_ACK = dialect.MAVLINK_MSG_ID_COMMAND_ACK
+_SET_INTERVAL = dialect.MAV_CMD_SET_MESSAGE_INTERVAL
+_ANSWERS = {
+    dialect.MAV_RESULT_ACCEPTED: "granted",
+    dialect.MAV_RESULT_TEMPORARILY_REJECTED: "rejected for now",
+    dialect.MAV_RESULT_DENIED: "denied",
+    dialect.MAV_RESULT_UNSUPPORTED: "unsupported",
+    dialect.MAV_RESULT_FAILED: "failed",
+}
+
+
+class RateRequest(Talker):
+    """Requests one rate after the other, waits for each answer, then watches the delivered rates.
+
+    MAVLink, command protocol: SET_MESSAGE_INTERVAL (511) in a COMMAND_LONG is answered by a COMMAND_ACK that
+    names no message. So only one request is open at a time. An unanswered one is sent again with a raised
+    confirmation. A refused or unanswered request is repeated after a rest that doubles, see
+    `advisor.mavlink.link.message_request`. After a reboot everything is requested again. A granted rate that
+    falls is requested again at once, a few times, then after rests. At the end every message gets its default
+    rate back.
+
+    Parameters
+    ----------
+    rates_hz
+        Message name to wanted rate in Hz.
+    """
+
+    def __init__(self, rates_hz: Mapping[str, float]) -> None:
+        self._requests = {
+            DEFINITIONS[n].id: MessageRequest(n, DEFINITIONS[n].id, hz) for n, hz in rates_hz.items()
+        }
+        self._standing: MessageRequest | None = None
+        self._asked_s = self._began_s = float("-inf")
+        self._vehicle: tuple[int, int] | None = None
+        self._reboots = RebootWatch()
+        self._delivery = Delivery(self._requests, MEASURE_S)
+        self._stations: set[int] = set()
+        self._put_back_s = float("-inf")
+        self._put_back = self._unanswered = 0
+        self._said: list[str] = []
+        self.answers: dict[str, str] = {}
+        """Message name to ``granted``, ``denied``, ``unsupported``, ``failed``, ``rejected for now`` or
+        ``no answer``."""
+        self.delivered_hz: dict[str, float] = {}
+        """Message name to its rate over the last ``MEASURE_S``, Hz."""
+
+    def hear(self, frame: Frame, now_s: float) -> None:
+        """Count requested messages, take the awaited answer, and note other stations."""
+        if self._vehicle is not None and frame.system != self._vehicle[0]:
+            if is_ground_station(frame):
+                self._stations.add(frame.system)
+            return
+        self._delivery.hear(frame.message_id, now_s)
+        if self._reboots.hear(frame):
+            self._begin_anew(now_s)
+        elif frame.message_id == _COMMAND_ACK:
+            command, result = struct.unpack("<HB", frame.payload.ljust(3, b"\0")[:3])
+            if command == _SET_INTERVAL and result in _ANSWERS:
+                self._answered(_ANSWERS[result], now_s)
+
+    def speak(self, vehicle: tuple[int, int] | None, now_s: float) -> list[Any]:
+        """Return the request that is due; none while the vehicle is not heard."""
+        if vehicle is None:
+            self._delivery.restart()
+            self._asked_s = float("-inf")
+            return []
+        if self._vehicle not in (None, vehicle):
+            self._forget()
+        self._vehicle = vehicle
+        standing = self._standing
+        if standing is not None:
+            if now_s - self._asked_s < ANSWER_WITHIN_S:
+                return []
+            if not standing.is_exhausted:
+                return [self._request(standing, now_s)]
+            self._settle("no answer", now_s)
+        due = next((request for request in self._requests.values() if request.due_s <= now_s), None)
+        if due is not None:
+            self._standing = due
+            return [self._request(due, now_s)]
+        if (rates := self._delivery.look(now_s)) is not None:
+            self._measured(rates, now_s)
+        return []
+
+    def leave(self, now_s: float) -> list[Any] | None:
+        """Restore every requested rate; return None when the vehicle has answered, or never will."""
+        asked = [
+            request for request in self._requests.values() if request.answer or request is self._standing
+        ]
+        if self._vehicle is None or not asked:
+            return None
+        if self._put_back and self._unanswered <= 0:
+            return None
+        if now_s - self._put_back_s < PUT_BACK_AGAIN_S:
+            return []
+        if self._put_back == MOST_PUT_BACK:
+            return None
+        self._put_back += 1
+        self._put_back_s, self._unanswered = now_s, len(asked)
+        return [_set_interval(self._vehicle, request.message, 0.0, self._put_back - 1) for request in asked]
+
+    def report(self) -> list[str]:
+        """Return answers and delivered rates, each once."""
+        said, self._said = self._said, []
+        return said
+
+    def _request(self, request: MessageRequest, now_s: float) -> Any:
+        assert self._vehicle is not None
+        request.tries += 1
+        self._asked_s = now_s
+        return _set_interval(self._vehicle, request.message, 1e6 / request.rate_hz, request.tries - 1)
+
+    def _begin_anew(self, now_s: float) -> None:
+        """Begin again after a reboot, in which the vehicle has forgotten every rate."""
+        if now_s - self._began_s < SHORTEST_LIFE_S:
+            return
+        self._began_s = now_s
+        self._forget()
+        self._said.append("the vehicle rebooted: every rate is asked for again")
+
+    def _forget(self) -> None:
+        """Begin with a vehicle without requests so far."""
+        for request in self._requests.values():
+            request.begin()
+        self._standing = None
+        self.delivered_hz = {}
+        self._delivery.restart()
+
+    def _answered(self, answer: str, now_s: float) -> None:
+        if self._put_back:
+            self._unanswered -= 1
+        elif self._standing is not None and self._standing.tries:
+            self._settle(answer, now_s)
+            # The vehicle receives our messages: earlier unanswered requests need not wait.
+            for request in self._requests.values():
+                if request.answer == "no answer":
+                    request.due_s = now_s
+
+    def _settle(self, answer: str, now_s: float) -> None:
+        request, self._standing = self._standing, None
+        assert request is not None
+        said = self.answers.get(request.name)
+        request.settle(answer, now_s)
+        self.answers[request.name] = answer
+        self._delivery.restart()
+        if answer == said:
+            return
+        if answer == "no answer":
+            self._said.append(
+                f"{request.name}: no answer to {MOST_TRIES} requests for its rate, which come again later; "
+                "an autopilot told to obey one ground station only (SYSID_ENFORCE, MAV_OPTIONS) obeys the "
+                "system id in SYSID_MYGCS (MAV_GCS_SYSID)"
+            )
+        elif answer != "granted":
+            self._said.append(f"{request.name}: the vehicle answers '{answer}' to the request for its rate")
+
+    def _measured(self, rates: Mapping[int, float], now_s: float) -> None:
+        before = self.delivered_hz
+        self.delivered_hz = {request.name: rates[request.message] for request in self._requests.values()}
+        if not before:
+            self._said.append("delivered: " + self._table(self._requests.values()))
+        granted = [request for request in self._requests.values() if request.answer == "granted"]
+        fallen = [request for request in granted if rates[request.message] < ENOUGH * request.rate_hz]
+        for request in granted:
+            if request not in fallen:
+                request.held(now_s)
+        news = [request for request in fallen if before.get(request.name, 0.0) >= ENOUGH * request.rate_hz]
+        at_once = [request.fell(now_s) for request in fallen]
+        if news:
+            how = "at once" if any(at_once) else f"after a rest of up to {LONGEST_REST_S:.0f} s"
+            self._said.append(
+                f"rates fell, asked for again {how}: {self._table(news)}; {who_sets_rates(self._stations)}"
+            )
+
+    def _table(self, requests: Iterable[MessageRequest]) -> str:
+        return ", ".join(
+            f"{request.name} {self.delivered_hz[request.name]:.1f} Hz of {request.rate_hz:g} asked"
+            for request in requests
+        )
+
+
+def _set_interval(vehicle: tuple[int, int], message: int, interval_us: float, confirmation: int) -> Any:
+    """Return SET_MESSAGE_INTERVAL. An interval of 0 restores the default rate (MAVLink common.xml)."""
+    return dialect.MAVLink_command_long_message(
+        *vehicle, _SET_INTERVAL, confirmation, message, interval_us, 0, 0, 0, 0, 0
+    )

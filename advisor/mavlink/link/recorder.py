@@ -1,0 +1,175 @@
+"""The link's own recording: a tlog that loses at most its last second in a power cut."""
+
+import contextlib
+import os
+import shutil
+import threading
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+from advisor.mavlink.link.recording_file import create, take_up
+
+WRITE_EVERY_S = 0.05
+"""Time between two writes to the operating system, s. The death of this process loses at most the records of
+this time."""
+SYNC_EVERY_S = 0.5
+"""Time between two synchronisations with the disk, s. A power cut loses at most the records of this time and
+of one write."""
+RETRY_EVERY_S = 1.0
+MOST_UNSAVED_BYTES = 64_000_000
+"""Most bytes that wait in memory while the disk fails: 17 minutes of a link of 60 kB/s."""
+LITTLE_SPACE_BYTES = 200_000_000
+"""Free space, bytes, below which the crew is warned: one hour of a link of 60 kB/s."""
+
+
+@dataclass(frozen=True, slots=True)
+class Recorded:
+    """Progress of a recording."""
+
+    written: int
+    """Bytes in the file, all of them whole records."""
+    unsaved: bytes
+    """Records in memory that are not in the file yet."""
+
+
+class Recorder:
+    """Appends whole tlog records to a file, in a separate thread.
+
+    A slow disk cannot delay a packet, because the recorder's thread writes. A failing disk ends neither the
+    link nor the recording. Records wait in memory, and the recorder tries again every ``RETRY_EVERY_S``. The
+    file ends with a whole record at every moment between.
+
+    Parameters
+    ----------
+    path
+        File to make, with its folder. When the file exists, a number is added to the name.
+    goes_on
+        Whether to append to an existing file, after its last whole record.
+
+    Raises
+    ------
+    UnusableInputError
+        The file cannot be made. Or the existing file is no recording, or is in use.
+    """
+
+    def __init__(self, path: Path, goes_on: bool = False) -> None:
+        self.path, self._file = take_up(path) if goes_on else create(path)
+        self._written = self._file.tell()
+        self.before = self._written
+        """Bytes of the recording from an earlier flight."""
+        self.problem: str | None = None
+        """Reason for which records wait in memory at this moment; None while all is well."""
+        self._notices: list[str] = []
+        self._pending = bytearray()
+        self._dropped = 0
+        self._lock = threading.Lock()
+        self._synced_s = self._failed_s = -RETRY_EVERY_S
+        self._dirty = self._little_told = False
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="recorder", daemon=True)
+        self._look_at_space()
+        self._thread.start()
+
+    @property
+    def bytes_written(self) -> int:
+        """Bytes added to the file since it was opened."""
+        return self._written - self.before
+
+    def write(self, records: bytes) -> None:
+        """Queue whole records."""
+        with self._lock:
+            if len(self._pending) + len(records) > MOST_UNSAVED_BYTES:
+                self._dropped += len(records)
+            else:
+                self._pending += records
+
+    def recorded(self) -> Recorded:
+        """Return everything queued so far: the bytes in the file, and the records in memory."""
+        with self._lock:
+            return Recorded(self._written, bytes(self._pending))
+
+    def take_notices(self) -> list[str]:
+        """Return sentences on the disk for the crew, since the last call."""
+        with self._lock:
+            notices, self._notices = self._notices, []
+        return notices
+
+    def close(self) -> None:
+        """Write the waiting records and close the file."""
+        self._stop.set()
+        self._thread.join()
+        self._failed_s = self._synced_s = -RETRY_EVERY_S
+        self._step()
+        with contextlib.suppress(OSError):  # told already, in ``problem``
+            self._file.close()
+
+    def _run(self) -> None:
+        while not self._stop.wait(WRITE_EVERY_S):
+            self._step()
+
+    def _step(self) -> None:
+        """Write the waiting records, and synchronise when due."""
+        now_s = time.monotonic()
+        if now_s - self._failed_s < RETRY_EVERY_S:
+            return
+        try:
+            self._append()
+            if self._dirty and now_s - self._synced_s >= SYNC_EVERY_S:
+                os.fsync(self._file.fileno())
+                self._dirty, self._synced_s = False, now_s
+                self._look_at_space()
+        except OSError as error:
+            self._fail(error, now_s)
+        else:
+            self._recover()
+
+    def _append(self) -> None:
+        with self._lock:
+            records = bytes(self._pending)
+        if not records:
+            return
+        try:
+            at = 0
+            while at < len(records):
+                at += os.write(self._file.fileno(), records[at:])
+        except OSError:
+            # The written part of a batch may end within a record; the batch is written again as a whole.
+            with contextlib.suppress(OSError):
+                self._file.truncate(self._written)
+                self._file.seek(self._written)
+            raise
+        with self._lock:
+            del self._pending[: len(records)]
+            self._written += len(records)
+        self._dirty = True
+
+    def _fail(self, error: OSError, now_s: float) -> None:
+        self._failed_s = now_s
+        if self.problem is None:
+            self._say(
+                f"recording to {self.path} fails: {error.strerror or error}. What is heard waits in memory; "
+                "make room on the disk"
+            )
+        self.problem = f"the disk takes no recording: {error.strerror or error}"
+
+    def _recover(self) -> None:
+        if self.problem is None:
+            return
+        self.problem = None
+        with self._lock:
+            lost, self._dropped = self._dropped, 0
+        what = f"{lost / 1e6:.1f} MB are lost" if lost else "nothing is lost"
+        self._say(f"recording to {self.path} goes on: {what}")
+
+    def _look_at_space(self) -> None:
+        """Warn once when little space is left."""
+        with contextlib.suppress(OSError):
+            free = shutil.disk_usage(self.path.parent).free
+            if free < LITTLE_SPACE_BYTES and not self._little_told:
+                self._little_told = True
+                self._say(f"only {free / 1e6:.0f} MB are free where the recording goes: make room")
+
+    def _say(self, text: str) -> None:
+        with self._lock:
+            self._notices.append(text)

@@ -1,0 +1,72 @@
+"""Links that run on this computer, so that an advisor finds the link of an advisor that ended."""
+
+import contextlib
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import platformdirs
+
+from advisor.mavlink.link.keeping import Door
+from advisor.process.atomic_file import write_atomically
+
+
+@dataclass(frozen=True, slots=True)
+class RunningLink:
+    """A process that keeps a link."""
+
+    pid: int
+    master: str
+    recording: Path | None
+    door: Door
+    alone: bool
+    """Whether nobody looks after the process, because its advisor ended unasked."""
+
+
+def note(link: RunningLink) -> None:
+    """Write down a running link and its state, readable by the user only."""
+    path = _path(link.pid)
+    path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+    content = {
+        "master": link.master,
+        "recording": str(link.recording) if link.recording else None,
+        "address": link.door.address,
+        "key": link.door.key.hex(),
+        "alone": link.alone,
+    }
+    write_atomically(path, json.dumps(content))
+
+
+def forget(pid: int) -> None:
+    """Remove the note of a link that has ended."""
+    _path(pid).unlink(missing_ok=True)
+
+
+def running_alone() -> Iterator[RunningLink]:
+    """Yield links that run without their advisor. Notes of processes that are gone are removed."""
+    for path in sorted(_folder().glob("*.json")):
+        with contextlib.suppress(OSError, ValueError, KeyError, TypeError):
+            link = _read(path)
+            try:
+                link.door.open().close()
+            except OSError:
+                forget(link.pid)
+                continue
+            if link.alone:
+                yield link
+
+
+def _read(path: Path) -> RunningLink:
+    content = json.loads(path.read_text(encoding="utf-8"))
+    recording = Path(content["recording"]) if content["recording"] else None
+    door = Door(content["address"], bytes.fromhex(content["key"]))
+    return RunningLink(int(path.stem), content["master"], recording, door, bool(content["alone"]))
+
+
+def _folder() -> Path:
+    return Path(platformdirs.user_data_dir("inflight-advisor")) / "links"
+
+
+def _path(pid: int) -> Path:
+    return _folder() / f"{pid}.json"

@@ -1,0 +1,1 @@
+"""Logs of any kind: recognised, unpacked, opened."""

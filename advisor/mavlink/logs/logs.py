@@ -1,0 +1,82 @@
+"""Opening of a log of any kind, packed or not."""
+
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+import numpy as np
+
+from advisor.flight.signals.messages import Columns
+from advisor.flight.stream.identity import READER
+from advisor.mavlink.ardupilot.ardupilot_log import read_dataflash
+from advisor.mavlink.logs.kinds import Found, recognised, refusal
+from advisor.mavlink.logs.tlog import scan_tlog
+from advisor.mavlink.logs.unpack import beginning_of, unpacked
+from advisor.mavlink.px4.ulog import read_ulog
+from advisor.mavlink.records.equivalent import message
+from advisor.mavlink.wire.frames import FrameScanner
+from advisor.words.problems import UnusableInputError
+
+
+def open_log(
+    path: Path,
+    wanted: Iterable[str] | None = None,
+    key: bytes | None = None,
+    scanner: FrameScanner | None = None,
+) -> Iterator[list[Columns]]:
+    """Stream the messages of a ``.tlog``, an ArduPilot ``.bin`` or a PX4 ``.ulg``, packed or not.
+
+    The last two hold the autopilot's own records. These become the messages that telemetry would have
+    carried, in one batch.
+
+    Parameters
+    ----------
+    path : Path
+    wanted : iterable of str, optional
+        Names of the messages to return. Default: all defined messages.
+    key : bytes, optional
+        Signing key of a tlog.
+    scanner : FrameScanner, optional
+        Scanner for a tlog, in place of one made with ``wanted`` and ``key``, for the sake of its statistics.
+
+    Raises
+    ------
+    UnusableInputError
+        The file is missing or no regular file. While reading: the file holds no messages.
+    """
+    return _read(path, beginning_of(path), wanted, scanner or FrameScanner(wanted, key))
+
+
+def _read(
+    path: Path, beginning: bytes, wanted: Iterable[str] | None, scanner: FrameScanner
+) -> Iterator[list[Columns]]:
+    with unpacked(path, beginning) as log:
+        if log is not path:
+            beginning = beginning_of(log)
+        found = recognised(beginning)
+        if found is None:
+            raise UnusableInputError.of([refusal(log.name, beginning)])
+        for number, batch in enumerate(_batches(log, found, wanted, scanner)):
+            yield [_skipped(found, batch), *batch] if found.starts_at and number == 0 else batch
+
+
+def _batches(
+    log: Path, found: Found, wanted: Iterable[str] | None, scanner: FrameScanner
+) -> Iterator[list[Columns]]:
+    if found.kind == "ulog":
+        return read_ulog(log, wanted, found.starts_at)
+    if found.kind == "dataflash":
+        return read_dataflash(log, wanted)
+    return scan_tlog(log, scanner)
+
+
+def _skipped(found: Found, first: list[Columns]) -> Columns:
+    """Return a note on bytes before the first record, placed before the first messages."""
+    text = f"{READER.decode()}{found.starts_at} bytes in front of the first record were skipped"
+    return message(
+        "STATUSTEXT",
+        first[0].system,
+        np.array([-1]),
+        np.array([min(float(c.arrival_s[0]) for c in first)]),
+        {"severity": 6, "text": np.array([text.encode()])},
+        first[0].carrier,
+    )

@@ -1,0 +1,128 @@
+"""Air data of a PX4 log: air speed, climb rate and throttle, each at the stamps of its own topic."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from advisor.flight.signals.messages import FloatArray, IntArray
+from advisor.mavlink.px4.px4_topics import (
+    TimedMessages,
+    Topic,
+    Topics,
+    best,
+    first,
+    published_us,
+    rows,
+    sampled_us,
+)
+from advisor.mavlink.records.equivalent import air_data, latest
+
+_SOURCES = ("airspeed_source", "selected_airspeed_index")
+"""Fields of AirspeedValidated.msg with the source, since 1.15 and before. The
+values 1 to 3 number a sensor, 0 is ground speed minus wind, 4 a synthetic speed, -1 none."""
+_SENSORS = (1, 2, 3)
+_CALIBRATED, _INDICATED = "calibrated_airspeed_m_s", "indicated_airspeed_m_s"
+_STANDS_IN = (
+    "Air speed: no sensor measured it. The autopilot's own estimate stands in, which does not see gusts"
+)
+_REFUSED = "Air speed: the autopilot calls its sensor invalid, and nothing else tells the air speed"
+
+BoolArray = NDArray[np.bool_]
+Series = tuple[IntArray, FloatArray]
+"""Stamps in us since boot, and values, each of shape (n,)."""
+
+
+def air(topics: Topics) -> tuple[list[TimedMessages], list[str]]:
+    """Return VFR_HUD, and sentences on the source of the air speed."""
+    speed, said = _airspeed(topics)
+    found = {"airspeed": speed, "climb": _climb(topics), "throttle": _throttle(topics)}
+    records = [{"time_usec": one[0], name: one[1]} for name, one in found.items() if one is not None]
+    if not records:
+        return [], said
+    fields: dict[str, ArrayLike] = dict(air_data(*records))
+    return [TimedMessages("VFR_HUD", np.asarray(fields["time_usec"]), fields)], said
+
+
+def _airspeed(topics: Topics) -> tuple[Series | None, list[str]]:
+    """Return the faster of the validated air speed and its sensor's, while the autopilot accepts a sensor."""
+    validated, raw = first(topics, "airspeed_validated"), topics.get("airspeed", [])
+    measured = [] if validated is None else [rows(validated, _is_measured(validated))]
+    sensor = _joined([rows(topic, _is_believed(topic, k, validated)) for k, topic in enumerate(raw, start=1)])
+    if sensor is not None:
+        measured.append(sensor)
+    chosen = best(topic for topic in measured if len(topic["timestamp"]))
+    if chosen is not None:
+        return _calibrated(chosen, validated), []
+    estimated = None if validated is None else rows(validated, np.isfinite(validated[_CALIBRATED]))
+    if estimated is not None and len(estimated["timestamp"]):
+        return _calibrated(estimated, validated), [_STANDS_IN]
+    return (_calibrated(raw[0], validated), [_REFUSED]) if raw else (None, [])
+
+
+def _source(validated: Topic) -> FloatArray:
+    """Return the number of the source at each sample; 1 where the topic has no such field."""
+    for name in _SOURCES:
+        if name in validated:
+            return validated[name].astype(np.float64)
+    return np.ones(len(validated["timestamp"]))
+
+
+def _is_measured(validated: Topic) -> BoolArray:
+    return np.isfinite(validated[_CALIBRATED]) & np.isin(_source(validated), _SENSORS)
+
+
+def _is_believed(sensor: Topic, number: int, validated: Topic | None) -> BoolArray:
+    """Return whether the autopilot uses the sensor of this number at each sample; without the field, sensor
+    1."""
+    good = np.isfinite(sensor[_INDICATED])
+    if validated is None:
+        return good & (number == 1)
+    source = _source(validated)
+    at = latest(published_us(sensor), published_us(validated), source)
+    return np.asarray(good & (np.where(np.isnan(at), source[0], at) == number))
+
+
+def _joined(topics: Sequence[Topic]) -> Topic | None:
+    """Return samples of several sensors that were used one after the other, in the order of time."""
+    if not topics:
+        return None
+    names = set.intersection(*(set(topic) for topic in topics))
+    whole = {name: np.concatenate([topic[name] for topic in topics]) for name in names}
+    by_time = np.argsort(whole["timestamp"], kind="stable")
+    return {name: values[by_time] for name, values in whole.items()}
+
+
+def _calibrated(speed: Topic, validated: Topic | None) -> Series:
+    """Return the calibrated air speed: a sensor's indicated speed times the validator's scale."""
+    if _CALIBRATED in speed:
+        return sampled_us(speed), speed[_CALIBRATED].astype(np.float64)
+    scale = 1.0
+    if validated is not None and _INDICATED in validated:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratios = validated[_CALIBRATED] / validated[_INDICATED]
+        good = np.isfinite(ratios) & _is_measured(validated)
+        scale = float(np.median(ratios[good])) if good.any() else 1.0
+    return sampled_us(speed), scale * speed[_INDICATED].astype(np.float64)
+
+
+def _climb(topics: Topics) -> Series | None:
+    """Return the climb rate of the position filter where valid, or of the global position in older logs."""
+    local, globally = first(topics, "vehicle_local_position"), first(topics, "vehicle_global_position")
+    if local is not None:
+        valid = local["v_z_valid"] > 0 if "v_z_valid" in local else np.ones(len(local["vz"]), dtype=np.bool_)
+        local = rows(local, valid)
+    chosen = best(topic for topic in (local, globally) if topic is not None and len(topic["timestamp"]))
+    if chosen is None:
+        return None
+    return sampled_us(chosen), -chosen["vz" if chosen is local else "vel_d"].astype(np.float64)
+
+
+def _throttle(topics: Topics) -> Series | None:
+    """Return the throttle in percent: thrust along the body's x axis, or the throttle command in older
+    logs."""
+    thrust, lever = first(topics, "vehicle_thrust_setpoint"), first(topics, "actuator_controls_0")
+    chosen = thrust or lever
+    if chosen is None:
+        return None
+    return published_us(chosen), 100.0 * chosen["xyz[0]" if thrust else "control[3]"].astype(np.float64)

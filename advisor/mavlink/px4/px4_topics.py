@@ -1,0 +1,123 @@
+"""Topics of a PX4 log: instances, stamps, and the choice among topics with one quantity.
+
+Topics and fields are those of PX4's message definitions (msg/*.msg).
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from advisor.flight.signals.messages import FloatArray, IntArray
+
+TOPICS: dict[str, set[str]] = {
+    "actuator_controls_0": {"control[3]"},
+    "actuator_outputs": {"output[15]"},
+    "actuator_servos": {"control[7]"},
+    "airspeed": {"indicated_airspeed_m_s"},
+    "airspeed_validated": {"calibrated_airspeed_m_s"},
+    "debug_key_value": {"key[9]", "value"},
+    "input_rc": {"values[17]"},
+    "sensor_combined": {"gyro_rad[2]", "accelerometer_m_s2[2]"},
+    "vehicle_acceleration": {"xyz[2]"},
+    "vehicle_angular_velocity": {"xyz[2]"},
+    "vehicle_attitude": {"q[3]"},
+    "vehicle_global_position": {"vel_d"},
+    "vehicle_gps_position": {"time_utc_usec"},
+    "vehicle_local_position": {"z", "vz"},
+    "vehicle_status": {"nav_state"},
+    "vehicle_thrust_setpoint": {"xyz[0]"},
+    "vehicle_torque_setpoint": {"xyz[2]"},
+}
+"""Topic to its necessary fields. Without them (another version) a topic counts as missing."""
+
+ENOUGH_HZ = 25.0
+"""Least rate at which the preferred topic is used although another topic is faster, 1/s: twelve samples in a
+short period of 2 Hz. PX4's filtered rates come at 50 Hz by default, its raw gyro at 200 Hz."""
+
+Topic = Mapping[str, NDArray[Any]]
+Topics = Mapping[str, Sequence[Topic]]
+
+
+@dataclass(frozen=True, slots=True)
+class TimedMessages:
+    """Messages of one type, stamped by the autopilot's clock."""
+
+    name: str
+    time_us: IntArray
+    """Shape (n,), microseconds since boot, in the order of the fields."""
+    fields: Mapping[str, ArrayLike]
+
+
+def topics_of(log: Any) -> dict[str, list[Topic]]:
+    """Return the instances of each topic with the necessary fields, in the order of time."""
+    topics: dict[str, list[Topic]] = {}
+    for data in sorted(log.data_list, key=lambda data: (data.name, data.multi_id)):
+        if {"timestamp"} | TOPICS[data.name] <= data.data.keys() and len(data.data["timestamp"]):
+            by_time = np.argsort(data.data["timestamp"], kind="stable")
+            topics.setdefault(data.name, []).append(
+                {name: _wide(v[by_time]) for name, v in data.data.items()}
+            )
+    return topics
+
+
+def _wide(values: NDArray[Any]) -> NDArray[Any]:
+    """Return floating-point values in double precision. Damaged values are converted here without a
+    warning."""
+    return values.astype(np.float64) if values.dtype.kind == "f" else values
+
+
+def first(topics: Topics, name: str) -> Topic | None:
+    """Return the first instance of a topic, None where the log has none."""
+    return topics[name][0] if name in topics else None
+
+
+def published_us(topic: Topic) -> IntArray:
+    """Return the times of publication of a topic's samples, us since boot."""
+    return topic["timestamp"].astype(np.int64)
+
+
+def sampled_us(topic: Topic) -> IntArray:
+    """Return the times of the sensor's reading where the topic has them, else the times of publication."""
+    published = published_us(topic)
+    if "timestamp_sample" not in topic:
+        return published
+    sampled = topic["timestamp_sample"].astype(np.int64)
+    return np.where(sampled > 0, sampled, published)
+
+
+def vector(topic: Topic, name: str, size: int) -> FloatArray:
+    """Return an array field, shape (size, n)."""
+    return np.array([topic[f"{name}[{i}]"] for i in range(size)], dtype=np.float64)
+
+
+def rows(topic: Topic, which: NDArray[np.bool_]) -> Topic:
+    """Return some samples of a topic."""
+    return {name: values[which] for name, values in topic.items()}
+
+
+def rate_hz(topic: Topic) -> float:
+    """Return samples per second in the typical interval; 0 with fewer than two samples."""
+    if len(topic["timestamp"]) < 2:
+        return 0.0
+    return 1e6 / max(float(np.median(np.diff(published_us(topic)))), 1.0)
+
+
+def best(candidates: Iterable[Topic | None]) -> Topic | None:
+    """Return the first topic that is fast enough, else the fastest; None without any.
+
+    Parameters
+    ----------
+    candidates
+        Topics that hold one quantity, the preferred first.
+    """
+    found = [topic for topic in candidates if topic is not None]
+    fast = [topic for topic in found if rate_hz(topic) >= ENOUGH_HZ]
+    return fast[0] if fast else max(found, key=rate_hz, default=None)
+
+
+def milliseconds(time_us: IntArray) -> IntArray:
+    """Return microseconds rounded to milliseconds."""
+    return (time_us + 500) // 1000

@@ -1,0 +1,197 @@
+"""Identity of a PX4 log's vehicle: kind, modes, firmware, parameters, texts."""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from math import isfinite
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from advisor.flight.signals.messages import IntArray
+from advisor.flight.stream.identity import READER
+from advisor.mavlink.px4.px4_topics import TimedMessages, Topic, Topics, first, milliseconds, published_us
+from advisor.mavlink.records.equivalent import MAV_PARAM_TYPE_REAL32, MAV_TYPE_FIXED_WING
+
+_PX4 = 12  # MAV_AUTOPILOT
+_MAV_TYPE_QUADROTOR = 2
+_ROTARY_WING = 1  # vehicle_status.vehicle_type
+_HOVER, _FORWARD = 3, 4  # MAV_VTOL_STATE
+_MANUAL, _ALTITUDE, _POSITION, _AUTO, _ACRO, _OFFBOARD, _STABILISED, _TERMINATION = 1, 2, 3, 4, 5, 6, 7, 10
+_MODES = {
+    0: (_MANUAL, 0),
+    1: (_ALTITUDE, 0),
+    2: (_POSITION, 0),
+    3: (_AUTO, 4),
+    4: (_AUTO, 3),
+    5: (_AUTO, 5),
+    6: (_POSITION, 2),
+    10: (_ACRO, 0),
+    12: (_AUTO, 6),
+    13: (_TERMINATION, 0),
+    14: (_OFFBOARD, 0),
+    15: (_STABILISED, 0),
+    17: (_AUTO, 2),
+    18: (_AUTO, 6),
+    19: (_AUTO, 8),
+    20: (_AUTO, 9),
+    21: (_POSITION, 1),
+    22: (_AUTO, 10),
+}
+"""vehicle_status.nav_state to main and sub mode of PX4's custom_mode (px4_custom_mode.h). All other states
+are automatic."""
+_KEY_BYTES = 10
+
+
+def unix_time_base_s(topics: Topics) -> float:
+    """Return the time of boot, seconds since 1970, from the first fix with a date; 0 without one."""
+    for fixes in topics.get("vehicle_gps_position", []):
+        for utc_us, boot_us in zip(fixes["time_utc_usec"].tolist(), fixes["timestamp"].tolist(), strict=True):
+            if utc_us > 0:
+                return float(utc_us - boot_us) * 1e-6
+    return 0.0
+
+
+def heartbeat(topics: Topics, parameters: Mapping[str, Any], start_us: int) -> TimedMessages:
+    """Return a heartbeat before everything else, to make the vehicle known, then one at each status."""
+    status = first(topics, "vehicle_status")
+    at, states = np.array([start_us]), np.zeros(1, np.int64)
+    if status is not None:
+        samples = np.concatenate([[0], np.arange(len(status["timestamp"]))])
+        at = np.concatenate([at, published_us(status)])
+        states = status["nav_state"].astype(np.int64)[samples]
+    modes = np.array([_MODES.get(state, (_AUTO, 0)) for state in states.tolist()])
+    fields: dict[str, ArrayLike] = {
+        "type": _mav_type(parameters, status),
+        "autopilot": _PX4,
+        "base_mode": 1,
+        "custom_mode": modes[:, 0] << 16 | modes[:, 1] << 24,
+    }
+    return TimedMessages("HEARTBEAT", at, fields)
+
+
+def vtol_states(topics: Topics) -> Iterator[TimedMessages]:
+    """Yield EXTENDED_SYS_STATE of a VTOL aircraft: whether rotors or the wing carry it."""
+    status = first(topics, "vehicle_status")
+    if status is not None and np.any(status.get("is_vtol", 0)):
+        rotors = _on_rotors(status) | (status.get("in_transition_mode", np.zeros(1)) > 0)
+        state = np.where(rotors, _HOVER, _FORWARD)
+        yield TimedMessages("EXTENDED_SYS_STATE", published_us(status), {"vtol_state": state})
+
+
+def _on_rotors(status: Topic) -> NDArray[np.bool_]:
+    """Return whether rotors carry the vehicle, by vehicle_type or by the older is_rotary_wing."""
+    if "is_rotary_wing" in status:
+        return np.asarray(status["is_rotary_wing"] > 0)
+    return np.asarray(status.get("vehicle_type", np.zeros(len(status["timestamp"]))) == _ROTARY_WING)
+
+
+def _mav_type(parameters: Mapping[str, Any], status: Topic | None) -> int:
+    """Return MAV_TYPE from the parameters, else from vehicle_status.
+
+    A VTOL aircraft reports rotary wing in hover, although it has an elevator.
+    """
+    stated = parameters.get("MAV_TYPE")
+    if isinstance(stated, int | float) and stated in range(1, 256):
+        return int(stated)
+    if status is None or np.any(status.get("is_vtol", 0)):
+        return MAV_TYPE_FIXED_WING
+    return _MAV_TYPE_QUADROTOR if np.all(_on_rotors(status)) else MAV_TYPE_FIXED_WING
+
+
+def parameters_of(log: Any) -> dict[str, float]:
+    """Return the numeric parameters at the beginning of the log."""
+    initial = log.initial_parameters.items()
+    return {name: float(v) for name, v in initial if isinstance(v, int | float) and isfinite(v)}
+
+
+def dropouts(log: Any) -> list[str]:
+    """Return a sentence on the times in which the logger could not write; empty without such a time."""
+    lasted_s = [dropout.duration * 1e-3 for dropout in log.dropouts]
+    if not lasted_s:
+        return []
+    return [
+        f"Logging dropped out {len(lasted_s)} times, for {max(lasted_s):.2f} s at the longest: use a faster "
+        "card, or log less (SDLOG_PROFILE)"
+    ]
+
+
+def stated(log: Any, further: Mapping[str, float], start_us: int) -> Iterator[TimedMessages]:
+    """Yield PARAM_VALUE of every parameter at the start of the log, then of every change.
+
+    Parameters
+    ----------
+    further
+        Findings of the reader, in the form of parameters.
+    """
+    initial = parameters_of(log)
+    rows = [(start_us, name, value) for name, value in (initial | dict(further)).items()]
+    rows += [
+        (max(at, start_us), name, value)
+        for at, name, value in log.changed_parameters
+        if isinstance(value, int | float)
+    ]
+    if rows:
+        fields: dict[str, ArrayLike] = {
+            "param_id": np.array([name.encode() for _, name, _ in rows], "S16"),
+            "param_value": np.array([value for *_, value in rows], np.float64),
+            "param_type": MAV_PARAM_TYPE_REAL32,
+            "param_count": len(initial),
+        }
+        yield TimedMessages("PARAM_VALUE", _stamps(at for at, *_ in rows), fields)
+
+
+def texts(log: Any) -> Iterator[TimedMessages]:
+    """Yield STATUSTEXT with the vehicle's own texts."""
+    yield from _said(
+        [(text.timestamp, text.log_level - ord("0"), text.message.encode()) for text in log.logged_messages]
+    )
+
+
+def remarks(said: Sequence[str], start_us: int) -> Iterator[TimedMessages]:
+    """Yield STATUSTEXT with the sentences of the log's reader."""
+    yield from _said([(start_us, 6, READER + text.encode()) for text in said])
+
+
+def _said(rows: Sequence[tuple[int, int, bytes]]) -> Iterator[TimedMessages]:
+    """Yield the time in us, severity and text."""
+    if rows:
+        fields: dict[str, ArrayLike] = {
+            "severity": np.array([level for _, level, _ in rows]),
+            "text": np.array([text for *_, text in rows]),
+        }
+        yield TimedMessages("STATUSTEXT", _stamps(at for at, *_ in rows), fields)
+
+
+def version(log: Any, start_us: int) -> Iterator[TimedMessages]:
+    """Yield AUTOPILOT_VERSION, where the log states a release."""
+    release = log.msg_info_dict.get("ver_sw_release")
+    if isinstance(release, int):
+        yield TimedMessages("AUTOPILOT_VERSION", np.array([start_us]), {"flight_sw_version": release})
+
+
+def named_values(topics: Topics) -> Iterator[TimedMessages]:
+    """Yield NAMED_VALUE_FLOAT, as a vane may send its angle."""
+    values = first(topics, "debug_key_value")
+    if values is not None:
+        letters = np.stack([values[f"key[{i}]"].astype(np.uint8) for i in range(_KEY_BYTES)], axis=1)
+        names = [row.tobytes().partition(b"\0")[0] for row in letters]
+        at = published_us(values)
+        yield TimedMessages(
+            "NAMED_VALUE_FLOAT",
+            at,
+            {"time_boot_ms": milliseconds(at), "name": np.array(names, "S10"), "value": values["value"]},
+        )
+
+
+def receiver(topics: Topics) -> Iterator[TimedMessages]:
+    """Yield RC_CHANNELS with the pilot's sticks and switches."""
+    received = first(topics, "input_rc")
+    if received is not None:
+        at = published_us(received)
+        pulses: dict[str, NDArray[Any]] = {f"chan{i + 1}_raw": received[f"values[{i}]"] for i in range(18)}
+        yield TimedMessages("RC_CHANNELS", at, {"time_boot_ms": milliseconds(at), **pulses})
+
+
+def _stamps(times_us: Iterable[int]) -> IntArray:
+    """Return the times as an array, without the 64th bit, which only a damaged stamp can have."""
+    return np.array([time_us & (1 << 63) - 1 for time_us in times_us], dtype=np.int64)

@@ -1,0 +1,1 @@
+"""Frames on the wire: layouts, checksums, signatures, and the compiled scan."""

@@ -1,0 +1,119 @@
+"""Cuts whole MAVLink frames out of the bytes from a socket or a serial line."""
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from fastcrc.crc16 import mcrf4xx
+from pymavlink.dialects.v20 import ardupilotmega as dialect
+
+from advisor.mavlink.wire.checksum import TABLE
+
+MAGIC_V1 = 0xFE
+MAGIC_V2 = 0xFD
+MAGIC = (MAGIC_V1, MAGIC_V2)
+SIGNED = 0x01
+SIGNATURE_LENGTH = 13
+LONGEST_FRAME = 12 + 255 + SIGNATURE_LENGTH
+CRC_EXTRA: Mapping[int, int] = {number: message.crc_extra for number, message in dialect.mavlink_map.items()}
+"""Message id to the checksum's seed, for every message that the advisor knows."""
+
+_SEED_REMAINDERS = frozenset(TABLE.tolist())
+
+
+class Frame(NamedTuple):
+    """One frame as on the wire."""
+
+    raw: bytes
+    message_id: int
+    sequence: int
+    system: int
+    component: int
+    signed: bool
+
+    @property
+    def payload(self) -> bytes:
+        """Payload of the frame. In MAVLink 2 its trailing zeros are cut off."""
+        start = 6 if self.raw[0] == MAGIC_V1 else 10
+        return self.raw[start : start + self.raw[1]]
+
+
+class FrameCutter:
+    """Finds frames in a stream of bytes that starts anywhere and may hold garbage.
+
+    A frame of a known message must pass its checksum. The MAVLink serialisation guide defines it as
+    CRC-16/MCRF4XX over everything after the magic byte and the definition's CRC_EXTRA. For a frame of an
+    unknown message, some CRC_EXTRA gives any checksum in one case of 256. So such a frame is accepted only
+    where one is due: right after a good one, and followed by another or by nothing.
+    """
+
+    def __init__(self, crc_extra: Mapping[int, int]) -> None:
+        self._seeds = {message: bytes([extra]) for message, extra in crc_extra.items()}
+        self._rest = b""
+        self._in_step = True
+        self.bad_crc = 0
+        """Frames with a wrong checksum."""
+        self.garbage_bytes = 0
+        """Bytes outside any frame."""
+
+    def feed(self, data: bytes) -> list[Frame]:
+        """Take the next bytes; return the frames that they complete."""
+        buffer = self._rest + data if self._rest else data
+        frames = []
+        i, n = 0, len(buffer)
+        while i < n:
+            if buffer[i] not in MAGIC:
+                i = self._skip(buffer, i)
+                continue
+            total = _frame_length(buffer, i)
+            if total is None or i + total > n:
+                break
+            frame = self._check(buffer, i, total)
+            if frame is None:
+                i = self._skip(buffer, i)
+                continue
+            frames.append(frame)
+            self._in_step = True
+            i += total
+        self._rest = buffer[i:]
+        return frames
+
+    def _skip(self, buffer: bytes, i: int) -> int:
+        """Give up the byte at ``i``; return the next place where a frame may start."""
+        v1, v2 = buffer.find(MAGIC_V1, i + 1), buffer.find(MAGIC_V2, i + 1)
+        found = [k for k in (v1, v2) if k >= 0]
+        following = min(found) if found else len(buffer)
+        self.garbage_bytes += following - i
+        self._in_step = False
+        return following
+
+    def _check(self, buffer: bytes, i: int, total: int) -> Frame | None:
+        signed = False
+        if buffer[i] == MAGIC_V2:
+            if buffer[i + 2] & ~SIGNED:  # a flag we must not ignore and do not know
+                return None
+            signed = bool(buffer[i + 2])
+            message_id = buffer[i + 7] | buffer[i + 8] << 8 | buffer[i + 9] << 16
+            sequence, system, component = buffer[i + 4], buffer[i + 5], buffer[i + 6]
+        else:
+            sequence, system, component, message_id = buffer[i + 2 : i + 6]
+        end = i + total - (SIGNATURE_LENGTH if signed else 0)
+        checksum = buffer[end - 2] | buffer[end - 1] << 8
+        seed = self._seeds.get(message_id)
+        if seed is None:
+            follower = buffer[i + total : i + total + 1]
+            due = self._in_step and (not follower or follower[0] in MAGIC)
+            if not due or checksum ^ mcrf4xx(buffer[i + 1 : end - 2]) >> 8 not in _SEED_REMAINDERS:
+                return None
+        elif mcrf4xx(buffer[i + 1 : end - 2] + seed) != checksum:
+            self.bad_crc += self._in_step
+            return None
+        return Frame(buffer[i : i + total], message_id, sequence, system, component, signed)
+
+
+def _frame_length(buffer: bytes, i: int) -> int | None:
+    """Return the length of the frame whose magic byte is at ``i``; None for an incomplete header."""
+    if buffer[i] == MAGIC_V1:
+        return 8 + buffer[i + 1] if len(buffer) > i + 1 else None
+    if len(buffer) < i + 3:
+        return None
+    return 12 + buffer[i + 1] + (SIGNATURE_LENGTH if buffer[i + 2] & SIGNED else 0)

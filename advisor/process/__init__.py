@@ -1,0 +1,1 @@
+"""The process of the program: start, signals, compiled functions, files, tasks."""

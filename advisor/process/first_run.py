@@ -1,0 +1,96 @@
+"""The first run on a machine: all kernels are compiled before work begins, with a line of progress.
+
+``python -m advisor.process.first_run`` does so when installing.
+"""
+
+import os
+import platform
+import sys
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from hashlib import sha256
+from importlib import import_module
+from importlib.metadata import version
+from pathlib import Path
+
+Tell = Callable[[str], None]
+Stages = Mapping[str, Callable[[], None]]
+"""Name of compiled code to the function that compiles the code."""
+
+
+def _called(module: str, function: str) -> Callable[[], None]:
+    return lambda: getattr(import_module(module), function)()
+
+
+KERNELS: Stages = {
+    "log readers": _called("advisor.mavlink.logs.warm", "warm_up"),
+    "estimator": _called("advisor.oem.warm", "warm"),
+    "diagnosis": _called("advisor.gap.warm", "warm_up"),
+}
+
+
+def compile_once(tell: Tell, stages: Stages = KERNELS) -> None:
+    """Compile every kernel, unless this version was compiled on this machine before.
+
+    A mark in the folder of the machine code records the compilation. A kernel whose source changes is
+    compiled anew at its next call, with the mark or without.
+
+    Parameters
+    ----------
+    tell
+        Takes each sentence about the progress.
+    stages
+        Kernels to compile. Default: all that commands call.
+    """
+    if os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
+        return
+    folder = _folder()
+    mark = folder and folder / f"inflight-advisor-{_key(stages)}.compiled"
+    if mark is not None and mark.exists():
+        return
+    for number, (name, run) in enumerate(stages.items(), 1):
+        tell(f"First run: compiling the {name} for this machine ({number} of {len(stages)}).")
+        run()
+    if mark is None:
+        tell(
+            "The compiled code cannot be kept, so every start compiles anew. "
+            "Set NUMBA_CACHE_DIR to a folder that you may write to."
+        )
+        return
+    with suppress(OSError):
+        mark.parent.mkdir(parents=True, exist_ok=True)
+        mark.touch()
+
+
+def _folder() -> Path | None:
+    """Return the folder of the mark, by numba's choice of the folder for machine code; None without one."""
+    from platformdirs import user_cache_path
+
+    given = os.environ.get("NUMBA_CACHE_DIR")
+    beside = Path(__file__).parents[1] / "__pycache__"
+    users = user_cache_path("inflight-advisor")
+    choices = ([Path(given)] if given else []) + [beside, users]
+    return next((folder for folder in choices if _writable(folder)), None)
+
+
+def _writable(folder: Path) -> bool:
+    """Return whether files can be made in a folder, or the folder in the nearest parent that exists."""
+    nearest = next(one for one in (folder, *folder.parents) if one.exists())
+    return nearest.is_dir() and os.access(nearest, os.W_OK)
+
+
+def _key(stages: Stages) -> str:
+    """Return a hash of versions, machine and folder, on which machine code depends in addition to the
+    sources."""
+    parts = (version("numba"), _own_version(), sys.version, platform.machine(), __file__, *stages)
+    return sha256("\0".join(parts).encode()).hexdigest()[:16]
+
+
+def _own_version() -> str:
+    from advisor import __version__
+
+    return str(__version__)
+
+
+if __name__ == "__main__":
+    compile_once(lambda sentence: print(sentence, file=sys.stderr, flush=True))

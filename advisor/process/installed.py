@@ -1,0 +1,13 @@
+"""Location of the bundled simulator and the sample flight: in the repository, or in an installed wheel."""
+
+from pathlib import Path
+
+_PACKAGE = Path(__file__).parents[1]
+_INSTALLED = (_PACKAGE.parent / "inflight_sim").is_dir()
+
+SIMULATOR = "inflight_sim" if _INSTALLED else "sim"
+"""Name of the simulator's package. A wheel leaves the name ``sim`` to other programs."""
+SAMPLES = _PACKAGE / "sample" if _INSTALLED else _PACKAGE.parent / "logs"
+"""Folder with the sample flight."""
+SAMPLE = "arduplane-calm"
+"""Name of the sample flight's log and of its aircraft file, without their endings."""

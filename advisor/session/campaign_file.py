@@ -1,0 +1,100 @@
+"""The file of a flight test's options next to its recording: ``flight.campaign.yaml``.
+
+``advisor live --resume`` reads the file, so that nobody has to remember the options of the first start.
+"""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, get_args
+
+import yaml
+
+from advisor.aircraft.aircraft import Aircraft, Rule
+from advisor.aircraft_file.read import parse_aircraft
+from advisor.process.atomic_file import write_atomically
+from advisor.process.yaml_file import read_yaml
+from advisor.words.problems import ConfigurationError
+
+SUFFIX = ".campaign.yaml"
+_KEYS = ("master", "rule", "target_system", "aircraft")
+_HEADING = "# Options of this flight test; `advisor live --resume` reads this file with its recording.\n"
+
+
+@dataclass(frozen=True, slots=True)
+class CampaignFile:
+    """Options of a flight test that a resumed flight test keeps."""
+
+    master: str
+    """Connection, as in pymavlink."""
+    rule: Rule | None = None
+    """Rule given on the command line. None: the aircraft file's rule."""
+    target_system: int | None = None
+    aircraft: Any = None
+    """Content of the aircraft file. None: no file."""
+
+    def parsed_aircraft(self, origin: str) -> Aircraft:
+        """Return the aircraft of the flight test, with the rule of the command line where one was given.
+
+        Parameters
+        ----------
+        origin
+            Path of the file, for messages about mistakes.
+
+        Raises
+        ------
+        ConfigurationError
+            The content is no aircraft file.
+        """
+        aircraft = parse_aircraft(self.aircraft or {}, origin)
+        if self.rule is None:
+            return aircraft
+        return replace(aircraft, campaign=replace(aircraft.campaign, rule=self.rule))
+
+
+def path_beside(recording: Path) -> Path:
+    """Return the path of the file of options."""
+    return recording.with_suffix(SUFFIX)
+
+
+def write_campaign(recording: Path, campaign: CampaignFile) -> None:
+    """Write the options next to a recording.
+
+    Raises
+    ------
+    OSError
+        The file cannot be written.
+    """
+    content = {key: value for key in _KEYS if (value := getattr(campaign, key)) is not None}
+    write_atomically(
+        path_beside(recording), _HEADING + yaml.safe_dump(content, sort_keys=False, allow_unicode=True)
+    )
+
+
+def read_campaign(recording: Path) -> CampaignFile | None:
+    """Read the options of a flight test; None without a file.
+
+    Raises
+    ------
+    ConfigurationError
+        The file cannot be read, or is not what ``write_campaign`` writes.
+    """
+    path = path_beside(recording)
+    if not path.exists():
+        return None
+    content = read_yaml(path, "Mend the file, or move it away and give the options again.")
+    if not _is_campaign(content):
+        raise ConfigurationError(
+            f"{path}: must hold master and may hold {', '.join(_KEYS[1:])}. Move the file away and give the "
+            "options again."
+        )
+    return CampaignFile(**content)
+
+
+def _is_campaign(content: Any) -> bool:
+    return (
+        isinstance(content, dict)
+        and set(content) <= set(_KEYS)
+        and isinstance(content.get("master"), str)
+        and content.get("rule") in (None, *get_args(Rule))
+        and isinstance(content.get("target_system", 1), int)
+    )

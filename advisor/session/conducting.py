@@ -1,0 +1,58 @@
+"""Interface between the screens and the conductor of the campaign, in this process or another."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+from advisor.campaign.state import CampaignState
+from advisor.session.hand import HandDecision
+from advisor.session.source import LinkHealth, Order, Playback, Tempo
+from advisor.words.problems import Problem
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Report:
+    """State of the campaign, the link and the replay at one moment."""
+
+    state: CampaignState
+    health: LinkHealth
+    playback: Playback | None
+    log: tuple[str, ...]
+    """Sentences of the event log, oldest first."""
+    problems: tuple[Problem, ...] = ()
+    """Reasons for which nothing can be judged, while nothing has been judged."""
+
+
+Tell = Callable[[Report], object]
+
+
+class Conducting(Protocol):
+    """Runs a campaign over a source. Every method except ``run`` returns at once, before its request is
+    done."""
+
+    def run(self, tell: Tell) -> None:
+        """Work until `stop`, in the calling thread. ``tell`` receives every report.
+
+        Raises
+        ------
+        UnusableInputError
+            The input can never serve.
+        """
+
+    def stop(self) -> None:
+        """End ``run`` at the next opportunity."""
+
+    def decide(self, decision: HandDecision) -> None:
+        """Exclude, include, note, mark, begin or end a marked manoeuvre."""
+
+    def order(self, order: Order) -> None:
+        """Carry out a crew's request to the link."""
+
+    def jump(self, number: int) -> None:
+        """Play on to just before a manoeuvre, or play to it from the beginning."""
+
+    def play(self, tempo: Tempo) -> None:
+        """Pause a replay, continue it, or change its speed."""
+
+    def step(self) -> None:
+        """Play the next tenth of a second of a paused replay."""

@@ -1,0 +1,176 @@
+"""The conductor: feeds one campaign from one source and reports its results.
+
+Only the thread in ``run`` touches the campaign. The methods below only leave a request, whose result comes
+through ``tell``.
+"""
+
+from collections.abc import Callable
+from math import inf
+from queue import Empty, SimpleQueue
+from threading import Event
+from time import monotonic
+
+from advisor.campaign.hand_decisions import NOTHING, ByHand
+from advisor.session.campaign_like import CampaignLike
+from advisor.session.conducting import Report, Tell
+from advisor.session.goal import Goal
+from advisor.session.hand import HandDecision
+from advisor.session.source import Order, Playable, Source, Tempo
+
+REPORT_EVERY_S = 0.1
+_READ_TIMEOUT_S = 0.05
+
+
+class Conductor:
+    """Runs a campaign over a source until told to stop.
+
+    Parameters
+    ----------
+    source : Source
+        Source of the data.
+    make_campaign : callable
+        Makes a campaign from the decisions by hand. It is called by ``run``, and again for a rewind.
+    by_hand : ByHand
+        Earlier decisions by hand.
+    """
+
+    def __init__(
+        self, source: Source, make_campaign: Callable[[ByHand], CampaignLike], by_hand: ByHand = NOTHING
+    ) -> None:
+        self._source = source
+        self._make_campaign = make_campaign
+        self._tell: Tell = lambda report: None
+        self._requests: SimpleQueue[Callable[[CampaignLike], None]] = SimpleQueue()
+        self._by_hand = by_hand
+        self._said_where = ""
+        self._pending: list[HandDecision] = []
+        self._goal: Goal | None = None
+        self._stopped = Event()
+        self._rewound = False
+        self._told_s = -inf
+
+    def run(self, tell: Tell) -> None:
+        """Work until `stop`. The calling thread is the working thread.
+
+        Parameters
+        ----------
+        tell : callable
+            Receives a `Report` at most every `REPORT_EVERY_S`, in this thread.
+
+        Raises
+        ------
+        UnusableInputError
+            The input can never serve.
+        """
+        self._tell = tell
+        try:
+            while not self._stopped.is_set():
+                self._rewound = False
+                self._play(self._make_campaign(self._by_hand))
+        finally:
+            self._source.close()
+
+    def stop(self) -> None:
+        """End `run` at the next opportunity."""
+        self._stopped.set()
+
+    def decide(self, decision: HandDecision) -> None:
+        """Exclude, include, note, mark, begin or end a marked manoeuvre."""
+        self._requests.put(lambda campaign: self._decide(campaign, decision))
+
+    def order(self, order: Order) -> None:
+        """Carry out a crew's request to the link."""
+        self._requests.put(lambda campaign: self._source.order(order))
+
+    def jump(self, number: int) -> None:
+        """Play on to just before a manoeuvre, or play to it from the beginning."""
+        self._requests.put(lambda campaign: self._jump(campaign, number))
+
+    def play(self, tempo: Tempo) -> None:
+        """Pause a replay, continue it, or change its speed."""
+        if isinstance(self._source, Playable):
+            self._source.play(tempo)
+
+    def step(self) -> None:
+        """Play the next tenth of a second of a paused replay."""
+        if isinstance(self._source, Playable):
+            self._source.step()
+
+    def _play(self, campaign: CampaignLike) -> None:
+        """Feed one campaign until a rewind or the stop."""
+        ended = False
+        while not self._stopped.is_set():
+            self._answer(campaign, _READ_TIMEOUT_S if ended else 0.0)
+            if self._rewound:
+                return
+            if ended:
+                self._arrive()
+                continue
+            batch = self._source.read(_READ_TIMEOUT_S)
+            if batch is None:
+                ended = True
+                campaign.finish()
+                self._keep(campaign)
+                self._arrive()
+            elif batch:
+                campaign.feed(batch)
+            if self._pending:
+                self._decide_what_is_due(campaign)
+            if self._goal and self._goal.reached(campaign.state):
+                self._arrive()
+            if ended or monotonic() - self._told_s >= REPORT_EVERY_S:
+                self._report(campaign)
+
+    def _answer(self, campaign: CampaignLike, timeout_s: float) -> None:
+        """Serve the requests of the screens, after waiting for a first one."""
+        try:
+            self._requests.get(timeout=timeout_s or None, block=timeout_s > 0.0)(campaign)
+        except Empty:
+            return
+        self._report(campaign)
+
+    def _report(self, campaign: CampaignLike) -> None:
+        for sentence in self._source.take_notices():
+            campaign.log(f"link: {sentence}")
+        state = campaign.state
+        playback = self._source.playback() if isinstance(self._source, Playable) else None
+        problems = () if state.maneuvers else tuple(campaign.problems)
+        self._tell(Report(state, self._source.health(), playback, state.notices, problems))
+        self._told_s = monotonic()
+
+    def _decide(self, campaign: CampaignLike, decision: HandDecision) -> None:
+        """Apply a decision now, or after a jump back as soon as its manoeuvre has been flown again."""
+        self._pending.append(decision)
+        self._decide_what_is_due(campaign)
+
+    def _decide_what_is_due(self, campaign: CampaignLike) -> None:
+        state = campaign.state
+        for decision in [d for d in self._pending if d.due(state)]:
+            decision.apply(campaign)
+            self._pending.remove(decision)
+            self._keep(campaign)
+
+    def _keep(self, campaign: CampaignLike) -> None:
+        """Keep the decisions by hand for a rewind, and with the data."""
+        if campaign.by_hand != self._by_hand:
+            self._by_hand = campaign.by_hand
+            where = self._source.keep(self._by_hand)
+            if where != self._said_where:
+                self._said_where = where
+                campaign.log(where)
+
+    def _jump(self, campaign: CampaignLike, number: int) -> None:
+        if not isinstance(self._source, Playable):
+            return
+        known = next((j.maneuver for j in campaign.state.maneuvers if j.maneuver.number == number), None)
+        self._goal = Goal(number, (*known.power_on, known.span.start_s) if known else None)
+        if known:
+            self._source.rewind()
+            self._rewound = True
+        self._source.hurry(True)
+
+    def _arrive(self) -> None:
+        """End the jump, at its goal or at the end of the log."""
+        if self._goal is not None and isinstance(self._source, Playable):
+            self._source.hurry(False)
+            self._goal = None

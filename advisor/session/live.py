@@ -1,0 +1,139 @@
+"""A live link as the source of a campaign."""
+
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager
+from typing import Protocol
+
+from advisor.analysis.marks_file import keep_by_hand
+from advisor.campaign.hand_decisions import ByHand
+from advisor.flight.signals.messages import Columns
+from advisor.mavlink.link.health import LinkStatistics, Notice
+from advisor.session.source import Condition, LinkHealth, Order
+
+SILENT_S = 2.0
+LOSS_PERCENT = 5.0
+
+
+class LinkLike(Protocol):
+    """A link as its readers see it, in this process or in another."""
+
+    @property
+    def statistics(self) -> LinkStatistics:
+        """Health of the link now."""
+
+    @property
+    def catching_up(self) -> bool:
+        """Whether earlier records are still being read."""
+
+    def read(self, timeout_s: float) -> list[Columns]:
+        """Return the next messages in order of arrival; empty when none came in time."""
+
+    def take_notices(self) -> list[Notice]:
+        """Return the notices since the last call, oldest first."""
+
+    def follow(self, system: int) -> None:
+        """Follow another vehicle."""
+
+    def take_output(self, output: int) -> None:
+        """Use an output as the elevator."""
+
+    def ask_for_outputs(self) -> None:
+        """Ask the vehicle once which of its outputs is the elevator."""
+
+
+class LinkSource:
+    """Reads a link. The source ends only when the far end has finished.
+
+    Parameters
+    ----------
+    connection
+        Context that opens the link, entered by the first ``read``.
+    over
+        Function that returns whether the far end has finished. Only a demonstration knows.
+    """
+
+    def __init__(
+        self, connection: AbstractContextManager[LinkLike], over: Callable[[], bool] = lambda: False
+    ) -> None:
+        self._connection, self._over = connection, over
+        self._link: LinkLike | None = None
+
+    def read(self, timeout_s: float) -> Sequence[Columns] | None:
+        """Return the next batch; None when the far end has finished and everything was read.
+
+        Raises
+        ------
+        UnusableInputError
+            The connection cannot be opened.
+        """
+        if self._link is None:
+            self._link = self._connection.__enter__()
+        over = self._over()
+        columns = self._link.read(timeout_s)
+        return None if over and not columns else columns
+
+    def health(self) -> LinkHealth:
+        """Return the state of the data's arrival."""
+        if self._link is None:
+            return LinkHealth("waiting", "Opening the connection.")
+        statistics = self._link.statistics
+        condition, sentence = _glance(statistics)
+        if self._over():
+            condition, sentence = "ended", "The flight is over."
+        elif self._link.catching_up:
+            condition, sentence = "waiting", "The recording so far is being read."
+        return LinkHealth(condition, sentence, _figures(statistics), statistics.recording_problem or "")
+
+    def take_notices(self) -> Sequence[str]:
+        """Return the notices of the link since the last call."""
+        return [notice.text for notice in self._link.take_notices()] if self._link is not None else ()
+
+    def order(self, order: Order) -> None:
+        """Pass on a crew's request."""
+        if self._link is None:
+            return
+        if order.what == "follow":
+            self._link.follow(order.number)
+        elif order.what == "take":
+            self._link.take_output(order.number)
+        else:
+            self._link.ask_for_outputs()
+
+    def keep(self, by_hand: ByHand) -> str:
+        """Keep the decisions next to the recording."""
+        recording = self._link.statistics.recording if self._link is not None else None
+        if recording is None:
+            return "decisions by hand are not kept, for nothing is recorded: they hold until you quit"
+        return keep_by_hand(recording, by_hand)
+
+    def close(self) -> None:
+        """Stop listening. The recording is whole afterwards."""
+        if self._link is not None:
+            self._connection.__exit__(None, None, None)
+
+
+def _glance(link: LinkStatistics) -> tuple[Condition, str]:
+    if not link.connected:
+        return "lost", "The connection is cut; it is opened again as soon as it can be."
+    if link.vehicle is None:
+        return "waiting", "No vehicle heard yet; check that it sends to this address."
+    if link.silent_s > SILENT_S:
+        return "lost", f"Nothing heard for {link.silent_s:.0f} s."
+    if link.lost_percent > LOSS_PERCENT:
+        return "poor", f"{link.lost_percent:.0f} % of the packets are lost."
+    return "good", f"{link.messages_per_s:.0f} messages/s."
+
+
+def _figures(link: LinkStatistics) -> tuple[tuple[str, str], ...]:
+    figures = [
+        ("messages", f"{link.messages} ({link.messages_per_s:.0f}/s)"),
+        ("lost", f"{link.lost} ({link.lost_percent:.1f} %)"),
+        ("repeated, late", f"{link.repeated}, {link.late}"),
+        ("bad checksum", f"{link.bad_crc}"),
+        ("silent for", f"{link.silent_s:.1f} s"),
+        ("reconnects", f"{link.reconnects}"),
+    ]
+    figures += [(f"refused, {why}", f"{count}") for why, count in link.refused.items()]
+    if link.recording is not None:
+        figures.append(("recording", f"{link.recording} ({link.recorded_bytes / 1e6:.1f} MB)"))
+    return tuple(figures)

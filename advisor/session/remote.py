@@ -1,0 +1,168 @@
+"""A conductor in a separate process, so that no estimate delays the screens."""
+
+import pickle
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from queue import Empty, SimpleQueue
+from threading import Event, Thread
+from typing import IO
+
+from advisor.campaign.hand_decisions import NOTHING, ByHand
+from advisor.session.campaign_like import CampaignLike
+from advisor.session.changes import Changes
+from advisor.session.child_process import pause_s, said_of, start_child
+from advisor.session.conducting import Report, Tell
+from advisor.session.hand import HandDecision
+from advisor.session.source import LinkHealth, Order, Source, Tempo
+
+Request = tuple[str, tuple[object, ...]]
+"""Name of a method of `Conducting`, and its arguments."""
+
+_ENOUGH: Request = ("", ())
+"""No request. It ends the thread that passes requests on."""
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """Task of a conductor. The other process uses the task, so that all of it must be picklable."""
+
+    open_source: Callable[[], Source]
+    make_campaign: Callable[[ByHand], CampaignLike]
+    by_hand: ByHand = NOTHING
+    """Earlier decisions by hand."""
+    kept: Callable[[], ByHand] | None = None
+    """Function that reads the decisions by hand since the start. None: the source cannot be read again from
+    its beginning."""
+
+
+class RemoteConductor:
+    """A `Conducting` that passes requests to another process, and reports back from it.
+
+    Where the source can be read again from its beginning, the death of the other process ends nothing. The
+    process is restarted, and the last report stands until the new process has caught up.
+
+    Parameters
+    ----------
+    task : Task
+        Task for the process that ``run`` starts.
+    """
+
+    def __init__(self, task: Task) -> None:
+        self._task = task
+        self._requests: SimpleQueue[Request] = SimpleQueue()
+        self._last: Report | None = None
+        self._deaths: list[str] = []
+        self._stopped = Event()
+
+    def run(self, tell: Tell) -> None:
+        """Start the process and take its reports until it ends.
+
+        Raises
+        ------
+        UnusableInputError
+            The input can never serve. Any other error of the other process is raised as well.
+        RuntimeError
+            The process was ended from outside, and the source cannot be read again.
+        """
+        while code := self._conduct(tell):
+            if self._stopped.is_set():
+                return
+            if self._task.kept is None:
+                raise RuntimeError(f"The estimating process ended with exit code {code}.")
+            self._deaths.append(f"the estimating process {said_of(code)}; it is started again")
+            self._tell_of_death(tell)
+            self._stopped.wait(pause_s(len(self._deaths)))
+            self._task = replace(self._task, by_hand=self._task.kept())
+
+    def stop(self) -> None:
+        """End ``run`` at the next opportunity."""
+        self._stopped.set()
+        self._requests.put(("stop", ()))
+
+    def decide(self, decision: HandDecision) -> None:
+        """Exclude, include, note, mark, begin or end a marked manoeuvre."""
+        self._requests.put(("decide", (decision,)))
+
+    def order(self, order: Order) -> None:
+        """Carry out a crew's request to the link."""
+        self._requests.put(("order", (order,)))
+
+    def jump(self, number: int) -> None:
+        """Play on to just before a manoeuvre, or play to it from the beginning."""
+        self._requests.put(("jump", (number,)))
+
+    def play(self, tempo: Tempo) -> None:
+        """Pause a replay, continue it, or change its speed."""
+        self._requests.put(("play", (tempo,)))
+
+    def step(self) -> None:
+        """Play the next tenth of a second of a paused replay."""
+        self._requests.put(("step", ()))
+
+    def _conduct(self, tell: Tell) -> int:
+        """Run one process from its start to its end; return the exit code."""
+        with start_child("advisor.session.worker") as process:
+            assert process.stdin is not None
+            assert process.stdout is not None
+            asking = Thread(target=self._pass_on, args=(process.stdin,), daemon=True)
+            asking.start()
+            with suppress(EOFError, pickle.UnpicklingError):
+                self._pass_back(process.stdout, tell)
+            self._requests.put(_ENOUGH)
+            asking.join()
+            self._keep_what_is_asked()
+            with suppress(BrokenPipeError):
+                process.stdin.close()  # upon which a process that has finished ends
+            return process.wait()
+
+    def _pass_on(self, pipe: IO[bytes]) -> None:
+        """Send the task, then every request. A request that a process has not taken waits for the next
+        process."""
+        request = _ENOUGH
+        with suppress(BrokenPipeError, ValueError):
+            pickle.dump(self._task, pipe)
+            pipe.flush()
+            while (request := self._requests.get()) is not _ENOUGH:
+                pickle.dump(request, pipe)
+                pipe.flush()
+        if request is not _ENOUGH:
+            self._requests.put(request)
+
+    def _keep_what_is_asked(self) -> None:
+        """Remove the requests meant for the thread that has ended."""
+        waiting = []
+        with suppress(Empty):
+            while True:
+                waiting.append(self._requests.get_nowait())
+        for request in waiting:
+            if request is not _ENOUGH:
+                self._requests.put(request)
+
+    def _pass_back(self, pipe: IO[bytes], tell: Tell) -> None:
+        last: Report | None = None
+        while True:
+            match pickle.load(pipe):
+                case Report() as first:
+                    last = first
+                case Changes() as changes if last is not None:
+                    last = changes.applied_to(last)
+                case BaseException() as failure:
+                    raise failure
+            if last is not None:
+                self._tell(last, tell)
+
+    def _tell(self, report: Report, tell: Tell) -> None:
+        """Pass on a report. While a process catches up, pass on only the health of the link."""
+        if self._deaths:
+            report = replace(report, log=(*report.log, *self._deaths))
+            if self._last is not None and report.health.condition == "waiting":
+                report = replace(self._last, health=report.health, log=report.log)
+        self._last = report
+        tell(report)
+
+    def _tell_of_death(self, tell: Tell) -> None:
+        if self._last is not None:
+            health = LinkHealth("waiting", f"{self._deaths[-1].capitalize()}.", self._last.health.figures)
+            self._last = replace(self._last, health=health, log=(*self._last.log, self._deaths[-1]))
+            tell(self._last)

@@ -1,0 +1,147 @@
+"""Logs played like a flight: paused, stepped, sped up, always in the order of arrival."""
+
+from collections.abc import Callable, Sequence
+from math import inf
+from pathlib import Path
+from threading import Event
+
+from advisor.analysis.marks_file import keep_on_all
+from advisor.campaign.hand_decisions import NOTHING, ByHand
+from advisor.flight.signals.messages import Columns
+from advisor.session.source import LinkHealth, Order, Playback, Tempo
+from advisor.session.timeline import Timeline
+
+STEP_S = 0.1
+_FAST_SLICE_S = 0.5
+
+
+def _wait(changed: Event, seconds: float) -> None:
+    changed.wait(seconds)
+
+
+class LogPlayer:
+    """A `Playable` source over the messages of a log.
+
+    Parameters
+    ----------
+    title : str
+        Name of the log.
+    load : callable
+        Returns the columns of the log. It is called once, in the reading thread.
+    speed : float
+        Multiple of real time. Infinite: as fast as possible.
+    wait : callable
+        ``wait(event, seconds)`` waits until the event is set or the time is over. Tests pass their own clock.
+    keep_beside : sequence of Path
+        Logs next to which decisions by hand are kept, flight by flight. Empty: they are not kept.
+    before : ByHand
+        Earlier decisions by hand.
+    said : callable
+        Returns sentences on the logs after loading.
+    """
+
+    def __init__(
+        self,
+        title: str,
+        load: Callable[[], Sequence[Columns]],
+        speed: float = 1.0,
+        wait: Callable[[Event, float], None] = _wait,
+        keep_beside: Sequence[Path] = (),
+        before: ByHand = NOTHING,
+        said: Callable[[], Sequence[str]] = tuple,
+    ) -> None:
+        self._title = title
+        self._load = load
+        self._wait = wait
+        self._keep_beside = keep_beside
+        self._kept = before
+        self._said = said
+        self._notices: Sequence[str] = ()
+        self._tempo = Tempo(speed=speed)
+        self._hurrying = False
+        self._steps = 0
+        self._position_s = 0.0
+        self._ended = False
+        self._timeline: Timeline | None = None
+        self._changed = Event()
+
+    def read(self, timeout_s: float) -> Sequence[Columns] | None:
+        """Return the next stretch of the log when its time has come, see `Source.read`."""
+        if self._timeline is None:
+            self._timeline = Timeline(self._load())
+            self._notices = self._said()
+        self._ended = self._position_s >= self._timeline.duration_s
+        if self._ended:
+            return None
+        self._changed.clear()
+        tempo = self._tempo
+        if self._hurrying:
+            stretch_s = _FAST_SLICE_S
+        elif self._steps:
+            self._steps -= 1
+            stretch_s = STEP_S
+        elif tempo.paused:
+            self._wait(self._changed, timeout_s)
+            return ()
+        elif tempo.speed == inf:
+            stretch_s = _FAST_SLICE_S
+        else:
+            stretch_s = STEP_S * max(1.0, tempo.speed)
+            self._wait(self._changed, stretch_s / tempo.speed)
+            if self._changed.is_set():
+                return ()
+        self._position_s = min(self._position_s + stretch_s, self._timeline.duration_s)
+        return self._timeline.up_to(self._position_s)
+
+    def health(self) -> LinkHealth:
+        """Return the state of the log, which can only be playing or over."""
+        timeline = self._timeline
+        if timeline is None:
+            return LinkHealth("waiting", f"Reading {self._title}.")
+        figures = (("messages", f"{len(timeline)}"), ("length", f"{timeline.duration_s:.0f} s"))
+        if self._ended:
+            return LinkHealth("ended", "The log has been played to its end.", figures)
+        return LinkHealth("good", "A recorded log is being played.", figures)
+
+    def playback(self) -> Playback:
+        """Return the position of the replay."""
+        duration_s = self._timeline.duration_s if self._timeline else 0.0
+        return Playback(self._position_s, duration_s, self._hurrying)
+
+    def play(self, tempo: Tempo) -> None:
+        """Pause, continue, or change the speed."""
+        self._tempo = tempo
+        self._changed.set()
+
+    def step(self) -> None:
+        """Deliver the next `STEP_S`, paused or not."""
+        self._steps += 1
+        self._changed.set()
+
+    def hurry(self, hurrying: bool) -> None:
+        """Play as fast as possible, or at the tempo again."""
+        self._hurrying = hurrying
+
+    def rewind(self) -> None:
+        """Start again with the first record. The call is allowed only between two reads."""
+        self._position_s, self._ended = 0.0, False
+        if self._timeline:
+            self._timeline.rewind()
+
+    def take_notices(self) -> Sequence[str]:
+        """Return sentences on the logs after loading. A file gives no later notices."""
+        notices, self._notices = self._notices, ()
+        return notices
+
+    def order(self, order: Order) -> None:
+        """Do nothing, because the vehicle of a log cannot be asked."""
+
+    def keep(self, by_hand: ByHand) -> str:
+        """Keep each decision next to its log."""
+        if not self._keep_beside:
+            return "decisions by hand are not kept: they hold until you quit"
+        before, self._kept = self._kept, by_hand
+        return keep_on_all(self._keep_beside, before, by_hand)
+
+    def close(self) -> None:
+        """Do nothing, because a log holds nothing open."""

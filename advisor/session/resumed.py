@@ -1,0 +1,72 @@
+"""A link that continues a flight test whose earlier flights are in logs."""
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from advisor.analysis.log_series import LogSeries, of_flight
+from advisor.analysis.marks_file import keep_on_all
+from advisor.campaign.hand_decisions import ByHand
+from advisor.flight.signals.messages import Columns
+from advisor.session.source import LinkHealth, Order, Source
+
+
+class ResumedSource:
+    """Delivers the logs of earlier flights, then the messages of a link as the last flight.
+
+    Parameters
+    ----------
+    logs
+        Logs of earlier flights, the oldest first, only read.
+    link
+        Link to the flight in the air.
+    """
+
+    def __init__(self, logs: Sequence[Path], link: Source) -> None:
+        self._series = LogSeries(logs)
+        self._link = link
+        self._past: Iterator[list[Columns]] | None = self._series.batches()
+        self._kept = self._series.read_by_hand()
+        self._notices: list[str] = []
+
+    def read(self, timeout_s: float) -> Sequence[Columns] | None:
+        """Return the next batch, those of the earlier flights first.
+
+        Raises
+        ------
+        UnusableInputError
+            The link can never serve.
+        """
+        if self._past is not None:
+            batch = next(self._past, None)
+            if batch is not None:
+                return batch
+            self._past = None
+            self._notices += self._series.said()
+        columns = self._link.read(timeout_s)
+        return columns if columns is None else of_flight(columns, len(self._series.logs))
+
+    def health(self) -> LinkHealth:
+        """Return the state of the data's arrival."""
+        if self._past is not None:
+            return LinkHealth("waiting", "The earlier flights are being read.")
+        return self._link.health()
+
+    def take_notices(self) -> Sequence[str]:
+        """Return the notices since the last call."""
+        notices, self._notices = self._notices, []
+        return [*notices, *self._link.take_notices()]
+
+    def order(self, order: Order) -> None:
+        """Pass on a crew's request to the link."""
+        self._link.order(order)
+
+    def keep(self, by_hand: ByHand) -> str:
+        """Keep each decision next to its log or recording."""
+        before, self._kept = self._kept, by_hand
+        said = keep_on_all(self._series.logs, before, by_hand)
+        newest = self._link.keep(by_hand.on_flight(len(self._series.logs)))
+        return "; ".join(filter(None, (said, newest)))
+
+    def close(self) -> None:
+        """Release the link."""
+        self._link.close()

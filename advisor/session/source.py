@@ -1,0 +1,105 @@
+"""Source of a screen's data: a link, a log or a demonstration behind one narrow protocol."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal, Protocol, runtime_checkable
+
+from advisor.campaign.hand_decisions import ByHand
+from advisor.flight.signals.messages import Columns
+
+Condition = Literal["good", "poor", "waiting", "lost", "ended"]
+
+
+@dataclass(frozen=True, slots=True)
+class LinkHealth:
+    """State of the data's arrival, for a glance and for a close look."""
+
+    condition: Condition
+    sentence: str
+    """Sentence on the fault and its remedy, or on the sound state."""
+    figures: tuple[tuple[str, str], ...] = ()
+    """Statistics for the engineer: (name, value with unit)."""
+    alarm: str = ""
+    """Loss at this moment; empty without one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Order:
+    """A crew's request to the link."""
+
+    what: Literal["follow", "outputs", "take"]
+    """Follow another vehicle; ask the vehicle once for its elevator's output; or use an output as the
+    elevator."""
+    number: int = 0
+    """System id of the vehicle to follow, or number of the output."""
+
+
+class Source(Protocol):
+    """Delivers batches of columns in order of arrival. All calls except ``health`` come from one thread."""
+
+    def read(self, timeout_s: float) -> Sequence[Columns] | None:
+        """Wait at most ``timeout_s`` for the next batch; return an empty one for nothing yet, or None at the
+        end.
+
+        Raises
+        ------
+        UnusableInputError
+            The input can never serve. The message names the remedy.
+        """
+
+    def health(self) -> LinkHealth:
+        """Return the state of the data's arrival. Any thread may call."""
+
+    def take_notices(self) -> Sequence[str]:
+        """Return the notices since the last call: reconnected, rates granted, a second vehicle."""
+
+    def order(self, order: Order) -> None:
+        """Carry out a crew's request to the link. Other sources do nothing."""
+
+    def keep(self, by_hand: ByHand) -> str:
+        """Keep the decisions by hand with the data; return a sentence on the place, or on the reason of a
+        failure."""
+
+    def close(self) -> None:
+        """Release sockets and files."""
+
+
+@dataclass(frozen=True, slots=True)
+class Tempo:
+    """Tempo of a replay."""
+
+    paused: bool = False
+    speed: float = 1.0
+    """Multiple of the flight's own speed. Infinite: as fast as possible."""
+
+
+@dataclass(frozen=True, slots=True)
+class Playback:
+    """Position of a replay."""
+
+    position_s: float
+    """Time since the first record with silences shortened, s."""
+    duration_s: float
+    """Length of the replay on that scale, s."""
+    hurrying: bool = False
+    """Whether the replay hurries to a position, whatever its tempo."""
+
+
+@runtime_checkable
+class Playable(Source, Protocol):
+    """A source that can be paused, stepped, sped up and started again."""
+
+    def playback(self) -> Playback:
+        """Return the position of the replay."""
+
+    def play(self, tempo: Tempo) -> None:
+        """Change the tempo. Any thread may call."""
+
+    def step(self) -> None:
+        """Deliver the next tenth of a second while paused. Any thread may call."""
+
+    def hurry(self, hurrying: bool) -> None:
+        """Play as fast as possible, paused or not. Afterwards the tempo holds again."""
+
+    def rewind(self) -> None:
+        """Start again with the first record. The caller starts a new campaign."""

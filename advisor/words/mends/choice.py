@@ -1,0 +1,33 @@
+"""Choice of the remedies for an autopilot and a kind of record."""
+
+from typing import Literal
+
+from advisor.words.mends.dataflash import Dataflash
+from advisor.words.mends.mends import Mends
+from advisor.words.mends.sdlog2 import Sdlog2
+from advisor.words.mends.telemetry import ArduPilotTelemetry, OtherTelemetry, Px4Telemetry
+from advisor.words.mends.ulog import Ulog
+
+Carrier = Literal["telemetry", "dataflash", "ulog", "sdlog2"]
+"""Kind of record: a link or its ``.tlog``, ArduPilot's own log (``.bin``), PX4's own log (``.ulg``), or PX4's
+own log before 2017 (``.px4log``)."""
+
+
+def mends_of(autopilot: str, carrier: Carrier) -> Mends:
+    """Return the remedies for a vehicle.
+
+    Parameters
+    ----------
+    autopilot
+        ``ardupilot``, ``px4``, or another name.
+    carrier
+        Kind of record with the vehicle's messages.
+    """
+    if carrier == "dataflash":
+        return Dataflash()
+    if carrier == "ulog":
+        return Ulog()
+    if carrier == "sdlog2":
+        return Sdlog2()
+    telemetry: dict[str, Mends] = {"ardupilot": ArduPilotTelemetry(), "px4": Px4Telemetry()}
+    return telemetry.get(autopilot, OtherTelemetry())

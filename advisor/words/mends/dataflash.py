@@ -1,0 +1,54 @@
+"""ArduPilot's own log (``.bin``): records and the bits of LOG_BITMASK."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from advisor.words.mends.mends import GOOD_HZ
+
+
+@dataclass(frozen=True, slots=True)
+class _Record:
+    """Record of the log that replaces a message."""
+
+    name: str
+    bit: int
+    bit_name: str
+    paced: str
+    """Origin of the record's rate."""
+
+
+_IMU = _Record("IMU", 7, "IMU", "the main loop's rate")
+_RECORDS = {
+    "ATTITUDE": _IMU,
+    "RAW_IMU": _IMU,
+    "HIGHRES_IMU": _IMU,
+    "SERVO_OUTPUT_RAW": _Record("RCOU", 13, "RC", "25 Hz, older firmware at 10 Hz"),
+    "AOA_SSA": _Record("AOA", 0, "ATTITUDE_FAST", "10 Hz"),
+    "VFR_HUD": _Record("ARSP", 7, "IMU", "10 Hz"),
+}
+"""Message to ArduPlane's record, with the bit of LOG_BITMASK that logs it (ArduPlane/defines.h) and its rate
+(ArduPlane.cpp: update_logging10, update_logging25)."""
+
+
+class Dataflash:
+    """Records of ArduPlane's log."""
+
+    def called(self, message: str) -> str:
+        """Return the name of the record."""
+        return _RECORDS[message].name if message in _RECORDS else message
+
+    def faster(self, message: str) -> str:
+        """Return the log's own rate, and the source of a higher one."""
+        record = _RECORDS.get(message)
+        logged = (
+            f"LOG_BITMASK logs {record.name} at {record.paced} (bit {record.bit}, {record.bit_name}); "
+            if record
+            else ""
+        )
+        return f"{logged}for more record a telemetry log with {message} at {GOOD_HZ} Hz"
+
+    def present(self, messages: Sequence[str]) -> str:
+        """Return the bits of LOG_BITMASK that log the records."""
+        records = [_RECORDS[message] for message in messages if message in _RECORDS]
+        bits = dict.fromkeys(f"{one.name} by bit {one.bit} ({one.bit_name})" for one in records)
+        return f"set LOG_BITMASK so that these are logged: {', '.join(bits)}; its default, 65535, has all"

@@ -1,0 +1,31 @@
+"""PX4's own log before 2017 (``.px4log``): records and the parameters of sdlog2."""
+
+from collections.abc import Sequence
+
+from advisor.words.mends.mends import GOOD_HZ
+
+_RECORDS = {
+    "ATTITUDE": "ATT",
+    "RAW_IMU": "IMU",
+    "HIGHRES_IMU": "IMU",
+    "SERVO_OUTPUT_RAW": "OUT0",
+    "AOA_SSA": "AIRS",
+    "VFR_HUD": "AIRS",
+}
+
+
+class Sdlog2:
+    """Records of sdlog2."""
+
+    def called(self, message: str) -> str:
+        """Return the name of the record."""
+        return _RECORDS.get(message, message)
+
+    def faster(self, message: str) -> str:
+        """Return the setting of the rate, which all records share."""
+        return f"set SDLOG_RATE to {GOOD_HZ}, at which sdlog2 logs {self.called(message)}"
+
+    def present(self, messages: Sequence[str]) -> str:
+        """Return the setting that adds the records."""
+        named = ", ".join(dict.fromkeys(self.called(message) for message in messages))
+        return f"set SDLOG_EXT to 1, so that sdlog2 logs {named}"

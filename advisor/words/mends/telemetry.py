@@ -1,0 +1,101 @@
+"""Telemetry: the streams of a link, live or recorded as a ``.tlog``."""
+
+from collections.abc import Sequence
+
+from advisor.words.mends.mends import GOOD_HZ
+
+_STREAM_GROUPS = {
+    "ATTITUDE": "EXTRA1",
+    "AOA_SSA": "EXTRA1",
+    "VFR_HUD": "EXTRA2",
+    "SERVO_OUTPUT_RAW": "RC_CHAN",
+    "RAW_IMU": "RAW_SENS",
+    "SCALED_IMU": "RAW_SENS",
+    "SCALED_IMU2": "RAW_SENS",
+    "GLOBAL_POSITION_INT": "POSITION",
+}
+"""Message to ArduPilot's stream group (GCS_MAVLink): the suffix of the parameter with the rate."""
+
+_IDS = {
+    "SCALED_IMU": 26,
+    "RAW_IMU": 27,
+    "ATTITUDE": 30,
+    "GLOBAL_POSITION_INT": 33,
+    "SERVO_OUTPUT_RAW": 36,
+    "VFR_HUD": 74,
+    "HIGHRES_IMU": 105,
+    "NAMED_VALUE_FLOAT": 251,
+    "ACTUATOR_OUTPUT_STATUS": 375,
+    "AOA_SSA": 11020,
+}
+
+_PX4_STREAMS = {"SERVO_OUTPUT_RAW": "SERVO_OUTPUT_RAW_0", "RAW_IMU": "HIGHRES_IMU"}
+"""Message to its PX4 stream, where the names differ (PX4's ``mavlink_messages.cpp``)."""
+
+
+def _request(message: str) -> str:
+    number = f"message {_IDS[message]}, " if message in _IDS else ""
+    return f"run with --request-rates ({number}{1_000_000 // GOOD_HZ} us interval)"
+
+
+def _each(messages: Sequence[str], called: Sequence[str]) -> str:
+    return f"ask for {' and '.join(called)} (--request-rates)" if messages else ""
+
+
+class ArduPilotTelemetry:
+    """ArduPilot's streams: one parameter for each group of messages."""
+
+    def called(self, message: str) -> str:
+        """Return the name of the message."""
+        return message
+
+    def faster(self, message: str) -> str:
+        """Return the parameter of the stream group, in both spellings, or a request."""
+        group = _STREAM_GROUPS.get(message)
+        if group is None:
+            return f"raise the rate of {message} at its sender to {GOOD_HZ} Hz"
+        return (
+            f"set SR0_{group} (MAV1_{group}) to {GOOD_HZ}, counted up by one for every further telemetry "
+            f"port, or {_request(message)}"
+        )
+
+    def present(self, messages: Sequence[str]) -> str:
+        """Return a request for the messages."""
+        return _each(messages, messages)
+
+
+class Px4Telemetry:
+    """PX4's streams: a rate for each, under the limit of its link."""
+
+    def called(self, message: str) -> str:
+        """Return the name of the message that PX4 sends. HIGHRES_IMU takes the place of RAW_IMU."""
+        return "HIGHRES_IMU" if message == "RAW_IMU" else message
+
+    def faster(self, message: str) -> str:
+        """Return the command of PX4's shell, or a request."""
+        stream = _PX4_STREAMS.get(message, message)
+        return (
+            f"set mavlink stream -d DEVICE -s {stream} -r {GOOD_HZ} in etc/extras.txt on the SD card, with "
+            f"MAV_0_RATE high enough for the link (MAV_0_MODE Onboard sends more than Normal); "
+            f"or {_request(self.called(message))}"
+        )
+
+    def present(self, messages: Sequence[str]) -> str:
+        """Return a request for the messages that PX4 has."""
+        return _each(messages, [self.called(message) for message in messages])
+
+
+class OtherTelemetry:
+    """Streams of an autopilot with unknown parameters."""
+
+    def called(self, message: str) -> str:
+        """Return the name of the message."""
+        return message
+
+    def faster(self, message: str) -> str:
+        """Return a request for the rate."""
+        return f"raise the rate of {message} on the vehicle to {GOOD_HZ} Hz, or {_request(message)}"
+
+    def present(self, messages: Sequence[str]) -> str:
+        """Return a request for the messages."""
+        return _each(messages, messages)

@@ -1,0 +1,149 @@
+"""``advisor study`` as a user calls it."""
+
+import json
+import resource
+from pathlib import Path
+from typing import Any
+
+import pytest
+from click.testing import CliRunner, Result
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.bundled.study import advised
+from advisor.bundled.study.figure import Curve, draw
+from advisor.cli import demo
+from advisor.cli.study import command
+from advisor.words.problems import ConfigurationError
+from tests.schemas import breaches
+
+# The study runs once for each figure.
+pytestmark = pytest.mark.xdist_group("study")
+ALONE = ("--workers", "1")
+"""In this process."""
+
+
+def told(kind: str, workers: str = "1") -> Any:
+    """The document of a kind of study."""
+    result = CliRunner().invoke(command, [kind, "--campaigns", "10", "--json", "--workers", workers])
+    return json.loads(result.stdout)
+
+
+@pytest.fixture(scope="module")
+def pictured(tmp_path_factory: pytest.TempPathFactory) -> dict[Path, Result]:
+    """What the same study printed beside each of two figures."""
+    folder = tmp_path_factory.mktemp("figures")
+    arguments = ["--campaigns", "10", "--seed", "4", "--json", *ALONE, "--figure"]
+    return {
+        path: CliRunner().invoke(command, [*arguments, str(path)])
+        for path in (folder / "figure.svg", folder / "figure.png")
+    }
+
+
+def test_json_is_one_document_and_nothing_else(pictured: dict[Path, Result]) -> None:
+    result = next(iter(pictured.values()))
+    assert result.exit_code == 0
+    document = json.loads(result.stdout)
+    assert breaches("study", document) == []
+    assert {(r["rule"], r["noise_percent"]) for r in document["rows"] if "paper" in r} == {
+        (rule, noise) for rule in ("continuous", "separate") for noise in (1.0, 2.5, 5.0)
+    }
+
+
+def test_the_same_seed_gives_the_same_study(pictured: dict[Path, Result]) -> None:
+    first, again = (result.stdout for result in pictured.values())
+    assert first == again
+
+
+def test_two_processes_give_the_study_of_one() -> None:
+    assert told("--change", workers="2") == told("--change")
+
+
+def test_figure_five_is_written_as_a_picture(pictured: dict[Path, Result]) -> None:
+    assert [path.read_bytes()[:5] for path in pictured] == [b"<?xml", b"\x89PNG\r"]
+
+
+def test_a_disk_that_fills_up_leaves_the_old_figure_and_no_half_one(tmp_path: Path) -> None:
+    figure = tmp_path / "figure.svg"
+    figure.write_text("the figure of yesterday")
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (5_000, before[1]))
+    try:
+        with pytest.raises(OSError, match="File too large"):
+            draw([Curve("continuous", 1.0, (None, (1.0, 2.0, 3.0)))], figure)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    assert [path.read_text() for path in tmp_path.iterdir()] == ["the figure of yesterday"]
+
+
+def test_without_json_it_is_told_in_lines() -> None:
+    result = CliRunner().invoke(command, ["--campaigns", "10", *ALONE])
+    assert "continuous" in result.stdout
+    assert "schema" not in result.stdout
+    assert "40 of 40 campaigns, " in result.stderr
+    assert max(map(len, result.stdout.split("\n"))) <= 80
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (["--figure", "missing/figure.png"], "there is no folder missing"),
+        (["--figure", "."], "is a folder; name a file in it"),
+        (["--figure", "figure.doc"], "no picture ends in .doc; name a .png or .svg file"),
+        (["--figure", "figure.png", "--change"], "leave out --advice, --change and --stops"),
+    ],
+)
+def test_a_figure_that_cannot_be_drawn_is_refused_before_a_campaign_is_flown(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, arguments: list[str], sentence: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    # So many campaigns would take an hour.
+    result = CliRunner().invoke(command, ["--campaigns", "20000", *arguments])
+    assert isinstance(result.exception, ConfigurationError)
+    assert sentence in str(result.exception)
+    assert not list(tmp_path.iterdir())
+
+
+def test_following_the_advice_saves_manoeuvres() -> None:
+    pairs = advised.pairs(5, seed=1, cases=[("twin jet", 10.0)])
+    savings = advised.savings(pairs, [advised.fly(pair) for pair in pairs])
+    assert [s.same_excursion for s in savings] == [True, False]
+    assert min(s.percent for s in savings) > 20.0
+
+
+@pytest.mark.study
+def test_what_the_advice_saves_is_told_for_two_aircraft() -> None:
+    document = json.loads(
+        CliRunner().invoke(command, ["--advice", "--campaigns", "10", "--json", *ALONE]).stdout
+    )
+    assert {row["aircraft"] for row in document["rows"]} == {"twin jet", "UAV"}
+    assert {row["same_excursion"] for row in document["rows"]} == {True, False}
+    assert min(row["fewer_percent"] for row in document["rows"]) > 10.0
+
+
+def test_a_changed_aircraft_is_noticed_within_two_manoeuvres() -> None:
+    document = json.loads(
+        CliRunner().invoke(command, ["--change", "--campaigns", "10", "--json", *ALONE]).stdout
+    )
+    lost = [row for row in document["rows"] if row["lost"]]
+    assert {(row["lost"], row["noise_percent"]) for row in lost} == {
+        (name, noise) for name in ("M_alpha", "Z_alpha") for noise in (1.0, 2.5, 5.0)
+    }
+    assert all(row["confirmed_percent"] >= 90.0 for row in lost if row["noise_percent"] <= 2.5)
+    assert all(row["confirmed_percent"] == 0.0 for row in document["rows"] if row["lost"] is None)
+
+
+@pytest.mark.parametrize(
+    ("options", "rule", "said"),
+    [
+        ([], "continuous", "rule continuous decides: the paper's rule of continuous improvement"),
+        (["--rule", "information"], "information", "rule information decides: the rule for real flights"),
+    ],
+)
+def test_the_demonstration_decides_by_the_papers_rule_unless_told_otherwise_and_says_so(
+    monkeypatch: pytest.MonkeyPatch, options: list[str], rule: str, said: str
+) -> None:
+    asked: list[Aircraft] = []
+    monkeypatch.setattr(demo, "advise", lambda source, title, aircraft: asked.append(aircraft))
+    said_so = CliRunner().invoke(demo.command, options)
+    assert [aircraft.campaign.rule for aircraft in asked] == [rule]
+    assert said_so.stdout.startswith(said)

@@ -1,0 +1,124 @@
+"""Output never fails for the encoding of a terminal, and stays readable."""
+
+import io
+import json
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from advisor.cli import group as cli
+from advisor.words.ascii_output import plain
+from tests.cli.processes import finished, flight
+
+Said = Callable[..., tuple[int, str, str]]
+"""Called with an encoding and the words of the command line: exit code, output, errors."""
+COMMANDS: dict[str, list[str]] = {
+    "analyze": ["analyze"],
+    "doctor": ["doctor"],
+    "replay": ["replay", "--speed", "max"],
+}
+
+
+@pytest.fixture
+def said(monkeypatch: pytest.MonkeyPatch) -> "Said":
+    """Call the command in this process, both of its outputs in one encoding."""
+
+    def call(encoding: str, *arguments: object) -> tuple[int, str, str]:
+        out, err = (io.TextIOWrapper(io.BytesIO(), encoding=encoding) for _ in range(2))
+        monkeypatch.setattr("sys.argv", ["advisor", *map(str, arguments)])
+        monkeypatch.setattr("sys.stdout", out)
+        monkeypatch.setattr("sys.stderr", err)
+        monkeypatch.setenv("HEADLESS", "1")
+        with pytest.raises(SystemExit) as ended:
+            cli.main()
+        assert isinstance(ended.value.code, int)
+        told, complained = (stream.buffer.getvalue().decode(encoding) for stream in (out, err))  # type: ignore[attr-defined]
+        return ended.value.code, told, complained
+
+    return call
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "cp1252", "latin-1"])
+@pytest.mark.parametrize("command", COMMANDS)
+def test_a_command_prints_in_any_encoding(command: str, encoding: str, said: Said) -> None:
+    code, out, err = said(encoding, *COMMANDS[command], flight())
+    assert code == 0, err
+    assert out
+    assert err == ""
+
+
+def test_the_posix_locale_is_no_obstacle() -> None:
+    locale = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
+    code, out, _ = finished("analyze", flight(), **locale)
+    assert code == 0
+    assert out.isascii()
+
+
+def test_what_an_encoding_lacks_is_spelled_and_columns_stay_straight(said: Said) -> None:
+    _, out, _ = said("ascii", "analyze", flight())
+    lines = out.splitlines()
+    table = [line for line in lines if line.startswith(("parameter", "Z_", "M_"))]
+    assert {line.split()[0] for line in table[1:]} >= {"Z_alpha", "M_alpha", "M_delta_e"}
+    assert "+- 95 %" in table[0]
+    assert len({len(line) for line in table}) == 1
+
+
+def test_what_an_encoding_has_is_printed_as_it_is(said: Said) -> None:
+    _, out, _ = said("utf-8", "analyze", flight())
+    assert "M_α" in out
+
+
+def test_json_is_the_same_in_every_encoding(said: Said) -> None:
+    _, wide, _ = said("utf-8", "analyze", flight(), "--json")
+    _, narrow, _ = said("ascii", "analyze", flight(), "--json")
+    assert json.loads(narrow) == json.loads(wide)
+
+
+@pytest.mark.parametrize("command", [[], ["gap"], ["live"], ["study"]])
+def test_help_needs_no_unicode(command: list[str], said: Said) -> None:
+    code, out, _ = said("ascii", *command, "--help")
+    assert code == 0
+    assert "Example:" in out
+
+
+def test_a_file_named_in_another_script_is_named_in_a_sentence(tmp_path: Path, said: Said) -> None:
+    code, _, err = said("ascii", "analyze", tmp_path / "полёт-β.tlog")
+    assert code == 3
+    assert "beta.tlog" in err
+
+
+@pytest.mark.parametrize(
+    ("written", "spelled"),
+    [
+        ("M_δe −7.2 ± 0.1", "M_delta_e -7.2 +- 0.1"),
+        ("▶ CONTINUE", "> CONTINUE"),
+        ("α → θ", "alpha -> theta"),
+        ("┌─┬│╰", "+-+|+"),
+        ("Müller", "Muller"),
+        ("\udcff飞", "??"),
+    ],
+)
+def test_characters_are_spelled_as_engineers_type_them(written: str, spelled: str) -> None:
+    assert plain(written) == spelled
+
+
+def test_a_reader_that_goes_away_ends_the_command_silently() -> None:
+    command = [sys.executable, "-m", "advisor", "analyze", str(flight())]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        assert process.stdout is not None
+        assert process.stderr is not None
+        process.stdout.close()
+        assert process.stderr.read() == b""
+        assert process.wait(timeout=60) == 0
+
+
+def test_a_full_disk_behind_the_output_is_one_sentence() -> None:
+    with Path("/dev/full").open("wb") as full:
+        command = [sys.executable, "-m", "advisor", "locate"]
+        run = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, timeout=60, check=False)
+    assert run.returncode == 2
+    assert run.stderr.count(b"\n") == 1
+    assert b"No space left" in run.stderr

@@ -1,0 +1,109 @@
+"""``advisor export`` on bad input: one sentence, the exit code, and nothing half-written."""
+
+import resource
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from advisor.exports.flights.staging import staged
+from advisor.words.problems import ConfigurationError
+from tests.conftest import Advisor
+from tests.exports.flights.conftest import Exported
+from tests.flights import TWO, recorded
+
+
+def test_the_default_is_csv(advisor: Advisor, tmp_path: Path) -> None:
+    run = advisor("export", recorded("linear", 1.0, maneuvers=TWO), "-o", tmp_path / "out")
+    assert run.returncode == 0
+    assert "manoeuvres: 2; formats: csv." in run.stdout
+    assert (tmp_path / "out" / "maneuvers.csv").exists()
+    assert {path.suffix for path in (tmp_path / "out").iterdir()} == {"", ".csv", ".json"}
+
+
+def test_two_logs_are_two_records_of_one_campaign(advisor: Advisor, tmp_path: Path) -> None:
+    logs = [recorded("linear", 1.0, seed, TWO) for seed in (11, 12)]
+    assert advisor("export", *logs, "-o", tmp_path / "out").returncode == 0
+    rows = (tmp_path / "out" / "maneuvers.csv").read_text(encoding="utf-8").splitlines()[1:]
+    assert [row.split(",")[:2] for row in rows] == [["1", "1"], ["2", "1"], ["3", "2"], ["4", "2"]]
+    assert (tmp_path / "out" / "record_2" / "grid.csv").exists()
+
+
+def test_an_unknown_format_is_refused_with_those_that_are(advisor: Advisor, tmp_path: Path) -> None:
+    run = advisor("export", "none.tlog", "-o", tmp_path, "--format", "csv,xlsx")
+    assert (run.returncode, run.stderr) == (
+        2,
+        "--format: xlsx is no format; the formats are csv, parquet, mat, mcap.\n",
+    )
+
+
+@pytest.mark.parametrize(("name", "library"), [("parquet", "pyarrow"), ("mcap", "mcap")])
+def test_a_missing_library_is_one_sentence_with_the_line_that_installs_it(
+    name: str, library: str, advisor: Advisor, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setitem(sys.modules, library, None)
+    run = advisor("export", "x.tlog", "-o", tmp_path, "--format", name)
+    assert run.returncode == 2
+    assert run.stderr == f"--format {name} needs {library}: pip install 'inflight-advisor[export]'.\n"
+
+
+def test_a_log_that_cannot_be_used_is_told_with_exit_code_3_and_no_folder_is_made(
+    advisor: Advisor, tmp_path: Path
+) -> None:
+    (tmp_path / "flight.tlog").write_bytes(b"")
+    run = advisor("export", tmp_path / "flight.tlog", "-o", tmp_path / "out")
+    assert run.returncode == 3
+    assert run.stderr.count("\n") == 1
+    assert "empty" in run.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_place_below_a_file_is_refused_in_one_sentence(
+    exported: Exported, advisor: Advisor, tmp_path: Path
+) -> None:
+    (tmp_path / "file").write_text("")
+    run = advisor("export", exported.log, "-o", tmp_path / "file" / "out")
+    assert run.returncode == 2
+    assert f"lies below the file {tmp_path / 'file'}; name a folder elsewhere." in run.stderr
+    assert "Traceback" not in run.stderr
+
+
+def test_the_input_is_not_written_over(exported: Exported, advisor: Advisor, tmp_path: Path) -> None:
+    log = tmp_path / "flight.tlog"
+    log.write_bytes(exported.log.read_bytes())
+    run = advisor("export", log, "--cut", "1", "-o", log)
+    assert run.returncode == 2
+    assert "is an input of this command" in run.stderr
+    assert log.read_bytes() == exported.log.read_bytes()
+
+
+def test_a_disk_that_is_full_in_the_middle_leaves_nothing_behind(exported: Exported, tmp_path: Path) -> None:
+    """A limit on the size of files stands for the disk: the smaller tables fit, the grid does not."""
+    command = [sys.executable, "-m", "advisor", "export", str(exported.log), "-o", str(tmp_path / "out")]
+    run = subprocess.run(
+        command,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (300_000, 300_000)),
+    )
+    assert run.returncode == 2
+    assert "File too large. Make room or name another place." in run.stderr
+    assert "Traceback" not in run.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_files_that_stood_there_stay_as_they_were_when_an_export_fails(tmp_path: Path) -> None:
+    (tmp_path / "maneuvers.csv").write_text("old")
+
+    def fail_in_the_middle() -> None:
+        with staged(tmp_path) as stage:
+            (stage / "maneuvers.csv").write_text("new")
+            raise OSError(28, "No space left on device")
+
+    with pytest.raises(ConfigurationError, match="No space left"):
+        fail_in_the_middle()
+    assert [path.name for path in tmp_path.iterdir()] == ["maneuvers.csv"]
+    assert (tmp_path / "maneuvers.csv").read_text() == "old"

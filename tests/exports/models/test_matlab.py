@@ -1,0 +1,71 @@
+"""The script for MATLAB and Octave: run by Octave, its matrices are those of the model found."""
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from advisor.exports.models.matlab import UNITS, script_text
+from advisor.exports.models.servo import Servo
+from tests.exports.models.cases import MODEL, improvement
+
+OCTAVE = shutil.which("octave-cli")
+SPEED = 25.0
+
+
+def run(folder: Path, asked: str, **changes: object) -> list[float]:
+    """What Octave prints of an expression after it has run the script."""
+    script = folder / "model.m"
+    script.write_text(script_text(improvement(**changes)).text)
+    code = f"run('{script}'); printf('%.12g\\n', {asked});"
+    assert OCTAVE is not None
+    done = subprocess.run(
+        [OCTAVE, "--norc", "--quiet", "--eval", code], capture_output=True, text=True, timeout=60, check=True
+    )
+    return [float(line) for line in done.stdout.split()]
+
+
+needs_octave = pytest.mark.skipif(OCTAVE is None, reason="octave-cli is not installed on this machine")
+
+
+@needs_octave
+def test_octave_finds_the_eigenvalues_that_numpy_finds(tmp_path):
+    m = MODEL
+    known = np.linalg.eigvals(np.array([[m["Z_alpha"], 1.0 + m["Z_q"]], [m["M_alpha"], m["M_q"]]]))
+    found = run(tmp_path, "[real(eig(A)); imag(eig(A))]")
+    assert sorted(found[2:]) == pytest.approx(sorted(known.imag), rel=1e-7)
+    assert found[:2] == pytest.approx(known.real, rel=1e-7)
+
+
+@needs_octave
+def test_octave_reads_input_outputs_and_feedthrough(tmp_path):
+    m = MODEL
+    rows = [1.0, 0.0, SPEED * m["Z_alpha"], 0.0, 1.0, SPEED * m["Z_q"]]
+    expected = [m["Z_delta_e"], m["M_delta_e"], *rows, 0.0, 0.0, SPEED * m["Z_delta_e"]]
+    assert run(tmp_path, "[B(:); C(:); D(:)]") == pytest.approx(expected)
+
+
+@needs_octave
+def test_octave_reads_each_parameter_with_its_interval(tmp_path):
+    asked = "[parameters.M_alpha.value, parameters.M_alpha.ci95, parameters.Z_0.value]"
+    half = 1.96 * abs(MODEL["M_alpha"]) / 50.0
+    expected = [MODEL["M_alpha"], MODEL["M_alpha"] - half, MODEL["M_alpha"] + half, MODEL["Z_0"]]
+    assert run(tmp_path, asked) == pytest.approx(expected)
+
+
+@needs_octave
+def test_octave_reads_the_servo_as_numbers_of_its_own(tmp_path):
+    servo = Servo(delay_s=0.03, lag_s=0.08, play_rad=0.01)
+    asked = "[servo.delay_s, servo.lag_s, servo.backlash_rad, isinf(servo.rate_limit_rad_s)]"
+    assert run(tmp_path, asked, servo=servo) == pytest.approx([0.03, 0.08, 0.01, 1.0])
+
+
+def test_each_of_the_eight_parameters_has_a_unit_in_its_comment():
+    lines = [line for line in script_text(improvement()).text.splitlines() if ".value = " in line]
+    assert [line.split("%")[1].strip() for line in lines] == list(UNITS.values())
+
+
+def test_an_effect_that_no_matrix_carries_is_listed():
+    assert script_text(improvement(effects={"turbulence": {}})).left_out == ("turbulence",)

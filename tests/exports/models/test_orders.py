@@ -1,0 +1,188 @@
+"""``advisor gap --export``: mistakes are refused before any work, and each file is written whole or not."""
+
+import json
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+import yaml
+from click.testing import CliRunner
+
+from advisor.aircraft.aircraft import PARAMETERS, Aircraft, Elevator
+from advisor.aircraft_file.read import load_aircraft
+from advisor.analysis import gap as reading
+from advisor.cli import group as cli
+from advisor.exports.models.write import Order, carry_out, order_of
+from advisor.gap.result import Diagnosis, Value
+from advisor.simulators.compare import Compared
+from tests.exports.models.cases import CALIBRATION, MODEL, REFERENCE
+from tests.gap.test_report_screen import diagnosis
+
+AIRCRAFT = Aircraft(name="glider", reference=REFERENCE, elevator=Elevator(calibration=CALIBRATION))
+FILE = {
+    "name": "glider",
+    "elevator": {"calibration": [list(pair) for pair in CALIBRATION]},
+    "reference": {"mass_kg": 10.0, "wing_area_m2": 0.8, "chord_m": 0.3, "iyy_kg_m2": 0.9},
+}
+
+
+def found(**changes: object) -> Diagnosis:
+    """A diagnosis with all eight parameters and a late, slow servo."""
+    model = {name: Value(value, abs(value) / 50.0) for name, value in MODEL.items()}
+    effects = {"transport_delay": {"delay_s": 0.03}, "actuator_lag": {"lag_s": 0.08}}
+    return replace(diagnosis(), **{"model": model, "effects": effects, **changes})
+
+
+def gap(folder: Path, monkeypatch, *arguments: str, content: object = FILE, answer: Diagnosis | None = None):
+    """``advisor gap`` on a log whose diagnosis is known, in a folder."""
+    monkeypatch.chdir(folder)
+    (folder / "mine.yaml").write_text(yaml.safe_dump(content))
+    (folder / "flight.tlog").write_bytes(b"")
+    if answer is not None:
+        monkeypatch.setattr(reading, "named_simulator", lambda *_: None)
+        monkeypatch.setattr(reading, "compare_logs", lambda _, aircraft, *__: Compared(answer, aircraft))
+    given = ["gap", "flight.tlog", "--aircraft", "mine.yaml", *arguments]
+    return CliRunner().invoke(cli.advisor, given, standalone_mode=False)
+
+
+@pytest.mark.parametrize(
+    ("order", "sentence"),
+    [
+        ("simulink:x.mdl", "'simulink' is none of the formats jsbsim, ardupilot, sdf, matlab, aircraft"),
+        ("matlab", "name the file behind a colon, as in matlab:FILE"),
+        ("matlab:", "name the file behind a colon"),
+        ("matlab:nowhere/x.m", "there is no folder nowhere"),
+        ("matlab:.", "is a folder; name a file in it"),
+        ("aircraft:mine.yaml", "is read or written by this call already"),
+        ("matlab:flight.tlog", "is read or written by this call already"),
+        ("ardupilot:plane.txt", r"must end in \.json \(coefficients\) or \.parm \(servo\)"),
+        ("jsbsim:out.xml", "give yours with simulator: jsbsim:MODEL"),
+    ],
+)
+def test_an_order_that_cannot_be_carried_out_is_refused_before_the_log_is_read(
+    tmp_path, monkeypatch, order, sentence
+):
+    result = gap(tmp_path, monkeypatch, "--export", order)
+    assert type(result.exception).__name__ == "ConfigurationError"
+    assert result.exception is not None
+    assert "\n" not in str(result.exception)
+    with pytest.raises(Exception, match=sentence):
+        raise result.exception
+
+
+def test_two_orders_for_one_file_are_refused(tmp_path, monkeypatch):
+    result = gap(tmp_path, monkeypatch, "--export", "matlab:x.m", "--export", "sdf:x.m")
+    assert "is read or written by this call already" in str(result.exception)
+
+
+@pytest.mark.parametrize("order", ["sdf:x.sdf", "ardupilot:x.json"])
+def test_the_reference_that_coefficients_lack_is_named_before_the_log_is_read(tmp_path, monkeypatch, order):
+    lacking = FILE | {"reference": {"mass_kg": 10.0, "chord_m": 0.3}}
+    result = gap(tmp_path, monkeypatch, "--export", order, content=lacking)
+    assert "need wing_area_m2, iyy_kg_m2; give them under reference:" in str(result.exception)
+
+
+def test_the_simulators_own_aircraft_is_not_overwritten(tmp_path, monkeypatch):
+    (tmp_path / "plane.xml").write_text("<fdm_config/>")
+    content = FILE | {"simulator": "jsbsim:plane.xml"}
+    result = gap(tmp_path, monkeypatch, "--export", "jsbsim:plane.xml", content=content)
+    assert "is the simulator's own aircraft; name another file" in str(result.exception)
+    assert (tmp_path / "plane.xml").read_text() == "<fdm_config/>"
+
+
+def test_without_a_flight_there_is_nothing_to_export(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    result = CliRunner().invoke(
+        cli.advisor, ["gap", "--foresee", "--export", "matlab:x.m"], standalone_mode=False
+    )
+    assert "--export has a meaning without --foresee only" in str(result.exception)
+
+
+def test_the_document_lists_the_files_written_and_what_they_do_not_carry(tmp_path, monkeypatch):
+    orders = ["--export", "matlab:x.m", "--export", "sdf:x.sdf", "--export", "ardupilot:x.parm"]
+    result = gap(tmp_path, monkeypatch, "--json", *orders, answer=found())
+    assert result.return_value == 0
+    assert json.loads(result.stdout)["exports"] == [
+        {"format": "matlab", "file": "x.m", "left_out": []},
+        {"format": "sdf", "file": "x.sdf", "left_out": ["delay 0.03 s", "lag 0.08 s"]},
+        {"format": "ardupilot", "file": "x.parm", "left_out": []},
+    ]
+    assert all((tmp_path / name).is_file() for name in ("x.m", "x.sdf", "x.parm"))
+    assert "x.sdf: written (sdf); it does not carry: delay 0.03 s, lag 0.08 s." in result.stderr
+
+
+def test_a_format_that_fails_after_the_diagnosis_leaves_the_diagnosis_and_the_other_files(
+    tmp_path, monkeypatch
+):
+    unstable = found(model=found().model | {"M_alpha": Value(3.0, 0.1)})
+    orders = ["--export", "sdf:x.sdf", "--export", "matlab:x.m"]
+    result = gap(tmp_path, monkeypatch, "--json", *orders, answer=unstable)
+    assert result.return_value == 2
+    assert [one["format"] for one in json.loads(result.stdout)["exports"]] == ["matlab"]
+    assert "need M_alpha and M_q below zero" in result.stderr
+    assert not (tmp_path / "x.sdf").exists()
+
+
+def test_without_orders_the_document_lists_none(tmp_path, monkeypatch):
+    result = gap(tmp_path, monkeypatch, "--json", answer=found())
+    assert json.loads(result.stdout)["exports"] == []
+
+
+def test_the_aircraft_file_is_the_one_that_out_writes(tmp_path, monkeypatch):
+    orders = ["--out", "by-out.yaml", "--export", "aircraft:by-export.yaml"]
+    gap(tmp_path, monkeypatch, *orders, answer=found())
+    assert (tmp_path / "by-out.yaml").read_text() == (tmp_path / "by-export.yaml").read_text()
+    improved = load_aircraft(tmp_path / "by-export.yaml")
+    assert set(improved.model) == set(PARAMETERS)
+    assert improved.effects["transport_delay"] == {"delay_s": 0.03}
+
+
+def test_where_nothing_was_found_the_model_can_still_be_exported(tmp_path):
+    plain = found(verdict="none", effects={})
+    orders = [Order("matlab", tmp_path / "x.m"), Order("aircraft", tmp_path / "x.yaml")]
+    script, aircraft = carry_out(orders, plain, AIRCRAFT)
+    assert script.problem == ""
+    assert "no cause was named and no number found wrong" in aircraft.problem
+
+
+def test_without_an_air_speed_no_derivative_is_given_to_another_program(tmp_path):
+    (one,) = carry_out([Order("matlab", tmp_path / "x.m")], found(reference_airspeed_m_s=None), AIRCRAFT)
+    assert "needs the air speed flown" in one.problem
+
+
+def test_a_disk_that_refuses_is_told_in_one_sentence(tmp_path, monkeypatch):
+    order = Order("matlab", tmp_path / "gone" / "x.m")
+    (one,) = carry_out([order], found(), AIRCRAFT)
+    assert one.problem.endswith("was not written: No such file or directory.")
+
+
+def test_the_servo_that_the_file_states_is_part_of_what_is_exported(tmp_path):
+    stated = replace(AIRCRAFT, elevator=replace(AIRCRAFT.elevator, lag_s=0.05))
+    carry_out([Order("matlab", tmp_path / "x.m")], found(), stated)
+    assert "servo.lag_s = 0.13;" in (tmp_path / "x.m").read_text()
+
+
+def test_the_height_recorded_gives_the_density(tmp_path):
+    carry_out([Order("sdf", tmp_path / "x.sdf")], found(height_m=1100.0), AIRCRAFT)
+    (found_here,) = re.findall("<air_density>(.*)</air_density>", (tmp_path / "x.sdf").read_text())[:1]
+    assert float(found_here) == pytest.approx(1.1008, abs=1e-4)
+
+
+def test_a_path_with_colons_is_a_path():
+    assert order_of("matlab:C:/models/x.m") == Order("matlab", Path("C:/models/x.m"))
+
+
+def test_the_simulators_aircraft_is_corrected_where_the_aircraft_file_names_one(tmp_path):
+    model = {
+        "Z_alpha": -2.9, "Z_q": -0.04, "Z_delta_e": -0.24, "M_alpha": -33.0, "M_q": -5.5, "M_delta_e": -31.0
+    }  # fmt: skip
+    changed = model | {"M_alpha": -20.0, "Z_0": 0.1, "M_0": 0.2}
+    flown = found(
+        verdict="parameters", reference_airspeed_m_s=53.0, effects={},
+        model={n: Value(v, 0.01 * abs(v)) for n, v in changed.items()},
+    )  # fmt: skip
+    mine = replace(AIRCRAFT, simulator="jsbsim:c172p", model=model)
+    (one,) = carry_out([Order("jsbsim", tmp_path / "x.xml")], flown, mine)
+    assert one.problem == ""
+    assert "M_alpha as flown" in (tmp_path / "x.xml").read_text()

@@ -1,0 +1,80 @@
+"""Where nothing says which output is the elevator, the one that the pitch rate answers to is guessed."""
+
+import numpy as np
+import pytest
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.maneuvers.events import ManeuverFlown, Notice
+from advisor.flight.stream.stream import FlightStream
+from advisor.flight.vehicle.following import TAKE
+from tests.flight.columns import Wire, aoa, attitude, heartbeat, hud, parameter, pull, servo, text
+
+START_S = 1000.0
+
+
+def passive_flight(elevator=4, taken_at_s=None, until_s=60.0, answers=True, seed=1):
+    """3-2-1-1 inputs every 15 s on one output, noise on the others, no parameter."""
+    wire, dice, alpha, q = Wire(), np.random.default_rng(seed), 0.0, 0.0
+    heartbeat(wire, START_S)
+    for k in range(int(until_s * 50)):
+        t = k / 50
+        sense = pull(t % 15.0 - 4.0)
+        pulses = {n: 1500 + round(20 * dice.standard_normal()) for n in range(1, 6)}
+        pulses[elevator] = 1500 + 40 * sense
+        attitude(wire, START_S + t, 50.0 + t, q=q + 0.001 * dice.standard_normal())
+        aoa(wire, START_S + t + 1e-4, 50.0 + t, 2.0 + np.degrees(alpha))
+        servo(wire, START_S + t + 2e-4, 50.0 + t, pulses)
+        hud(wire, START_S + t + 3e-4)
+        moment = -6.0 * alpha - 2.0 * q + 2.0 * sense * answers
+        alpha, q = alpha + 0.02 * (q - 1.5 * alpha), q + 0.02 * moment
+        if taken_at_s is not None and abs(t - taken_at_s) < 1e-9:
+            text(wire, START_S + t + 4e-4, TAKE.decode() + str(elevator), system=254, component=190)
+    return wire
+
+
+def run(wire, size=None):
+    stream = FlightStream(Aircraft())
+    size = size or len(wire)
+    events = []
+    for i in range(0, len(wire), size):
+        events += stream.feed(wire.columns(range(i, min(i + size, len(wire)))))
+    return stream, [*events, *stream.finish()]
+
+
+@pytest.mark.parametrize("output", [2, 4])
+def test_the_output_that_the_pitch_rate_answers_to_is_guessed_and_said_with_how_sure(output):
+    stream, events = run(passive_flight(output))
+    (said,) = [e.text for e in events if isinstance(e, Notice) and e.code == "elevator_guess"]
+    assert f"output {output} is a guess: it explains" in said
+    (problem,) = [p for p in stream.problems() if p.code == "no_elevator"]
+    assert f"output {output} is a guess" in problem.fix
+
+
+def test_a_guess_decides_nothing_until_a_hand_takes_it():
+    _, events = run(passive_flight())
+    assert not any(isinstance(e, ManeuverFlown) for e in events)
+
+
+def test_a_guess_that_a_hand_took_serves_from_there_on_and_the_stream_keeps_it():
+    stream, events = run(passive_flight(taken_at_s=25.0))
+    assert sum(isinstance(e, ManeuverFlown) for e in events) >= 2
+    assert "by a guess that a hand has taken" in stream.elevator_notes[0]
+
+
+def test_parameters_that_come_later_outweigh_the_guess():
+    wire = passive_flight(taken_at_s=25.0)
+    parameter(wire, START_S + 40.0, "SERVO2_FUNCTION", 19.0)
+    stream, _ = run(wire)
+    assert stream.elevator.outputs == (2,)
+
+
+def test_where_the_pitch_rate_answers_to_nothing_nothing_is_guessed():
+    stream, _ = run(passive_flight(answers=False))
+    assert stream.guess is None
+
+
+@pytest.mark.parametrize("size", [1, 313])
+def test_a_link_and_a_log_guess_the_same(size):
+    wire = passive_flight(until_s=35.0)
+    assert run(wire, size)[0].guess == run(wire)[0].guess
+    assert run(wire)[0].guess is not None

@@ -1,0 +1,97 @@
+"""What the vehicle's own parameters say, whoever sends them."""
+
+import pytest
+
+from advisor.aircraft.aircraft import Elevator
+from advisor.flight.stream.identity import READER_NOTICE, Identity
+from advisor.flight.vehicle.surfaces import Surface
+from tests.flight.columns import Wire, heartbeat, parameter
+
+GROUND_STATION, GIMBAL = 190, 154
+
+
+def elevator(*parameters):
+    """Elevator after a heartbeat of 1/1 and PARAM_VALUEs given as (component, name, value)."""
+    identity = Identity(Elevator(), None)
+    wire = Wire()
+    heartbeat(wire, 0.0)
+    for at_s, (component, name, value) in enumerate(parameters, start=1):
+        parameter(wire, float(at_s), name, value, component=component)
+    for row in range(len(wire)):
+        identity.learn(wire.columns([row]))
+    return identity.elevator
+
+
+def test_parameters_stored_by_the_ground_station_for_the_vehicle_count():
+    found = elevator((GROUND_STATION, "SERVO2_FUNCTION", 19.0))
+    assert isinstance(found, Surface)
+    assert found.outputs == (2,)
+
+
+def test_the_vehicles_own_word_outweighs_what_the_ground_station_stored():
+    own, stored = (1, "SERVO2_TRIM", 1480.0), (GROUND_STATION, "SERVO2_TRIM", 1500.0)
+    function = (1, "SERVO2_FUNCTION", 19.0)
+    assert elevator(function, own, stored) == elevator(function, own)
+    assert elevator(function, own) != elevator(function, stored)
+
+
+def test_parameters_of_another_component_of_the_system_do_not_count():
+    assert not isinstance(elevator((GIMBAL, "SERVO2_FUNCTION", 19.0)), Surface)
+
+
+BEFORE = ((1, "SERVO2_FUNCTION", 19.0), (1, "SERVO2_TRIM", 1500.0), (1, "SERVO2_REVERSED", 0.0))
+
+
+def after_a_change(name, value, flown):
+    """The elevator after one of its parameters changes, and what is said of that."""
+    identity, wire = Identity(Elevator(), None), Wire()
+    heartbeat(wire, 0.0)
+    for at_s, (_, key, number) in enumerate((*BEFORE, (1, name, value)), start=1):
+        parameter(wire, float(at_s), key, number)
+    events = [identity.learn(wire.columns([row]), 10.0, flown) for row in range(len(wire))][-1]
+    return identity.elevator, [e.text for e in events if getattr(e, "code", "") == READER_NOTICE]
+
+
+@pytest.mark.parametrize(("name", "value"), [("SERVO2_TRIM", 1520.0), ("SERVO2_REVERSED", 1.0)])
+def test_a_change_before_the_first_test_input_counts_from_its_moment_on_and_is_said(name, value):
+    surface, told = after_a_change(name, value, flown=False)
+    assert surface == elevator(*BEFORE, (1, name, value))
+    assert told == [
+        f"{name} changed from {1500 if 'TRIM' in name else 0} to {value:g} at 0:10.0: "
+        f"the elevator is counted with {value:g} after that."
+    ]
+
+
+@pytest.mark.parametrize(("name", "value"), [("SERVO2_TRIM", 1520.0), ("SERVO2_REVERSED", 1.0)])
+def test_a_change_after_a_test_input_moves_no_linkage_and_is_said(name, value):
+    surface, told = after_a_change(name, value, flown=True)
+    assert surface == elevator(*BEFORE)
+    assert len(told) == 1
+    assert "all the same" in told[0]
+
+
+@pytest.mark.parametrize(("name", "value"), [("SERVO2_TRIM", 1500.0), ("SERVO5_TRIM", 1400.0)])
+def test_a_parameter_that_does_not_change_the_elevator_is_passed_over_in_silence(name, value):
+    assert after_a_change(name, value, flown=True)[1] == []
+
+
+@pytest.mark.parametrize(
+    ("kind", "text", "expected"),
+    [
+        (255, "ArduPlane V4.5.6 (0123abcd)", "4.5.6"),
+        (0, "ArduPlane V4.7.0-dev (0123abcd)", "4.7.0-dev"),
+        (128, "ArduPlane V4.8.0-beta1 (0123abcd)", "4.8.0-beta1"),
+        (192, "ArduPlane V4.6.0-rc2", "4.6.0-rc2"),
+    ],
+)
+@pytest.mark.parametrize("text_first", [True, False])
+def test_the_version_of_a_development_build_is_told_as_such(kind, text, expected, text_first):
+    version = expected.partition("-")[0].split(".")
+    packed = sum(int(part) << shift for part, shift in zip(version, (24, 16, 8), strict=True)) | kind
+    identity, wire = Identity(Elevator(), None), Wire()
+    heartbeat(wire, 0.0)
+    wire.send("AUTOPILOT_VERSION", 2.0, flight_sw_version=packed)
+    wire.send("STATUSTEXT", 1.0 if text_first else 3.0, text=text.encode())
+    for row in range(len(wire)):
+        identity.learn(wire.columns([row]))
+    assert identity.vehicle.firmware == expected

@@ -1,0 +1,98 @@
+"""A link in a process of its own: every reader hears everything, once and in order."""
+
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from advisor.mavlink.link.keeping import Keeping, new_door
+from advisor.mavlink.link.kept_link import KeptLink
+from advisor.mavlink.link.link_process import LinkProcess
+from advisor.mavlink.link.recorder import WRITE_EVERY_S
+from advisor.mavlink.wire.frames import FrameScanner
+from advisor.words.problems import UnusableInputError
+from tests.mavlink.link.builders import UdpVehicle, attitude, free_port, heartbeat, values, wait_until
+from tests.mavlink.link.live import kill
+
+
+@pytest.fixture(autouse=True)
+def data(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
+
+
+@pytest.fixture
+def process(tmp_path: Path) -> Iterator[LinkProcess]:
+    with LinkProcess(keeping(free_port(), tmp_path / "a.tlog")) as process:
+        yield process
+
+
+@pytest.fixture
+def vehicle(process: LinkProcess) -> Iterator[UdpVehicle]:
+    vehicle = UdpVehicle(int(process.master.rpartition(":")[2]))
+    vehicle.send(heartbeat())
+    yield vehicle
+    vehicle.close()
+
+
+def keeping(port: int, recording: Path | None) -> Keeping:
+    return Keeping(f"udpin:127.0.0.1:{port}", new_door(), 254, record_to=recording)
+
+
+def heard(link: KeptLink, count: int) -> list[float]:
+    stamps: list[float] = []
+
+    def read() -> bool:
+        stamps.extend(values(link.read(0.05), "ATTITUDE", "time_boot_ms"))
+        return len(stamps) >= count
+
+    wait_until(read)
+    return stamps
+
+
+def test_a_reader_that_comes_late_hears_everything_once_and_in_order(
+    process: LinkProcess, vehicle: UdpVehicle
+) -> None:
+    with process.link() as early, process.link() as late:
+        vehicle.send(*(attitude(i) for i in range(300)))
+        assert heard(early, 300) == list(range(300))
+        vehicle.send(*(attitude(i) for i in range(300, 400)))
+        assert heard(late, 400) == list(range(400))
+        vehicle.send(*(attitude(i) for i in range(400, 500)))
+        assert heard(early, 200) == list(range(300, 500))
+        assert heard(late, 100) == list(range(400, 500))
+
+
+def test_what_arrives_while_the_process_is_dead_is_heard_by_the_next_one(
+    process: LinkProcess, vehicle: UdpVehicle
+) -> None:
+    with process.link() as link:
+        vehicle.send(*(attitude(i) for i in range(100)))
+        assert heard(link, 100) == list(range(100))
+        time.sleep(2 * WRITE_EVERY_S)
+        kill(process.pid)
+        vehicle.send(*(attitude(i) for i in range(100, 200)))
+        assert heard(link, 100) == list(range(100, 200))
+        said = " ".join(notice.text for notice in link.take_notices())
+    assert "has ended and was started again; the recording goes on" in said
+
+
+def test_a_connection_that_cannot_be_opened_is_refused_with_what_to_do(tmp_path: Path) -> None:
+    port = free_port()
+    with (
+        LinkProcess(keeping(port, None)),
+        pytest.raises(UnusableInputError, match="no other program uses it"),
+        LinkProcess(keeping(port, None)),
+    ):
+        pass
+
+
+def test_the_recording_is_whole_after_an_orderly_end(tmp_path: Path) -> None:
+    process = LinkProcess(keeping(free_port(), tmp_path / "b.tlog"))
+    with process, process.link() as link:
+        vehicle = UdpVehicle(int(process.master.rpartition(":")[2]))
+        vehicle.send(heartbeat(), *(attitude(i) for i in range(50)))
+        heard(link, 50)
+    vehicle.close()
+    replayed = FrameScanner().feed((tmp_path / "b.tlog").read_bytes())
+    assert values(replayed, "ATTITUDE", "time_boot_ms") == list(range(50))

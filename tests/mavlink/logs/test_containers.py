@@ -1,0 +1,158 @@
+"""What a log comes in: text in front, gzip, zip; and files that are no logs, each told in one sentence."""
+
+import gzip
+import io
+import json
+import os
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from advisor.mavlink.logs.logs import open_log
+from advisor.words.problems import UnusableInputError
+from tests.conftest import Advisor
+from tests.mavlink.ardupilot.test_autopilot_logs import dataflash_flight, px4_flight
+from tests.mavlink.builders import Sender, random_message, record
+
+TEXT = b"INFO  [blackbox] started\n"
+
+
+def telemetry() -> bytes:
+    sender, rng = Sender(), np.random.default_rng(0)
+    return b"".join(record(sender.frame(random_message("ATTITUDE", rng))) for _ in range(50))
+
+
+LOGS = {
+    "flight.tlog": telemetry,
+    "flight.bin": lambda: dataflash_flight(2.0),
+    "flight.ulg": lambda: px4_flight(2.0),
+}
+
+
+def read(path: Path) -> tuple[list[tuple[str, int]], list[str]]:
+    """Names and numbers of the messages of a log, and the sentences of its reader."""
+    columns = [c for batch in open_log(path) for c in batch]
+    texts = [text for c in columns if c.name == "STATUSTEXT" for text in c.fields["text"].tolist()]
+    said = [text.decode() for text in texts if text.startswith(b"Log reader: ")]
+    return [
+        (c.name, len(c)) for c in columns if b"Log reader" not in str(c.fields.get("text")).encode()
+    ], said
+
+
+def zipped(**logs: bytes) -> bytes:
+    file = io.BytesIO()
+    with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, content in logs.items():
+            archive.writestr(name.replace("_", "."), content)
+    return file.getvalue()
+
+
+@pytest.mark.parametrize("name", LOGS)
+def test_text_in_front_of_a_log_is_skipped_and_counted(tmp_path: Path, name: str) -> None:
+    sound, path = tmp_path / f"sound-{name}", tmp_path / name
+    sound.write_bytes(LOGS[name]())
+    path.write_bytes(TEXT + LOGS[name]())
+    messages, said = read(path)
+    assert messages == read(sound)[0]
+    assert said == [f"Log reader: {len(TEXT)} bytes in front of the first record were skipped"]
+    assert read(sound)[1] == []
+
+
+@pytest.mark.parametrize("name", LOGS)
+@pytest.mark.parametrize("pack", [gzip.compress, lambda log: zipped(readme_txt=b"A flight.", log_x=log)])
+def test_a_packed_log_reads_as_the_log_itself(tmp_path: Path, name: str, pack) -> None:
+    sound, path = tmp_path / name, tmp_path / f"{name}.packed"
+    sound.write_bytes(LOGS[name]())
+    path.write_bytes(pack(LOGS[name]()))
+    assert read(path) == read(sound)
+
+
+def test_a_log_is_known_by_its_content_whatever_its_name(tmp_path: Path) -> None:
+    for name, make in LOGS.items():
+        for other in LOGS:
+            path = tmp_path / other
+            path.write_bytes(make())
+            assert read(path)[0], (name, other)
+
+
+def test_of_several_logs_in_a_zip_none_is_chosen_and_all_are_named(tmp_path: Path) -> None:
+    path = tmp_path / "flights.zip"
+    path.write_bytes(zipped(**{"a_bin": dataflash_flight(1.0), "b\x1b[31m_tlog": telemetry()}))
+    problem = refused(path)
+    assert problem.code == "several_logs"
+    assert "a.bin, b[31m.tlog" in problem.text
+
+
+def refused(path: Path):
+    with pytest.raises(UnusableInputError) as caught:
+        list(open_log(path))
+    (problem,) = caught.value.problems
+    assert path.name in problem.text
+    assert problem.fix
+    return problem
+
+
+NO_LOGS = {
+    "git_lfs": b"version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 12345\n",
+    "web_page": b"\n<!DOCTYPE html>\n<html><body>flight.bin</body></html>",
+    "encrypted": b"ULogEnc\x01" + bytes(200),
+    "text_log": b"FMT, 128, 89, FMT, BBnNZ, Type,Length,Name,Format,Columns\n",
+    "packed": b"7z\xbc\xaf\x27\x1c" + bytes(100),
+    "empty": b"",
+    "not_a_tlog": b"time,alpha\n0,1\n" * 100,
+}
+
+
+@pytest.mark.parametrize("code", NO_LOGS)
+@pytest.mark.parametrize("name", ["flight.bin", "flight.ulge", "flight.tlog"])
+def test_a_file_that_is_no_log_is_told_in_one_sentence(tmp_path: Path, code: str, name: str) -> None:
+    path = tmp_path / name
+    path.write_bytes(NO_LOGS[code])
+    assert refused(path).code == code
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        gzip.compress(dataflash_flight(2.0))[:-100],
+        zipped(log_bin=dataflash_flight(2.0))[:-100],
+        b"PK\x03\x04" + bytes(100),
+        b"\x1f\x8b" + bytes(100),
+        zipped(notes_txt=b"no log"),
+        gzip.compress(gzip.compress(telemetry())),
+    ],
+    ids=["gzip cut", "zip cut", "no zip", "no gzip", "zip without a log", "packed twice"],
+)
+def test_a_damaged_or_empty_archive_is_told_in_one_sentence(tmp_path: Path, content: bytes) -> None:
+    path = tmp_path / "flight.zip"
+    path.write_bytes(content)
+    assert refused(path).code == "packed"
+
+
+def test_neither_a_folder_nor_a_pipe_nor_a_device_is_waited_for(tmp_path: Path) -> None:
+    pipe = tmp_path / "pipe.tlog"
+    os.mkfifo(pipe)
+    for path in (tmp_path, pipe, Path("/dev/zero"), Path("/dev/null")):
+        assert refused(path).code == "not_a_file"
+
+
+def test_of_a_packed_file_without_a_log_only_the_beginning_is_unpacked(tmp_path: Path) -> None:
+    path = tmp_path / "zeros.gz"
+    path.write_bytes(gzip.compress(bytes(20 << 20))[:-1000])
+    assert refused(path).code == "not_a_tlog"  # the damage at its end was not reached
+
+
+def test_a_sparse_file_of_zeros_is_refused_after_its_beginning(tmp_path: Path) -> None:
+    path = tmp_path / "huge.bin"
+    with path.open("wb") as file:
+        file.truncate(100 << 30)
+    assert refused(path).code == "not_a_tlog"
+
+
+def test_the_document_carries_the_notes_of_the_reader(tmp_path: Path, advisor: Advisor) -> None:
+    path = tmp_path / "flight.bin"
+    path.write_bytes(TEXT + dataflash_flight(2.0))
+    document = json.loads(advisor("analyze", path, "--json").stdout)
+    assert any("25 bytes in front" in note for note in document["log"]["notes"])

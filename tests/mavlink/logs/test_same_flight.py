@@ -1,0 +1,78 @@
+"""One flight as telemetry and as the autopilot's own log, at its rates and with its tails: one aircraft."""
+
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from advisor.aircraft.aircraft import PARAMETERS, Aircraft
+from advisor.flight.maneuvers.events import ManeuverFlown
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.stream.stream import FlightStream
+from advisor.mavlink.logs.logs import open_log
+from advisor.oem.estimate import Estimate
+from advisor.oem.estimator import estimate_jointly
+from tests.flights import FOLDER
+from tests.mavlink.builders import REPOSITORY
+from tests.mavlink.from_telemetry import DEFAULT, FAST, dataflash_of
+
+DERIVATIVES = [PARAMETERS.index(name) for name in ("Z_alpha", "M_alpha", "M_q", "M_delta_e")]
+
+
+@cache
+def flight() -> Path:
+    """The first two manoeuvres of a flight of ArduPlane."""
+    path = FOLDER / "arduplane-two.tlog"
+    whole = (REPOSITORY / "logs" / "arduplane-calm.tlog").read_bytes()
+    path.write_bytes(whole[: len(whole) * 45 // 100])
+    return path
+
+
+def flown(path: Path) -> list[Maneuver]:
+    stream = FlightStream(Aircraft())
+    events = [event for batch in open_log(path) for event in stream.feed(batch)]
+    return [e.maneuver for e in [*events, *stream.finish()] if isinstance(e, ManeuverFlown)]
+
+
+def model(maneuvers: list[Maneuver]) -> Estimate:
+    found = estimate_jointly(maneuvers, Aircraft())
+    assert isinstance(found, Estimate)
+    return found
+
+
+@cache
+def as_telemetry() -> Estimate:
+    return model(flown(flight()))
+
+
+def apart(ours: Estimate) -> np.ndarray:
+    """Differences of the derivatives, in shares of their joint 95 % interval."""
+    theirs = as_telemetry()
+    return (np.abs(ours.theta - theirs.theta) / (1.96 * np.hypot(ours.std, theirs.std)))[DERIVATIVES]
+
+
+def logged(tmp_path: Path, content: bytes) -> list[Maneuver]:
+    path = tmp_path / "flight.bin"
+    path.write_bytes(content)
+    return flown(path)
+
+
+@pytest.mark.parametrize("rates", [DEFAULT, FAST], ids=["default", "fast"])
+def test_the_autopilots_own_log_tells_of_the_same_aircraft(tmp_path: Path, rates: dict[str, float]) -> None:
+    maneuvers = logged(tmp_path, dataflash_of(flight(), rates, "elevon"))
+    assert [m.span.kind for m in maneuvers] == [m.span.kind for m in flown(flight())]
+    assert np.all(apart(model(maneuvers)) < 1.0)
+
+
+@pytest.mark.parametrize("tail", ["elevon", "V-tail"])
+def test_a_mixed_tail_is_read_as_the_elevator_that_it_makes(tmp_path: Path, tail: str) -> None:
+    plain, mixed = (logged(tmp_path, dataflash_of(flight(), DEFAULT, made)) for made in ("elevator", tail))
+    assert [m.span.kind for m in mixed] == [m.span.kind for m in plain]
+    for ours, theirs in zip(mixed, plain, strict=True):
+        np.testing.assert_allclose(ours.channels["elevator"].y, theirs.channels["elevator"].y, atol=1e-9)
+
+
+def test_without_imu_the_angles_tell_of_the_same_aircraft(tmp_path: Path) -> None:
+    content = dataflash_of(flight(), DEFAULT, "elevator").replace(b"IMU\0Q", b"XXX\0Q")
+    assert np.all(apart(model(logged(tmp_path, content))) < 1.0)

@@ -1,0 +1,98 @@
+"""Machine code is kept for as long as all that it was compiled from is the same, and no longer."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+# One compilation comes before what all tests change of its sources.
+pytestmark = pytest.mark.xdist_group("compiled")
+
+ROOT = Path(__file__).parents[2]
+
+_CALL = """
+import sys
+sys.path[:0] = sys.argv[1:]
+from flown.motion import moved
+print(moved(1.0), sum(moved.stats.cache_hits.values()))
+"""
+
+
+@pytest.fixture(scope="module")
+def compiled(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder in which the kernel was compiled."""
+    folder = tmp_path_factory.mktemp("compiled")
+    _write(folder, factor=2.0)
+    assert _call(folder) == (2.0, 0)
+    return folder
+
+
+@pytest.fixture
+def folder(compiled: Path, tmp_path: Path) -> Path:
+    """That folder with its machine code, for a test to change."""
+    return shutil.copytree(compiled, tmp_path / "copy")
+
+
+def test_a_kernel_is_loaded_where_nothing_changed(folder: Path) -> None:
+    assert _call(folder) == (2.0, 1)
+
+
+def test_a_kernel_is_compiled_anew_after_a_change_of_a_constant_of_another_module(folder: Path) -> None:
+    _write(folder, factor=3.0)
+    assert _call(folder) == (3.0, 0)
+
+
+def test_a_kernel_is_compiled_anew_after_a_change_two_imports_away(folder: Path) -> None:
+    _write(folder, factor=2.0, unit=10.0)
+    assert _call(folder) == (20.0, 0)
+
+
+def test_a_kernel_is_compiled_anew_after_a_change_of_a_relative_import(folder: Path) -> None:
+    _write(folder, factor=2.0, imports="from .factor import FACTOR")
+    assert _call(folder) == (2.0, 0)
+    _write(folder, factor=3.0, imports="from .factor import FACTOR")
+    assert _call(folder) == (3.0, 0)
+
+
+def test_a_kernel_runs_where_no_folder_can_keep_its_machine_code(folder: Path) -> None:
+    shutil.rmtree(folder / "flown" / "__pycache__")
+    nowhere = folder / "a file"
+    nowhere.touch()
+    (folder / "flown" / "__pycache__").touch()  # a file in the way: not even root can write into it
+    assert _call(folder, NUMBA_CACHE_DIR="", HOME=str(nowhere), XDG_CACHE_HOME=str(nowhere)) == (2.0, 0)
+
+
+def test_a_kernel_is_loaded_after_a_change_of_a_module_that_it_does_not_import(folder: Path) -> None:
+    (folder / "flown" / "other.py").write_text("ELSEWHERE = 1.0\n")
+    assert _call(folder) == (2.0, 1)
+
+
+def _write(
+    folder: Path, *, factor: float, unit: float = 1.0, imports: str = "from flown.factor import FACTOR"
+) -> None:
+    """A package of a kernel, the constant that the kernel reads, and the constant which that is made of."""
+    package = folder / "flown"
+    package.mkdir(exist_ok=True)
+    (package / "__init__.py").write_text("")
+    (package / "unit.py").write_text(f"UNIT = {unit}\n")
+    (package / "factor.py").write_text(f"from flown import unit\n\nFACTOR = {factor} * unit.UNIT\n")
+    (package / "motion.py").write_text(
+        f"from advisor.process.compiled import kernel\n{imports}\n\n\n"
+        "@kernel()\ndef moved(x):\n    return FACTOR * x\n"
+    )
+
+
+def _call(folder: Path, **environment: str) -> tuple[float, int]:
+    """What the kernel makes of 1 in a new process, and how often its machine code was loaded."""
+    run = subprocess.run(
+        [sys.executable, "-B", "-c", _CALL, str(folder), str(ROOT)],
+        capture_output=True,
+        text=True,
+        check=True,
+        env={**os.environ, **environment},
+    )
+    value, loaded = run.stdout.split()
+    return float(value), int(loaded)

@@ -1,0 +1,56 @@
+"""The first run compiles with a word about it, later ones neither compile nor speak."""
+
+from pathlib import Path
+
+import pytest
+
+from advisor.process.first_run import compile_once
+
+
+@pytest.fixture
+def said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """What is told, with an empty folder for machine code."""
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "kernels"))
+    monkeypatch.delenv("NUMBA_DISABLE_JIT", raising=False)
+    return []
+
+
+def test_the_first_run_tells_every_stage(said: list[str]) -> None:
+    done: list[int] = []
+    compile_once(said.append, {"one": lambda: done.append(1), "two": lambda: done.append(2)})
+    assert done == [1, 2]
+    assert said[1] == "First run: compiling the two for this machine (2 of 2)."
+
+
+def test_the_second_run_is_silent(said: list[str]) -> None:
+    done: list[int] = []
+    for _ in range(2):
+        compile_once(said.append, {"one": lambda: done.append(1)})
+    assert (len(said), done) == (1, [1])
+
+
+def test_a_run_that_was_stopped_is_begun_again(said: list[str]) -> None:
+    def stopped() -> None:
+        raise KeyboardInterrupt
+
+    for _ in range(2):
+        with pytest.raises(KeyboardInterrupt):
+            compile_once(said.append, {"one": stopped})
+    assert len(said) == 2
+
+
+def test_where_nothing_can_be_kept_every_run_says_so(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, said: list[str]
+) -> None:
+    (tmp_path / "a file").touch()
+    monkeypatch.setattr("advisor.process.first_run._writable", lambda folder: False)
+    compile_once(said.append, {"one": lambda: None})
+    assert "Set NUMBA_CACHE_DIR" in said[-1]
+
+
+def test_nothing_is_compiled_where_the_compiler_is_off(
+    said: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("NUMBA_DISABLE_JIT", "1")
+    compile_once(said.append)
+    assert said == []

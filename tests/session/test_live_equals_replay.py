@@ -1,0 +1,141 @@
+"""What is decided in the air is decided again from the recording, to the last bit."""
+
+from copy import deepcopy
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.analysis.marks_file import read_by_hand
+from advisor.bundled.demo import Demonstration
+from advisor.campaign.campaign import Campaign
+from advisor.campaign.hand_decisions import NOTHING, ByHand
+from advisor.campaign.state import CampaignState
+from advisor.flight.signals.messages import Columns
+from advisor.mavlink.logs.logs import open_log
+from advisor.oem.estimate import Estimate
+from advisor.session.live import LinkSource
+from tests.flights import FOUR, TWO, recorded
+
+pytestmark = pytest.mark.xdist_group("links")
+
+
+def facts(state: CampaignState) -> list[object]:
+    """Everything that was decided, with every number as it is."""
+    told: list[object] = [state.flight_test, state.estimate_from, state.channels]
+    for judged in state.maneuvers:
+        assert isinstance(judged.estimate, Estimate)
+        told += [judged.verdict, judged.maneuver.span, judged.estimate.cost]
+        told += [judged.estimate.theta.tobytes(), judged.estimate.covariance.tobytes()]
+    assert state.model is not None
+    return [*told, state.model.theta.tobytes()]
+
+
+def replayed(log: Path, by_hand: ByHand = NOTHING) -> Campaign:
+    campaign = Campaign(Aircraft(), by_hand=by_hand)
+    for batch in open_log(log):
+        campaign.feed(batch)
+    campaign.finish()
+    return campaign
+
+
+@pytest.fixture(scope="module")
+def flown() -> Campaign:
+    return replayed(recorded("linear", 1.0, maneuvers=FOUR))
+
+
+@pytest.fixture
+def campaign(flown: Campaign) -> Campaign:
+    """A campaign of four manoeuvres, to do with as one likes."""
+    return deepcopy(flown)
+
+
+def test_a_flight_followed_live_and_its_own_recording_give_identical_verdicts(tmp_path: Path) -> None:
+    recording = tmp_path / "live.tlog"
+    campaign = Campaign(Aircraft(), settle=True)
+    flight = Demonstration("linear", 30.0, 5, recording)
+    with flight as link:
+        while not flight.over():
+            campaign.feed(link.read(0.05))
+        while columns := link.read(0.05):
+            campaign.feed(columns)
+    campaign.finish()
+    assert len(campaign.state.maneuvers) == 7
+    assert facts(campaign.state) == facts(replayed(recording).state)
+
+
+def test_a_mark_made_on_a_live_link_gives_the_same_manoeuvre_from_the_file_beside_the_recording(
+    tmp_path: Path,
+) -> None:
+    recording = tmp_path / "live.tlog"
+    campaign = Campaign(Aircraft(), settle=True)
+    flight = Demonstration("linear", 30.0, 5, recording)
+    source, begun = LinkSource(flight, flight.over), False
+    while (columns := source.read(0.05)) is not None:
+        campaign.feed(columns)
+        state = campaign.state
+        if state.flying is not None and not begun:
+            begun = True
+            campaign.begin_maneuver()
+        elif state.marking_since_s is not None and state.now_s > state.marking_since_s + 4.0:
+            campaign.end_maneuver()
+    campaign.finish()
+    campaign.exclude(3, "a gust")
+    assert "live.maneuvers.yaml" in source.keep(campaign.by_hand)
+    source.close()
+    assert campaign.state.maneuvers[0].maneuver.span.closed_by == "marked by hand"
+    again = replayed(recording, read_by_hand(recording)).state
+    assert again.maneuvers[2].excluded_because == "a gust"
+    assert facts(again) == facts(campaign.state)
+
+
+def one_by_one(columns: list[Columns]) -> list[Columns]:
+    """Every message by itself, in order of arrival."""
+    singles = [
+        Columns(
+            piece.name,
+            piece.system,
+            piece.component,
+            piece.order[i : i + 1],
+            piece.arrival_s[i : i + 1],
+            {name: values[i : i + 1] for name, values in piece.fields.items()},
+        )
+        for piece in columns
+        for i in range(len(piece))
+    ]
+    return sorted(singles, key=lambda single: int(single.order[0]))
+
+
+def test_it_does_not_matter_how_the_stream_is_cut_into_batches() -> None:
+    log = recorded("linear", 1.0, maneuvers=TWO)
+    columns = [piece for batch in open_log(log) for piece in batch]
+    campaign = Campaign(Aircraft())
+    for single in one_by_one(columns):
+        campaign.feed([single])
+    campaign.finish()
+    assert len(campaign.state.maneuvers) == 2
+    assert facts(campaign.state) == facts(replayed(log).state)
+
+
+def test_taking_a_manoeuvre_out_by_hand_decides_everything_again_and_putting_it_back_restores_it(
+    campaign: Campaign,
+) -> None:
+    before = facts(campaign.state)
+    campaign.exclude(3, "a gust")
+    state = campaign.state
+    assert 3 not in state.estimate_from
+    assert state.maneuvers[2].excluded_because == "a gust"
+    assert not state.maneuvers[2].verdict.accepted
+    assert state.flight_test.stopped_at != 3
+    assert state.model is not None
+    assert np.any(np.frombuffer(before[-1]) != state.model.theta)  # type: ignore[call-overload]
+    campaign.include(3)
+    assert facts(campaign.state) == before
+
+
+def test_notes_and_marks_are_kept(campaign: Campaign) -> None:
+    campaign.note(2, "rough hands")
+    campaign.mark("turning back")
+    assert campaign.state.maneuvers[1].notes == ("rough hands",)
+    assert "turning back" in campaign.state.notices[-1]

@@ -1,0 +1,38 @@
+"""A number beside its limit never reads as equal to it."""
+
+import numpy as np
+import pytest
+
+from advisor.words.rounding import distinct_texts
+
+
+@pytest.mark.parametrize(
+    ("value", "limit", "digits", "texts"),
+    [
+        (43.2, 30.0, 0, ("43", "30")),
+        (30.4, 30.0, 0, ("30.4", "30.0")),
+        (1.86, 1.9, 1, ("1.86", "1.90")),
+        (7.96, 8.0, 1, ("7.96", "8.00")),
+        (24.9996, 25.0, 0, ("24.9996", "25.0000")),
+    ],
+)
+def test_as_many_digits_are_shown_as_it_takes_to_differ(value, limit, digits, texts):
+    assert distinct_texts(value, limit, digits) == texts
+
+
+def test_numbers_of_any_size_are_told_apart_by_significant_digits():
+    assert distinct_texts(3.04e-9, 3.0e-9, 2, "g") == ("3.04e-09", "3e-09")
+    assert distinct_texts(8e-9, 3e-9, 2, "g") == ("8e-09", "3e-09")
+
+
+def test_the_texts_stand_on_the_side_of_the_limit_on_which_the_numbers_are():
+    rng = np.random.default_rng(3)
+    for limit in 10.0 ** rng.uniform(-2.0, 3.0, 200):
+        value = limit * (1.0 + 10.0 ** rng.uniform(-5.0, 1.0) * rng.choice([-1.0, 1.0]))
+        for style, digits in (("f", 0), ("g", 2)):
+            shown, beside_it = map(float, distinct_texts(value, limit, digits, style))
+            assert (shown > beside_it) == (value > limit)
+
+
+def test_equal_numbers_are_shown_as_equal():
+    assert distinct_texts(25.0, 25.0) == ("25", "25")
