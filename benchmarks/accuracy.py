@@ -30,7 +30,7 @@ from advisor.model.response import N_LOCAL, N_PARAMETERS, respond
 from advisor.oem.covariance import influence
 from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import estimate, estimate_jointly
-from advisor.oem.problem import Problem, Record, Signal, assemble
+from advisor.oem.problem import OutputErrorProblem, Record, Signal, assemble
 
 Array = NDArray[np.float64]
 
@@ -144,7 +144,7 @@ def influence_at_truth(memory: float, together: int, spread: Array) -> Array:
     """(N, 8) error of the reference for each unit of whitened noise; squares of a column sum to the bound."""
     t, u, response = clean()
     outputs = {"alpha": Signal(t, response[:, 0]), "q": Signal(t, response[:, 1])}
-    assembly = assemble(Problem((Record(Signal(t, u), outputs),) * together))
+    assembly = assemble(OutputErrorProblem((Record(Signal(t, u), outputs),) * together))
     y, g = np.empty(len(assembly.z)), np.empty((len(assembly.z), N_PARAMETERS))
     local = np.zeros((together, N_LOCAL))
     local[:, 0], local[:, 1] = JET[0], JET[4]

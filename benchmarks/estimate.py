@@ -27,7 +27,7 @@ from advisor.mavlink.logs.tlog import read_tlog
 from advisor.model.response import N_PARAMETERS, respond
 from advisor.oem.batch import solve_many
 from advisor.oem.following import Follower
-from advisor.oem.problem import Problem, Record, Signal
+from advisor.oem.problem import OutputErrorProblem, Record, Signal
 from advisor.oem.solution import search, solve
 from advisor.oem.start import start
 from benchmarks.accuracy import JET, clean
@@ -60,8 +60,8 @@ def make() -> Data:
     return Data(t, u, z, from_solver(shared, local), np.concatenate([off * JET, z[0]]))
 
 
-def problem(t: Array, u: Array, z: Array) -> Problem:
-    return Problem((Record(Signal(t, u), {"alpha": Signal(t, z[:, 0]), "q": Signal(t, z[:, 1])}),))
+def problem(t: Array, u: Array, z: Array) -> OutputErrorProblem:
+    return OutputErrorProblem((Record(Signal(t, u), {"alpha": Signal(t, z[:, 0]), "q": Signal(t, z[:, 1])}),))
 
 
 def from_solver(shared: Array, local: Array) -> Array:
@@ -339,7 +339,7 @@ def scale() -> None:
             )
             for _ in range(count)
         )
-        many = Problem(records)
+        many = OutputErrorProblem(records)
         search(many)
         seconds = cpu(lambda many=many: search(many), max(1, 60 // count))  # type: ignore[misc]
         base = base or seconds

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from advisor.model.response import N_LOCAL, N_PARAMETERS, respond
-from advisor.oem.problem import Problem, Record, Signal, assemble
+from advisor.oem.problem import OutputErrorProblem, Record, Signal, assemble
 from advisor.oem.solution import Solution, solve
 from advisor.oem.surface import Servo
 
@@ -28,7 +28,7 @@ Array = NDArray[np.float64]
 class Flight:
     """A manoeuvre of a random aircraft."""
 
-    problem: Problem
+    problem: OutputErrorProblem
     shared: Array
     local: Array
     noise: float
@@ -79,7 +79,9 @@ def fly(rng: np.random.Generator) -> Flight:
         s = np.sort(t[1:-1] + rng.uniform(-0.4, 0.4, len(t) - 2) / rate)
         stamps[name] = s[rng.random(len(s)) > missing]
     elevator = Signal(t, u)
-    problem = Problem((Record(elevator, {n: Signal(s, np.zeros(len(s))) for n, s in stamps.items()}),))
+    problem = OutputErrorProblem(
+        (Record(elevator, {n: Signal(s, np.zeros(len(s))) for n, s in stamps.items()}),)
+    )
     assembly = assemble(problem)
     shared = np.append(theta[[1, 2, 3, 5, 6, 7]], 0.0)
     local = np.zeros((1, N_LOCAL))
@@ -94,7 +96,7 @@ def fly(rng: np.random.Generator) -> Flight:
         outputs[name] = Signal(
             assembly.t[rows], clean + noise * clean.std() * rng.standard_normal(len(clean))
         )
-    return Flight(Problem((Record(elevator, outputs),)), shared, local, noise)
+    return Flight(OutputErrorProblem((Record(elevator, outputs),)), shared, local, noise)
 
 
 @dataclass(frozen=True)
@@ -127,7 +129,7 @@ def search_everywhere(count: int, seed: int = 0) -> Result:
     return Result(count, worse, refused, float(np.mean(iterations)))
 
 
-def mismatched(kind: str, seed: int) -> Problem:
+def mismatched(kind: str, seed: int) -> OutputErrorProblem:
     """A manoeuvre of a small aircraft that the model does not describe, 2 % noise."""
     rng = np.random.default_rng(seed)
     theta = np.array([0.0, -6.0, 0.0, -0.5, 0.0, -40.0, -4.0, -60.0])
@@ -153,7 +155,7 @@ def mismatched(kind: str, seed: int) -> Problem:
     x = solve_ivp(rate, (0.0, t[-1]), [0.0, 0.0], t_eval=t, max_step=0.02, rtol=1e-8, atol=1e-10).y
     alpha = x[0] + gust
     z = [v + 0.02 * v.std() * rng.standard_normal(len(t)) for v in (alpha, x[1])]
-    return Problem((Record(Signal(t, u), {"alpha": Signal(t, z[0]), "q": Signal(t, z[1])}),))
+    return OutputErrorProblem((Record(Signal(t, u), {"alpha": Signal(t, z[0]), "q": Signal(t, z[1])}),))
 
 
 def main() -> None:

@@ -21,7 +21,7 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.campaign.campaign import Campaign
-from advisor.session.remote import RemoteConductor, Task
+from advisor.session.remote import ConductorTask, RemoteConductor
 from advisor.session.source import Tempo
 from advisor.tui.app import AdvisorApp
 from advisor.tui.settings import Settings
@@ -56,7 +56,7 @@ def live_plots(log: Path) -> tuple[float, float]:
 
 async def memory(log: Path, minutes: float) -> tuple[float, int]:
     """Growth of resident memory in MB over the last two thirds of the flight, and repaints in all."""
-    task = Task(partial(long_flight.player, log, minutes), partial(Campaign, Aircraft(), None, True))
+    task = ConductorTask(partial(long_flight.player, log, minutes), partial(Campaign, Aircraft(), None, True))
     app = AdvisorApp(
         RemoteConductor(task), Aircraft(), log.name, Tempo(speed=inf), Settings(screen="engineer")
     )

@@ -30,7 +30,7 @@ time."""
 
 
 @dataclass(frozen=True)
-class Flown:
+class GapFlights:
     """Manoeuvres of logs, ready for a diagnosis."""
 
     maneuvers: list[Maneuver]
@@ -46,7 +46,7 @@ def maneuvers_of(
     aircraft: Aircraft,
     target_system: int | None = None,
     by_hand: Sequence[ByHand] = (),
-) -> Flown:
+) -> GapFlights:
     """Read the manoeuvres of all logs, with the decisions by hand on each log.
 
     The clock begins as the first log's, and runs on where another log or the vehicle restarts.
@@ -58,7 +58,7 @@ def maneuvers_of(
     """
     recorded, notes = _recorded(logs, aircraft, target_system, by_hand or [ByHand()] * len(logs))
     maneuvers = _on_one_clock(_each_once(recorded))
-    return Flown(maneuvers, len(recorded) - len(maneuvers), notes)
+    return GapFlights(maneuvers, len(recorded) - len(maneuvers), notes)
 
 
 def _recorded(

@@ -22,7 +22,7 @@ from advisor.words.problems import ConfigurationError, Problem, UnusableInputErr
 
 
 @dataclass(frozen=True, slots=True)
-class Task:
+class BatchTask:
     """A log to be analyzed."""
 
     log: Path
@@ -88,7 +88,7 @@ class Analyzed:
 _KEPT = ("theta", "covariance_cr", "covariance")
 
 
-def analyze(task: Task) -> Analyzed:
+def analyze(task: BatchTask) -> Analyzed:
     """Analyze a log like ``advisor analyze``. An unusable log has a result as well."""
     from advisor.analysis.log_series import LogSeries
     from advisor.campaign.campaign import Campaign
@@ -111,7 +111,7 @@ def analyze(task: Task) -> Analyzed:
     return Analyzed(str(task.log), task.aircraft_file, task.sha256, began, document, joint)
 
 
-def analyze_shared(task: Task) -> Analyzed:
+def analyze_shared(task: BatchTask) -> Analyzed:
     """Analyze a log on another computer, which must see the log under one path.
 
     Raises
@@ -130,7 +130,7 @@ def analyze_shared(task: Task) -> Analyzed:
     return analyze(task)
 
 
-def failed(task: Task, problems: Sequence[Problem]) -> Analyzed:
+def failed(task: BatchTask, problems: Sequence[Problem]) -> Analyzed:
     """Return the result of a log that could not be analyzed."""
     document = analysis_document(None, [str(task.log)], task.aircraft, {0: problems})
     return Analyzed(str(task.log), task.aircraft_file, task.sha256, nan, document)

@@ -12,7 +12,7 @@ from advisor.analysis.log_series import SINCE_1970_S
 from advisor.batch.flight import Analyzed
 from advisor.batch.trend import ChangeOverFlights, change_over_flights
 from advisor.exports.flights.found import PARAMETER_UNITS
-from advisor.exports.flights.table import Column, Dataset, Table, numbers, texts
+from advisor.exports.flights.table import Column, Dataset, FlightTable, numbers, texts
 from advisor.oem.estimate import Estimate
 
 
@@ -72,7 +72,7 @@ def tables_of(flights: Sequence[Analyzed]) -> Dataset:
     return Dataset((), (_flights(flights), _maneuvers(flights), _changes(changes_of(flights))), about)
 
 
-def _flights(flights: Sequence[Analyzed]) -> Table:
+def _flights(flights: Sequence[Analyzed]) -> FlightTable:
     documents = [flight.document for flight in flights]
     tests = [document["flight_test"] or {} for document in documents]
     verdicts = [[m["verdict"] for m in document["maneuvers"]] for document in documents]
@@ -101,10 +101,10 @@ def _flights(flights: Sequence[Analyzed]) -> Table:
         ),
         *_parameters([d["model"] for d in documents], "of the joint estimate"),
     ]
-    return Table("flights", "A row is a flight: one log.", tuple(columns))
+    return FlightTable("flights", "A row is a flight: one log.", tuple(columns))
 
 
-def _maneuvers(flights: Sequence[Analyzed]) -> Table:
+def _maneuvers(flights: Sequence[Analyzed]) -> FlightTable:
     rows = [(k, m) for k, f in enumerate(flights, start=1) for m in f.document["maneuvers"]]
     found = [m for _, m in rows]
     columns = [
@@ -121,10 +121,10 @@ def _maneuvers(flights: Sequence[Analyzed]) -> Table:
         Column("cost", numbers([m["cost"] for m in found]), "", "J of Eq. (7)"),
         *_parameters([m["estimates"] for m in found], "of the manoeuvre"),
     ]
-    return Table("maneuvers", "A row is a manoeuvre.", tuple(columns))
+    return FlightTable("maneuvers", "A row is a manoeuvre.", tuple(columns))
 
 
-def _changes(changes: dict[str, ChangeOverFlights]) -> Table:
+def _changes(changes: dict[str, ChangeOverFlights]) -> FlightTable:
     rows = [(name, c, moved) for name, c in changes.items() for moved in c.change.moved]
     columns = (
         Column("aircraft", texts([name for name, _, _ in rows]), "", "aircraft file, autopilot, id"),
@@ -142,7 +142,7 @@ def _changes(changes: dict[str, ChangeOverFlights]) -> Table:
         ),
         Column("sentence", texts([c.sentence for _, c, _ in rows]), "", "change in words"),
     )
-    return Table("changes", "A row is a derivative that moved from one flight to the next.", columns)
+    return FlightTable("changes", "A row is a derivative that moved from one flight to the next.", columns)
 
 
 def _parameters(estimates: Sequence[dict[str, Any] | None], of: str) -> list[Column]:

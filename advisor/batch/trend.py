@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from advisor.decision.change import Change, find_change
-from advisor.decision.history import Flown
+from advisor.decision.history import CandidateManeuver
 from advisor.oem.estimate import Estimate
 
 
@@ -28,7 +28,7 @@ def change_over_flights(flights: Sequence[tuple[int, Estimate]]) -> ChangeOverFl
     flights
         Number and joint estimate of each flight, in the order of flying.
     """
-    change = find_change([Flown(estimate) for _, estimate in flights])
+    change = find_change([CandidateManeuver(estimate) for _, estimate in flights])
     if change is None:
         return None
     since = flights[change.after][0]

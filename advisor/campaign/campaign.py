@@ -13,8 +13,8 @@ from advisor.campaign.servo_lag import learnt as learnt_from
 from advisor.campaign.servo_lag import may_learn, reserved
 from advisor.campaign.single_maneuver import assess
 from advisor.campaign.state import CampaignState, JudgedManeuver
-from advisor.decision.course import Course
-from advisor.decision.history import Flown
+from advisor.decision.course import CriterionCourse
+from advisor.decision.history import CandidateManeuver
 from advisor.decision.judge import judge_campaign
 from advisor.decision.stopping import flight_test
 from advisor.decision.verdict import FlightTestVerdict
@@ -87,13 +87,13 @@ class Campaign:
         """All decisions by hand so far."""
         self._to_remark = list(by_hand.remarks)
         self._maneuvers: list[Maneuver] = []
-        self._history: list[Flown] = []
+        self._history: list[CandidateManeuver] = []
         self._journal = Journal()
         self._mark_notes: tuple[str, ...] = ()
         self._reader_notes: tuple[str, ...] = ()
         self._activity: tuple[Activity, ...] = ()
         self._judged: tuple[JudgedManeuver, ...] = ()
-        self._course = Course(aircraft.campaign)
+        self._course = CriterionCourse(aircraft.campaign)
         self._flight_test = flight_test((), aircraft.campaign, aircraft, self._course)
         self._together = Together(aircraft)
         self._ended = False

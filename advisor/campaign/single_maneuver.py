@@ -3,7 +3,7 @@
 import math
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.decision.history import Flown
+from advisor.decision.history import CandidateManeuver
 from advisor.decision.quality import judge_quality
 from advisor.flight.instruments.kinematics import check_alpha
 from advisor.flight.maneuvers.maneuver import Maneuver
@@ -15,10 +15,10 @@ from advisor.oem.solution import Method
 from advisor.oem.surface import Servo
 
 
-def assess(maneuver: Maneuver, aircraft: Aircraft, method: Method = "gauss-newton") -> Flown:
+def assess(maneuver: Maneuver, aircraft: Aircraft, method: Method = "gauss-newton") -> CandidateManeuver:
     """Estimate a manoeuvre and examine it, before any rule compares it with other manoeuvres."""
     estimated = estimate(maneuver, aircraft, method=method)
-    return Flown(
+    return CandidateManeuver(
         estimated,
         judge_quality(maneuver, estimated, aircraft),
         tuple(cautions_of(maneuver, estimated, aircraft)),

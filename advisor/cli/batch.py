@@ -21,9 +21,9 @@ from advisor.words.printable import printable
 from advisor.words.problems import ConfigurationError, Problem, UnusableInputError
 
 if TYPE_CHECKING:
-    from advisor.batch.flight import Analyzed, Task
+    from advisor.batch.flight import Analyzed, BatchTask
 
-    Run = Callable[[Sequence[Task]], Iterator[tuple[Task, Analyzed | Exception]]]
+    Run = Callable[[Sequence[BatchTask]], Iterator[tuple[BatchTask, Analyzed | Exception]]]
 
 INDEX = "index.html"
 """Name of the page of all flights."""
@@ -89,27 +89,27 @@ def command(
 
 def _tasks(
     logs: Sequence[Path], aircraft_file: Path | None, map_file: Path | None
-) -> "tuple[list[Task], dict[Path, Analyzed]]":
+) -> "tuple[list[BatchTask], dict[Path, Analyzed]]":
     """Return the logs to analyze, each once, and the results of logs that cannot be analyzed."""
-    from advisor.batch.flight import Task, failed, sha256_of
+    from advisor.batch.flight import BatchTask, failed, sha256_of
     from advisor.batch.logs import read_map
 
     chosen = read_map(map_file) if map_file is not None else None
     described: dict[Path | None, Aircraft] = {}
-    tasks: dict[str, Task] = {}
+    tasks: dict[str, BatchTask] = {}
     results: dict[Path, Analyzed] = {}
     for log in logs:
         file = chosen.file_of(log) if chosen is not None else aircraft_file
         if file not in described:
             described[file] = read_aircraft(file)
-        task = Task(log, described[file], file.name if file else "", "")
+        task = BatchTask(log, described[file], file.name if file else "", "")
         if chosen is not None and file is None:
             fix = "Add a line for the log, or a last one for '*'."
             problem = Problem("no_aircraft", f"{log} matches no pattern in {map_file}.", fix)
             results[log] = failed(task, [problem])
             continue
         try:
-            task = Task(log, described[file], task.aircraft_file, sha256_of(log))
+            task = BatchTask(log, described[file], task.aircraft_file, sha256_of(log))
         except UnusableInputError as error:
             results[log] = failed(task, error.problems)
             continue
@@ -119,7 +119,7 @@ def _tasks(
     return list(tasks.values()), results
 
 
-def _analyzed(tasks: "Sequence[Task]", out: Path, run: "Run") -> "dict[Path, Analyzed]":
+def _analyzed(tasks: "Sequence[BatchTask]", out: Path, run: "Run") -> "dict[Path, Analyzed]":
     """Return the result of every task: kept from an earlier run, or made now and kept."""
     from advisor.batch.flight import failed, keep, kept
 
@@ -139,7 +139,7 @@ def _analyzed(tasks: "Sequence[Task]", out: Path, run: "Run") -> "dict[Path, Ana
     return results
 
 
-def _fault(task: "Task", error: Exception) -> Problem:
+def _fault(task: "BatchTask", error: Exception) -> Problem:
     """Return the problem of a log whose analysis ended with an error."""
     from concurrent.futures import BrokenExecutor
 

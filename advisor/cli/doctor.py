@@ -70,11 +70,13 @@ def command(
         problem = error.problem
     commands: tuple[str, ...] = ()
     if findings is not None:
-        from advisor.doctor.next_steps import Examined, next_commands
+        from advisor.doctor.next_steps import ExaminedInput, next_commands
 
         file = str(aircraft_file) if aircraft_file else None
         has_model = bool(aircraft.model) or aircraft.simulator is not None
-        commands = next_commands(findings, Examined(target, _is_log(target), file, target_system, has_model))
+        commands = next_commands(
+            findings, ExaminedInput(target, _is_log(target), file, target_system, has_model)
+        )
     if as_json:
         from advisor.doctor.document import doctor_document
 

@@ -12,7 +12,7 @@ from advisor.words.printable import printable
 from advisor.words.problems import ConfigurationError
 
 if TYPE_CHECKING:
-    from advisor.exports.models.write import Order, Outcome
+    from advisor.exports.models.write import ExportOrder, ExportOutcome
     from advisor.gap.result import Diagnosis
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -29,7 +29,9 @@ def export_option(command: F) -> F:
     )(command)
 
 
-def orders_of(exports: Sequence[str], aircraft: Aircraft, inputs: Sequence[Path | None]) -> "list[Order]":
+def orders_of(
+    exports: Sequence[str], aircraft: Aircraft, inputs: Sequence[Path | None]
+) -> "list[ExportOrder]":
     """Read and check all orders before any work.
 
     Parameters
@@ -61,7 +63,9 @@ def orders_of(exports: Sequence[str], aircraft: Aircraft, inputs: Sequence[Path 
     return orders
 
 
-def write_exports(orders: "list[Order]", found: "Diagnosis", aircraft: Aircraft) -> "list[Outcome]":
+def write_exports(
+    orders: "list[ExportOrder]", found: "Diagnosis", aircraft: Aircraft
+) -> "list[ExportOutcome]":
     """Carry out the orders, and print the result of each on standard error."""
     if not orders:
         return []
@@ -77,7 +81,7 @@ def write_exports(orders: "list[Order]", found: "Diagnosis", aircraft: Aircraft)
     return outcomes
 
 
-def listed(outcomes: "Sequence[Outcome]") -> list[dict[str, Any]]:
+def listed(outcomes: "Sequence[ExportOutcome]") -> list[dict[str, Any]]:
     """Return the value of ``exports`` in the JSON document: the files written."""
     return [
         {"format": one.order.format, "file": str(one.order.file), "left_out": list(one.left_out)}

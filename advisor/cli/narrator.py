@@ -24,7 +24,7 @@ import click
 from advisor.flight.signals.messages import Columns
 from advisor.process import interrupt
 from advisor.session.child_process import pause_s, said_of, start_child
-from advisor.session.remote import Task
+from advisor.session.remote import ConductorTask
 from advisor.session.source import Source
 from advisor.words.ascii_output import speak_plainly
 from advisor.words.problems import UnusableInputError
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 READ_S = 0.2
 
 
-def narrate(task: Task, say: Callable[[str], object], warn: Callable[[str], object]) -> None:
+def narrate(task: ConductorTask, say: Callable[[str], object], warn: Callable[[str], object]) -> None:
     """Conduct a campaign in another process, to the end of its source.
 
     Parameters
@@ -62,7 +62,7 @@ def narrate(task: Task, say: Callable[[str], object], warn: Callable[[str], obje
             task = replace(task, by_hand=task.kept())
 
 
-def _narrate_once(task: Task, say: Callable[[str], object], said: "Counter[str]") -> int:
+def _narrate_once(task: ConductorTask, say: Callable[[str], object], said: "Counter[str]") -> int:
     repeated = said.copy()
     with start_child("advisor.cli.narrator", shows_errors=True) as process:
         assert process.stdin is not None
@@ -131,7 +131,7 @@ def main() -> None:
     with suppress(BrokenPipeError), os.fdopen(os.dup(sys.stdout.fileno()), "wb") as messages:
         os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
         try:
-            task: Task = pickle.load(sys.stdin.buffer)
+            task: ConductorTask = pickle.load(sys.stdin.buffer)
             Thread(target=_end_with, args=(sys.stdin.buffer,), daemon=True).start()
             campaign = task.make_campaign(task.by_hand)
             assert isinstance(campaign, Campaign)

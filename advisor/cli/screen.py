@@ -19,10 +19,10 @@ if TYPE_CHECKING:
     from advisor.campaign.campaign import Campaign
     from advisor.campaign.hand_decisions import ByHand
     from advisor.flight.maneuvers.marks import Mark
-    from advisor.session.remote import Task
+    from advisor.session.remote import ConductorTask
 
 Listener = Callable[[object], object]
-Show = Callable[["Task", Aircraft, str, Tempo | None], object]
+Show = Callable[["ConductorTask", Aircraft, str, Tempo | None], object]
 """Shows the campaign of a task until it is left: aircraft, title, and how a replay starts."""
 
 
@@ -79,15 +79,15 @@ def advise(
     """
     from advisor.campaign.hand_decisions import NOTHING
     from advisor.cli.narrator import narrate, narrate_here
-    from advisor.session.remote import Task
+    from advisor.session.remote import ConductorTask
 
     before = by_hand or NOTHING
     make_campaign = partial(_campaign, aircraft, target_system, tell, tuple(marks), tuple(names))
     if show is not None or not headless():
-        task = Task(open_source, partial(make_campaign, True), before, kept)
+        task = ConductorTask(open_source, partial(make_campaign, True), before, kept)
         (show or partial(_show, tuple(logs)))(task, aircraft, title, tempo)
     elif kept is not None:
-        task = Task(open_source, partial(make_campaign, False), before, kept)
+        task = ConductorTask(open_source, partial(make_campaign, False), before, kept)
         narrate(task, click.echo, partial(click.echo, err=True))
     else:
         narrate_here(open_source(), make_campaign(False, before), click.echo)
@@ -107,7 +107,9 @@ def _campaign(
     return Campaign(aircraft, target_system, settle, tell, by_hand=by_hand, marks=marks, names=names)
 
 
-def _show(logs: "Sequence[Path]", task: "Task", aircraft: Aircraft, title: str, tempo: Tempo | None) -> None:
+def _show(
+    logs: "Sequence[Path]", task: "ConductorTask", aircraft: Aircraft, title: str, tempo: Tempo | None
+) -> None:
     from advisor.session.remote import RemoteConductor
     from advisor.tui.app import AdvisorApp
     from advisor.tui.settings import load_settings

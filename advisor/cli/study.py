@@ -13,7 +13,7 @@ from advisor.words.problems import ConfigurationError
 
 if TYPE_CHECKING:
     from advisor.bundled.study.flying import NoiseReading
-    from advisor.bundled.study.plan import Report, Study
+    from advisor.bundled.study.plan import Study, StudyReport
     from advisor.process.tasks.runner import Runner
 
 
@@ -113,7 +113,7 @@ def _chosen(
     return run.table_1(campaigns, seed, noise_reading, readings)
 
 
-def _flown(study: "Study[Any, Any]", run: "Runner") -> "Report":
+def _flown(study: "Study[Any, Any]", run: "Runner") -> "StudyReport":
     """Fly all campaigns, and print the progress."""
     from advisor.process.tasks.runner import results_in_order
 

@@ -7,8 +7,8 @@ import numpy as np
 from advisor.aircraft.aircraft import PARAMETERS, Aircraft, CampaignPlan
 from advisor.decision.choice import Choice, best_input
 from advisor.decision.conditions import Conditions, find_conditions
-from advisor.decision.course import Course
-from advisor.decision.history import Flown, usable_ones
+from advisor.decision.course import CriterionCourse
+from advisor.decision.history import CandidateManeuver, usable_ones
 from advisor.decision.information import Knowledge
 from advisor.decision.inputs import StepInput
 from advisor.decision.judge import accepted_estimates
@@ -23,7 +23,10 @@ PASSING = {"separate": 0.5}
 
 
 def next_input(
-    history: Sequence[Flown], aircraft: Aircraft, stopped: bool, course: Course | None = None
+    history: Sequence[CandidateManeuver],
+    aircraft: Aircraft,
+    stopped: bool,
+    course: CriterionCourse | None = None,
 ) -> NextInput:
     """Return the input to fly after the last manoeuvre of ``history``. ``course`` is explained in
     ``flight_test``.
@@ -33,7 +36,7 @@ def next_input(
     plan = aircraft.campaign
     if stopped:
         return NextInput("no further manoeuvre needed", Remaining(0, 0))
-    course = course or Course(plan)
+    course = course or CriterionCourse(plan)
     conditions = find_conditions(history, aircraft, course)
     mend = _mend(history[-1]) if history else ""
     if conditions is None:
@@ -49,9 +52,9 @@ def next_input(
     return NextInput(f"next: {spoken}", remaining, _held_by(history, plan, known))
 
 
-def recommended(history: Sequence[Flown], aircraft: Aircraft) -> StepInput | None:
+def recommended(history: Sequence[CandidateManeuver], aircraft: Aircraft) -> StepInput | None:
     """Return the input that helps most now; None before the first usable manoeuvre."""
-    course = Course(aircraft.campaign)
+    course = CriterionCourse(aircraft.campaign)
     conditions = find_conditions(history, aircraft, course)
     if conditions is None:
         return None
@@ -76,7 +79,7 @@ def _distance_to_stop(covariance: FloatArray, plan: CampaignPlan, known: Knowled
 
 
 def _remaining(
-    history: Sequence[Flown], plan: CampaignPlan, known: Knowledge, next_covariance: FloatArray
+    history: Sequence[CandidateManeuver], plan: CampaignPlan, known: Knowledge, next_covariance: FloatArray
 ) -> Remaining:
     share = usable_share(history)
     if plan.rule == "information":
@@ -86,7 +89,7 @@ def _remaining(
     return by_scatter(members, known.posterior, next_std, plan, share * PASSING.get(plan.rule, 1.0))
 
 
-def _held_by(history: Sequence[Flown], plan: CampaignPlan, known: Knowledge) -> str:
+def _held_by(history: Sequence[CandidateManeuver], plan: CampaignPlan, known: Knowledge) -> str:
     if plan.rule != "information":
         members = window(accepted_estimates(history, plan.rule), plan)
         if members is not None:
@@ -105,14 +108,14 @@ def _first_input(aircraft: Aircraft) -> str:
     return f"3-2-1-1, {unit:.1f} s steps, 10 % stick, to begin gently"
 
 
-def _same_but_better(flown: Flown) -> str:
+def _same_but_better(flown: CandidateManeuver) -> str:
     """Return the advice while no manoeuvre was usable: repeat the input, with the remedy of the newest one's
     first reason."""
     remedy = _remedy(flown)
     return f"the same again, {remedy}" if remedy else "the same again"
 
 
-def _mend(flown: Flown) -> str:
+def _mend(flown: CandidateManeuver) -> str:
     """Return the remedy for a faulty channel, which comes before any other input; empty where all channels
     are sound."""
     if flown.reasons and flown.reasons[0].code in NO_CURE_BY_INPUT:
@@ -121,6 +124,6 @@ def _mend(flown: Flown) -> str:
     return wrong[0].fix if wrong else ""
 
 
-def _remedy(flown: Flown) -> str:
+def _remedy(flown: CandidateManeuver) -> str:
     """Return the remedy that the first reason names; empty without a reason."""
     return flown.reasons[0].text.partition("; ")[2] if flown.reasons else ""

@@ -14,7 +14,7 @@ from scipy.special import chdtri
 
 from advisor.aircraft.aircraft import PARAMETERS
 from advisor.decision.consistency import outliers
-from advisor.decision.history import Flown
+from advisor.decision.history import CandidateManeuver
 from advisor.decision.inverses import information_of
 from advisor.decision.pooling import (
     DERIVATIVES,
@@ -68,7 +68,7 @@ class Change:
     sentence: str
 
 
-def find_change(history: Sequence[Flown]) -> Change | None:
+def find_change(history: Sequence[CandidateManeuver]) -> Change | None:
     """Return the most significant change between manoeuvres of a campaign; None when noise explains all
     differences.
 

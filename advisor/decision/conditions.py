@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.decision.course import Course
+from advisor.decision.course import CriterionCourse
 from advisor.decision.foresight import UNMEASURED, Instruments
-from advisor.decision.history import Flown, usable_ones
+from advisor.decision.history import CandidateManeuver, usable_ones
 from advisor.decision.pooling import DERIVATIVES
 from advisor.decision.prediction import response_to, trim_of
 from advisor.flight.maneuvers.maneuver import Maneuver
@@ -53,7 +53,9 @@ class Conditions:
     """(8, 8) covariance of the last manoeuvre's estimate."""
 
 
-def find_conditions(history: Sequence[Flown], aircraft: Aircraft, course: Course) -> Conditions | None:
+def find_conditions(
+    history: Sequence[CandidateManeuver], aircraft: Aircraft, course: CriterionCourse
+) -> Conditions | None:
     """Return trim, instruments and limits from the usable manoeuvres; None before the first."""
     flown = [(m, e, m.maneuver) for m in history if (e := m.usable) and m.maneuver is not None]
     if not flown:
@@ -109,7 +111,7 @@ def _instruments(estimate: Estimate, servo: Servo) -> Instruments:
     return Instruments((_step(q.t), _step(q.t)), (UNMEASURED, q.noise), servo, (_step(force.t), noise))
 
 
-def _excursion(flown: Flown, estimate: Estimate) -> float:
+def _excursion(flown: CandidateManeuver, estimate: Estimate) -> float:
     """Return the largest deviation of α from its initial value, rad: fitted, or predicted where α is not
     measured."""
     if "alpha" not in estimate.fits[0]:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from operator import is_
 
 from advisor.aircraft.aircraft import CampaignPlan
-from advisor.decision.history import Flown
+from advisor.decision.history import CandidateManeuver
 from advisor.decision.information import Knowledge, knowledge
 
 
@@ -25,7 +25,7 @@ class Standing:
     """Whether the earlier manoeuvres predicted the newest."""
 
 
-class Course:
+class CriterionCourse:
     """Cache of one campaign's criterion under one plan. No decision depends on the cache.
 
     Parameters
@@ -37,24 +37,24 @@ class Course:
     def __init__(self, plan: CampaignPlan) -> None:
         self.plan = plan
         """Stop criterion of the campaign."""
-        self._flown: list[Flown] = []
+        self._flown: list[CandidateManeuver] = []
         self._standings: list[Standing] = []
-        self._known: tuple[list[Flown], Knowledge] | None = None
+        self._known: tuple[list[CandidateManeuver], Knowledge] | None = None
 
-    def standing(self, usable: Sequence[Flown]) -> Standing:
+    def standing(self, usable: Sequence[CandidateManeuver]) -> Standing:
         """Return the rule's result after at least one usable manoeuvre, in the order flown."""
         n = len(usable)
         if n > len(self._standings) or not _same(self._flown[:n], usable):
             self._follow(usable)
         return self._standings[n - 1]
 
-    def known(self, usable: Sequence[Flown]) -> Knowledge:
+    def known(self, usable: Sequence[CandidateManeuver]) -> Knowledge:
         """Return the knowledge after at least one usable manoeuvre. The newest result is kept."""
         if self._known is None or not _same(self._known[0], usable):
             self._known = list(usable), knowledge(usable, self.plan)
         return self._known[1]
 
-    def _follow(self, usable: Sequence[Flown]) -> None:
+    def _follow(self, usable: Sequence[CandidateManeuver]) -> None:
         pairs = enumerate(zip(self._flown, usable, strict=False))
         kept = next((k for k, (mine, theirs) in pairs if mine is not theirs), len(self._flown))
         del self._flown[kept:], self._standings[kept:]
@@ -64,5 +64,5 @@ class Course:
             self._standings.append(Standing(known.percent, known.sufficient, known.predicted))
 
 
-def _same(mine: Sequence[Flown], theirs: Sequence[Flown]) -> bool:
+def _same(mine: Sequence[CandidateManeuver], theirs: Sequence[CandidateManeuver]) -> bool:
     return len(mine) == len(theirs) and all(map(is_, mine, theirs))

@@ -9,7 +9,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import LOCAL, N_LOCAL, N_PARAMETERS, SHARED, respond
 from advisor.model.short_period import ShortPeriod
 from advisor.oem.covariance import cramer_rao, influence
-from advisor.oem.problem import Problem, Record, Signal, assemble
+from advisor.oem.problem import OutputErrorProblem, Record, Signal, assemble
 from advisor.oem.surface import Servo
 
 UNMEASURED = 1e3
@@ -70,7 +70,7 @@ def expect(theta: FloatArray, elevator: Signal, instruments: Instruments) -> Exp
         t = np.arange(0.0, end, instruments.specific_force[0])
         outputs["a_z"] = Signal(t, np.zeros_like(t))
     assembly = assemble(
-        Problem((Record(elevator, outputs),), servo=instruments.servo, airspeed_may_be_off=False)
+        OutputErrorProblem((Record(elevator, outputs),), servo=instruments.servo, airspeed_may_be_off=False)
     )
     shared = np.array([theta[PARAMETERS.index(s)] if s in PARAMETERS else 0.0 for s in SHARED])
     model = ShortPeriod(theta)

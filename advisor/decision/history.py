@@ -14,7 +14,7 @@ from advisor.oem.surface import Servo
 
 
 @dataclass(frozen=True, slots=True)
-class Flown:
+class CandidateManeuver:
     """One manoeuvre before the rules judge it."""
 
     estimate: Estimate | NoEstimate
@@ -39,11 +39,11 @@ class Flown:
         return None
 
 
-def usable_ones(history: Sequence[Flown]) -> list[Flown]:
+def usable_ones(history: Sequence[CandidateManeuver]) -> list[CandidateManeuver]:
     """Return all usable manoeuvres, in the order flown."""
     return [flown for flown in history if flown.usable]
 
 
-def estimates_of(usable: Sequence[Flown]) -> list[Estimate]:
+def estimates_of(usable: Sequence[CandidateManeuver]) -> list[Estimate]:
     """Return the estimates of the usable manoeuvres, in the order flown."""
     return [estimate for flown in usable if (estimate := flown.usable)]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.decision.consistency import consensus
-from advisor.decision.history import Flown
+from advisor.decision.history import CandidateManeuver
 from advisor.decision.pooling import DERIVATIVES, Shared, common_airspeed, posteriors_at_one_speed
 from advisor.decision.prediction import PREDICTED, Z95, Response, measured, response_to
 from advisor.flight.signals.messages import FloatArray
@@ -33,7 +33,7 @@ class PredictedOutput:
     """Half-width of the band that holds 95 % of the samples, which includes their noise, shape (n,)."""
 
 
-def predict_last(usable: Sequence[Flown]) -> Mapping[str, PredictedOutput]:
+def predict_last(usable: Sequence[CandidateManeuver]) -> Mapping[str, PredictedOutput]:
     """Predict the last of the usable manoeuvres from all earlier ones, which are independent of it.
 
     Trim, initial state and biases belong to the manoeuvre itself. So they come from its own fit: the fit less
@@ -70,7 +70,7 @@ def predict_last(usable: Sequence[Flown]) -> Mapping[str, PredictedOutput]:
 
 
 def _output(
-    name: str, last: Flown, begun_s: float, known: Shared, predicted: Response, alone: Response
+    name: str, last: CandidateManeuver, begun_s: float, known: Shared, predicted: Response, alone: Response
 ) -> PredictedOutput:
     assert isinstance(last.estimate, Estimate)
     k, fit = PREDICTED.index(name), last.estimate.fits[0][name]
@@ -91,6 +91,6 @@ def _output(
     )
 
 
-def _airspeed_m_s(flown: Flown) -> float | None:
+def _airspeed_m_s(flown: CandidateManeuver) -> float | None:
     channel: Channel | None = flown.maneuver.channels.get("airspeed") if flown.maneuver else None
     return float(np.nanmean(channel.y)) if channel is not None and np.any(np.isfinite(channel.y)) else None

@@ -15,7 +15,7 @@ from scipy.special import chdtri
 
 from advisor.aircraft.aircraft import PARAMETERS, CampaignPlan
 from advisor.decision.consistency import consensus, widened
-from advisor.decision.history import Flown, estimates_of
+from advisor.decision.history import CandidateManeuver, estimates_of
 from advisor.decision.pooling import Posterior, Shared, common_airspeed, disagreement, posteriors_at_one_speed
 from advisor.decision.prediction import Z95, Prediction, missed_percent, predict
 from advisor.decision.tolerance import tolerances
@@ -108,7 +108,7 @@ class Knowledge:
         return self.predicted and self.percent < 100.0
 
 
-def knowledge(usable: Sequence[Flown], plan: CampaignPlan) -> Knowledge:
+def knowledge(usable: Sequence[CandidateManeuver], plan: CampaignPlan) -> Knowledge:
     """Return the knowledge after at least one usable manoeuvre, in the order flown."""
     estimates = estimates_of(usable)
     posteriors, airspeed = posteriors_at_one_speed(estimates), common_airspeed(estimates)
@@ -137,7 +137,7 @@ def knowledge(usable: Sequence[Flown], plan: CampaignPlan) -> Knowledge:
 
 
 def _compared(
-    newest: Flown, posteriors: Sequence[Posterior], airspeed_m_s: float | None
+    newest: CandidateManeuver, posteriors: Sequence[Posterior], airspeed_m_s: float | None
 ) -> tuple[float, float, float]:
     """Return the comparison of the newest manoeuvre with its prediction: ``surprise``, ``missed_percent``,
     ``foretold_percent``."""

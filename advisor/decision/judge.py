@@ -6,8 +6,8 @@ from math import floor
 from advisor.aircraft.aircraft import CampaignPlan, Rule
 from advisor.decision.acceptance import MANEUVER_RULES
 from advisor.decision.consistency import Outlier, outliers
-from advisor.decision.course import Course
-from advisor.decision.history import Flown
+from advisor.decision.course import CriterionCourse
+from advisor.decision.history import CandidateManeuver
 from advisor.decision.larger import Larger, larger_and_agreeing
 from advisor.decision.pooling import posteriors_at_one_speed
 from advisor.decision.verdict import ManeuverVerdict, Reason, RuleResult
@@ -20,7 +20,7 @@ error."""
 
 
 def judge_campaign(
-    history: Sequence[Flown], plan: CampaignPlan, course: Course | None = None
+    history: Sequence[CandidateManeuver], plan: CampaignPlan, course: CriterionCourse | None = None
 ) -> tuple[ManeuverVerdict, ...]:
     """Return verdicts on all manoeuvres so far, in the order flown, each with the result of every rule.
 
@@ -28,7 +28,7 @@ def judge_campaign(
     hand. Under the rule ``information`` later manoeuvres may show that it contradicts all the others. A
     ``course`` keeps results of earlier decisions, and changes no verdict.
     """
-    course = course or Course(plan)
+    course = course or CriterionCourse(plan)
     contradicted = contradicting(history)
     by_rule = {rule: _results(history, rule, contradicted) for rule in MANEUVER_RULES}
     accepted = [result.accepted for result in by_rule[plan.rule]]
@@ -41,17 +41,21 @@ def judge_campaign(
     return tuple(verdicts)
 
 
-def judge(flown: Flown, history: Sequence[Flown], plan: CampaignPlan) -> ManeuverVerdict:
+def judge(
+    flown: CandidateManeuver, history: Sequence[CandidateManeuver], plan: CampaignPlan
+) -> ManeuverVerdict:
     """Return the verdict on the newest manoeuvre, given the earlier ones."""
     return judge_campaign([*history, flown], plan)[-1]
 
 
-def results_of(history: Sequence[Flown], rule: Rule) -> tuple[RuleResult, ...]:
+def results_of(history: Sequence[CandidateManeuver], rule: Rule) -> tuple[RuleResult, ...]:
     """Return the result of one rule for every manoeuvre."""
     return _results(history, rule, contradicting(history) if rule == "information" else ())
 
 
-def _results(history: Sequence[Flown], rule: Rule, outliers: Container[int]) -> tuple[RuleResult, ...]:
+def _results(
+    history: Sequence[CandidateManeuver], rule: Rule, outliers: Container[int]
+) -> tuple[RuleResult, ...]:
     costs = [estimate.cost if (estimate := flown.usable) else None for flown in history]
     results = MANEUVER_RULES[rule](costs)
     if rule != "information":
@@ -59,7 +63,7 @@ def _results(history: Sequence[Flown], rule: Rule, outliers: Container[int]) -> 
     return tuple(RuleResult(r.accepted and i not in outliers, r.limit) for i, r in enumerate(results))
 
 
-def contradicting(history: Sequence[Flown]) -> Mapping[int, Outlier]:
+def contradicting(history: Sequence[CandidateManeuver]) -> Mapping[int, Outlier]:
     """Return usable manoeuvres that contradict all the others, by index. The rule ``information`` leaves them
     out."""
     usable = [(i, estimate) for i, flown in enumerate(history) if (estimate := flown.usable)]
@@ -67,7 +71,7 @@ def contradicting(history: Sequence[Flown]) -> Mapping[int, Outlier]:
     return {usable[k][0]: outlier for k, outlier in found.items()}
 
 
-def accepted_estimates(history: Sequence[Flown], rule: Rule) -> list[Estimate]:
+def accepted_estimates(history: Sequence[CandidateManeuver], rule: Rule) -> list[Estimate]:
     """Return the estimates of the manoeuvres that ``rule`` accepts, in the order flown."""
     return [
         estimate
@@ -77,7 +81,11 @@ def accepted_estimates(history: Sequence[Flown], rule: Rule) -> list[Estimate]:
 
 
 def _verdict(
-    flown: Flown, rule: Rule, rules: Mapping[Rule, RuleResult], outlier: Outlier | None, larger: Larger | None
+    flown: CandidateManeuver,
+    rule: Rule,
+    rules: Mapping[Rule, RuleResult],
+    outlier: Outlier | None,
+    larger: Larger | None,
 ) -> ManeuverVerdict:
     reasons = _reasons(flown, rule, rules[rule], outlier, larger)
     notes = flown.estimate.notes if isinstance(flown.estimate, Estimate) else ()
@@ -94,7 +102,7 @@ def _verdict(
 
 
 def _reasons(
-    flown: Flown, rule: Rule, result: RuleResult, outlier: Outlier | None, larger: Larger | None
+    flown: CandidateManeuver, rule: Rule, result: RuleResult, outlier: Outlier | None, larger: Larger | None
 ) -> tuple[Reason, ...]:
     if flown.excluded_because is not None:
         text = f"excluded by hand: {flown.excluded_because}"
@@ -110,7 +118,7 @@ def _reasons(
     return (_too_costly(flown, flown.estimate, rule, result.limit or 0.0),)
 
 
-def _why_accepted(flown: Flown, rule: Rule, result: RuleResult) -> str:
+def _why_accepted(flown: CandidateManeuver, rule: Rule, result: RuleResult) -> str:
     if isinstance(flown.estimate, NoEstimate):
         return "good manoeuvre"
     if rule == "information":
@@ -143,7 +151,7 @@ def _contradicts(outlier: Outlier) -> Reason:
     return Reason("odd", text, outlier.sigma, outlier.limit)
 
 
-def _too_costly(flown: Flown, estimate: Estimate, rule: Rule, limit: float) -> Reason:
+def _too_costly(flown: CandidateManeuver, estimate: Estimate, rule: Rule, limit: float) -> Reason:
     than = "no better than half of the earlier ones" if rule == "separate" else _LESS_WELL
     cost = _of_limit(estimate.cost, limit)
     text = f"the model explains it {than}, {cost}; {_another_try(flown, estimate, rule)}"
@@ -163,7 +171,7 @@ def _only_larger(estimate: Estimate, larger: Larger, limit: float) -> Reason:
 _LESS_WELL = "less well than the last accepted one"
 
 
-def _another_try(flown: Flown, estimate: Estimate, rule: Rule) -> str:
+def _another_try(flown: CandidateManeuver, estimate: Estimate, rule: Rule) -> str:
     """Return the advice for another try. Calmer air is advised only where the air moved."""
     if flown.air_moved:
         return "fly it again in calmer air"

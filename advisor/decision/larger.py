@@ -11,8 +11,8 @@ from statistics import median
 
 import numpy as np
 
-from advisor.decision.course import Course
-from advisor.decision.history import Flown, usable_ones
+from advisor.decision.course import CriterionCourse
+from advisor.decision.history import CandidateManeuver, usable_ones
 from advisor.oem.estimate import Estimate
 
 
@@ -26,7 +26,9 @@ class Larger:
     """Number of the manoeuvre that set the limit. None where a median set the limit."""
 
 
-def larger_and_agreeing(history: Sequence[Flown], accepted: Sequence[bool], course: Course) -> Larger | None:
+def larger_and_agreeing(
+    history: Sequence[CandidateManeuver], accepted: Sequence[bool], course: CriterionCourse
+) -> Larger | None:
     """Return the size of the newest manoeuvre where it was larger than the one that set its limit, and
     predicted.
 
@@ -55,7 +57,7 @@ def larger_and_agreeing(history: Sequence[Flown], accepted: Sequence[bool], cour
     return Larger(ratio, setters[0] + 1 if len(setters) == 1 else None)
 
 
-def _range(flown: Flown) -> float:
+def _range(flown: CandidateManeuver) -> float:
     """Return the range of the fitted pitch rate, rad/s."""
     assert isinstance(flown.estimate, Estimate)
     return float(np.ptp(flown.estimate.fits[0]["q"].fitted))

@@ -13,14 +13,14 @@ from typing import NamedTuple
 import numpy as np
 
 from advisor.aircraft.aircraft import PARAMETERS
-from advisor.decision.history import Flown
+from advisor.decision.history import CandidateManeuver
 from advisor.decision.pooling import DERIVATIVES
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import N_LOCAL, N_PARAMETERS, SHARED, respond
 from advisor.model.short_period import SPEED_EXPONENTS
 from advisor.oem.estimate import Estimate
-from advisor.oem.problem import Problem, Record, Signal, assemble
+from advisor.oem.problem import OutputErrorProblem, Record, Signal, assemble
 from advisor.oem.surface import Servo
 
 PREDICTED = ("alpha", "q", "a_z")
@@ -92,7 +92,9 @@ def _widest(slope: FloatArray, covariance: FloatArray, known: np.ndarray) -> flo
     return Z95 * float(np.sqrt(max(np.max(variance, initial=0.0), 0.0)))
 
 
-def predict(flown: Sequence[Flown], derivatives: FloatArray, airspeed_m_s: float | None) -> Prediction:
+def predict(
+    flown: Sequence[CandidateManeuver], derivatives: FloatArray, airspeed_m_s: float | None
+) -> Prediction:
     """Return the response to the flown inputs; without any output where the inputs are unknown.
 
     Parameters
@@ -117,7 +119,7 @@ def _relative(response: Response | None, k: int) -> FloatArray:
 
 
 def missed_percent(
-    flown: Flown, predicted: FloatArray, found: FloatArray, airspeed_m_s: float | None
+    flown: CandidateManeuver, predicted: FloatArray, found: FloatArray, airspeed_m_s: float | None
 ) -> float:
     """Return the largest distance between the predicted and the estimated response to a manoeuvre, in percent
     of its peak.
@@ -142,13 +144,15 @@ def missed_percent(
         return float(np.max(100.0 * apart[used] / actual.peak[used], initial=-np.inf))
 
 
-def measured(flown: Flown) -> tuple[str, ...]:
+def measured(flown: CandidateManeuver) -> tuple[str, ...]:
     """Return the outputs of ``PREDICTED`` that a manoeuvre's estimate uses."""
     fits = flown.estimate.fits[0] if isinstance(flown.estimate, Estimate) else {}
     return tuple(name for name in PREDICTED if name in fits)
 
 
-def response_to(flown: Flown, derivatives: FloatArray, airspeed_m_s: float | None) -> Response | None:
+def response_to(
+    flown: CandidateManeuver, derivatives: FloatArray, airspeed_m_s: float | None
+) -> Response | None:
     """Return the response from trim to a manoeuvre's input at the manoeuvre's speed.
 
     The slopes are with respect to the derivatives at ``airspeed_m_s``. None where the input or a derivative
@@ -209,7 +213,7 @@ def _respond(t: bytes, elevator: bytes, servo: Servo, derivatives: tuple[float, 
     moments = np.linspace(command.t[0], _horizon(command, derivatives), MOMENTS)
     still = Signal(moments, np.zeros(MOMENTS))
     record = Record(command, dict.fromkeys(PREDICTED, still), gravity_z=still)
-    assembly = assemble(Problem((record,), servo=servo))
+    assembly = assemble(OutputErrorProblem((record,), servo=servo))
     y, g = np.empty(len(assembly.z)), np.empty((len(assembly.z), N_PARAMETERS))
     shared = np.array([*derivatives, *np.zeros(len(SHARED) - len(derivatives))])
     if not respond(assembly.grid, shared, np.zeros((1, N_LOCAL)), y, g):

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.special import nbdtr
 
 from advisor.aircraft.aircraft import CampaignPlan
-from advisor.decision.history import Flown
+from advisor.decision.history import CandidateManeuver
 from advisor.decision.information import Knowledge
 from advisor.decision.inverses import covariance_of, information_of
 from advisor.decision.pooling import DERIVATIVES, Posterior
@@ -92,7 +92,7 @@ def by_scatter(
     return Remaining(*(int(n) if n <= MOST else None for n in (median, p90)))
 
 
-def usable_share(history: Sequence[Flown]) -> float:
+def usable_share(history: Sequence[CandidateManeuver]) -> float:
     """Return the share of usable manoeuvres so far, with a prior of nine good manoeuvres out of ten."""
     good = sum(flown.usable is not None for flown in history)
     return (good + 9.0) / (len(history) + 10.0)

@@ -8,9 +8,9 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft, CampaignPlan, Rule
 from advisor.decision.acceptance import MANEUVER_RULES
 from advisor.decision.advice import next_input
-from advisor.decision.course import Course
+from advisor.decision.course import CriterionCourse
 from advisor.decision.evidence import evidence, sentence
-from advisor.decision.history import Flown, estimates_of, usable_ones
+from advisor.decision.history import CandidateManeuver, estimates_of, usable_ones
 from advisor.decision.information import Knowledge
 from advisor.decision.judge import accepted_estimates, results_of
 from advisor.decision.scatter import scatter_percent, scattered_most, window
@@ -23,10 +23,10 @@ _NO_SCALE_PERCENT = 1000.0
 
 
 def flight_test(
-    history: Sequence[Flown],
+    history: Sequence[CandidateManeuver],
     plan: CampaignPlan,
     aircraft: Aircraft | None = None,
-    course: Course | None = None,
+    course: CriterionCourse | None = None,
 ) -> FlightTestVerdict:
     """Return whether testing may stop, and the next input, after the last manoeuvre of ``history``.
 
@@ -34,7 +34,7 @@ def flight_test(
     held. The two differ when a later manoeuvre contradicts the earlier ones. ``aircraft`` gives the limits of
     the next input. A ``course`` keeps results of earlier decisions, and changes no verdict.
     """
-    course = course or Course(plan)
+    course = course or CriterionCourse(plan)
     by_rule: dict[str, RuleProgress] = {
         rule: progress(history, rule, plan, course) for rule in MANEUVER_RULES
     }
@@ -60,15 +60,18 @@ def flight_test(
 
 
 def progress(
-    history: Sequence[Flown], rule: Rule, plan: CampaignPlan, course: Course | None = None
+    history: Sequence[CandidateManeuver],
+    rule: Rule,
+    plan: CampaignPlan,
+    course: CriterionCourse | None = None,
 ) -> RuleProgress:
     """Return the stop criterion of one rule after each manoeuvre. ``course`` is explained in
     ``flight_test``."""
-    course = course or Course(plan)
+    course = course or CriterionCourse(plan)
     limit = limit_percent(rule, plan)
     values: list[float | None] = []
     stopped_at = None
-    taken: list[Flown] = []
+    taken: list[CandidateManeuver] = []
     value, sufficient = None, False
     for number, (flown, ok) in enumerate(zip(history, _weighed(history, rule), strict=True), start=1):
         if ok:
@@ -95,7 +98,7 @@ def progress(
     )
 
 
-def _weighed(history: Sequence[Flown], rule: Rule) -> list[bool]:
+def _weighed(history: Sequence[CandidateManeuver], rule: Rule) -> list[bool]:
     """Return which manoeuvres enter a rule's criterion.
 
     The rule ``information`` uses all usable ones, because it detects contradictions itself.
@@ -121,7 +124,7 @@ def _holds_now(known: Knowledge | None, plan: CampaignPlan, criterion: float | N
 
 
 def _scatter_sentence(
-    history: Sequence[Flown], plan: CampaignPlan, criterion: float | None, stop: bool
+    history: Sequence[CandidateManeuver], plan: CampaignPlan, criterion: float | None, stop: bool
 ) -> str:
     accepted = accepted_estimates(history, plan.rule)
     if criterion is None:

@@ -6,8 +6,8 @@ import numpy as np
 
 from advisor.aircraft.aircraft import PARAMETERS, CampaignPlan
 from advisor.decision.change import find_change
-from advisor.decision.course import Course
-from advisor.decision.history import Flown, usable_ones
+from advisor.decision.course import CriterionCourse
+from advisor.decision.history import CandidateManeuver, usable_ones
 from advisor.decision.judge import accepted_estimates, results_of
 from advisor.decision.larger import larger_and_agreeing
 from advisor.decision.scatter import SCATTER_FACTOR, window
@@ -15,7 +15,9 @@ from advisor.decision.verdict import RuleProgress
 from advisor.oem.estimate import Estimate
 
 
-def warnings(history: Sequence[Flown], chosen: RuleProgress, stop: bool, course: Course) -> tuple[str, ...]:
+def warnings(
+    history: Sequence[CandidateManeuver], chosen: RuleProgress, stop: bool, course: CriterionCourse
+) -> tuple[str, ...]:
     """Return sentences on facts that the criterion alone does not show."""
     plan, found = course.plan, []
     if chosen.stopped_at is not None and not stop:
@@ -34,7 +36,7 @@ def warnings(history: Sequence[Flown], chosen: RuleProgress, stop: bool, course:
     return tuple(found)
 
 
-def _left_out(history: Sequence[Flown], course: Course) -> list[str]:
+def _left_out(history: Sequence[CandidateManeuver], course: CriterionCourse) -> list[str]:
     numbers = [i for i, flown in enumerate(history, start=1) if flown.usable]
     if not numbers:
         return []
@@ -63,7 +65,7 @@ def _cannot_fall(accepted: Sequence[Estimate], plan: CampaignPlan) -> list[str]:
     ]
 
 
-def _locked_out(history: Sequence[Flown], course: Course) -> list[str]:
+def _locked_out(history: Sequence[CandidateManeuver], course: CriterionCourse) -> list[str]:
     """Return a warning where usable manoeuvres in a row are refused for their cost alone."""
     plan = course.plan
     accepted = [result.accepted for result in results_of(history, plan.rule)]

@@ -4,11 +4,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
-from advisor.doctor.expectation import Assumed, Expectation
+from advisor.doctor.expectation import Assumed, ExpectedErrors
 from advisor.doctor.survey import Arrival, Clocks
 from advisor.flight.vehicle.vehicle import Vehicle
 
-Verdict = Literal["ready", "usable with limits", "not usable"]
+DoctorVerdict = Literal["ready", "usable with limits", "not usable"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +61,7 @@ class Examination:
     alpha: AlphaFound | None
     limits: tuple[Limit, ...]
     """Defects, those that prevent any identification first."""
-    expectation: Expectation | None
+    expectation: ExpectedErrors | None
     """Expected errors. None when a needed channel is missing."""
     assumed: Assumed
     """Model and noise behind the expected errors and the demands on rates."""
@@ -69,7 +69,7 @@ class Examination:
     """Choices made in reading the log, and pauses of the autopilot's own log, as sentences."""
 
     @property
-    def verdict(self) -> Verdict:
+    def verdict(self) -> DoctorVerdict:
         """Ready, usable with limits, or not usable."""
         if any(limit.stops for limit in self.limits):
             return "not usable"

@@ -16,7 +16,7 @@ from advisor.model.short_period import ShortPeriod
 from advisor.oem.covariance import cramer_rao, influence
 from advisor.oem.prepare import OUTPUTS as COUNTED
 from advisor.oem.prior import precision_without_alpha
-from advisor.oem.problem import Assembly, Problem, Record, Signal, assemble
+from advisor.oem.problem import Assembly, OutputErrorProblem, Record, Signal, assemble
 
 UNITS_OF_TIME = (3, 2, 1, 1)
 RESPONSE_ALPHA_DEG = 4.0
@@ -51,7 +51,7 @@ class Assumed:
 
 
 @dataclass(frozen=True, slots=True)
-class Expectation:
+class ExpectedErrors:
     """Expected errors of one standard 3-2-1-1."""
 
     std: Mapping[str, float]
@@ -69,7 +69,7 @@ def frequency(model: ShortPeriod) -> float:
     return natural if np.isfinite(natural) and natural > 0.0 else float(np.max(np.abs(model.eigenvalues)))
 
 
-def expect(assumed: Assumed, rates_hz: Mapping[str, float], airspeed_m_s: float | None) -> Expectation:
+def expect(assumed: Assumed, rates_hz: Mapping[str, float], airspeed_m_s: float | None) -> ExpectedErrors:
     """Return the expected errors of a 3-2-1-1 matched to the aircraft.
 
     Parameters
@@ -91,7 +91,9 @@ def expect(assumed: Assumed, rates_hz: Mapping[str, float], airspeed_m_s: float 
     peak = float(np.max(np.abs(unit_response[shape.rows[0]["alpha"]])))
     amplitude = np.radians(RESPONSE_ALPHA_DEG) / peak
     std = assumed.colour * _errors(assumed, edges, amplitude, end_s, rates_hz, outputs, airspeed_m_s)
-    return Expectation(dict(zip(PARAMETERS, std.tolist(), strict=True)), unit_s, float(np.degrees(amplitude)))
+    return ExpectedErrors(
+        dict(zip(PARAMETERS, std.tolist(), strict=True)), unit_s, float(np.degrees(amplitude))
+    )
 
 
 def _errors(
@@ -183,4 +185,4 @@ def _assembly(
         measured[name] = Signal(t, np.zeros(len(t)))
     speed = None if airspeed_m_s is None else Signal(np.array([0.0, end_s]), np.full(2, airspeed_m_s))
     record = Record(elevator=command, outputs=measured, airspeed=speed)
-    return assemble(Problem(records=(record,)))
+    return assemble(OutputErrorProblem(records=(record,)))

@@ -20,7 +20,7 @@ _NO_AIRCRAFT = frozenset({"no_vehicle", "multicopter"})
 
 
 @dataclass(frozen=True, slots=True)
-class Examined:
+class ExaminedInput:
     """The log or connection that was examined, as the user named it."""
 
     target: str
@@ -32,7 +32,7 @@ class Examined:
     """Whether the aircraft file has the simulator's derivatives."""
 
 
-def next_commands(findings: Examination, examined: Examined) -> tuple[str, str, str]:
+def next_commands(findings: Examination, examined: ExaminedInput) -> tuple[str, str, str]:
     """Return the next three commands, in their order.
 
     Parameters
@@ -45,7 +45,7 @@ def next_commands(findings: Examination, examined: Examined) -> tuple[str, str, 
     return _after_log(findings, examined) if examined.is_log else _after_link(findings, examined)
 
 
-def _after_log(findings: Examination, examined: Examined) -> tuple[str, str, str]:
+def _after_log(findings: Examination, examined: ExaminedInput) -> tuple[str, str, str]:
     log, aircraft = shlex.quote(examined.target), _aircraft(examined)
     chosen = _chosen(findings, examined)
     stopping = {limit.code for limit in findings.limits if limit.stops}
@@ -84,7 +84,7 @@ def _next_flight(aircraft: str) -> tuple[str, str, str]:
     )
 
 
-def _after_link(findings: Examination, examined: Examined) -> tuple[str, str, str]:
+def _after_link(findings: Examination, examined: ExaminedInput) -> tuple[str, str, str]:
     connection, chosen = shlex.quote(examined.target), _chosen(findings, examined)
     aircraft = f" --aircraft {shlex.quote(examined.aircraft_file)}" if examined.aircraft_file else ""
     codes = {limit.code for limit in findings.limits}
@@ -96,11 +96,11 @@ def _after_link(findings: Examination, examined: Examined) -> tuple[str, str, st
     return (live, f"advisor analyze {RECORDING}{aircraft}{chosen}", after)
 
 
-def _aircraft(examined: Examined) -> str:
+def _aircraft(examined: ExaminedInput) -> str:
     return shlex.quote(examined.aircraft_file or NEW_FILE)
 
 
-def _chosen(findings: Examination, examined: Examined) -> str:
+def _chosen(findings: Examination, examined: ExaminedInput) -> str:
     """Return the option that names the vehicle, where the user chose one or several are heard."""
     system = examined.target_system
     if system is None and findings.vehicle and any(x.code == "several_vehicles" for x in findings.limits):

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.doctor.examination import Limit
-from advisor.doctor.expectation import Assumed, Expectation, expect, frequency
+from advisor.doctor.expectation import Assumed, ExpectedErrors, expect, frequency
 from advisor.doctor.survey import Arrival
 from advisor.flight.stream.suitability import SLOWEST_HZ
 from advisor.flight.vehicle.vehicle import Vehicle
@@ -141,7 +141,7 @@ def _staircase(message: str, vehicle: Vehicle) -> str:
     )
 
 
-def _ratio(now: Expectation, mended: Expectation) -> dict[str, float]:
+def _ratio(now: ExpectedErrors, mended: ExpectedErrors) -> dict[str, float]:
     return {
         name: float(std / mended.std[name])
         for name, std in now.std.items()

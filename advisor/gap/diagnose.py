@@ -9,7 +9,7 @@ from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.explain import evidence_of_one_maneuver, explain
 from advisor.gap.fitting.prior_speed import prior_speed
 from advisor.gap.records.airspeed import measures_speed
-from advisor.gap.records.flights import Flights
+from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.records.prepare import prepare
 from advisor.gap.records.unmeasured_speed import speed_of_the_motion
 from advisor.gap.records.usable import usable_of
@@ -29,7 +29,7 @@ from advisor.words.problems import UnusableInputError
 
 
 @dataclass(frozen=True)
-class Examined:
+class DiagnosisEvidence:
     """A diagnosis, together with the evidence that the diagnosis was made from."""
 
     diagnosis: Diagnosis
@@ -70,7 +70,7 @@ def examine(
     aircraft: Aircraft,
     holdout: int | None = None,
     progress: Progress = lambda *_: None,
-) -> Examined:
+) -> DiagnosisEvidence:
     """Diagnose like ``diagnose``, and return the evidence too, so that a user's simulator can fly the result.
 
     Raises
@@ -87,7 +87,7 @@ def examine(
     diagnosis = answer(evidence, aircraft, kinematics, holdout)
     used = {flight.number for flight in evidence.problem.flights.flights}
     missing = left_out([m for m in maneuvers if m.number not in used])
-    return Examined(replace(diagnosis, notes=(*diagnosis.notes, *missing)), evidence)
+    return DiagnosisEvidence(replace(diagnosis, notes=(*diagnosis.notes, *missing)), evidence)
 
 
 def _explained(
@@ -123,7 +123,7 @@ def _explained(
     return _checked_against_path(explain(problem, baseline, aircraft, progress), flown, weight), kinematics
 
 
-def _refuse(flights: Flights) -> None:
+def _refuse(flights: PreparedManeuvers) -> None:
     if not len(flights):
         raise UnusableInputError(
             "no_maneuver",

@@ -10,16 +10,16 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import beyond_known, beyond_servo
 from advisor.gap.candidates.variant import Variant
-from advisor.gap.fitting.fit import Fitted, fit
+from advisor.gap.fitting.fit import EffectFit, fit
 from advisor.gap.fitting.holdout import hold_out
 from advisor.gap.fitting.measure import file_model_of, whole_gap
-from advisor.gap.fitting.problem import Problem, counts
+from advisor.gap.fitting.problem import EffectProblem, counts
 from advisor.gap.fitting.uncertainty import effective_samples, file_is_off
 from advisor.gap.noise.quiet import quiet_rms
 from advisor.gap.noise.stamps import stamp_power
 from advisor.gap.records.floor import stated_floor, tolerance_of
 from advisor.gap.result import VISIBLE
-from advisor.gap.search.air import Air, moving_air, one_maneuver_stands_out
+from advisor.gap.search.air import MovingAir, moving_air, one_maneuver_stands_out
 from advisor.gap.search.speed import at_constant_speed
 from advisor.gap.search.stage import Stage
 from advisor.gap.search.waterfall import (
@@ -43,7 +43,7 @@ _HARDLY_DAMPED = 0.02
 the true value only costs iterations."""
 
 
-def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Progress) -> Evidence:
+def explain(problem: EffectProblem, baseline: EffectFit, aircraft: Aircraft, progress: Progress) -> Evidence:
     """Add effects to the baseline model, then examine the residual: moving air, and unexplained motion.
 
     Parameters
@@ -83,7 +83,7 @@ def explain(problem: Problem, baseline: Fitted, aircraft: Aircraft, progress: Pr
 
 
 def _unexplained(
-    problem: Problem, stages: Sequence[Stage], tolerance: FloatArray, moving_air: bool
+    problem: EffectProblem, stages: Sequence[Stage], tolerance: FloatArray, moving_air: bool
 ) -> Unexplained | None:
     """Return a sustained oscillation, or else the unexplained residual of the last model.
 
@@ -101,14 +101,14 @@ def _unexplained(
     return unexplained_residual(problem, first, slight.fitted, tolerance, moving_air)
 
 
-def _floor(problem: Problem, last: Stage, tolerance: FloatArray) -> FloatArray:
+def _floor(problem: EffectProblem, last: Stage, tolerance: FloatArray) -> FloatArray:
     """Return the noise of each channel where nothing was flown, shape (channels,), at least ``tolerance``."""
     # Jitter of the stamps belongs to the instruments, but appears only where a channel moves.
     measured = quiet_rms(problem, last.fitted) ** 2 + stamp_power(problem, last.fitted)
     return np.maximum(np.sqrt(np.minimum(measured, last.held_out.mean_square)), tolerance)
 
 
-def evidence_of_one_maneuver(problem: Problem, baseline: Fitted) -> Evidence:
+def evidence_of_one_maneuver(problem: EffectProblem, baseline: EffectFit) -> Evidence:
     """Return the evidence of a single manoeuvre: where the gap lies. No cause is sought, for lack of a
     hold-out.
 
@@ -130,7 +130,7 @@ def evidence_of_one_maneuver(problem: Problem, baseline: Fitted) -> Evidence:
     return Evidence(problem, [stage], unexplained, None, floor, file_model, None, None)
 
 
-def _begun_where_it_rings(variant: Variant, problem: Problem, baseline: Fitted) -> Variant:
+def _begun_where_it_rings(variant: Variant, problem: EffectProblem, baseline: EffectFit) -> Variant:
     """Return a structural mode with one more start, at the frequency where the pitch rate rings."""
     if variant.effect != "structural_mode":
         return variant
@@ -145,7 +145,7 @@ def _begun_where_it_rings(variant: Variant, problem: Problem, baseline: Fitted) 
 
 
 def _with_effects(
-    problem: Problem, baseline: Fitted, variants: Sequence[Variant], progress: Progress
+    problem: EffectProblem, baseline: EffectFit, variants: Sequence[Variant], progress: Progress
 ) -> tuple[list[Stage], Law | None]:
     """Return the stages of the search, and the uncatalogued law that explains more than all effects, if
     any."""
@@ -154,7 +154,9 @@ def _with_effects(
     return (in_full(problem, settled(problem, stages)) if law is None else stages), law
 
 
-def _with_the_air(problem: Problem, stages: list[Stage], law: Law | None) -> tuple[list[Stage], Air | None]:
+def _with_the_air(
+    problem: EffectProblem, stages: list[Stage], law: Law | None
+) -> tuple[list[Stage], MovingAir | None]:
     """Return the stages and the moving air. With a law, only the air that the law leaves unexplained
     counts."""
     if law is None:
@@ -166,7 +168,7 @@ def _with_the_air(problem: Problem, stages: list[Stage], law: Law | None) -> tup
     return baseline, None if still else air
 
 
-def _air_with(problem: Problem, last: Fitted) -> Air | None:
+def _air_with(problem: EffectProblem, last: EffectFit) -> MovingAir | None:
     """Return the moving air that a model leaves, or None. A white residual without a loud manoeuvre is not
     searched."""
     nearly_white = np.all(effective_samples(problem, last.innovations) >= 0.5 * counts(problem))

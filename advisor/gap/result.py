@@ -8,7 +8,7 @@ from advisor.flight.instruments.kinematics import KinematicCheck
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.decision import Decision
 
-Verdict = Literal["none", "parameters", "effect", "unknown", "untested"]
+GapVerdict = Literal["none", "parameters", "effect", "unknown", "untested"]
 """Verdict of a diagnosis. ``untested``: no simulator was given and no effect was found; JSON writes null."""
 VISIBLE = 0.05
 """Least gap that is called visible: mean square error over the floor's square, minus 1."""
@@ -180,7 +180,7 @@ class Trace:
 class Diagnosis:
     """The complete result of a diagnosis."""
 
-    verdict: Verdict
+    verdict: GapVerdict
     sentence: str
     """One sentence for the crew."""
     gap: Gap

@@ -14,7 +14,7 @@ from advisor.model.response import N_SHARED, Grid, Index
 from advisor.oem.covariance import REPORTED
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.gauss_newton import CONVERGED, cholesky, descend, normal_equations, solve_lower
-from advisor.oem.problem import Problem, Record, Signal, assemble
+from advisor.oem.problem import OutputErrorProblem, Record, Signal, assemble
 from advisor.oem.solution import noise_floor, solve
 from advisor.process.compiled import kernel
 
@@ -57,8 +57,8 @@ def solve_many(elevator: Signal, t: FloatArray, alpha: FloatArray, q: FloatArray
     regression.
     """
 
-    def problem(a: FloatArray, b: FloatArray) -> Problem:
-        return Problem((Record(elevator, {"alpha": Signal(t, a), "q": Signal(t, b)}),))
+    def problem(a: FloatArray, b: FloatArray) -> OutputErrorProblem:
+        return OutputErrorProblem((Record(elevator, {"alpha": Signal(t, a), "q": Signal(t, b)}),))
 
     mean = solve(problem(alpha.mean(axis=0), q.mean(axis=0)))
     first = solve(problem(alpha[0], q[0])) if isinstance(mean, NoEstimate) else mean

@@ -55,7 +55,7 @@ class _Step(NamedTuple):
     """Promised change of -2 log likelihood."""
 
 
-class Carried:
+class UpdatableSolution:
     """An updatable solution of one manoeuvre.
 
     Parameters

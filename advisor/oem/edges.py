@@ -16,7 +16,7 @@ from advisor.aircraft.aircraft import PARAMETERS
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import N_PARAMETERS, Index, respond
 from advisor.oem.gauss_newton import CONVERGED, Optimum
-from advisor.oem.problem import Problem, Record, Signal, assemble
+from advisor.oem.problem import OutputErrorProblem, Record, Signal, assemble
 from advisor.oem.solution import Solution, evaluate, search
 from advisor.oem.weighing import Weighing
 
@@ -110,7 +110,9 @@ def with_edges(plain: Solution, extra: FloatArray | None = None) -> Solution:
     return final if isinstance(final, Solution) else plain
 
 
-def _edged(problem: Problem, edges: Sequence[Edges], records: Sequence[Record]) -> Problem:
+def _edged(
+    problem: OutputErrorProblem, edges: Sequence[Edges], records: Sequence[Record]
+) -> OutputErrorProblem:
     """Return the problem with the commands of ``records`` sharpened."""
     return replace(
         problem,
@@ -135,7 +137,11 @@ def _moved(edges: Sequence[Edges], steps: FloatArray, records: Sequence[Record])
 
 
 def _by_edges(
-    problem: Problem, edges: Sequence[Edges], records: Sequence[Record], optimum: Optimum, owner: Index
+    problem: OutputErrorProblem,
+    edges: Sequence[Edges],
+    records: Sequence[Record],
+    optimum: Optimum,
+    owner: Index,
 ) -> FloatArray:
     """Return the derivatives of the outputs by the times of all edges, shape (N, k), manoeuvre by manoeuvre.
 

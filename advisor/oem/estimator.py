@@ -27,7 +27,7 @@ from advisor.oem.notes import notes
 from advisor.oem.offset import with_offset
 from advisor.oem.prediction import prediction_band
 from advisor.oem.prepare import Prepared, prepare
-from advisor.oem.problem import Problem
+from advisor.oem.problem import OutputErrorProblem
 from advisor.oem.solution import Method, Solution, evaluate, reported, search, solve
 from advisor.oem.surface import Servo
 from advisor.oem.turbulence import Turbulence
@@ -127,7 +127,7 @@ def unknown_instruments(prepared: Prepared, aircraft: Aircraft) -> tuple[Instrum
     return tuple(unknown)
 
 
-def _solved(problem: Problem, method: Method, servo_known: bool) -> Solution | NoEstimate:
+def _solved(problem: OutputErrorProblem, method: Method, servo_known: bool) -> Solution | NoEstimate:
     """Return the solution with the reading of the record that the data clearly prefer.
 
     Eqs. (1)-(2) take the flight path as constant. Gravity's part in α̇ as the path turns is about 1e-4 rad/s,
@@ -146,7 +146,7 @@ def _solved(problem: Problem, method: Method, servo_known: bool) -> Solution | N
     return _clearer(best, replace(problem, records=held), method)
 
 
-def _clearer(best: Solution | NoEstimate, other: Problem, method: Method) -> Solution | NoEstimate:
+def _clearer(best: Solution | NoEstimate, other: OutputErrorProblem, method: Method) -> Solution | NoEstimate:
     """Return ``best``, unless the other reading of the same data explains them clearly better.
 
     The other reading must be better by output error's weights and by those of coloured noise. Where the model

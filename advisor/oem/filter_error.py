@@ -18,7 +18,7 @@ from advisor.model.response import N_PARAMETERS, N_SHARED, OUTPUTS
 from advisor.oem.covariance import Coloured, coloured, colours_of, influence, widening
 from advisor.oem.innovations import AirModel
 from advisor.oem.instruments import Instrument
-from advisor.oem.place import Place, at, free_of, in_time, speeds_of, system_of
+from advisor.oem.place import Linearization, at, free_of, in_time, speeds_of, system_of
 from advisor.oem.prior import precision
 from advisor.oem.solution import Solution, contributions_of, reported
 from advisor.oem.turbulence import Rows, Turbulence, find_turbulence
@@ -44,7 +44,7 @@ def moving_air(solution: Solution, seen_by_alpha: bool) -> Turbulence:
         Whether the angle of attack reads the air, like a vane, instead of coming from inertial sensors.
     """
     none = np.empty((len(solution.residual), 0))
-    place = Place(
+    place = Linearization(
         solution.problem,
         solution.assembly,
         solution.optimum.shared,
@@ -64,7 +64,7 @@ def _white(rows: Sequence[Rows], channel: int) -> float:
     return robust_std(steps) / float(np.sqrt(2.0)) if len(steps) else 1.0
 
 
-def _rows(place: Place) -> list[Rows]:
+def _rows(place: Linearization) -> list[Rows]:
     found = []
     for m, speed in enumerate(speeds_of(place)):
         order = in_time(place.assembly, m)
@@ -109,14 +109,14 @@ def filter_error(solution: Solution, air: AirModel, instruments: Sequence[Instru
 
 
 def _better(
-    here: Place, seen: Whitened, air: AirModel, instruments: Sequence[Instrument]
-) -> tuple[Place | None, Whitened | None]:
+    here: Linearization, seen: Whitened, air: AirModel, instruments: Sequence[Instrument]
+) -> tuple[Linearization | None, Whitened | None]:
     """Return the likeliest point along the step; None where the likelihood falls all the way.
 
     A whole step ignores that the filter's gains change with the parameters, and overshoots in a curved
     valley.
     """
-    best: tuple[Place | None, Whitened | None] = (None, None)
+    best: tuple[Linearization | None, Whitened | None] = (None, None)
     lowest = seen.cost
     for scale in (1.0, 0.5, 0.25, 0.1, 0.03):
         there = _moved(here, seen, scale, instruments)
@@ -128,7 +128,9 @@ def _better(
     return best
 
 
-def _moved(here: Place, seen: Whitened, scale: float, instruments: Sequence[Instrument]) -> Place | None:
+def _moved(
+    here: Linearization, seen: Whitened, scale: float, instruments: Sequence[Instrument]
+) -> Linearization | None:
     """Return the point after a share of the step; None where the model overflows there."""
     common, own = free_of(here.assembly)
     shared, local, problem = here.shared.copy(), here.local.copy(), here.problem
@@ -140,7 +142,7 @@ def _moved(here: Place, seen: Whitened, scale: float, instruments: Sequence[Inst
     return at(problem, shared, local, instruments)
 
 
-def _solution(start: Solution, place: Place, air: AirModel) -> Solution | None:
+def _solution(start: Solution, place: Linearization, air: AirModel) -> Solution | None:
     """Return the solution at the point, with Cramér-Rao errors and with errors for coloured innovations."""
     assembly, n = place.assembly, len(PARAMETERS)
     white = np.empty((len(place.residual), 1 + N_PARAMETERS + place.extra.shape[1]))

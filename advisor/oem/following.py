@@ -9,7 +9,7 @@ import math
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.oem.carried import Carried
+from advisor.oem.carried import UpdatableSolution
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import report
 from advisor.oem.prepare import prepare
@@ -33,7 +33,7 @@ class Follower:
         self._aircraft = aircraft
         self._number: int | None = None
         self._last: Solution | None = None
-        self._carried: Carried | None = None
+        self._carried: UpdatableSolution | None = None
         self._left_out: str | None = None
         self._solved_s = self._coloured_s = -math.inf
 
@@ -69,5 +69,5 @@ class Follower:
         if isinstance(solution, NoEstimate):
             return solution
         found = report(solution, prepared, self._aircraft, quick=True)
-        self._carried = Carried(solution, prepared, found)
+        self._carried = UpdatableSolution(solution, prepared, found)
         return found

@@ -20,7 +20,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import N_PARAMETERS, respond
 from advisor.oem.covariance import influence
 from advisor.oem.gauss_newton import CONVERGED, Optimum
-from advisor.oem.problem import Assembly, Problem, assemble
+from advisor.oem.problem import Assembly, OutputErrorProblem, assemble
 from advisor.oem.solution import Solution, evaluate, search
 from advisor.oem.surface import Servo
 from advisor.oem.weighing import Weighing
@@ -49,41 +49,41 @@ class Instrument:
     """One instrument parameter, and its place in a problem."""
 
     name: InstrumentName
-    read: Callable[[Problem], float]
-    write: Callable[[Problem, float], Problem]
+    read: Callable[[OutputErrorProblem], float]
+    write: Callable[[OutputErrorProblem, float], OutputErrorProblem]
     difference: float
     """Step of central differences, in the parameter's unit."""
     lowest: float
     highest: float
     starts: tuple[float, ...]
     """Values at which the search starts, in addition to the present one."""
-    smallest: Callable[[Problem], float]
+    smallest: Callable[[OutputErrorProblem], float]
     """Smallest value that the sampling of the record can show, in the parameter's unit."""
 
 
-def _with_lag(problem: Problem, value: float) -> Problem:
+def _with_lag(problem: OutputErrorProblem, value: float) -> OutputErrorProblem:
     return replace(problem, servo=Servo(value, problem.servo.delay_s))
 
 
-def _with_arm(problem: Problem, value: float) -> Problem:
+def _with_arm(problem: OutputErrorProblem, value: float) -> OutputErrorProblem:
     return replace(problem, vane_arm_m=value)
 
 
-def _with_delay(problem: Problem, value: float) -> Problem:
+def _with_delay(problem: OutputErrorProblem, value: float) -> OutputErrorProblem:
     return replace(problem, alpha_delay_s=value)
 
 
-def _with_imu(problem: Problem, value: float) -> Problem:
+def _with_imu(problem: OutputErrorProblem, value: float) -> OutputErrorProblem:
     return replace(problem, accelerometer_arm_m=value)
 
 
-def _half_interval(problem: Problem) -> float:
+def _half_interval(problem: OutputErrorProblem) -> float:
     """Return half the interval of the command. A shorter lag looks like an unknown time between two
     stamps."""
     return 0.5 * float(np.median(np.concatenate([np.diff(r.elevator.t) for r in problem.records])))
 
 
-def _smallest_arm(problem: Problem) -> float:
+def _smallest_arm(problem: OutputErrorProblem) -> float:
     speeds = [float(np.mean(r.airspeed.y)) for r in problem.records if r.airspeed is not None]
     return SMALLEST_DELAY_S * float(np.mean(speeds)) if speeds else 0.0
 
@@ -137,7 +137,7 @@ class Identified:
 
 
 @dataclass(frozen=True, slots=True)
-class Fitted:
+class InstrumentFit:
     """A solution with the instrument parameters that the data determine."""
 
     solution: Solution
@@ -148,7 +148,7 @@ class Fitted:
 class _Fit(NamedTuple):
     """The optimum at one setting of the instruments."""
 
-    problem: Problem
+    problem: OutputErrorProblem
     assembly: Assembly
     optimum: Optimum
 
@@ -157,7 +157,7 @@ class _Fit(NamedTuple):
         return self.optimum.log_likelihood_cost
 
 
-def fit_instruments(plain: Solution, unknown: Sequence[Instrument]) -> Fitted:
+def fit_instruments(plain: Solution, unknown: Sequence[Instrument]) -> InstrumentFit:
     """Estimate the unknown instrument parameters that the data determine; ``plain`` is the solution without
     any.
 
@@ -174,7 +174,7 @@ def fit_instruments(plain: Solution, unknown: Sequence[Instrument]) -> Fitted:
     while names:
         solution = _solution(best, names)
         if solution is None:
-            return Fitted(plain)
+            return InstrumentFit(plain)
         rivals = [(x, _without(x, best, names, plain)) for x in names]
         weighing = Weighing.by(solution.noise, solution.assembly)
         gains = [_gain(weighing, best, rival) for _, rival in rivals]
@@ -182,9 +182,9 @@ def fit_instruments(plain: Solution, unknown: Sequence[Instrument]) -> Fitted:
         gains = [0.0 if is_small else gain for gain, is_small in zip(gains, small, strict=True)]
         weakest = int(np.argmin(gains))
         if gains[weakest] >= CLEARLY:
-            return Fitted(solution, identified_at(solution, names))
+            return InstrumentFit(solution, identified_at(solution, names))
         names, best = tuple(x for x in names if x is not names[weakest]), rivals[weakest][1]
-    return Fitted(plain)
+    return InstrumentFit(plain)
 
 
 def _without(x: Instrument, best: _Fit, names: Sequence[Instrument], plain: Solution) -> _Fit:
@@ -205,7 +205,7 @@ def _gain(weighing: Weighing, fit: _Fit, rival: _Fit) -> float:
 
 
 def by_instruments(
-    problem: Problem, shared: FloatArray, local: FloatArray, names: Sequence[Instrument]
+    problem: OutputErrorProblem, shared: FloatArray, local: FloatArray, names: Sequence[Instrument]
 ) -> FloatArray:
     """Return (N, k) derivatives of the outputs by instrument parameters; ``shared`` (7,), ``local`` (m,
     7)."""
@@ -254,7 +254,7 @@ def _descend(begin: _Fit, names: Sequence[Instrument]) -> _Fit:
     return best
 
 
-def _moved(problem: Problem, names: Sequence[Instrument], step: FloatArray) -> Problem:
+def _moved(problem: OutputErrorProblem, names: Sequence[Instrument], step: FloatArray) -> OutputErrorProblem:
     for x, change in zip(names, step, strict=True):
         problem = x.write(problem, float(np.clip(x.read(problem) + change, x.lowest, x.highest)))
     return problem
@@ -272,7 +272,7 @@ def _step(fit: _Fit, names: Sequence[Instrument]) -> FloatArray:
     return np.asarray(effect.extra_covariance @ gradient)
 
 
-def _at(problem: Problem, near: _Fit) -> _Fit | None:
+def _at(problem: OutputErrorProblem, near: _Fit) -> _Fit | None:
     begin = (near.optimum.shared, near.optimum.local)
     assembly, optimum = search(problem, begin=begin, flat=CLOSE_ENOUGH)
     return _Fit(problem, assembly, optimum) if optimum.status == CONVERGED else None

@@ -13,7 +13,7 @@ import numpy as np
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import N_PARAMETERS, Index, respond
 from advisor.oem.estimate import NoEstimate
-from advisor.oem.problem import Problem, Record, Signal, assemble
+from advisor.oem.problem import OutputErrorProblem, Record, Signal, assemble
 from advisor.oem.solution import Solution, solve
 
 LOST_INTERVAL = 1.5
@@ -26,7 +26,7 @@ MOST_ROUNDS = 6
 _SETTLED = 1e-3
 
 
-def restored(problem: Problem) -> Problem:
+def restored(problem: OutputErrorProblem) -> OutputErrorProblem:
     """Return the problem with the input samples that were lost at steps, restored record by record.
 
     A record without lost samples, or whose fit does not converge, stays unchanged.
@@ -34,7 +34,7 @@ def restored(problem: Problem) -> Problem:
     return replace(problem, records=tuple(_restored(problem, record) for record in problem.records))
 
 
-def _restored(problem: Problem, record: Record) -> Record:
+def _restored(problem: OutputErrorProblem, record: Record) -> Record:
     stamps, where = _lost(record.elevator)
     if len(stamps) == 0:
         return record

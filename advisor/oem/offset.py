@@ -16,7 +16,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import N_PARAMETERS, respond
 from advisor.oem.edges import CLOSE_ENOUGH, DIFFERENCE_S, large_steps
 from advisor.oem.gauss_newton import CONVERGED, Optimum
-from advisor.oem.problem import Assembly, Problem, assemble
+from advisor.oem.problem import Assembly, OutputErrorProblem, assemble
 from advisor.oem.solution import Solution, evaluate, search
 from advisor.oem.surface import Servo
 from advisor.oem.weighing import Weighing
@@ -32,7 +32,7 @@ PARAMETERS_BEFORE = 8
 class Shifted(NamedTuple):
     """The optimum at one offset."""
 
-    problem: Problem
+    problem: OutputErrorProblem
     assembly: Assembly
     optimum: Optimum
     slope: FloatArray
@@ -95,7 +95,7 @@ def _best(plain: Solution, weighing: Weighing, *, held: bool, middle: float, hal
     return best
 
 
-def _by_offset(problem: Problem, assembly: Assembly, optimum: Optimum) -> FloatArray:
+def _by_offset(problem: OutputErrorProblem, assembly: Assembly, optimum: Optimum) -> FloatArray:
     sides = []
     for sign in (-1.0, 1.0):
         grid = assemble(replace(problem, servo=_later(problem.servo, sign * DIFFERENCE_S))).grid

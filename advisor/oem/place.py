@@ -8,17 +8,17 @@ import numpy as np
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import N_PARAMETERS, N_SHARED, SHARED, Index, respond
 from advisor.oem.instruments import Instrument, by_instruments
-from advisor.oem.problem import Assembly, Problem, assemble
+from advisor.oem.problem import Assembly, OutputErrorProblem, assemble
 
 ASSUMED_M_S = 20.0
 """Air speed assumed where none is known, m/s. The gust angle and the weight's part of α̇ depend on it."""
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class Linearization:
     """A setting of all parameters, with its residuals and sensitivities."""
 
-    problem: Problem
+    problem: OutputErrorProblem
     assembly: Assembly
     shared: FloatArray
     local: FloatArray
@@ -31,8 +31,8 @@ class Place:
 
 
 def at(
-    problem: Problem, shared: FloatArray, local: FloatArray, instruments: Sequence[Instrument]
-) -> Place | None:
+    problem: OutputErrorProblem, shared: FloatArray, local: FloatArray, instruments: Sequence[Instrument]
+) -> Linearization | None:
     """Return the residuals at ``shared`` (7,) and ``local`` (m, 7) parameters; None where the model
     overflows."""
     assembly = assemble(problem)
@@ -40,7 +40,7 @@ def at(
     if not respond(assembly.grid, shared, local, y, g):
         return None
     extra = by_instruments(problem, shared, local, instruments)
-    return Place(problem, assembly, shared, local, assembly.z - y, g, extra)
+    return Linearization(problem, assembly, shared, local, assembly.z - y, g, extra)
 
 
 def free_of(assembly: Assembly) -> tuple[Index, Index]:
@@ -54,13 +54,13 @@ def in_time(assembly: Assembly, m: int) -> Index:
     return np.asarray(rows[np.argsort(assembly.t[rows], kind="stable")])
 
 
-def speeds_of(place: Place) -> list[float]:
+def speeds_of(place: Linearization) -> list[float]:
     """Return the mean air speed of each manoeuvre, m/s."""
     speeds = [record.airspeed for record in place.problem.records]
     return [ASSUMED_M_S if speed is None else float(np.mean(speed.y)) for speed in speeds]
 
 
-def system_of(place: Place, ratio: float) -> FloatArray:
+def system_of(place: Linearization, ratio: float) -> FloatArray:
     """Return Z_α, Z_q, M_α, M_q at an air speed of ``ratio`` times the reference, shape (4,)."""
     z_a, z_q, m_a, m_q = (place.shared[SHARED.index(n)] for n in ("Z_alpha", "Z_q", "M_alpha", "M_q"))
     return np.array([ratio * z_a, z_q, ratio**2 * m_a, ratio * m_q])

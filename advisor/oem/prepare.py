@@ -16,7 +16,7 @@ from advisor.oem.alpha_use import FEWEST_SAMPLES, can_do_without, infer, lacking
 from advisor.oem.alpha_use import has as _has
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.lost_input import restored
-from advisor.oem.problem import Problem, Record, Signal
+from advisor.oem.problem import OutputErrorProblem, Record, Signal
 from advisor.oem.surface import Servo
 
 OUTPUTS = ("alpha", "q", "a_z")
@@ -33,7 +33,7 @@ No noise can pass for such a change."""
 class Prepared:
     """The problem, with facts about its preparation."""
 
-    problem: Problem
+    problem: OutputErrorProblem
     renewed_hz: float
     """Rate of renewal of the angle of attack, Hz, the slowest of the manoeuvres; NaN where none is used."""
     alpha_held: bool
@@ -123,7 +123,7 @@ def _prepared(
         for maneuver, speed in zip(maneuvers, speeds, strict=True)
     ]
     known = [signal for signal in signals if signal is not None]
-    problem = Problem(
+    problem = OutputErrorProblem(
         records=tuple(
             _record(maneuver, signal, alpha, usable)
             for maneuver, signal, alpha in zip(maneuvers, signals, alphas, strict=True)

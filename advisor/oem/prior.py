@@ -12,7 +12,7 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import N_SHARED, SHARED
-from advisor.oem.problem import Problem
+from advisor.oem.problem import OutputErrorProblem
 
 Z_Q_STD = 0.1
 """Standard deviation of Z_q, 1. C_Lq of 10 gives 0.03 to 0.1 for aircraft of 3 kg to 8 t."""
@@ -21,7 +21,7 @@ LIFT_OVER_MOMENT_S = 0.02
 turboprop)."""
 
 
-def precision(problem: Problem, shared: FloatArray) -> FloatArray:
+def precision(problem: OutputErrorProblem, shared: FloatArray) -> FloatArray:
     """Return the inverse prior variances of the shared parameters about zero.
 
     Parameters

@@ -64,7 +64,7 @@ class Record:
 
 
 @dataclass(frozen=True, slots=True)
-class Problem:
+class OutputErrorProblem:
     """Records that share the six derivatives, with the properties of their instruments."""
 
     records: tuple[Record, ...]
@@ -104,7 +104,7 @@ class Assembly:
         return len(self.rows)
 
 
-def assemble(problem: Problem) -> Assembly:
+def assemble(problem: OutputErrorProblem) -> Assembly:
     """Lay the records on the union of their stamps.
 
     Raises
@@ -207,7 +207,7 @@ class _Piece:
     gravity: FloatArray
 
     @classmethod
-    def of(cls, record: Record, problem: Problem) -> "_Piece":
+    def of(cls, record: Record, problem: OutputErrorProblem) -> "_Piece":
         outputs = {name: _finite(record.outputs[name]) for name in OUTPUTS if name in record.outputs}
         for name in ("q", "alpha" if "alpha" in outputs else "a_z"):
             if name not in outputs or len(outputs[name].t) < 2:

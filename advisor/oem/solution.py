@@ -21,7 +21,7 @@ from advisor.oem.covariance import (
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.gauss_newton import CONVERGED, FLAT, LEAST_NOISE, OVERFLOW, SINGULAR, Optimum, descend
 from advisor.oem.prior import precision
-from advisor.oem.problem import Assembly, Problem, assemble
+from advisor.oem.problem import Assembly, OutputErrorProblem, assemble
 from advisor.oem.simplex import descend_by_simplex
 from advisor.oem.start import start
 
@@ -36,7 +36,7 @@ second minimum, and another start is tried."""
 class Solution:
     """The optimum of one problem, with all quantities computed from it."""
 
-    problem: Problem
+    problem: OutputErrorProblem
     assembly: Assembly
     optimum: Optimum
     influence: Influence
@@ -78,7 +78,7 @@ class Solution:
 
 
 def solve(
-    problem: Problem,
+    problem: OutputErrorProblem,
     *,
     method: Method = "gauss-newton",
     begin: tuple[FloatArray, FloatArray] | None = None,
@@ -111,7 +111,7 @@ def solve(
 
 
 def search(
-    problem: Problem,
+    problem: OutputErrorProblem,
     *,
     method: Method = "gauss-newton",
     begin: tuple[FloatArray, FloatArray] | None = None,
@@ -136,7 +136,7 @@ def search(
 
 
 def evaluate(
-    problem: Problem,
+    problem: OutputErrorProblem,
     assembly: Assembly,
     optimum: Optimum,
     extra: FloatArray | None = None,

@@ -15,11 +15,13 @@ import numpy as np
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.motion import integrated
 from advisor.model.response import N_LOCAL, N_SHARED
-from advisor.oem.problem import Problem, Record, Signal
+from advisor.oem.problem import OutputErrorProblem, Record, Signal
 from advisor.oem.surface import Servo
 
 
-def start(problem: Problem, *, lift_from_alpha_only: bool = False) -> tuple[FloatArray, FloatArray]:
+def start(
+    problem: OutputErrorProblem, *, lift_from_alpha_only: bool = False
+) -> tuple[FloatArray, FloatArray]:
     """Return shared (7,) and local (m, 7) parameters for the start of a search.
 
     Parameters
@@ -64,7 +66,7 @@ def start(problem: Problem, *, lift_from_alpha_only: bool = False) -> tuple[Floa
     return shared, local
 
 
-def _from_force(problem: Problem) -> tuple[FloatArray, FloatArray]:
+def _from_force(problem: OutputErrorProblem) -> tuple[FloatArray, FloatArray]:
     """Return the start without a measured angle of attack, with Z_q = Z_δe = 0.
 
     Specific force is aerodynamic: n = a_z/V = Z_0 + Z_α·α. In Eq. (2) n replaces α with the factor M_α/Z_α,
@@ -106,7 +108,7 @@ def _from_force(problem: Problem) -> tuple[FloatArray, FloatArray]:
     return shared, local
 
 
-def _ratio(record: Record, problem: Problem, t: FloatArray) -> Signal:
+def _ratio(record: Record, problem: OutputErrorProblem, t: FloatArray) -> Signal:
     """Return the air speed over the reference; 1 where derivatives do not scale with it."""
     if record.airspeed is None or problem.reference_airspeed_m_s is None:
         return Signal(t, np.ones(len(t)))
@@ -118,7 +120,7 @@ def _speed(record: Record, t: FloatArray) -> FloatArray:
 
 
 def _regressors(
-    record: Record, problem: Problem, t: FloatArray, moment: bool
+    record: Record, problem: OutputErrorProblem, t: FloatArray, moment: bool
 ) -> tuple[FloatArray, FloatArray]:
     """Return the integrals of α, q, δe from the record's first stamp to ``t``, shape (n, 3), and of 1 and s,
     shape (n, 2)."""

@@ -11,7 +11,7 @@ import numpy as np
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import N_PARAMETERS, Index
 from advisor.oem.innovations import AirModel, Gains, gains_of
-from advisor.oem.place import Place, free_of, in_time, speeds_of, system_of
+from advisor.oem.place import Linearization, free_of, in_time, speeds_of, system_of
 from advisor.oem.prior import precision
 
 
@@ -34,7 +34,7 @@ class Whitened:
         return float(np.max(np.abs(self.step) / self.std))
 
 
-def whitened(place: Place, air: AirModel, instruments: int) -> Whitened | None:
+def whitened(place: Linearization, air: AirModel, instruments: int) -> Whitened | None:
     """Return the whitened fit; None where numbers overflow.
 
     Parameters
@@ -71,7 +71,7 @@ def whitened(place: Place, air: AirModel, instruments: int) -> Whitened | None:
     return Whitened(cost, step, own_steps, np.sqrt(np.diag(inverse)) / scale)
 
 
-def gains_along(place: Place, air: AirModel) -> list[tuple[Index, Gains]]:
+def gains_along(place: Linearization, air: AirModel) -> list[tuple[Index, Gains]]:
     """Return for each manoeuvre its rows in order of time, and the filter's gains along them."""
     problem, found = place.problem, []
     for m, speed in enumerate(speeds_of(place)):

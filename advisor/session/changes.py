@@ -6,7 +6,7 @@ from typing import Any
 
 from advisor.campaign.state import JudgedManeuver
 from advisor.decision.verdict import ManeuverVerdict
-from advisor.session.conducting import Report
+from advisor.session.conducting import SessionReport
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +44,7 @@ class Changes:
     maneuvers: tuple[JudgedManeuver | Again, ...] | None = None
     """The manoeuvres. None where none was judged."""
 
-    def applied_to(self, last: Report) -> Report:
+    def applied_to(self, last: SessionReport) -> SessionReport:
         """Return the newer report."""
         state = dict(self.state)
         if self.maneuvers is not None:
@@ -55,7 +55,7 @@ class Changes:
         return replace(last, **self.report, state=replace(last.state, **state))
 
 
-def changes(last: Report, report: Report) -> Changes:
+def changes(last: SessionReport, report: SessionReport) -> Changes:
     """Return the changes that turn ``last`` into ``report``. The state's notices are in its log."""
     before, now = last.state.maneuvers, report.state.maneuvers
     return Changes(

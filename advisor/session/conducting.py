@@ -6,12 +6,12 @@ from typing import Protocol
 
 from advisor.campaign.state import CampaignState
 from advisor.session.hand import HandDecision
-from advisor.session.source import LinkHealth, Order, Playback, Tempo
+from advisor.session.source import LinkHealth, LinkRequest, Playback, Tempo
 from advisor.words.problems import Problem
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Report:
+class SessionReport:
     """State of the campaign, the link and the replay at one moment."""
 
     state: CampaignState
@@ -23,7 +23,7 @@ class Report:
     """Reasons for which nothing can be judged, while nothing has been judged."""
 
 
-Tell = Callable[[Report], object]
+Tell = Callable[[SessionReport], object]
 
 
 class Conducting(Protocol):
@@ -45,7 +45,7 @@ class Conducting(Protocol):
     def decide(self, decision: HandDecision) -> None:
         """Exclude, include, note, mark, begin or end a marked manoeuvre."""
 
-    def order(self, order: Order) -> None:
+    def order(self, order: LinkRequest) -> None:
         """Carry out a crew's request to the link."""
 
     def jump(self, number: int) -> None:

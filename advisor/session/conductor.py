@@ -12,10 +12,10 @@ from time import monotonic
 
 from advisor.campaign.hand_decisions import NOTHING, ByHand
 from advisor.session.campaign_like import CampaignLike
-from advisor.session.conducting import Report, Tell
+from advisor.session.conducting import SessionReport, Tell
 from advisor.session.goal import Goal
 from advisor.session.hand import HandDecision
-from advisor.session.source import Order, Playable, Source, Tempo
+from advisor.session.source import LinkRequest, Playable, Source, Tempo
 
 REPORT_EVERY_S = 0.1
 _READ_TIMEOUT_S = 0.05
@@ -55,7 +55,7 @@ class Conductor:
         Parameters
         ----------
         tell : callable
-            Receives a `Report` at most every `REPORT_EVERY_S`, in this thread.
+            Receives a `SessionReport` at most every `REPORT_EVERY_S`, in this thread.
 
         Raises
         ------
@@ -78,7 +78,7 @@ class Conductor:
         """Exclude, include, note, mark, begin or end a marked manoeuvre."""
         self._requests.put(lambda campaign: self._decide(campaign, decision))
 
-    def order(self, order: Order) -> None:
+    def order(self, order: LinkRequest) -> None:
         """Carry out a crew's request to the link."""
         self._requests.put(lambda campaign: self._source.order(order))
 
@@ -135,7 +135,7 @@ class Conductor:
         state = campaign.state
         playback = self._source.playback() if isinstance(self._source, Playable) else None
         problems = () if state.maneuvers else tuple(campaign.problems)
-        self._tell(Report(state, self._source.health(), playback, state.notices, problems))
+        self._tell(SessionReport(state, self._source.health(), playback, state.notices, problems))
         self._told_s = monotonic()
 
     def _decide(self, campaign: CampaignLike, decision: HandDecision) -> None:

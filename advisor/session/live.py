@@ -7,8 +7,8 @@ from typing import Protocol
 from advisor.analysis.marks_file import keep_by_hand
 from advisor.campaign.hand_decisions import ByHand
 from advisor.flight.signals.messages import Columns
-from advisor.mavlink.link.health import LinkStatistics, Notice
-from advisor.session.source import Condition, LinkHealth, Order
+from advisor.mavlink.link.health import LinkNotice, LinkStatistics
+from advisor.session.source import Condition, LinkHealth, LinkRequest
 
 SILENT_S = 2.0
 LOSS_PERCENT = 5.0
@@ -28,7 +28,7 @@ class LinkLike(Protocol):
     def read(self, timeout_s: float) -> list[Columns]:
         """Return the next messages in order of arrival; empty when none came in time."""
 
-    def take_notices(self) -> list[Notice]:
+    def take_notices(self) -> list[LinkNotice]:
         """Return the notices since the last call, oldest first."""
 
     def follow(self, system: int) -> None:
@@ -88,7 +88,7 @@ class LinkSource:
         """Return the notices of the link since the last call."""
         return [notice.text for notice in self._link.take_notices()] if self._link is not None else ()
 
-    def order(self, order: Order) -> None:
+    def order(self, order: LinkRequest) -> None:
         """Pass on a crew's request."""
         if self._link is None:
             return

@@ -12,9 +12,9 @@ from advisor.campaign.hand_decisions import NOTHING, ByHand
 from advisor.session.campaign_like import CampaignLike
 from advisor.session.changes import Changes
 from advisor.session.child_process import pause_s, said_of, start_child
-from advisor.session.conducting import Report, Tell
+from advisor.session.conducting import SessionReport, Tell
 from advisor.session.hand import HandDecision
-from advisor.session.source import LinkHealth, Order, Source, Tempo
+from advisor.session.source import LinkHealth, LinkRequest, Source, Tempo
 
 Request = tuple[str, tuple[object, ...]]
 """Name of a method of `Conducting`, and its arguments."""
@@ -24,7 +24,7 @@ _ENOUGH: Request = ("", ())
 
 
 @dataclass(frozen=True, slots=True)
-class Task:
+class ConductorTask:
     """Task of a conductor. The other process uses the task, so that all of it must be picklable."""
 
     open_source: Callable[[], Source]
@@ -48,10 +48,10 @@ class RemoteConductor:
         Task for the process that ``run`` starts.
     """
 
-    def __init__(self, task: Task) -> None:
+    def __init__(self, task: ConductorTask) -> None:
         self._task = task
         self._requests: SimpleQueue[Request] = SimpleQueue()
-        self._last: Report | None = None
+        self._last: SessionReport | None = None
         self._deaths: list[str] = []
         self._stopped = Event()
 
@@ -84,7 +84,7 @@ class RemoteConductor:
         """Exclude, include, note, mark, begin or end a marked manoeuvre."""
         self._requests.put(("decide", (decision,)))
 
-    def order(self, order: Order) -> None:
+    def order(self, order: LinkRequest) -> None:
         """Carry out a crew's request to the link."""
         self._requests.put(("order", (order,)))
 
@@ -140,10 +140,10 @@ class RemoteConductor:
                 self._requests.put(request)
 
     def _pass_back(self, pipe: IO[bytes], tell: Tell) -> None:
-        last: Report | None = None
+        last: SessionReport | None = None
         while True:
             match pickle.load(pipe):
-                case Report() as first:
+                case SessionReport() as first:
                     last = first
                 case Changes() as changes if last is not None:
                     last = changes.applied_to(last)
@@ -152,7 +152,7 @@ class RemoteConductor:
             if last is not None:
                 self._tell(last, tell)
 
-    def _tell(self, report: Report, tell: Tell) -> None:
+    def _tell(self, report: SessionReport, tell: Tell) -> None:
         """Pass on a report. While a process catches up, pass on only the health of the link."""
         if self._deaths:
             report = replace(report, log=(*report.log, *self._deaths))

@@ -8,7 +8,7 @@ from threading import Event
 from advisor.analysis.marks_file import keep_on_all
 from advisor.campaign.hand_decisions import NOTHING, ByHand
 from advisor.flight.signals.messages import Columns
-from advisor.session.source import LinkHealth, Order, Playback, Tempo
+from advisor.session.source import LinkHealth, LinkRequest, Playback, Tempo
 from advisor.session.timeline import Timeline
 
 STEP_S = 0.1
@@ -133,7 +133,7 @@ class LogPlayer:
         notices, self._notices = self._notices, ()
         return notices
 
-    def order(self, order: Order) -> None:
+    def order(self, order: LinkRequest) -> None:
         """Do nothing, because the vehicle of a log cannot be asked."""
 
     def keep(self, by_hand: ByHand) -> str:

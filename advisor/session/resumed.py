@@ -7,7 +7,7 @@ from advisor.analysis.log_series import LogSeries, of_flight
 from advisor.analysis.marks_file import keep_on_all
 from advisor.campaign.hand_decisions import ByHand
 from advisor.flight.signals.messages import Columns
-from advisor.session.source import LinkHealth, Order, Source
+from advisor.session.source import LinkHealth, LinkRequest, Source
 
 
 class ResumedSource:
@@ -56,7 +56,7 @@ class ResumedSource:
         notices, self._notices = self._notices, []
         return [*notices, *self._link.take_notices()]
 
-    def order(self, order: Order) -> None:
+    def order(self, order: LinkRequest) -> None:
         """Pass on a crew's request to the link."""
         self._link.order(order)
 

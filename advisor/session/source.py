@@ -24,7 +24,7 @@ class LinkHealth:
 
 
 @dataclass(frozen=True, slots=True)
-class Order:
+class LinkRequest:
     """A crew's request to the link."""
 
     what: Literal["follow", "outputs", "take"]
@@ -53,7 +53,7 @@ class Source(Protocol):
     def take_notices(self) -> Sequence[str]:
         """Return the notices since the last call: reconnected, rates granted, a second vehicle."""
 
-    def order(self, order: Order) -> None:
+    def order(self, order: LinkRequest) -> None:
         """Carry out a crew's request to the link. Other sources do nothing."""
 
     def keep(self, by_hand: ByHand) -> str:

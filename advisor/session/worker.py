@@ -13,7 +13,7 @@ from typing import IO
 
 from advisor.process import interrupt
 from advisor.session.changes import changes
-from advisor.session.conducting import Report
+from advisor.session.conducting import SessionReport
 from advisor.session.conductor import Conductor
 
 _GIVES_WAY = 5
@@ -26,9 +26,9 @@ class Reporter:
 
     def __init__(self, pipe: IO[bytes]) -> None:
         self._pipe = pipe
-        self._last: Report | None = None
+        self._last: SessionReport | None = None
 
-    def tell(self, report: Report) -> None:
+    def tell(self, report: SessionReport) -> None:
         """Send one report."""
         self.send(report if self._last is None else changes(self._last, report))
         self._last = report

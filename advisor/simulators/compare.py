@@ -16,8 +16,8 @@ from advisor.flight.signals.record import Channel
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import with_known
 from advisor.gap.candidates.traits import TRAITS
-from advisor.gap.diagnose import Examined, examine
-from advisor.gap.fitting.problem import Point, Problem
+from advisor.gap.diagnose import DiagnosisEvidence, examine
+from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.records.prepare import prepare
 from advisor.gap.result import Diagnosis
 from advisor.gap.search.baseline import base_entries
@@ -98,7 +98,7 @@ def compare(
 
 
 def _measured(
-    examined: Examined,
+    examined: DiagnosisEvidence,
     flying: Flying,
     surrogate: Surrogate,
     as_flown: Mapping[int, AsGiven],
@@ -137,7 +137,7 @@ def _surrogate_and_rest(flying: Flying, aircraft: Aircraft) -> tuple[Surrogate, 
     base = with_known(base_entries(surrogate.aircraft(aircraft)), aircraft.effects, flights, variants)
     derivatives = np.array([surrogate.derivatives[name] for name in DERIVATIVES])
     own = np.zeros((len(flights), len(NUISANCES)))
-    p = Problem(flights, base).driving(Point(derivatives, own))
+    p = EffectProblem(flights, base).driving(SearchPoint(derivatives, own))
     if any(TRAITS[effect].block in EQUATIONS for effect in aircraft.effects):
         replays = flying.replays(command, False, added(flown, p, derivatives))
     grids = beyond(flying, replays, p)

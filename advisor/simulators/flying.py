@@ -6,12 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.fitting.problem import Problem
-from advisor.gap.records.flights import Flight, Flights
+from advisor.gap.fitting.problem import EffectProblem
+from advisor.gap.records.flights import PreparedManeuver, PreparedManeuvers
 from advisor.gap.records.usable import DEPARTED_RAD
 from advisor.gap.simulator.layout import INDEX, REFERENCE
 from advisor.simulators.around import instruments, skewed
-from advisor.simulators.increments import Added, entries_of
+from advisor.simulators.increments import SimulatorIncrements, entries_of
 from advisor.simulators.inputs import as_flight, condition_of, inputs_of, on_grid
 from advisor.simulators.protocol import Increments, Replay, Simulator
 from advisor.simulators.surrogate import Surrogate, trimmed_at
@@ -25,7 +25,7 @@ class Flying:
     """A simulator with the manoeuvres to be flown."""
 
     simulator: Simulator
-    flights: Flights
+    flights: PreparedManeuvers
     mass_kg: float | None
     progress: Progress
 
@@ -59,7 +59,7 @@ class Flying:
             found.append(replay)
         return found
 
-    def as_flown(self, replays: Sequence[Replay]) -> list[Flight]:
+    def as_flown(self, replays: Sequence[Replay]) -> list[PreparedManeuver]:
         """Return the manoeuvres with the simulator's own speed and trim."""
         pairs = zip(self.flights.flights, replays, strict=True)
         return [as_flight(flight, replay, self.flights.reference_m_s) for flight, replay in pairs]
@@ -69,7 +69,7 @@ class Flying:
 class AsGiven:
     """One manoeuvre as flown by the simulator without added effects."""
 
-    flight: Flight
+    flight: PreparedManeuver
     """Flight with the simulator's own speed and trim."""
     beyond: FloatArray
     """Shape (4, n + 1): outputs of the simulator minus those of its surrogate."""
@@ -93,7 +93,7 @@ def beyond(flying: Flying, replays: Sequence[Replay], p: FloatArray, held: bool 
     -------
     A manoeuvre's α, q, a_z and θ on its grid, each of shape (4, n + 1).
     """
-    problem = Problem(flying.flights, p, held)
+    problem = EffectProblem(flying.flights, p, held)
     found = []
     for there, replay, numbers in zip(flying.as_flown(replays), replays, p, strict=True):
         ends = np.arange(there.n + 1) * there.h
@@ -105,7 +105,9 @@ def beyond(flying: Flying, replays: Sequence[Replay], p: FloatArray, held: bool 
     return found
 
 
-def added(flown: Sequence[Flight], found: FloatArray, as_given: FloatArray) -> tuple[Increments, ...]:
+def added(
+    flown: Sequence[PreparedManeuver], found: FloatArray, as_given: FloatArray
+) -> tuple[Increments, ...]:
     """Return the increments that effects add to the simulator, for every manoeuvre.
 
     Parameters
@@ -122,7 +124,9 @@ def added(flown: Sequence[Flight], found: FloatArray, as_given: FloatArray) -> t
     increments = []
     for there, with_effects in zip(flown, found, strict=True):
         changed, unchanged = (entries_of(trimmed_at(p, there)) for p in (with_effects, plain))
-        increments.append(Added(changed, unchanged, there.alpha_trim, float(there.trim[REFERENCE])))
+        increments.append(
+            SimulatorIncrements(changed, unchanged, there.alpha_trim, float(there.trim[REFERENCE]))
+        )
     return tuple(increments)
 
 
@@ -134,7 +138,7 @@ def without_servo(p: FloatArray, surrogate: Surrogate) -> FloatArray:
     return out
 
 
-def _refuse_broken(replay: Replay, description: str, flight: Flight) -> None:
+def _refuse_broken(replay: Replay, description: str, flight: PreparedManeuver) -> None:
     """Refuse a replay that lacks a number, or that ends long before the manoeuvre does."""
     series = (
         replay.t,
@@ -161,7 +165,7 @@ def _refuse_broken(replay: Replay, description: str, flight: Flight) -> None:
         )
 
 
-def refuse_unmoved(description: str, replays: Sequence[Replay], flights: Flights) -> None:
+def refuse_unmoved(description: str, replays: Sequence[Replay], flights: PreparedManeuvers) -> None:
     """Refuse a simulator whose pitch rate moves by less than the noise of the flight's gyro.
 
     Raises

@@ -6,10 +6,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.diagnose import Examined
+from advisor.gap.diagnose import DiagnosisEvidence
 from advisor.gap.fitting.holdout import HeldOut, held_out, points_without
 from advisor.gap.fitting.measure import own_refitted, whole_gap
-from advisor.gap.fitting.problem import Point, Problem
+from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.records.flights import Measured
 from advisor.gap.result import InSimulator
 from advisor.gap.simulator.layout import DERIVATIVES, INDEX, OUTPUTS
@@ -26,15 +26,15 @@ EQUATIONS = ("force_equation", "moment_equation")
 
 
 @dataclass(frozen=True)
-class Carried:
+class CarriedPart:
     """The part of a model that the simulator can take."""
 
-    point: Point
+    point: SearchPoint
     on_paper: tuple[str, ...]
 
 
 def in_simulator(
-    examined: Examined,
+    examined: DiagnosisEvidence,
     flying: Flying,
     surrogate: Surrogate,
     as_flown: Mapping[int, AsGiven],
@@ -98,7 +98,7 @@ def in_simulator(
     return InSimulator(name, was, now, percent, parts[0].on_paper, qualified(original, before, after, kept))
 
 
-def _carried(point: Point, problem: Problem, surrogate: Surrogate, flying: Flying) -> Carried:
+def _carried(point: SearchPoint, problem: EffectProblem, surrogate: Surrogate, flying: Flying) -> CarriedPart:
     """Return a model without the parts that the simulator cannot take, and the names of those parts."""
     on_paper: list[str] = []
     if not flying.simulator.takes_increments:
@@ -117,17 +117,17 @@ def _carried(point: Point, problem: Problem, surrogate: Surrogate, flying: Flyin
                 if values[k][at] < least:
                     values[k] = np.where(np.arange(len(values[k])) == at, least, values[k])
                     on_paper.append(SERVO_OF_IT)
-    return Carried(replace(point, values=tuple(values)), tuple(dict.fromkeys(on_paper)))
+    return CarriedPart(replace(point, values=tuple(values)), tuple(dict.fromkeys(on_paper)))
 
 
-def _found(problem: Problem, points: Sequence[Point]) -> FloatArray:
+def _found(problem: EffectProblem, points: Sequence[SearchPoint]) -> FloatArray:
     """Return each manoeuvre's model with the effects, without initial states, shape (manoeuvres, entries)."""
     still = np.zeros_like(points[0].own)
     rows = [problem.driving(replace(_named(point), own=still))[i] for i, point in enumerate(points)]
     return np.array(rows)
 
 
-def _named(point: Point) -> Point:
+def _named(point: SearchPoint) -> SearchPoint:
     """Return the model without nuisance parameters, which belong to the flight instead of the simulator."""
     keep = [k for k, effect in enumerate(point.effects) if not effect.is_nuisance]
     return replace(
@@ -137,7 +137,7 @@ def _named(point: Point) -> Point:
     )
 
 
-def _with(problem: Problem, grids: Sequence[FloatArray], sign: float) -> Problem:
+def _with(problem: EffectProblem, grids: Sequence[FloatArray], sign: float) -> EffectProblem:
     """Return the problem with series on the grid, times ``sign``, added to the measurements."""
     flights = []
     for flight, grid in zip(problem.flights.flights, grids, strict=True):
@@ -150,7 +150,7 @@ def _with(problem: Problem, grids: Sequence[FloatArray], sign: float) -> Problem
     return replace(problem, flights=replace(problem.flights, flights=tuple(flights)))
 
 
-def _without_the_air(examined: Examined, after: HeldOut) -> HeldOut:
+def _without_the_air(examined: DiagnosisEvidence, after: HeldOut) -> HeldOut:
     """Return the errors without the share that the air's likeliest course removes from the model's."""
     air, last = examined.evidence.air, examined.evidence.stages[-1].held_out
     if air is None:

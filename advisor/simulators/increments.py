@@ -25,7 +25,7 @@ _HIGHEST = 3.0
 
 
 @dataclass(frozen=True)
-class Added:
+class SimulatorIncrements:
     """Increments of a simulator: an instance is an ``advisor.simulators.protocol.Increments``."""
 
     found: Mapping[str, float]

@@ -6,7 +6,7 @@ import numpy as np
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.records.flights import Flight, Flights, Measured
+from advisor.gap.records.flights import Measured, PreparedManeuver, PreparedManeuvers
 from advisor.gap.simulator.layout import (
     A_X,
     ALPHA_TRIM,
@@ -26,7 +26,7 @@ _RATE_S = 0.02
 """Interval of the stamps at which a replay is read where nothing was measured."""
 
 
-def condition_of(flight: Flight, flights: Flights, mass_kg: float | None) -> Condition:
+def condition_of(flight: PreparedManeuver, flights: PreparedManeuvers, mass_kg: float | None) -> Condition:
     """Return the steady flight at the start of a manoeuvre: mean speed and height before the first step."""
     before = max(int(flight.first_step_s / flight.h), 1)
     speed = float(np.mean(flight.slow[SPEED, :before]))
@@ -35,7 +35,7 @@ def condition_of(flight: Flight, flights: Flights, mass_kg: float | None) -> Con
     return Condition(speed, height, steep, mass_kg)
 
 
-def inputs_of(flight: Flight, flights: Flights, p: FloatArray, held: bool) -> Inputs:
+def inputs_of(flight: PreparedManeuver, flights: PreparedManeuvers, p: FloatArray, held: bool) -> Inputs:
     """Return the recorded command behind the effects between command and surface in ``p``, shape
     (entries,)."""
     stamps = flight.t_held if held else flight.t_u
@@ -45,7 +45,7 @@ def inputs_of(flight: Flight, flights: Flights, p: FloatArray, held: bool) -> In
     return Inputs(t, elevator, others)
 
 
-def as_flight(flight: Flight, replay: Replay, reference_m_s: float) -> Flight:
+def as_flight(flight: PreparedManeuver, replay: Replay, reference_m_s: float) -> PreparedManeuver:
     """Return the manoeuvre as flown by the simulator: equal command, with the simulator's own speed and trim.
 
     Bank and turn are zero, and thrust equals drag.
@@ -63,21 +63,21 @@ def as_flight(flight: Flight, replay: Replay, reference_m_s: float) -> Flight:
     return replace(flight, slow=slow, trim=trim, edges=np.empty((0, 4)), speed_error_factor=np.empty((0, 0)))
 
 
-def at_reference(flight: Flight, reference_m_s: float) -> Flight:
+def at_reference(flight: PreparedManeuver, reference_m_s: float) -> PreparedManeuver:
     """Return the manoeuvre with derivatives at another reference speed."""
     trim = flight.trim.copy()
     trim[REFERENCE] = reference_m_s
     return replace(flight, trim=trim)
 
 
-def on_grid(replay: Replay, flight: Flight) -> FloatArray:
+def on_grid(replay: Replay, flight: PreparedManeuver) -> FloatArray:
     """Return α, q, a_z and θ of a replay at the ends of the steps, shape (4, n + 1)."""
     t = np.arange(flight.n + 1) * flight.h
     series = (replay.alpha, replay.q, replay.a_z, replay.theta)
     return np.stack([np.interp(t, replay.t, y) for y in series])
 
 
-def read_from(flight: Flight, grid: FloatArray, channels: tuple[str, ...]) -> Flight:
+def read_from(flight: PreparedManeuver, grid: FloatArray, channels: tuple[str, ...]) -> PreparedManeuver:
     """Return the manoeuvre with a series on the grid, shape (4, n + 1), in place of the measurements."""
     t = np.arange(flight.n + 1) * flight.h
     stamps = np.arange(0.0, t[-1], _RATE_S)

@@ -8,7 +8,7 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.simulators.isolated import Isolated
-from advisor.simulators.jsbsim_flight import FOOT_M, STEP_S, Flight, State
+from advisor.simulators.jsbsim_flight import FOOT_M, STEP_S, JsbsimFlight, SteadyState
 from advisor.simulators.jsbsim_model import FORCE, MOMENT, find_model
 from advisor.simulators.jsbsim_trim import trim
 from advisor.simulators.protocol import Condition, Increments, Inputs, Replay
@@ -52,8 +52,8 @@ class Jsbsim:
     def __init__(self, path: Path) -> None:
         self.description = f"JSBSim {path.stem}"
         self._path = path
-        self._flight = Flight(path)
-        self._trims: dict[Condition, State] = {}
+        self._flight = JsbsimFlight(path)
+        self._trims: dict[Condition, SteadyState] = {}
 
     def replay(self, condition: Condition, inputs: Inputs, increments: Increments | None = None) -> Replay:
         """Trim at the condition, and fly the inputs as departures from the trimmed controls."""
@@ -61,7 +61,7 @@ class Jsbsim:
             return self._fly(condition, inputs, increments)
         except Exception:
             # Engines and filters keep the state of a failed flight, so a new instance is loaded.
-            self._flight = Flight(self._path)
+            self._flight = JsbsimFlight(self._path)
             raise
 
     def _fly(self, condition: Condition, inputs: Inputs, increments: Increments | None) -> Replay:
@@ -116,13 +116,18 @@ class Jsbsim:
     def close(self) -> None:
         """Do nothing: JSBSim lives in this process."""
 
-    def _trimmed(self, condition: Condition) -> State:
+    def _trimmed(self, condition: Condition) -> SteadyState:
         state = trim(self._flight, condition, self._trims.get(condition))
         self._trims[condition] = state
         return state
 
     def _slopes(
-        self, condition: Condition, start: State, alpha: float = 0.0, q: float = 0.0, elevator: float = 0.0
+        self,
+        condition: Condition,
+        start: SteadyState,
+        alpha: float = 0.0,
+        q: float = 0.0,
+        elevator: float = 0.0,
     ) -> tuple[float, float]:
         rates = []
         for sign in (1.0, -1.0):

@@ -38,7 +38,7 @@ _SETTLE_STEPS = 3
 one call each."""
 
 
-class State(NamedTuple):
+class SteadyState(NamedTuple):
     """The steady state of one condition."""
 
     alpha: float = 0.0
@@ -54,7 +54,7 @@ class State(NamedTuple):
     """Force along the path that balances the excess of thrust, lb."""
 
 
-class Flight:
+class JsbsimFlight:
     """A loaded model; the elevator is commanded in radians of surface.
 
     The elevator takes the model's own path from command to surface, with its actuator, where that path is one
@@ -117,7 +117,7 @@ class Flight:
         for i in range(self.engines):
             self.fdm[f"fcs/throttle-cmd-norm[{i}]"] = min(max(setting, 0.0), 1.0)
 
-    def put(self, state: State, gamma: float, q: float = 0.0) -> None:
+    def put(self, state: SteadyState, gamma: float, q: float = 0.0) -> None:
         """Put the aircraft into a state on a path of angle ``gamma``, with pitch rate ``q``."""
         fdm = self.fdm
         fdm["ic/alpha-rad"] = state.alpha

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.simulators.jsbsim_flight import FOOT_M, Flight, State
+from advisor.simulators.jsbsim_flight import FOOT_M, JsbsimFlight, SteadyState
 from advisor.simulators.protocol import Condition
 from advisor.words.problems import UnusableInputError
 
@@ -36,11 +36,11 @@ _ENGINES_STEADY = 1e-4
 class _Tried:
     """Steady flight at one throttle, and the remaining axial acceleration, m/s²."""
 
-    state: State
+    state: SteadyState
     excess: float
 
 
-def trim(flight: Flight, condition: Condition, known: State | None = None) -> State:
+def trim(flight: JsbsimFlight, condition: Condition, known: SteadyState | None = None) -> SteadyState:
     """Put the aircraft into steady flight, held still, and return its state.
 
     Parameters
@@ -54,7 +54,7 @@ def trim(flight: Flight, condition: Condition, known: State | None = None) -> St
         No angle of attack and no elevator carry the aircraft at the condition.
     """
     flight.begin(condition)
-    tried = [_steady(flight, condition, known or State())]
+    tried = [_steady(flight, condition, known or SteadyState())]
     while known is None and flight.engines and (setting := _next_throttle(tried)) is not None:
         tried.append(_steady(flight, condition, tried[-1].state._replace(throttle=setting)))
     best = tried[-1]
@@ -82,7 +82,7 @@ def _next_throttle(tried: list[_Tried]) -> float | None:
     return low + share * (high - low)
 
 
-def _steady(flight: Flight, condition: Condition, guess: State) -> _Tried:
+def _steady(flight: JsbsimFlight, condition: Condition, guess: SteadyState) -> _Tried:
     """Return the steady flight at the guess's throttle, with its axial acceleration."""
     state = guess._replace(axial=0.0)
     flight.put(state, condition.flight_path_rad)
@@ -94,7 +94,7 @@ def _steady(flight: Flight, condition: Condition, guess: State) -> _Tried:
     return _Tried(state, float(flight.accelerations()[0]))
 
 
-def _settle_engines(flight: Flight) -> None:
+def _settle_engines(flight: JsbsimFlight) -> None:
     before = np.inf
     for _ in range(_ENGINE_SECONDS if flight.engines else 0):
         flight.run_engines()
@@ -104,11 +104,11 @@ def _settle_engines(flight: Flight) -> None:
         before = now
 
 
-def _newton(flight: Flight, condition: Condition, state: State) -> State:
+def _newton(flight: JsbsimFlight, condition: Condition, state: SteadyState) -> SteadyState:
     """Solve all accelerations except the axial one, by least squares where an axis has no control."""
     gamma = condition.flight_path_rad
 
-    def accelerations(at: State) -> FloatArray:
+    def accelerations(at: SteadyState) -> FloatArray:
         flight.put(at, gamma)
         return flight.accelerations()[1:]
 
@@ -140,5 +140,5 @@ def _newton(flight: Flight, condition: Condition, state: State) -> State:
     )
 
 
-def _moved(state: State, name: str, by: float) -> State:
+def _moved(state: SteadyState, name: str, by: float) -> SteadyState:
     return state._replace(**{name: getattr(state, name) + by})

@@ -9,7 +9,7 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.holdout import HeldOut
-from advisor.gap.fitting.problem import Problem
+from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.result import Qualification
 from advisor.gap.verdict.yardsticks import BAND, yardsticks
 
@@ -18,7 +18,7 @@ _WINDOW_S = 0.1
 
 
 def qualified(
-    problem: Problem, before: HeldOut, after: HeldOut | None, kept: Sequence[int]
+    problem: EffectProblem, before: HeldOut, after: HeldOut | None, kept: Sequence[int]
 ) -> tuple[Qualification, ...]:
     """Return every channel compared with its tolerance.
 
@@ -42,7 +42,7 @@ def qualified(
     return tuple(table)
 
 
-def _error(problem: Problem, held: HeldOut, kept: Sequence[int], c: int) -> tuple[float, float]:
+def _error(problem: EffectProblem, held: HeldOut, kept: Sequence[int], c: int) -> tuple[float, float]:
     """Return the largest error in the channel's unit, averaged over the window, and Theil's coefficient."""
     largest = 0.0
     measured: list[FloatArray] = []

@@ -9,10 +9,10 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.input import DELAY, LAG
-from advisor.gap.fitting.fit import Fitted, fit
-from advisor.gap.fitting.problem import Point, Problem
+from advisor.gap.fitting.fit import EffectFit, fit
+from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.fitting.regression import regressions
-from advisor.gap.records.flights import Flight, Flights
+from advisor.gap.records.flights import PreparedManeuver, PreparedManeuvers
 from advisor.gap.simulator.layout import (
     DERIVATIVES,
     HEIGHT,
@@ -60,8 +60,8 @@ class Surrogate:
 
 
 def surrogate_of(
-    flights: Flights,
-    flown: Sequence[Flight],
+    flights: PreparedManeuvers,
+    flown: Sequence[PreparedManeuver],
     replays: Sequence[Replay],
     command: FloatArray,
     linearised: Mapping[str, float] | None,
@@ -86,7 +86,7 @@ def surrogate_of(
         flights, flights=read, channels=OUTPUTS, alpha_is_derived=False, alpha_is_smoothed=False,
         white=1e-3 * peaks, peaks=peaks,
     )  # fmt: skip
-    problem = Problem(seen, command, smallest_noise=1e-3 * np.maximum(peaks, 1e-9))
+    problem = EffectProblem(seen, command, smallest_noise=1e-3 * np.maximum(peaks, 1e-9))
     own = np.zeros((len(read), len(NUISANCES)))
     own[:, NUISANCES.index("Z_trim")] = [
         trimmed_at(p, f)[INDEX["Z_trim"]] for p, f in zip(command, read, strict=True)
@@ -94,7 +94,7 @@ def surrogate_of(
     guesses = [*regressions(seen)]
     if linearised is not None:
         guesses.append(np.array([linearised[name] for name in DERIVATIVES]))
-    plain = min((fit(problem, Point(guess, own)) for guess in guesses), key=_cost)
+    plain = min((fit(problem, SearchPoint(guess, own)) for guess in guesses), key=_cost)
     late = [
         fit(problem, plain.point.with_effect(DELAY, (delay,)).with_effect(LAG, (lag,)), iterations=20)
         for delay, lag in product(_STARTS_S, _STARTS_S)
@@ -106,7 +106,7 @@ def surrogate_of(
     return Surrogate(derivatives, flights.reference_m_s, lag_s, delay_s)
 
 
-def trimmed_at(p: FloatArray, flight: Flight) -> FloatArray:
+def trimmed_at(p: FloatArray, flight: PreparedManeuver) -> FloatArray:
     """Return driving numbers, shape (entries,), with the trim terms of a manoeuvre at the simulator's
     start."""
     theta, reference = float(flight.trim[THETA_FROM]), float(flight.trim[REFERENCE])
@@ -114,5 +114,5 @@ def trimmed_at(p: FloatArray, flight: Flight) -> FloatArray:
     return trimmed(p, flight.alpha_trim, theta, speed, height, reference)
 
 
-def _cost(fitted: Fitted) -> float:
+def _cost(fitted: EffectFit) -> float:
     return fitted.cost if np.isfinite(fitted.cost) else np.inf

@@ -16,7 +16,7 @@ from textual.screen import Screen
 from textual.worker import Worker, WorkerState
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.session.conducting import Conducting, Report
+from advisor.session.conducting import Conducting, SessionReport
 from advisor.session.source import Tempo
 from advisor.session.view import View, view_before_first
 from advisor.tui import keys, link_actions, replay_actions
@@ -78,7 +78,7 @@ class AdvisorApp(replay_actions.ReplayActions, link_actions.LinkActions, HandAct
     class Told(Message):
         """The conductor has a new report."""
 
-        def __init__(self, report: Report) -> None:
+        def __init__(self, report: SessionReport) -> None:
             super().__init__()
             self.report = report
 
@@ -102,7 +102,7 @@ class AdvisorApp(replay_actions.ReplayActions, link_actions.LinkActions, HandAct
         self.failure: BaseException | None = None
         """Error for the caller: the thread's failure, or the reason for which the input could not be used."""
         self._leaving_s = self._pressed_s = -inf
-        self._report: Report | None = None
+        self._report: SessionReport | None = None
         """Newest report, while it waits."""
         self._garbage = Garbage()
         self._sheets = Sheets(THEMES)

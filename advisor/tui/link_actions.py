@@ -4,7 +4,7 @@ from abc import abstractmethod
 from typing import TYPE_CHECKING
 
 from advisor.session.conducting import Conducting
-from advisor.session.source import Order
+from advisor.session.source import LinkRequest
 from advisor.session.view import View
 
 if TYPE_CHECKING:
@@ -35,12 +35,12 @@ class LinkActions(Base):
         if state.maneuvers:
             self.say(f"manoeuvres of vehicle {here} are judged: start again with --target-system {system}")
             return
-        self.conductor.order(Order("follow", system))
+        self.conductor.order(LinkRequest("follow", system))
         self.say(f"vehicle {system} is followed now")
 
     def action_ask_for_outputs(self) -> None:
         """Ask the vehicle which output is its elevator."""
-        self.conductor.order(Order("outputs"))
+        self.conductor.order(LinkRequest("outputs"))
         self.say("the vehicle is asked for SERVOn_* (the role of each output); nothing else is sent", 5.0)
 
     def action_take_guess(self) -> None:
@@ -49,7 +49,7 @@ class LinkActions(Base):
         if guess is None:
             self.say("there is no guess of the elevator's output to take")
             return
-        self.conductor.order(Order("take", guess.output))
+        self.conductor.order(LinkRequest("take", guess.output))
         self.say(f"output {guess.output} is taken for the elevator, by a guess")
 
     @abstractmethod

@@ -13,7 +13,7 @@ _DIGITS = 7
 
 
 @dataclass(frozen=True, slots=True)
-class Rows:
+class TableRows:
     """A table of texts and numbers."""
 
     header: tuple[str, ...]
@@ -28,7 +28,7 @@ class Rows:
         return text.getvalue()
 
 
-def rows_of_charts(charts: Iterable[Chart]) -> Rows:
+def rows_of_charts(charts: Iterable[Chart]) -> TableRows:
     """Return every sample of every series as a row of its own: quantity, series, x, y."""
     rows: list[tuple[object, ...]] = []
     x_label = "x"
@@ -37,7 +37,7 @@ def rows_of_charts(charts: Iterable[Chart]) -> Rows:
         for series in chart.series:
             pairs = zip(series.x.tolist(), series.y.tolist(), strict=True)
             rows += [(chart.y_label, series.name, x, y) for x, y in pairs]
-    return Rows(("quantity", "series", x_label, "value"), tuple(rows))
+    return TableRows(("quantity", "series", x_label, "value"), tuple(rows))
 
 
 def _cell(value: object) -> object:

@@ -4,9 +4,9 @@ from multiprocessing.connection import Connection
 from threading import Event
 
 from advisor.session.changes import Changes
-from advisor.session.conducting import Report, Tell
+from advisor.session.conducting import SessionReport, Tell
 from advisor.session.hand import HandDecision
-from advisor.session.source import Order, Tempo
+from advisor.session.source import LinkRequest, Tempo
 
 LOOK_EVERY_S = 0.1
 """Time after which a thread without news tests whether to stop, s."""
@@ -39,10 +39,10 @@ class AttachedConductor:
         Exception
             The error that ended the campaign.
         """
-        last: Report | None = None
+        last: SessionReport | None = None
         while not self._stopped.is_set():
             match self._hear():
-                case Report() as first:
+                case SessionReport() as first:
                     tell(last := first)
                 case Changes() as changes if last is not None:
                     tell(last := changes.applied_to(last))
@@ -57,7 +57,7 @@ class AttachedConductor:
         """Exclude, include, note, mark, begin or end a marked manoeuvre."""
         self._ask("decide", decision)
 
-    def order(self, order: Order) -> None:
+    def order(self, order: LinkRequest) -> None:
         """Carry out a crew's request to the link."""
         self._ask("order", order)
 

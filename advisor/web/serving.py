@@ -12,7 +12,7 @@ from pathlib import Path
 import click
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.session.remote import RemoteConductor, Task
+from advisor.session.remote import ConductorTask, RemoteConductor
 from advisor.session.source import Tempo
 from advisor.web.access import Access, checked_origin, on_this_computer
 from advisor.web.password import read_password
@@ -24,7 +24,7 @@ _REPLAY_IS_OVER = "Its replay has ended with it."
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class PageAddress:
     """Address, access and number of the pages."""
 
     at: socket.socket
@@ -42,7 +42,7 @@ def place(
     origin: str | None,
     viewers: int,
     watch_only: bool = False,
-) -> Iterator[Place]:
+) -> Iterator[PageAddress]:
     """Check the user's options, and take the port.
 
     Raises
@@ -66,10 +66,12 @@ def place(
                 "put a TLS proxy before this server, and give --origin",
                 err=True,
             )
-        yield Place(at, Access(password, seen), url, viewers, watch_only)
+        yield PageAddress(at, Access(password, seen), url, viewers, watch_only)
 
 
-def serve(place: Place, task: Task, aircraft: Aircraft, title: str, tempo: Tempo | None) -> None:
+def serve(
+    place: PageAddress, task: ConductorTask, aircraft: Aircraft, title: str, tempo: Tempo | None
+) -> None:
     """Serve the screens until a signal comes, or until the campaign on a live link breaks off.
 
     On a live link all pages show one campaign, which one process estimates. In a replay each page has a

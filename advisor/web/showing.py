@@ -4,7 +4,7 @@ from threading import Condition, Thread
 from types import TracebackType
 from typing import Self
 
-from advisor.session.conducting import Conducting, Report
+from advisor.session.conducting import Conducting, SessionReport
 
 PATIENCE_S = 2.0
 """Longest time for the end of the estimating process, s. The process also ends when the server has gone."""
@@ -26,7 +26,7 @@ class Showing:
         self.failure: BaseException | None = None
         """Error that ended the campaign; None while it runs."""
         self._changed = Condition()
-        self._report: Report | None = None
+        self._report: SessionReport | None = None
         self._number = 0
         self._thread = Thread(target=self._run, name="campaign", daemon=True)
 
@@ -45,7 +45,7 @@ class Showing:
         """Whether the conductor still runs."""
         return self._thread.is_alive()
 
-    def newer(self, than: int, timeout_s: float) -> tuple[int, Report] | None:
+    def newer(self, than: int, timeout_s: float) -> tuple[int, SessionReport] | None:
         """Wait for a report that is newer than a known one.
 
         Parameters
@@ -72,7 +72,7 @@ class Showing:
                 self.failure = failure
                 self._changed.notify_all()
 
-    def _keep(self, report: Report) -> None:
+    def _keep(self, report: SessionReport) -> None:
         with self._changed:
             self._report, self._number = report, self._number + 1
             self._changed.notify_all()

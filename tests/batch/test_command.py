@@ -9,7 +9,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from advisor.aircraft.aircraft import PARAMETERS, Aircraft
-from advisor.batch.flight import Analyzed, Task, kept, sha256_of
+from advisor.batch.flight import Analyzed, BatchTask, kept, sha256_of
 from advisor.batch.logs import AircraftMap, find_logs, read_map
 from advisor.batch.tables import aircraft_of, mixed_up
 from advisor.words.problems import ConfigurationError, UnusableInputError
@@ -147,11 +147,11 @@ def test_two_processes_give_the_tables_of_one(folder: Path, advisor: Advisor, tm
 def test_the_key_changes_with_the_log_the_configuration_and_what_was_decided_by_hand(tmp_path: Path) -> None:
     log = tmp_path / "flight.tlog"
     log.write_bytes(b"a log")
-    task = Task(log, Aircraft(), "", sha256_of(log))
+    task = BatchTask(log, Aircraft(), "", sha256_of(log))
     keys = [
         task.key,
-        Task(log, Aircraft(), "", "another").key,
-        Task(log, Aircraft(airspeed_m_s=20.0), "", task.sha256).key,
+        BatchTask(log, Aircraft(), "", "another").key,
+        BatchTask(log, Aircraft(airspeed_m_s=20.0), "", task.sha256).key,
     ]
     (tmp_path / "flight.maneuvers.yaml").write_text("maneuvers: []\n")
     assert len({*keys, task.key}) == 4

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.batch.flight import Analyzed, Task, failed
+from advisor.batch.flight import Analyzed, BatchTask, failed
 from advisor.batch.index import index_page
 from advisor.batch.picture import Point, trend_svg
 from advisor.words.problems import Problem
@@ -36,7 +36,7 @@ def flown(number: int, elevator: float = 1.0) -> Analyzed:
 
 
 def unusable(log: str) -> Analyzed:
-    task = Task(Path(log), Aircraft(), "", "")
+    task = BatchTask(Path(log), Aircraft(), "", "")
     return failed(task, [Problem("empty", "The log is <b>empty</b>.", "Give another.")])
 
 

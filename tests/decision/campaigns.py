@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.aircraft.aircraft import PARAMETERS
-from advisor.decision.history import Flown
+from advisor.decision.history import CandidateManeuver
 from advisor.flight.signals.messages import FloatArray
 from advisor.oem.estimate import ChannelFit, Estimate
 
@@ -45,9 +45,9 @@ def estimate(
     )
 
 
-def flown(costs: Sequence[float]) -> list[Flown]:
+def flown(costs: Sequence[float]) -> list[CandidateManeuver]:
     """A campaign of usable manoeuvres with these costs."""
-    return [Flown(estimate(cost=cost)) for cost in costs]
+    return [CandidateManeuver(estimate(cost=cost)) for cost in costs]
 
 
 def with_residual(estimate: Estimate, residual: FloatArray) -> Estimate:

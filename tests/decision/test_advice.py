@@ -10,7 +10,7 @@ from advisor.bundled.study.estimating import estimate_copies
 from advisor.bundled.study.flying import Scene, follow
 from advisor.decision.advice import next_input
 from advisor.decision.foresight import Instruments, expect
-from advisor.decision.history import Flown
+from advisor.decision.history import CandidateManeuver
 from advisor.decision.inputs import StepInput
 from advisor.decision.stopping import flight_test
 from advisor.decision.verdict import NO_CURE_BY_INPUT, Reason, Remaining
@@ -35,7 +35,7 @@ def manoeuvre(option: StepInput = STANDARD) -> Maneuver:
     return Maneuver(1, 0, span, {"elevator": Channel("elevator", t, signal.at(t))})
 
 
-def flown(std_percent: float = 5.0, option: StepInput = STANDARD) -> Flown:
+def flown(std_percent: float = 5.0, option: StepInput = STANDARD) -> CandidateManeuver:
     """A usable manoeuvre in which angle of attack moved by three degrees."""
     one = estimate(std_percent=std_percent)
     t = np.arange(0.0, 10.0, 0.02)
@@ -44,7 +44,7 @@ def flown(std_percent: float = 5.0, option: StepInput = STANDARD) -> Flown:
         name: replace(fit, t=t, measured=alpha, fitted=alpha, noise=noise)
         for (name, fit), noise in zip(one.fits[0].items(), INSTRUMENTS.noise, strict=True)
     }
-    return Flown(replace(one, fits=(fits,)), maneuver=manoeuvre(option))
+    return CandidateManeuver(replace(one, fits=(fits,)), maneuver=manoeuvre(option))
 
 
 def percent_stick(advice: str) -> float:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft, CampaignPlan, Limits, Rule
-from advisor.decision.history import Flown
+from advisor.decision.history import CandidateManeuver
 from advisor.decision.judge import judge_campaign
 from advisor.decision.stopping import flight_test
 from advisor.decision.verdict import Reason
@@ -14,7 +14,7 @@ from advisor.oem.estimate import Estimate, NoEstimate
 from tests.decision.test_advice import flown
 
 
-def odd_manoeuvre(rng: np.random.Generator) -> Flown:
+def odd_manoeuvre(rng: np.random.Generator) -> CandidateManeuver:
     """A manoeuvre whose estimate is missing, partly unknown, exact, zero, wild, or merely large."""
     one = flown(float(10.0 ** rng.uniform(-2.0, 2.0)))
     estimate = one.estimate
@@ -26,7 +26,7 @@ def odd_manoeuvre(rng: np.random.Generator) -> Flown:
     theta[k] = np.nan
     exact = np.zeros((8, 8))
     return [
-        Flown(NoEstimate("no_input", "the elevator did not move")),
+        CandidateManeuver(NoEstimate("no_input", "the elevator did not move")),
         replace(one, estimate=replace(estimate, theta=np.full(8, np.nan))),
         replace(one, estimate=replace(estimate, theta=theta, covariance=unknown, covariance_cr=unknown)),
         replace(one, estimate=replace(estimate, theta=rng.normal(0.0, 10.0, 8), airspeed_m_s=20.0)),

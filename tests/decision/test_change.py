@@ -6,7 +6,7 @@ import pytest
 from advisor.aircraft.aircraft import CampaignPlan
 from advisor.bundled.study.flying import Scene, fly_named, respond
 from advisor.decision.change import find_change
-from advisor.decision.history import Flown
+from advisor.decision.history import CandidateManeuver
 from advisor.decision.stopping import flight_test
 from advisor.decision.verdict import Reason
 from advisor.flight.signals.messages import FloatArray
@@ -14,8 +14,8 @@ from sim.linear import ShortPeriod
 from tests.decision.campaigns import THETA, drawn, estimate, with_change
 
 
-def flown(rng: np.random.Generator, *thetas: FloatArray) -> list[Flown]:
-    return [Flown(drawn(rng, theta)) for theta in thetas]
+def flown(rng: np.random.Generator, *thetas: FloatArray) -> list[CandidateManeuver]:
+    return [CandidateManeuver(drawn(rng, theta)) for theta in thetas]
 
 
 @pytest.fixture
@@ -62,7 +62,9 @@ def test_two_manoeuvres_alone_cannot_tell_which_is_the_odd_one(rng: np.random.Ge
 
 def test_a_change_of_a_few_per_cent_is_not_worth_a_warning(rng: np.random.Generator) -> None:
     slight = with_change("M_alpha", 0.95)
-    exact = [Flown(estimate(theta, std_percent=0.1)) for theta in (THETA, THETA, THETA, slight, slight)]
+    exact = [
+        CandidateManeuver(estimate(theta, std_percent=0.1)) for theta in (THETA, THETA, THETA, slight, slight)
+    ]
     assert find_change(exact) is None
 
 
@@ -106,7 +108,9 @@ def test_a_scale_error_of_the_angle_of_attack_moves_the_parameters_as_its_cause_
 
 def test_a_cause_is_named_although_the_rest_of_the_aircraft_is_uneven_by_a_few_per_cent() -> None:
     uneven = THETA * [1.0, 1.02, 1.0, 1.03, 1.0, 0.7, 0.98, 1.03]
-    history = [Flown(estimate(theta, std_percent=0.1)) for theta in (THETA, THETA, uneven, uneven)]
+    history = [
+        CandidateManeuver(estimate(theta, std_percent=0.1)) for theta in (THETA, THETA, uneven, uneven)
+    ]
     change = find_change(history)
     assert change is not None
     assert [m.parameter for m in change.moved] == ["M_alpha"]
@@ -115,7 +119,9 @@ def test_a_cause_is_named_although_the_rest_of_the_aircraft_is_uneven_by_a_few_p
 
 def test_unusable_manoeuvres_are_no_evidence_of_a_change(rng: np.random.Generator) -> None:
     spoilt = [
-        Flown(estimate(with_change("M_alpha", 0.5)), reasons=(Reason("bank", "banked", 40.0, 30.0),))
+        CandidateManeuver(
+            estimate(with_change("M_alpha", 0.5)), reasons=(Reason("bank", "banked", 40.0, 30.0),)
+        )
     ] * 2
     assert find_change([*flown(rng, THETA, THETA, THETA), *spoilt]) is None
 
@@ -130,7 +136,7 @@ def test_the_flight_test_warns_whichever_rule_decides(rng: np.random.Generator) 
 
 def test_manoeuvres_are_numbered_as_flown_even_with_unusable_ones_between(rng: np.random.Generator) -> None:
     less = with_change("M_alpha", 0.8)
-    spoilt = Flown(estimate(), reasons=(Reason("bank", "banked", 40.0, 30.0),))
+    spoilt = CandidateManeuver(estimate(), reasons=(Reason("bank", "banked", 40.0, 30.0),))
     before, after = flown(rng, THETA, THETA, THETA), flown(rng, less, less)
     change = find_change([before[0], spoilt, *before[1:], *after])
     assert change is not None

@@ -6,24 +6,24 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import CampaignPlan, Rule
-from advisor.decision.course import Course
-from advisor.decision.history import Flown
+from advisor.decision.course import CriterionCourse
+from advisor.decision.history import CandidateManeuver
 from advisor.decision.judge import judge_campaign
 from advisor.decision.stopping import flight_test
 from tests.decision.campaigns import drawn, estimate
 
 
 @pytest.fixture
-def history() -> list[Flown]:
+def history() -> list[CandidateManeuver]:
     rng = np.random.default_rng(11)
     costs = 1e-9 * np.exp(0.5 * rng.standard_normal(12))
-    return [Flown(replace(drawn(rng), cost=float(cost))) for cost in costs]
+    return [CandidateManeuver(replace(drawn(rng), cost=float(cost))) for cost in costs]
 
 
 @pytest.mark.parametrize("rule", ["information", "continuous", "separate"])
-def test_decisions_with_a_course_are_those_without(history: list[Flown], rule: Rule) -> None:
+def test_decisions_with_a_course_are_those_without(history: list[CandidateManeuver], rule: Rule) -> None:
     plan = CampaignPlan(rule=rule)
-    course = Course(plan)
+    course = CriterionCourse(plan)
     for n in range(1, len(history) + 1):
         assert judge_campaign(history[:n], plan, course) == judge_campaign(history[:n], plan)
         assert flight_test(history[:n], plan, course=course) == flight_test(history[:n], plan)
@@ -31,19 +31,19 @@ def test_decisions_with_a_course_are_those_without(history: list[Flown], rule: R
 
 @pytest.mark.parametrize("rule", ["information", "continuous"])
 def test_excluding_an_earlier_manoeuvre_decides_all_that_followed_again(
-    history: list[Flown], rule: Rule
+    history: list[CandidateManeuver], rule: Rule
 ) -> None:
     plan = CampaignPlan(rule=rule)
-    course = Course(plan)
+    course = CriterionCourse(plan)
     before = flight_test(history, plan, course=course)
     excluded = [*history[:3], replace(history[3], excluded_because="gust"), *history[4:]]
     assert flight_test(excluded, plan, course=course) == flight_test(excluded, plan) != before
     assert flight_test(history, plan, course=course) == before
 
 
-def test_one_more_manoeuvre_leaves_what_stands_before_it(history: list[Flown]) -> None:
-    course = Course(CampaignPlan())
+def test_one_more_manoeuvre_leaves_what_stands_before_it(history: list[CandidateManeuver]) -> None:
+    course = CriterionCourse(CampaignPlan())
     course.standing(history)
     earlier = [course.standing(history[:n]) for n in range(1, len(history) + 1)]
-    course.standing([*history, Flown(estimate())])
+    course.standing([*history, CandidateManeuver(estimate())])
     assert all(course.standing(history[:n]) is earlier[n - 1] for n in range(1, len(history) + 1))

@@ -6,19 +6,19 @@ import numpy as np
 
 from advisor.bundled.study.estimating import estimate_copies
 from advisor.bundled.study.flying import Scene, as_maneuver, fly_named, noise_scale
-from advisor.decision.history import Flown
+from advisor.decision.history import CandidateManeuver
 from advisor.decision.hold_out import predict_last
 
 SCENE = Scene()
 
 
-def flown(count: int, noise_percent: float = 5.0, seed: int = 1) -> list[Flown]:
+def flown(count: int, noise_percent: float = 5.0, seed: int = 1) -> list[CandidateManeuver]:
     """The paper's input and its reverse in turn, each with noise of its own."""
     rng, campaign = np.random.default_rng(seed), []
     for number in range(count):
         flight = fly_named(SCENE, "rev" if number % 2 else "3211")
         (estimate,) = estimate_copies(flight, 0.01 * noise_percent * noise_scale(flight, "std"), 1, rng)
-        campaign.append(Flown(estimate, maneuver=as_maneuver(flight)))
+        campaign.append(CandidateManeuver(estimate, maneuver=as_maneuver(flight)))
     return campaign
 
 
@@ -48,7 +48,7 @@ def test_an_aircraft_that_has_changed_leaves_the_band() -> None:
     flight = fly_named(weaker, "rev")
     noise = 0.05 * noise_scale(flight, "std")
     (estimate,) = estimate_copies(flight, noise, 1, np.random.default_rng(4))
-    output = predict_last([*campaign, Flown(estimate, maneuver=as_maneuver(flight))])["q"]
+    output = predict_last([*campaign, CandidateManeuver(estimate, maneuver=as_maneuver(flight))])["q"]
     assert np.mean(np.abs(output.measured - output.predicted) < output.half_of_samples) < 0.8
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from advisor.aircraft.aircraft import PARAMETERS, CampaignPlan
 from advisor.bundled.study.flying import Scene, as_maneuver, fly_named
-from advisor.decision.history import Flown
+from advisor.decision.history import CandidateManeuver
 from advisor.decision.information import Knowledge
 from advisor.decision.information import knowledge as known_from
 from advisor.decision.prediction import Z95
@@ -22,12 +22,12 @@ UP, DOWN = (as_maneuver(fly_named(Scene(), name)) for name in ("3211", "rev"))
 
 def knowledge(estimates: Sequence[Estimate], plan: CampaignPlan) -> Knowledge:
     """What is known where it is not known what was flown: the named derivatives alone count."""
-    return known_from([Flown(one) for one in estimates], plan)
+    return known_from([CandidateManeuver(one) for one in estimates], plan)
 
 
-def campaign(estimates: Sequence[Estimate]) -> list[Flown]:
+def campaign(estimates: Sequence[Estimate]) -> list[CandidateManeuver]:
     """Estimates of 3-2-1-1 and reverse in turn."""
-    return [Flown(one, maneuver=DOWN if i % 2 else UP) for i, one in enumerate(estimates)]
+    return [CandidateManeuver(one, maneuver=DOWN if i % 2 else UP) for i, one in enumerate(estimates)]
 
 
 def with_std(parameter: str, percent: float) -> Estimate:
@@ -38,7 +38,7 @@ def with_std(parameter: str, percent: float) -> Estimate:
 
 
 def test_one_manoeuvre_is_never_enough_because_nothing_was_predicted() -> None:
-    verdict = flight_test([Flown(estimate(std_percent=0.1))], PLAN)
+    verdict = flight_test([CandidateManeuver(estimate(std_percent=0.1))], PLAN)
     assert verdict.decision == "continue"
     assert verdict.criterion_percent is not None
     assert verdict.criterion_percent < 100.0
@@ -46,7 +46,7 @@ def test_one_manoeuvre_is_never_enough_because_nothing_was_predicted() -> None:
 
 
 def test_two_manoeuvres_that_agree_and_are_narrow_stop_the_test() -> None:
-    verdict = flight_test([Flown(estimate(std_percent=1.0))] * 2, PLAN)
+    verdict = flight_test([CandidateManeuver(estimate(std_percent=1.0))] * 2, PLAN)
     assert verdict.decision == "stop"
     assert verdict.limit_percent == 100.0
     assert verdict.stopped_at == 2
@@ -68,7 +68,10 @@ def test_a_tolerance_given_for_one_parameter_is_taken_as_it_stands() -> None:
 
 def test_a_manoeuvre_that_was_not_predicted_withholds_the_stop() -> None:
     history = campaign([estimate(std_percent=0.5)] * 3)
-    shifted = [*history, Flown(estimate(with_change("M_alpha", 0.85), std_percent=0.5), maneuver=DOWN)]
+    shifted = [
+        *history,
+        CandidateManeuver(estimate(with_change("M_alpha", 0.85), std_percent=0.5), maneuver=DOWN),
+    ]
     verdict = flight_test(shifted, PLAN)
     assert verdict.stopped_at == 2
     assert verdict.decision == "continue"
@@ -128,7 +131,7 @@ def test_the_document_tells_what_the_rule_weighs() -> None:
 
 def test_one_gentle_manoeuvre_first_locks_nobody_out() -> None:
     gentle = estimate(with_change("M_delta_e", 1.1), std_percent=15.0, cost=1e-14)
-    history = [Flown(gentle, maneuver=UP), *campaign([estimate(std_percent=1.0)] * 3)]
+    history = [CandidateManeuver(gentle, maneuver=UP), *campaign([estimate(std_percent=1.0)] * 3)]
     verdict = flight_test(history, PLAN)
     # Nothing sure was known before the second: the third is the first that was predicted.
     assert verdict.stopped_at == 3
@@ -160,7 +163,7 @@ def test_a_parameter_that_cannot_be_estimated_keeps_the_test_going() -> None:
     covariance = np.diag((0.01 * THETA) ** 2)
     covariance[6, 6] = np.inf
     for history in (
-        [Flown(estimate(covariance=covariance))] * 3,
+        [CandidateManeuver(estimate(covariance=covariance))] * 3,
         campaign([estimate(covariance=covariance)] * 3),
     ):
         verdict = flight_test(history, PLAN)
@@ -170,7 +173,7 @@ def test_a_parameter_that_cannot_be_estimated_keeps_the_test_going() -> None:
 
 
 def test_the_parameter_that_holds_the_stop_back_is_named() -> None:
-    narrow = flight_test([Flown(estimate())] * 2, replace(PLAN, tolerance={"M_q": 1e-4}))
+    narrow = flight_test([CandidateManeuver(estimate())] * 2, replace(PLAN, tolerance={"M_q": 1e-4}))
     assert "M_q" in narrow.sentence
 
 
@@ -201,7 +204,12 @@ def test_a_bolder_manoeuvre_does_not_move_the_goal() -> None:
 
 def test_a_small_error_of_what_no_manoeuvre_could_tell_is_no_knowledge() -> None:
     blind = replace(estimate(), not_identifiable={"M_alpha": "not identifiable while the servo is unknown"})
-    verdict = flight_test([Flown(blind)] * 3, PLAN)
+    verdict = flight_test([CandidateManeuver(blind)] * 3, PLAN)
     assert verdict.decision == "continue"
     assert verdict.sentence == "CONTINUE: M_alpha not identifiable while the servo is unknown."
-    assert flight_test([Flown(blind), Flown(estimate()), Flown(estimate())], PLAN).decision == "stop"
+    assert (
+        flight_test(
+            [CandidateManeuver(blind), CandidateManeuver(estimate()), CandidateManeuver(estimate())], PLAN
+        ).decision
+        == "stop"
+    )

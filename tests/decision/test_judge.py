@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import CampaignPlan
-from advisor.decision.history import Flown
+from advisor.decision.history import CandidateManeuver
 from advisor.decision.judge import accepted_estimates, judge, judge_campaign
 from advisor.decision.verdict import Reason
 from advisor.oem.estimate import Estimate, NoEstimate
@@ -18,9 +18,9 @@ PLAN = CampaignPlan(rule="continuous")
 
 def test_a_quiet_record_with_a_tiny_cost_is_refused_and_poisons_no_limit() -> None:
     history = [
-        Flown(estimate(cost=1e-9)),
-        Flown(estimate(cost=1e-15), reasons=(QUIET,)),
-        Flown(estimate(cost=1.5e-9)),
+        CandidateManeuver(estimate(cost=1e-9)),
+        CandidateManeuver(estimate(cost=1e-15), reasons=(QUIET,)),
+        CandidateManeuver(estimate(cost=1.5e-9)),
     ]
     verdicts = judge_campaign(history, PLAN)
     assert [v.accepted for v in verdicts] == [True, False, True]
@@ -96,7 +96,7 @@ def test_calmer_air_is_asked_for_only_where_the_air_moved() -> None:
     assert "check the instruments" in said[3]
 
 
-def moving(one: Flown, size: float) -> Flown:
+def moving(one: CandidateManeuver, size: float) -> CandidateManeuver:
     """The same manoeuvre with a pitch rate of this size."""
     assert isinstance(one.estimate, Estimate)
     motion = size * np.sin(np.linspace(0.0, 20.0, SAMPLES))
@@ -119,7 +119,7 @@ def test_a_larger_manoeuvre_that_agrees_is_said_to_be_refused_by_the_papers_rule
 def test_neither_a_smaller_manoeuvre_nor_one_that_contradicts_is_excused() -> None:
     first, second = flown([1e-9, 3e-9])
     smaller = [moving(first, 0.1), moving(second, 0.1)]
-    other = Flown(estimate(with_change("M_alpha", 1.5), cost=3e-9))
+    other = CandidateManeuver(estimate(with_change("M_alpha", 1.5), cost=3e-9))
     contradicting = [moving(first, 0.1), moving(other, 0.13)]
     for history in (smaller, contradicting):
         assert "refused by the paper's rule only" not in judge_campaign(history, PLAN)[-1].sentence
@@ -127,8 +127,8 @@ def test_neither_a_smaller_manoeuvre_nor_one_that_contradicts_is_excused() -> No
 
 def test_a_manoeuvre_that_contradicts_all_the_others_is_refused_by_the_rule_information_alone() -> None:
     rng = np.random.default_rng(2)
-    history = [Flown(drawn(rng)) for _ in range(5)]
-    history[1] = Flown(drawn(rng, with_change("M_alpha", 1.5)))
+    history = [CandidateManeuver(drawn(rng)) for _ in range(5)]
+    history[1] = CandidateManeuver(drawn(rng, with_change("M_alpha", 1.5)))
     verdicts = judge_campaign(history, replace(PLAN, rule="information"))
     assert [v.accepted for v in verdicts] == [True, False, True, True, True]
     (reason,) = verdicts[1].reasons
@@ -138,14 +138,14 @@ def test_a_manoeuvre_that_contradicts_all_the_others_is_refused_by_the_rule_info
     assert judge_campaign(history, PLAN)[1].rules["continuous"].accepted
     assert isinstance(history[1].estimate, Estimate)
     costly = [*history]
-    costly[1] = Flown(replace(history[1].estimate, cost=1.0))
+    costly[1] = CandidateManeuver(replace(history[1].estimate, cost=1.0))
     assert [r.code for r in judge_campaign(costly, PLAN)[1].reasons] == ["cost"]
     # As long as it was the newest of two nobody could know which of them was odd.
     assert judge_campaign(history[:2], replace(PLAN, rule="information"))[1].accepted
 
 
 def test_a_manoeuvre_without_an_estimate_is_refused_with_its_reason() -> None:
-    verdict = judge(Flown(NoEstimate("no_input", "the elevator did not move")), [], PLAN)
+    verdict = judge(CandidateManeuver(NoEstimate("no_input", "the elevator did not move")), [], PLAN)
     assert not verdict.accepted
     assert verdict.reasons[0].code == "no_input"
     assert verdict.sentence == "REPEAT: the elevator did not move"
@@ -177,7 +177,9 @@ def test_judging_one_by_one_and_all_at_once_agree() -> None:
 
 def test_cautions_stand_on_the_verdict_once() -> None:
     noted = replace(estimate(), notes=("servo dynamics unknown",))
-    verdict = judge(Flown(noted, cautions=("alpha is derived", "servo dynamics unknown")), [], PLAN)
+    verdict = judge(
+        CandidateManeuver(noted, cautions=("alpha is derived", "servo dynamics unknown")), [], PLAN
+    )
     assert verdict.accepted
     assert verdict.cautions == ("alpha is derived", "servo dynamics unknown")
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from advisor.bundled.study.flying import Scene, as_maneuver, fly_named, follow
-from advisor.decision.history import Flown
+from advisor.decision.history import CandidateManeuver
 from advisor.decision.pooling import DERIVATIVES
 from advisor.decision.prediction import MOMENTS, Z95, missed_percent, predict, response_to
 from advisor.flight.signals.messages import FloatArray
@@ -19,10 +19,10 @@ FLIGHT = fly_named(SCENE, "3211")
 MANEUVER = as_maneuver(FLIGHT)
 MOMENTS_S = np.linspace(FLIGHT.t[0], FLIGHT.t[-1], MOMENTS)
 DERIVED = THETA[list(DERIVATIVES)]
-ONE = Flown(estimate(), maneuver=MANEUVER)
+ONE = CandidateManeuver(estimate(), maneuver=MANEUVER)
 
 
-def at_speed(airspeed_m_s: float) -> Flown:
+def at_speed(airspeed_m_s: float) -> CandidateManeuver:
     """The same input, flown at a measured speed."""
     speed = Channel("airspeed", FLIGHT.t, np.full(len(FLIGHT.t), airspeed_m_s))
     return replace(ONE, maneuver=replace(MANEUVER, channels={**MANEUVER.channels, "airspeed": speed}))
@@ -129,5 +129,5 @@ def test_what_was_missed_is_the_largest_distance_over_the_peak() -> None:
 
 
 def test_without_knowing_what_was_flown_no_response_is_judged() -> None:
-    assert predict([Flown(estimate())], DERIVED, None).percent(np.eye(6)) == {}
-    assert np.isnan(missed_percent(Flown(estimate()), DERIVED, DERIVED, None))
+    assert predict([CandidateManeuver(estimate())], DERIVED, None).percent(np.eye(6)) == {}
+    assert np.isnan(missed_percent(CandidateManeuver(estimate()), DERIVED, DERIVED, None))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import CampaignPlan
-from advisor.decision.history import Flown
+from advisor.decision.history import CandidateManeuver
 from advisor.decision.scatter import scatter_percent
 from advisor.decision.stopping import flight_test
 from tests.decision.campaigns import THETA, drawn, estimate, flown, with_change
@@ -23,7 +23,7 @@ def test_nothing_flown_means_continue() -> None:
 
 
 def test_three_agreeing_manoeuvres_stop_the_test() -> None:
-    history = [Flown(estimate(k * THETA)) for k in (0.99, 1.0, 1.01)]
+    history = [CandidateManeuver(estimate(k * THETA)) for k in (0.99, 1.0, 1.01)]
     verdict = flight_test(history, PLAN)
     assert verdict.decision == "stop"
     assert verdict.stopped_at == 3
@@ -33,7 +33,7 @@ def test_three_agreeing_manoeuvres_stop_the_test() -> None:
 
 
 def test_scattering_manoeuvres_continue_and_the_worst_parameter_is_named() -> None:
-    history = [Flown(estimate(with_change("Z_q", k))) for k in (0.5, 1.0, 1.5)]
+    history = [CandidateManeuver(estimate(with_change("Z_q", k))) for k in (0.5, 1.0, 1.5)]
     verdict = flight_test(history, PLAN)
     assert verdict.decision == "continue"
     assert verdict.stopped_at is None
@@ -43,7 +43,8 @@ def test_scattering_manoeuvres_continue_and_the_worst_parameter_is_named() -> No
 def test_the_window_holds_the_manoeuvres_its_own_rule_accepted() -> None:
     costs = [1.0, 0.9, 1.5, 0.8, 0.7]
     history = [
-        Flown(estimate(k * THETA, cost=c)) for k, c in zip((1.0, 1.01, 9.0, 1.02, 1.03), costs, strict=True)
+        CandidateManeuver(estimate(k * THETA, cost=c))
+        for k, c in zip((1.0, 1.01, 9.0, 1.02, 1.03), costs, strict=True)
     ]
     by_rule = flight_test(history, PLAN).by_rule
     # `separate` refuses the third, so its window of three is manoeuvres 1, 2, 4.
@@ -56,8 +57,8 @@ def test_the_window_holds_the_manoeuvres_its_own_rule_accepted() -> None:
 
 
 def test_a_refused_manoeuvre_leaves_the_criterion_where_it_was() -> None:
-    history = [Flown(estimate(k * THETA)) for k in (0.99, 1.0, 1.01)]
-    after = [*history, Flown(estimate(9.0 * THETA, cost=1.0))]
+    history = [CandidateManeuver(estimate(k * THETA)) for k in (0.99, 1.0, 1.01)]
+    after = [*history, CandidateManeuver(estimate(9.0 * THETA, cost=1.0))]
     verdict = flight_test(after, PLAN)
     assert verdict.decision == "stop"
     assert verdict.stopped_at == 3
@@ -65,7 +66,7 @@ def test_a_refused_manoeuvre_leaves_the_criterion_where_it_was() -> None:
 
 
 def test_a_later_contradiction_takes_the_stop_back_and_says_so() -> None:
-    history = [Flown(estimate(k * THETA)) for k in (0.99, 1.0, 1.01, 2.0)]
+    history = [CandidateManeuver(estimate(k * THETA)) for k in (0.99, 1.0, 1.01, 2.0)]
     verdict = flight_test(history, PLAN)
     assert verdict.decision == "continue"
     assert verdict.stopped_at == 3
@@ -73,19 +74,19 @@ def test_a_later_contradiction_takes_the_stop_back_and_says_so() -> None:
 
 
 def test_excluding_the_contradiction_gives_the_stop_again() -> None:
-    history = [Flown(estimate(k * THETA)) for k in (0.99, 1.0, 1.01, 2.0)]
+    history = [CandidateManeuver(estimate(k * THETA)) for k in (0.99, 1.0, 1.01, 2.0)]
     history[3] = replace(history[3], excluded_because="flaps were down")
     assert flight_test(history, PLAN).decision == "stop"
 
 
 def test_window_and_limit_are_the_users() -> None:
-    history = [Flown(estimate(k * THETA)) for k in (0.99, 1.01)]
+    history = [CandidateManeuver(estimate(k * THETA)) for k in (0.99, 1.01)]
     assert flight_test(history, replace(PLAN, window=2)).decision == "stop"
     assert flight_test(history, replace(PLAN, window=2, limit_percent=1.0)).decision == "continue"
 
 
 def test_the_written_out_form_is_available_by_name() -> None:
-    history = [Flown(estimate(with_change("M_alpha", k))) for k in (0.9, 1.0, 1.1)]
+    history = [CandidateManeuver(estimate(with_change("M_alpha", k))) for k in (0.9, 1.0, 1.1)]
     assert flight_test(history, PLAN).decision == "continue"
     assert flight_test(history, replace(PLAN, criterion="eq13")).decision == "stop"
 
@@ -94,7 +95,7 @@ def test_a_parameter_near_zero_is_named_as_what_keeps_the_criterion_up() -> None
     rng = np.random.default_rng(8)
     near_zero = THETA.copy()
     near_zero[2] = 0.0
-    history = [Flown(drawn(rng, near_zero, std_percent=2.0)) for _ in range(6)]
+    history = [CandidateManeuver(drawn(rng, near_zero, std_percent=2.0)) for _ in range(6)]
     verdict = flight_test(history, PLAN)
     assert verdict.decision == "continue"
     assert any("relative to Z_q (" in w and "rule information" in w for w in verdict.warnings)

@@ -7,7 +7,7 @@ import pytest
 
 from advisor.aircraft.aircraft import CampaignPlan
 from advisor.bundled.study.flying import Scene, as_maneuver, fly_named
-from advisor.decision.history import Flown
+from advisor.decision.history import CandidateManeuver
 from advisor.decision.pooling import DERIVATIVES
 from advisor.decision.prediction import Prediction, missed_percent, predict
 from advisor.decision.tolerance import tolerances
@@ -15,7 +15,7 @@ from advisor.flight.signals.messages import FloatArray
 from tests.decision.campaigns import THETA, estimate
 
 PLAN = CampaignPlan(rule="information")
-ONE = Flown(estimate(), maneuver=as_maneuver(fly_named(Scene(), "3211")))
+ONE = CandidateManeuver(estimate(), maneuver=as_maneuver(fly_named(Scene(), "3211")))
 UNKNOWN = Prediction({})
 INSIDE = list(DERIVATIVES)
 

@@ -16,7 +16,7 @@ from advisor.doctor.expectation import (
     frequency,
 )
 from advisor.model.short_period import ShortPeriod
-from advisor.oem.problem import Problem, Record, Signal
+from advisor.oem.problem import OutputErrorProblem, Record, Signal
 from advisor.oem.solution import Solution, solve
 
 ASSUMED = Assumed(TYPICAL, NOISE, "a test")
@@ -53,7 +53,7 @@ def test_many_noisy_fits_scatter_as_expected() -> None:
     estimates = []
     for _ in range(40):
         record = flown(TYPICAL, expected.unit_s, np.radians(expected.amplitude_deg), dice)
-        solution = solve(Problem(records=(record,)))
+        solution = solve(OutputErrorProblem(records=(record,)))
         assert isinstance(solution, Solution)
         estimates.append(solution.theta)
     scatter = np.std(estimates, axis=0)

@@ -8,7 +8,7 @@ import pytest
 
 from advisor.doctor.examination import Examination, Limit
 from advisor.doctor.expectation import NOISE, TYPICAL, Assumed
-from advisor.doctor.next_steps import Examined, next_commands
+from advisor.doctor.next_steps import ExaminedInput, next_commands
 from advisor.flight.vehicle.vehicle import Vehicle
 
 SLOW = Limit("rate", "too slow", "ask for more", stops=True)
@@ -22,11 +22,11 @@ def _found(*limits: Limit) -> Examination:
     return Examination(vehicle, (), None, None, None, limits, None, Assumed(TYPICAL, NOISE, "none"))
 
 
-def _log(name: str = "a.tlog", **known: object) -> Examined:
-    return Examined(name, True, **known)  # type: ignore[arg-type]
+def _log(name: str = "a.tlog", **known: object) -> ExaminedInput:
+    return ExaminedInput(name, True, **known)  # type: ignore[arg-type]
 
 
-LINK = Examined("udpin:0.0.0.0:14550", False)
+LINK = ExaminedInput("udpin:0.0.0.0:14550", False)
 EVERY = [
     (limits, examined)
     for limits in ((), (SLOW,), (LOST,), (QUAD,), (TWO,))
@@ -67,7 +67,9 @@ def test_a_link_that_serves_is_flown_on_at_once() -> None:
 
 
 @pytest.mark.parametrize(("limits", "examined"), EVERY)
-def test_every_command_is_one_that_the_advisor_takes(limits: tuple[Limit, ...], examined: Examined) -> None:
+def test_every_command_is_one_that_the_advisor_takes(
+    limits: tuple[Limit, ...], examined: ExaminedInput
+) -> None:
     for line in next_commands(_found(*limits), examined):
         program, name, *words = shlex.split(line)
         command = import_module(f"advisor.cli.{name}").command

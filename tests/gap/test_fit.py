@@ -10,7 +10,7 @@ from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.fitting.fit import fit
 from advisor.gap.fitting.linear import linearise
 from advisor.gap.fitting.neighbourhood import Neighbourhood
-from advisor.gap.fitting.problem import Point, Problem, row_weights
+from advisor.gap.fitting.problem import EffectProblem, SearchPoint, row_weights
 from advisor.gap.fitting.step import own_eliminated
 from advisor.gap.records.prepare import prepare
 from advisor.gap.result import Cause, Value
@@ -166,9 +166,9 @@ def test_where_only_a_channel_is_late_nothing_is_flown_again_and_another_delay_i
     rows[2, INDEX["delay_s"]] = 0.02
     rows[3, [INDEX["alpha_skew_s"], INDEX["q_skew_s"]]] = 0.03, -0.01
     flown = []
-    fly_all = Problem.fly_all
+    fly_all = EffectProblem.fly_all
     monkeypatch.setattr(
-        Problem, "fly_all", lambda self, f, some: flown.append(len(some)) or fly_all(self, f, some)
+        EffectProblem, "fly_all", lambda self, f, some: flown.append(len(some)) or fly_all(self, f, some)
     )
     each = [problem.read(flight, problem.fly(flight, row), row) for row in rows]
     flown.clear()
@@ -187,10 +187,10 @@ def test_manoeuvres_without_an_angle_of_attack_are_left_out_where_enough_have_on
 
 def test_a_manoeuvres_own_numbers_act_as_they_do_in_flight_where_the_moment_bends():
     flights = prepare(fly(Setup(maneuvers=1, seed=41)), Aircraft())
-    problem, flight = Problem(flights, np.zeros(len(ENTRIES))), flights.flights[0]
+    problem, flight = EffectProblem(flights, np.zeros(len(ENTRIES))), flights.flights[0]
     derivatives = np.array([-4.0, 0.0, -0.3, -35.0, -4.0, -45.0])
     bent = next(v for v in variants_for(flights) if v.effect == "nonlinear_pitching_moment")
-    at = Point(derivatives, np.array([[0.0, 0.0, -0.44, 0.0]])).with_effect(bent, (0.0, -4000.0))
+    at = SearchPoint(derivatives, np.array([[0.0, 0.0, -0.44, 0.0]])).with_effect(bent, (0.0, -4000.0))
     own = linearise(problem, at)[0].own
     read = problem.fly_and_read(flight, problem.driving(at)[:1])[:, 0]
     for k, step in enumerate((1e-4, 1e-4, 1e-3, 1e-3)):

@@ -10,7 +10,7 @@ from advisor.flight.instruments.alpha_offset import AlphaOffset
 from advisor.flight.instruments.kinematics import KinematicCheck, check_alpha, combine
 from advisor.flight.signals.coloured import coloured_covariance
 from advisor.gap.diagnose import diagnose
-from advisor.gap.fitting.problem import Problem
+from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.records.prepare import prepare
 from advisor.gap.simulator.layout import ENTRIES
 from advisor.gap.uncatalogued.wind_shear import moves_along_path, wind_shear
@@ -67,7 +67,7 @@ def test_beside_another_cause_an_offset_below_what_any_zero_is_set_to_gets_no_na
     offset, by_a_vane, by_an_estimate
 ):
     check = KinematicCheck("consistent", "", offset=AlphaOffset(offset, 1e-4))
-    vane = Problem(prepare(flown(), Aircraft()), np.zeros(len(ENTRIES)))
+    vane = EffectProblem(prepare(flown(), Aircraft()), np.zeros(len(ENTRIES)))
     named = [
         alpha_bias_cause(check, [], problem, 0.0, alone=False) is not None
         for problem in (vane, sparse_estimate())
@@ -83,7 +83,7 @@ def test_where_nothing_else_is_a_vane_that_is_plainly_off_is_named_from_a_sixth_
     offset, std, named
 ):
     check = KinematicCheck("consistent", "", offset=AlphaOffset(offset, std))
-    vane, estimate = Problem(prepare(flown(), Aircraft()), np.zeros(len(ENTRIES))), sparse_estimate()
+    vane, estimate = EffectProblem(prepare(flown(), Aircraft()), np.zeros(len(ENTRIES))), sparse_estimate()
     assert (alpha_bias_cause(check, [], vane, 0.0, alone=True) is not None) == named
     assert alpha_bias_cause(check, [], estimate, 0.0, alone=True) is None
 
@@ -96,7 +96,7 @@ def sparse_estimate():
         alpha = replace(alpha, t=alpha.t[::5], y=alpha.y[::5], provenance="derived")
         seldom.append(replace(m, channels={**m.channels, "alpha": alpha}))
     flights = replace(prepare(seldom, Aircraft()), alpha_is_derived=True)
-    return Problem(flights, np.zeros(len(ENTRIES)))
+    return EffectProblem(flights, np.zeros(len(ENTRIES)))
 
 
 def without_accelerometer(maneuvers):

@@ -12,7 +12,7 @@ from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import beyond_known, together, with_known
 from advisor.gap.candidates.traits import OF_ONE_FLIGHT, TRAITS
 from advisor.gap.diagnose import diagnose
-from advisor.gap.fitting.problem import Point, Problem
+from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.records.prepare import prepare
 from advisor.gap.simulator.layout import ENTRIES, INDEX
 from advisor.gap.verdict.causes import parameters_of
@@ -85,8 +85,10 @@ def test_a_file_may_have_any_effect_of_the_catalogue(effect):
     ]
     flights = prepare(moved, Aircraft())
     effects = {effect: dict.fromkeys(LEAST[effect], 0.02)}
-    problem = Problem(flights, with_known(np.zeros(len(ENTRIES)), effects, flights, variants_for(flights)))
-    assert np.all(np.isfinite(problem.driving(Point(np.zeros(6), np.zeros((3, 4))))))
+    problem = EffectProblem(
+        flights, with_known(np.zeros(len(ENTRIES)), effects, flights, variants_for(flights))
+    )
+    assert np.all(np.isfinite(problem.driving(SearchPoint(np.zeros(6), np.zeros((3, 4))))))
 
 
 def everything_tried():

@@ -8,7 +8,7 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.linear import linearise
-from advisor.gap.fitting.problem import Point, Problem
+from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.records.airspeed import speed_error_factors
 from advisor.gap.records.prepare import prepare
 from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, INDEX, SPEED
@@ -46,7 +46,7 @@ def test_a_few_samples_tell_nothing_of_the_instrument():
 
 def test_an_error_of_the_speed_is_flown_as_a_parabola_added_to_it():
     flights = prepare(fly(Setup(maneuvers=1, seed=3)), Aircraft())
-    problem, flight = Problem(flights, np.zeros(len(ENTRIES))), flights.flights[0]
+    problem, flight = EffectProblem(flights, np.zeros(len(ENTRIES))), flights.flights[0]
     p = np.zeros(len(ENTRIES))
     p[: len(DERIVATIVES)] = -4.0, 0.0, -0.3, -35.0, -4.0, -45.0
     p[INDEX["Z_trim"]] = -0.44
@@ -66,10 +66,12 @@ def test_each_manoeuvre_has_three_numbers_for_it_where_it_was_measured_and_its_l
     blind = [
         replace(m, channels={name: c for name, c in m.channels.items() if name != "airspeed"}) for m in flown
     ]
-    point = Point(np.array([-4.0, 0.0, -0.3, -35.0, -4.0, -45.0]), np.tile([0.0, 0.0, -0.44, 0.0], (2, 1)))
+    point = SearchPoint(
+        np.array([-4.0, 0.0, -0.3, -35.0, -4.0, -45.0]), np.tile([0.0, 0.0, -0.44, 0.0], (2, 1))
+    )
     widths = []
     for some in (flown, blind):
-        problem = Problem(prepare(some, Aircraft(airspeed_m_s=UAV.speed)), np.zeros(len(ENTRIES)))
+        problem = EffectProblem(prepare(some, Aircraft(airspeed_m_s=UAV.speed)), np.zeros(len(ENTRIES)))
         widths.append(linearise(problem, point)[0].own.shape[1])
     assert widths[0] - widths[1] == 2
 

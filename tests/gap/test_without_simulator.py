@@ -7,7 +7,7 @@ import pytest
 from rich.console import Console
 
 from advisor.gap.document import gap_document
-from advisor.gap.result import Verdict
+from advisor.gap.result import GapVerdict
 from advisor.gap.without_simulator import without_simulator
 from advisor.report.gap_screen import GapScreen
 from tests.gap.test_report_screen import diagnosis
@@ -31,7 +31,7 @@ def test_the_screen_says_that_no_simulator_was_given() -> None:
 
 
 @pytest.mark.parametrize("verdict", ["effect", "unknown"])
-def test_what_the_flight_shows_by_itself_stands_with_a_note(verdict: Verdict) -> None:
+def test_what_the_flight_shows_by_itself_stands_with_a_note(verdict: GapVerdict) -> None:
     found = without_simulator(replace(diagnosis(), verdict=verdict))
     assert found.verdict == verdict
     assert found.notes[0].startswith("No simulator was given")

@@ -7,7 +7,7 @@ from scipy.linalg import expm
 
 from advisor.aircraft.aircraft import PARAMETERS
 from advisor.model.short_period import ShortPeriod
-from advisor.oem.problem import Problem, Record, Signal
+from advisor.oem.problem import OutputErrorProblem, Record, Signal
 from advisor.oem.solution import solve
 from benchmarks.accuracy import JET, clean
 
@@ -38,7 +38,9 @@ def residuals(values, t, u, z, sigma):
 @pytest.fixture(scope="module")
 def both():
     t, u, z = measured()
-    ours = solve(Problem((Record(Signal(t, u), {"alpha": Signal(t, z[:, 0]), "q": Signal(t, z[:, 1])}),)))
+    ours = solve(
+        OutputErrorProblem((Record(Signal(t, u), {"alpha": Signal(t, z[:, 0]), "q": Signal(t, z[:, 1])}),))
+    )
     start = lmfit.Parameters()
     for name, value in zip(PARAMETERS, JET, strict=True):
         start.add(name, value=0.9 * value)

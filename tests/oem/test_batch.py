@@ -1,7 +1,7 @@
 import numpy as np
 
 from advisor.oem.batch import solve_many
-from advisor.oem.problem import Problem, Record, Signal
+from advisor.oem.problem import OutputErrorProblem, Record, Signal
 from advisor.oem.solution import solve
 from tests.oem.builders import JET, elevator_3211, simulate, trim_alpha, trim_elevator
 
@@ -20,7 +20,9 @@ def test_a_batch_gives_what_each_manoeuvre_gives_alone():
     alpha, q = copies(6, 0.05)
     batch = solve_many(ELEVATOR, T, alpha, q)
     for i in range(6):
-        alone = solve(Problem((Record(ELEVATOR, {"alpha": Signal(T, alpha[i]), "q": Signal(T, q[i])}),)))
+        alone = solve(
+            OutputErrorProblem((Record(ELEVATOR, {"alpha": Signal(T, alpha[i]), "q": Signal(T, q[i])}),))
+        )
         np.testing.assert_allclose(batch.theta[i], alone.theta, rtol=1e-6, atol=1e-8)
         np.testing.assert_allclose(batch.std_cr[i], np.sqrt(np.diag(alone.covariance_cr)), rtol=1e-5)
         np.testing.assert_allclose(batch.cost[i], alone.cost, rtol=1e-9)

@@ -6,7 +6,7 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft, Elevator
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.oem.carried import Carried
+from advisor.oem.carried import UpdatableSolution
 from advisor.oem.colour import Colour
 from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import report
@@ -33,7 +33,7 @@ def solved(maneuver: Maneuver) -> tuple[Solution, Prepared, Estimate]:
 
 
 def test_an_estimate_carried_on_sample_by_sample_is_that_of_all_samples() -> None:
-    carried = Carried(*solved(so_far(11.0)))
+    carried = UpdatableSolution(*solved(so_far(11.0)))
     found = None
     for until_s in np.arange(11.02, 11.5, 0.02):
         found = carried.on(so_far(until_s))
@@ -48,7 +48,7 @@ def test_an_estimate_carried_on_sample_by_sample_is_that_of_all_samples() -> Non
 
 
 def test_a_solution_is_carried_on_alike_in_one_step_and_in_many() -> None:
-    many, one = Carried(*solved(so_far(11.0))), Carried(*solved(so_far(11.0)))
+    many, one = UpdatableSolution(*solved(so_far(11.0))), UpdatableSolution(*solved(so_far(11.0)))
     for until_s in np.arange(11.02, 11.45, 0.02):
         many.on(so_far(until_s))
     stepped, at_once = many.on(so_far(11.46)), one.on(so_far(11.46))
@@ -60,7 +60,7 @@ def test_a_solution_is_carried_on_alike_in_one_step_and_in_many() -> None:
 
 def test_without_new_samples_the_estimate_stays() -> None:
     solution, prepared, reported = solved(so_far(11.0))
-    found = Carried(solution, prepared, reported).on(so_far(11.0))
+    found = UpdatableSolution(solution, prepared, reported).on(so_far(11.0))
     assert found is not None
     np.testing.assert_array_less(np.abs(found.theta - reported.theta), 1e-3 * reported.std_cr)
     np.testing.assert_allclose(found.covariance_cr, reported.covariance_cr, rtol=1e-3)
@@ -70,12 +70,12 @@ def test_without_new_samples_the_estimate_stays() -> None:
 def test_a_sample_that_arrives_late_asks_for_a_complete_solution() -> None:
     alpha = FLIGHT.channels["alpha"]
     early = {**so_far(11.0).channels, "alpha": alpha.cut(-1.0, 10.5)}
-    carried = Carried(*solved(replace(FLIGHT, channels=early)))
+    carried = UpdatableSolution(*solved(replace(FLIGHT, channels=early)))
     assert carried.on(so_far(11.1)) is None
 
 
 def test_samples_that_contradict_the_solution_ask_for_a_complete_one() -> None:
-    carried = Carried(*solved(so_far(11.0)))
+    carried = UpdatableSolution(*solved(so_far(11.0)))
     q = FLIGHT.channels["q"]
     wrong = replace(q, y=np.where(q.t > 11.0, q.y + 0.5, q.y))
     assert carried.on(so_far(11.4, replace(FLIGHT, channels={**FLIGHT.channels, "q": wrong}))) is None

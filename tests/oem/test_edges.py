@@ -4,7 +4,7 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft, Elevator
 from advisor.oem.edges import large_steps, sharpened, with_edges
 from advisor.oem.estimator import estimate
-from advisor.oem.problem import Problem, Record, Signal
+from advisor.oem.problem import OutputErrorProblem, Record, Signal
 from advisor.oem.solution import solve
 from tests.oem.builders import UAV, flown, maneuver, simulate, trim_alpha, trim_elevator
 
@@ -34,7 +34,7 @@ def flown_between_stamps(seed, share, sign, noise=0.02):
 
 @pytest.mark.parametrize("share", [0.05, 0.95])
 def test_steps_between_stamps_do_not_pass_for_other_derivatives(share):
-    plain = solve(Problem(tuple(flown_between_stamps(k, share, (-1) ** k) for k in range(2))))
+    plain = solve(OutputErrorProblem(tuple(flown_between_stamps(k, share, (-1) ** k) for k in range(2))))
     found = with_edges(plain)
     off = np.abs(found.theta - UAV) / np.sqrt(np.diag(found.covariance)[:8])
     assert np.all(off < 4.0)
@@ -42,7 +42,9 @@ def test_steps_between_stamps_do_not_pass_for_other_derivatives(share):
 
 
 def test_steps_in_the_middle_between_stamps_are_told_from_ramps():
-    plain = solve(Problem(tuple(flown_between_stamps(k, 0.5, (-1) ** k, noise=0.01) for k in range(2))))
+    plain = solve(
+        OutputErrorProblem(tuple(flown_between_stamps(k, 0.5, (-1) ** k, noise=0.01) for k in range(2)))
+    )
     found = with_edges(plain)
     off = np.abs(found.theta - UAV) / np.sqrt(np.diag(found.covariance)[:8])
     assert np.all(off < 3.5)
@@ -52,7 +54,7 @@ def test_steps_in_the_middle_between_stamps_are_told_from_ramps():
 def test_a_command_that_is_linear_between_stamps_is_left_alone():
     flight = flown(UAV, unit_s=0.4, noise=0.02, length_s=8.0)
     signals = {n: Signal(c.t, c.y) for n, c in flight.channels.items()}
-    plain = solve(Problem((Record(signals["elevator"], {n: signals[n] for n in ("alpha", "q")}),)))
+    plain = solve(OutputErrorProblem((Record(signals["elevator"], {n: signals[n] for n in ("alpha", "q")}),)))
     assert with_edges(plain) is plain
 
 

@@ -7,7 +7,7 @@ from advisor.oem.colour import Colour
 from advisor.oem.covariance import Coloured, cramer_rao
 from advisor.oem.efficient import efficient, efficient_step
 from advisor.oem.estimator import estimate, estimate_jointly
-from advisor.oem.problem import Problem, Record, Signal
+from advisor.oem.problem import OutputErrorProblem, Record, Signal
 from advisor.oem.solution import solve
 from advisor.oem.weighing import Weighing
 from advisor.oem.whitening import Whitening
@@ -28,7 +28,7 @@ def flight(seed, memory=0.95, number=1):
 def solution(response, v):
     t, u, _ = clean()
     outputs = {"alpha": Signal(t, response[:, 0] + v[:, 0]), "q": Signal(t, response[:, 1] + v[:, 1])}
-    return solve(Problem((Record(Signal(t, u), outputs),)))
+    return solve(OutputErrorProblem((Record(Signal(t, u), outputs),)))
 
 
 @pytest.mark.parametrize(("memory", "share"), [(0.95, 0.0), (0.8, 0.5), (0.0, 0.0), (-0.4, 0.0)])
@@ -92,7 +92,7 @@ def test_the_cost_and_the_fit_stay_those_of_the_lowest_cost():
     found = estimate(flew, KNOWN)
     t, u, _ = clean()
     outputs = {name: Signal(t, flew.channels[name].y) for name in ("alpha", "q")}
-    plain = solve(Problem((Record(Signal(t, u), outputs),)))
+    plain = solve(OutputErrorProblem((Record(Signal(t, u), outputs),)))
     assert found.cost == pytest.approx(plain.cost, rel=1e-9)
     np.testing.assert_allclose(found.theta_of_lowest_cost, plain.theta, rtol=1e-6)
     assert not np.allclose(found.theta, plain.theta, rtol=1e-3)
@@ -157,6 +157,6 @@ def test_an_output_of_a_few_samples_has_no_say_in_what_the_noise_remembers():
     measured = response + coloured_noise(1)
     few = np.linspace(0, len(t) - 1, 20).astype(int)
     outputs = {"alpha": Signal(t[few], measured[few, 0]), "q": Signal(t, measured[:, 1])}
-    with_few = efficient_step(solve(Problem((Record(Signal(t, u), outputs),))))
+    with_few = efficient_step(solve(OutputErrorProblem((Record(Signal(t, u), outputs),))))
     assert np.all(np.isfinite(with_few.chances))
     assert len(with_few.chances) == len(efficient_step(solution(response, coloured_noise(1))).chances) - 1

@@ -4,7 +4,7 @@ from scipy.linalg import expm
 
 from advisor.model.response import LOCAL, N_PARAMETERS, SHARED, respond
 from advisor.model.transition import WIDTH, divisions, fill
-from advisor.oem.problem import Problem, Record, Signal, assemble
+from advisor.oem.problem import OutputErrorProblem, Record, Signal, assemble
 from tests.oem.builders import JET, UAV, simulate
 
 MATRICES = [
@@ -61,7 +61,9 @@ def problem_with_everything():
                 normal_gravity=Signal(t, np.cos(0.2 * np.sin(0.5 * t))),
             )
         )
-    return Problem(tuple(records), reference_airspeed_m_s=26.0, vane_arm_m=0.4, accelerometer_arm_m=0.1)
+    return OutputErrorProblem(
+        tuple(records), reference_airspeed_m_s=26.0, vane_arm_m=0.4, accelerometer_arm_m=0.1
+    )
 
 
 def test_sensitivities_are_the_derivatives_of_the_outputs():
@@ -92,7 +94,7 @@ def test_the_response_is_exact_at_irregular_stamps_and_over_gaps(theta):
     stamps = {n: np.sort(rng.uniform(0.2, 3.9, 20)) for n in ("alpha", "q", "theta")}
     first = min(s[0] for s in stamps.values())
     record = Record(Signal(t, u), {n: Signal(s, np.zeros(20)) for n, s in stamps.items()})
-    assembly = assemble(Problem((record,)))
+    assembly = assemble(OutputErrorProblem((record,)))
     y = np.empty(len(assembly.z))
     local = np.array([[theta[0], theta[4], 0.04, 0.1, 0.2, 0.0, 0.0]])
     assert respond(

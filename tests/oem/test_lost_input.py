@@ -4,7 +4,7 @@ from scipy.signal import cont2discrete
 
 from advisor.model.short_period import ShortPeriod
 from advisor.oem.lost_input import restored
-from advisor.oem.problem import Problem, Record, Signal
+from advisor.oem.problem import OutputErrorProblem, Record, Signal
 from advisor.oem.solution import Solution, solve
 
 TRUE = ShortPeriod.from_mapping(
@@ -37,7 +37,7 @@ def without(record: Record, lost: list[int]) -> Record:
     return Record(elevator=elevator, outputs=record.outputs)
 
 
-def solved(problem: Problem) -> Solution:
+def solved(problem: OutputErrorProblem) -> Solution:
     solution = solve(problem)
     assert isinstance(solution, Solution)
     return solution
@@ -47,8 +47,8 @@ def test_samples_lost_at_steps_are_found_again_and_the_fit_is_as_good_as_with_th
     whole = flown()
     corner = round(1.9 / STEP_S)
     other = round(2.5 / STEP_S)
-    lossy = Problem((without(whole, [corner, other - 1, other]),))
-    complete = solved(Problem((whole,)))
+    lossy = OutputErrorProblem((without(whole, [corner, other - 1, other]),))
+    complete = solved(OutputErrorProblem((whole,)))
     spoiled = solved(lossy)
     mended = solved(restored(lossy))
     assert spoiled.cost > 5.0 * complete.cost
@@ -62,14 +62,14 @@ def test_samples_lost_at_steps_are_found_again_and_the_fit_is_as_good_as_with_th
 def test_a_record_that_lost_nothing_or_lost_it_where_the_stick_was_still_is_untouched() -> None:
     whole = flown()
     for record in (whole, without(whole, [20, 120, 250])):
-        (same,) = restored(Problem((record,))).records
+        (same,) = restored(OutputErrorProblem((record,))).records
         assert same is record
 
 
 def test_an_outage_is_no_lost_sample() -> None:
     whole = flown()
     record = without(whole, list(range(90, 105)))
-    assert restored(Problem((record,))).records[0] is record
+    assert restored(OutputErrorProblem((record,))).records[0] is record
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -77,7 +77,7 @@ def test_every_fifth_packet_lost_at_random_hardly_widens_the_scatter(seed: int) 
     whole = flown(seed)
     dice = np.random.default_rng(seed)
     lost = np.flatnonzero(dice.random(len(whole.elevator.t)) < 0.2).tolist()
-    mended = solved(restored(Problem((without(whole, lost),))))
+    mended = solved(restored(OutputErrorProblem((without(whole, lost),))))
     errors = (mended.theta - TRUE.theta) / np.sqrt(np.diag(mended.covariance_cr)[:8])
     assert np.max(np.abs(errors)) < 4.5
-    assert mended.cost < 1.6 * solved(Problem((whole,))).cost
+    assert mended.cost < 1.6 * solved(OutputErrorProblem((whole,))).cost

@@ -5,7 +5,7 @@ import numpy as np
 from advisor.aircraft.aircraft import PARAMETERS, Aircraft, Elevator
 from advisor.oem.estimator import estimate
 from advisor.oem.missing import in_words, price
-from advisor.oem.problem import Problem, Record, Signal
+from advisor.oem.problem import OutputErrorProblem, Record, Signal
 from advisor.oem.solution import solve
 from tests.oem.builders import UAV, elevator_3211, flown, simulate, trim_alpha, trim_elevator
 
@@ -28,17 +28,17 @@ def record(*outputs):
 
 
 def errors(*outputs):
-    return np.sqrt(np.diag(solve(Problem((record(*outputs),))).covariance_cr))
+    return np.sqrt(np.diag(solve(OutputErrorProblem((record(*outputs),))).covariance_cr))
 
 
 def test_the_price_of_missing_acceleration_is_what_the_fit_with_it_shows():
-    without = solve(Problem((record("alpha", "q"),)))
+    without = solve(OutputErrorProblem((record("alpha", "q"),)))
     real = errors("alpha", "q") / errors("alpha", "q", "a_z")
     np.testing.assert_allclose(price(without), real, rtol=0.1)
 
 
 def test_without_air_speed_the_price_of_acceleration_is_unknown_and_nothing_is_said():
-    without = solve(Problem((replace(record("alpha", "q"), airspeed=None),)))
+    without = solve(OutputErrorProblem((replace(record("alpha", "q"), airspeed=None),)))
     assert price(without) is None
     assert in_words(None) == ""
 

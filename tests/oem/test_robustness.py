@@ -4,7 +4,7 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import estimate, estimate_jointly
-from advisor.oem.problem import Problem, Record, Signal
+from advisor.oem.problem import OutputErrorProblem, Record, Signal
 from advisor.oem.solution import Solution, solve
 from benchmarks.robustness import mismatched, search_everywhere
 from tests.oem.builders import JET, flown, maneuver
@@ -80,4 +80,4 @@ def test_no_manoeuvre_is_no_estimate():
 def test_a_record_without_pitch_rate_is_the_callers_mistake():
     t = np.arange(0.0, 1.0, 0.1)
     with pytest.raises(ValueError, match="samples of q"):
-        solve(Problem((Record(Signal(t, t), {"alpha": Signal(t, t)}),)))
+        solve(OutputErrorProblem((Record(Signal(t, t), {"alpha": Signal(t, t)}),)))

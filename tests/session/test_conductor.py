@@ -11,7 +11,7 @@ import pytest
 from advisor.campaign.hand_decisions import ByHand
 from advisor.campaign.state import CampaignState, JudgedManeuver
 from advisor.flight.signals.messages import Columns
-from advisor.session.conducting import Report
+from advisor.session.conducting import SessionReport
 from advisor.session.conductor import Conductor
 from advisor.session.hand import HandDecision
 from advisor.session.replay import LogPlayer
@@ -57,20 +57,20 @@ class Flown:
     def __init__(self, speed: float = inf) -> None:
         self.player = LogPlayer("x", log, speed, lambda changed, seconds: None)
         self.campaigns: list[CountingCampaign] = []
-        self.reports: list[Report] = []
-        self.script: list[tuple[Callable[[Report], bool], Callable[[], None]]] = []
+        self.reports: list[SessionReport] = []
+        self.script: list[tuple[Callable[[SessionReport], bool], Callable[[], None]]] = []
         self.conductor = Conductor(self.player, self._make)
 
     def _make(self, by_hand: ByHand) -> CountingCampaign:
         self.campaigns.append(CountingCampaign(by_hand))
         return self.campaigns[-1]
 
-    def _tell(self, report: Report) -> None:
+    def _tell(self, report: SessionReport) -> None:
         self.reports.append(report)
         if self.script and self.script[0][0](report):
             self.script.pop(0)[1]()
 
-    def when(self, condition: Callable[[Report], bool], then: Callable[[], None]) -> None:
+    def when(self, condition: Callable[[SessionReport], bool], then: Callable[[], None]) -> None:
         """The next step of what the user does."""
         self.script.append((condition, then))
 
@@ -80,11 +80,11 @@ class Flown:
         self.conductor.run(self._tell)
 
 
-def over(report: Report) -> bool:
+def over(report: SessionReport) -> bool:
     return report.health.condition == "ended"
 
 
-def always(report: Report) -> bool:
+def always(report: SessionReport) -> bool:
     return True
 
 
@@ -164,10 +164,10 @@ def test_a_moment_and_a_manoeuvre_that_were_marked_are_known_from_the_start_afte
 def test_every_decision_by_hand_is_kept_with_its_source_and_said():
     source = HandFedSource()
     source.deliver()
-    reports: list[Report] = []
+    reports: list[SessionReport] = []
     conductor = Conductor(source, staged)
 
-    def tell(report: Report) -> None:
+    def tell(report: SessionReport) -> None:
         reports.append(report)
         if source.kept:
             conductor.stop()

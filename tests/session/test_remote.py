@@ -10,10 +10,10 @@ import pytest
 
 from advisor.oem.estimate import Estimate
 from advisor.session.changes import changes
-from advisor.session.conducting import Conducting, Report
+from advisor.session.conducting import Conducting, SessionReport
 from advisor.session.conductor import Conductor
 from advisor.session.hand import HandDecision
-from advisor.session.remote import RemoteConductor, Task
+from advisor.session.remote import ConductorTask, RemoteConductor
 from advisor.session.source import LinkHealth, Playback
 from advisor.tui.app import AdvisorApp
 from advisor.tui.screens.engineer import EngineerScreen
@@ -23,11 +23,11 @@ from tests.tui import elsewhere, flights
 GOOD = LinkHealth("good", "412 messages/s.")
 
 
-def last_report(conductor: Conducting, wanted: Callable[[Report], bool]) -> Report:
+def last_report(conductor: Conducting, wanted: Callable[[SessionReport], bool]) -> SessionReport:
     """Run until a report is as wanted."""
-    reports: list[Report] = []
+    reports: list[SessionReport] = []
 
-    def tell(report: Report) -> None:
+    def tell(report: SessionReport) -> None:
         reports.append(report)
         if wanted(report):
             conductor.stop()
@@ -36,13 +36,13 @@ def last_report(conductor: Conducting, wanted: Callable[[Report], bool]) -> Repo
     return next(report for report in reports if wanted(report))
 
 
-def ended(report: Report) -> bool:
+def ended(report: SessionReport) -> bool:
     return report.health.condition == "ended"
 
 
 def test_another_process_comes_to_the_same_bits():
     here = last_report(Conductor(elsewhere.first_manoeuvres(), elsewhere.campaign), ended)
-    task = Task(elsewhere.first_manoeuvres, elsewhere.campaign)
+    task = ConductorTask(elsewhere.first_manoeuvres, elsewhere.campaign)
     there = last_report(RemoteConductor(task), ended)
     assert len(here.state.maneuvers) == len(there.state.maneuvers) == 2
     for a, b in zip(here.state.maneuvers, there.state.maneuvers, strict=True):
@@ -56,9 +56,9 @@ def test_another_process_comes_to_the_same_bits():
 
 
 def test_changes_give_the_report_and_leave_alone_what_did_not_change():
-    before = Report(flights.state(3, in_the_air=True), GOOD, Playback(3.0, 60.0), ("heard",))
+    before = SessionReport(flights.state(3, in_the_air=True), GOOD, Playback(3.0, 60.0), ("heard",))
     newer = replace(before.state, now_s=99.0, flying=None)
-    after = Report(newer, GOOD, Playback(3.1, 60.0), before.log)
+    after = SessionReport(newer, GOOD, Playback(3.1, 60.0), before.log)
     told = changes(before, after).applied_to(before)
     for name in (f.name for f in fields(after) if f.name != "state"):
         assert getattr(told, name) is getattr(after, name)
@@ -67,7 +67,7 @@ def test_changes_give_the_report_and_leave_alone_what_did_not_change():
 
 
 def test_the_samples_of_judged_manoeuvres_are_not_sent_again():
-    before = Report(flights.state(5), GOOD, None, ())
+    before = SessionReport(flights.state(5), GOOD, None, ())
     after = replace(before, state=replace(before.state, now_s=99.0))
     assert len(pickle.dumps(before)) > 100_000
     assert len(pickle.dumps(changes(before, after))) < 2_000
@@ -76,8 +76,8 @@ def test_the_samples_of_judged_manoeuvres_are_not_sent_again():
 def test_a_further_verdict_sends_the_samples_of_no_earlier_manoeuvre():
     five, six = flights.state(5), flights.state(6)
     earlier = tuple(replace(judged, notes=("seen again",)) for judged in five.maneuvers)
-    before = Report(five, GOOD, None, ())
-    after = Report(replace(six, maneuvers=(*earlier, six.maneuvers[5])), GOOD, None, ())
+    before = SessionReport(five, GOOD, None, ())
+    after = SessionReport(replace(six, maneuvers=(*earlier, six.maneuvers[5])), GOOD, None, ())
     sent = pickle.dumps(changes(before, after))
     assert len(sent) < len(pickle.dumps(before)) / 2
     told = pickle.loads(sent).applied_to(before).state.maneuvers
@@ -86,36 +86,38 @@ def test_a_further_verdict_sends_the_samples_of_no_earlier_manoeuvre():
 
 
 def test_decisions_by_hand_reach_the_other_process():
-    conductor = RemoteConductor(Task(elsewhere.talking, elsewhere.staged))
+    conductor = RemoteConductor(ConductorTask(elsewhere.talking, elsewhere.staged))
     conductor.decide(HandDecision("exclude", "a gust", 2))
     report = last_report(conductor, lambda r: any(j.excluded_because == "a gust" for j in r.state.maneuvers))
     assert [j.excluded_because for j in report.state.maneuvers] == [None, "a gust", None]
 
 
 def test_where_processors_are_scarce_estimates_give_way_to_the_screens():
-    report = last_report(RemoteConductor(Task(elsewhere.polite, elsewhere.staged)), lambda report: True)
+    report = last_report(
+        RemoteConductor(ConductorTask(elsewhere.polite, elsewhere.staged)), lambda report: True
+    )
     assert int(report.health.sentence) == min(19, os.nice(0) + 5)
 
 
 def test_unusable_input_is_the_same_error_here():
     with pytest.raises(UnusableInputError, match="AOA_SSA arrives at 4 Hz") as caught:
-        RemoteConductor(Task(elsewhere.unusable, elsewhere.staged)).run(lambda report: None)
+        RemoteConductor(ConductorTask(elsewhere.unusable, elsewhere.staged)).run(lambda report: None)
     assert (caught.value.problem.code, caught.value.problem.fix) == ("rate", "Ask for 50 Hz.")
 
 
 def test_a_fault_tells_where_it_happened():
     with pytest.raises(ZeroDivisionError, match="a fault") as caught:
-        RemoteConductor(Task(elsewhere.faulty, elsewhere.staged)).run(lambda report: None)
+        RemoteConductor(ConductorTask(elsewhere.faulty, elsewhere.staged)).run(lambda report: None)
     assert any("conductor.py" in note for note in caught.value.__notes__)
 
 
 def test_a_process_that_ends_by_itself_is_told_of():
     with pytest.raises(RuntimeError, match="exit code 9"):
-        RemoteConductor(Task(elsewhere.talking, elsewhere.ending)).run(lambda report: None)
+        RemoteConductor(ConductorTask(elsewhere.talking, elsewhere.ending)).run(lambda report: None)
 
 
 async def test_keys_are_answered_while_an_estimate_runs():
-    conductor = RemoteConductor(Task(elsewhere.talking, elsewhere.busy))
+    conductor = RemoteConductor(ConductorTask(elsewhere.talking, elsewhere.busy))
     app = AdvisorApp(conductor, flights.AIRCRAFT, "a source")
     async with app.run_test(size=(80, 24)) as pilot:
         await pilot.press("e")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.gap.fitting.problem import Problem
+from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.records.prepare import prepare
 from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, INDEX
 from advisor.simulators.flying import Flying, added, beyond
@@ -49,7 +49,7 @@ def test_an_effect_added_to_the_linear_simulator_is_that_of_the_diagnosis(change
     began = flying.as_flown(flying.replays(p, held=False))
     replays = flying.replays(p, False, added(began, p, as_given))
     apart = beyond(flying, replays, p)
-    moved = Problem(replace(flights, flights=tuple(began)), p)
+    moved = EffectProblem(replace(flights, flights=tuple(began)), p)
     for grid, flight, numbers in zip(apart, began, p, strict=True):
         size = np.ptp(moved.fly(flight, numbers), axis=1)
         assert np.max(np.abs(grid), axis=1) / size == pytest.approx(0.0, abs=0.02)

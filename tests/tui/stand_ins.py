@@ -11,7 +11,7 @@ from advisor.campaign.state import CampaignState, JudgedManeuver
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.marks import Mark
 from advisor.flight.signals.messages import Columns
-from advisor.session.source import LinkHealth, Order
+from advisor.session.source import LinkHealth, LinkRequest
 from advisor.words.problems import Problem
 from tests.tui import flights
 
@@ -121,7 +121,7 @@ class HandFedSource:
         )
         self.notices: list[str] = []
         self.kept: list[ByHand] = []
-        self.orders: list[Order] = []
+        self.orders: list[LinkRequest] = []
         self.closed = False
 
     def deliver(self, count: int = 1) -> None:
@@ -129,7 +129,7 @@ class HandFedSource:
         for _ in range(count):
             self.batches.put([columns([0], [0.0])])
 
-    def order(self, order: Order) -> None:
+    def order(self, order: LinkRequest) -> None:
         self.orders.append(order)
 
     def read(self, timeout_s: float) -> Sequence[Columns] | None:

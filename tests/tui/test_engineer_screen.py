@@ -9,7 +9,7 @@ from textual.widgets import DataTable, Input
 from advisor.tui.panes.criterion import Criterion
 from advisor.tui.panes.fit import Fit
 from advisor.tui.panes.live import Live
-from advisor.tui.panes.parameters import Parameters
+from advisor.tui.panes.parameters import ParametersPane
 from advisor.tui.plot.widget import Plot
 from advisor.tui.settings import Settings
 from tests.tui import flights
@@ -51,8 +51,8 @@ async def test_no_reason_and_no_time_is_cut_in_the_table_at_any_size(size: tuple
 
 async def test_the_eight_parameters_stand_with_intervals_beside_the_prior_model():
     async with stage(flights.state(4), settings=ENGINEER, size=WIDE) as here:
-        await here.until(lambda: len(table(here, "Parameters")) == 8)
-        rows = {row[0].split()[0]: row[1:] for row in table(here, "Parameters")}
+        await here.until(lambda: len(table(here, "ParametersPane")) == 8)
+        rows = {row[0].split()[0]: row[1:] for row in table(here, "ParametersPane")}
         assert set(rows) == {"Z_0", "Z_α", "Z_q", "Z_δe", "M_0", "M_α", "M_q", "M_δe"}
         assert rows["M_α"][0].startswith("−4")
         assert " ± 3.7" in rows["M_α"][0]
@@ -62,15 +62,15 @@ async def test_the_eight_parameters_stand_with_intervals_beside_the_prior_model(
 
 async def test_a_parameter_that_cannot_be_told_has_no_number():
     async with stage(flights.state(4), settings=ENGINEER, size=WIDE) as here:
-        await here.until(lambda: len(table(here, "Parameters")) == 8)
-        assert table(here, "Parameters")[2][1:3] == ["not identifiable", "not identifiable"]
+        await here.until(lambda: len(table(here, "ParametersPane")) == 8)
+        assert table(here, "ParametersPane")[2][1:3] == ["not identifiable", "not identifiable"]
 
 
 @pytest.mark.parametrize(("size", "columns"), [((110, 30), 3), ((140, 45), 5)], ids=str)
 async def test_no_number_of_the_parameters_is_cut(size: tuple[int, int], columns: int):
     async with stage(flights.state(2), settings=ENGINEER, size=size) as here:
-        await here.until(lambda: len(table(here, "Parameters")) == 8)
-        rows = here.app.screen.query_one("Parameters DataTable", DataTable)
+        await here.until(lambda: len(table(here, "ParametersPane")) == 8)
+        rows = here.app.screen.query_one("ParametersPane DataTable", DataTable)
         assert len(rows.columns) == columns
         assert rows.virtual_size.width <= rows.size.width
 
@@ -183,7 +183,7 @@ async def test_the_parameter_under_the_cursor_has_its_history_drawn():
     async with stage(flights.state(5), settings=ENGINEER, size=WIDE) as here:
         await filled(here, 5)
         await here.press("3", "down", "down", "down", "down", "down")
-        chart = here.app.screen.query_one(Parameters).query_one(Plot).chart
+        chart = here.app.screen.query_one(ParametersPane).query_one(Plot).chart
         assert chart.y_label == "M_α [1/s²]"
         assert [level.name for level in chart.levels] == ["model", "prior"]
 
@@ -193,18 +193,18 @@ async def test_a_manoeuvre_without_an_estimate_says_why():
     failed = (*state.maneuvers, flights.without_estimate(3))
     async with stage(replace(state, maneuvers=failed), settings=ENGINEER, size=WIDE) as here:
         await filled(here, 3)
-        assert "no estimate: The input did not move the aircraft." in here.words("Verdict Lines")
+        assert "no estimate: The input did not move the aircraft." in here.words("VerdictPane Lines")
         assert "The input did not move" in here.app.screen.query_one("#fit-q", Plot).chart.why_empty
 
 
 async def test_the_log_tells_of_the_campaign_and_of_the_link_in_order():
     source = HandFedSource()
     async with stage(flights.state(1), flights.state(2), settings=ENGINEER, size=WIDE, source=source) as here:
-        await here.until(lambda: "manoeuvre 1 judged" in here.words("EventLog Lines"))
+        await here.until(lambda: "manoeuvre 1 judged" in here.words("EventLogPane Lines"))
         source.notices.append("reconnected after 3 s")
-        await here.until(lambda: "link: reconnected" in here.words("EventLog Lines"))
+        await here.until(lambda: "link: reconnected" in here.words("EventLogPane Lines"))
         source.deliver()
-        await here.until(lambda: "manoeuvre 2 judged" in here.words("EventLog Lines"))
-        lines = here.words("EventLog Lines").split("\n")
+        await here.until(lambda: "manoeuvre 2 judged" in here.words("EventLogPane Lines"))
+        lines = here.words("EventLogPane Lines").split("\n")
         assert [line[9:].split()[0] for line in lines] == ["following", "manoeuvre", "link:", "manoeuvre"]
         assert [line[:7].strip() for line in lines] == ["–", "1:53.0", "–", "2:18.0"]

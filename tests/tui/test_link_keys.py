@@ -5,7 +5,7 @@ from dataclasses import replace
 from advisor.flight.elevator.elevator_guess import Guess
 from advisor.flight.vehicle.vehicle import Vehicle
 from advisor.session.replay import LogPlayer
-from advisor.session.source import LinkHealth, Order
+from advisor.session.source import LinkHealth, LinkRequest
 from advisor.tui.explaining import keys_at_hand
 from advisor.tui.panes.big_word import BigWord
 from advisor.tui.panes.keys_line import KeysLine
@@ -26,7 +26,7 @@ async def test_one_key_follows_another_vehicle_from_either_screen():
         state = replace(flights.state(0), other_vehicles=(2,))
         async with stage(state, source=source, settings=Settings(screen=screen)) as here:
             await here.press("v")
-            await here.until(lambda source=source: source.orders == [Order("follow", 2)])
+            await here.until(lambda source=source: source.orders == [LinkRequest("follow", 2)])
             assert "vehicle 2 is followed now" in said(here)
 
 
@@ -35,7 +35,7 @@ async def test_several_others_are_followed_one_after_the_other():
     state = replace(flights.state(0), vehicle=Vehicle(3, 1, "ardupilot", 1), other_vehicles=(2, 5))
     async with stage(state, source=source) as here:
         await here.press("v")
-        await here.until(lambda: source.orders == [Order("follow", 5)])
+        await here.until(lambda: source.orders == [LinkRequest("follow", 5)])
 
 
 async def test_once_manoeuvres_are_judged_the_sentence_names_the_option_instead():
@@ -64,7 +64,7 @@ async def test_the_outputs_are_asked_for_by_a_key_and_the_screen_says_what_is_se
     source = HandFedSource()
     async with stage(source=source, settings=Settings(screen="engineer")) as here:
         await here.press("a")
-        await here.until(lambda: source.orders == [Order("outputs")])
+        await here.until(lambda: source.orders == [LinkRequest("outputs")])
         assert "asked for SERVOn_*" in said(here)
         assert "nothing else is sent" in said(here)
 
@@ -80,7 +80,7 @@ async def test_a_guess_stands_on_the_screen_as_one_and_a_key_takes_it():
             lambda: "Output 2 is a guess: it explains 31 %" in " ".join(here.words("Why").split())
         )
         await here.press("g")
-        await here.until(lambda: source.orders == [Order("take", 2)])
+        await here.until(lambda: source.orders == [LinkRequest("take", 2)])
 
 
 async def test_a_replay_has_no_keys_of_a_link():

@@ -70,8 +70,8 @@ async def test_a_pane_of_the_left_column_leaves_the_one_beside_it_in_place():
             await here.press(key)
             assert [type(pane).__name__ for pane in panes(here)] == [
                 "Maneuvers",
-                "Verdict",
-                "Parameters",
+                "VerdictPane",
+                "ParametersPane",
                 "Criterion",
             ]
 

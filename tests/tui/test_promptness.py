@@ -9,7 +9,7 @@ from textual.css import stylesheet
 from textual.events import Key
 from textual.widget import Widget
 
-from advisor.session.conducting import Report
+from advisor.session.conducting import SessionReport
 from advisor.session.view import View
 from advisor.tui import app as application
 from advisor.tui.garbage_collection import Garbage
@@ -197,7 +197,9 @@ async def test_reports_behind_a_key_wait_for_its_answer_and_then_the_newest_is_s
             show(view)
 
         monkeypatch.setattr(app, "show", watched)
-        reports = [Report(flights.state(n), app.view.health, app.view.playback, app.view.log) for n in (4, 5)]
+        reports = [
+            SessionReport(flights.state(n), app.view.health, app.view.playback, app.view.log) for n in (4, 5)
+        ]
         await app.on_event(Key("1", "1"))
         for report in reports:
             app.on_advisor_app_told(app.Told(report))

@@ -4,17 +4,17 @@ import os
 import signal
 
 from advisor.campaign.hand_decisions import ByHand
-from advisor.session.conducting import Report
-from advisor.session.remote import RemoteConductor, Task
+from advisor.session.conducting import SessionReport
+from advisor.session.remote import ConductorTask, RemoteConductor
 from tests.tui import elsewhere
 
 
 def test_a_process_that_is_killed_is_started_again_and_comes_to_the_same_manoeuvres():
-    conductor = RemoteConductor(Task(elsewhere.traced, elsewhere.campaign, kept=ByHand))
-    reports: list[Report] = []
+    conductor = RemoteConductor(ConductorTask(elsewhere.traced, elsewhere.campaign, kept=ByHand))
+    reports: list[SessionReport] = []
     killed: list[int] = []
 
-    def tell(report: Report) -> None:
+    def tell(report: SessionReport) -> None:
         reports.append(report)
         pid = int(report.health.sentence) if report.health.sentence.isdigit() else 0
         if len(report.state.maneuvers) == 1 and pid and not killed:

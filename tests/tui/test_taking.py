@@ -13,7 +13,7 @@ from advisor.session.source import Tempo
 from advisor.session.view import view_before_first
 from advisor.tui.panes.courses import Courses
 from advisor.tui.panes.fit import Fit
-from advisor.tui.rows import Rows
+from advisor.tui.rows import TableRows
 from advisor.tui.settings import Settings
 from advisor.tui.taking import log_of
 from tests.tui import flights
@@ -33,7 +33,8 @@ def notice(here: Stage) -> str:
 
 def test_what_is_not_known_stands_as_nothing_in_a_row():
     assert (
-        Rows(("a", "b", "c"), ((1, np.nan, None), ("x, y", 0.5, 2.0))).csv() == 'a,b,c\n1,,\n"x, y",0.5,2\n'
+        TableRows(("a", "b", "c"), ((1, np.nan, None), ("x, y", 0.5, 2.0))).csv()
+        == 'a,b,c\n1,,\n"x, y",0.5,2\n'
     )
 
 

@@ -7,10 +7,10 @@ from threading import Thread
 
 import pytest
 
-from advisor.session.conducting import Report
+from advisor.session.conducting import SessionReport
 from advisor.session.conductor import Conductor
 from advisor.session.hand import HandDecision
-from advisor.session.source import Order
+from advisor.session.source import LinkRequest
 from advisor.tui.explaining import keys_at_hand
 from advisor.tui.settings import Settings
 from advisor.web.attached import AttachedConductor, ServerGoneError
@@ -56,9 +56,9 @@ def at_work(watch_only: bool = False) -> Iterator[Server]:
 
 
 @contextmanager
-def watching(conductor: AttachedConductor) -> Iterator[Callable[[], Report | None]]:
+def watching(conductor: AttachedConductor) -> Iterator[Callable[[], SessionReport | None]]:
     """The newest report that a page has."""
-    reports: list[Report] = []
+    reports: list[SessionReport] = []
     thread = Thread(target=conductor.run, args=(reports.append,))
     thread.start()
     yield lambda: reports[-1] if reports else None
@@ -70,18 +70,18 @@ def test_what_one_page_decides_is_seen_on_all_and_by_a_page_that_comes_later() -
     with at_work() as server, watching(one := server.page()), watching(server.page()) as other:
         wait_until(lambda: other() is not None)
         one.decide(HandDecision("exclude", "gust", 3))
-        one.order(Order("outputs"))
+        one.order(LinkRequest("outputs"))
         wait_until(lambda: excluded(other()) == {3: "gust"})
         with watching(server.page()) as late:
             wait_until(lambda: excluded(late()) == {3: "gust"})
-        assert server.source.orders == [Order("outputs")]
+        assert server.source.orders == [LinkRequest("outputs")]
         assert len(server.source.kept) == 1
 
 
 def test_a_page_that_only_watches_is_not_heeded() -> None:
     with at_work(watch_only=True) as server, watching(page := server.page()) as seen:
         page.decide(HandDecision("mark", "gust"))
-        page.order(Order("follow", 2))
+        page.order(LinkRequest("follow", 2))
         wait_until(lambda: seen() is not None)
         time.sleep(0.2)
         assert server.campaign.calls == []
@@ -111,7 +111,7 @@ def test_a_page_ends_with_its_server() -> None:
         page.run(lambda report: None)
 
 
-def excluded(report: Report | None) -> dict[int, str]:
+def excluded(report: SessionReport | None) -> dict[int, str]:
     """Manoeuvres that a report shows as taken out by hand, with the reason."""
     judged = report.state.maneuvers if report else ()
     return {j.maneuver.number: j.excluded_because for j in judged if j.excluded_because is not None}

@@ -9,10 +9,10 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft, CampaignPlan, Limits
 from advisor.bundled.study.estimating import estimate_copies
-from advisor.bundled.study.flying import Flight, Scene, as_maneuver, fly_named, follow, noise_scale
+from advisor.bundled.study.flying import NoiselessManeuver, Scene, as_maneuver, fly_named, follow, noise_scale
 from advisor.bundled.study.simulator import AIRFRAMES, UAV, NonlinearAircraft
 from advisor.decision.advice import recommended
-from advisor.decision.history import Flown, usable_ones
+from advisor.decision.history import CandidateManeuver, usable_ones
 from advisor.decision.information import knowledge
 from advisor.decision.inputs import StepInput
 from advisor.flight.signals.messages import FloatArray
@@ -107,10 +107,10 @@ def fly(pair: Pair) -> tuple[int, int]:
     first = _flown(scene, named["3211"], noise, rng)
     crew = _crew(scene, named["3211"], pair.same_excursion)
 
-    def standard(history: list[Flown]) -> Flight:
+    def standard(history: list[CandidateManeuver]) -> NoiselessManeuver:
         return named["rev" if len(history) % 2 else "3211"]
 
-    def advised(history: list[Flown]) -> Flight:
+    def advised(history: list[CandidateManeuver]) -> NoiselessManeuver:
         option = recommended(history, crew)
         return standard(history) if option is None else fly_input(scene, option)
 
@@ -119,8 +119,8 @@ def fly(pair: Pair) -> tuple[int, int]:
 
 def _needed(
     scene: Scene,
-    first: Flown,
-    choose: Callable[[list[Flown]], Flight],
+    first: CandidateManeuver,
+    choose: Callable[[list[CandidateManeuver]], NoiselessManeuver],
     noise: FloatArray,
     rng: np.random.Generator,
 ) -> int:
@@ -133,7 +133,7 @@ def _needed(
     return len(history)
 
 
-def fly_input(scene: Scene, option: StepInput) -> Flight:
+def fly_input(scene: Scene, option: StepInput) -> NoiselessManeuver:
     """Fly an advised input, with a free response as long as the standard input's."""
     free = scene.duration_s - scene.lead_s - 7.0 * scene.unit_s
     length = scene.lead_s + option.duration_s + free
@@ -142,7 +142,7 @@ def fly_input(scene: Scene, option: StepInput) -> Flight:
     return follow(scene, t, option.elevator(trim, scene.lead_s, length).at(t))
 
 
-def _crew(scene: Scene, standard: Flight, same: bool) -> Aircraft:
+def _crew(scene: Scene, standard: NoiselessManeuver, same: bool) -> Aircraft:
     """Return the aircraft file, with an angle-of-attack limit where excursions are limited."""
     limits = Limits()
     if same:
@@ -153,7 +153,9 @@ def _crew(scene: Scene, standard: Flight, same: bool) -> Aircraft:
     return replace(Aircraft(), campaign=PLAN, limits=limits)
 
 
-def _flown(scene: Scene, flight: Flight, noise: FloatArray, rng: np.random.Generator) -> Flown:
+def _flown(
+    scene: Scene, flight: NoiselessManeuver, noise: FloatArray, rng: np.random.Generator
+) -> CandidateManeuver:
     """Measure and estimate one manoeuvre, with the data that the advice needs."""
     (estimate,) = estimate_copies(flight, noise, 1, rng)
-    return Flown(estimate, maneuver=as_maneuver(flight))
+    return CandidateManeuver(estimate, maneuver=as_maneuver(flight))

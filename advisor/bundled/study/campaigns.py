@@ -12,7 +12,7 @@ from advisor.bundled.study.flying import NoiseReading, Scene, as_maneuver, fly_n
 from advisor.bundled.study.paper import ORDER
 from advisor.bundled.study.readings import needed_by_reading
 from advisor.decision.acceptance import MANEUVER_RULES
-from advisor.decision.history import Flown
+from advisor.decision.history import CandidateManeuver
 from advisor.decision.information import knowledge
 from advisor.decision.scatter import scatter_percent, window
 from advisor.flight.maneuvers.maneuver import Maneuver
@@ -25,7 +25,7 @@ BLOCK = 50
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
+class RuleOutcome:
     """One campaign under one rule."""
 
     needed: int | None
@@ -41,7 +41,7 @@ class Outcome:
 
 
 @dataclass(frozen=True, slots=True)
-class Block:
+class CampaignBlock:
     """Campaigns that are flown and judged together."""
 
     scene: Scene
@@ -54,10 +54,10 @@ class Block:
 
 
 @dataclass(frozen=True, slots=True)
-class Judged:
+class CampaignResults:
     """Results of a block of campaigns."""
 
-    outcomes: Mapping[Rule, tuple[Outcome, ...]]
+    outcomes: Mapping[Rule, tuple[RuleOutcome, ...]]
     """Rule to its outcomes, campaign by campaign."""
     needed: Mapping[tuple[str, Rule], tuple[int | None, ...]]
     """Name of the reading and rule to the manoeuvres that each campaign needed; empty unless requested."""
@@ -70,31 +70,33 @@ def table_blocks(
     seed: int,
     reading: NoiseReading = "std",
     other_readings: bool = False,
-) -> list[Block]:
+) -> list[CampaignBlock]:
     """Divide the campaigns at one noise level into blocks, each with a seed of its own."""
     return [
-        Block(scene, noise_percent, count, (seed, round(1000 * noise_percent), k), reading, other_readings)
+        CampaignBlock(
+            scene, noise_percent, count, (seed, round(1000 * noise_percent), k), reading, other_readings
+        )
         for k, count in blocks(campaigns, BLOCK)
     ]
 
 
-def judge(block: Block) -> Judged:
+def judge(block: CampaignBlock) -> CampaignResults:
     """Fly the campaigns of a block, and end each by every rule."""
     maneuvers = [as_maneuver(fly_named(block.scene, name)) for name in ORDER]
     plan = CampaignPlan()
     flown = fly_campaigns(block)
-    return Judged(
+    return CampaignResults(
         {rule: tuple(outcome(campaign, rule, plan, maneuvers) for campaign in flown) for rule in RULES},
         needed_by_reading(flown) if block.other_readings else {},
     )
 
 
-def joined(judged: Sequence[Judged], rule: Rule) -> list[Outcome]:
+def joined(judged: Sequence[CampaignResults], rule: Rule) -> list[RuleOutcome]:
     """Return the outcomes of several blocks under one rule."""
     return [outcome for block in judged for outcome in block.outcomes[rule]]
 
 
-def fly_campaigns(block: Block) -> list[list[Estimate]]:
+def fly_campaigns(block: CampaignBlock) -> list[list[Estimate]]:
     """Return the estimates of every manoeuvre of a block, campaign by campaign.
 
     The noise of the first manoeuvre holds for all, because a set of instruments has one noise.
@@ -108,7 +110,7 @@ def fly_campaigns(block: Block) -> list[list[Estimate]]:
 
 def outcome(
     campaign: Sequence[Estimate], rule: Rule, plan: CampaignPlan, maneuvers: Sequence[Maneuver] = ()
-) -> Outcome:
+) -> RuleOutcome:
     """Return the outcome of one campaign under ``rule``, by the functions that judge in flight.
 
     Parameters
@@ -120,7 +122,8 @@ def outcome(
     accepted = [r.accepted for r in MANEUVER_RULES[rule]([e.cost for e in campaign])]
     taken: list[Estimate] = []
     flown = [
-        Flown(estimate, maneuver=maneuvers[i] if maneuvers else None) for i, estimate in enumerate(campaign)
+        CandidateManeuver(estimate, maneuver=maneuvers[i] if maneuvers else None)
+        for i, estimate in enumerate(campaign)
     ]
     history: list[float | None] = []
     needed = None
@@ -132,7 +135,7 @@ def outcome(
             history.append(known.percent)
             if known.sufficient or number == len(campaign):
                 needed = number if known.sufficient else None
-                return Outcome(needed, known.posterior.theta, known.tolerance, tuple(history), 0)
+                return RuleOutcome(needed, known.posterior.theta, known.tolerance, tuple(history), 0)
             continue
         members = window(taken, plan)
         history.append(None if members is None else scatter_percent(members, plan.criterion))
@@ -142,7 +145,7 @@ def outcome(
             theta = reported(taken, plan)
     if needed is None:
         theta = reported(taken, plan)
-    return Outcome(needed, theta, np.full(8, np.nan), tuple(history), len(campaign) - len(taken))
+    return RuleOutcome(needed, theta, np.full(8, np.nan), tuple(history), len(campaign) - len(taken))
 
 
 def reported(taken: Sequence[Estimate], plan: CampaignPlan) -> FloatArray:

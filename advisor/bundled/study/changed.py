@@ -10,7 +10,7 @@ from advisor.bundled.study.estimating import estimate_copies
 from advisor.bundled.study.flying import Scene, fly_named, noise_scale
 from advisor.bundled.study.paper import NOISE_PERCENT, ORDER
 from advisor.decision.change import find_change
-from advisor.decision.history import Flown
+from advisor.decision.history import CandidateManeuver
 from advisor.flight.signals.messages import FloatArray
 from advisor.oem.estimate import Estimate
 
@@ -41,7 +41,7 @@ class Detection:
 
 
 @dataclass(frozen=True, slots=True)
-class Block:
+class ChangedBlock:
     """Campaigns of an aircraft that loses a derivative, or none."""
 
     noise_percent: float
@@ -62,18 +62,18 @@ class Noticed:
     """Reported moves of the derivative in standard deviations, one for each confirmed campaign."""
 
 
-def change_blocks(campaigns: int, seed: int) -> list[Block]:
+def change_blocks(campaigns: int, seed: int) -> list[ChangedBlock]:
     """Return campaigns with and without a change at the paper's noise levels, each block with its own
     seed."""
     return [
-        Block(noise, lost, count, (seed, round(1000 * noise), kind, number))
+        ChangedBlock(noise, lost, count, (seed, round(1000 * noise), kind, number))
         for noise in NOISE_PERCENT
         for kind, lost in enumerate((None, *LOST))
         for number, count in blocks(campaigns, BLOCK)
     ]
 
 
-def notice(block: Block) -> Noticed:
+def notice(block: ChangedBlock) -> Noticed:
     """Fly a block, and look for the change as in flight."""
     scene, rng = Scene(), np.random.default_rng(block.seed)
     noise = 0.01 * block.noise_percent * noise_scale(fly_named(scene, ORDER[0]), "std")
@@ -86,15 +86,17 @@ def notice(block: Block) -> Noticed:
     return _changed(before, after, block.lost)
 
 
-def detections(flown: Sequence[Block], noticed: Sequence[Noticed]) -> list[Detection]:
+def detections(flown: Sequence[ChangedBlock], noticed: Sequence[Noticed]) -> list[Detection]:
     """Return the joint results of the campaigns of each noise level and change."""
-    cases: dict[tuple[float, str | None], list[tuple[Block, Noticed]]] = {}
+    cases: dict[tuple[float, str | None], list[tuple[ChangedBlock, Noticed]]] = {}
     for block, found in zip(flown, noticed, strict=True):
         cases.setdefault((block.noise_percent, block.lost), []).append((block, found))
     return [_together(*case, several) for case, several in cases.items()]
 
 
-def _together(noise_percent: float, lost: str | None, several: Sequence[tuple[Block, Noticed]]) -> Detection:
+def _together(
+    noise_percent: float, lost: str | None, several: Sequence[tuple[ChangedBlock, Noticed]]
+) -> Detection:
     share = 100.0 / sum(block.campaigns for block, _ in several)
     sigma = [value for _, found in several for value in found.sigma]
     return Detection(
@@ -108,15 +110,15 @@ def _together(noise_percent: float, lost: str | None, several: Sequence[tuple[Bl
 
 def _columns(
     scene: Scene, order: tuple[str, ...], noise: FloatArray, campaigns: int, rng: np.random.Generator
-) -> list[list[Flown]]:
+) -> list[list[CandidateManeuver]]:
     """Return the manoeuvres of each campaign."""
     columns: list[list[Estimate]] = [
         estimate_copies(fly_named(scene, name), noise, campaigns, rng) for name in order
     ]
-    return [[Flown(estimate) for estimate in campaign] for campaign in zip(*columns, strict=True)]
+    return [[CandidateManeuver(estimate) for estimate in campaign] for campaign in zip(*columns, strict=True)]
 
 
-def _unchanged(campaigns: Sequence[Sequence[Flown]]) -> Noticed:
+def _unchanged(campaigns: Sequence[Sequence[CandidateManeuver]]) -> Noticed:
     """Return the false alarms, looked for after every manoeuvre as in flight."""
     suspected = confirmed = 0
     for campaign in campaigns:
@@ -126,7 +128,9 @@ def _unchanged(campaigns: Sequence[Sequence[Flown]]) -> Noticed:
     return Noticed(suspected, confirmed, ())
 
 
-def _changed(before: Sequence[Sequence[Flown]], after: Sequence[Sequence[Flown]], lost: str) -> Noticed:
+def _changed(
+    before: Sequence[Sequence[CandidateManeuver]], after: Sequence[Sequence[CandidateManeuver]], lost: str
+) -> Noticed:
     """Return the changes suspected after the first manoeuvre that follows, and confirmed after the second."""
     suspected, sigma = 0, []
     for early, late in zip(before, after, strict=True):

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from advisor.bundled.study.flying import Flight
+from advisor.bundled.study.flying import NoiselessManeuver
 from advisor.decision.foresight import Instruments, expect
 from advisor.flight.signals.messages import FloatArray
 from advisor.oem.batch import Batch, solve_many
@@ -12,7 +12,7 @@ from advisor.oem.surface import Servo
 
 
 def estimate_copies(
-    flight: Flight, noise: FloatArray, copies: int, rng: np.random.Generator
+    flight: NoiselessManeuver, noise: FloatArray, copies: int, rng: np.random.Generator
 ) -> list[Estimate]:
     """Measure a flight ``copies`` times and estimate each measurement on its own.
 
@@ -34,7 +34,7 @@ def estimate_copies(
     return [_estimate(flight, z[i], batch, i, correlation) for i in range(copies)]
 
 
-def _correlation(flight: Flight, batch: Batch) -> FloatArray:
+def _correlation(flight: NoiselessManeuver, batch: Batch) -> FloatArray:
     """Return the (8, 8) correlation of the errors. The input determines the correlation, so that one copy
     suffices."""
     step = float(flight.t[1] - flight.t[0])
@@ -47,7 +47,9 @@ def _correlation(flight: Flight, batch: Batch) -> FloatArray:
     return np.asarray(expected.covariance / np.outer(expected.std, expected.std))
 
 
-def _estimate(flight: Flight, z: FloatArray, batch: Batch, i: int, correlation: FloatArray) -> Estimate:
+def _estimate(
+    flight: NoiselessManeuver, z: FloatArray, batch: Batch, i: int, correlation: FloatArray
+) -> Estimate:
     """Return the estimate of one copy. The noise is white, so that the plain bound is the covariance."""
     covariance = correlation * np.outer(batch.std_cr[i], batch.std_cr[i])
     fits = {

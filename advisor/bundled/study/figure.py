@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from advisor.aircraft.aircraft import Rule
-from advisor.bundled.study.campaigns import Outcome
+from advisor.bundled.study.campaigns import RuleOutcome
 from advisor.bundled.study.paper import ORDER
 from advisor.process.atomic_file import write_atomically
 from advisor.words.problems import ConfigurationError
@@ -28,7 +28,7 @@ class Curve:
     has one."""
 
 
-def curve(rule: Rule, noise_percent: float, outcomes: Sequence[Outcome]) -> Curve:
+def curve(rule: Rule, noise_percent: float, outcomes: Sequence[RuleOutcome]) -> Curve:
     """Collect the criterion's history, as if every campaign continued to its end."""
     quantiles: list[tuple[float, float, float] | None] = []
     for i in range(len(ORDER)):

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from advisor.bundled.study.campaigns import Block, Judged, joined, table_blocks
+from advisor.bundled.study.campaigns import CampaignBlock, CampaignResults, joined, table_blocks
 from advisor.bundled.study.flying import Scene
 from advisor.bundled.study.paper import ORDER
 
@@ -28,14 +28,14 @@ class Flaws:
     """Median number of manoeuvres that the rule ``information`` needs in these campaigns."""
 
 
-def near_zero_blocks(campaigns: int, seed: int) -> list[Block]:
+def near_zero_blocks(campaigns: int, seed: int) -> list[CampaignBlock]:
     """Return campaigns of an aircraft whose Z_q is zero."""
     scene = Scene()
     scene = replace(scene, aircraft=replace(scene.aircraft, Z_q=0.0))
     return table_blocks(scene, NOISE_PERCENT, min(campaigns, MOST_CAMPAIGNS), seed)
 
 
-def measure(ordinary: Sequence[Judged], near_zero: Sequence[Judged]) -> Flaws:
+def measure(ordinary: Sequence[CampaignResults], near_zero: Sequence[CampaignResults]) -> Flaws:
     """Return both flaws: the first in the paper's campaigns, the second in campaigns with Z_q = 0."""
     rejected = [one.rejected / (len(ORDER) - 1) for one in joined(ordinary, "separate")]
     never = [one.needed is None for one in joined(near_zero, "continuous")]

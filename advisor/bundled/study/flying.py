@@ -43,7 +43,7 @@ class Scene:
 
 
 @dataclass(frozen=True, slots=True)
-class Flight:
+class NoiselessManeuver:
     """One manoeuvre without noise."""
 
     t: FloatArray
@@ -55,7 +55,7 @@ class Flight:
     """(2,) state before the input."""
 
 
-def fly(scene: Scene, steps: Steps) -> Flight:
+def fly(scene: Scene, steps: Steps) -> NoiselessManeuver:
     """Fly an input of ``steps`` (duration in units, share of the amplitude; positive pulls) from trim."""
     _, trimmed = scene.aircraft.trim()
     t = np.arange(round(scene.duration_s * scene.rate_hz) + 1) / scene.rate_hz
@@ -68,19 +68,19 @@ def fly(scene: Scene, steps: Steps) -> Flight:
     return follow(scene, t, elevator)
 
 
-def follow(scene: Scene, t: FloatArray, elevator: FloatArray) -> Flight:
+def follow(scene: Scene, t: FloatArray, elevator: FloatArray) -> NoiselessManeuver:
     """Return the response from trim to an elevator sampled at ``t``."""
     alpha, _ = scene.aircraft.trim()
     trim = np.array([alpha, 0.0])
-    return Flight(t, elevator, respond(scene.aircraft, elevator, trim, 1.0 / scene.rate_hz), trim)
+    return NoiselessManeuver(t, elevator, respond(scene.aircraft, elevator, trim, 1.0 / scene.rate_hz), trim)
 
 
-def fly_named(scene: Scene, name: str) -> Flight:
+def fly_named(scene: Scene, name: str) -> NoiselessManeuver:
     """Fly one of the bundled aircraft's inputs: ``3211``, ``rev``, ..."""
     return fly(scene, STEPS[name])
 
 
-def as_maneuver(flight: Flight) -> Maneuver:
+def as_maneuver(flight: NoiselessManeuver) -> Maneuver:
     """Return the flight in the form of a manoeuvre cut from the stream: the command, its begin and its
     end."""
     moving = np.flatnonzero(np.abs(flight.elevator - flight.elevator[0]) > 1e-9)
@@ -121,7 +121,7 @@ def respond(aircraft: ShortPeriod, elevator: FloatArray, state: FloatArray, step
     return states
 
 
-def noise_scale(flight: Flight, reading: NoiseReading) -> FloatArray:
+def noise_scale(flight: NoiselessManeuver, reading: NoiseReading) -> FloatArray:
     """Return the standard deviation of a noise of 100 %, for every sample, broadcastable to (n, 2)."""
     deviation = flight.response - flight.trim
     match reading:

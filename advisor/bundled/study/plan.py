@@ -7,7 +7,7 @@ from typing import Generic, Protocol, TypeVar
 from advisor.bundled.study.figure import Curve
 
 
-class Task(Protocol):
+class StudyTask(Protocol):
     """Some campaigns of a study, with everything that decides their result, including the seed."""
 
     @property
@@ -15,12 +15,12 @@ class Task(Protocol):
         """Number of campaigns in the task."""
 
 
-T = TypeVar("T", bound=Task)
+T = TypeVar("T", bound=StudyTask)
 R = TypeVar("R")
 
 
 @dataclass(frozen=True, slots=True)
-class Report:
+class StudyReport:
     """Result of a study."""
 
     lines: list[str]
@@ -38,5 +38,5 @@ class Study(Generic[T, R]):
     tasks: Sequence[T]
     work: Callable[[T], R]
     """Function of a module, so that other processes know it."""
-    report: Callable[[Sequence[R]], Report]
+    report: Callable[[Sequence[R]], StudyReport]
     """Function that is called with the results in the order of the tasks."""

@@ -57,7 +57,7 @@ def written_out(theta: FloatArray) -> float:
 
 
 @dataclass(frozen=True, slots=True)
-class Reading:
+class PaperReading:
     """One interpretation of the paper, which differs from the advisor's in a single point."""
 
     name: str
@@ -72,13 +72,13 @@ _OURS: Mapping[Rule, Accepting] = {
 }
 
 READINGS = (
-    Reading("as the advisor does", _OURS),
-    Reading("(10): last flown", {**_OURS, "continuous": continuous_against_last_flown}),
-    Reading("(11): median of accepted", {**_OURS, "separate": separate_among_accepted}),
-    Reading("(12): n + 1 members", _OURS, members=4),
-    Reading("(12): divided by n", _OURS, population_scatter),
-    Reading("(12): largest, not norm", _OURS, largest_scatter),
-    Reading("(13) as written out", _OURS, written_out),
+    PaperReading("as the advisor does", _OURS),
+    PaperReading("(10): last flown", {**_OURS, "continuous": continuous_against_last_flown}),
+    PaperReading("(11): median of accepted", {**_OURS, "separate": separate_among_accepted}),
+    PaperReading("(12): n + 1 members", _OURS, members=4),
+    PaperReading("(12): divided by n", _OURS, population_scatter),
+    PaperReading("(12): largest, not norm", _OURS, largest_scatter),
+    PaperReading("(13) as written out", _OURS, written_out),
 )
 
 
@@ -129,7 +129,7 @@ def compare(
     return results
 
 
-def _needed(campaign: Sequence[Estimate], accepting: Accepting, reading: Reading) -> int | None:
+def _needed(campaign: Sequence[Estimate], accepting: Accepting, reading: PaperReading) -> int | None:
     taken: list[FloatArray] = []
     for number, good in enumerate(accepting([e.cost for e in campaign]), start=1):
         if good:

@@ -6,23 +6,23 @@ from dataclasses import asdict
 import numpy as np
 
 from advisor.bundled.study import advised, changed, flaws, readings, stops, text
-from advisor.bundled.study.campaigns import RULES, Block, Judged, joined, judge, table_blocks
+from advisor.bundled.study.campaigns import RULES, CampaignBlock, CampaignResults, joined, judge, table_blocks
 from advisor.bundled.study.figure import curve, in_terminal
 from advisor.bundled.study.flying import NoiseReading, Scene
 from advisor.bundled.study.paper import NOISE_PERCENT
-from advisor.bundled.study.plan import Report, Study
+from advisor.bundled.study.plan import Study, StudyReport
 from advisor.bundled.study.table import as_document, row
 
 
 def table_1(
     campaigns: int, seed: int, reading: NoiseReading = "std", other_readings: bool = False
-) -> Study[Block, Judged]:
+) -> Study[CampaignBlock, CampaignResults]:
     """Return the study of Table 1 and Figure 5, the paper's place in them, and the flaws of its rules."""
     scene = Scene()
     levels = [table_blocks(scene, noise, campaigns, seed, reading, other_readings) for noise in NOISE_PERCENT]
     near_zero = flaws.near_zero_blocks(campaigns, seed)
 
-    def report(results: Sequence[Judged]) -> Report:
+    def report(results: Sequence[CampaignResults]) -> StudyReport:
         left = iter(results)
         judged = {
             noise: [next(left) for _ in level] for noise, level in zip(NOISE_PERCENT, levels, strict=True)
@@ -54,7 +54,7 @@ def table_1(
             "flaws": asdict(found),
             "figure_5": [asdict(c) for c in curves],
         }
-        return Report(lines, document, tuple(curves))
+        return StudyReport(lines, document, tuple(curves))
 
     return Study([block for level in (*levels, near_zero) for block in level], judge, report)
 
@@ -63,7 +63,7 @@ def advice(campaigns: int, seed: int) -> Study[advised.Pair, tuple[int, int]]:
     """Return the study of the manoeuvres that the advice saves, on two aircraft."""
     pairs = advised.pairs(campaigns, seed)
 
-    def report(results: Sequence[tuple[int, int]]) -> Report:
+    def report(results: Sequence[tuple[int, int]]) -> StudyReport:
         savings = advised.savings(pairs, results)
         entries = [
             {
@@ -77,16 +77,16 @@ def advice(campaigns: int, seed: int) -> Study[advised.Pair, tuple[int, int]]:
             for s in savings
         ]
         document = {"schema": "advisor.study.advice/1", "campaigns": campaigns, "rows": entries}
-        return Report(text.savings(savings, campaigns), document)
+        return StudyReport(text.savings(savings, campaigns), document)
 
     return Study(pairs, advised.fly, report)
 
 
-def change(campaigns: int, seed: int) -> Study[changed.Block, changed.Noticed]:
+def change(campaigns: int, seed: int) -> Study[changed.ChangedBlock, changed.Noticed]:
     """Return the study of changed aircraft: how soon noticed, and how often suspected without a change."""
     flown = changed.change_blocks(campaigns, seed)
 
-    def report(results: Sequence[changed.Noticed]) -> Report:
+    def report(results: Sequence[changed.Noticed]) -> StudyReport:
         found = changed.detections(flown, results)
         entries = [
             {
@@ -99,17 +99,17 @@ def change(campaigns: int, seed: int) -> Study[changed.Block, changed.Noticed]:
             for d in found
         ]
         document = {"schema": "advisor.study.change/1", "campaigns": campaigns, "rows": entries}
-        return Report(text.detections(found, campaigns), document)
+        return StudyReport(text.detections(found, campaigns), document)
 
     return Study(flown, changed.notice, report)
 
 
-def early_stops(campaigns: int, seed: int) -> Study[stops.Block, stops.Stops]:
+def early_stops(campaigns: int, seed: int) -> Study[stops.StopsBlock, stops.Stops]:
     """Return the study of early stops by the rule ``information``, and of the manoeuvres that each rule
     needs."""
     flown = stops.stop_blocks(campaigns, seed, stops.CASES)
 
-    def report(results: Sequence[stops.Stops]) -> Report:
+    def report(results: Sequence[stops.Stops]) -> StudyReport:
         found = stops.by_case(results)
         entries = [
             {
@@ -125,6 +125,6 @@ def early_stops(campaigns: int, seed: int) -> Study[stops.Block, stops.Stops]:
             for s in found
         ]
         document = {"schema": "advisor.study.stops/1", "campaigns": campaigns, "rows": entries}
-        return Report(text.early_stops(found, campaigns), document)
+        return StudyReport(text.early_stops(found, campaigns), document)
 
     return Study(flown, stops.fly, report)

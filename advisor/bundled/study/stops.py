@@ -13,9 +13,17 @@ from advisor.aircraft.aircraft import Aircraft, CampaignPlan, Elevator, Rule
 from advisor.bundled.study.blocks import blocks
 from advisor.bundled.study.campaigns import RULES
 from advisor.bundled.study.estimating import estimate_copies
-from advisor.bundled.study.flying import Flight, Scene, as_maneuver, fly_named, follow, noise_scale, respond
+from advisor.bundled.study.flying import (
+    NoiselessManeuver,
+    Scene,
+    as_maneuver,
+    fly_named,
+    follow,
+    noise_scale,
+    respond,
+)
 from advisor.bundled.study.paper import ORDER
-from advisor.decision.history import Flown
+from advisor.decision.history import CandidateManeuver
 from advisor.decision.information import knowledge
 from advisor.decision.prediction import MOMENTS, PREDICTED, response_to
 from advisor.decision.stopping import progress
@@ -96,7 +104,7 @@ class Stops:
 
 
 @dataclass(frozen=True, slots=True)
-class Block:
+class StopsBlock:
     """Campaigns of one case that are flown and judged together."""
 
     case: Case
@@ -104,22 +112,22 @@ class Block:
     seed: tuple[int, ...]
 
 
-def stop_blocks(campaigns: int, seed: int, cases: Sequence[Case]) -> list[Block]:
+def stop_blocks(campaigns: int, seed: int, cases: Sequence[Case]) -> list[StopsBlock]:
     """Divide the campaigns of every case into blocks, each with a seed of its own."""
     return [
-        Block(case, count, (seed, number, k))
+        StopsBlock(case, count, (seed, number, k))
         for number, case in enumerate(cases)
         for k, count in blocks(campaigns, BLOCK)
     ]
 
 
-def fly(block: Block) -> Stops:
+def fly(block: StopsBlock) -> Stops:
     """Fly a block, and return where each rule stops."""
     case, scene, rng = block.case, Scene(), np.random.default_rng(block.seed)
     flights = {name: _through(scene, fly_named(scene, name), case.lag_s) for name in set(ORDER)}
     noise = 0.01 * case.noise_percent * noise_scale(flights[ORDER[0]], "std")
     order = [flights[name] for name in ORDER]
-    flown: list[tuple[Flown, ...]]
+    flown: list[tuple[CandidateManeuver, ...]]
     if case.correlation_s == case.gust_percent == case.lag_s == 0.0:
         columns = [_copies(flight, noise, block.campaigns, rng) for flight in order]
         flown = list(zip(*columns, strict=True))
@@ -143,7 +151,7 @@ def by_case(found: Sequence[Stops]) -> list[Stops]:
     ]
 
 
-def _through(scene: Scene, flight: Flight, lag_s: float) -> Flight:
+def _through(scene: Scene, flight: NoiselessManeuver, lag_s: float) -> NoiselessManeuver:
     """Return the flight with its command passed through a servo with a lag."""
     if lag_s <= 0.0:
         return flight
@@ -151,15 +159,17 @@ def _through(scene: Scene, flight: Flight, lag_s: float) -> Flight:
     return replace(follow(scene, flight.t, surface), elevator=flight.elevator)
 
 
-def _copies(flight: Flight, noise: FloatArray, campaigns: int, rng: np.random.Generator) -> list[Flown]:
+def _copies(
+    flight: NoiselessManeuver, noise: FloatArray, campaigns: int, rng: np.random.Generator
+) -> list[CandidateManeuver]:
     """Return the manoeuvre of each campaign, with white noise."""
     maneuver = as_maneuver(flight)
-    return [Flown(e, maneuver=maneuver) for e in estimate_copies(flight, noise, campaigns, rng)]
+    return [CandidateManeuver(e, maneuver=maneuver) for e in estimate_copies(flight, noise, campaigns, rng)]
 
 
 def _campaign(
-    scene: Scene, order: Sequence[Flight], noise: FloatArray, case: Case, rng: np.random.Generator
-) -> tuple[Flown, ...]:
+    scene: Scene, order: Sequence[NoiselessManeuver], noise: FloatArray, case: Case, rng: np.random.Generator
+) -> tuple[CandidateManeuver, ...]:
     """Return one campaign through the estimator of the flight test, with its corrected covariance.
 
     Raises
@@ -180,11 +190,13 @@ def _campaign(
         found = estimate(maneuver, aircraft)
         if isinstance(found, NoEstimate):
             raise ArithmeticError(found.text)
-        flown.append(Flown(found, maneuver=maneuver, servo=Servo(lag_s)))
+        flown.append(CandidateManeuver(found, maneuver=maneuver, servo=Servo(lag_s)))
     return tuple(flown)
 
 
-def _gusts(scene: Scene, flight: Flight, case: Case, rng: np.random.Generator) -> FloatArray | float:
+def _gusts(
+    scene: Scene, flight: NoiselessManeuver, case: Case, rng: np.random.Generator
+) -> FloatArray | float:
     """Return the gusts' contributions to α and q, shape (n, 2). A gust acts through Z_alpha and M_alpha."""
     if case.gust_percent == 0.0:
         return 0.0
@@ -195,7 +207,7 @@ def _gusts(scene: Scene, flight: Flight, case: Case, rng: np.random.Generator) -
     return respond(moved, gust, np.zeros(2), 1.0 / scene.rate_hz)
 
 
-def _measure(flight: Flight, disturbance: FloatArray) -> Maneuver:
+def _measure(flight: NoiselessManeuver, disturbance: FloatArray) -> Maneuver:
     maneuver, z = as_maneuver(flight), flight.response + disturbance
     channels = {name: Channel(name, flight.t, z[:, k]) for k, name in enumerate(("alpha", "q"))}
     return replace(maneuver, channels={**maneuver.channels, **channels})
@@ -210,7 +222,7 @@ def _lag_found(maneuvers: Sequence[Maneuver]) -> float:
     return lag.value if lag is not None else 0.0
 
 
-def _coloured(flight: Flight, correlation_s: float, rng: np.random.Generator) -> FloatArray:
+def _coloured(flight: NoiselessManeuver, correlation_s: float, rng: np.random.Generator) -> FloatArray:
     """Return noise of unit variance, shape (n, 2)."""
     white = rng.standard_normal(flight.response.shape)
     if correlation_s == 0.0:
@@ -222,7 +234,9 @@ def _coloured(flight: Flight, correlation_s: float, rng: np.random.Generator) ->
     return noise
 
 
-def _measured(case: Case, campaigns: Sequence[Sequence[Flown]], flights: Sequence[Flight]) -> Stops:
+def _measured(
+    case: Case, campaigns: Sequence[Sequence[CandidateManeuver]], flights: Sequence[NoiselessManeuver]
+) -> Stops:
     plan = CampaignPlan(tolerance_percent=case.tolerance_percent)
     needed: dict[Rule, tuple[int | None, ...]] = {
         rule: tuple(progress(campaign, rule, plan).stopped_at for campaign in campaigns) for rule in RULES
@@ -235,7 +249,9 @@ def _measured(case: Case, campaigns: Sequence[Sequence[Flown]], flights: Sequenc
     return Stops(case, needed, tuple(errors))
 
 
-def _error_percent(flown: Sequence[Flown], flights: Sequence[Flight], plan: CampaignPlan) -> float:
+def _error_percent(
+    flown: Sequence[CandidateManeuver], flights: Sequence[NoiselessManeuver], plan: CampaignPlan
+) -> float:
     """Return the largest error of the response predicted at the stop, in percent of its peak."""
     derivatives = knowledge(flown, plan).posterior.shared.theta
     worst = 0.0

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.aircraft.aircraft import PARAMETERS, Rule
-from advisor.bundled.study.campaigns import Outcome
+from advisor.bundled.study.campaigns import RuleOutcome
 from advisor.bundled.study.paper import TABLE_1, PaperRow
 from advisor.flight.signals.messages import FloatArray
 
@@ -58,7 +58,7 @@ class Row:
         }
 
 
-def row(rule: Rule, noise_percent: float, outcomes: Sequence[Outcome], truth: FloatArray) -> Row:
+def row(rule: Rule, noise_percent: float, outcomes: Sequence[RuleOutcome], truth: FloatArray) -> Row:
     """Collect the outcomes of one rule at one noise level."""
     errors = np.array([o.theta for o in outcomes]) - truth
     outside = None

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from advisor.exports.flights.table import Column, Dataset, Table
+from advisor.exports.flights.table import Column, Dataset, FlightTable
 
 SIDECAR = "columns.json"
 
@@ -38,6 +38,6 @@ def _shown(column: Column) -> Iterator[object]:
     return (repr(value) if np.isfinite(value) else "" for value in values)
 
 
-def _described(table: Table) -> dict[str, object]:
+def _described(table: FlightTable) -> dict[str, object]:
     columns = {c.name: {"unit": c.unit, "about": c.about} for c in table.columns}
     return {"about": table.about, "columns": columns}

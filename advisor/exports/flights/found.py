@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from advisor.aircraft.aircraft import PARAMETERS
 from advisor.campaign.state import CampaignState, JudgedManeuver
-from advisor.exports.flights.table import Column, Table, numbers, texts
+from advisor.exports.flights.table import Column, FlightTable, numbers, texts
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.record import UNITS
 from advisor.model.response import OUTPUTS
@@ -27,7 +27,7 @@ _MEASURES = {
 }
 
 
-def maneuvers(state: CampaignState, record_of: Mapping[tuple[int, int], int]) -> Table:
+def maneuvers(state: CampaignState, record_of: Mapping[tuple[int, int], int]) -> FlightTable:
     """Return a table with a row for each manoeuvre: verdict, reasons and fit.
 
     Parameters
@@ -78,10 +78,10 @@ def maneuvers(state: CampaignState, record_of: Mapping[tuple[int, int], int]) ->
     for output in OUTPUTS:
         fits = [e.fits[0].get(output) if (e := _estimate(m)) else None for m in judged]
         columns += _measures(output, fits) if any(fits) else []
-    return Table("maneuvers", "A row is a manoeuvre.", tuple(columns))
+    return FlightTable("maneuvers", "A row is a manoeuvre.", tuple(columns))
 
 
-def estimates(state: CampaignState) -> Table:
+def estimates(state: CampaignState) -> FlightTable:
     """Return a table with a row for each parameter of each estimate, and its row of the covariance."""
     found = [(one.maneuver.number, e) for one in state.maneuvers if (e := _estimate(one))]
     if state.model is not None:
@@ -114,10 +114,10 @@ def estimates(state: CampaignState) -> Table:
     for k, name in enumerate(PARAMETERS):
         unit = f"{_BY_ROW} times {PARAMETER_UNITS[name]}"
         columns.append(Column(f"covariance_{name}", told("covariance", k), unit, f"covariance with {name}"))
-    return Table("estimates", "A row is one parameter of one estimate.", tuple(columns))
+    return FlightTable("estimates", "A row is one parameter of one estimate.", tuple(columns))
 
 
-def residuals(state: CampaignState, record_of: Mapping[tuple[int, int], int]) -> tuple[Table, ...]:
+def residuals(state: CampaignState, record_of: Mapping[tuple[int, int], int]) -> tuple[FlightTable, ...]:
     """Return a table for each output: measured, fitted and residual of every accepted manoeuvre, at their own
     stamps."""
     accepted = [
@@ -146,7 +146,7 @@ def residuals(state: CampaignState, record_of: Mapping[tuple[int, int], int]) ->
             Column("fitted", joined("fitted"), unit, f"{output} of the fit of lowest cost"),
             Column("residual", joined("residual"), unit, "measured minus fitted"),
         )
-        tables.append(Table(f"residuals_{output}", f"A row is a sample of {output}.", columns))
+        tables.append(FlightTable(f"residuals_{output}", f"A row is a sample of {output}.", columns))
     return tuple(tables)
 
 

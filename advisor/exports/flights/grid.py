@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from advisor.exports.flights.table import Column, Table
+from advisor.exports.flights.table import Column, FlightTable
 from advisor.flight.maneuvers.segmentation import GAP_S, MANY_INTERVALS
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.record import ALL_UNITS, Channel
@@ -17,7 +17,7 @@ GRID = (
 """Description of the grid, and of the interpolation onto the grid."""
 
 
-def on_one_grid(channels: Mapping[str, Channel]) -> Table:
+def on_one_grid(channels: Mapping[str, Channel]) -> FlightTable:
     """Return all channels at the times of ``GRID``; without rows where no channel has two samples."""
     t = grid_times(channels)
     columns = [
@@ -25,7 +25,7 @@ def on_one_grid(channels: Mapping[str, Channel]) -> Table:
         for name, c in channels.items()
     ]
     time = Column("t_boot_s", t, "s", "vehicle time since boot")
-    return Table("grid", f"All channels on one grid: {GRID}.", (time, *columns))
+    return FlightTable("grid", f"All channels on one grid: {GRID}.", (time, *columns))
 
 
 def grid_times(channels: Mapping[str, Channel]) -> FloatArray:

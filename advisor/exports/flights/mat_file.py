@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from scipy.io import savemat
 
-from advisor.exports.flights.table import Column, Dataset, Table
+from advisor.exports.flights.table import Column, Dataset, FlightTable
 
 FILE = "flight.mat"
 
@@ -28,7 +28,7 @@ def write_mat(data: Dataset, folder: Path) -> None:
     savemat(path, content, long_field_names=True, do_compression=True, oned_as="column")
 
 
-def _struct(table: Table) -> dict[str, Any]:
+def _struct(table: FlightTable) -> dict[str, Any]:
     return {
         **{column.name: _vector(column) for column in table.columns},
         "units": {column.name: column.unit for column in table.columns},

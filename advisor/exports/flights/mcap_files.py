@@ -10,7 +10,7 @@ import numpy as np
 from mcap.writer import Writer
 
 from advisor import __version__
-from advisor.exports.flights.table import Column, Dataset, Recording, Table
+from advisor.exports.flights.table import Column, Dataset, FlightTable, Recording
 
 _TYPES = {"f": "number", "i": "integer", "b": "boolean", "U": "string"}
 _TIMES = {"maneuvers": "end_boot_s"}
@@ -30,7 +30,9 @@ def write_mcap(data: Dataset, folder: Path) -> None:
             _write(file, data, [t for t in tables if len(t)], estimates, _end_s(recording))
 
 
-def _write(file: Any, data: Dataset, tables: list[Table], at_end: list[Table], end_s: float) -> None:
+def _write(
+    file: Any, data: Dataset, tables: list[FlightTable], at_end: list[FlightTable], end_s: float
+) -> None:
     writer = Writer(file)
     writer.start(profile="", library=f"inflight-advisor {__version__}")
     writer.add_metadata("advisor", {"about": json.dumps(data.about, ensure_ascii=False)})
@@ -42,7 +44,7 @@ def _write(file: Any, data: Dataset, tables: list[Table], at_end: list[Table], e
     writer.finish()  # type: ignore[no-untyped-call]
 
 
-def _register(writer: Writer, table: Table) -> int:
+def _register(writer: Writer, table: FlightTable) -> int:
     schema = {
         "title": table.name,
         "description": table.about,
@@ -64,7 +66,7 @@ def _property(column: Column) -> dict[str, Any]:
 
 
 def _messages(
-    table: Table, topic: int, at_s: np.ndarray[Any, Any]
+    table: FlightTable, topic: int, at_s: np.ndarray[Any, Any]
 ) -> Iterator[tuple[int, int, dict[str, Any]]]:
     names = [column.name for column in table.columns]
     rows = zip(*(column.values.tolist() for column in table.columns), strict=True)
@@ -76,16 +78,16 @@ def _known(value: Any) -> Any:
     return None if isinstance(value, float) and not np.isfinite(value) else value
 
 
-def _is_of_record(table: Table) -> bool:
+def _is_of_record(table: FlightTable) -> bool:
     return table.name not in ("channels", "estimates")
 
 
-def _of_record(table: Table, number: int) -> Table:
+def _of_record(table: FlightTable, number: int) -> FlightTable:
     """Return the rows of one record, in the order of their times."""
     rows = np.flatnonzero(table["record"] == number)
     rows = rows[np.argsort(table[_TIMES.get(table.name, "t_boot_s")][rows], kind="stable")]
     columns = tuple(Column(c.name, c.values[rows], c.unit, c.about) for c in table.columns)
-    return Table(table.name, table.about, columns)
+    return FlightTable(table.name, table.about, columns)
 
 
 def _end_s(recording: Recording) -> float:

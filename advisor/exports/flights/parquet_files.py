@@ -6,7 +6,7 @@ from pathlib import Path
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from advisor.exports.flights.table import Dataset, Table
+from advisor.exports.flights.table import Dataset, FlightTable
 
 
 def write_parquet(data: Dataset, folder: Path) -> None:
@@ -22,7 +22,7 @@ def write_parquet(data: Dataset, folder: Path) -> None:
             _write(table, data, folder / recording.name / f"{table.name}.parquet")
 
 
-def _write(table: Table, data: Dataset, path: Path) -> None:
+def _write(table: FlightTable, data: Dataset, path: Path) -> None:
     arrays = [pa.array(column.values) for column in table.columns]
     fields = [
         pa.field(column.name, array.type, metadata={"unit": column.unit, "about": column.about})

@@ -9,7 +9,7 @@ from advisor import __version__
 from advisor.analysis.whole_flights import WholeFlights
 from advisor.exports.flights.found import estimates, maneuvers, residuals
 from advisor.exports.flights.grid import GRID, on_one_grid
-from advisor.exports.flights.table import Column, Dataset, Recording, Table, numbers, texts
+from advisor.exports.flights.table import Column, Dataset, FlightTable, Recording, numbers, texts
 from advisor.flight.signals.power_on import PowerOn
 from advisor.flight.signals.record import ALL_UNITS
 
@@ -39,7 +39,7 @@ def dataset(flights: WholeFlights) -> Dataset:
 
 def _recording(number: int, power_on: PowerOn) -> Recording:
     channels = tuple(
-        Table(
+        FlightTable(
             name,
             f"{name} at its own stamps.",
             (
@@ -54,7 +54,7 @@ def _recording(number: int, power_on: PowerOn) -> Recording:
     return Recording(f"record_{number}", channels, on_one_grid(power_on.channels))
 
 
-def _channels(flights: WholeFlights) -> Table:
+def _channels(flights: WholeFlights) -> FlightTable:
     rows = [
         (number, flights.logs[flight], one.boot, channel)
         for number, (flight, one) in enumerate(flights.power_ons, start=1)
@@ -75,7 +75,7 @@ def _channels(flights: WholeFlights) -> Table:
             "largest_gap_s", numbers([c.largest_gap_s for c in found]), "s", "longest time between stamps"
         ),
     )
-    return Table("channels", "A row is a channel of one record.", columns)
+    return FlightTable("channels", "A row is a channel of one record.", columns)
 
 
 def _sha256(path: Path) -> str:

@@ -23,7 +23,7 @@ class Column:
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
+class FlightTable:
     """Columns of equal length."""
 
     name: str
@@ -46,9 +46,9 @@ class Recording:
 
     name: str
     """``record_1``, ``record_2``, ... in the order of flying."""
-    channels: tuple[Table, ...]
+    channels: tuple[FlightTable, ...]
     """A table for each channel, at its own stamps: ``t_boot_s`` and a column with the channel's name."""
-    grid: Table
+    grid: FlightTable
     """All channels on one grid of times: ``t_boot_s`` and a column for each channel."""
 
 
@@ -57,12 +57,12 @@ class Dataset:
     """All tables of an export."""
 
     recordings: tuple[Recording, ...]
-    tables: tuple[Table, ...]
+    tables: tuple[FlightTable, ...]
     """Findings: ``channels``, ``maneuvers``, ``estimates``, ``residuals_OUTPUT``."""
     about: Mapping[str, Any] = field(default_factory=dict)
     """Origin of the numbers for JSON: version, logs with their SHA-256, grid, notes."""
 
-    def table(self, name: str) -> Table:
+    def table(self, name: str) -> FlightTable:
         """Return one of ``tables`` by name."""
         return next(table for table in self.tables if table.name == name)
 

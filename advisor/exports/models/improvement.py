@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from advisor.aircraft.aircraft import Aircraft, Elevator, Reference
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
-from advisor.exports.models.servo import OF_THE_SERVO, Servo, servo_of
+from advisor.exports.models.servo import OF_THE_SERVO, ExportedServo, servo_of
 from advisor.flight.instruments.atmosphere import SEA_LEVEL_DENSITY_KG_M3
 from advisor.gap.candidates.known import less_of_the_servo, together
 from advisor.gap.result import Diagnosis, Value
@@ -30,7 +30,7 @@ class Improvement:
     prior: Mapping[str, float]
     """Prior model of the simulator: any of the eight parameters, none where unknown."""
     airspeed_m_s: float
-    servo: Servo
+    servo: ExportedServo
     """Delay, lag and limits between command and surface."""
     effects: Mapping[str, Mapping[str, float]]
     """Effects other than those of the servo, by the keys of the aircraft file."""

@@ -12,7 +12,7 @@ OF_THE_SERVO = (
 
 
 @dataclass(frozen=True)
-class Servo:
+class ExportedServo:
     """Delay, then lag, then limits of the surface; zero or None for an absent one."""
 
     delay_s: float = 0.0
@@ -32,7 +32,7 @@ class Servo:
     @property
     def is_quick(self) -> bool:
         """Whether the surface follows its command at once."""
-        return self == Servo()
+        return self == ExportedServo()
 
     def lines(self) -> list[str]:
         """Return each property with its number and unit, for people."""
@@ -47,11 +47,11 @@ class Servo:
         return [text for text, size in said.items() if size]
 
 
-def servo_of(elevator: Elevator, effects: Mapping[str, Mapping[str, float]]) -> Servo:
+def servo_of(elevator: Elevator, effects: Mapping[str, Mapping[str, float]]) -> ExportedServo:
     """Return the servo of the aircraft file, with the further effects found."""
     lag = effects.get("actuator_lag", {})
     band = effects.get("actuator_deadband", {})
-    return Servo(
+    return ExportedServo(
         delay_s=(elevator.delay_s or 0.0) + effects.get("transport_delay", {}).get("delay_s", 0.0),
         lag_s=(elevator.lag_s or 0.0) + lag.get("lag_s", 0.0),
         damping=lag.get("damping"),

@@ -27,7 +27,7 @@ NOTHING = "no cause was named and no number found wrong"
 
 
 @dataclass(frozen=True)
-class Order:
+class ExportOrder:
     """One requested file."""
 
     format: str
@@ -35,17 +35,17 @@ class Order:
 
 
 @dataclass(frozen=True)
-class Outcome:
+class ExportOutcome:
     """Result of an order."""
 
-    order: Order
+    order: ExportOrder
     left_out: tuple[str, ...] = ()
     """Parts of the improvement that the format does not carry."""
     problem: str = ""
     """Reason for which the file was not written; empty for a written file."""
 
 
-def order_of(text: str) -> Order:
+def order_of(text: str) -> ExportOrder:
     """Read ``FORMAT:FILE``.
 
     Raises
@@ -58,10 +58,10 @@ def order_of(text: str) -> Order:
         raise ConfigurationError(f"--export: {name!r} is none of the formats {', '.join(FORMATS)}.")
     if not colon or not file:
         raise ConfigurationError(f"--export {name}: name the file behind a colon, as in {name}:FILE.")
-    return Order(name, Path(file))
+    return ExportOrder(name, Path(file))
 
 
-def refuse(order: Order, aircraft: Aircraft) -> None:
+def refuse(order: ExportOrder, aircraft: Aircraft) -> None:
     """Refuse, before the diagnosis, an order that could not be carried out after it.
 
     Raises
@@ -86,36 +86,36 @@ def refuse(order: Order, aircraft: Aircraft) -> None:
         )
 
 
-def carry_out(orders: Sequence[Order], diagnosis: Diagnosis, aircraft: Aircraft) -> list[Outcome]:
+def carry_out(orders: Sequence[ExportOrder], diagnosis: Diagnosis, aircraft: Aircraft) -> list[ExportOutcome]:
     """Write each file as a whole. The failure of one file does not hinder the others."""
     found = []
     for order in orders:
         try:
             found.append(_carried_out(order, diagnosis, aircraft))
         except ConfigurationError as error:
-            found.append(Outcome(order, problem=str(error)))
+            found.append(ExportOutcome(order, problem=str(error)))
         except OSError as error:
             reason = error.strerror or str(error)
-            found.append(Outcome(order, problem=f"--export: {order.file} was not written: {reason}."))
+            found.append(ExportOutcome(order, problem=f"--export: {order.file} was not written: {reason}."))
     return found
 
 
-def _carried_out(order: Order, diagnosis: Diagnosis, aircraft: Aircraft) -> Outcome:
+def _carried_out(order: ExportOrder, diagnosis: Diagnosis, aircraft: Aircraft) -> ExportOutcome:
     if order.format in ("jsbsim", "aircraft") and diagnosis.verdict not in ("effect", "parameters"):
-        return Outcome(order, problem=f"--export: {order.file} was not written: {NOTHING}.")
+        return ExportOutcome(order, problem=f"--export: {order.file} was not written: {NOTHING}.")
     if order.format == "aircraft":
         write_improved(diagnosis, aircraft, order.file)
-        return Outcome(order)
+        return ExportOutcome(order)
     improvement = improvement_of(diagnosis, aircraft)
     if order.format == "jsbsim":
         made = aircraft_text(improvement, _model(aircraft))
     else:
         made = _maker(order)(improvement)
     write_atomically(order.file, made.text)
-    return Outcome(order, made.left_out)
+    return ExportOutcome(order, made.left_out)
 
 
-def _maker(order: Order) -> Callable[[Improvement], Exported]:
+def _maker(order: ExportOrder) -> Callable[[Improvement], Exported]:
     if order.format == "ardupilot" and order.file.suffix in SERVO_FILES:
         return ardupilot.servo_text
     makers: Mapping[str, Callable[[Improvement], Exported]] = {

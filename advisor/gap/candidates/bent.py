@@ -11,7 +11,7 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.variant import Values, Variant
-from advisor.gap.records.flights import Flights
+from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX
 
 _TRIMS_DIFFER = 0.1
@@ -21,7 +21,7 @@ _SLOPES = {"Z_alpha2": "Z_alpha", "M_alpha2": "M_alpha", "M_delta2": "M_delta_e"
 """The square of an angle, and the derivative of the linear term in that angle."""
 
 
-def bent(variant: Variant, flights: Flights) -> Variant:
+def bent(variant: Variant, flights: PreparedManeuvers) -> Variant:
     """Return ``variant``, a square and a cube about each trim, with a curve about one common angle as
     alternative."""
     if variant.entries[0] == "M_delta2":
@@ -37,14 +37,14 @@ def bent(variant: Variant, flights: Flights) -> Variant:
     return replace(variant, likewise=(_about(usual, variant, trims),))
 
 
-def as_in_file(variant: Variant, parameters: Mapping[str, float], flights: Flights) -> Variant:
+def as_in_file(variant: Variant, parameters: Mapping[str, float], flights: PreparedManeuvers) -> Variant:
     """Return a curve about the angle that an aircraft file states, whatever the trims of these flights."""
     if "about_rad" not in parameters or not _SLOPES.keys() & set(variant.entries):
         return variant
     return _about(parameters["about_rad"], variant, _trims_of(variant, flights))
 
 
-def _trims_of(variant: Variant, flights: Flights) -> list[float]:
+def _trims_of(variant: Variant, flights: PreparedManeuvers) -> list[float]:
     of_elevator = variant.entries[0] == "M_delta2"
     return [f.u_trim if of_elevator else f.alpha_trim for f in flights.flights]
 
@@ -55,7 +55,7 @@ def _about(angle_rad: float, variant: Variant, trims: Sequence[float]) -> Varian
     slope, (square, cube) = INDEX[_SLOPES[variant.entries[0]]], (INDEX[entry] for entry in variant.entries)
     offset = np.array(trims) - angle_rad
 
-    def bend(p: FloatArray, values: Values, _: Flights) -> None:
+    def bend(p: FloatArray, values: Values, _: PreparedManeuvers) -> None:
         p[:, slope] += (2.0 * values[0] + 3.0 * values[1] * offset) * offset
         p[:, square] += values[0] + 3.0 * values[1] * offset
         p[:, cube] += values[1]

@@ -7,7 +7,7 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.variant import Values, Variant
-from advisor.gap.records.flights import Flights
+from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX
 
 Change = Callable[[FloatArray, FloatArray], None]
@@ -51,19 +51,19 @@ def divide(*entries: str) -> Change:
     return change
 
 
-def starts_of(flights: Flights) -> FloatArray:
+def starts_of(flights: PreparedManeuvers) -> FloatArray:
     """Return the vehicle time of the start of each record in s, shape (manoeuvres,)."""
     return np.array([f.started_s for f in flights.flights])
 
 
-def breaks(flights: Flights) -> list[tuple[int, float]]:
+def breaks(flights: PreparedManeuvers) -> list[tuple[int, float]]:
     """Return every possible place of a step: index of the next manoeuvre, and a time in s between the two."""
     t = starts_of(flights)
     ends = t + np.array([f.duration_s for f in flights.flights])
     return [(j, float((ends[j - 1] + t[j]) / 2.0)) for j in range(1, len(t))]
 
 
-def ramps_and_steps(effect: str, block: str, flights: Flights, change: Change) -> list[Variant]:
+def ramps_and_steps(effect: str, block: str, flights: PreparedManeuvers, change: Change) -> list[Variant]:
     """Return one variant for a steady drift, and one for a step at each place between two manoeuvres."""
     if len(flights) < 3:
         return []
@@ -73,7 +73,7 @@ def ramps_and_steps(effect: str, block: str, flights: Flights, change: Change) -
     def course(p: FloatArray, values: Values, share: FloatArray) -> None:
         change(p, values[0] * share)
 
-    def drift(p: FloatArray, values: Values, _: Flights) -> None:
+    def drift(p: FloatArray, values: Values, _: PreparedManeuvers) -> None:
         change(p, values[0] * (t - t[0]))
 
     steady = Variant(
@@ -84,7 +84,7 @@ def ramps_and_steps(effect: str, block: str, flights: Flights, change: Change) -
     return [steady, *steps_in(flights, step, course)]
 
 
-def steps_in(flights: Flights, one: Variant, course: Course) -> list[Variant]:
+def steps_in(flights: PreparedManeuvers, one: Variant, course: Course) -> list[Variant]:
     """Return a step at each place between two manoeuvres; ``one`` has names, starts and bounds of the change.
 
     Every step has a gradual change as alternative, fitted from the step's result: fuel that is pumped, people
@@ -105,7 +105,7 @@ def steps_in(flights: Flights, one: Variant, course: Course) -> list[Variant]:
 
 
 def _longer(
-    flights: Flights, one: Variant, course: Course, carried: Callable[[FloatArray], Values]
+    flights: PreparedManeuvers, one: Variant, course: Course, carried: Callable[[FloatArray], Values]
 ) -> tuple[Variant, ...]:
     """Return the change as a gradual one that begins in flight; none where manoeuvres are too few."""
     if len(flights) < _FOR_GRADUAL:
@@ -126,7 +126,7 @@ def _longer(
     return (gradual,)
 
 
-def _span_of(flights: Flights) -> float:
+def _span_of(flights: PreparedManeuvers) -> float:
     """Return the time from the first manoeuvre to the last, in s."""
     t = starts_of(flights)
     return max(float(t[-1] - t[0]), 1.0)

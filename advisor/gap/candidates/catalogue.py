@@ -5,7 +5,7 @@ import numpy as np
 from advisor.gap.candidates import force, input, moment, sensors, timing
 from advisor.gap.candidates.traits import TRAITS
 from advisor.gap.candidates.variant import Variant
-from advisor.gap.records.flights import SPEED_CHANGE, Flights
+from advisor.gap.records.flights import SPEED_CHANGE, PreparedManeuvers
 from advisor.gap.simulator.layout import HEIGHT, THROTTLE
 
 _LEAST_S = 0.004
@@ -19,7 +19,7 @@ _TWO_POWERS = 0.1
 """Relative change of the air speed above which moments and lift can have separate powers of the speed."""
 
 
-def variants_for(flights: Flights) -> list[Variant]:
+def variants_for(flights: PreparedManeuvers) -> list[Variant]:
     """Return all variants whose channels were recorded and whose input varied."""
     # An autopilot's own estimates have passed its filters, and the delay of a filter is no fault.
     least_s = _FILTERED_S if flights.alpha_is_derived else _LEAST_S
@@ -29,7 +29,7 @@ def variants_for(flights: Flights) -> list[Variant]:
     return [v for v in (*within, *between) if _possible(v, flights)]
 
 
-def _possible(v: Variant, flights: Flights) -> bool:
+def _possible(v: Variant, flights: PreparedManeuvers) -> bool:
     if not v.needs <= flights.has or not {TRAITS[v.effect].channel} <= {"", *flights.channels}:
         return False
     if v.effect == "thrust_moment":

@@ -8,7 +8,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.bent import bent
 from advisor.gap.candidates.between import divide, ramps_and_steps, steps_in
 from advisor.gap.candidates.variant import Values, Variant
-from advisor.gap.records.flights import Flights
+from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import DERIVATIVES, HEIGHT, INDEX
 
 BLOCK = "force_equation"
@@ -32,7 +32,7 @@ _UNSTEADY = Variant(
 )  # fmt: skip
 
 
-def _with_moment(p: FloatArray, values: Values, _: Flights) -> None:
+def _with_moment(p: FloatArray, values: Values, _: PreparedManeuvers) -> None:
     """Let the pitching moment build up with the lift, as on a wing without tail."""
     p[:, INDEX["lift_share"]] += values[0]
     p[:, INDEX["lift_lag_s"]] += values[1]
@@ -42,7 +42,7 @@ def _with_moment(p: FloatArray, values: Values, _: Flights) -> None:
 _UNSTEADY_WITH_MOMENT = replace(_UNSTEADY, apply_with=_with_moment, fixed={"with_moment": 1.0})
 
 
-def _powers(p: FloatArray, values: Values, _: Flights) -> None:
+def _powers(p: FloatArray, values: Values, _: PreparedManeuvers) -> None:
     """Set the powers of the air speed of the moments and of the lift; the simulation's moments include the
     lift's."""
     of_moments, of_lift = values
@@ -50,7 +50,7 @@ def _powers(p: FloatArray, values: Values, _: Flights) -> None:
     p[:, INDEX["moment_power"]] += of_moments - of_lift
 
 
-def variants(flights: Flights) -> list[Variant]:
+def variants(flights: PreparedManeuvers) -> list[Variant]:
     """Return the effects of the block; those between manoeuvres depend on how many were flown."""
     return [
         bent(CURVED_LIFT, flights),
@@ -81,7 +81,7 @@ def variants(flights: Flights) -> list[Variant]:
     ]  # fmt: skip
 
 
-def _heights_of_decay(flights: Flights) -> list[float]:
+def _heights_of_decay(flights: PreparedManeuvers) -> list[float]:
     """Return two heights in m over which ground effect may decay: a fifth and two thirds of the height
     flown."""
     if "height" not in flights.has:
@@ -90,7 +90,7 @@ def _heights_of_decay(flights: Flights) -> list[float]:
     return [float(np.clip(share * flown, *_DECAYS_M)) for share in (0.2, 0.67)]
 
 
-def _mass(flights: Flights) -> list[Variant]:
+def _mass(flights: PreparedManeuvers) -> list[Variant]:
     """Return a change of mass with equal change of inertia; a step also has an inertia of its own as
     alternative.
 
@@ -114,7 +114,7 @@ def _divided_separately(p: FloatArray, values: Values, share: FloatArray) -> Non
         change(p, growth * share)
 
 
-def _stall(flights: Flights) -> list[Variant]:
+def _stall(flights: PreparedManeuvers) -> list[Variant]:
     """Return flow separation about an angle of attack (Kirchhoff's flow): a kink, unlike any parabola."""
     if "alpha" not in flights.channels:
         return []
@@ -136,7 +136,7 @@ def _stall(flights: Flights) -> list[Variant]:
     ]  # fmt: skip
 
 
-def _icing(flights: Flights) -> list[Variant]:
+def _icing(flights: PreparedManeuvers) -> list[Variant]:
     """Return a loss of lift slope and control power at once, each by its own share, between two
     manoeuvres."""
     if len(flights) < 3:

@@ -6,7 +6,7 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.variant import Values, Variant
-from advisor.gap.records.flights import Flights
+from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX
 
 BLOCK = "input"
@@ -28,19 +28,19 @@ LATENCY = Variant(
 milliseconds."""
 
 
-def _delay(p: FloatArray, values: Values, _: Flights) -> None:
+def _delay(p: FloatArray, values: Values, _: PreparedManeuvers) -> None:
     """Set the whole delay: where the delay is free, it includes the few milliseconds of latency."""
     p[:, INDEX["delay_s"]] += values[0]
     p[:, INDEX["latency_s"]] = 0.0
 
 
-def _second_order(p: FloatArray, values: Values, _: Flights) -> None:
+def _second_order(p: FloatArray, values: Values, _: PreparedManeuvers) -> None:
     """Set a second-order servo, which trails a ramp like a first-order lag but begins to move more gently."""
     p[:, INDEX["lag_s"]] += values[0]
     p[:, INDEX["lag_damping"]] = _DAMPING
 
 
-def _deadband(p: FloatArray, values: Values, flights: Flights) -> None:
+def _deadband(p: FloatArray, values: Values, flights: PreparedManeuvers) -> None:
     """Set a dead band about one neutral deflection of the aircraft, whatever the trim of each manoeuvre.
 
     The band need not lie about the trim, because pilots and autopilots trim to one edge of the band.
@@ -50,13 +50,13 @@ def _deadband(p: FloatArray, values: Values, flights: Flights) -> None:
     p[:, INDEX["neutral_rad"]] = np.median(trims) + values[1] - trims
 
 
-def _deadband_about_trim(p: FloatArray, values: Values, _: Flights) -> None:
+def _deadband_about_trim(p: FloatArray, values: Values, _: PreparedManeuvers) -> None:
     """Set a dead band that moves with the trim, about the command before each manoeuvre."""
     p[:, INDEX["half_deadband_rad"]] += values[0]
     p[:, INDEX["neutral_rad"]] = values[1]
 
 
-def _limited_from_midway(p: FloatArray, values: Values, flights: Flights) -> None:
+def _limited_from_midway(p: FloatArray, values: Values, flights: PreparedManeuvers) -> None:
     """Set a rate limit, with each step of the command halfway between its two stamps.
 
     A command read as linear would let the servo run at its limit before the step had happened.
@@ -96,7 +96,7 @@ _TRIMS_DIFFER_RAD = 0.005
 """Least range of the trims in rad that distinguishes a dead band moving with the trim from a fixed one."""
 
 
-def variants(flights: Flights) -> list[Variant]:
+def variants(flights: PreparedManeuvers) -> list[Variant]:
     """Return the effects of the block to first order, and the lag also to second order."""
     moves = float(np.ptp([f.u_trim for f in flights.flights])) > _TRIMS_DIFFER_RAD
     return [

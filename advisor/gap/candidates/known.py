@@ -16,14 +16,14 @@ from advisor.gap.candidates.bent import as_in_file
 from advisor.gap.candidates.moment import PROPELLER
 from advisor.gap.candidates.traits import OF_ONE_FLIGHT, TRAITS
 from advisor.gap.candidates.variant import Values, Variant
-from advisor.gap.records.flights import Flights
+from advisor.gap.records.flights import PreparedManeuvers
 
 Effects = Mapping[str, Mapping[str, float]]
 """Effect name to its parameters, in the units of the aircraft file."""
 
 
 def with_known(
-    base: FloatArray, effects: Effects, flights: Flights, variants: Sequence[Variant]
+    base: FloatArray, effects: Effects, flights: PreparedManeuvers, variants: Sequence[Variant]
 ) -> FloatArray:
     """Return the driving numbers, shape (manoeuvres, entries): ``base``, shape (entries,), with the file's
     effects."""
@@ -121,7 +121,7 @@ def _beyond(variant: Variant, known: float) -> Variant:
     if not variant.sets:
         return beyond
 
-    def apply(p: FloatArray, values: Values, flights: Flights) -> None:
+    def apply(p: FloatArray, values: Values, flights: PreparedManeuvers) -> None:
         variant.apply(p, [known + values[0]], flights)
 
     return replace(beyond, apply_with=apply)

@@ -10,7 +10,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.bent import bent
 from advisor.gap.candidates.between import ramps_and_steps, shift_moments, shift_stability
 from advisor.gap.candidates.variant import Variant
-from advisor.gap.records.flights import Flights
+from advisor.gap.records.flights import PreparedManeuvers
 
 BLOCK = "moment_equation"
 
@@ -52,7 +52,7 @@ def _without_rate_of_alpha(
     return np.array(change)
 
 
-def variants(flights: Flights) -> list[Variant]:
+def variants(flights: PreparedManeuvers) -> list[Variant]:
     """Return the effects of the block; those between manoeuvres depend on how many were flown."""
     return [
         bent(_CURVED_ELEVATOR, flights),
@@ -74,7 +74,7 @@ def variants(flights: Flights) -> list[Variant]:
     ]  # fmt: skip
 
 
-def _moved_weight(flights: Flights) -> list[Variant]:
+def _moved_weight(flights: PreparedManeuvers) -> list[Variant]:
     """Return a moving centre of gravity, with its effect on all moments or on the stability alone."""
     of_all = ramps_and_steps("cg_shift", BLOCK, flights, shift_moments)
     alone = ramps_and_steps("cg_shift", BLOCK, flights, shift_stability)

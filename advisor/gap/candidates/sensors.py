@@ -6,7 +6,7 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.variant import Values, Variant
-from advisor.gap.records.flights import Flights
+from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX
 
 _MODES_HZ = (2.5, 4.0, 6.0, 8.5)
@@ -25,7 +25,7 @@ _MODE = Variant(
 )  # fmt: skip
 
 
-def _with_attitude(p: FloatArray, values: Values, flights: Flights) -> None:
+def _with_attitude(p: FloatArray, values: Values, flights: PreparedManeuvers) -> None:
     """Add the structural mode to the attitude too, which an autopilot integrates from the gyro."""
     _MODE.apply(p, values, flights)
     p[:, INDEX["mode_attitude"]] = 1.0

@@ -7,7 +7,7 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.variant import Values, Variant
-from advisor.gap.records.flights import Flights
+from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX, OUTPUTS, SKEWS
 
 BLOCK = "timing"
@@ -24,7 +24,7 @@ _FILTERS_S = {"alpha": 0.02, "a_z": 0.01, "theta": 0.01}
 s."""
 
 
-def filters(flights: Flights) -> Variant:
+def filters(flights: PreparedManeuvers) -> Variant:
     """Return the delays of an autopilot's filters relative to its pitch rate, as nuisance parameters."""
     channels = [c for c in flights.channels if c in _FILTERS_S]
     return Variant(
@@ -35,18 +35,18 @@ def filters(flights: Flights) -> Variant:
     )  # fmt: skip
 
 
-def _whole_skew(entry: str, p: FloatArray, values: Values, _: Flights) -> None:
+def _whole_skew(entry: str, p: FloatArray, values: Values, _: PreparedManeuvers) -> None:
     """Set the whole skew of a stream, including the delay of a filter."""
     p[:, INDEX[entry]] = values[0]
 
 
-def _whole_message(p: FloatArray, values: Values, _: Flights) -> None:
+def _whole_message(p: FloatArray, values: Values, _: PreparedManeuvers) -> None:
     """Shift attitude and pitch rate together."""
     for channel in ("q", "theta"):
         p[:, INDEX[SKEWS[OUTPUTS.index(channel)]]] += values[0]
 
 
-def variants(flights: Flights, least_s: float) -> list[Variant]:
+def variants(flights: PreparedManeuvers, least_s: float) -> list[Variant]:
     """Return one skew for each stream, positive is late, and one for a message with attitude and pitch
     rate."""
     found = [
@@ -66,7 +66,7 @@ def variants(flights: Flights, least_s: float) -> list[Variant]:
     return found
 
 
-def _in_one_message(flights: Flights) -> bool:
+def _in_one_message(flights: PreparedManeuvers) -> bool:
     """Return whether attitude and pitch rate have equal stamps throughout."""
     return "theta" in flights.channels and all(
         np.array_equal(f.outputs["q"].t, f.outputs["theta"].t) for f in flights.flights

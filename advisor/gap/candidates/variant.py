@@ -4,11 +4,11 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.records.flights import Flights
+from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX
 
 Values = Sequence[float] | FloatArray
-Apply = Callable[[FloatArray, Values, Flights], None]
+Apply = Callable[[FloatArray, Values, PreparedManeuvers], None]
 """Function that writes parameter values into the driving numbers, shape (manoeuvres, entries), in place."""
 
 
@@ -69,7 +69,7 @@ class Variant:
         """Whether the effect is a change that may have come at any time of the flight."""
         return "at_s" in self.fixed or "at_s" in self.names
 
-    def apply(self, p: FloatArray, values: Values, flights: Flights) -> None:
+    def apply(self, p: FloatArray, values: Values, flights: PreparedManeuvers) -> None:
         """Write the values into ``p``, shape (manoeuvres, entries)."""
         if self.apply_with is not None:
             self.apply_with(p, values, flights)

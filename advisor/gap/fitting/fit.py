@@ -13,8 +13,8 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.linear import Linear, are_near, linearise
-from advisor.gap.fitting.problem import Point, Problem, counts, row_weights
-from advisor.gap.fitting.step import Step, solve_blocks
+from advisor.gap.fitting.problem import EffectProblem, SearchPoint, counts, row_weights
+from advisor.gap.fitting.step import SearchStep, solve_blocks
 
 _SETTLED = 0.02
 """Relative change of the weights below which weights and nuisance parameters have converged at one
@@ -33,10 +33,10 @@ linearised again before a search ends."""
 
 
 @dataclass(frozen=True)
-class Fitted:
+class EffectFit:
     """The result of a search."""
 
-    point: Point
+    point: SearchPoint
     noise: FloatArray
     """Shape (channels,): standard deviation of the innovations."""
     cost: float
@@ -51,17 +51,17 @@ class Fitted:
     iterations: int
 
 
-def residual_noise(problem: Problem, residuals: Sequence[FloatArray]) -> FloatArray:
+def residual_noise(problem: EffectProblem, residuals: Sequence[FloatArray]) -> FloatArray:
     """Return the root mean square of the residuals, at least the smallest noise, shape (channels,)."""
     return above_floor(problem, rms_of(problem, residuals))
 
 
-def above_floor(problem: Problem, noise: FloatArray) -> FloatArray:
+def above_floor(problem: EffectProblem, noise: FloatArray) -> FloatArray:
     """Return the noise, at least the smallest noise, shape (channels,) or (k, channels)."""
     return np.maximum(noise, 1e-7 if problem.smallest_noise is None else problem.smallest_noise)
 
 
-def rms_of(problem: Problem, residuals: Sequence[FloatArray]) -> FloatArray:
+def rms_of(problem: EffectProblem, residuals: Sequence[FloatArray]) -> FloatArray:
     """Return the root mean square of the residuals over all manoeuvres, shape (channels,)."""
     power, count = np.zeros(len(problem.channels)), np.zeros(len(problem.channels))
     for flight, residual in zip(problem.flights.flights, residuals, strict=True):
@@ -72,8 +72,8 @@ def rms_of(problem: Problem, residuals: Sequence[FloatArray]) -> FloatArray:
 
 
 def cost_of(
-    problem: Problem,
-    point: Point,
+    problem: EffectProblem,
+    point: SearchPoint,
     residuals: Sequence[FloatArray],
     owns: Sequence[FloatArray],
     linear: Sequence[Linear],
@@ -87,14 +87,14 @@ def cost_of(
 
 
 def fit(
-    problem: Problem,
-    start: Point,
+    problem: EffectProblem,
+    start: SearchPoint,
     noise: FloatArray | None = None,
     iterations: int = 12,
     tolerance: float = 0.1,
     beaten_by: float = np.inf,
     aside: Collection[int] = (),
-) -> Fitted:
+) -> EffectFit:
     """Minimise det R from a start. ``noise`` sets the weights of the first step.
 
     Parameters
@@ -128,10 +128,12 @@ def fit(
         block.measured.after(still, own) for block, own in zip(kept.linear, kept.step.free, strict=True)
     )
     information = solve_blocks(problem, kept.linear, 1.0 / kept.noise, kept.point).information
-    return Fitted(kept.point, kept.noise, kept.cost, kept.residuals, measured, information, kept.linear, done)
+    return EffectFit(
+        kept.point, kept.noise, kept.cost, kept.residuals, measured, information, kept.linear, done
+    )
 
 
-def _edges_differ(one: Point, other: Point) -> bool:
+def _edges_differ(one: SearchPoint, other: SearchPoint) -> bool:
     """Return whether the edges of two points differ. Unknown edges lie at their stamps."""
     assert other.edges is not None
     there = np.concatenate(other.edges)
@@ -154,21 +156,23 @@ def _without(linear: tuple[Linear, ...], aside: Collection[int]) -> tuple[Linear
 class _Place:
     """A point that was simulated, with the step from there."""
 
-    point: Point
+    point: SearchPoint
     """Point with its edges at their estimates."""
     has_its_edges: bool
     """Whether the estimated edges are near those of the linearisation."""
     linear: tuple[Linear, ...]
     weights: FloatArray
     """Shape (channels,): weights of the model after the step."""
-    step: Step
+    step: SearchStep
     residuals: tuple[FloatArray, ...]
     """Per manoeuvre: residuals with nuisance parameters refitted."""
     noise: FloatArray
     cost: float
 
 
-def _settled(problem: Problem, point: Point, linear: tuple[Linear, ...], weights: FloatArray) -> _Place:
+def _settled(
+    problem: EffectProblem, point: SearchPoint, linear: tuple[Linear, ...], weights: FloatArray
+) -> _Place:
     """Let weights and nuisance parameters converge at a fixed linearisation, which needs no simulation."""
     samples = np.maximum(counts(problem), 1.0)
     for _ in range(4):
@@ -191,7 +195,7 @@ def _settled(problem: Problem, point: Point, linear: tuple[Linear, ...], weights
     )
 
 
-def evidence_of(problem: Problem, fitted: Fitted) -> float:
+def evidence_of(problem: EffectProblem, fitted: EffectFit) -> float:
     """Return -2 log marginal likelihood, up to a constant common to both readings of the command.
 
     The cost is increased by the freedom that edges and air speeds have within their priors, log det(I + Λ

@@ -11,11 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.fitting.fit import Fitted, rms_of
+from advisor.gap.fitting.fit import EffectFit, rms_of
 from advisor.gap.fitting.normal import solved_within
-from advisor.gap.fitting.problem import Point, Problem
+from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.fitting.step import bounds_of, own_eliminated
-from advisor.gap.records.flights import Flights
+from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import DERIVATIVES, HEIGHT, SPEED, THROTTLE
 
 _INDIFFERENT = 3e-4
@@ -56,7 +56,7 @@ def folds_of(n: int, shifted: bool = False) -> list[list[int]]:
     return [[i for i in range(n) if fold[i] == j] for j in range(k)]
 
 
-def folds_for(flights: Flights) -> list[list[int]]:
+def folds_for(flights: PreparedManeuvers) -> list[list[int]]:
     """Return folds that keep rare sources of information apart, so that each can be confirmed.
 
     Throttle, height or air speed may vary in two manoeuvres only. If one fold held both, the others would
@@ -74,7 +74,9 @@ def folds_for(flights: Flights) -> list[list[int]]:
     return shifted if together(interleaved) > _SOLE_SHARE > together(shifted) else interleaved
 
 
-def hold_out(problem: Problem, fitted: Fitted, folds: Sequence[Sequence[int]] | None = None) -> HeldOut:
+def hold_out(
+    problem: EffectProblem, fitted: EffectFit, folds: Sequence[Sequence[int]] | None = None
+) -> HeldOut:
     """Predict every fold from a fit of the others. A single manoeuvre keeps the residuals of its own fit."""
     n = len(problem.flights)
     residuals: list[FloatArray] = [np.empty(0)] * n
@@ -88,8 +90,8 @@ def hold_out(problem: Problem, fitted: Fitted, folds: Sequence[Sequence[int]] | 
 
 
 def points_without(
-    problem: Problem, fitted: Fitted, folds: Sequence[Sequence[int]] | None = None
-) -> tuple[Point, ...]:
+    problem: EffectProblem, fitted: EffectFit, folds: Sequence[Sequence[int]] | None = None
+) -> tuple[SearchPoint, ...]:
     """Return for every manoeuvre the model whose shared parameters are fitted without the manoeuvre's
     fold."""
     points = [fitted.point] * len(problem.flights)
@@ -101,7 +103,7 @@ def points_without(
 
 
 def _without_each(
-    problem: Problem, fitted: Fitted, folds: Sequence[Sequence[int]] | None
+    problem: EffectProblem, fitted: EffectFit, folds: Sequence[Sequence[int]] | None
 ) -> Iterator[tuple[Sequence[int], FloatArray, Sequence[FloatArray]]]:
     """Yield each fold, the step of the shared parameters without it, and the response of the nuisance
     parameters."""
@@ -134,14 +136,16 @@ def _without_each(
         yield fold, step, [block[1] for block in blocks]
 
 
-def _without_effect(point: Point) -> FloatArray:
+def _without_effect(point: SearchPoint) -> FloatArray:
     """Return the shared parameters, shape (k,), with the size of every effect set to zero."""
     names = [[name in effect.places for name in effect.names] for effect in point.effects]
     stays = np.concatenate([np.ones(len(DERIVATIVES), dtype=bool), *(np.array(n, dtype=bool) for n in names)])
     return np.where(stays, point.shared, 0.0)
 
 
-def measured_in(problem: Problem, held: HeldOut, fitted: Fitted, sole_maneuvers: Collection[int]) -> HeldOut:
+def measured_in(
+    problem: EffectProblem, held: HeldOut, fitted: EffectFit, sole_maneuvers: Collection[int]
+) -> HeldOut:
     """Return the hold-out with the residuals of the fit in some manoeuvres.
 
     These manoeuvres alone determine some parameter, so no other manoeuvre predicts them.
@@ -155,7 +159,7 @@ def measured_in(problem: Problem, held: HeldOut, fitted: Fitted, sole_maneuvers:
     return held_out(problem, chosen(fitted.residuals, held.residuals), innovations)
 
 
-def sole_informative_maneuver(fitted: Fitted, index: int) -> int | None:
+def sole_informative_maneuver(fitted: EffectFit, index: int) -> int | None:
     """Return the one manoeuvre that determines a shared parameter; None where another could confirm it."""
     weights = 1.0 / fitted.noise
     information = [own_eliminated(block, weights)[0][index, index] for block in fitted.linear]
@@ -163,7 +167,7 @@ def sole_informative_maneuver(fitted: Fitted, index: int) -> int | None:
 
 
 def held_out(
-    problem: Problem, residuals: Sequence[FloatArray], innovations: Sequence[FloatArray] | None = None
+    problem: EffectProblem, residuals: Sequence[FloatArray], innovations: Sequence[FloatArray] | None = None
 ) -> HeldOut:
     """Return residuals with their mean squares. Without ``innovations`` the residuals serve as such."""
     whitened = tuple(residuals if innovations is None else innovations)
@@ -173,7 +177,7 @@ def held_out(
     )  # fmt: skip
 
 
-def mean_squares(problem: Problem, residuals: Sequence[FloatArray]) -> FloatArray:
+def mean_squares(problem: EffectProblem, residuals: Sequence[FloatArray]) -> FloatArray:
     """Return the mean squares of residuals, shape (manoeuvres, channels)."""
     return np.array(
         [

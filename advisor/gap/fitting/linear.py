@@ -8,8 +8,8 @@ from functools import cached_property
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.fitting.problem import Point, Problem
-from advisor.gap.records.flights import Flight
+from advisor.gap.fitting.problem import EffectProblem, SearchPoint
+from advisor.gap.records.flights import PreparedManeuver
 from advisor.gap.simulator.layout import DISTURB_INPUT, INDEX, NUISANCES, OUTPUTS, SPEED
 from advisor.gap.simulator.reading import differences, lane, packed, superposed
 
@@ -40,7 +40,7 @@ resolution."""
 
 
 @dataclass(frozen=True)
-class Columns:
+class SensitivityColumns:
     """Residual and sensitivities of one manoeuvre as columns of one array, so that operations apply to all at
     once."""
 
@@ -70,12 +70,12 @@ class Columns:
 
 
 @dataclass(frozen=True)
-class Linear(Columns):
+class Linear(SensitivityColumns):
     """The linear model of one manoeuvre about a point, as innovations without weights."""
 
     prior: FloatArray
     """Shape (m,): inverse prior variances of the nuisance parameters, 0 for flat priors."""
-    measured: Columns
+    measured: SensitivityColumns
     """Residual and sensitivities in the units of the channels, before the filter."""
     channels: tuple[slice, ...]
     """Rows of each channel."""
@@ -106,30 +106,30 @@ def as_measured(block: Linear) -> Linear:
     return Linear(raw.columns, raw.m, block.prior, raw, block.channels)
 
 
-def shared_steps(point: Point) -> FloatArray:
+def shared_steps(point: SearchPoint) -> FloatArray:
     """Return the finite-difference steps of the shared parameters."""
     return np.concatenate([_DERIVATIVE_STEP * _scale(point), *[np.array(e.steps) for e in point.effects]])
 
 
-def _scale(point: Point) -> FloatArray:
+def _scale(point: SearchPoint) -> FloatArray:
     """Return the size of each derivative for its finite-difference step, shape (6,)."""
     return np.asarray(np.maximum(np.abs(point.derivatives), _LEAST_SCALE))
 
 
-def are_near(one: Point, other: Point) -> bool:
+def are_near(one: SearchPoint, other: SearchPoint) -> bool:
     """Return whether sensitivities to nuisance parameters are nearly equal at two points of a model."""
     reach = np.concatenate([_NEAR * _scale(one), *[_STEPS * np.array(e.steps) for e in one.effects]])
     return bool(np.all(np.abs(other.shared - one.shared) <= reach))
 
 
-def shifted_points(point: Point, which: range) -> list[Point]:
+def shifted_points(point: SearchPoint, which: range) -> list[SearchPoint]:
     """Return the point with one shared parameter after the other moved by its step."""
     shifts = np.diag(shared_steps(point))[which]
     return [point.moved(point.shared + shift, point.own) for shift in shifts]
 
 
 def measured_columns(
-    problem: Problem,
+    problem: EffectProblem,
     i: int,
     p: FloatArray,
     shifted: FloatArray,
@@ -137,7 +137,7 @@ def measured_columns(
     edges: FloatArray | None,
     times: Sequence[int],
     answers: FloatArray | None = None,
-) -> Columns:
+) -> SensitivityColumns:
     """Return residual and sensitivities of manoeuvre ``i`` in the units of its channels, by one-sided
     differences.
 
@@ -180,17 +180,21 @@ def measured_columns(
         with_them = rows[[0, *(1 + k for k in times)]]
         shared[:, times] += _turned(problem, flight, pulse, edges, with_them) / steps[times]
     columns = np.hstack([answers, _answers_to_edges(problem, flight, pulse, p), shared, residual])
-    return Columns(columns, columns.shape[1] - k - 1)
+    return SensitivityColumns(columns, columns.shape[1] - k - 1)
 
 
-def _answers_to_edges(problem: Problem, flight: Flight, pulse: FloatArray, p: FloatArray) -> FloatArray:
+def _answers_to_edges(
+    problem: EffectProblem, flight: PreparedManeuver, pulse: FloatArray, p: FloatArray
+) -> FloatArray:
     """Return the change of the outputs by a shift of each edge by its interval, shape (rows, edges)."""
     delays, areas = _pulses(problem, flight, p)
     parts = [problem.read_delayed(flight, pulse, begin, p) * areas for begin in delays]
     return np.asarray(sum(parts))
 
 
-def _pulses(problem: Problem, flight: Flight, p: FloatArray) -> tuple[list[FloatArray], FloatArray]:
+def _pulses(
+    problem: EffectProblem, flight: PreparedManeuver, p: FloatArray
+) -> tuple[list[FloatArray], FloatArray]:
     """Return the delays and the areas of the pulses that equal a shift of each edge by its interval.
 
     In general that is one pulse at the edge. A servo at its limit runs on after the edge, and is late all
@@ -206,7 +210,7 @@ def _pulses(problem: Problem, flight: Flight, p: FloatArray) -> tuple[list[Float
     return [begin + share * longer for share in _SHARES], area / len(_SHARES)
 
 
-def _offsets(problem: Problem, flight: Flight) -> FloatArray:
+def _offsets(problem: EffectProblem, flight: PreparedManeuver) -> FloatArray:
     """Return the constant offsets of accelerometer and attitude, shape (rows, offsets)."""
     return np.column_stack(
         [flight.output == OUTPUTS.index(c) for c in ("a_z", "theta") if c in problem.channels]
@@ -214,7 +218,7 @@ def _offsets(problem: Problem, flight: Flight) -> FloatArray:
     ).astype(float)
 
 
-def _own_prior(problem: Problem, flight: Flight, own: int) -> FloatArray:
+def _own_prior(problem: EffectProblem, flight: PreparedManeuver, own: int) -> FloatArray:
     """Return the inverse prior variances of a manoeuvre's nuisance parameters, 0 for flat priors, shape
     (own,).
 
@@ -230,7 +234,7 @@ def _own_prior(problem: Problem, flight: Flight, own: int) -> FloatArray:
     return prior
 
 
-def pulse_response(problem: Problem, flight: Flight, p: FloatArray, where: int) -> FloatArray:
+def pulse_response(problem: EffectProblem, flight: PreparedManeuver, p: FloatArray, where: int) -> FloatArray:
     """Return the response on the grid, shape (4, n + 1), to a disturbance of unit area at the start of the
     record.
 
@@ -240,7 +244,7 @@ def pulse_response(problem: Problem, flight: Flight, p: FloatArray, where: int) 
     return (lane(packs, 1) - lane(packs, 0)) / _PULSE
 
 
-def unit_pulse(flight: Flight, where: int, lag_s: float = 0.0) -> FloatArray:
+def unit_pulse(flight: PreparedManeuver, where: int, lag_s: float = 0.0) -> FloatArray:
     """Return a disturbance of unit area at the start of the record, shape (4, n).
 
     With ``lag_s`` above zero the disturbance passes a first-order lag, like that of a servo.
@@ -254,7 +258,9 @@ def unit_pulse(flight: Flight, where: int, lag_s: float = 0.0) -> FloatArray:
     return disturbance
 
 
-def linearise(problem: Problem, point: Point, near: Sequence[Linear] | None = None) -> tuple[Linear, ...]:
+def linearise(
+    problem: EffectProblem, point: SearchPoint, near: Sequence[Linear] | None = None
+) -> tuple[Linear, ...]:
     """Return the linear model of all manoeuvres about a point.
 
     ``near`` is a linear model about a nearby point, whose sensitivities to nuisance parameters other than
@@ -279,7 +285,7 @@ def linearise(problem: Problem, point: Point, near: Sequence[Linear] | None = No
 
 
 def _turned(
-    problem: Problem, flight: Flight, pulse: FloatArray, edges: FloatArray, rows: FloatArray
+    problem: EffectProblem, flight: PreparedManeuver, pulse: FloatArray, edges: FloatArray, rows: FloatArray
 ) -> FloatArray:
     """Return how the response to moved edges changes from the first of ``rows`` to each other, shape (rows, k
     - 1).

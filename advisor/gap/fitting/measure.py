@@ -6,12 +6,12 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.fitting.fit import Fitted
+from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.holdout import HeldOut, held_out
 from advisor.gap.fitting.linear import linearise
-from advisor.gap.fitting.problem import Point, Problem
+from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.fitting.step import solve_blocks
-from advisor.gap.records.flights import Flight
+from advisor.gap.records.flights import PreparedManeuver
 
 _BANDS_HZ = ((0.0, 0.5), (0.5, 1.0), (1.0, 2.0), (2.0, 4.0), (4.0, 10.0))
 """Limits of the frequency bands in Hz. The short period lies in the middle bands, drift of the trim below,
@@ -31,7 +31,9 @@ def whole_gap(mean_square: FloatArray, floor: FloatArray) -> float:
     return float(np.mean(gap_of(mean_square, floor)))
 
 
-def by_phase(problem: Problem, residuals: Sequence[FloatArray], floor: FloatArray) -> Mapping[str, float]:
+def by_phase(
+    problem: EffectProblem, residuals: Sequence[FloatArray], floor: FloatArray
+) -> Mapping[str, float]:
     """Return the gap just after the steps, between them, and after the last one."""
     sums = {phase: np.zeros(len(problem.channels)) for phase in PHASES}
     counts = {phase: np.zeros(len(problem.channels)) for phase in PHASES}
@@ -48,7 +50,7 @@ def by_phase(problem: Problem, residuals: Sequence[FloatArray], floor: FloatArra
     }
 
 
-def _phases(flight: Flight, t: FloatArray) -> Mapping[str, FloatArray]:
+def _phases(flight: PreparedManeuver, t: FloatArray) -> Mapping[str, FloatArray]:
     edges = flight.edges[:, 0] if len(flight.edges) else np.array([flight.first_step_s, flight.last_step_s])
     near = (
         np.min(np.where(t[:, None] >= edges[None, :], t[:, None] - edges[None, :], np.inf), axis=1) < _EDGE_S
@@ -61,7 +63,9 @@ def _phases(flight: Flight, t: FloatArray) -> Mapping[str, FloatArray]:
     }
 
 
-def by_band(problem: Problem, residuals: Sequence[FloatArray]) -> tuple[tuple[float, float, float], ...]:
+def by_band(
+    problem: EffectProblem, residuals: Sequence[FloatArray]
+) -> tuple[tuple[float, float, float], ...]:
     """Return for each band its limits in Hz and its share of the power of the pitch-rate error."""
     if "q" not in problem.channels:
         return ()
@@ -101,7 +105,7 @@ def shrink_interval(before: FloatArray, after: FloatArray, floor: FloatArray) ->
     return float(max(low, -100.0)), float(min(high, 100.0))
 
 
-def file_model_of(problem: Problem, fitted: Fitted) -> HeldOut | None:
+def file_model_of(problem: EffectProblem, fitted: EffectFit) -> HeldOut | None:
     """Return the residuals of the aircraft file's derivatives, with only initial states, trim and offsets
     refitted."""
     if problem.prior_derivatives is None:
@@ -109,7 +113,7 @@ def file_model_of(problem: Problem, fitted: Fitted) -> HeldOut | None:
     return own_refitted(problem, replace(fitted.point, derivatives=problem.prior_derivatives), fitted.noise)
 
 
-def own_refitted(problem: Problem, point: Point, noise: FloatArray) -> HeldOut:
+def own_refitted(problem: EffectProblem, point: SearchPoint, noise: FloatArray) -> HeldOut:
     """Return the residuals of a model with given shared parameters, with only nuisance parameters refitted.
 
     ``noise``, shape (channels,), weighs the channels.

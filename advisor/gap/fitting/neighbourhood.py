@@ -11,12 +11,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.fitting.fit import Fitted, above_floor
+from advisor.gap.fitting.fit import EffectFit, above_floor
 from advisor.gap.fitting.linear import shared_steps, shifted_points
 from advisor.gap.fitting.normal import solved, solved_within
-from advisor.gap.fitting.problem import Point, Problem, counts, row_weights
+from advisor.gap.fitting.problem import EffectProblem, SearchPoint, counts, row_weights
 from advisor.gap.fitting.step import bounds_of, factor_of
-from advisor.gap.records.flights import Flight
+from advisor.gap.records.flights import PreparedManeuver
 from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.gap.simulator.reading import differences
 
@@ -25,10 +25,10 @@ _INDIFFERENT = 1e-9
 
 
 @dataclass(frozen=True)
-class Place:
+class SimulatedPoint:
     """A point that was simulated."""
 
-    point: Point
+    point: SearchPoint
     """Point with the nuisance parameters refitted."""
     cost: float
     noise: FloatArray
@@ -50,7 +50,7 @@ class Place:
 class _Kept:
     """Weighted quantities of one manoeuvre that are equal at all points."""
 
-    flight: Flight
+    flight: PreparedManeuver
     """The manoeuvre on the coarser grid."""
     measured: FloatArray
     """Simulated outputs of the fitted model on the coarser grid, plus the residuals of the fit."""
@@ -94,7 +94,7 @@ class _Flown:
 class _Asked:
     """A point to be simulated, and the place of its columns among those of all points."""
 
-    point: Point
+    point: SearchPoint
     p: FloatArray
     """Shape (manoeuvres, entries): driving numbers."""
     shifted: FloatArray
@@ -120,7 +120,7 @@ class _Asked:
 class Neighbourhood:
     """A fitted model prepared for the evaluation of many points."""
 
-    def __init__(self, problem: Problem, fitted: Fitted) -> None:
+    def __init__(self, problem: EffectProblem, fitted: EffectFit) -> None:
         self.problem, self.fitted = problem, fitted
         weights = 1.0 / fitted.noise
         self.kept = []
@@ -139,7 +139,7 @@ class Neighbourhood:
             columns = block.columns * by_row[:, None]
             self.kept.append(_Kept(coarser, measured, by_row, columns, products, inner, m, chol))
 
-    def at_all(self, points: Sequence[Point]) -> list[Place | None]:
+    def at_all(self, points: Sequence[SearchPoint]) -> list[SimulatedPoint | None]:
         """Evaluate every point with refitted nuisance parameters; None where a simulation fails."""
         problem = self.problem
         asked: list[_Asked] = []
@@ -197,7 +197,7 @@ class Neighbourhood:
         after = rr + np.sum(own * (kept.products[:, :m, :m] @ own - 2.0 * Ar), axis=1)
         return np.asarray(np.maximum(after, 0.0) * self.fitted.noise[:, None] ** 2)
 
-    def _asked(self, point: Point, first: int) -> _Asked:
+    def _asked(self, point: SearchPoint, first: int) -> _Asked:
         known, k = len(self.information), len(DERIVATIVES)
         steps = shared_steps(point)[known:]
         p = self.problem.driving(point)
@@ -216,7 +216,7 @@ class Neighbourhood:
         owns: Sequence[FloatArray],
         JX: FloatArray,
         XX: FloatArray,
-    ) -> Place:
+    ) -> SimulatedPoint:
         precision, departure = self.problem.prior_of(a.point)
         known = len(self.information)
         H, g = np.diag(precision), precision * departure
@@ -226,7 +226,7 @@ class Neighbourhood:
         H[known:, known:] += XX[1:, 1:]
         g += np.concatenate([JX[:, 0], XX[1:, 0]])
         there = self.problem.with_own(a.point, owns)
-        return Place(there, float(cost + precision @ departure**2), noise, H, g)
+        return SimulatedPoint(there, float(cost + precision @ departure**2), noise, H, g)
 
     def _flown(self, i: int, asked: Sequence[_Asked], failed: np.ndarray) -> _Flown:
         """Simulate manoeuvre ``i`` at those points where that is needed.
@@ -256,7 +256,7 @@ class Neighbourhood:
         raw = differences(read, kept.measured, np.array(base), np.array(step))
         return _Flown(problem.innovations(i, raw) * kept.weights[:, None], at, points)
 
-    def choose_sides(self, point: Point, entries: Sequence[float]) -> Point:
+    def choose_sides(self, point: SearchPoint, entries: Sequence[float]) -> SearchPoint:
         """Return the point with the side of least residual in every manoeuvre, nuisance parameters
         refitted."""
         problem = self.problem

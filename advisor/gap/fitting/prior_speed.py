@@ -6,9 +6,9 @@ last. Derivatives of the trim speed can then be off by some per cent, all by the
 
 import numpy as np
 
-from advisor.gap.fitting.fit import Fitted
+from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.prior import distance_of, log_prior
-from advisor.gap.fitting.problem import Problem
+from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.fitting.uncertainty import covariance, effective_samples, file_is_off
 from advisor.gap.simulator.layout import DERIVATIVES, SPEED
 from advisor.model.short_period import SPEED_EXPONENTS
@@ -21,7 +21,7 @@ ones."""
 _TRIED = 25
 
 
-def prior_speed(problem: Problem, baseline: Fitted) -> float | None:
+def prior_speed(problem: EffectProblem, baseline: EffectFit) -> float | None:
     """Return the speed in m/s, within those flown, at which the file's derivatives are right.
 
     None where they may be right at the mean speed of the manoeuvres, or are wrong at every speed.

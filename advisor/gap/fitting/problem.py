@@ -10,7 +10,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.prior import ERROR_IF_FIXED, ERROR_IF_RIGHT, ERROR_IF_WRONG, prior_precision
 from advisor.gap.fitting.whitening import Filters, Whitening
-from advisor.gap.records.flights import Flight, Flights
+from advisor.gap.records.flights import PreparedManeuver, PreparedManeuvers
 from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, FILTER, INDEX, LAYOUT, NUISANCES, SKEWS
 from advisor.gap.simulator.pack import LANES
 from advisor.gap.simulator.reading import delayed, filtered, lane, packed, read_rows
@@ -24,7 +24,7 @@ _FLOWN_ENTRIES = np.array([i for i, name in enumerate(ENTRIES) if name not in (*
 
 
 @dataclass(frozen=True)
-class Point:
+class SearchPoint:
     """A point of the search: all parameters that drive the simulation."""
 
     derivatives: FloatArray
@@ -50,7 +50,7 @@ class Point:
         """Names of the shared parameters, in their order."""
         return (*DERIVATIVES, *(name for effect in self.effects for name in effect.names))
 
-    def moved(self, shared: FloatArray, own: FloatArray) -> "Point":
+    def moved(self, shared: FloatArray, own: FloatArray) -> "SearchPoint":
         """Return the model with other shared and nuisance parameters."""
         ends = accumulate((len(effect.names) for effect in self.effects), initial=len(self.derivatives))
         values = tuple(shared[begin:end] for begin, end in pairwise(ends))
@@ -73,7 +73,7 @@ class Point:
 
     def with_effect(
         self, effect: Variant, values: Sequence[float] | FloatArray, sides: FloatArray | None = None
-    ) -> "Point":
+    ) -> "SearchPoint":
         """Return the model with one more effect in it."""
         return replace(
             self,
@@ -82,7 +82,7 @@ class Point:
             sides=self.sides if sides is None else sides,
         )
 
-    def with_only(self, names: Collection[str]) -> "Point":
+    def with_only(self, names: Collection[str]) -> "SearchPoint":
         """Return the model with some of its effects and with all nuisance parameters."""
         keep = [k for k, v in enumerate(self.effects) if v.is_nuisance or v.effect in names]
         return replace(
@@ -91,11 +91,11 @@ class Point:
 
 
 @dataclass(frozen=True)
-class Problem:
+class EffectProblem:
     """The data, the fixed part of the simulation, the prior, and the motion of the command between its
     stamps."""
 
-    flights: Flights
+    flights: PreparedManeuvers
     base: FloatArray
     """Driving numbers from the aircraft file, shape (entries,), or (manoeuvres, entries) where they
     differ."""
@@ -126,7 +126,7 @@ class Problem:
         """Outputs that are compared."""
         return self.flights.channels
 
-    def with_own(self, point: Point, owns: Sequence[FloatArray]) -> Point:
+    def with_own(self, point: SearchPoint, owns: Sequence[FloatArray]) -> SearchPoint:
         """Return the point after a step of the nuisance parameters, each of shape (m,).
 
         Initial states and trim terms come first. Edges come last, as places instead of steps.
@@ -136,7 +136,7 @@ class Problem:
         edges = tuple(own[len(own) - len(flight.edges) :] for own, flight in found)
         return replace(point, own=point.own + np.array([own[:n] for own in owns]), edges=edges)
 
-    def prior_of(self, point: Point) -> tuple[FloatArray, FloatArray]:
+    def prior_of(self, point: SearchPoint) -> tuple[FloatArray, FloatArray]:
         """Return inverse prior variances of the shared parameters, and the prior mean minus their values,
         shapes (k,).
 
@@ -158,19 +158,19 @@ class Problem:
             expected.append(np.zeros(len(values)))
         return np.concatenate(inverse), np.concatenate(expected) - point.shared
 
-    def prior_cost(self, point: Point) -> float:
+    def prior_cost(self, point: SearchPoint) -> float:
         """Return the prior's contribution to the cost."""
         inverse, departure = self.prior_of(point)
         return float(inverse @ departure**2)
 
-    def nuisance_cost(self, point: Point) -> float:
+    def nuisance_cost(self, point: SearchPoint) -> float:
         """Return the contribution of nuisance parameters to the cost of the prior."""
         with_spread = (pair for pair in zip(point.effects, point.values, strict=True) if pair[0].prior_std)
         return float(
             sum(np.sum((values / np.array(effect.prior_std)) ** 2) for effect, values in with_spread)
         )
 
-    def driving(self, point: Point) -> FloatArray:
+    def driving(self, point: SearchPoint) -> FloatArray:
         """Return the driving numbers of each manoeuvre's simulation, shape (manoeuvres, entries)."""
         p = np.empty((len(self.flights), self.base.shape[-1]))
         p[:] = self.base
@@ -184,7 +184,7 @@ class Problem:
 
     def fly_all(
         self,
-        flight: Flight,
+        flight: PreparedManeuver,
         p: FloatArray,
         disturbance: FloatArray = _NO_DISTURBANCE,
         doses: FloatArray | None = None,
@@ -201,7 +201,7 @@ class Problem:
         return simulate(LAYOUT, flight.h, delta, above, flight.slow, disturbance, doses, flight.trim, p)
 
     def read_all(
-        self, flight: Flight, packs: FloatArray, p: FloatArray, flown: np.ndarray | None = None
+        self, flight: PreparedManeuver, packs: FloatArray, p: FloatArray, flown: np.ndarray | None = None
     ) -> FloatArray:
         """Return all channels at their own stamps, stacked, shape (rows, k), with the instruments of each row
         of ``p``.
@@ -210,7 +210,7 @@ class Problem:
         """
         return self._read(flight, packs, np.arange(len(p)) if flown is None else flown, p)
 
-    def fly_and_read(self, flight: Flight, p: FloatArray) -> FloatArray:
+    def fly_and_read(self, flight: PreparedManeuver, p: FloatArray) -> FloatArray:
         """Return one manoeuvre simulated and read with every row of ``p``, shape (k, entries), as shape
         (rows, k).
 
@@ -221,32 +221,34 @@ class Problem:
         first = [alike.index(row) for row in places]
         return self._read(flight, self.fly_all(flight, p[first]), np.array([places[row] for row in alike]), p)
 
-    def _read(self, flight: Flight, packs: FloatArray, flown: np.ndarray, p: FloatArray) -> FloatArray:
+    def _read(
+        self, flight: PreparedManeuver, packs: FloatArray, flown: np.ndarray, p: FloatArray
+    ) -> FloatArray:
         skews, filters = p[:, _SKEW_ENTRIES], p[:, _FILTER_ENTRIES]
         if np.any(filters[:, 0] > 0.0):
             packs, flown = filtered(packs, flight.h, flown, filters), np.arange(len(p))
         return np.asarray(read_rows(packs, flight.h, flight.stamps, flight.output, flown, skews))
 
-    def fly(self, flight: Flight, p: FloatArray) -> FloatArray:
+    def fly(self, flight: PreparedManeuver, p: FloatArray) -> FloatArray:
         """Return the simulated outputs of one manoeuvre on the grid, shape (4, n + 1)."""
         return lane(self.fly_all(flight, p[None]), 0)
 
-    def read_grids(self, flight: Flight, grids: Sequence[FloatArray], p: FloatArray) -> FloatArray:
+    def read_grids(self, flight: PreparedManeuver, grids: Sequence[FloatArray], p: FloatArray) -> FloatArray:
         """Return series on the grid, each of shape (4, n + 1), read at the channels' stamps, shape (rows,
         k)."""
         return self.read_all(flight, packed(grids), np.tile(p, (len(grids), 1)))
 
     def read_delayed(
-        self, flight: Flight, response: FloatArray, delays: FloatArray, p: FloatArray
+        self, flight: PreparedManeuver, response: FloatArray, delays: FloatArray, p: FloatArray
     ) -> FloatArray:
         """Return one series delayed by each of ``delays``, read at the channels' stamps, shape (rows, k)."""
         return self.read_all(flight, delayed(response, flight.h, delays), np.tile(p, (len(delays), 1)))
 
-    def read(self, flight: Flight, grid: FloatArray, p: FloatArray) -> FloatArray:
+    def read(self, flight: PreparedManeuver, grid: FloatArray, p: FloatArray) -> FloatArray:
         """Return one series on the grid, read at the channels' stamps, shape (rows,)."""
         return self.read_grids(flight, [grid], p)[:, 0]
 
-    def rows(self, flight: Flight) -> list[slice]:
+    def rows(self, flight: PreparedManeuver) -> list[slice]:
         """Return the rows of each channel in the stacked vector of one manoeuvre."""
         out, at = [], 0
         for c in self.channels:
@@ -254,7 +256,7 @@ class Problem:
             at = out[-1].stop
         return out
 
-    def measured(self, flight: Flight) -> FloatArray:
+    def measured(self, flight: PreparedManeuver) -> FloatArray:
         """Return all measured channels of one manoeuvre, stacked."""
         return np.concatenate([flight.outputs[c].y for c in self.channels])
 
@@ -263,7 +265,7 @@ class Problem:
         return columns if self.whitening is None else self.whitening.innovations(i, columns)
 
 
-def row_weights(problem: Problem, i: int, weights: FloatArray) -> FloatArray:
+def row_weights(problem: EffectProblem, i: int, weights: FloatArray) -> FloatArray:
     """Return one weight for each row of manoeuvre ``i``."""
     flight = problem.flights.flights[i]
     return np.concatenate(
@@ -271,7 +273,7 @@ def row_weights(problem: Problem, i: int, weights: FloatArray) -> FloatArray:
     )
 
 
-def counts(problem: Problem) -> FloatArray:
+def counts(problem: EffectProblem) -> FloatArray:
     """Return the number of samples of each channel over all manoeuvres, shape (channels,)."""
     return np.array(
         [sum(len(f.outputs[c].t) for f in problem.flights.flights) for c in problem.channels], float

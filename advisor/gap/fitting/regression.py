@@ -6,7 +6,7 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.motion import integrated
-from advisor.gap.records.flights import Flight, Flights
+from advisor.gap.records.flights import PreparedManeuver, PreparedManeuvers
 
 _STEP_S = 0.02
 """Step of the regression's grid, s."""
@@ -41,7 +41,7 @@ _ONE_LATE = (
 )
 
 
-def regressions(flights: Flights) -> list[FloatArray]:
+def regressions(flights: PreparedManeuvers) -> list[FloatArray]:
     """Return starting values of the derivatives, each of shape (6,).
 
     A channel that is late by a large part of a radian of the short period leads the regression astray, even
@@ -54,7 +54,7 @@ def regressions(flights: Flights) -> list[FloatArray]:
     return [as_stamped, shifted] if less < _BETTER * left_share else [as_stamped]
 
 
-def _regressed(flights: Flights, late: Late) -> tuple[FloatArray, float]:
+def _regressed(flights: PreparedManeuvers, late: Late) -> tuple[FloatArray, float]:
     """Return derivatives, shape (6,), and the product of the residual shares of the two equations."""
     systems = [_system(flight, late) for flight in flights.flights]
     moment, left_share = _solved([s[0] for s in systems], [s[1] for s in systems])
@@ -65,7 +65,7 @@ def _regressed(flights: Flights, late: Late) -> tuple[FloatArray, float]:
     return np.array([damped[0], 0.0, force[1], moment[0], damped[1], moment[2]]), left_share * left_of_lift
 
 
-def _system(f: Flight, late: Late) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+def _system(f: PreparedManeuver, late: Late) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Return regressors and rates of the moment equation and of the force equation, in integral form."""
     t = np.arange(0.0, f.duration_s, _STEP_S)
     q = np.interp(t + late.q_s, f.outputs["q"].t, f.outputs["q"].y)

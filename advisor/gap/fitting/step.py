@@ -11,7 +11,7 @@ import numpy as np
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.linear import Linear
 from advisor.gap.fitting.normal import factored, solved, solved_within
-from advisor.gap.fitting.problem import Point, Problem
+from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.simulator.layout import DERIVATIVES
 
 _FASTEST_GROWTH = 5.0
@@ -35,7 +35,7 @@ def factor_of(normal: FloatArray, prior: FloatArray) -> FloatArray:
 
 
 @dataclass(frozen=True)
-class Step:
+class SearchStep:
     """A Gauss-Newton step from the point of linearisation."""
 
     shared: FloatArray
@@ -84,7 +84,9 @@ def own_eliminated(block: Linear, weights: FloatArray) -> tuple[FloatArray, Floa
     return inner, eliminated
 
 
-def solve_blocks(problem: Problem, linear: Sequence[Linear], weights: FloatArray, point: Point) -> Step:
+def solve_blocks(
+    problem: EffectProblem, linear: Sequence[Linear], weights: FloatArray, point: SearchPoint
+) -> SearchStep:
     """Return one Gauss-Newton step, with nuisance parameters eliminated manoeuvre by manoeuvre."""
     k = linear[0].shared.shape[1]
     precision, departure = problem.prior_of(point)
@@ -97,10 +99,10 @@ def solve_blocks(problem: Problem, linear: Sequence[Linear], weights: FloatArray
         free.append(eliminated[:, k])
         follow.append(eliminated[:, :k])
     lower, upper = bounds_of(point)
-    return Step(solved_within(H, g, lower - point.shared, upper - point.shared), free, follow, H, g)
+    return SearchStep(solved_within(H, g, lower - point.shared, upper - point.shared), free, follow, H, g)
 
 
-def bounds_of(point: Point) -> tuple[FloatArray, FloatArray]:
+def bounds_of(point: SearchPoint) -> tuple[FloatArray, FloatArray]:
     """Return lower and upper bounds of the shared parameters, with derivatives of an aircraft that can be
     flown."""
     free = np.full(len(point.derivatives), np.inf)

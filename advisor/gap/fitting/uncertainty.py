@@ -5,9 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.fitting.fit import Fitted
+from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.prior import ERROR_IF_RIGHT, Distance, distance_of, log_prior, prior_precision
-from advisor.gap.fitting.problem import Problem, counts
+from advisor.gap.fitting.problem import EffectProblem, counts
 from advisor.gap.records.floor import effective_sample_size
 
 CLEAR_GAP = 0.5
@@ -15,7 +15,7 @@ CLEAR_GAP = 0.5
 file's derivatives."""
 
 
-def effective_samples(problem: Problem, residuals: Sequence[FloatArray]) -> FloatArray:
+def effective_samples(problem: EffectProblem, residuals: Sequence[FloatArray]) -> FloatArray:
     """Return the effective sample size of each channel over all manoeuvres, shape (channels,)."""
     total = np.zeros(len(problem.channels))
     for flight, residual in zip(problem.flights.flights, residuals, strict=True):
@@ -24,7 +24,7 @@ def effective_samples(problem: Problem, residuals: Sequence[FloatArray]) -> Floa
     return total
 
 
-def log_prior_of(problem: Problem, fitted: Fitted, effective: FloatArray) -> float:
+def log_prior_of(problem: EffectProblem, fitted: EffectFit, effective: FloatArray) -> float:
     """Return the log prior density of the fitted derivatives, given the aircraft file; 0 without a file."""
     if problem.prior_derivatives is None:
         return 0.0
@@ -33,13 +33,13 @@ def log_prior_of(problem: Problem, fitted: Fitted, effective: FloatArray) -> flo
     return log_prior(fitted.point.derivatives, known, problem.prior_derivatives)
 
 
-def file_is_off(problem: Problem, fitted: Fitted, clear_gap: bool) -> bool:
+def file_is_off(problem: EffectProblem, fitted: EffectFit, clear_gap: bool) -> bool:
     """Return whether the fit rejects the aircraft file's derivatives; ``distance_of`` explains
     ``clear_gap``."""
     return distance_from_file(problem, fitted, clear_gap).is_off
 
 
-def distance_from_file(problem: Problem, fitted: Fitted, clear_gap: bool) -> Distance:
+def distance_from_file(problem: EffectProblem, fitted: EffectFit, clear_gap: bool) -> Distance:
     """Return the distance of the fitted derivatives from the aircraft file's, or zero without a file."""
     if problem.prior_derivatives is None:
         return Distance(0.0, np.inf)
@@ -48,7 +48,9 @@ def distance_from_file(problem: Problem, fitted: Fitted, clear_gap: bool) -> Dis
     return distance_of(fitted.point.derivatives, known, problem.prior_derivatives, clear_gap)
 
 
-def shared_std(problem: Problem, fitted: Fitted, effective: FloatArray, trusted: bool = False) -> FloatArray:
+def shared_std(
+    problem: EffectProblem, fitted: EffectFit, effective: FloatArray, trusted: bool = False
+) -> FloatArray:
     """Return the standard deviations of the shared parameters, shape (k,); arguments are those of
     ``covariance``."""
     return np.asarray(np.sqrt(np.maximum(np.diag(covariance(problem, fitted, effective, trusted)), 0.0)))
@@ -75,7 +77,9 @@ def sigmas_of(values: FloatArray, known: FloatArray, places: Sequence[bool]) -> 
     return float(np.max(np.abs(values[~at]) / std))
 
 
-def covariance(problem: Problem, fitted: Fitted, effective: FloatArray, trusted: bool = False) -> FloatArray:
+def covariance(
+    problem: EffectProblem, fitted: EffectFit, effective: FloatArray, trusted: bool = False
+) -> FloatArray:
     """Return the covariance of the shared parameters, widened for coloured residuals, shape (k, k).
 
     The prior is not widened. With ``trusted`` the file's derivatives count as measured within their

@@ -12,7 +12,7 @@ from typing import Protocol
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.records.flights import Flights
+from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX, SPEED, short_period
 from advisor.oem.innovations import ALPHA, AirModel, Gains, gains_of
 
@@ -57,7 +57,7 @@ class Filters:
 
 
 def filters_for(
-    flights: Flights,
+    flights: PreparedManeuvers,
     p: FloatArray,
     airs: Sequence[AirModel],
     extra: Sequence[FloatArray],
@@ -85,7 +85,9 @@ def filters_for(
     return Filters(tuple(airs), tuple(gains), tuple(orders))
 
 
-def rows_in_time(flights: Flights, i: int, p: FloatArray) -> tuple[FloatArray, np.ndarray, np.ndarray]:
+def rows_in_time(
+    flights: PreparedManeuvers, i: int, p: FloatArray
+) -> tuple[FloatArray, np.ndarray, np.ndarray]:
     """Return times and channels (indices into ``OUTPUTS``) of one manoeuvre in order of time, and that order.
 
     A vane with a delay in ``p``, shape (entries,), saw the air before its stamp, and is ordered accordingly.

@@ -12,8 +12,8 @@ import numpy as np
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.traits import OF_ONE_IMU
 from advisor.gap.candidates.variant import Variant
-from advisor.gap.fitting.fit import Fitted
-from advisor.gap.fitting.problem import Problem
+from advisor.gap.fitting.fit import EffectFit
+from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.foresight.needs import NEEDS, ONE_IMU, OTHERWISE, hidden_from, need_of
 from advisor.gap.foresight.signatures import Signatures
 from advisor.gap.records.flights import SPEED_CHANGE
@@ -77,8 +77,8 @@ class Signature:
 
 
 def foresee(
-    problem: Problem,
-    fitted: Fitted,
+    problem: EffectProblem,
+    fitted: EffectFit,
     variants: Sequence[Variant],
     noise: FloatArray,
     others: Sequence[Signature] = (),
@@ -111,7 +111,11 @@ def foresee(
 
 
 def unseen_effects(
-    problem: Problem, fitted: Fitted, variants: Sequence[Variant], noise: FloatArray, present: set[str]
+    problem: EffectProblem,
+    fitted: EffectFit,
+    variants: Sequence[Variant],
+    noise: FloatArray,
+    present: set[str],
 ) -> tuple[Unseen, ...]:
     """Return the effects that this flight could not have shown, each with the reason."""
     tried = {v.effect for v in variants} | {"alpha_bias", "airspeed_variation", "turbulence", "gust"}
@@ -159,8 +163,8 @@ def _first_size(variant: Variant) -> float:
 
 
 def _signature_of(
-    problem: Problem,
-    fitted: Fitted,
+    problem: EffectProblem,
+    fitted: EffectFit,
     signatures: Signatures,
     variant: Variant,
     size: float,
@@ -188,7 +192,7 @@ def _signature_of(
 
 
 def _responses(
-    problem: Problem, fitted: Fitted, sized: Sequence[tuple[Variant, float]]
+    problem: EffectProblem, fitted: EffectFit, sized: Sequence[tuple[Variant, float]]
 ) -> list[list[FloatArray]]:
     """Return per effect the change of every manoeuvre's channels, shape (rows,), per unit of size."""
     driving = []
@@ -249,7 +253,7 @@ def _foreseen(
     return Foreseen(signature.effect, signature.parameter, size, tuple(confused), add, share)
 
 
-def _shares(problem: Problem, fitted: Fitted) -> Mapping[str, float]:
+def _shares(problem: EffectProblem, fitted: EffectFit) -> Mapping[str, float]:
     """Return nonlinear terms as shares of the linear one, per unit of size, at the largest motion of the
     plan.
 

@@ -15,14 +15,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.fitting.fit import Fitted
+from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.linear import pulse_response
-from advisor.gap.fitting.problem import Problem
+from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.foresight.foresee import Foreseen, Signature
 from advisor.gap.foresight.needs import need_of
 from advisor.gap.foresight.signatures import Signatures
 from advisor.gap.noise.probes import disturbance_columns
-from advisor.gap.records.flights import SPEED_CHANGE, Flight, Flights
+from advisor.gap.records.flights import SPEED_CHANGE, PreparedManeuver, PreparedManeuvers
 from advisor.gap.search.acceptance import least_offset_rad
 from advisor.gap.search.air import AIR_GAIN, AIR_MANEUVERS, LEAST_GUST_ANGLE
 from advisor.gap.search.indistinguishable import way_to_distinguish
@@ -56,7 +56,9 @@ class _Air:
         return float(np.max(0.5 * np.sum(taken, axis=1)))
 
 
-def foresee_air(problem: Problem, fitted: Fitted, signatures: Signatures, unit_s: float) -> list[Foreseen]:
+def foresee_air(
+    problem: EffectProblem, fitted: EffectFit, signatures: Signatures, unit_s: float
+) -> list[Foreseen]:
     """Return the smallest turbulence and the smallest (1 − cos) gust, which lasts two time units of the
     input."""
     if "alpha" not in problem.channels:
@@ -72,7 +74,7 @@ def foresee_air(problem: Problem, fitted: Fitted, signatures: Signatures, unit_s
     ]
 
 
-def speed_signature(problem: Problem, fitted: Fitted, signatures: Signatures) -> Signature:
+def speed_signature(problem: EffectProblem, fitted: EffectFit, signatures: Signatures) -> Signature:
     """Return the signature of alternately fast and slow manoeuvres, relative to a simulator at constant
     speed."""
     p = problem.driving(fitted.point)
@@ -85,7 +87,7 @@ def speed_signature(problem: Problem, fitted: Fitted, signatures: Signatures) ->
     return Signature("airspeed_variation", "change", signatures.of(columns), SPEED_CHANGE)
 
 
-def foresee_offset(problem: Problem, noise: FloatArray) -> Foreseen:
+def foresee_offset(problem: EffectProblem, noise: FloatArray) -> Foreseen:
     """Return the detectability of a constant offset of α, from θ minus the climb angle, without
     derivatives."""
     flights = problem.flights
@@ -98,13 +100,13 @@ def foresee_offset(problem: Problem, noise: FloatArray) -> Foreseen:
     return Foreseen("alpha_bias", "bias_rad", least_offset_rad(std), (), way)
 
 
-def impossible(effect: str, flights: Flights) -> Foreseen:
+def impossible(effect: str, flights: PreparedManeuvers) -> Foreseen:
     """Return an effect that the plan cannot show at any size, with the channel or manoeuvre to add."""
     need = need_of(effect, flights)
     return Foreseen(effect, need.parameter, float("inf"), (), need.add)
 
 
-def _air(problem: Problem, fitted: Fitted, signatures: Signatures, length_s: float) -> _Air:
+def _air(problem: EffectProblem, fitted: EffectFit, signatures: Signatures, length_s: float) -> _Air:
     """Return the responses to moving air; a gust falls into the first manoeuvre, after its last step."""
     p = problem.driving(fitted.point)
     gains, gusts = [], []
@@ -120,7 +122,7 @@ def _air(problem: Problem, fitted: Fitted, signatures: Signatures, length_s: flo
     return _Air(np.concatenate(gains), np.concatenate(gusts), min(inside, 1.0))
 
 
-def _gust(problem: Problem, flight: Flight, p: FloatArray, length_s: float) -> FloatArray:
+def _gust(problem: EffectProblem, flight: PreparedManeuver, p: FloatArray, length_s: float) -> FloatArray:
     """Return the response of all channels, shape (rows,), to a (1 − cos) gust of 1 rad at its peak."""
     n = max(round(length_s / flight.h), 2)
     shape = 0.5 * (1.0 - np.cos(2.0 * np.pi * (np.arange(n) + 0.5) / n))
@@ -129,7 +131,7 @@ def _gust(problem: Problem, flight: Flight, p: FloatArray, length_s: float) -> F
     return problem.read_delayed(flight, response, np.array([flight.last_step_s]), p)[:, 0]
 
 
-def _at_speed(flight: Flight, factor: float) -> Flight:
+def _at_speed(flight: PreparedManeuver, factor: float) -> PreparedManeuver:
     slow = flight.slow.copy()
     slow[SPEED] = flight.trim[REFERENCE] * factor
     return replace(flight, slow=slow)

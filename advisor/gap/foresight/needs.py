@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from advisor.gap.candidates.trait import Need
 from advisor.gap.candidates.traits import TRAITS
-from advisor.gap.records.flights import Flights
+from advisor.gap.records.flights import PreparedManeuvers
 
 NEEDS = {effect: trait.need for effect, trait in TRAITS.items() if trait.need is not None}
 OTHERWISE = "fly another time unit and another amplitude"
@@ -14,7 +14,7 @@ ONE_IMU = ("the angle of attack is made of the same inertial sensors", "a vane")
 """Why an autopilot's own angle of attack cannot show some effects, and what would show them."""
 
 
-def need_of(effect: str, flights: Flights) -> Need:
+def need_of(effect: str, flights: PreparedManeuvers) -> Need:
     """Return why these flights cannot show an effect: its channel was not recorded, or did not vary."""
     need = NEEDS[effect]
     if (unrecorded := TRAITS[effect].unrecorded) is not None:
@@ -26,7 +26,7 @@ def need_of(effect: str, flights: Flights) -> Need:
     return need
 
 
-def hidden_from(effect: str, flights: Flights) -> tuple[str, str]:
+def hidden_from(effect: str, flights: PreparedManeuvers) -> tuple[str, str]:
     """Return why an effect that was sought has no signature of its own, and what to add."""
     if not TRAITS[effect].of_the_stick:
         need = need_of(effect, flights)

@@ -11,14 +11,14 @@ from advisor.flight.signals.record import Channel
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import beyond_known, with_known
 from advisor.gap.candidates.traits import TRAITS
-from advisor.gap.fitting.fit import Fitted
+from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.linear import linearise
-from advisor.gap.fitting.problem import Point, Problem
+from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.fitting.step import solve_blocks
 from advisor.gap.foresight.foresee import Foreseen, foresee
 from advisor.gap.foresight.foresee_outside_fit import foresee_air, foresee_offset, impossible, speed_signature
 from advisor.gap.foresight.signatures import Signatures
-from advisor.gap.records.flights import Flights
+from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.records.prepare import prepare
 from advisor.gap.records.usable import LEAST_SAMPLES
 from advisor.gap.search.baseline import base_entries, everywhere, prior_derivatives
@@ -87,7 +87,7 @@ def foresee_plan(
 
 
 def foresee_flights(
-    aircraft: Aircraft, derivatives: FloatArray, flights: Flights, noise: FloatArray, unit_s: float
+    aircraft: Aircraft, derivatives: FloatArray, flights: PreparedManeuvers, noise: FloatArray, unit_s: float
 ) -> list[Foreseen]:
     """Return for every effect the smallest size that prepared manoeuvres could detect.
 
@@ -104,15 +104,15 @@ def foresee_flights(
     """
     variants = variants_for(flights)
     known = with_known(base_entries(aircraft), aircraft.effects, flights, variants)
-    problem = Problem(flights, known, prior_derivatives=derivatives)
+    problem = EffectProblem(flights, known, prior_derivatives=derivatives)
     own = np.zeros((len(flights), len(NUISANCES)))
     own[:, NUISANCES.index("Z_trim")] = [f.level_lift for f in flights.flights]
-    point = everywhere(Point(derivatives, own), flights)
+    point = everywhere(SearchPoint(derivatives, own), flights)
     linear = linearise(problem, point)
     step = solve_blocks(problem, linear, 1.0 / noise, point)
     owns = step.owns(step.shared)
     residuals = tuple(b.after(step.shared, own) for b, own in zip(linear, owns, strict=True))
-    fitted = Fitted(point, noise, 0.0, residuals, residuals, step.information, linear, 0)
+    fitted = EffectFit(point, noise, 0.0, residuals, residuals, step.information, linear, 0)
     signatures = Signatures(problem, fitted, noise)
     speed_signatures = [speed_signature(problem, fitted, signatures)] if flights.speed_measured else []
     wanted = beyond_known(aircraft.effects, variants)

@@ -12,8 +12,8 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.input import LATENCY
-from advisor.gap.fitting.fit import Fitted
-from advisor.gap.fitting.problem import Problem, row_weights
+from advisor.gap.fitting.fit import EffectFit
+from advisor.gap.fitting.problem import EffectProblem, row_weights
 
 _RANK = 1e-7
 """Relative singular value of a direction of the shared parameters below which the direction is ignored."""
@@ -22,7 +22,7 @@ _RANK = 1e-7
 class Signatures:
     """Signatures about a point of the model: responses with the effect of all parameters removed."""
 
-    def __init__(self, problem: Problem, fitted: Fitted, noise: FloatArray) -> None:
+    def __init__(self, problem: EffectProblem, fitted: EffectFit, noise: FloatArray) -> None:
         self.problem = problem
         self.filtered = problem.knows_the_noise
         self.rows = 0
@@ -82,7 +82,7 @@ class Signatures:
         return np.asarray(stacked - self._shared @ (self._shared.T @ stacked))
 
 
-def _latency_at(fitted: Fitted) -> int | None:
+def _latency_at(fitted: EffectFit) -> int | None:
     """Return the index of the latency among the shared parameters."""
     point = fitted.point
     return point.place(point.effects.index(LATENCY)).start if LATENCY in point.effects else None

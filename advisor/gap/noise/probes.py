@@ -12,12 +12,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.fitting.fit import Fitted
+from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.linear import pulse_response
 from advisor.gap.fitting.normal import solved
-from advisor.gap.fitting.problem import Problem, row_weights
+from advisor.gap.fitting.problem import EffectProblem, row_weights
 from advisor.gap.fitting.step import factor
-from advisor.gap.records.flights import Flight
+from advisor.gap.records.flights import PreparedManeuver
 from advisor.gap.simulator.layout import (
     DISTURB_AIR,
     DISTURB_FORCE,
@@ -61,7 +61,7 @@ class Probe:
 
 
 def probe_blocks(
-    problem: Problem, fitted: Fitted, noise: FloatArray, blocks: Sequence[str] | None = None
+    problem: EffectProblem, fitted: EffectFit, noise: FloatArray, blocks: Sequence[str] | None = None
 ) -> list[Probe]:
     """Return the disturbance of every block, likeliest first.
 
@@ -79,7 +79,7 @@ def probe_blocks(
     return sorted((_probe(problem, fitted, noise, block) for block in there), key=lambda p: -p.gain)
 
 
-def _probe(problem: Problem, fitted: Fitted, noise: FloatArray, block: str) -> Probe:
+def _probe(problem: EffectProblem, fitted: EffectFit, noise: FloatArray, block: str) -> Probe:
     weights = 1.0 / noise
     p = problem.driving(fitted.point)
     spectra, powers, unit = [], [], None
@@ -111,7 +111,9 @@ def _probe(problem: Problem, fitted: Fitted, noise: FloatArray, block: str) -> P
     return Probe(block, gains[best], _SIZES[best] / unit, explained)
 
 
-def disturbance_columns(problem: Problem, flight: Flight, p: FloatArray, block: str) -> FloatArray:
+def disturbance_columns(
+    problem: EffectProblem, flight: PreparedManeuver, p: FloatArray, block: str
+) -> FloatArray:
     """Return the response of all channels to a Gauss-Markov disturbance of unit variance, shape (rows, k).
 
     A gust is read by a vane, not by an estimate of α from inertial sensors.
@@ -135,7 +137,7 @@ def disturbance_columns(problem: Problem, flight: Flight, p: FloatArray, block: 
 
 
 @dataclass(frozen=True)
-class Course:
+class DisturbanceCourse:
     """The likeliest time course of a block's disturbance."""
 
     knots: tuple[FloatArray, ...]
@@ -145,8 +147,8 @@ class Course:
 
 
 def disturbance_courses(
-    problem: Problem, fitted: Fitted, noise: FloatArray, block: str, sizes: Sequence[float]
-) -> list[Course]:
+    problem: EffectProblem, fitted: EffectFit, noise: FloatArray, block: str, sizes: Sequence[float]
+) -> list[DisturbanceCourse]:
     """Return the likeliest course of a block's disturbance for each prior standard deviation in ``sizes``."""
     p = problem.driving(fitted.point)
     courses: list[list[FloatArray]] = [[] for _ in sizes]
@@ -162,10 +164,13 @@ def disturbance_courses(
             found = solved(chol, A.T @ (fitted.residuals[i] * w))
             courses[k].append(np.asarray(colour @ found[-free:]))
             residuals[k].append(np.asarray(fitted.residuals[i] - both @ found))
-    return [Course(tuple(knots), tuple(residual)) for knots, residual in zip(courses, residuals, strict=True)]
+    return [
+        DisturbanceCourse(tuple(knots), tuple(residual))
+        for knots, residual in zip(courses, residuals, strict=True)
+    ]
 
 
-def _colour(flight: Flight) -> FloatArray:
+def _colour(flight: PreparedManeuver) -> FloatArray:
     """Return the Cholesky factor of the correlation between the knots of a disturbance."""
     knots = np.arange(0.0, flight.duration_s, KNOTS_S)[1:]
     lags = np.abs(knots[:, None] - knots[None, :])

@@ -10,10 +10,10 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.fitting.fit import Fitted, rms_of
+from advisor.gap.fitting.fit import EffectFit, rms_of
 from advisor.gap.fitting.holdout import mean_squares
 from advisor.gap.fitting.linear import as_measured
-from advisor.gap.fitting.problem import Point, Problem, row_weights
+from advisor.gap.fitting.problem import EffectProblem, SearchPoint, row_weights
 from advisor.gap.fitting.step import solve_blocks
 from advisor.gap.fitting.whitening import Weighting, Whitening, filters_for, rows_in_time
 from advisor.gap.noise.probes import probe_blocks
@@ -45,7 +45,7 @@ _NONE_OF_PEAK = 1e-9
 """White noise over the channel's peak that stands for no noise at all; avoids a division by zero."""
 
 
-def whitening_of(problem: Problem, fitted: Fitted, first_look: bool = False) -> Whitening | None:
+def whitening_of(problem: EffectProblem, fitted: EffectFit, first_look: bool = False) -> Whitening | None:
     """Return the filter or the weights that the noise of this flight requires; None where it is white.
 
     At a first look a gust has spoilt the derivatives. Every suspect manoeuvre is then set aside, and the fit
@@ -65,7 +65,7 @@ def whitening_of(problem: Problem, fitted: Fitted, first_look: bool = False) -> 
     return Weighting(weights) if min(float(np.min(w)) for w in weights) < _NO_LESS else None
 
 
-def noise_in_quiet(problem: Problem, fitted: Fitted) -> AirModel | None:
+def noise_in_quiet(problem: EffectProblem, fitted: EffectFit) -> AirModel | None:
     """Return coloured instruments or moving air where nothing was flown; None where white noise describes
     it."""
     if not {"alpha", "q"} <= set(problem.channels):
@@ -85,7 +85,7 @@ def noise_in_quiet(problem: Problem, fitted: Fitted) -> AirModel | None:
     return with_floor(problem, found.air) if gain > _LEAST_GAIN else None
 
 
-def loudness(problem: Problem, fitted: Fitted) -> float:
+def loudness(problem: EffectProblem, fitted: EffectFit) -> float:
     """Return the median power of the residual in quiet stretches, relative to the noise of the
     instruments."""
     white = instrument_noise(problem)
@@ -94,7 +94,9 @@ def loudness(problem: Problem, fitted: Fitted) -> float:
     return float(np.median(powers)) if powers else 0.0
 
 
-def gusts_in(problem: Problem, fitted: Fitted, still: AirModel, first_look: bool) -> dict[int, AirModel]:
+def gusts_in(
+    problem: EffectProblem, fitted: EffectFit, still: AirModel, first_look: bool
+) -> dict[int, AirModel]:
     """Return the air of the manoeuvres with a gust, whose residual far exceeds that of the quietest quarter.
 
     An effect of the stick may appear in some manoeuvres only, but then moving air explains the residual no
@@ -110,7 +112,7 @@ def gusts_in(problem: Problem, fitted: Fitted, still: AirModel, first_look: bool
     return {i: replace(still, gust=ANY_GUST) for i in sorted(gusty | suspects)}
 
 
-def _begun_anew(problem: Problem, fitted: Fitted, noise: FloatArray) -> list[FloatArray]:
+def _begun_anew(problem: EffectProblem, fitted: EffectFit, noise: FloatArray) -> list[FloatArray]:
     """Return per manoeuvre the stacked residuals, with nuisance parameters refitted to the instruments'
     noise.
 
@@ -123,14 +125,14 @@ def _begun_anew(problem: Problem, fitted: Fitted, noise: FloatArray) -> list[Flo
     return [block.after(still, own) for block, own in zip(fitted.linear, owns, strict=True)]
 
 
-def _likelier(problem: Problem, fitted: Fitted, i: int, noise: FloatArray) -> float:
+def _likelier(problem: EffectProblem, fitted: EffectFit, i: int, noise: FloatArray) -> float:
     """Return how much better moving air explains a manoeuvre's residual than any other block; 0 where it does
     not."""
     best, second, *_ = probe_blocks(*in_one_maneuver(problem, fitted, i), noise)
     return best.gain / max(second.gain, 1e-9) if best.block == "air" else 0.0
 
 
-def in_one_maneuver(problem: Problem, fitted: Fitted, i: int) -> tuple[Problem, Fitted]:
+def in_one_maneuver(problem: EffectProblem, fitted: EffectFit, i: int) -> tuple[EffectProblem, EffectFit]:
     """Return the problem and its fit, restricted to one manoeuvre."""
     problem, fitted = unfiltered(problem, fitted)
     flights = replace(problem.flights, flights=(problem.flights.flights[i],))
@@ -140,7 +142,7 @@ def in_one_maneuver(problem: Problem, fitted: Fitted, i: int) -> tuple[Problem, 
         replace(problem, flights=flights, base=p),
         replace(
             fitted,
-            point=Point(p[: len(DERIVATIVES)], fitted.point.own[i : i + 1]),
+            point=SearchPoint(p[: len(DERIVATIVES)], fitted.point.own[i : i + 1]),
             innovations=(fitted.residuals[i],),
             residuals=(fitted.residuals[i],),
             linear=(fitted.linear[i],),
@@ -148,18 +150,18 @@ def in_one_maneuver(problem: Problem, fitted: Fitted, i: int) -> tuple[Problem, 
     )
 
 
-def unfiltered(problem: Problem, fitted: Fitted) -> tuple[Problem, Fitted]:
+def unfiltered(problem: EffectProblem, fitted: EffectFit) -> tuple[EffectProblem, EffectFit]:
     """Return the problem and its fit without a filter of the noise."""
     linear = tuple(as_measured(block) for block in fitted.linear)
     return replace(problem, whitening=None), replace(fitted, innovations=fitted.residuals, linear=linear)
 
 
-def _seen(problem: Problem) -> float:
+def _seen(problem: EffectProblem) -> float:
     """Return 1 where the α channel reads the air, 0 where it is computed from inertial sensors."""
     return 0.0 if problem.flights.alpha_is_derived else 1.0
 
 
-def with_floor(problem: Problem, air: AirModel) -> AirModel:
+def with_floor(problem: EffectProblem, air: AirModel) -> AirModel:
     """Return the model of the air with white noise of at least half the stated floor.
 
     A record that was filtered before storage has almost no white noise. Whitened by so little noise, the
@@ -171,7 +173,7 @@ def with_floor(problem: Problem, air: AirModel) -> AirModel:
     return replace(air, white=white)
 
 
-def quiet_rms(problem: Problem, fitted: Fitted) -> FloatArray:
+def quiet_rms(problem: EffectProblem, fitted: EffectFit) -> FloatArray:
     """Return the root mean square of the residual where nothing was flown, shape (channels,)."""
     power, count = np.zeros(len(problem.channels)), np.zeros(len(problem.channels))
     for flight, residual in zip(problem.flights.flights, fitted.residuals, strict=True):
@@ -184,7 +186,7 @@ def quiet_rms(problem: Problem, fitted: Fitted) -> FloatArray:
     return np.where(count > _LEAST_SAMPLES, np.sqrt(power / np.maximum(count, 1.0)), whole)
 
 
-def instrument_noise(problem: Problem) -> FloatArray:
+def instrument_noise(problem: EffectProblem) -> FloatArray:
     """Return the white noise of each channel from differences of its samples, shape (4,); 1 for a missing
     channel.
 
@@ -195,12 +197,12 @@ def instrument_noise(problem: Problem) -> FloatArray:
     return np.array([white.get(c, 1.0) for c in OUTPUTS])
 
 
-def system_of(problem: Problem, fitted: Fitted) -> FloatArray:
+def system_of(problem: EffectProblem, fitted: EffectFit) -> FloatArray:
     """Return Z_α, Z_q, M_α, M_q of the response to moving air."""
     return short_period(problem.driving(fitted.point)[0])
 
 
-def rows_of(problem: Problem, fitted: Fitted, i: int) -> Rows:
+def rows_of(problem: EffectProblem, fitted: EffectFit, i: int) -> Rows:
     """Return the residual of manoeuvre ``i`` in order of time."""
     t, channel, order = rows_in_time(problem.flights, i, problem.driving(fitted.point)[i])
     return Rows(
@@ -208,7 +210,7 @@ def rows_of(problem: Problem, fitted: Fitted, i: int) -> Rows:
     )
 
 
-def _quiet_parts(problem: Problem, fitted: Fitted, i: int) -> list[Rows]:
+def _quiet_parts(problem: EffectProblem, fitted: EffectFit, i: int) -> list[Rows]:
     """Return the quiet stretches before the first and after the last step, each as a record of its own."""
     flight = problem.flights.flights[i]
     whole = rows_of(problem, fitted, i)

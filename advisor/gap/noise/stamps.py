@@ -9,8 +9,8 @@ simulation's grid.
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.fitting.fit import Fitted
-from advisor.gap.fitting.problem import Problem, counts
+from advisor.gap.fitting.fit import EffectFit
+from advisor.gap.fitting.problem import EffectProblem, counts
 from advisor.gap.records.grid import STEP_S
 from advisor.gap.simulator.layout import ENTRIES
 
@@ -27,7 +27,7 @@ _FAR = 2.0
 """Number of standard deviations of a stamp within which a sample may lie on the other side of a step."""
 
 
-def stamp_variance(problem: Problem, fitted: Fitted) -> list[FloatArray]:
+def stamp_variance(problem: EffectProblem, fitted: EffectFit) -> list[FloatArray]:
     """Return per manoeuvre, shape (rows,): variance of each sample for the uncertainty of its stamp."""
     return [
         (problem.jitter_s * rate) ** 2 + 0.25 * jerk**2
@@ -35,7 +35,7 @@ def stamp_variance(problem: Problem, fitted: Fitted) -> list[FloatArray]:
     ]
 
 
-def stamp_power(problem: Problem, fitted: Fitted) -> FloatArray:
+def stamp_power(problem: EffectProblem, fitted: EffectFit) -> FloatArray:
     """Return the mean square that jitter of the stamps adds to each channel, whatever the model, shape
     (channels,)."""
     power = np.zeros(len(problem.channels))
@@ -46,7 +46,7 @@ def stamp_power(problem: Problem, fitted: Fitted) -> FloatArray:
     return np.asarray(power / counts(problem))
 
 
-def rates_of(problem: Problem, fitted: Fitted) -> list[FloatArray]:
+def rates_of(problem: EffectProblem, fitted: EffectFit) -> list[FloatArray]:
     """Return per manoeuvre, shape (rows,): rate of each channel in the simulation at each stamp."""
     flights = problem.flights.flights
     return [
@@ -55,7 +55,7 @@ def rates_of(problem: Problem, fitted: Fitted) -> list[FloatArray]:
     ]
 
 
-def _jerks_of(problem: Problem, fitted: Fitted) -> list[FloatArray]:
+def _jerks_of(problem: EffectProblem, fitted: EffectFit) -> list[FloatArray]:
     """Return per manoeuvre, shape (rows,): largest deviation from a straight line within the stamps'
     uncertainty."""
     reach = 0 if problem.jitter_s == 0.0 else 1 + int(_FAR * problem.jitter_s / STEP_S)
@@ -75,12 +75,12 @@ def _largest_near(y: FloatArray, reach: int) -> FloatArray:
     return np.asarray(np.max([padded[k : k + len(y)] for k in range(2 * reach + 1)], axis=0))
 
 
-def _flown(problem: Problem, fitted: Fitted) -> list[FloatArray]:
+def _flown(problem: EffectProblem, fitted: EffectFit) -> list[FloatArray]:
     p = problem.driving(fitted.point)
     return [problem.fly(flight, p[i]) for i, flight in enumerate(problem.flights.flights)]
 
 
-def stamp_jitter(problem: Problem, fitted: Fitted, rates: list[FloatArray]) -> float:
+def stamp_jitter(problem: EffectProblem, fitted: EffectFit, rates: list[FloatArray]) -> float:
     """Return the standard deviation of the stamps in s; 0 where no residual gets rougher with the channel's
     rate.
 
@@ -92,7 +92,7 @@ def stamp_jitter(problem: Problem, fitted: Fitted, rates: list[FloatArray]) -> f
 
 
 def _jitter_in(
-    problem: Problem, fitted: Fitted, rates: list[FloatArray], channel: str
+    problem: EffectProblem, fitted: EffectFit, rates: list[FloatArray], channel: str
 ) -> tuple[float, float]:
     """Return the power of the stamps' errors in a channel over its limit, and the standard deviation in s."""
     c = problem.channels.index(channel)
@@ -113,6 +113,6 @@ def _jitter_in(
     return variance * float(np.mean(x)) / least**2, float(np.sqrt(variance))
 
 
-def _read(problem: Problem, i: int, series: list[FloatArray]) -> FloatArray:
+def _read(problem: EffectProblem, i: int, series: list[FloatArray]) -> FloatArray:
     """Return series on the grid, one for each output, at the stamps of each channel, stacked."""
     return problem.read(problem.flights.flights[i], np.stack(series), np.zeros(len(ENTRIES)))

@@ -29,7 +29,7 @@ class Measured:
 
 
 @dataclass(frozen=True, slots=True)
-class Flight:
+class PreparedManeuver:
     """One prepared manoeuvre. Times count from the start of its record."""
 
     number: int
@@ -73,13 +73,13 @@ class Flight:
         """Trim term of Eq. (1) that carries the weight at the mean speed, given at the reference speed."""
         return -GRAVITY_M_S2 * float(self.trim[REFERENCE]) / float(np.mean(self.slow[SPEED])) ** 2
 
-    def at_constant_speed(self) -> "Flight":
+    def at_constant_speed(self) -> "PreparedManeuver":
         """Return the manoeuvre with derivatives that do not scale with the air speed."""
         trim = self.trim.copy()
         trim[SCALED] = 0.0
         return replace(self, trim=trim)
 
-    def coarser(self) -> "Flight":
+    def coarser(self) -> "PreparedManeuver":
         """Return the manoeuvre on a grid of twice the step."""
         n = (self.n + 1) // 2
         even = np.pad(self.slow, ((0, 0), (0, 2 * n - self.n)), mode="edge")
@@ -105,10 +105,10 @@ class Flight:
 
 
 @dataclass(frozen=True, slots=True)
-class Flights:
+class PreparedManeuvers:
     """All manoeuvres of a diagnosis, with their common properties."""
 
-    flights: tuple[Flight, ...]
+    flights: tuple[PreparedManeuver, ...]
     channels: tuple[str, ...]
     """Outputs that every manoeuvre has."""
     speed_measured: bool

@@ -7,7 +7,7 @@ filtered before storage. A coloured residual has a smaller effective sample size
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.records.flights import Flights
+from advisor.gap.records.flights import PreparedManeuvers
 
 TOLERANCE = 0.02
 """Noise that is assumed in a record filtered before storage, as a share of the channel's peak."""
@@ -21,26 +21,26 @@ _RAW = 1e-2
 filtered."""
 
 
-def prefiltered(flights: Flights) -> dict[str, bool]:
+def prefiltered(flights: PreparedManeuvers) -> dict[str, bool]:
     """Return by channel whether it was filtered, or is smoother than an instrument's white noise."""
     smooth = flights.white < (_RAW if flights.alpha_is_smoothed else _SMOOTH) * flights.peaks
     smooth |= flights.alpha_is_smoothed & (np.array(flights.channels) == "alpha")
     return dict(zip(flights.channels, smooth.tolist(), strict=True))
 
 
-def floor_margins(flights: Flights) -> FloatArray:
+def floor_margins(flights: PreparedManeuvers) -> FloatArray:
     """Return the factor by which each channel must exceed its floor, shape (channels,)."""
     return np.where(list(prefiltered(flights).values()), STATED_FLOOR_MARGIN, 1.0)
 
 
-def stated_floor(flights: Flights) -> FloatArray:
+def stated_floor(flights: PreparedManeuvers) -> FloatArray:
     """Return the least noise of each channel, shape (channels,): 2 % of the peak where it was filtered before
     storage."""
     smooth = np.array(list(prefiltered(flights).values()))
     return np.maximum(flights.white, np.where(smooth, TOLERANCE * flights.peaks, 0.0))
 
 
-def tolerance_of(flights: Flights) -> FloatArray:
+def tolerance_of(flights: PreparedManeuvers) -> FloatArray:
     """Return the assumed noise of channels that were filtered before storage, else 0, shape (channels,)."""
     return np.where(list(prefiltered(flights).values()), stated_floor(flights), 0.0)
 

@@ -16,7 +16,7 @@ from advisor.gap.records.airspeed import (
     speed_error_factors,
 )
 from advisor.gap.records.edges import edges_of, held_from
-from advisor.gap.records.flights import Flight, Flights, Measured
+from advisor.gap.records.flights import Measured, PreparedManeuver, PreparedManeuvers
 from advisor.gap.records.grid import STEP_S, smooth
 from advisor.gap.records.provenance import is_estimate
 from advisor.gap.records.smoothness import is_filtered, is_rough, is_smoothed, white_part
@@ -26,7 +26,9 @@ from advisor.gap.simulator.layout import OUTPUTS, SLOW, SPEED, THETA_FROM, THRUS
 from advisor.oem.place import ASSUMED_M_S
 
 
-def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft, true_over_read: float = 1.0) -> Flights:
+def prepare(
+    maneuvers: Sequence[Maneuver], aircraft: Aircraft, true_over_read: float = 1.0
+) -> PreparedManeuvers:
     """Prepare the manoeuvres for the comparison, without those that ``usable_of`` rejects.
 
     ``true_over_read`` is the ratio of the true air speed to the air speed that is read, 1 where it is
@@ -50,14 +52,14 @@ def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft, true_over_read: f
     whole = [[f.outputs[c].y for f in flights] for c in channels]
     white = np.array([white_part(series) for series in whole])
     peaks = np.array([np.median([_departure(y) for y in series]) for series in whole])
-    return Flights(
+    return PreparedManeuvers(
         flights, channels, measured, reference, moves, derived, derived or smoothed, has, white, peaks
     )
 
 
 def _at_measured_speed(
     usable: Sequence[Maneuver], aircraft: Aircraft, true_over_read: float
-) -> tuple[float, tuple[Flight, ...], float]:
+) -> tuple[float, tuple[PreparedManeuver, ...], float]:
     """Return reference speed (m/s), flights, and largest relative change of speed, from the instrument."""
     means = [np.mean(m.channels["airspeed"].y) for m in usable]
     reference = aircraft.reference_airspeed_m_s or float(np.mean(means))
@@ -67,7 +69,7 @@ def _at_measured_speed(
 
 def _at_speed_of_motion(
     usable: Sequence[Maneuver], aircraft: Aircraft
-) -> tuple[float, tuple[Flight, ...], float]:
+) -> tuple[float, tuple[PreparedManeuver, ...], float]:
     """Return reference speed (m/s), flights, and largest relative change of speed, without an instrument."""
     reference = aircraft.stated_airspeed_m_s or ASSUMED_M_S
     shown = speeds_about(usable, reference)
@@ -79,7 +81,9 @@ def _at_speed_of_motion(
     return reference, flights, shown.moves
 
 
-def _kind_of_alpha(usable: Sequence[Maneuver], flights: Sequence[Flight], in_all: bool) -> tuple[bool, bool]:
+def _kind_of_alpha(
+    usable: Sequence[Maneuver], flights: Sequence[PreparedManeuver], in_all: bool
+) -> tuple[bool, bool]:
     """Return whether α was smoothed before it was stored, and whether it is an estimate.
 
     ``in_all``: every manoeuvre has an angle of attack; otherwise its smoothness is not looked at.
@@ -99,7 +103,7 @@ def _departure(y: FloatArray) -> float:
     return float(np.max(np.abs(y - np.median(y[: max(5, len(y) // 50)]))))
 
 
-def _about_their_mean(flights: Iterable[Flight]) -> tuple[Flight, ...]:
+def _about_their_mean(flights: Iterable[PreparedManeuver]) -> tuple[PreparedManeuver, ...]:
     """Return the manoeuvres with thrust minus drag relative to its mean over all manoeuvres."""
     found = tuple(flights)
     if found:
@@ -109,7 +113,9 @@ def _about_their_mean(flights: Iterable[Flight]) -> tuple[Flight, ...]:
     return found
 
 
-def _with_speed_errors(flights: Sequence[Flight], maneuvers: Sequence[Maneuver]) -> tuple[Flight, ...]:
+def _with_speed_errors(
+    flights: Sequence[PreparedManeuver], maneuvers: Sequence[Maneuver]
+) -> tuple[PreparedManeuver, ...]:
     """Return the manoeuvres with the uncertainty of their air speeds."""
     stamps, residuals = [], []
     for flight, maneuver in zip(flights, maneuvers, strict=True):
@@ -122,7 +128,7 @@ def _with_speed_errors(flights: Sequence[Flight], maneuvers: Sequence[Maneuver])
     return tuple(replace(f, speed_error_factor=factor) for f, factor in zip(flights, factors, strict=True))
 
 
-def _largest_departure(flights: Sequence[Flight]) -> float:
+def _largest_departure(flights: Sequence[PreparedManeuver]) -> float:
     """Return the largest relative departure of the air speed from its mean over all manoeuvres; 0 without
     any."""
     if not flights:
@@ -131,7 +137,7 @@ def _largest_departure(flights: Sequence[Flight]) -> float:
     return float(np.max(np.abs(speeds / np.mean(speeds) - 1.0)))
 
 
-def _ready(m: Maneuver, reference: float, level: float | None, true_over_read: float) -> Flight:
+def _ready(m: Maneuver, reference: float, level: float | None, true_over_read: float) -> PreparedManeuver:
     """Return a manoeuvre on the grid.
 
     ``level`` is the air speed in m/s before the first step; None where the log has an air speed.
@@ -172,7 +178,7 @@ def _ready(m: Maneuver, reference: float, level: float | None, true_over_read: f
     trim = np.array([alpha, alpha, reference, 1.0])
     if "theta" in outputs:
         trim[THETA_FROM] = float(np.mean(outputs["theta"].y[:3]))
-    return Flight(
+    return PreparedManeuver(
         m.number, start, first, m.span.last_step_s - start, STEP_S, n, t_u, held_from(t_u), u, u_trim,
         slow, trim, outputs, edges_of(t_u, u),
     )  # fmt: skip
@@ -183,7 +189,7 @@ def _at_start(out: Measured, first_step_s: float) -> float:
     return float(np.mean(out.y[out.t <= max(first_step_s, out.t[0] + 0.1)]))
 
 
-def _with_rows(flight: Flight, channels: Sequence[str]) -> Flight:
+def _with_rows(flight: PreparedManeuver, channels: Sequence[str]) -> PreparedManeuver:
     """Return the manoeuvre with the stamps of its channels one after another."""
     times = [flight.outputs[c].t for c in channels]
     output = np.repeat([OUTPUTS.index(c) for c in channels], [len(t) for t in times])

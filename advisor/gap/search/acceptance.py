@@ -8,7 +8,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.traits import TAKES
 from advisor.gap.candidates.variant import Variant
 from advisor.gap.decision import Decision
-from advisor.gap.fitting.fit import Fitted
+from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.holdout import HeldOut
 
 MOST_EFFECTS = 3
@@ -55,11 +55,11 @@ manoeuvres both must improve."""
 
 
 @dataclass(frozen=True)
-class Judged:
+class JudgedAddition:
     """An effect that is judged as an addition to a model."""
 
     variant: Variant
-    fitted: Fitted
+    fitted: EffectFit
     held_out: HeldOut
     gain: float
     """Gain in log likelihood on held-out manoeuvres, with effective sample sizes, minus k/2 ln N, plus the

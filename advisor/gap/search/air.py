@@ -11,10 +11,10 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.robust import robust_std
-from advisor.gap.fitting.fit import Fitted
+from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.holdout import mean_squares
-from advisor.gap.fitting.problem import Problem
-from advisor.gap.noise.probes import KNOTS_S, Course, disturbance_courses
+from advisor.gap.fitting.problem import EffectProblem
+from advisor.gap.noise.probes import KNOTS_S, DisturbanceCourse, disturbance_courses
 from advisor.gap.noise.quiet import ANY_GUST, instrument_noise, rows_of, system_of, with_floor
 from advisor.model.response import OUTPUTS
 from advisor.oem.turbulence import Turbulence, find_turbulence
@@ -40,7 +40,7 @@ _AS_MUCH = 0.995
 
 
 @dataclass(frozen=True)
-class Air:
+class MovingAir:
     """Moving air, as estimated from the data."""
 
     angle_std: float
@@ -63,7 +63,7 @@ class Air:
     """Shape (channels,): noise of the instruments in addition to moving air."""
 
 
-def moving_air(problem: Problem, fitted: Fitted) -> Air | None:
+def moving_air(problem: EffectProblem, fitted: EffectFit) -> MovingAir | None:
     """Return the moving air; None where noise of the instruments explains the residual equally well."""
     if "alpha" not in problem.channels or "q" not in problem.channels:
         return None
@@ -95,7 +95,7 @@ def moving_air(problem: Problem, fitted: Fitted) -> Air | None:
     number = int(np.argmax(peaks**2 * np.maximum(changed, 0.0)))
     at = int(np.argmax(np.abs(course.knots[number])))
     flight = problem.flights.flights[number]
-    return Air(
+    return MovingAir(
         angle_std=found.gust_angle, gain=found.gain,
         gust=gust, gust_number=flight.number,
         gust_angle=float(course.knots[number][at]), gust_at_s=float(flight.started_s + KNOTS_S * (at + 1)),
@@ -104,7 +104,7 @@ def moving_air(problem: Problem, fitted: Fitted) -> Air | None:
     )  # fmt: skip
 
 
-def one_maneuver_stands_out(problem: Problem, fitted: Fitted) -> bool:
+def one_maneuver_stands_out(problem: EffectProblem, fitted: EffectFit) -> bool:
     """Return whether the residual of one manoeuvre far exceeds that of most: a gust may have passed in it."""
     return _stands_out(np.mean(mean_squares(problem, fitted.innovations) / fitted.noise**2, axis=1))
 
@@ -114,14 +114,16 @@ def _stands_out(powers: FloatArray) -> bool:
     return bool(np.max(powers) > _STANDS_OUT * np.median(powers))
 
 
-def _moving_in(problem: Problem, fitted: Fitted, maneuvers: Iterable[int]) -> Turbulence:
+def _moving_in(problem: EffectProblem, fitted: EffectFit, maneuvers: Iterable[int]) -> Turbulence:
     """Return the likelihood of moving air in the residuals of some manoeuvres."""
     rows = [rows_of(problem, fitted, i) for i in maneuvers]
     derived = problem.flights.alpha_is_derived
     return find_turbulence(rows, system_of(problem, fitted), instrument_noise(problem), not derived)
 
 
-def _of_a_gust(problem: Problem, fitted: Fitted, instruments: FloatArray, least: float) -> Course:
+def _of_a_gust(
+    problem: EffectProblem, fitted: EffectFit, instruments: FloatArray, least: float
+) -> DisturbanceCourse:
     """Return the gentlest course of a gust that explains as much as one of any size.
 
     A course of any size would wander far where the instruments hardly show it.
@@ -134,7 +136,7 @@ def _of_a_gust(problem: Problem, fitted: Fitted, instruments: FloatArray, least:
     return next(c for c, rest in zip(courses, powers, strict=True) if rest <= enough)
 
 
-def _mean_square(problem: Problem, residuals: Sequence[FloatArray]) -> FloatArray:
+def _mean_square(problem: EffectProblem, residuals: Sequence[FloatArray]) -> FloatArray:
     """Return the mean square over all manoeuvres, shape (channels,), corrected for one free knot per
     ``KNOTS_S``."""
     knots = sum(f.duration_s / KNOTS_S for f in problem.flights.flights)

@@ -9,14 +9,14 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates import input, moment, sensors, timing
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import stated_in, with_known
-from advisor.gap.fitting.fit import Fitted, fit, rms_of
+from advisor.gap.fitting.fit import EffectFit, fit, rms_of
 from advisor.gap.fitting.prior import ARMS
-from advisor.gap.fitting.problem import Point, Problem
+from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.fitting.regression import regressions
 from advisor.gap.fitting.whitening import Weighting
 from advisor.gap.noise.quiet import loudness, whitening_of
 from advisor.gap.noise.stamps import rates_of, stamp_jitter
-from advisor.gap.records.flights import Flights
+from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.records.floor import stated_floor
 from advisor.gap.search.command import read_command
 from advisor.gap.search.screen import Screen
@@ -39,7 +39,7 @@ _MUCH = 0.1
 start is tried."""
 
 
-def everywhere(point: Point, flights: Flights, latency_s: float = 0.0) -> Point:
+def everywhere(point: SearchPoint, flights: PreparedManeuvers, latency_s: float = 0.0) -> SearchPoint:
     """Return the point with all nuisance parameters that are part of every model."""
     late = point.with_effect(input.LATENCY, (latency_s,))
     if flights.alpha_is_derived:
@@ -72,7 +72,7 @@ def arms_in(aircraft: Aircraft) -> frozenset[str]:
     return frozenset(effect for effect in ARMS if stated_in(aircraft, effect) is not None)
 
 
-def first_fit(problem: Problem, aircraft: Aircraft) -> Fitted:
+def first_fit(problem: EffectProblem, aircraft: Aircraft) -> EffectFit:
     """Return the baseline model fitted from the aircraft file's derivatives, or from a regression of the
     rates.
 
@@ -84,8 +84,8 @@ def first_fit(problem: Problem, aircraft: Aircraft) -> Fitted:
     own = np.zeros((len(flights), len(NUISANCES)))
     own[:, NUISANCES.index("Z_trim")] = [f.level_lift for f in flights.flights]
 
-    def fitted_from(guess: FloatArray) -> Fitted:
-        return fit(problem, everywhere(Point(guess, own), flights, latency_s=0.001))
+    def fitted_from(guess: FloatArray) -> EffectFit:
+        return fit(problem, everywhere(SearchPoint(guess, own), flights, latency_s=0.001))
 
     seen, prior = regressions(flights), prior_derivatives(aircraft)
     if prior is None:
@@ -97,14 +97,14 @@ def first_fit(problem: Problem, aircraft: Aircraft) -> Fitted:
     return min([fitted, *map(fitted_from, seen)], key=_finite_cost)
 
 
-def _finite_cost(fitted: Fitted) -> float:
+def _finite_cost(fitted: EffectFit) -> float:
     return fitted.cost if np.isfinite(fitted.cost) else np.inf
 
 
-def fit_baseline(flights: Flights, aircraft: Aircraft) -> tuple[Problem, Fitted]:
+def fit_baseline(flights: PreparedManeuvers, aircraft: Aircraft) -> tuple[EffectProblem, EffectFit]:
     """Return the baseline model with the noise of this flight, and with the command held or linear."""
     instruments = stated_floor(flights)
-    problem = Problem(
+    problem = EffectProblem(
         flights,
         with_known(base_entries(aircraft), aircraft.effects, flights, variants_for(flights)),
         prior_derivatives=prior_derivatives(aircraft),
@@ -122,13 +122,15 @@ def fit_baseline(flights: Flights, aircraft: Aircraft) -> tuple[Problem, Fitted]
     return _filtered(problem, fitted, seen)
 
 
-def at_another_speed(problem: Problem, fitted: Fitted, flights: Flights) -> tuple[Problem, Fitted]:
+def at_another_speed(
+    problem: EffectProblem, fitted: EffectFit, flights: PreparedManeuvers
+) -> tuple[EffectProblem, EffectFit]:
     """Return the baseline model of the flights at another air speed, with noise and command unchanged."""
     again = replace(problem, flights=flights)
     return again, fit(again, fitted.point, fitted.noise)
 
 
-def quietest(problem: Problem, fitted: Fitted) -> Fitted:
+def quietest(problem: EffectProblem, fitted: EffectFit) -> EffectFit:
     """Return the model through which the noise is estimated, with the likeliest effects where the residual
     gets quieter.
 
@@ -156,8 +158,8 @@ def quietest(problem: Problem, fitted: Fitted) -> Fitted:
 
 
 def _filtered(
-    problem: Problem, fitted: Fitted, seen: Fitted, first_look: bool = False
-) -> tuple[Problem, Fitted]:
+    problem: EffectProblem, fitted: EffectFit, seen: EffectFit, first_look: bool = False
+) -> tuple[EffectProblem, EffectFit]:
     """Return the problem with the noise estimated through ``seen``, and a fit with that noise."""
     problem = replace(problem, jitter_s=stamp_jitter(problem, seen, rates_of(problem, seen)))
     whitening = whitening_of(problem, seen, first_look)

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.gap.candidates import input
-from advisor.gap.fitting.fit import Fitted, evidence_of, fit
-from advisor.gap.fitting.problem import Problem, counts
+from advisor.gap.fitting.fit import EffectFit, evidence_of, fit
+from advisor.gap.fitting.problem import EffectProblem, counts
 from advisor.gap.search.screen import Screen
 
 _NEARLY = 0.25
@@ -22,7 +22,7 @@ _HALF_S = 0.003
 """Tolerance in s for a delay of half an interval."""
 
 
-def read_command(linear: Problem, fitted: Fitted) -> tuple[Problem, Fitted]:
+def read_command(linear: EffectProblem, fitted: EffectFit) -> tuple[EffectProblem, EffectFit]:
     """Return the baseline model with the command held or linear between its stamps, as the data decide.
 
     The choice is made with a delay and a lag in the model. Otherwise a held command would pass for a delay of
@@ -68,13 +68,13 @@ def read_command(linear: Problem, fitted: Fitted) -> tuple[Problem, Fitted]:
     return linear, fitted
 
 
-def read_otherwise(problem: Problem, fitted: Fitted) -> tuple[Problem, Fitted]:
+def read_otherwise(problem: EffectProblem, fitted: EffectFit) -> tuple[EffectProblem, EffectFit]:
     """Return the baseline model with the other reading of the command: held instead of linear, or the
     reverse."""
     other = replace(problem, held=not problem.held)
     return other, fit(other, fitted.point, fitted.noise)
 
 
-def _delay_of(fitted: Fitted) -> float:
+def _delay_of(fitted: EffectFit) -> float:
     delays = zip(fitted.point.effects, fitted.point.values, strict=True)
     return sum(float(values[0]) for effect, values in delays if effect.effect == "transport_delay")

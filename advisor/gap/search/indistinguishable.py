@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from advisor.gap.candidates.traits import TRAITS
-from advisor.gap.search.acceptance import Judged
+from advisor.gap.search.acceptance import JudgedAddition
 
 NEAR = 5.0
 """Difference of the gain in log likelihood below which two explanations are indistinguishable."""
@@ -16,14 +16,14 @@ def way_to_distinguish(effect: str, other: str) -> str:
     return TRAITS[effect].distinguished_by.get(other) or TRAITS[other].distinguished_by.get(effect, "")
 
 
-def _is_as_good(a: Judged, b: Judged) -> bool:
+def _is_as_good(a: JudgedAddition, b: JudgedAddition) -> bool:
     """Return whether two effects are equally good; twins may differ by a share of their gain."""
     twins = TRAITS[a.effect].twin == b.effect or TRAITS[b.effect].twin == a.effect
     return abs(a.gain - b.gain) < (max(NEAR, _LITTLE * abs(b.gain)) if twins else NEAR)
 
 
 def indistinguishable_from(
-    best: Judged, others: Sequence[Judged], channels: Sequence[str]
+    best: JudgedAddition, others: Sequence[JudgedAddition], channels: Sequence[str]
 ) -> tuple[tuple[str, ...], str]:
     """Return the effects that explain the data as well as ``best``, and what would distinguish them."""
     names = [j.effect for j in others if j.effect != best.effect and _is_as_good(j, best) and j.gain > 0.0]

@@ -6,7 +6,7 @@ import numpy as np
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.records.flights import Flight, Flights
+from advisor.gap.records.flights import PreparedManeuver, PreparedManeuvers
 from advisor.gap.records.grid import smooth
 from advisor.gap.simulator.layout import HEIGHT, SPEED, THROTTLE, THRUST
 from advisor.oem.recursion import accumulated
@@ -18,7 +18,7 @@ _SMOOTHED_S = 1.0
 does."""
 
 
-def energy_swing(flights: Flights) -> float | None:
+def energy_swing(flights: PreparedManeuvers) -> float | None:
     """Return the standard deviation of the speed from work beyond drag's, relative to the mean speed.
 
     Accelerations along the path are integrated without a constant and without drag, common to all manoeuvres.
@@ -32,7 +32,7 @@ def energy_swing(flights: Flights) -> float | None:
     return float(np.mean(gained)) / mean_speed(flights)
 
 
-def uncommanded_thrust(flights: Flights) -> float | None:
+def uncommanded_thrust(flights: PreparedManeuvers) -> float | None:
     """Return the varying thrust without throttle, m/s²: the median of its standard deviations in a manoeuvre.
 
     A pilot sets the speed before and after a manoeuvre, so only the part in between counts. A constant, drag,
@@ -59,7 +59,7 @@ def uncommanded_thrust(flights: Flights) -> float | None:
     return float(np.median(swings_by)) * explained / max(swung, 1e-300)
 
 
-def _while_flown(flight: Flight) -> slice:
+def _while_flown(flight: PreparedManeuver) -> slice:
     """Return the part from the first step to a second before the end; all of it where too little would
     remain."""
     first = max(int(flight.first_step_s / flight.h), 0)
@@ -67,7 +67,7 @@ def _while_flown(flight: Flight) -> slice:
     return slice(first, last) if last - first > int(2.0 * _SMOOTHED_S / flight.h) else slice(0, flight.n)
 
 
-def energy_speed(flight: Flight) -> FloatArray:
+def energy_speed(flight: PreparedManeuver) -> FloatArray:
     """Return √(V² + 2 g h), shape (n,), m/s: the speed without climbs, with h relative to the manoeuvre's
     mean."""
     climbed = flight.slow[HEIGHT] - np.mean(flight.slow[HEIGHT])
@@ -80,36 +80,36 @@ def _swing(course: FloatArray) -> FloatArray:
     return np.asarray(course - np.polynomial.Polynomial.fit(t, course, 1)(t))
 
 
-def measures_path_acceleration(flights: Flights) -> bool:
+def measures_path_acceleration(flights: PreparedManeuvers) -> bool:
     """Return whether accelerations along the path were measured."""
     return "a_x" in flights.has and {"alpha", "a_z"} <= set(flights.channels)
 
 
-def mean_speed(flights: Flights) -> float:
+def mean_speed(flights: PreparedManeuvers) -> float:
     """Return the mean air speed over all manoeuvres, m/s."""
     return float(np.mean([np.mean(flight.slow[SPEED]) for flight in flights.flights]))
 
 
-def _lift(flight: Flight) -> FloatArray:
+def _lift(flight: PreparedManeuver) -> FloatArray:
     """Return the measured specific force across the path, m/s², shape (n,)."""
     a_z = flight.outputs["a_z"]
     return np.asarray(np.interp((np.arange(flight.n) + 0.5) * flight.h, a_z.t, a_z.y))
 
 
-def _throttle(flight: Flight) -> list[FloatArray]:
+def _throttle(flight: PreparedManeuver) -> list[FloatArray]:
     """Return the throttle and its lagged responses, each of shape (n,)."""
     commanded = flight.slow[THROTTLE]
     keeps = [float(np.exp(-flight.h / lag_s)) for lag_s in _ENGINES_S]
     return [commanded, *(commanded[0] + (1.0 - k) * accumulated(commanded - commanded[0], k) for k in keeps)]
 
 
-def _drag(flight: Flight) -> FloatArray:
+def _drag(flight: PreparedManeuver) -> FloatArray:
     """Return V² and (lift/V)², the regressors of a parabolic drag polar, shape (n, 2)."""
     return np.column_stack([flight.slow[SPEED] ** 2, (_lift(flight) / flight.slow[SPEED]) ** 2])
 
 
 def _beyond_drag(
-    flights: Flights, columns: Sequence[FloatArray], stretches: Sequence[slice]
+    flights: PreparedManeuvers, columns: Sequence[FloatArray], stretches: Sequence[slice]
 ) -> list[FloatArray]:
     """Return by manoeuvre the acceleration along the path that neither drag nor ``columns`` explain, m/s².
 

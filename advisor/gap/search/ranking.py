@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.gap.candidates.variant import Variant
-from advisor.gap.fitting.fit import Fitted, fit
+from advisor.gap.fitting.fit import EffectFit, fit
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.prior import log_prior
-from advisor.gap.fitting.problem import Point, Problem, counts
+from advisor.gap.fitting.problem import EffectProblem, SearchPoint, counts
 from advisor.gap.fitting.uncertainty import covariance, effective_samples, log_prior_of
-from advisor.gap.search.acceptance import LEAST_GAIN, LEAST_PRIOR_GAIN, Judged, size_of
+from advisor.gap.search.acceptance import LEAST_GAIN, LEAST_PRIOR_GAIN, JudgedAddition, size_of
 from advisor.gap.search.score import addition, is_baseline, predict_alike, smallest_of
 from advisor.gap.search.screen import Screen, Screened, likeliest_first
 from advisor.gap.simulator.layout import DERIVATIVES
@@ -37,14 +37,14 @@ _TELLS = 3.0
 """Least difference of the prior terms for which one effect is preferred to another with equal motion."""
 
 
-def candidates_for(problem: Problem, fitted: Fitted, variants: Sequence[Variant]) -> list[Screened]:
+def candidates_for(problem: EffectProblem, fitted: EffectFit, variants: Sequence[Variant]) -> list[Screened]:
     """Return the screened effects that the model does not have yet."""
     present = {e.effect for e in fitted.point.effects}
     effective = counts(problem)
     known = covariance(problem, fitted, effective)[: len(DERIVATIVES), : len(DERIVATIVES)]
     baseline = log_prior_of(problem, fitted, effective)
 
-    def prior_gain(point: Point) -> float:
+    def prior_gain(point: SearchPoint) -> float:
         if problem.prior_derivatives is None:
             return 0.0
         return log_prior(point.derivatives, known, problem.prior_derivatives) - baseline
@@ -56,7 +56,10 @@ def candidates_for(problem: Problem, fitted: Fitted, variants: Sequence[Variant]
 
 
 def _from_the_prior(
-    problem: Problem, baseline: Fitted, variants: Sequence[Variant], prior_gain: Callable[[Point], float]
+    problem: EffectProblem,
+    baseline: EffectFit,
+    variants: Sequence[Variant],
+    prior_gain: Callable[[SearchPoint], float],
 ) -> list[Screened]:
     """Return fits of hidden effects from the aircraft file's derivatives; none where the fitted ones are near
     these.
@@ -74,10 +77,10 @@ def _from_the_prior(
 
 
 def judge(
-    problem: Problem, before: Fitted, held_before: HeldOut, candidates: Sequence[Screened]
-) -> list[Judged]:
+    problem: EffectProblem, before: EffectFit, held_before: HeldOut, candidates: Sequence[Screened]
+) -> list[JudgedAddition]:
     """Return full fits of the best variants of the best effects, best judgement first."""
-    fits: list[Fitted] = []
+    fits: list[EffectFit] = []
     for s in shortlist(problem, before, candidates):
         first_description, *otherwise = (
             fit(problem, point, s.noise, _ITERATIONS, 0.5, beaten_by=_no_rival(before, fits))
@@ -88,7 +91,7 @@ def judge(
         return []
     effective = effective_samples(problem, min(fits, key=lambda f: f.cost).innovations)
     judged = [addition(problem, before, held_before, f, f.point.effects[-1].effect, effective) for f in fits]
-    best: dict[str, Judged] = {}
+    best: dict[str, JudgedAddition] = {}
     for one in evened(problem, judged):
         best.setdefault(one.effect, one)
     first, *rest = best.values()
@@ -99,13 +102,13 @@ def judge(
     return [first, *rest]
 
 
-def _no_rival(before: Fitted, fits: Sequence[Fitted]) -> float:
+def _no_rival(before: EffectFit, fits: Sequence[EffectFit]) -> float:
     """Return the cost above which a candidate is no rival, wherever its search would end."""
     best = min((before.cost, *(f.cost for f in fits)))
     return best + _LACKING * (before.cost - best)
 
 
-def _described(point: Point) -> list[Point]:
+def _described(point: SearchPoint) -> list[SearchPoint]:
     """Return the point, and those with the alternative descriptions of its last effect."""
     last, values = point.effects[-1], point.values[-1]
     before = replace(point, effects=point.effects[:-1], values=point.values[:-1])
@@ -118,7 +121,7 @@ def _described(point: Point) -> list[Point]:
     ]
 
 
-def evened(problem: Problem, judged: Sequence[Judged]) -> list[Judged]:
+def evened(problem: EffectProblem, judged: Sequence[JudgedAddition]) -> list[JudgedAddition]:
     """Return the judgements, best first. An effect with equal motion and better prior terms gets the best
     likelihood.
 
@@ -128,7 +131,7 @@ def evened(problem: Problem, judged: Sequence[Judged]) -> list[Judged]:
     """
     best = max(judged, key=lambda j: j.gain)
 
-    def at_its_worth(j: Judged) -> Judged:
+    def at_its_worth(j: JudgedAddition) -> JudgedAddition:
         likelier = j.prior_terms > best.prior_terms + _TELLS
         if not (likelier and j.is_accepted and predict_alike(problem, best.held_out, j.held_out)):
             return j
@@ -137,7 +140,7 @@ def evened(problem: Problem, judged: Sequence[Judged]) -> list[Judged]:
     return sorted((at_its_worth(j) for j in judged), key=lambda j: -j.gain)
 
 
-def shortlist(problem: Problem, before: Fitted, candidates: Sequence[Screened]) -> list[Screened]:
+def shortlist(problem: EffectProblem, before: EffectFit, candidates: Sequence[Screened]) -> list[Screened]:
     """Return the candidates for a full fit; ``candidates`` come best first.
 
     An effect too small to be named is no rival of others. Where the gap is large, order and sizes of the

@@ -5,7 +5,7 @@ import numpy as np
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.traits import BY_NATURE
 from advisor.gap.candidates.variant import Variant
-from advisor.gap.fitting.fit import Fitted, rms_of
+from advisor.gap.fitting.fit import EffectFit, rms_of
 from advisor.gap.fitting.holdout import (
     HeldOut,
     hold_out,
@@ -14,10 +14,16 @@ from advisor.gap.fitting.holdout import (
     sole_informative_maneuver,
 )
 from advisor.gap.fitting.prior import log_odds_of_arm
-from advisor.gap.fitting.problem import Problem, counts
+from advisor.gap.fitting.problem import EffectProblem, counts
 from advisor.gap.fitting.uncertainty import covariance, log_prior_of, sigmas_of
 from advisor.gap.records.floor import floor_margins
-from advisor.gap.search.acceptance import BEYOND_DOUBT, LEAST_PRIOR_GAIN, LEAST_SUPPORT, Judged, size_of
+from advisor.gap.search.acceptance import (
+    BEYOND_DOUBT,
+    LEAST_PRIOR_GAIN,
+    LEAST_SUPPORT,
+    JudgedAddition,
+    size_of,
+)
 
 LEAST_GAP = 0.05
 """Least mean square change of the outputs for a named effect, relative to the instruments' noise, averaged
@@ -40,7 +46,7 @@ _NOT_SEEN = 0.005
 """Mean square difference of two predictions, relative to the instruments' noise, that no flight shows."""
 
 
-def smallest_of(problem: Problem, variant: Variant, gain: float = 0.0) -> float:
+def smallest_of(problem: EffectProblem, variant: Variant, gain: float = 0.0) -> float:
     """Return the least size of an effect's first parameter for acceptance, given the jitter of the stamps.
 
     ``gain`` is the log likelihood that the effect brings.
@@ -52,13 +58,13 @@ def smallest_of(problem: Problem, variant: Variant, gain: float = 0.0) -> float:
 
 
 def addition(
-    problem: Problem,
-    before: Fitted,
+    problem: EffectProblem,
+    before: EffectFit,
     held_before: HeldOut,
-    fitted: Fitted,
+    fitted: EffectFit,
     effect: str,
     effective: FloatArray,
-) -> Judged:
+) -> JudgedAddition:
     """Judge an effect of a fitted model as an addition to the model without it."""
     point = fitted.point
     k = point.index_of(effect)
@@ -87,7 +93,7 @@ def addition(
         place, place
     ]
     located = [name in variant.places for name in variant.names]
-    return Judged(
+    return JudgedAddition(
         variant=variant, fitted=fitted, held_out=held,
         gain=gain,
         removed=difference(problem, seen_before, seen_after, sole_maneuver),
@@ -100,7 +106,7 @@ def addition(
     )  # fmt: skip
 
 
-def _sole_maneuvers(fitted: Fitted, but: int) -> set[int]:
+def _sole_maneuvers(fitted: EffectFit, but: int) -> set[int]:
     """Return the manoeuvres that alone determine some effect of the model, other than the ``but``-th."""
     point = fitted.point
     others = [k for k, v in enumerate(point.effects) if v.needs and not v.is_nuisance and k != but]
@@ -114,15 +120,15 @@ def price_of(variant: Variant, effective: FloatArray) -> float:
     return 0.5 * numbers * float(np.log(np.sum(effective)))
 
 
-def log_odds_in(problem: Problem, effect: str, size: float) -> float:
+def log_odds_in(problem: EffectProblem, effect: str, size: float) -> float:
     """Return the log prior odds of an arm of that size; 0 for other effects."""
     return log_odds_of_arm(effect, size, problem.arms_in_file, problem.flights.alpha_is_derived)
 
 
 def log_likelihood_gained(
-    before: Fitted,
+    before: EffectFit,
     held_before: HeldOut,
-    after: Fitted,
+    after: EffectFit,
     held_after: HeldOut,
     effective: FloatArray,
     support: float | None = -np.inf,
@@ -143,7 +149,7 @@ def log_likelihood_gained(
     return min(fitted, max(kept_out, 0.0) if support > -LEAST_SUPPORT else kept_out)
 
 
-def _share_enough(problem: Problem, before: Fitted, variant: Variant, value: FloatArray) -> float:
+def _share_enough(problem: EffectProblem, before: EffectFit, variant: Variant, value: FloatArray) -> float:
     """Return the share of the least change that is enough where an effect is certain."""
     if not is_baseline(before) or problem.knows_the_noise or variant.effect in BY_NATURE:
         return 1.0
@@ -151,12 +157,12 @@ def _share_enough(problem: Problem, before: Fitted, variant: Variant, value: Flo
     return _FAINT if size_of(variant, value) >= times * smallest_of(problem, variant) else 1.0
 
 
-def is_baseline(before: Fitted) -> bool:
+def is_baseline(before: EffectFit) -> bool:
     """Return whether the model has only nuisance parameters, and no effect yet."""
     return all(effect.is_nuisance for effect in before.point.effects)
 
 
-def price_of_edges(problem: Problem, fitted: Fitted) -> float:
+def price_of_edges(problem: EffectProblem, fitted: EffectFit) -> float:
     """Return the cost of edges and air speeds away from their likely values: all but noise and prior.
 
     A wrong model buys some of its fit by shifting them.
@@ -165,7 +171,7 @@ def price_of_edges(problem: Problem, fitted: Fitted) -> float:
     return fitted.cost - noise - problem.prior_cost(fitted.point)
 
 
-def least_change(problem: Problem) -> float:
+def least_change(problem: EffectProblem) -> float:
     """Return the least mean square change of the outputs for a named effect, relative to the instruments'
     noise.
 
@@ -177,7 +183,7 @@ def least_change(problem: Problem) -> float:
     return max(LEAST_GAP, float(_OF_PEAK**2 / np.mean((problem.instruments / problem.flights.peaks) ** 2)))
 
 
-def predict_alike(problem: Problem, one: HeldOut, other: HeldOut) -> bool:
+def predict_alike(problem: EffectProblem, one: HeldOut, other: HeldOut) -> bool:
     """Return whether two predictions are equal but for the error of a low-order description."""
     differences = rms_of(problem, [a - b for a, b in zip(one.residuals, other.residuals, strict=True)])
     return (
@@ -186,7 +192,7 @@ def predict_alike(problem: Problem, one: HeldOut, other: HeldOut) -> bool:
     )
 
 
-def support_of(problem: Problem, before: HeldOut, after: HeldOut) -> float:
+def support_of(problem: EffectProblem, before: HeldOut, after: HeldOut) -> float:
     """Return by how many standard errors over manoeuvres the second model lowers the held-out gap of the
     first.
 
@@ -203,7 +209,10 @@ def support_of(problem: Problem, before: HeldOut, after: HeldOut) -> float:
 
 
 def difference(
-    problem: Problem, before: HeldOut | Fitted, after: HeldOut | Fitted, maneuver: int | None = None
+    problem: EffectProblem,
+    before: HeldOut | EffectFit,
+    after: HeldOut | EffectFit,
+    maneuver: int | None = None,
 ) -> float:
     """Return the squared change of the prediction relative to noise and floor margin, mean over channels.
 

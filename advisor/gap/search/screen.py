@@ -8,10 +8,10 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.variant import Variant
-from advisor.gap.fitting.fit import Fitted
-from advisor.gap.fitting.neighbourhood import Neighbourhood, Place
+from advisor.gap.fitting.fit import EffectFit
+from advisor.gap.fitting.neighbourhood import Neighbourhood, SimulatedPoint
 from advisor.gap.fitting.prior import derivative_scale
-from advisor.gap.fitting.problem import Point, Problem
+from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 
 _STEPS = 4
 """Most Gauss-Newton steps of a quick fit."""
@@ -29,7 +29,7 @@ class Screened:
     """A candidate after its quick fit."""
 
     variant: Variant
-    point: Point
+    point: SearchPoint
     cost: float
     """Cost of the quick fit, comparable with ``Fitted.cost``."""
     noise: FloatArray
@@ -37,7 +37,7 @@ class Screened:
     """Gain in log prior probability, because the derivatives agree better with the aircraft file's."""
 
 
-_Descent = Generator[Point, tuple[Place | None, float], Screened | None]
+_Descent = Generator[SearchPoint, tuple[SimulatedPoint | None, float], Screened | None]
 """A search that asks for one point after another, and receives its evaluation and the best decrease so
 far."""
 
@@ -45,11 +45,11 @@ far."""
 class Screen:
     """A baseline model prepared for many candidates, each of which is followed for a few steps."""
 
-    def __init__(self, problem: Problem, fitted: Fitted, steps: int = _STEPS) -> None:
+    def __init__(self, problem: EffectProblem, fitted: EffectFit, steps: int = _STEPS) -> None:
         self.problem, self.fitted, self.steps = problem, fitted, steps
         self.around = Neighbourhood(problem, fitted)
 
-    def try_all(self, variants: Sequence[Variant], prior: Callable[[Point], float]) -> list[Screened]:
+    def try_all(self, variants: Sequence[Variant], prior: Callable[[SearchPoint], float]) -> list[Screened]:
         """Return quick fits of all variants, the likeliest description of the data first.
 
         ``prior`` returns the gain in log prior probability at a point.
@@ -120,7 +120,7 @@ class Screen:
                 break
         return Screened(here.point.effects[-1], here.point, here.cost, here.noise)
 
-    def _at_the_files(self, variant: Variant) -> Point:
+    def _at_the_files(self, variant: Variant) -> SearchPoint:
         """Return the point of equal motion with the effect, as near to the file's derivatives as possible."""
         plain, prior = self.fitted.point, self.problem.prior_derivatives
         assert variant.twin is not None

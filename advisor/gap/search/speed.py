@@ -14,13 +14,13 @@ import numpy as np
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.fitting.fit import Fitted, fit
+from advisor.gap.fitting.fit import EffectFit, fit
 from advisor.gap.fitting.holdout import HeldOut, hold_out
 from advisor.gap.fitting.measure import whole_gap
-from advisor.gap.fitting.problem import Problem
-from advisor.gap.records.flights import SPEED_CHANGE, Flights
+from advisor.gap.fitting.problem import EffectProblem
+from advisor.gap.records.flights import SPEED_CHANGE, PreparedManeuvers
 from advisor.gap.result import Cause, Value
-from advisor.gap.search.air import Air
+from advisor.gap.search.air import MovingAir
 from advisor.gap.search.path_energy import (
     energy_speed,
     energy_swing,
@@ -59,7 +59,7 @@ indicator reads gusts too."""
 
 
 def at_constant_speed(
-    problem: Problem, fitted: Fitted, folds: Sequence[Sequence[int]] | None = None
+    problem: EffectProblem, fitted: EffectFit, folds: Sequence[Sequence[int]] | None = None
 ) -> HeldOut | None:
     """Return the hold-out of the model with derivatives that do not scale with the air speed, refitted.
 
@@ -74,7 +74,7 @@ def at_constant_speed(
 
 
 def airspeed_cause(
-    problem: Problem, constant: HeldOut | None, last: HeldOut, floor: FloatArray
+    problem: EffectProblem, constant: HeldOut | None, last: HeldOut, floor: FloatArray
 ) -> Cause | None:
     """Return the variation of air speed as a cause where ignoring it costs; its probability is set later."""
     if constant is None or speed_costs(constant, last, floor) < _COSTS:
@@ -92,7 +92,7 @@ def speed_costs(constant: HeldOut, last: HeldOut, floor: FloatArray) -> float:
 
 
 def speed_is_a_cause(
-    problem: Problem, constant: HeldOut | None, last: HeldOut, floor: FloatArray, air: Air | None
+    problem: EffectProblem, constant: HeldOut | None, last: HeldOut, floor: FloatArray, air: MovingAir | None
 ) -> bool:
     """Return whether work that gusts cannot explain varied the speed, and whether it matters.
 
@@ -116,7 +116,7 @@ def speed_is_a_cause(
 
 
 def thrust_is_uncommanded(
-    problem: Problem, constant: HeldOut | None, last: HeldOut, floor: FloatArray, air: Air | None
+    problem: EffectProblem, constant: HeldOut | None, last: HeldOut, floor: FloatArray, air: MovingAir | None
 ) -> bool:
     """Return whether a thrust that neither throttle nor drag explains varies the speed, and whether it
     matters."""
@@ -132,7 +132,7 @@ def thrust_is_uncommanded(
     return swings(flights)[0] > max(_UNCOMMANDED_SWING, _UNCOMMANDED_GUSTS * gusts)
 
 
-def swings(flights: Flights) -> tuple[float, float]:
+def swings(flights: PreparedManeuvers) -> tuple[float, float]:
     """Return the standard deviations of the speed and of √(V² + 2 g h) in a manoeuvre, relative to the mean
     speed.
 

@@ -3,11 +3,11 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from advisor.gap.fitting.fit import Fitted, fit
+from advisor.gap.fitting.fit import EffectFit, fit
 from advisor.gap.fitting.holdout import HeldOut
-from advisor.gap.fitting.problem import Problem
+from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.fitting.uncertainty import effective_samples
-from advisor.gap.search.acceptance import BEYOND_DOUBT, Judged
+from advisor.gap.search.acceptance import BEYOND_DOUBT, JudgedAddition
 from advisor.gap.search.score import addition
 
 
@@ -15,38 +15,38 @@ from advisor.gap.search.score import addition
 class Stage:
     """The model at one stage, with the candidates for its next addition."""
 
-    fitted: Fitted
+    fitted: EffectFit
     held_out: HeldOut
-    considered: tuple[Judged, ...]
+    considered: tuple[JudgedAddition, ...]
     """Candidates for the next addition, best first. A reordered stage has those of its own addition. The last
     of ``MOST_EFFECTS`` stages has none."""
-    added: Judged | None
+    added: JudgedAddition | None
     """Effect whose addition leads to the next stage; None at the last stage."""
 
     @property
-    def disputed(self) -> Judged | None:
+    def disputed(self) -> JudgedAddition | None:
         """The likeliest candidate, where nothing was added and held-out manoeuvres alone reject it."""
         first = next(iter(self.considered), None)
         return first if first is not None and self.added is None and first.is_disputed else None
 
-    def slight_in(self, block: str) -> Judged | None:
+    def slight_in(self, block: str) -> JudgedAddition | None:
         """Return the effect of a block that is beyond doubt and only too small to be named."""
         found = (j for j in self.considered if j.block == block and j.gain >= BEYOND_DOUBT)
         return next((j for j in found if not j.large_enough and not j.at_its_bounds), None)
 
 
-def added_in(stages: Sequence[Stage]) -> list[Judged]:
+def added_in(stages: Sequence[Stage]) -> list[JudgedAddition]:
     """Return the added effects, stage by stage."""
     return [stage.added for stage in stages if stage.added is not None]
 
 
 def rebuilt(
-    problem: Problem,
+    problem: EffectProblem,
     first: Stage,
     names: Sequence[str],
-    full: Fitted,
-    considered: Mapping[str, tuple[Judged, ...]],
-    last: tuple[Judged, ...],
+    full: EffectFit,
+    considered: Mapping[str, tuple[JudgedAddition, ...]],
+    last: tuple[JudgedAddition, ...],
 ) -> list[Stage]:
     """Return the stages with the effects in another order."""
     effective = effective_samples(problem, full.innovations)
@@ -60,6 +60,6 @@ def rebuilt(
     return [*stages, Stage(before, held, last, None)]
 
 
-def fit_with_effects(problem: Problem, full: Fitted, names: Sequence[str]) -> Fitted:
+def fit_with_effects(problem: EffectProblem, full: EffectFit, names: Sequence[str]) -> EffectFit:
     """Return the fitted model with some of the effects."""
     return fit(problem, full.point.with_only(names), full.noise, iterations=8, tolerance=0.5)

@@ -5,11 +5,11 @@ from dataclasses import replace
 
 from advisor.gap.candidates.traits import LEFT_OPEN
 from advisor.gap.candidates.variant import Variant
-from advisor.gap.fitting.fit import Fitted
+from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.holdout import HeldOut, hold_out, measured_in
-from advisor.gap.fitting.problem import Problem
+from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.fitting.uncertainty import effective_samples, shared_std
-from advisor.gap.search.acceptance import BEYOND_DOUBT, LEAST_PRIOR_GAIN, MOST_EFFECTS, Judged
+from advisor.gap.search.acceptance import BEYOND_DOUBT, LEAST_PRIOR_GAIN, MOST_EFFECTS, JudgedAddition
 from advisor.gap.search.ranking import candidates_for, judge
 from advisor.gap.search.score import addition
 from advisor.gap.search.stage import Stage, added_in, fit_with_effects, rebuilt
@@ -23,7 +23,10 @@ Progress = Callable[[str, float], None]
 
 
 def one_after_another(
-    problem: Problem, baseline: Fitted, variants: Sequence[Variant], progress: Progress = lambda *_: None
+    problem: EffectProblem,
+    baseline: EffectFit,
+    variants: Sequence[Variant],
+    progress: Progress = lambda *_: None,
 ) -> list[Stage]:
     """Return the stages from the baseline model to the last addition; the last stage adds nothing."""
     stages: list[Stage] = []
@@ -45,8 +48,8 @@ def one_after_another(
 
 
 def _leading_on(
-    problem: Problem, considered: Sequence[Judged], variants: Sequence[Variant]
-) -> tuple[Judged | None, list[Judged] | None]:
+    problem: EffectProblem, considered: Sequence[JudgedAddition], variants: Sequence[Variant]
+) -> tuple[JudgedAddition | None, list[JudgedAddition] | None]:
     """Return a certain effect that is too small to be named, where it reveals another effect.
 
     Two effects may hide each other, because derivatives compensate for one of them. The candidates for the
@@ -60,12 +63,14 @@ def _leading_on(
     return (first, with_it) if any(j.is_accepted for j in with_it) else (None, None)
 
 
-def _judged(problem: Problem, fitted: Fitted, held: HeldOut, variants: Sequence[Variant]) -> list[Judged]:
+def _judged(
+    problem: EffectProblem, fitted: EffectFit, held: HeldOut, variants: Sequence[Variant]
+) -> list[JudgedAddition]:
     """Return the candidates for an addition to a model, best first."""
     return judge(problem, fitted, held, candidates_for(problem, fitted, variants))
 
 
-def as_measured(problem: Problem, stages: Sequence[Stage]) -> list[Stage]:
+def as_measured(problem: EffectProblem, stages: Sequence[Stage]) -> list[Stage]:
     """Return the stages with the residuals of the fit in manoeuvres that alone determine an effect."""
     sole_maneuvers: set[int] = set()
     measured = []
@@ -79,7 +84,7 @@ def as_measured(problem: Problem, stages: Sequence[Stage]) -> list[Stage]:
     return measured
 
 
-def in_full(problem: Problem, stages: list[Stage]) -> list[Stage]:
+def in_full(problem: EffectProblem, stages: list[Stage]) -> list[Stage]:
     """Return the stages with sizes from the last model. In earlier models an effect also represented
     others."""
     full = stages[-1].fitted
@@ -87,7 +92,7 @@ def in_full(problem: Problem, stages: list[Stage]) -> list[Stage]:
         return stages
     effective = effective_samples(problem, full.innovations)
 
-    def restated(added: Judged) -> Judged:
+    def restated(added: JudgedAddition) -> JudgedAddition:
         point = full.point
         k = point.index_of(added.effect)
         std = shared_std(problem, full, effective, trusted=added.prior_gain >= LEAST_PRIOR_GAIN)[
@@ -98,7 +103,7 @@ def in_full(problem: Problem, stages: list[Stage]) -> list[Stage]:
     return [s if s.added is None else replace(s, added=restated(s.added)) for s in stages]
 
 
-def settled(problem: Problem, stages: list[Stage]) -> list[Stage]:
+def settled(problem: EffectProblem, stages: list[Stage]) -> list[Stage]:
     """Return the stages in the order of the loss without each effect. Effects without a loss are dropped.
 
     The first addition had to explain everything alone, and may be a poor likeness of effects found after it.
@@ -127,13 +132,13 @@ def settled(problem: Problem, stages: list[Stage]) -> list[Stage]:
     return rebuilt(problem, stages[0], names, full, considered, stages[-1].considered)
 
 
-def _stands_alone(problem: Problem, first: Stage, full: Fitted, name: str) -> bool:
+def _stands_alone(problem: EffectProblem, first: Stage, full: EffectFit, name: str) -> bool:
     """Return whether the only remaining effect is accepted alone; it may have led to one that was dropped."""
     effective = effective_samples(problem, full.innovations)
     return addition(problem, first.fitted, first.held_out, full, name, effective).is_accepted
 
 
-def _rank_of(problem: Problem, effect: str) -> float:
+def _rank_of(problem: EffectProblem, effect: str) -> float:
     """Return the factor on an effect's gain when effects are ordered.
 
     An accelerometer's position that the file leaves open is to be measured. It comes last, unless other
@@ -142,7 +147,7 @@ def _rank_of(problem: Problem, effect: str) -> float:
     return _OPEN if effect in LEFT_OPEN and effect not in problem.arms_in_file else 1.0
 
 
-def reduced_to(problem: Problem, stages: Sequence[Stage], names: Sequence[str]) -> list[Stage]:
+def reduced_to(problem: EffectProblem, stages: Sequence[Stage], names: Sequence[str]) -> list[Stage]:
     """Return the waterfall with some of its effects, in their order."""
     considered = {s.added.effect: s.considered for s in stages if s.added is not None}
     if list(names) == list(considered):

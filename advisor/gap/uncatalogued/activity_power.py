@@ -6,10 +6,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.fitting.problem import Problem
+from advisor.gap.fitting.problem import EffectProblem
 
 
-def power_by_activity(problem: Problem, residuals: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
+def power_by_activity(
+    problem: EffectProblem, residuals: Sequence[FloatArray]
+) -> tuple[FloatArray, FloatArray]:
     """Return the mean squares while the elevator moves, and while all is quiet; both of shape (channels,)."""
     sums, counts = np.zeros((2, len(problem.channels))), np.zeros((2, len(problem.channels)))
     for flight, residual in zip(problem.flights.flights, residuals, strict=True):

@@ -8,8 +8,8 @@ the air speed is an indicated one in thin air.
 from dataclasses import dataclass
 
 from advisor.gap.candidates.sensors import TRUE_AIR_SPEED
-from advisor.gap.fitting.fit import Fitted
-from advisor.gap.fitting.problem import Problem
+from advisor.gap.fitting.fit import EffectFit
+from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.fitting.uncertainty import effective_samples, shared_std
 from advisor.gap.uncatalogued.weight_check import SIGMAS, WeightReading
 
@@ -72,7 +72,7 @@ def true_over_read(found: AirspeedScale | None, weight: WeightReading | None) ->
     return 1.0 + found.scale if found is not None and found.is_indicated(weight) else 1.0
 
 
-def airspeed_scale_of(problem: Problem, fitted: Fitted) -> AirspeedScale | None:
+def airspeed_scale_of(problem: EffectProblem, fitted: EffectFit) -> AirspeedScale | None:
     """Return the difference that the fitted model shows; None where it is insignificant, or not measured."""
     point = fitted.point
     if TRUE_AIR_SPEED not in point.effects:

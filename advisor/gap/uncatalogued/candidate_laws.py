@@ -12,8 +12,8 @@ import numpy as np
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.between import steps_in
 from advisor.gap.candidates.variant import Values, Variant
-from advisor.gap.records.flights import Flights
-from advisor.gap.search.acceptance import Judged
+from advisor.gap.records.flights import PreparedManeuvers
+from advisor.gap.search.acceptance import JudgedAddition
 from advisor.gap.simulator.layout import FILTER, INDEX, OUTPUTS
 from advisor.gap.uncatalogued.lift_hysteresis import FLOW_LETS_GO, LIFT_MEMORY, flow_lets_go, lift_memory
 from advisor.gap.uncatalogued.mechanical_stops import SURFACE_STOP, VANE_STOP, surface_stops, vane_stops
@@ -39,7 +39,7 @@ def _curve(name: str, block: str, channel: str, unit: float) -> Variant:
 def _filter(block: str, channel: str) -> Variant:
     """Return a filter of first or second order in a reading, which nothing compensates."""
 
-    def pass_through(p: FloatArray, values: Values, _: Flights) -> None:
+    def pass_through(p: FloatArray, values: Values, _: PreparedManeuvers) -> None:
         p[:, [INDEX[name] for name in FILTER]] = (*values, OUTPUTS.index(channel))
 
     return Variant(
@@ -88,7 +88,7 @@ _MOMENTS = (
 )  # fmt: skip
 
 
-def _rings(p: FloatArray, values: Values, _: Flights) -> None:
+def _rings(p: FloatArray, values: Values, _: PreparedManeuvers) -> None:
     """Replace the file's servo lag by a second-order servo, which is late by 2ζ/ω."""
     omega, damping = values
     p[:, INDEX["lag_s"]], p[:, INDEX["lag_damping"]] = 2.0 * damping / omega, damping
@@ -122,7 +122,7 @@ _SENTENCES = {
 }
 
 
-def _sticking(flights: Flights) -> Variant:
+def _sticking(flights: PreparedManeuvers) -> Variant:
     """Return a surface that dry friction holds until the command is far enough away."""
     most = float(np.median([np.max(np.abs(flight.u - flight.u_trim)) for flight in flights.flights]))
     return Variant(
@@ -134,7 +134,7 @@ def _sticking(flights: Flights) -> Variant:
     )  # fmt: skip
 
 
-def _weaker(flights: Flights) -> list[Variant]:
+def _weaker(flights: PreparedManeuvers) -> list[Variant]:
     """Return an elevator that loses power after some manoeuvre, with all else unchanged."""
     if len(flights) < 3:
         return []
@@ -147,7 +147,7 @@ def _weaker(flights: Flights) -> list[Variant]:
     return steps_in(flights, one, lose)
 
 
-def laws_for(flights: Flights) -> list[Variant]:
+def laws_for(flights: PreparedManeuvers) -> list[Variant]:
     """Return all laws of the identifying readings, of the moment, of the surface and of the lift."""
     readings = [flights.channels[c] for c in flights.telling]
     of_readings = [variant for channel in readings for variant in _READINGS.get(channel, ())]
@@ -157,7 +157,7 @@ def laws_for(flights: Flights) -> list[Variant]:
     return [*of_readings, *_MOMENTS, *of_input, *of_lift]
 
 
-def sentence_of(law: Judged) -> str:
+def sentence_of(law: JudgedAddition) -> str:
     """Return a sentence about the law, with its size."""
     degrees = " and ".join(f"{np.degrees(value):.1f}" for value in law.value)
     first = float(law.value[0])

@@ -7,8 +7,8 @@ values does not vanish where the channel's rate is zero.
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.fitting.fit import Fitted
-from advisor.gap.fitting.problem import Problem
+from advisor.gap.fitting.fit import EffectFit
+from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.noise.stamps import rates_of
 
 _LAG_OF = {"alpha": "alpha_lag"}
@@ -18,7 +18,7 @@ _BETTER = 2.0
 """Least ratio of the error explained by delays to that explained by a scale in each manoeuvre."""
 
 
-def is_clock_error(problem: Problem, fitted: Fitted, channel: str) -> bool:
+def is_clock_error(problem: EffectProblem, fitted: EffectFit, channel: str) -> bool:
     """Return whether the residual of a channel is its rate times a delay that changes between manoeuvres.
 
     The delay may grow or shrink steadily within a manoeuvre. Where a lag of the channel was found, the lag

@@ -10,11 +10,11 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.variant import Variant
-from advisor.gap.fitting.fit import Fitted, fit
+from advisor.gap.fitting.fit import EffectFit, fit
 from advisor.gap.fitting.holdout import HeldOut, hold_out, mean_squares
-from advisor.gap.fitting.problem import Problem
+from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.fitting.uncertainty import effective_samples, log_prior_of
-from advisor.gap.search.acceptance import CERTAIN, Judged
+from advisor.gap.search.acceptance import CERTAIN, JudgedAddition
 from advisor.gap.search.score import (
     addition,
     difference,
@@ -60,11 +60,11 @@ class Law:
     """A law that was found, with its fit."""
 
     unexplained: Unexplained
-    fitted: Fitted
+    fitted: EffectFit
     """The baseline model with the law."""
 
 
-def search_law(problem: Problem, stages: list[Stage]) -> Law | None:
+def search_law(problem: EffectProblem, stages: list[Stage]) -> Law | None:
     """Return the law that explains more than all named effects; None where there is none."""
     baseline, held = stages[0].fitted, stages[0].held_out
     fits = _fits(problem, stages)
@@ -84,14 +84,14 @@ def search_law(problem: Problem, stages: list[Stage]) -> Law | None:
     return Law(unexplained, fitted)
 
 
-def _fits(problem: Problem, stages: list[Stage]) -> list[tuple[Variant, Fitted]]:
+def _fits(problem: EffectProblem, stages: list[Stage]) -> list[tuple[Variant, EffectFit]]:
     """Return full fits of the laws that the screening promises, each with its variant."""
     baseline, named_cost = stages[0].fitted, stages[-1].fitted.cost
     found = Screen(problem, baseline).quick_fits(laws_for(problem.flights), baseline.cost - named_cost)
     best = min((s.cost for s in found), default=baseline.cost)
     most = baseline.cost - 2.0 * max(CERTAIN, 0.5 * _FITTED_SHARE * (baseline.cost - best))
     # A law that changes the derivatives takes more steps than a screening makes.
-    fits: list[tuple[Variant, Fitted]] = []
+    fits: list[tuple[Variant, EffectFit]] = []
     lost = named_cost + _OUT_OF_REACH
     for s in sorted(found, key=lambda s: s.cost):
         if s.cost <= most:
@@ -106,7 +106,9 @@ def _fits(problem: Problem, stages: list[Stage]) -> list[tuple[Variant, Fitted]]
     return fits
 
 
-def _is_law(problem: Problem, stages: list[Stage], judged: Judged, effective: FloatArray) -> bool:
+def _is_law(
+    problem: EffectProblem, stages: list[Stage], judged: JudgedAddition, effective: FloatArray
+) -> bool:
     """Return whether a law explains more than all named effects, and is not one of them in disguise."""
     held, disputed = stages[0].held_out, stages[-1].disputed
     # Effective sample sizes depend on the fit that gives them: both gains are computed with the same ones.
@@ -126,13 +128,13 @@ def _is_law(problem: Problem, stages: list[Stage], judged: Judged, effective: Fl
     return judged.effect not in MUST_LEAVE_LITTLE or bool(np.min(remaining_shares) <= _LEAVES)
 
 
-def _largest_change(problem: Problem, before: HeldOut, after: HeldOut) -> float:
+def _largest_change(problem: EffectProblem, before: HeldOut, after: HeldOut) -> float:
     """Return the largest change that a law makes to a channel of a manoeuvre: rms relative to the peak."""
     changes = [a - b for a, b in zip(before.residuals, after.residuals, strict=True)]
     return float(np.max(np.sqrt(mean_squares(problem, changes)) / np.maximum(problem.flights.peaks, 1e-300)))
 
 
-def _gain_of_all(problem: Problem, stages: list[Stage], effective: FloatArray) -> float:
+def _gain_of_all(problem: EffectProblem, stages: list[Stage], effective: FloatArray) -> float:
     """Return the gain of all effects together, by the definition of ``Judged.gain``; 0 without any."""
     first, last = stages[0], stages[-1]
     named = added_in(stages)
@@ -150,7 +152,7 @@ def _gain_of_all(problem: Problem, stages: list[Stage], effective: FloatArray) -
 
 
 def _are_separate_causes(
-    problem: Problem, stages: list[Stage], judged: Judged, effective: FloatArray
+    problem: EffectProblem, stages: list[Stage], judged: JudgedAddition, effective: FloatArray
 ) -> bool:
     """Return whether the effects explain much in addition to the law, and change the outputs enough."""
     first, last = stages[0], stages[-1]
@@ -163,7 +165,7 @@ def _are_separate_causes(
         tolerance=0.5,
     )
 
-    def gained(before: Fitted, held_before: HeldOut, after: Fitted, held_after: HeldOut) -> float:
+    def gained(before: EffectFit, held_before: HeldOut, after: EffectFit, held_after: HeldOut) -> float:
         return log_likelihood_gained(before, held_before, after, held_after, effective)
 
     held = hold_out(problem, both)
@@ -173,6 +175,6 @@ def _are_separate_causes(
     return matters and in_addition > min(_SEPARATE_SHARE * alone, CERTAIN)
 
 
-def _share(judged: Judged, best: Judged) -> float:
+def _share(judged: JudgedAddition, best: JudgedAddition) -> float:
     """Return the gain relative to the best one, 0 to 1."""
     return round(float(np.clip(judged.gain / best.gain, 0.0, 1.0)), 4)

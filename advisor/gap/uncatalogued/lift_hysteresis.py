@@ -4,14 +4,14 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.variant import Values, Variant
-from advisor.gap.records.flights import Flights
+from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX
 
 LIFT_MEMORY, FLOW_LETS_GO = "lift_memory", "flow_lets_go"
 _FORCE = "force_equation"
 
 
-def lift_memory(flights: Flights) -> Variant:
+def lift_memory(flights: PreparedManeuvers) -> Variant:
     """Return lift with the hysteresis of a play, the elementary one of a gradual stall."""
     swing = float(np.median([np.ptp(f.outputs["alpha"].y) for f in flights.flights]))
     return Variant(
@@ -22,13 +22,13 @@ def lift_memory(flights: Flights) -> Variant:
     )  # fmt: skip
 
 
-def flow_lets_go(flights: Flights) -> Variant:
+def flow_lets_go(flights: PreparedManeuvers) -> Variant:
     """Return lift that is lost at one angle of attack and returns at a lower one, like a relay."""
     trims = np.array([flight.alpha_trim for flight in flights.flights])
     above = [float(np.max(f.outputs["alpha"].y)) - f.alpha_trim for f in flights.flights]
     most, middle = float(np.median(above)), float(np.median(trims))
 
-    def let_go(p: FloatArray, values: Values, _: Flights) -> None:
+    def let_go(p: FloatArray, values: Values, _: PreparedManeuvers) -> None:
         lost, at, band = values
         p[:, INDEX["Z_separated"]] = lost
         p[:, INDEX["separation_rad"]] = at + middle - trims

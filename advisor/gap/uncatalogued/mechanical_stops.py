@@ -7,7 +7,7 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.variant import Values, Variant
-from advisor.gap.records.flights import Flights
+from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX
 
 SURFACE_STOP, VANE_STOP = "surface_stop", "vane_stop"
@@ -15,14 +15,14 @@ _TRIMMED_RAD = 0.002
 """Least distance of a stop from trim, rad."""
 
 
-def surface_stops(flights: Flights) -> list[Variant]:
+def surface_stops(flights: PreparedManeuvers) -> list[Variant]:
     """Return an elevator with a stop up, down or both."""
     trims = np.array([flight.u_trim for flight in flights.flights])
     flown = np.concatenate([flight.u for flight in flights.flights])
     return _stops(SURFACE_STOP, "input", ("stop_up_rad", "stop_down_rad"), trims, flown)
 
 
-def vane_stops(flights: Flights) -> list[Variant]:
+def vane_stops(flights: PreparedManeuvers) -> list[Variant]:
     """Return a vane with a stop up, down or both."""
     trims = np.array([flight.alpha_trim for flight in flights.flights])
     flown = np.concatenate([flight.outputs["alpha"].y for flight in flights.flights])
@@ -40,7 +40,9 @@ def _stops(
     furthest = float(np.max(flown)) - middle, middle - float(np.min(flown))
     up, down = zip(entries, (1.0, -1.0), furthest, strict=True)
 
-    def stopped(ways: Sequence[tuple[str, float, float]], p: FloatArray, values: Values, _: Flights) -> None:
+    def stopped(
+        ways: Sequence[tuple[str, float, float]], p: FloatArray, values: Values, _: PreparedManeuvers
+    ) -> None:
         for (entry, sign, _furthest), value in zip(ways, values, strict=True):
             p[:, INDEX[entry]] = np.maximum(value + sign * (middle - trims), _TRIMMED_RAD)
 

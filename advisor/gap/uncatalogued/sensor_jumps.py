@@ -4,8 +4,8 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.robust import robust_std
-from advisor.gap.fitting.fit import Fitted
-from advisor.gap.fitting.problem import Problem
+from advisor.gap.fitting.fit import EffectFit
+from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.noise.probes import SENSOR_CHANNELS
 from advisor.gap.records.floor import STATED_FLOOR_MARGIN
 
@@ -21,7 +21,7 @@ intervals for which others are ignored. A propeller's vibration, sampled at near
 jumps where the interval differs."""
 
 
-def jumping_sensor(problem: Problem, last: Fitted, tolerance: FloatArray) -> str | None:
+def jumping_sensor(problem: EffectProblem, last: EffectFit, tolerance: FloatArray) -> str | None:
     """Return the block of the only sensor that jumps where nothing is flown; None where none does.
 
     The residual of a model is smooth, the filter expects the residual of a gust, and no step of the command

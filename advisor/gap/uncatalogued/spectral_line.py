@@ -12,10 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.fitting.fit import Fitted
+from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.linear import pulse_response
 from advisor.gap.fitting.normal import solved
-from advisor.gap.fitting.problem import Problem, row_weights
+from advisor.gap.fitting.problem import EffectProblem, row_weights
 from advisor.gap.fitting.step import factor
 from advisor.gap.noise.probes import DYNAMIC, SENSOR_CHANNELS, Probe
 from advisor.gap.simulator.layout import OUTPUTS
@@ -43,7 +43,7 @@ class SpectralLine:
     """Shape (channels,): mean square of the oscillation in each channel, SI."""
 
 
-def spectral_line_in(problem: Problem, fitted: Fitted, noise: FloatArray) -> SpectralLine | None:
+def spectral_line_in(problem: EffectProblem, fitted: EffectFit, noise: FloatArray) -> SpectralLine | None:
     """Return the oscillation in the residual of a fit; None where no channel has a line in its spectrum.
 
     Parameters
@@ -82,7 +82,7 @@ def line_of(records: Sequence[FloatArray], interval_s: float) -> tuple[float, fl
     return float(hz[peak]), float(power[peak] / max(1.0, float(np.max(power[off], initial=0.0))))
 
 
-def ringing_hz(problem: Problem, fitted: Fitted, lowest: float, highest: float) -> float | None:
+def ringing_hz(problem: EffectProblem, fitted: EffectFit, lowest: float, highest: float) -> float | None:
     """Return the frequency between two limits with the most residual power of the pitch rate; None without
     samples."""
     if "q" not in problem.channels:
@@ -102,7 +102,7 @@ def _spectrum(record: FloatArray, points: int) -> FloatArray:
     return np.asarray(np.abs(swing) ** 2 / max(float(window @ window) * float(np.var(record)), 1e-300))
 
 
-def _records(problem: Problem, fitted: Fitted, channel: int) -> tuple[list[FloatArray], float]:
+def _records(problem: EffectProblem, fitted: EffectFit, channel: int) -> tuple[list[FloatArray], float]:
     """Return the innovations of one channel by manoeuvre, and the interval of its samples in s."""
     name = problem.channels[channel]
     records, intervals = [], []
@@ -113,7 +113,7 @@ def _records(problem: Problem, fitted: Fitted, channel: int) -> tuple[list[Float
 
 
 def _swing(
-    problem: Problem, fitted: Fitted, noise: FloatArray, block: str, hz: float
+    problem: EffectProblem, fitted: EffectFit, noise: FloatArray, block: str, hz: float
 ) -> tuple[Probe, FloatArray]:
     """Return a swing in one block, its amplitude and phase free in every manoeuvre; and its power by
     channel."""

@@ -3,8 +3,8 @@
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.fitting.fit import Fitted, rms_of
-from advisor.gap.fitting.problem import Problem
+from advisor.gap.fitting.fit import EffectFit, rms_of
+from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.noise.probes import SENSOR_CHANNELS
 from advisor.gap.uncatalogued.spectral_line import SpectralLine, spectral_line_in
 from advisor.gap.uncatalogued.unexplained import (
@@ -27,7 +27,7 @@ accelerometer, and sampling turns that into a slow oscillation."""
 
 
 def sustained_oscillation(
-    problem: Problem, first: Fitted, last: Fitted, tolerance: FloatArray
+    problem: EffectProblem, first: EffectFit, last: EffectFit, tolerance: FloatArray
 ) -> Unexplained | None:
     """Return a sustained oscillation that exceeds the instruments' noise, or None.
 

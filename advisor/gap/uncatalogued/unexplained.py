@@ -12,8 +12,8 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.decision import Decision
-from advisor.gap.fitting.fit import Fitted, rms_of
-from advisor.gap.fitting.problem import Problem
+from advisor.gap.fitting.fit import EffectFit, rms_of
+from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.noise.probes import SENSOR_CHANNELS, Probe, probe_blocks
 from advisor.gap.records.floor import STATED_FLOOR_MARGIN
 from advisor.gap.simulator.layout import natural_frequency
@@ -73,9 +73,9 @@ def as_wind(found: Unexplained | None) -> Unexplained:
 
 
 def unexplained_residual(
-    problem: Problem,
-    first: Fitted,
-    last: Fitted,
+    problem: EffectProblem,
+    first: EffectFit,
+    last: EffectFit,
     tolerance: FloatArray,
     moving_air: bool,
 ) -> Unexplained | None:
@@ -141,20 +141,20 @@ def unexplained_residual(
     return Unexplained(block, best.explained, ranking_of(probes, block), decisions=decisions)
 
 
-def located(problem: Problem, last: Fitted) -> Unexplained:
+def located(problem: EffectProblem, last: EffectFit) -> Unexplained:
     """Return the residual, in the block whose unknown disturbance explains it best."""
     probes = probe_blocks(problem, last, innovation_noise(problem))
     block = _block(problem, last, probes[0].block)
     return Unexplained(block, probes[0].explained, ranking_of(probes, block))
 
 
-def _block(problem: Problem, last: Fitted, likeliest: str) -> str:
+def _block(problem: EffectProblem, last: EffectFit, likeliest: str) -> str:
     """Return the likeliest block, or timing where a sensor's error is its rate times a varying delay."""
     channel = SENSOR_CHANNELS.get(likeliest)
     return "timing" if channel is not None and is_clock_error(problem, last, channel) else likeliest
 
 
-def _of_the_command(problem: Problem, last: Fitted) -> float:
+def _of_the_command(problem: EffectProblem, last: EffectFit) -> float:
     """Return the share of a response's peak, as RMS, that depends on the command between two stamps.
 
     A step is known as a ramp from one stamp to the next. While it lasts, the pitch rate is off by up to ω T/4
@@ -168,12 +168,12 @@ def _of_the_command(problem: Problem, last: Fitted) -> float:
     return frequency * interval / 12.0
 
 
-def innovation_noise(problem: Problem) -> FloatArray:
+def innovation_noise(problem: EffectProblem) -> FloatArray:
     """Return the noise of the innovations, shape (channels,): 1 where the filter knows the noise."""
     return np.ones(len(problem.channels)) if problem.knows_the_noise else instruments_of(problem)
 
 
-def instruments_of(problem: Problem) -> FloatArray:
+def instruments_of(problem: EffectProblem) -> FloatArray:
     """Return the white noise of the instruments, shape (channels,); 0 where it is not known."""
     return np.zeros(len(problem.channels)) if problem.instruments is None else problem.instruments
 

@@ -9,13 +9,13 @@ from advisor.flight.instruments.kinematics import KinematicCheck
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.moment import PROPELLER
-from advisor.gap.fitting.fit import Fitted
+from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.measure import whole_gap
-from advisor.gap.fitting.problem import Problem
+from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.fitting.uncertainty import covariance, effective_samples
 from advisor.gap.foresight.foresee import unseen_effects
 from advisor.gap.records.floor import tolerance_of
-from advisor.gap.result import Cause, Diagnosis, Gap, Verdict, Where
+from advisor.gap.result import Cause, Diagnosis, Gap, GapVerdict, Where
 from advisor.gap.search.acceptance import LEAST_SIGMA
 from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.gap.verdict.causes import block_ranking
@@ -90,13 +90,15 @@ def answer(
     )  # fmt: skip
 
 
-def _speed_is_known(problem: Problem, aircraft: Aircraft) -> bool:
+def _speed_is_known(problem: EffectProblem, aircraft: Aircraft) -> bool:
     """Return whether the air speed of the derivatives was measured, stated in the file, or derived from the
     motion."""
     return problem.flights.speed_measured or aircraft.stated_airspeed_m_s is not None
 
 
-def _improvements(fitted: Fitted, std: FloatArray, causes: tuple[Cause, ...]) -> dict[str, dict[str, float]]:
+def _improvements(
+    fitted: EffectFit, std: FloatArray, causes: tuple[Cause, ...]
+) -> dict[str, dict[str, float]]:
     """Return the effects of the improved simulator: the named ones, and the propeller's terms where
     significant."""
     effects = {c.effect: {k: v.value for k, v in c.parameters.items()} for c in causes if c.present}
@@ -109,7 +111,7 @@ def _improvements(fitted: Fitted, std: FloatArray, causes: tuple[Cause, ...]) ->
     return effects
 
 
-def _where(e: Evidence, verdict: Verdict, causes: tuple[Cause, ...]) -> Where:
+def _where(e: Evidence, verdict: GapVerdict, causes: tuple[Cause, ...]) -> Where:
     if verdict == "unknown" and e.unexplained is not None:
         return Where(e.unexplained.block, e.unexplained.share, e.unexplained.ranking)
     ranking = block_ranking(e.stages[0], causes)
@@ -119,7 +121,7 @@ def _where(e: Evidence, verdict: Verdict, causes: tuple[Cause, ...]) -> Where:
     return Where(block, float(np.clip(1.0 - remaining / total, 0.0, 1.0)) if causes else 0.0, ranking)
 
 
-def _of_the_derivatives(problem: Problem, fitted: Fitted, known: FloatArray, gap: Gap) -> Where:
+def _of_the_derivatives(problem: EffectProblem, fitted: EffectFit, known: FloatArray, gap: Gap) -> Where:
     """Return the equation whose derivatives in the aircraft file are further off, relative to their
     uncertainty."""
     assert problem.prior_derivatives is not None

@@ -8,9 +8,9 @@ import numpy as np
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.measure import whole_gap
-from advisor.gap.fitting.problem import Problem
+from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.result import Cause, Value
-from advisor.gap.search.acceptance import Judged
+from advisor.gap.search.acceptance import JudgedAddition
 from advisor.gap.search.indistinguishable import indistinguishable_from
 from advisor.gap.search.score import TIME_ERROR_S, TIMES
 from advisor.gap.search.stage import Stage, added_in
@@ -54,7 +54,7 @@ def causes_of(
     return tuple(causes[:5])
 
 
-def probabilities(considered: Sequence[Judged], unexplained: float) -> dict[str, float]:
+def probabilities(considered: Sequence[JudgedAddition], unexplained: float) -> dict[str, float]:
     """Return the probability of each effect; the rest to 1 is for no effect, or for one outside the
     catalogue."""
     if not considered:
@@ -85,7 +85,7 @@ def parameters_of(v: Variant, values: FloatArray, std: FloatArray) -> dict[str, 
     return found
 
 
-def with_model_errors(cause: Cause, problem: Problem) -> Cause:
+def with_model_errors(cause: Cause, problem: EffectProblem) -> Cause:
     """Return the cause with errors that no fit shows: of the low-order description and of the time grid."""
     widened = {
         name: Value(v.value, float(np.hypot(v.std, _model_error(name, v.value))))
@@ -101,7 +101,7 @@ def _model_error(name: str, value: float) -> float:
     return float(np.hypot(_SHAPE_ERROR * value, TIME_ERROR_S if name in TIMES else 0.0))
 
 
-def _with_edge_error(cause: Cause, problem: Problem) -> Cause:
+def _with_edge_error(cause: Cause, problem: EffectProblem) -> Cause:
     """Return a delay or lag with the error of steps that may lie anywhere between two stamps of the
     command."""
     intervals = [flight.edges[:, 2] for flight in problem.flights.flights if len(flight.edges)]
@@ -115,8 +115,8 @@ def _with_edge_error(cause: Cause, problem: Problem) -> Cause:
 
 
 def _cause(
-    judged: Judged,
-    considered: Sequence[Judged],
+    judged: JudgedAddition,
+    considered: Sequence[JudgedAddition],
     probability: float,
     floor: FloatArray,
     channels: Sequence[str],

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.holdout import HeldOut
-from advisor.gap.fitting.problem import Problem
-from advisor.gap.search.air import Air
+from advisor.gap.fitting.problem import EffectProblem
+from advisor.gap.search.air import MovingAir
 from advisor.gap.search.stage import Stage
 from advisor.gap.uncatalogued.airspeed_scale import AirspeedScale
 from advisor.gap.uncatalogued.unexplained import Unexplained
@@ -17,11 +17,11 @@ from advisor.gap.uncatalogued.wind_shear import Shear
 class Evidence:
     """Everything that a diagnosis is made from."""
 
-    problem: Problem
+    problem: EffectProblem
     stages: list[Stage]
     unexplained: Unexplained | None
     """Residual that no named effect explains."""
-    air: Air | None
+    air: MovingAir | None
     floor: FloatArray
     """Shape (channels,): noise where nothing was flown."""
     file_model: HeldOut | None

@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.gap.fitting.holdout import HeldOut, folds_for, held_out, hold_out, mean_squares
-from advisor.gap.fitting.problem import Problem
+from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.records.flights import Measured
-from advisor.gap.search.acceptance import Judged
-from advisor.gap.search.air import Air
+from advisor.gap.search.acceptance import JudgedAddition
+from advisor.gap.search.air import MovingAir
 from advisor.gap.search.speed import at_constant_speed
 from advisor.gap.search.stage import Stage
 from advisor.gap.search.waterfall import as_measured
@@ -26,7 +26,7 @@ def on_holdout(e: Evidence, holdout: int | None) -> tuple[Evidence, list[int]]:
     if len(kept) == len(e.problem.flights):
         return e, kept
 
-    def judged(one: Judged) -> Judged:
+    def judged(one: JudgedAddition) -> JudgedAddition:
         held = hold_out(e.problem, one.fitted, folds)
         return replace(one, held_out=over_maneuvers(e.problem, held, kept))
 
@@ -51,7 +51,7 @@ def on_holdout(e: Evidence, holdout: int | None) -> tuple[Evidence, list[int]]:
     ), kept
 
 
-def kept_and_folds(problem: Problem, holdout: int | None) -> tuple[list[int], list[list[int]]]:
+def kept_and_folds(problem: EffectProblem, holdout: int | None) -> tuple[list[int], list[list[int]]]:
     """Return the indices of the manoeuvres for the numbers, and the folds that are held out in turn.
 
     ``holdout`` is the number of manoeuvres, the last ones; None, or as many as there are, means all.
@@ -63,7 +63,7 @@ def kept_and_folds(problem: Problem, holdout: int | None) -> tuple[list[int], li
     return kept, [kept, *[[i for i in fold if i not in kept] for fold in folds]]
 
 
-def over_maneuvers(problem: Problem, held: HeldOut, kept: Sequence[int]) -> HeldOut:
+def over_maneuvers(problem: EffectProblem, held: HeldOut, kept: Sequence[int]) -> HeldOut:
     """Return the hold-out with mean squares over some manoeuvres only; every sample counts alike."""
     flights = [problem.flights.flights[i] for i in kept]
     samples = np.array([[len(f.outputs[c].t) for c in problem.channels] for f in flights], float)
@@ -73,7 +73,7 @@ def over_maneuvers(problem: Problem, held: HeldOut, kept: Sequence[int]) -> Held
     return replace(held, mean_square=squares, innovation_square=seen)
 
 
-def as_read(problem: Problem, offset_rad: float) -> Problem:
+def as_read(problem: EffectProblem, offset_rad: float) -> EffectProblem:
     """Return the flights with the offset of α that was removed before the fit."""
     flights = tuple(
         replace(
@@ -85,7 +85,7 @@ def as_read(problem: Problem, offset_rad: float) -> Problem:
     return replace(problem, flights=replace(problem.flights, flights=flights))
 
 
-def with_offset(problem: Problem, held: HeldOut, offset_rad: float) -> HeldOut:
+def with_offset(problem: EffectProblem, held: HeldOut, offset_rad: float) -> HeldOut:
     """Return the residuals of a simulator that does not know the offset of α."""
     c = problem.channels.index("alpha")
     residuals = []
@@ -95,7 +95,7 @@ def with_offset(problem: Problem, held: HeldOut, offset_rad: float) -> HeldOut:
     return held_out(problem, residuals)
 
 
-def without_air(held: HeldOut, air: Air) -> HeldOut:
+def without_air(held: HeldOut, air: MovingAir) -> HeldOut:
     """Return the hold-out without the share of moving air, equally in every manoeuvre.
 
     The residuals are those without the likeliest course of the air.

@@ -9,9 +9,9 @@ from advisor.flight.instruments.kinematics import KinematicCheck
 from advisor.gap.decision import Decision
 from advisor.gap.fitting.holdout import HeldOut, held_out
 from advisor.gap.fitting.measure import whole_gap
-from advisor.gap.fitting.problem import Problem
-from advisor.gap.result import Cause, Verdict
-from advisor.gap.search.acceptance import Judged
+from advisor.gap.fitting.problem import EffectProblem
+from advisor.gap.result import Cause, GapVerdict
+from advisor.gap.search.acceptance import JudgedAddition
 from advisor.gap.search.speed import airspeed_cause, speed_costs, speed_is_a_cause, thrust_is_uncommanded
 from advisor.gap.search.stage import added_in
 from advisor.gap.verdict.causes import causes_of, with_model_errors
@@ -46,7 +46,7 @@ _HALF = 0.5
 class Judgement:
     """The verdict with its causes."""
 
-    verdict: Verdict
+    verdict: GapVerdict
     causes: tuple[Cause, ...]
     """Causes, likeliest first, at most five."""
     outside_fit: tuple[Cause, ...]
@@ -66,7 +66,7 @@ class Judgement:
 class _Found:
     """Findings that speak for one verdict or another."""
 
-    named: list[Judged]
+    named: list[JudgedAddition]
     removed: float
     """Mean square that the named effects remove, relative to the floor's square."""
     derivatives: WrongDerivatives
@@ -140,7 +140,7 @@ def _ordered(e: Evidence, found: _Found) -> tuple[Cause, ...]:
     return causes
 
 
-def _verdict(found: _Found, causes: Sequence[Cause]) -> Verdict:
+def _verdict(found: _Found, causes: Sequence[Cause]) -> GapVerdict:
     """Return the verdict: the larger part of the gap decides, because every aircraft is slightly
     nonlinear."""
     derivatives = found.derivatives
@@ -153,7 +153,7 @@ def _verdict(found: _Found, causes: Sequence[Cause]) -> Verdict:
     return "effect" if any(c.present for c in causes) else "none"
 
 
-def _as_left_by(verdict: Verdict, causes: tuple[Cause, ...], named: bool) -> tuple[Cause, ...]:
+def _as_left_by(verdict: GapVerdict, causes: tuple[Cause, ...], named: bool) -> tuple[Cause, ...]:
     """Return the causes with probabilities that agree with the verdict."""
     if verdict == "effect":
         return causes
@@ -162,12 +162,12 @@ def _as_left_by(verdict: Verdict, causes: tuple[Cause, ...], named: bool) -> tup
     return kept if verdict == "unknown" else tuple(sorted(kept, key=lambda c: -c.probability))
 
 
-def _exceeds_mounting(bias: Cause, named: Sequence[Judged]) -> bool:
+def _exceeds_mounting(bias: Cause, named: Sequence[JudgedAddition]) -> bool:
     """Return whether an offset exceeds that of a mounting, or stands alone."""
     return not named or abs(bias.parameters["bias_rad"].value) > _MOUNTED_RAD
 
 
-def _at_constant_speed(problem: Problem, before: HeldOut, constant: HeldOut, last: HeldOut) -> HeldOut:
+def _at_constant_speed(problem: EffectProblem, before: HeldOut, constant: HeldOut, last: HeldOut) -> HeldOut:
     """Return the residuals of a simulator that knows neither the named effects nor the air speed: both
     errors."""
     errors = zip(before.residuals, constant.residuals, last.residuals, strict=True)

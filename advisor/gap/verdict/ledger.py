@@ -3,7 +3,7 @@
 from advisor.gap.decision import Decision
 from advisor.gap.fitting.uncertainty import CLEAR_GAP
 from advisor.gap.result import VISIBLE
-from advisor.gap.search.acceptance import Judged
+from advisor.gap.search.acceptance import JudgedAddition
 from advisor.gap.search.air import AIR_GAIN
 from advisor.gap.search.stage import Stage
 from advisor.gap.verdict.evidence import Evidence
@@ -38,7 +38,7 @@ def _of_stage(stage: Stage) -> list[Decision]:
     return [*against, *(() if stage.added is None else stage.added.decisions)]
 
 
-def _against(judged: Judged) -> list[Decision]:
+def _against(judged: JudgedAddition) -> list[Decision]:
     return [decision for decision in judged.decisions if not decision.holds]
 
 

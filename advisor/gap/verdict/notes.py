@@ -8,9 +8,9 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.candidates.known import left_aside
 from advisor.gap.fitting.measure import whole_gap
-from advisor.gap.records.flights import Flights
+from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.records.usable import why_left_out
-from advisor.gap.result import Verdict, spelled
+from advisor.gap.result import GapVerdict, spelled
 from advisor.gap.search.path_energy import mean_speed
 from advisor.gap.search.stage import added_in
 from advisor.gap.verdict.evidence import Evidence
@@ -25,7 +25,7 @@ _FEW = 6
 
 
 def notes_of(
-    e: Evidence, aircraft: Aircraft, holdout: int | None, verdict: Verdict, nuisances: Collection[str]
+    e: Evidence, aircraft: Aircraft, holdout: int | None, verdict: GapVerdict, nuisances: Collection[str]
 ) -> tuple[str, ...]:
     """Return all notes that these flights and their aircraft file require, a sentence each.
 
@@ -76,7 +76,7 @@ def _of_the_speed(e: Evidence, aircraft: Aircraft) -> Iterator[str]:
         yield e.weight.sentence
 
 
-def _of_a_constant_speed(e: Evidence, verdict: Verdict) -> Iterator[str]:
+def _of_a_constant_speed(e: Evidence, verdict: GapVerdict) -> Iterator[str]:
     """Yield the gap of a simulator at constant speed, where the verdict is none and the air speed varied."""
     if verdict != "none" or e.constant_speed is None or not e.problem.flights.speed_measured:
         return
@@ -89,7 +89,7 @@ def _of_a_constant_speed(e: Evidence, verdict: Verdict) -> Iterator[str]:
         )
 
 
-def _without_air_speed(flights: Flights, is_known: bool) -> str:
+def _without_air_speed(flights: PreparedManeuvers, is_known: bool) -> str:
     whence = "from the aircraft file, or from the motion where the file has none" if is_known else "assumed"
     moves = flights.speed_moves > 0.0
     level = "on average" if moves else "before each manoeuvre"

@@ -8,11 +8,11 @@ import numpy as np
 from advisor.aircraft.aircraft import PARAMETERS
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.fitting.fit import Fitted
+from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.measure import by_band, by_phase, gap_of, shrink_interval, whole_gap
 from advisor.gap.fitting.prior import derivative_scale
-from advisor.gap.fitting.problem import Problem
+from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.records.floor import prefiltered
 from advisor.gap.result import Cause, Gap, Shrink, Trace, Value, Yardsticks
 from advisor.gap.search.stage import Stage
@@ -25,7 +25,7 @@ _UNCHANGED = 0.1
 """Share of the change of the derivatives below which a manoeuvre counts as flown before the change."""
 
 
-def gap_numbers(problem: Problem, floor: FloatArray, before: HeldOut, last: HeldOut) -> Gap:
+def gap_numbers(problem: EffectProblem, floor: FloatArray, before: HeldOut, last: HeldOut) -> Gap:
     """Return the gap of the simulator as given and of the final model, as numbers."""
     here, there = gap_of(before.mean_square, floor), gap_of(last.mean_square, floor)
     smooth = [c for c, yes in prefiltered(problem.flights).items() if yes]
@@ -116,7 +116,7 @@ def waterfall_of(
     return tuple(steps)
 
 
-def model_of(problem: Problem, fitted: Fitted, known: FloatArray) -> dict[str, Value]:
+def model_of(problem: EffectProblem, fitted: EffectFit, known: FloatArray) -> dict[str, Value]:
     """Return the eight parameters about zero angles, from the trimmed ones of each manoeuvre.
 
     ``known``, shape (k, k), is the covariance of the shared parameters. An error of the derivatives moves the
@@ -142,7 +142,7 @@ def model_of(problem: Problem, fitted: Fitted, known: FloatArray) -> dict[str, V
     return {name: values[name] for name in PARAMETERS}
 
 
-def _as_it_began(problem: Problem, fitted: Fitted) -> FloatArray:
+def _as_it_began(problem: EffectProblem, fitted: EffectFit) -> FloatArray:
     """Return which manoeuvres were flown before a change in flight, shape (manoeuvres,), bool; all without
     one.
 
@@ -155,7 +155,9 @@ def _as_it_began(problem: Problem, fitted: Fitted) -> FloatArray:
     return np.asarray(off - np.min(off) <= _UNCHANGED * np.ptp(off))
 
 
-def fidelity_of(problem: Problem, before: HeldOut, last: HeldOut) -> dict[str, tuple[Yardsticks, Yardsticks]]:
+def fidelity_of(
+    problem: EffectProblem, before: HeldOut, last: HeldOut
+) -> dict[str, tuple[Yardsticks, Yardsticks]]:
     """Return the published measures of fidelity of every channel, before and after."""
     found = {}
     for c, name in enumerate(problem.channels):
@@ -170,7 +172,7 @@ def fidelity_of(problem: Problem, before: HeldOut, last: HeldOut) -> dict[str, t
     return found
 
 
-def traces_of(problem: Problem, before: HeldOut, last: HeldOut) -> tuple[Trace, ...]:
+def traces_of(problem: EffectProblem, before: HeldOut, last: HeldOut) -> tuple[Trace, ...]:
     """Return measured and simulated values for plotting."""
     traces = []
     for i, flight in enumerate(problem.flights.flights):

@@ -6,9 +6,9 @@ import numpy as np
 
 from advisor.flight.instruments.kinematics import KinematicCheck
 from advisor.gap.fitting.measure import whole_gap
-from advisor.gap.fitting.problem import Problem
+from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.result import Cause, Value
-from advisor.gap.search.acceptance import Judged, least_offset_rad
+from advisor.gap.search.acceptance import JudgedAddition, least_offset_rad
 from advisor.gap.search.indistinguishable import way_to_distinguish
 from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.holdout_numbers import without_air
@@ -27,7 +27,11 @@ _GUST_TIME_ERROR_S = 0.1
 
 
 def alpha_bias_cause(
-    check: KinematicCheck, named: Sequence[Judged], problem: Problem, gap_after: float, alone: bool
+    check: KinematicCheck,
+    named: Sequence[JudgedAddition],
+    problem: EffectProblem,
+    gap_after: float,
+    alone: bool,
 ) -> Cause | None:
     """Return a constant offset of α as a cause, from the climb rate: the dynamics cannot separate it from Z_0
     and M_0.

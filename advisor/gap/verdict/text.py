@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from advisor.gap.result import VISIBLE, Cause, Gap, Shrink, Verdict, Where, spelled
+from advisor.gap.result import VISIBLE, Cause, Gap, GapVerdict, Shrink, Where, spelled
 from advisor.gap.verdict.statements import what
 
 _AS_LIKELY = 0.99
@@ -34,7 +34,7 @@ def sentence_of_one_maneuver(where: Where) -> str:
 
 
 def sentence_of(
-    verdict: Verdict,
+    verdict: GapVerdict,
     gap: Gap,
     where: Where,
     causes: Sequence[Cause],

@@ -10,7 +10,7 @@ from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.fitting.prior import Distance
 from advisor.gap.fitting.uncertainty import CLEAR_GAP, distance_from_file
 from advisor.gap.result import VISIBLE
-from advisor.gap.search.acceptance import Judged
+from advisor.gap.search.acceptance import JudgedAddition
 from advisor.gap.verdict.evidence import Evidence
 
 _BY_NAMES = 0.8
@@ -37,7 +37,7 @@ class WrongDerivatives:
     """Whether the part of wrong derivatives exceeds that of moving air, which comes and goes with the day."""
 
 
-def wrong_derivatives(e: Evidence, named: Sequence[Judged], still: FloatArray) -> WrongDerivatives:
+def wrong_derivatives(e: Evidence, named: Sequence[JudgedAddition], still: FloatArray) -> WrongDerivatives:
     """Judge the file's derivatives; ``still`` is the noise floor without moving air, shape (channels,)."""
     gap, beside_air = _beyond_fitted(e, e.floor), _beyond_fitted(e, still)
     of_the_air = whole_gap(e.stages[0].held_out.mean_square, still) if e.air is not None else 0.0

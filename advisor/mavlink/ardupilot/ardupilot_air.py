@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from advisor.flight.signals.messages import FloatArray, IntArray
 from advisor.mavlink.ardupilot.sensors import Said
-from advisor.mavlink.records.dataflash import Table
+from advisor.mavlink.records.dataflash import RecordTable
 from advisor.mavlink.records.equivalent import nearest
 
 _AIR_SPEED = {"ARSP": "Airspeed", "CTUN": "As", "NTUN": "Arspd"}
@@ -19,7 +19,7 @@ _CLIMB = ("XKF1", "NKF1", "EKF1")
 
 
 @dataclass(frozen=True, slots=True)
-class Air:
+class AirRecords:
     """Air data, and the sentences about their sources."""
 
     records: list[dict[str, NDArray[Any]]]
@@ -27,7 +27,7 @@ class Air:
     said: list[Said]
 
 
-def air(tables: Mapping[str, Table], interrupted: bool) -> Air:
+def air(tables: Mapping[str, RecordTable], interrupted: bool) -> AirRecords:
     """Return the air data in these records.
 
     Parameters
@@ -47,11 +47,11 @@ def air(tables: Mapping[str, Table], interrupted: bool) -> Air:
         for place, (field, one) in enumerate(found.items(), start=2)
         if one is not None
     ]
-    return Air([*speed, *others], said)
+    return AirRecords([*speed, *others], said)
 
 
 def _airspeed(
-    tables: Mapping[str, Table], interrupted: bool
+    tables: Mapping[str, RecordTable], interrupted: bool
 ) -> tuple[list[dict[str, NDArray[Any]]], list[Said]]:
     """Return the air speed of the best record, and of the next one where no sensor was healthy."""
     sources = [
@@ -76,7 +76,9 @@ def _airspeed(
     return [{"order": order + 1, "time_usec": time_us, "airspeed": speed}], said
 
 
-def _first(tables: Mapping[str, Table], places: Iterable[tuple[str, str]]) -> tuple[Table, FloatArray] | None:
+def _first(
+    tables: Mapping[str, RecordTable], places: Iterable[tuple[str, str]]
+) -> tuple[RecordTable, FloatArray] | None:
     """Return the first record that has its field, and the field's values; None without one."""
     for name, field in places:
         if name in tables and field in tables[name].fields:

@@ -21,8 +21,8 @@ from advisor.mavlink.ardupilot.ardupilot_vehicle import (
 from advisor.mavlink.ardupilot.body_rates import RATE_RECORDS, body_rates, calmed
 from advisor.mavlink.ardupilot.former_records import SENSORS_APART, Clocked, in_todays_names
 from advisor.mavlink.ardupilot.sensors import Said, flown, said, silent
-from advisor.mavlink.px4.sdlog2 import SDLOG2_RECORDS, Sdlog2, is_sdlog2
-from advisor.mavlink.records.dataflash import Table, gps_time_base_s, read_tables, seconds
+from advisor.mavlink.px4.sdlog2 import SDLOG2_RECORDS, Sdlog2Messages, is_sdlog2
+from advisor.mavlink.records.dataflash import RecordTable, gps_time_base_s, read_tables, seconds
 from advisor.mavlink.records.equivalent import air_data, message, nearest
 from advisor.words.problems import UnusableInputError
 
@@ -70,7 +70,7 @@ def read_dataflash(path: Path, wanted: Iterable[str] | None = None) -> Iterator[
     stored = {name: _believable(table) for name, table in every.items()}
     names = None if wanted is None else set(wanted)
     if is_sdlog2(stored):
-        yield from _batch(Sdlog2(stored).columns(), names)
+        yield from _batch(Sdlog2Messages(stored).columns(), names)
         return
     read = in_todays_names(stored)
     tables = {
@@ -87,7 +87,7 @@ def read_dataflash(path: Path, wanted: Iterable[str] | None = None) -> Iterator[
     yield from _batch(_Translation(Clocked(tables, read.epoch_s)).columns(), names)
 
 
-def _believable(table: Table) -> Table:
+def _believable(table: RecordTable) -> RecordTable:
     """Return the fields whose values fit their names. Damage to a definition can turn a number into a
     text."""
     fields = {
@@ -95,7 +95,7 @@ def _believable(table: Table) -> Table:
         for name, values in table.fields.items()
         if values.ndim == 1 and (values.dtype.kind == "S") == (name in _TEXTS)
     }
-    return Table(table.order, fields)
+    return RecordTable(table.order, fields)
 
 
 def _batch(columns: Iterator[Columns], names: set[str] | None) -> Iterator[list[Columns]]:
@@ -148,7 +148,9 @@ class _Translation:
         yield from self._vfr_hud()
         yield self._statustext()
 
-    def _message(self, name: str, table: Table, fields: dict[str, ArrayLike], place: int = 0) -> Columns:
+    def _message(
+        self, name: str, table: RecordTable, fields: dict[str, ArrayLike], place: int = 0
+    ) -> Columns:
         """Return one message for each row of a record. ``place`` keeps several messages of one row in
         order."""
         return self._made(name, table.order + place, table.time_us, fields)
@@ -194,7 +196,7 @@ class _Translation:
                 fields[f"{axis.lower()}gyro"] = imu.fields[f"Gyr{axis}"]
         yield self._message("HIGHRES_IMU", imu, fields, place=1)
 
-    def _aoa_ssa(self, aoa: Table) -> Columns:
+    def _aoa_ssa(self, aoa: RecordTable) -> Columns:
         angles = {"AOA": aoa.fields["AOA"], "SSA": aoa.fields["SSA"]}
         return self._message("AOA_SSA", aoa, {"time_usec": aoa.time_us, **angles})
 
@@ -225,7 +227,7 @@ class _Translation:
                 banks.append(self._message("SERVO_OUTPUT_RAW", rcou, fields, place=port))
         yield from banks
 
-    def _rc_channels(self, rcin: Table) -> Columns:
+    def _rc_channels(self, rcin: RecordTable) -> Columns:
         pulses: dict[str, ArrayLike] = {
             f"chan{field[1:]}_raw": values
             for field, values in rcin.fields.items()
@@ -242,7 +244,7 @@ class _Translation:
             order = np.asarray(fields.pop("order"))
             yield self._made("VFR_HUD", order, np.asarray(fields["time_usec"]), fields)
 
-    def _global_position_int(self, pos: Table) -> Columns:
+    def _global_position_int(self, pos: RecordTable) -> Columns:
         fields: dict[str, ArrayLike] = {
             "time_boot_ms": _milliseconds(pos.time_us),
             "lat": np.round(pos.fields["Lat"] * 1e7).astype(np.int64),

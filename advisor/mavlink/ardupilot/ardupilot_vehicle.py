@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from advisor.flight.signals.messages import IntArray
-from advisor.mavlink.records.dataflash import Table
+from advisor.mavlink.records.dataflash import RecordTable
 from advisor.mavlink.records.equivalent import MAV_PARAM_TYPE_REAL32, MAV_TYPE_FIXED_WING, system_id
 
 VEHICLE_RECORDS: dict[str, set[str]] = {
@@ -28,7 +28,7 @@ _MIXERS = ("ELEVON_MIXING", "ELEVON_OUTPUT", "VTAIL_OUTPUT")
 """Parameters of that firmware that let outputs serve two axes. The role of each output is then unknown."""
 
 
-def system_of(tables: Mapping[str, Table]) -> int:
+def system_of(tables: Mapping[str, RecordTable]) -> int:
     """Return the system id from its parameter, under the old or the new name."""
     for name, value in _parameters(tables):
         if name in (b"SYSID_THISMAV", b"MAV_SYSID"):
@@ -36,7 +36,7 @@ def system_of(tables: Mapping[str, Table]) -> int:
     return system_id(None)
 
 
-def heartbeats(tables: Mapping[str, Table]) -> tuple[IntArray, IntArray, dict[str, ArrayLike]]:
+def heartbeats(tables: Mapping[str, RecordTable]) -> tuple[IntArray, IntArray, dict[str, ArrayLike]]:
     """Return a heartbeat before everything else, to make the vehicle known, and two at each change of mode.
 
     A log states a change of mode at its moment. The first of the two heartbeats says that the earlier mode
@@ -65,7 +65,7 @@ def heartbeats(tables: Mapping[str, Table]) -> tuple[IntArray, IntArray, dict[st
     return order, time_us, fields
 
 
-def parameter_fields(parm: Table) -> dict[str, ArrayLike]:
+def parameter_fields(parm: RecordTable) -> dict[str, ArrayLike]:
     """Return the fields of PARAM_VALUE from the records PARM."""
     return {
         "param_id": parm.fields["Name"],
@@ -76,7 +76,7 @@ def parameter_fields(parm: Table) -> dict[str, ArrayLike]:
     }
 
 
-def in_todays_parameters(parm: Table) -> Table:
+def in_todays_parameters(parm: RecordTable) -> RecordTable:
     """Return the parameters under today's names, also from firmware older than SERVOn_FUNCTION."""
     names = [bytes(name) for name in parm.fields["Name"].tolist()]
     if any(name.startswith(b"SERVO") and name.endswith(b"_FUNCTION") for name in names):
@@ -90,7 +90,7 @@ def in_todays_parameters(parm: Table) -> Table:
     values[turned] = values[turned] < 0.0  # RCn_REV is 1 or -1, SERVOn_REVERSED 0 or 1
     functions = {} if any(stored.get(mixer, 0.0) for mixer in _MIXERS) else _stick_functions(stored)
     n, extra = len(parm), len(functions)
-    return Table(
+    return RecordTable(
         np.concatenate([parm.order, parm.order[-1] + 1 + np.arange(extra)]),
         {
             "TimeUS": np.concatenate([parm.time_us, np.full(extra, parm.time_us[-1])]),
@@ -116,20 +116,20 @@ def _stick_functions(stored: Mapping[str, float]) -> dict[bytes, float]:
     return found
 
 
-def version_fields(ver: Table) -> dict[str, ArrayLike]:
+def version_fields(ver: RecordTable) -> dict[str, ArrayLike]:
     """Return the fields of AUTOPILOT_VERSION from the records VER."""
     major, minor, patch, kind = (ver.fields[name].astype(np.int64) for name in ("Maj", "Min", "Pat", "FWT"))
     return {"flight_sw_version": major << 24 | minor << 16 | patch << 8 | kind}
 
 
-def _parameters(tables: Mapping[str, Table]) -> list[tuple[bytes, float]]:
+def _parameters(tables: Mapping[str, RecordTable]) -> list[tuple[bytes, float]]:
     if "PARM" not in tables:
         return []
     fields = tables["PARM"].fields
     return list(zip(fields["Name"].tolist(), fields["Value"].tolist(), strict=True))
 
 
-def _mav_type(tables: Mapping[str, Table]) -> int:
+def _mav_type(tables: Mapping[str, RecordTable]) -> int:
     ver, msg = tables.get("VER"), tables.get("MSG")
     if ver is not None and "BU" in ver.fields:
         return _BUILD_TO_MAV_TYPE.get(int(ver.fields["BU"][0]), MAV_TYPE_FIXED_WING)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray, IntArray
-from advisor.mavlink.records.dataflash import Table
+from advisor.mavlink.records.dataflash import RecordTable
 
 RATE_RECORDS: dict[str, set[str]] = {
     "GYR": {"GyrX", "GyrY", "GyrZ"},
@@ -43,7 +43,7 @@ class Rates:
     """Sentence on the source of the rates, for the user; empty for IMU."""
 
 
-def body_rates(tables: Mapping[str, Table]) -> Rates | None:
+def body_rates(tables: Mapping[str, RecordTable]) -> Rates | None:
     """Return the rates of IMU, else GYR, PIDP, RATE, else those derived from the angles of ATT; None without
     any."""
     if "IMU" in tables:
@@ -59,7 +59,7 @@ def body_rates(tables: Mapping[str, Table]) -> Rates | None:
     return _from_angles(tables["ATT"], gyro_delay_s(tables.get("PARM")))
 
 
-def gyro_delay_s(parm: Table | None) -> float:
+def gyro_delay_s(parm: RecordTable | None) -> float:
     """Return the delay of the autopilot's gyro readings at the frequencies of flight, s.
 
     This is the delay of a second-order Butterworth low-pass, √2 / (2π f), with f of INS_GYRO_FILTER. The
@@ -72,7 +72,7 @@ def gyro_delay_s(parm: Table | None) -> float:
     return float(np.sqrt(2.0) / (2.0 * np.pi * corner_hz)) if corner_hz > 0.0 else 0.0
 
 
-def calmed(table: Table) -> Table:
+def calmed(table: RecordTable) -> RecordTable:
     """Return the records of the first raw sensor, averaged so that at most ``FASTEST_SAMPLES_HZ`` remain."""
     table = table.first_instance()
     steps_us = np.diff(table.time_us)
@@ -86,23 +86,25 @@ def calmed(table: Table) -> Table:
         if values.ndim == 1 and values.dtype.kind in "iuf"
     }
     fields["TimeUS"] = fields["TimeUS"].astype(np.int64)
-    return Table(table.order[many - 1 : whole : many], fields)
+    return RecordTable(table.order[many - 1 : whole : many], fields)
 
 
-def _read(table: Table, fields: tuple[str | None, str | None, str | None], scale: float, said: str) -> Rates:
+def _read(
+    table: RecordTable, fields: tuple[str | None, str | None, str | None], scale: float, said: str
+) -> Rates:
     nothing = np.full(len(table), np.nan)
     rows = [nothing if name is None else scale * table.fields[name].astype(np.float64) for name in fields]
     return Rates(table.order, table.time_us, np.array(rows), said)
 
 
-def _stands_still(pid: Table) -> bool:
+def _stands_still(pid: RecordTable) -> bool:
     """Return whether the controller's rate is ever constant for ``_FROZEN_S``."""
     moved = np.flatnonzero(np.diff(pid.fields["Act"]) != 0.0) + 1
     edges_us = pid.time_us[np.concatenate(([0], moved, [len(pid) - 1]))]
     return bool(np.max(np.diff(edges_us)) > 1e6 * _FROZEN_S)
 
 
-def _from_angles(att: Table, delay_s: float) -> Rates | None:
+def _from_angles(att: RecordTable, delay_s: float) -> Rates | None:
     """Return the rates from differences of the angles, delayed like the gyro's rates.
 
     The angle of attack is also late. Together with a rate without delay, derivatives would come out wrong by

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from advisor.flight.signals.messages import IntArray
-from advisor.mavlink.records.dataflash import Table
+from advisor.mavlink.records.dataflash import RecordTable
 
 SENSORS_APART = {
     "IMU": ("IMU2", "IMU3"),
@@ -35,13 +35,13 @@ _1970_US = 10**15
 class Clocked:
     """The records of a log on one clock."""
 
-    tables: Mapping[str, Table]
+    tables: Mapping[str, RecordTable]
     """Tables by today's names. Every table has TimeUS, int64."""
     epoch_s: int
     """Seconds since 1970 at TimeUS 0 for a log that counted from 1970; 0 for a log that counts from boot."""
 
 
-def in_todays_names(tables: Mapping[str, Table]) -> Clocked:
+def in_todays_names(tables: Mapping[str, RecordTable]) -> Clocked:
     """Return all records of a log, renamed, on one clock, with several records of one kind of sensor
     joined."""
     named = {name: _renamed(name, table) for name, table in tables.items()}
@@ -54,7 +54,7 @@ def in_todays_names(tables: Mapping[str, Table]) -> Clocked:
     return Clocked(_joined(timed), epoch_s)
 
 
-def _renamed(name: str, table: Table) -> Table:
+def _renamed(name: str, table: RecordTable) -> RecordTable:
     """Return the fields under today's names, with TimeUS where the record states its time since boot in any
     unit."""
     fields = dict(table.fields)
@@ -74,7 +74,7 @@ def _renamed(name: str, table: Table) -> Table:
     return replace(table, fields=found)
 
 
-def _timed(tables: Mapping[str, Table]) -> dict[str, Table]:
+def _timed(tables: Mapping[str, RecordTable]) -> dict[str, RecordTable]:
     """Return the tables with a time for each record. A record without time takes that of the stamped record
     before it."""
     stamped = [table for table in tables.values() if "TimeUS" in table.fields]
@@ -93,11 +93,11 @@ def _timed(tables: Mapping[str, Table]) -> dict[str, Table]:
     return found
 
 
-def _at(table: Table, time_us: IntArray) -> Table:
+def _at(table: RecordTable, time_us: IntArray) -> RecordTable:
     return replace(table, fields={**table.fields, "TimeUS": np.maximum(time_us, 0)})
 
 
-def _joined(tables: Mapping[str, Table]) -> dict[str, Table]:
+def _joined(tables: Mapping[str, RecordTable]) -> dict[str, RecordTable]:
     """Return the tables with former records of further sensors as further numbers in the field I of the
     first."""
     found = dict(tables)
@@ -111,5 +111,5 @@ def _joined(tables: Mapping[str, Table]) -> dict[str, Table]:
         order = np.concatenate([table.order for table in sensors])
         rows = np.argsort(order)
         fields = {f: np.concatenate([table.fields[f] for table in sensors])[rows] for f in shared}
-        found[name] = Table(order[rows], {**fields, "I": np.concatenate(numbers)[rows]})
+        found[name] = RecordTable(order[rows], {**fields, "I": np.concatenate(numbers)[rows]})
     return found

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from advisor.flight.signals.messages import IntArray
-from advisor.mavlink.records.dataflash import Table
+from advisor.mavlink.records.dataflash import RecordTable
 from advisor.mavlink.records.equivalent import latest
 from advisor.words.vehicle_time import between, clock
 
@@ -23,7 +23,7 @@ _FROZEN_S = 0.5
 sound sensor repeats its values at most once, when records come faster than samples."""
 
 
-def flown(table: Table) -> Table:
+def flown(table: RecordTable) -> RecordTable:
     """Return the records of the sensor in use at each time; none where no sensor was healthy.
 
     ARSP.Pri names the primary sensor. Where that sensor is not both healthy and in use, the lowest-numbered
@@ -60,7 +60,7 @@ class Said:
     text: str
 
 
-def said(every: Table, table: Table, quantity: str) -> list[Said]:
+def said(every: RecordTable, table: RecordTable, quantity: str) -> list[Said]:
     """Return sentences on the first sensor in use, on each change of sensor, and on times without a healthy
     one.
 
@@ -78,7 +78,7 @@ def said(every: Table, table: Table, quantity: str) -> list[Said]:
     return [*_doubts(every, quantity), *_changes(table, quantity), *_silences(every, table, quantity)]
 
 
-def _doubts(every: Table, quantity: str) -> list[Said]:
+def _doubts(every: RecordTable, quantity: str) -> list[Said]:
     """Return a sentence where no record states any sensor as healthy. All sensors then count as healthy."""
     if len(every) == 0 or _spoken_for(every) == _stated(every):
         return []
@@ -86,7 +86,7 @@ def _doubts(every: Table, quantity: str) -> list[Said]:
     return [Said(int(every.order[0]), int(every.time_us[0]), text)]
 
 
-def _changes(table: Table, quantity: str) -> list[Said]:
+def _changes(table: RecordTable, quantity: str) -> list[Said]:
     instance = _numbers(table)
     rows = np.flatnonzero(np.diff(instance, prepend=-1))
     if instance[rows].tolist() in ([], [0]):
@@ -99,7 +99,7 @@ def _changes(table: Table, quantity: str) -> list[Said]:
     return sentences
 
 
-def _silences(every: Table, table: Table, quantity: str) -> list[Said]:
+def _silences(every: RecordTable, table: RecordTable, quantity: str) -> list[Said]:
     sentences = []
     for first, last in silent(every, table):
         start_s, end_s = every.time_us[[first, last]] / 1e6
@@ -108,7 +108,7 @@ def _silences(every: Table, table: Table, quantity: str) -> list[Said]:
     return sentences
 
 
-def silent(every: Table, table: Table) -> list[tuple[int, int]]:
+def silent(every: RecordTable, table: RecordTable) -> list[tuple[int, int]]:
     """Return stretches with records but without a healthy sensor: rows of ``every``, first and last.
 
     Parameters
@@ -131,18 +131,18 @@ def silent(every: Table, table: Table) -> list[tuple[int, int]]:
     return found
 
 
-def _numbers(table: Table) -> IntArray:
+def _numbers(table: RecordTable) -> IntArray:
     """Return the sensor number of each record, shape (n,)."""
     if "I" not in table.fields:
         return np.zeros(len(table), dtype=np.int64)
     return table.fields["I"].astype(np.int64)
 
 
-def _used(table: Table) -> BoolArray:
+def _used(table: RecordTable) -> BoolArray:
     return np.asarray(table.fields.get(_IN_USE, np.ones(len(table))) != 0)
 
 
-def _healthy(table: Table, instance: IntArray) -> BoolArray:
+def _healthy(table: RecordTable, instance: IntArray) -> BoolArray:
     good = np.ones(len(table), dtype=np.bool_)
     for name in _spoken_for(table):
         good &= table.fields[name] != 0
@@ -153,18 +153,18 @@ def _healthy(table: Table, instance: IntArray) -> BoolArray:
     return good
 
 
-def _stated(table: Table) -> list[str]:
+def _stated(table: RecordTable) -> list[str]:
     """Return the fields of health in the records."""
     return [name for name in _HEALTH if name in table.fields]
 
 
-def _spoken_for(table: Table) -> list[str]:
+def _spoken_for(table: RecordTable) -> list[str]:
     """Return the fields that ever state a healthy sensor. A field that never does cannot distinguish sensors
     or times."""
     return [name for name in _stated(table) if np.any(table.fields[name] != 0)]
 
 
-def _frozen(table: Table) -> BoolArray:
+def _frozen(table: RecordTable) -> BoolArray:
     """Return records of one inertial sensor that belong to a stretch of ``_FROZEN_S`` without any change."""
     values = np.stack([table.fields[name] for name in _MOVING], axis=1)
     moved = np.concatenate(([True], np.any(np.diff(values, axis=0) != 0.0, axis=1)))

@@ -12,7 +12,7 @@ RATE_WINDOW_S = 2.0
 
 
 @dataclass(frozen=True, slots=True)
-class Notice:
+class LinkNotice:
     """A message about the link for the crew."""
 
     at_s: float

@@ -20,9 +20,19 @@ from threading import Thread
 
 from advisor.mavlink.link import running_links
 from advisor.mavlink.link.announce import Announcer
-from advisor.mavlink.link.health import Notice
+from advisor.mavlink.link.health import LinkNotice
 from advisor.mavlink.link.inquiry import Inquiry
-from advisor.mavlink.link.keeping import Guard, Heard, Hello, Judged, Keeping, Listen, Order, Stop, Told
+from advisor.mavlink.link.keeping import (
+    AnnounceVerdict,
+    CallOrder,
+    Guard,
+    Heard,
+    Hello,
+    Keeping,
+    Listen,
+    Stop,
+    Told,
+)
 from advisor.mavlink.link.link import Link
 from advisor.mavlink.link.outgoing import Talker
 from advisor.mavlink.link.rates import STREAMS, RateRequest
@@ -154,7 +164,7 @@ class Keeper:
         return Hello(recorder.path, recorded.written, recorded.unsaved, recorder.before)
 
     def _tell(self) -> None:
-        notices: tuple[Notice, ...] = tuple(self._link.take_notices()) if self._readers else ()
+        notices: tuple[LinkNotice, ...] = tuple(self._link.take_notices()) if self._readers else ()
         self._send(Told(self._link.statistics, notices))
 
     def _send(self, message: _Message) -> None:
@@ -193,9 +203,9 @@ class Keeper:
                         guards = True
                         self._lend_socket(connection)
                         self._guarded(+1)
-                    case Judged(maneuver, sentence, stop) if self._announcer:
+                    case AnnounceVerdict(maneuver, sentence, stop) if self._announcer:
                         self._announcer.judged(maneuver, sentence, stop)
-                    case Order(method, arguments):
+                    case CallOrder(method, arguments):
                         getattr(self._link, method)(*arguments)
                     case Stop():
                         self._stop.set()

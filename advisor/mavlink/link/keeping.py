@@ -9,7 +9,7 @@ from multiprocessing.connection import Client, Connection
 from pathlib import Path
 from typing import Literal
 
-from advisor.mavlink.link.health import LinkStatistics, Notice
+from advisor.mavlink.link.health import LinkNotice, LinkStatistics
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,11 +93,11 @@ class Told:
     """Health of the link, several times a second, with the notices since the last one."""
 
     statistics: LinkStatistics
-    notices: tuple[Notice, ...]
+    notices: tuple[LinkNotice, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Judged:
+class AnnounceVerdict:
     """Asks the process of the link to announce a verdict, where announcements are on."""
 
     maneuver: int
@@ -106,7 +106,7 @@ class Judged:
 
 
 @dataclass(frozen=True, slots=True)
-class Order:
+class CallOrder:
     """Asks for a call of one of the link's methods, with a request of a crew or a reader."""
 
     method: Literal["listen_to", "follow", "take_output", "ask_for_outputs"]

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Self
 
 from advisor.aircraft.aircraft import Elevator
 from advisor.flight.signals.messages import Columns
-from advisor.mavlink.link.health import LinkStatistics, Notice
-from advisor.mavlink.link.keeping import Door, Heard, Hello, Judged, Listen, Order, Told
+from advisor.mavlink.link.health import LinkNotice, LinkStatistics
+from advisor.mavlink.link.keeping import AnnounceVerdict, CallOrder, Door, Heard, Hello, Listen, Told
 
 if TYPE_CHECKING:
     from advisor.mavlink.link.decoding import Decoding
@@ -47,7 +47,7 @@ class KeptLink:
         """Bytes of the recording read so far."""
         self._before = 0
         self._next_try_s = 0.0
-        self._notices: list[Notice] = []
+        self._notices: list[LinkNotice] = []
         self._broken = False
         self._told = LinkStatistics()
         self.catching_up = True
@@ -74,7 +74,7 @@ class KeptLink:
             return []
         columns = self._decoding.feed(piece)
         if (vehicle := self._decoding.newly_followed()) is not None:
-            self._send(Order("listen_to", (vehicle,)))
+            self._send(CallOrder("listen_to", (vehicle,)))
         return columns
 
     @property
@@ -82,7 +82,7 @@ class KeptLink:
         """Health of the link, as reported last."""
         return self._decoding.counted(self._told)
 
-    def take_notices(self) -> list[Notice]:
+    def take_notices(self) -> list[LinkNotice]:
         """Return the notices since the last call, oldest first."""
         notices, self._notices = self._notices, []
         return notices
@@ -90,19 +90,19 @@ class KeptLink:
     def judged(self, maneuver: int, sentence: str, stop: str | None) -> None:
         """Request the announcement of a verdict, unless the manoeuvre belongs to a continued recording."""
         if self._connection is not None and self._position > self._before:
-            self._send(Judged(maneuver, sentence, stop))
+            self._send(AnnounceVerdict(maneuver, sentence, stop))
 
     def follow(self, system: int) -> None:
         """Follow another vehicle. The stream records the choice, and nothing is sent to a vehicle."""
-        self._send(Order("follow", (system,)))
+        self._send(CallOrder("follow", (system,)))
 
     def take_output(self, output: int) -> None:
         """Use an output as the elevator. The stream records the choice, and nothing is sent to a vehicle."""
-        self._send(Order("take_output", (output,)))
+        self._send(CallOrder("take_output", (output,)))
 
     def ask_for_outputs(self) -> None:
         """Ask the vehicle once which of its outputs is the elevator."""
-        self._send(Order("ask_for_outputs"))
+        self._send(CallOrder("ask_for_outputs"))
 
     @cached_property
     def _decoding(self) -> "Decoding":
@@ -180,4 +180,4 @@ class KeptLink:
         self._say("the process of the link has ended; it is started again")
 
     def _say(self, text: str) -> None:
-        self._notices.append(Notice(time.time(), text))
+        self._notices.append(LinkNotice(time.time(), text))

@@ -21,7 +21,7 @@ from advisor.flight.signals.messages import Columns
 from advisor.flight.vehicle.following import FOLLOW, TAKE
 from advisor.mavlink.link.connection import parse_connection
 from advisor.mavlink.link.conversation import Conversation
-from advisor.mavlink.link.health import LinkStatistics, Notice
+from advisor.mavlink.link.health import LinkNotice, LinkStatistics
 from advisor.mavlink.link.inquiry import Inquiry
 from advisor.mavlink.link.intake import Intake
 from advisor.mavlink.link.line import Line
@@ -108,7 +108,7 @@ class Link:
         self._decoding: Decoding | None = None
         self._orders: deque[bytes | Talker | Ids] = deque()
         self._watch = LinkWatch(connection)
-        self._notices: deque[Notice] = deque(maxlen=1000)
+        self._notices: deque[LinkNotice] = deque(maxlen=1000)
         self._queue: Queue[bytes] = Queue(QUEUE_LENGTH)
         self._recorder: Recorder | None = None
         self._failure: BaseException | None = None
@@ -212,7 +212,7 @@ class Link:
         """Ask the vehicle once which of its outputs is the elevator."""
         self._orders.append(Inquiry(outputs_only=True))
 
-    def take_notices(self) -> list[Notice]:
+    def take_notices(self) -> list[LinkNotice]:
         """Return the notices since the last call, oldest first."""
         notices = []
         while self._notices:
@@ -334,4 +334,4 @@ class Link:
                 return
 
     def _say(self, texts: Iterable[str], now_s: float) -> None:
-        self._notices.extend(Notice(now_s + self._unix_offset_s, printable(text)) for text in texts)
+        self._notices.extend(LinkNotice(now_s + self._unix_offset_s, printable(text)) for text in texts)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from advisor.flight.signals.messages import Columns, FloatArray
-from advisor.mavlink.records.dataflash import Table, seconds
+from advisor.mavlink.records.dataflash import RecordTable, seconds
 from advisor.mavlink.records.equivalent import (
     MAV_PARAM_TYPE_REAL32,
     MAV_TYPE_FIXED_WING,
@@ -40,12 +40,12 @@ stabilised. Any other state is automatic."""
 _AUTO = 4
 
 
-def is_sdlog2(tables: Mapping[str, Table]) -> bool:
+def is_sdlog2(tables: Mapping[str, RecordTable]) -> bool:
     """Return whether records of a DataFlash container are PX4's."""
     return "TIME" in tables and "StartTime" in tables["TIME"].fields
 
 
-class Sdlog2:
+class Sdlog2Messages:
     """Converts the records to the messages that telemetry would have carried.
 
     Parameters
@@ -54,7 +54,7 @@ class Sdlog2:
         Records of the log by name.
     """
 
-    def __init__(self, tables: Mapping[str, Table]) -> None:
+    def __init__(self, tables: Mapping[str, RecordTable]) -> None:
         known = {
             name: tables[name]
             for name, needed in SDLOG2_RECORDS.items()
@@ -62,7 +62,7 @@ class Sdlog2:
         }
         rounds = known.pop("TIME")
         time_us = rounds.fields["StartTime"].astype(np.int64)
-        self._tables: dict[str, Table] = {}
+        self._tables: dict[str, RecordTable] = {}
         for name, table in known.items():
             at = np.maximum(np.searchsorted(rounds.order, table.order) - 1, 0)
             self._tables[name] = replace(table, fields={**table.fields, "TimeUS": time_us[at]})
@@ -109,7 +109,7 @@ class Sdlog2:
                 },
             )
 
-    def _message(self, name: str, table: Table, fields: Mapping[str, ArrayLike]) -> Columns:
+    def _message(self, name: str, table: RecordTable, fields: Mapping[str, ArrayLike]) -> Columns:
         arrival_s = self._base_s + seconds(table.time_us)
         return message(name, self._system, table.order, arrival_s, fields, "sdlog2")
 
@@ -122,11 +122,11 @@ class Sdlog2:
             order, states = np.append(order, stat.order), np.append(told[:1], told)
             time_us = np.append(stat.time_us[:1], stat.time_us)
         mains = np.array([_MAIN_MODES.get(state, _AUTO) for state in states.tolist()])
-        table = Table(order, {"TimeUS": time_us})
+        table = RecordTable(order, {"TimeUS": time_us})
         fields: dict[str, ArrayLike] = {"type": self._type, "autopilot": _PX4, "base_mode": 1}
         return self._message("HEARTBEAT", table, {**fields, "custom_mode": mains << 16})
 
-    def _known(self, at: Table, record: str, field: str) -> FloatArray:
+    def _known(self, at: RecordTable, record: str, field: str) -> FloatArray:
         table = self._tables.get(record)
         if table is None:
             return np.full(len(at), np.nan)

@@ -52,7 +52,7 @@ _FORMATS: dict[str, tuple[Any, float | None]] = {
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
+class RecordTable:
     """All records of one type, in the order of the file."""
 
     order: IntArray
@@ -68,18 +68,18 @@ class Table:
         """Time stamps, shape (n,), microseconds since boot."""
         return np.asarray(self.fields["TimeUS"], dtype=np.int64)
 
-    def first_instance(self) -> "Table":
+    def first_instance(self) -> "RecordTable":
         """Return the records of the first of several sensors or estimators of one kind."""
         for name in ("I", "C"):
             if name in self.fields:
                 return self[self.fields[name] == 0]
         return self
 
-    def __getitem__(self, rows: NDArray[Any]) -> "Table":
-        return Table(self.order[rows], {name: values[rows] for name, values in self.fields.items()})
+    def __getitem__(self, rows: NDArray[Any]) -> "RecordTable":
+        return RecordTable(self.order[rows], {name: values[rows] for name, values in self.fields.items()})
 
 
-def read_tables(path: Path, names: Iterable[str]) -> dict[str, Table]:
+def read_tables(path: Path, names: Iterable[str]) -> dict[str, RecordTable]:
     """Return the records of the named types; a type without records is left out."""
     stream = np.fromfile(path, dtype=np.uint8)
     starts = np.empty(len(stream) // 4 + 1, dtype=np.int64)
@@ -95,7 +95,7 @@ def read_tables(path: Path, names: Iterable[str]) -> dict[str, Table]:
         if name not in wanted or layout is None or not len(mine):
             continue
         records = _records(stream, mine + 3, layout)
-        tables[name] = Table(
+        tables[name] = RecordTable(
             mine,
             {
                 field: records[field] if divisor is None else records[field] / divisor
@@ -113,7 +113,7 @@ def first_definition(beginning: bytes) -> int:
     return at
 
 
-def gps_time_base_s(gps: Table | None) -> float:
+def gps_time_base_s(gps: RecordTable | None) -> float:
     """Return the time of boot, seconds since 1970, from the first fix with a GPS week; 0 without one."""
     if gps is None:
         return 0.0

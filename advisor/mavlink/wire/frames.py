@@ -13,7 +13,7 @@ from advisor.flight.signals.messages import Columns
 from advisor.mavlink.wire import arrivals
 from advisor.mavlink.wire import scan as kernel
 from advisor.mavlink.wire.definitions import DEFINITIONS, Definition
-from advisor.mavlink.wire.signing import RADIO_STATUS, SignatureCheck, Verdict
+from advisor.mavlink.wire.signing import RADIO_STATUS, SignatureCheck, SignatureVerdict
 
 _SOURCES = 1 << 16
 
@@ -53,7 +53,7 @@ class ScanStatistics:
     """Bytes outside all good frames and time stamps."""
     senders: Mapping[tuple[int, int], Received]
     """Counts of each sender's frames, by (system, component)."""
-    refused: Mapping[Verdict, int]
+    refused: Mapping[SignatureVerdict, int]
     """Frames of wanted messages refused for their signature, by verdict; empty without a key."""
 
 
@@ -94,7 +94,7 @@ class FrameScanner:
         self._packets = np.zeros((arrivals.PACKETS, arrivals.PACKET_COLUMNS), dtype=np.int64)
         self._newest = np.zeros(arrivals.COUNT + 1, dtype=np.int64)
         self._signatures = SignatureCheck(key) if key is not None else None
-        self._refused: dict[Verdict, int] = {}
+        self._refused: dict[SignatureVerdict, int] = {}
         self._tail = b""
         self._offset = 0
 

@@ -26,7 +26,7 @@ RADIO_STATUS = 109
 _NEW_STREAM_MAY_LAG = 6_000_000
 """Largest delay of a new stream behind its sender's other streams: one minute, in 10 us (MAVLink guide)."""
 
-Verdict = Literal["ok", "unsigned", "forged", "replayed"]
+SignatureVerdict = Literal["ok", "unsigned", "forged", "replayed"]
 
 
 def read_key(path: Path) -> bytes:
@@ -75,7 +75,7 @@ class SignatureCheck:
         self._sender: dict[tuple[int, int], int] = {}
         """Newest time of a sender (system, component) on any of its links, 10 us since 2015."""
 
-    def verdict(self, frame: bytes) -> Verdict:
+    def verdict(self, frame: bytes) -> SignatureVerdict:
         """Return the verdict on one whole frame.
 
         A time is remembered only after its signature was found good. Otherwise one forged frame from the

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure as Drawing
 
 from advisor.campaign.state import JudgedManeuver
-from advisor.decision.history import Flown
+from advisor.decision.history import CandidateManeuver
 from advisor.decision.hold_out import FEWEST, PredictedOutput, predict_last
 from advisor.oem.estimate import Estimate
 from advisor.oem.surface import Servo
@@ -61,10 +61,10 @@ def _figures(last: JudgedManeuver, predicted: Mapping[str, PredictedOutput]) -> 
         )
 
 
-def _flown(judged: JudgedManeuver, content: Content) -> Flown:
+def _flown(judged: JudgedManeuver, content: Content) -> CandidateManeuver:
     lag_s = judged.estimate.servo_lag_s if isinstance(judged.estimate, Estimate) else 0.0
     servo = Servo(lag_s, content.aircraft.elevator.delay_s or 0.0)
-    return Flown(judged.estimate, maneuver=judged.maneuver, servo=servo)
+    return CandidateManeuver(judged.estimate, maneuver=judged.maneuver, servo=servo)
 
 
 def _paint(drawing: Drawing, output: PredictedOutput, quantity: Quantity, start_s: float) -> None:

@@ -15,7 +15,7 @@ from advisor.oem.estimate import Estimate
 from advisor.report.digits import signed
 from advisor.session.view import View
 from advisor.tui.panes.pane import Pane
-from advisor.tui.rows import Rows
+from advisor.tui.rows import TableRows
 from advisor.tui.words import PARAMETERS
 
 _LABEL = 5
@@ -72,7 +72,7 @@ grow at the cost of the other. An input with other frequencies tells them apart.
         """Leave the zero before the point away where there is little room."""
         self._write()
 
-    def rows(self) -> Rows | None:
+    def rows(self) -> TableRows | None:
         """Give one row for each pair of parameters and each estimate."""
         if self._number is None:
             return None
@@ -85,7 +85,7 @@ grow at the cost of the other. An input with other frequencies tells them apart.
                     for i in range(len(NAMES))
                     for j in range(i + 1, len(NAMES))
                 ]
-        return Rows(("estimate", "parameter", "with", "correlation"), tuple(rows))
+        return TableRows(("estimate", "parameter", "with", "correlation"), tuple(rows))
 
     def _write(self) -> None:
         if self._number is None:

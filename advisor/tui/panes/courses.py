@@ -11,7 +11,7 @@ from advisor.tui.panes.history import course, history_chart
 from advisor.tui.panes.pane import Pane
 from advisor.tui.plot.chart import Chart
 from advisor.tui.plot.widget import Plot
-from advisor.tui.rows import Rows
+from advisor.tui.rows import TableRows
 from advisor.tui.words import PARAMETERS
 
 _MANY = 4
@@ -67,7 +67,7 @@ drifts shows an aircraft that changes.
         if self._view and self._view.state.maneuvers:
             self.subtitle("├┤ ± 95 %  ── joint  ╌╌ aircraft file")
 
-    def rows(self) -> Rows:
+    def rows(self) -> TableRows:
         """Give one row for each manoeuvre and parameter."""
         header = (
             "parameter",
@@ -85,7 +85,7 @@ drifts shows an aircraft that changes.
                 (name, PARAMETERS[name].unit, int(number), value, half, of.model, of.prior)
                 for number, value, half in zip(of.numbers, of.value, of.half, strict=True)
             ]
-        return Rows(header, tuple(rows))
+        return TableRows(header, tuple(rows))
 
 
 def _small(chart: Chart, x_label: str, *, foot: bool) -> Chart:

@@ -12,7 +12,7 @@ _TIME = 9
 """Number of characters before a sentence: its time and two blanks."""
 
 
-class EventLog(Pane):
+class EventLogPane(Pane):
     """The newest notices, the last one at the bottom."""
 
     TITLE = "8 Log"

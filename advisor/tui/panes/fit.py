@@ -26,7 +26,7 @@ from advisor.tui.panes.pane import Pane
 from advisor.tui.plot.sight import Sight
 from advisor.tui.plot.widget import Plot
 from advisor.tui.plot.window import Window
-from advisor.tui.rows import Rows
+from advisor.tui.rows import TableRows
 
 _ROWS_FOR_ONE = 11
 """Rows that an output and its residual need where several stand above one another."""
@@ -100,7 +100,7 @@ with 0 takes the second away.
         """Choose the manoeuvre that the next ``show`` lays over the selected one. None: none."""
         self._over_number = number
 
-    def rows(self) -> Rows | None:
+    def rows(self) -> TableRows | None:
         """Give one row for each sample of each channel, in sight or not."""
         return rows_of_fit(self._judged, self._over) if self._judged is not None else None
 

@@ -8,7 +8,7 @@ from advisor.campaign.state import JudgedManeuver
 from advisor.flight.signals.messages import FloatArray
 from advisor.oem.estimate import ChannelFit, Estimate
 from advisor.tui.plot.chart import Chart, Ink, Mark, Series
-from advisor.tui.rows import Rows
+from advisor.tui.rows import TableRows
 from advisor.tui.words import channel
 
 OUTPUTS = ("alpha", "q", "a_z", "theta")
@@ -99,10 +99,10 @@ def no_fit(name: str, why: str) -> Chart:
     return Chart(channel(name).label, _T, why_empty=why)
 
 
-def rows_of_fit(judged: JudgedManeuver, over: JudgedManeuver | None) -> Rows:
+def rows_of_fit(judged: JudgedManeuver, over: JudgedManeuver | None) -> TableRows:
     """Write the elevator and all outputs, sample by sample, of one manoeuvre or of two."""
     header = ("manoeuvre", "channel", "unit", "t_s", "measured", "fitted", "residual")
-    return Rows(header, tuple(row for one in (judged, over) if one is not None for row in _samples(one)))
+    return TableRows(header, tuple(row for one in (judged, over) if one is not None for row in _samples(one)))
 
 
 def _samples(judged: JudgedManeuver) -> list[tuple[object, ...]]:

@@ -16,7 +16,7 @@ _MARGIN = 0.5
 
 
 @dataclass(frozen=True, slots=True)
-class Course:
+class ParameterCourse:
     """One parameter over the manoeuvres, and the values to hold against it, in the unit for people."""
 
     parameter: str
@@ -32,7 +32,7 @@ class Course:
     """The aircraft file's value; None where it has none."""
 
 
-def course(view: View | None, name: str) -> Course:
+def course(view: View | None, name: str) -> ParameterCourse:
     """Collect one parameter's estimates, manoeuvre by manoeuvre."""
     factor, k = PARAMETERS[name].factor, NAMES.index(name)
     points = [
@@ -43,7 +43,7 @@ def course(view: View | None, name: str) -> Course:
     joint = view.state.model if view else None
     told = joint is not None and name not in joint.not_identifiable
     prior = view.aircraft.model.get(name) if view else None
-    return Course(
+    return ParameterCourse(
         name,
         np.array([number for number, _ in points], dtype=np.float64),
         np.array([e.theta[k] for _, e in points], dtype=np.float64) * factor,

@@ -8,7 +8,7 @@ from textual.widgets import DataTable
 from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.part import Part
 from advisor.tui.plot.widget import Plot
-from advisor.tui.rows import Rows, rows_of_charts
+from advisor.tui.rows import TableRows, rows_of_charts
 
 
 class Pane(Part, Vertical):
@@ -39,13 +39,13 @@ class Pane(Part, Vertical):
         if text != self.border_subtitle:
             self.border_subtitle = text
 
-    def rows(self) -> Rows | None:
+    def rows(self) -> TableRows | None:
         """Give the pane's content as a table: of its cells, else of its curves; None: it holds text only."""
         if tables := self.query(DataTable):
             table = tables.first()
             header = tuple(str(column.label) for column in table.ordered_columns)
             cells = (table.get_row_at(k) for k in range(table.row_count))
-            return Rows(header, tuple(tuple(str(cell) for cell in row) for row in cells))
+            return TableRows(header, tuple(tuple(str(cell) for cell in row) for row in cells))
         charts = [plot.chart for plot in self.query(Plot)]
         return rows_of_charts(charts) if any(chart.series for chart in charts) else None
 

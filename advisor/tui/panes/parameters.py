@@ -22,7 +22,7 @@ away where they have no room: half a number would be another number."""
 _SCROLL_BAR = 1
 
 
-class Parameters(Pane):
+class ParametersPane(Pane):
     """Table of the joint estimate, and the history of the parameter under the cursor."""
 
     TITLE = "3 Parameters"

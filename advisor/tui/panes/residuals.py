@@ -13,7 +13,7 @@ from advisor.tui.panes.fit_charts import OUTPUTS
 from advisor.tui.panes.pane import Pane
 from advisor.tui.plot.chart import Chart, Level, Series
 from advisor.tui.plot.widget import Plot
-from advisor.tui.rows import Rows
+from advisor.tui.rows import TableRows
 from advisor.tui.words import channel
 
 _LAGS_SHARE = 4
@@ -96,7 +96,7 @@ lacks. A wave means a mode that the model misses. Intervals allow for coloured r
         for name in OUTPUTS:
             self.query_one(f"#white-{name}").display = name in shown
 
-    def rows(self) -> Rows | None:
+    def rows(self) -> TableRows | None:
         """Give one row for each output and lag."""
         if not self._fits:
             return None
@@ -105,7 +105,7 @@ lacks. A wave means a mode that the model misses. Intervals allow for coloured r
             white = Whiteness.of(fit)
             pairs = zip(white.lag_s.tolist(), white.r.tolist(), strict=True)
             rows += [(name, lag_s, r, white.bound) for lag_s, r in pairs]
-        return Rows(("output", "lag_s", "autocorrelation", "white_noise_bound_95_percent"), tuple(rows))
+        return TableRows(("output", "lag_s", "autocorrelation", "white_noise_bound_95_percent"), tuple(rows))
 
 
 def _nothing(name: str, why: str) -> Chart:

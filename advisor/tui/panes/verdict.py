@@ -16,7 +16,7 @@ from advisor.words.rounding import distinct_texts
 from advisor.words.vehicle_time import between
 
 
-class Verdict(Pane):
+class VerdictPane(Pane):
     """Sentence, reasons with numbers and limits, quality of the fit, cautions."""
 
     TITLE = "2 Verdict"

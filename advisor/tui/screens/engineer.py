@@ -15,31 +15,31 @@ from advisor.tui.panes.channels import Channels
 from advisor.tui.panes.correlation import Correlation
 from advisor.tui.panes.courses import Courses
 from advisor.tui.panes.criterion import Criterion
-from advisor.tui.panes.event_log import EventLog
+from advisor.tui.panes.event_log import EventLogPane
 from advisor.tui.panes.fit import Fit
 from advisor.tui.panes.keys_line import KeysLine
 from advisor.tui.panes.live import Live
 from advisor.tui.panes.maneuvers import Maneuvers
 from advisor.tui.panes.pane import Pane
 from advisor.tui.panes.pane_tabs import PaneTabs
-from advisor.tui.panes.parameters import Parameters
+from advisor.tui.panes.parameters import ParametersPane
 from advisor.tui.panes.qualities import Qualities
 from advisor.tui.panes.replay_bar import ReplayBar
 from advisor.tui.panes.residuals import Residuals
 from advisor.tui.panes.status_line import StatusLine
-from advisor.tui.panes.verdict import Verdict
+from advisor.tui.panes.verdict import VerdictPane
 from advisor.tui.screens.face import Face
 from advisor.tui.screens.pane_actions import PaneActions
 
 # In the order of their numbers.
 PANES: tuple[type[Pane], ...] = (
-    Maneuvers, Verdict, Parameters, Fit, Live, Criterion, Channels, EventLog, Residuals, Correlation, Courses,
-    Qualities,
+    Maneuvers, VerdictPane, ParametersPane, Fit, Live, Criterion, Channels, EventLogPane, Residuals,
+    Correlation, Courses, Qualities,
 )  # fmt: skip
 _COLUMNS: dict[str, tuple[type[Pane], ...]] = {
-    "left": (Maneuvers, Verdict, Parameters),
+    "left": (Maneuvers, VerdictPane, ParametersPane),
     "middle": (Fit, Residuals, Correlation, Courses, Qualities),
-    "right": (Live, Criterion, Channels, EventLog),
+    "right": (Live, Criterion, Channels, EventLogPane),
 }
 _WIDE, _MEDIUM = (160, 42), (110, 30)
 _LOW = 7

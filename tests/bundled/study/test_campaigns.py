@@ -9,18 +9,18 @@ import pytest
 
 from advisor.aircraft.aircraft import PARAMETERS, CampaignPlan
 from advisor.bundled.study import flaws, readings, run
-from advisor.bundled.study.campaigns import RULES, Block, fly_campaigns, judge, outcome, table_blocks
+from advisor.bundled.study.campaigns import RULES, CampaignBlock, fly_campaigns, judge, outcome, table_blocks
 from advisor.bundled.study.estimating import estimate_copies
 from advisor.bundled.study.figure import curve, in_terminal
 from advisor.bundled.study.flying import Scene, fly_named, noise_scale
 from advisor.bundled.study.paper import ORDER
 from advisor.bundled.study.plan import Study
 from advisor.bundled.study.table import as_document, row
-from advisor.decision.history import Flown
+from advisor.decision.history import CandidateManeuver
 from advisor.decision.pooling import pool, posteriors_at_one_speed
 from advisor.decision.stopping import progress
 from advisor.oem.estimate import Estimate
-from advisor.oem.problem import Problem, Record, Signal
+from advisor.oem.problem import OutputErrorProblem, Record, Signal
 from advisor.oem.solution import Solution, solve
 from advisor.process.tasks.runner import results_in_order, run_here
 
@@ -32,7 +32,7 @@ CAMPAIGNS = 40
 @pytest.fixture(scope="module")
 def flown() -> list[list[Estimate]]:
     """Forty campaigns at 1 % noise."""
-    return fly_campaigns(Block(SCENE, 1.0, CAMPAIGNS, (1, 1000)))
+    return fly_campaigns(CampaignBlock(SCENE, 1.0, CAMPAIGNS, (1, 1000)))
 
 
 def test_every_campaign_has_the_papers_seven_manoeuvres(flown: list[list[Estimate]]) -> None:
@@ -55,7 +55,7 @@ def test_at_one_per_cent_continuous_improvement_stops_after_three_as_in_the_pape
 def test_the_study_stops_when_the_flight_test_would(flown: list[list[Estimate]]) -> None:
     for rule in RULES:
         for campaign in flown[:5]:
-            in_flight = progress([Flown(estimate) for estimate in campaign], rule, PLAN)
+            in_flight = progress([CandidateManeuver(estimate) for estimate in campaign], rule, PLAN)
             assert outcome(campaign, rule, PLAN).needed == in_flight.stopped_at
 
 
@@ -127,10 +127,10 @@ def test_pooled_estimates_equal_the_joint_output_error_estimate() -> None:
         z = flight.response + 0.01 * noise_scale(flight, "std") * rng.standard_normal(flight.response.shape)
         outputs = {"alpha": Signal(flight.t, z[:, 0]), "q": Signal(flight.t, z[:, 1])}
         records.append(Record(Signal(flight.t, flight.elevator), outputs))
-        single = solve(Problem((records[-1],)))
+        single = solve(OutputErrorProblem((records[-1],)))
         assert isinstance(single, Solution)
         singles.append(single)
-    joint = solve(Problem(tuple(records)))
+    joint = solve(OutputErrorProblem(tuple(records)))
     assert isinstance(joint, Solution)
     template = estimate_copies(fly_named(SCENE, "3211"), np.array([1e-4, 1e-4]), 1, rng)[0]
     estimates = [_with(template, s) for s in singles]

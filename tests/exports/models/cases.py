@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from advisor.aircraft.aircraft import Elevator, Reference
 from advisor.exports.models.improvement import Improvement
-from advisor.exports.models.servo import Servo
+from advisor.exports.models.servo import ExportedServo
 from advisor.gap.result import Value
 
 MODEL = {
@@ -22,7 +22,7 @@ def improvement(**changes: object) -> Improvement:
         model={name: Value(value, abs(value) / 50.0) for name, value in MODEL.items()},
         prior={},
         airspeed_m_s=25.0,
-        servo=Servo(lag_s=0.08),
+        servo=ExportedServo(lag_s=0.08),
         effects={},
         reference=REFERENCE,
         elevator=Elevator(calibration=CALIBRATION),

@@ -9,7 +9,7 @@ import pytest
 
 from advisor.aircraft.aircraft import Elevator
 from advisor.exports.models.ardupilot import model_text, servo_text
-from advisor.exports.models.servo import Servo
+from advisor.exports.models.servo import ExportedServo
 from advisor.words.problems import ConfigurationError
 from tests.exports.models.cases import MODEL, REFERENCE, improvement
 
@@ -75,18 +75,18 @@ def test_without_a_calibration_no_coefficient_per_travel_can_be_given():
         model_text(improvement(elevator=Elevator()))
 
 
-def parameters(servo: Servo) -> dict[str, float]:
+def parameters(servo: ExportedServo) -> dict[str, float]:
     lines = servo_text(improvement(servo=servo)).text.splitlines()
     return {n: float(v) for n, v in (line.split() for line in lines if not line.startswith("#"))}
 
 
 def test_a_lag_alone_is_the_time_constant_that_arduplane_takes_the_servo_speed_for():
-    found = parameters(Servo(lag_s=0.08))
+    found = parameters(ExportedServo(lag_s=0.08))
     assert found == {"SIM_SERVO_SPEED": 0.08, "SIM_SERVO_DELAY": 0.0, "SIM_SERVO_FILTER": 0.0}
 
 
 def test_a_lag_beside_a_delay_becomes_a_filter_that_trails_a_ramp_by_the_lag():
-    found = parameters(Servo(lag_s=0.08, delay_s=0.03))
+    found = parameters(ExportedServo(lag_s=0.08, delay_s=0.03))
     assert found["SIM_SERVO_DELAY"] == 0.03
     assert found["SIM_SERVO_SPEED"] == 0.0
     omega = 2.0 * math.pi * found["SIM_SERVO_FILTER"]
@@ -95,13 +95,13 @@ def test_a_lag_beside_a_delay_becomes_a_filter_that_trails_a_ramp_by_the_lag():
 
 
 def test_a_rate_limit_becomes_the_time_for_60_degrees_of_a_servo_of_45_degrees():
-    found = parameters(Servo(rate_rad_s=1.0))
+    found = parameters(ExportedServo(rate_rad_s=1.0))
     per_second = 60.0 / (45.0 * found["SIM_SERVO_SPEED"])
     assert per_second * math.radians(30.0) == pytest.approx(1.0, rel=1e-4)
     assert found["SIM_SERVO_DELAY"] > 0.0
 
 
 def test_what_arduplane_cannot_fly_is_listed():
-    improved = improvement(servo=Servo(play_rad=0.01), effects={"nonlinear_lift": {"Z_alpha2": 3.0}})
+    improved = improvement(servo=ExportedServo(play_rad=0.01), effects={"nonlinear_lift": {"Z_alpha2": 3.0}})
     assert servo_text(improved).left_out == ("actuator backlash", "nonlinear lift")
     assert "nonlinear lift" in model_text(improved).left_out

@@ -11,7 +11,7 @@ from advisor.exports.models.improvement import SLOPES
 from advisor.exports.models.jsbsim.aircraft import aircraft_text
 from advisor.exports.models.jsbsim.run import model_of
 from advisor.exports.models.jsbsim.source import parse, surface_of, terms_of
-from advisor.exports.models.servo import Servo
+from advisor.exports.models.servo import ExportedServo
 from advisor.gap.result import Value
 from advisor.words.problems import ConfigurationError
 from tests.exports.models.cases import improvement
@@ -84,7 +84,7 @@ def wanted(before: dict[str, float], factors: dict[str, float], airspeed_m_s: fl
     }
     return improvement(
         model=model, prior=before, airspeed_m_s=airspeed_m_s, height_m=1000.0,
-        servo=changes.pop("servo", Servo()), **changes,
+        servo=changes.pop("servo", ExportedServo()), **changes,
     )  # fmt: skip
 
 
@@ -119,7 +119,9 @@ def test_a_derivative_without_a_term_of_its_own_gets_a_function(tmp_path):
     assert "Z_q" not in terms_of(parse(model.file.read_bytes(), "737"))
     found = {p: Value(value, 1e-3 * abs(value) + 1e-6) for p, value in before.items()}
     found["Z_q"] = Value(before["Z_q"] - 0.05, 1e-3)
-    improved = improvement(model=found, prior=before, airspeed_m_s=150.0, height_m=1000.0, servo=Servo())
+    improved = improvement(
+        model=found, prior=before, airspeed_m_s=150.0, height_m=1000.0, servo=ExportedServo()
+    )
     made = aircraft_text(improved, model)
     assert 'name="aero/advisor/Z_q"' in made.text
     assert flown(placed(made.text, tmp_path, "737"), 150.0)["Z_q"] == pytest.approx(
@@ -157,36 +159,36 @@ def step_response(file: Path) -> tuple[np.ndarray, np.ndarray]:
     return np.array(t), np.array(moved)
 
 
-def flown_with(servo: Servo, before: dict[str, float], folder: Path) -> tuple[np.ndarray, np.ndarray]:
+def flown_with(servo: ExportedServo, before: dict[str, float], folder: Path) -> tuple[np.ndarray, np.ndarray]:
     made = aircraft_text(wanted(before, AS_BELIEVED, 53.0, servo=servo), model_of("c172p"))
     return step_response(placed(made.text, folder, "c172p"))
 
 
 def test_the_surface_lags_by_the_time_found(cessna, tmp_path):
-    t, moved = flown_with(Servo(lag_s=0.12), cessna, tmp_path)
+    t, moved = flown_with(ExportedServo(lag_s=0.12), cessna, tmp_path)
     assert np.interp(1.0 - np.exp(-1.0), moved / moved[-1], t) == pytest.approx(0.12, abs=2.0 * STEP_S)
 
 
 def test_the_surface_waits_for_the_delay_found(cessna, tmp_path):
-    t, moved = flown_with(Servo(delay_s=0.1), cessna, tmp_path)
+    t, moved = flown_with(ExportedServo(delay_s=0.1), cessna, tmp_path)
     assert t[np.argmax(moved > 0.5 * moved[-1])] == pytest.approx(0.1, abs=2.0 * STEP_S)
 
 
 def test_the_surface_moves_no_faster_than_the_limit_found(cessna, tmp_path):
-    _, moved = flown_with(Servo(rate_rad_s=0.1), cessna, tmp_path)
+    _, moved = flown_with(ExportedServo(rate_rad_s=0.1), cessna, tmp_path)
     assert np.max(np.abs(np.diff(moved))) / STEP_S == pytest.approx(0.1, rel=0.02)
 
 
 def test_the_surface_misses_half_of_the_play_found(cessna, tmp_path):
     (tmp_path / "a").mkdir()
     (tmp_path / "b").mkdir()
-    _, whole = flown_with(Servo(lag_s=0.01), cessna, tmp_path / "a")
-    _, with_play = flown_with(Servo(play_rad=0.02), cessna, tmp_path / "b")
+    _, whole = flown_with(ExportedServo(lag_s=0.01), cessna, tmp_path / "a")
+    _, with_play = flown_with(ExportedServo(play_rad=0.02), cessna, tmp_path / "b")
     assert whole[-1] - with_play[-1] == pytest.approx(0.01, abs=2e-3)
 
 
 def test_a_lag_of_second_order_begins_gently_and_trails_a_ramp_by_its_time(cessna, tmp_path):
-    _, moved = flown_with(Servo(lag_s=0.1, damping=0.7), cessna, tmp_path)
+    _, moved = flown_with(ExportedServo(lag_s=0.1, damping=0.7), cessna, tmp_path)
     share = moved / moved[-1]
     # The delay of a linear system at low frequency is the area above its step response.
     assert np.sum(1.0 - share) * STEP_S == pytest.approx(0.1, abs=0.01)
@@ -240,7 +242,9 @@ def test_an_elevator_without_an_angle_is_compared_only_by_ratio():
     found = {p: Value(v, 1.0) for p, v in before.items()} | {
         "Z_delta_e": Value(-0.1, 1e-4), "M_delta_e": Value(-9.0, 1e-3)
     }  # fmt: skip
-    made = aircraft_text(improvement(model=found, prior=before, airspeed_m_s=150.0, servo=Servo()), model)
+    made = aircraft_text(
+        improvement(model=found, prior=before, airspeed_m_s=150.0, servo=ExportedServo()), model
+    )
     assert made.left_out == (
         "Z_delta_e: the elevator's position is no angle", "M_delta_e: the elevator's position is no angle"
     )  # fmt: skip

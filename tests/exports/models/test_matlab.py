@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from advisor.exports.models.matlab import UNITS, script_text
-from advisor.exports.models.servo import Servo
+from advisor.exports.models.servo import ExportedServo
 from tests.exports.models.cases import MODEL, improvement
 
 OCTAVE = shutil.which("octave-cli")
@@ -57,7 +57,7 @@ def test_octave_reads_each_parameter_with_its_interval(tmp_path):
 
 @needs_octave
 def test_octave_reads_the_servo_as_numbers_of_its_own(tmp_path):
-    servo = Servo(delay_s=0.03, lag_s=0.08, play_rad=0.01)
+    servo = ExportedServo(delay_s=0.03, lag_s=0.08, play_rad=0.01)
     asked = "[servo.delay_s, servo.lag_s, servo.backlash_rad, isinf(servo.rate_limit_rad_s)]"
     assert run(tmp_path, asked, servo=servo) == pytest.approx([0.03, 0.08, 0.01, 1.0])
 

@@ -13,7 +13,7 @@ from advisor.aircraft.aircraft import PARAMETERS, Aircraft, Elevator
 from advisor.aircraft_file.read import load_aircraft
 from advisor.analysis import gap as reading
 from advisor.cli import group as cli
-from advisor.exports.models.write import Order, carry_out, order_of
+from advisor.exports.models.write import ExportOrder, carry_out, order_of
 from advisor.gap.result import Diagnosis, Value
 from advisor.simulators.compare import Compared
 from tests.exports.models.cases import CALIBRATION, MODEL, REFERENCE
@@ -140,37 +140,39 @@ def test_the_aircraft_file_is_the_one_that_out_writes(tmp_path, monkeypatch):
 
 def test_where_nothing_was_found_the_model_can_still_be_exported(tmp_path):
     plain = found(verdict="none", effects={})
-    orders = [Order("matlab", tmp_path / "x.m"), Order("aircraft", tmp_path / "x.yaml")]
+    orders = [ExportOrder("matlab", tmp_path / "x.m"), ExportOrder("aircraft", tmp_path / "x.yaml")]
     script, aircraft = carry_out(orders, plain, AIRCRAFT)
     assert script.problem == ""
     assert "no cause was named and no number found wrong" in aircraft.problem
 
 
 def test_without_an_air_speed_no_derivative_is_given_to_another_program(tmp_path):
-    (one,) = carry_out([Order("matlab", tmp_path / "x.m")], found(reference_airspeed_m_s=None), AIRCRAFT)
+    (one,) = carry_out(
+        [ExportOrder("matlab", tmp_path / "x.m")], found(reference_airspeed_m_s=None), AIRCRAFT
+    )
     assert "needs the air speed flown" in one.problem
 
 
 def test_a_disk_that_refuses_is_told_in_one_sentence(tmp_path, monkeypatch):
-    order = Order("matlab", tmp_path / "gone" / "x.m")
+    order = ExportOrder("matlab", tmp_path / "gone" / "x.m")
     (one,) = carry_out([order], found(), AIRCRAFT)
     assert one.problem.endswith("was not written: No such file or directory.")
 
 
 def test_the_servo_that_the_file_states_is_part_of_what_is_exported(tmp_path):
     stated = replace(AIRCRAFT, elevator=replace(AIRCRAFT.elevator, lag_s=0.05))
-    carry_out([Order("matlab", tmp_path / "x.m")], found(), stated)
+    carry_out([ExportOrder("matlab", tmp_path / "x.m")], found(), stated)
     assert "servo.lag_s = 0.13;" in (tmp_path / "x.m").read_text()
 
 
 def test_the_height_recorded_gives_the_density(tmp_path):
-    carry_out([Order("sdf", tmp_path / "x.sdf")], found(height_m=1100.0), AIRCRAFT)
+    carry_out([ExportOrder("sdf", tmp_path / "x.sdf")], found(height_m=1100.0), AIRCRAFT)
     (found_here,) = re.findall("<air_density>(.*)</air_density>", (tmp_path / "x.sdf").read_text())[:1]
     assert float(found_here) == pytest.approx(1.1008, abs=1e-4)
 
 
 def test_a_path_with_colons_is_a_path():
-    assert order_of("matlab:C:/models/x.m") == Order("matlab", Path("C:/models/x.m"))
+    assert order_of("matlab:C:/models/x.m") == ExportOrder("matlab", Path("C:/models/x.m"))
 
 
 def test_the_simulators_aircraft_is_corrected_where_the_aircraft_file_names_one(tmp_path):
@@ -183,6 +185,6 @@ def test_the_simulators_aircraft_is_corrected_where_the_aircraft_file_names_one(
         model={n: Value(v, 0.01 * abs(v)) for n, v in changed.items()},
     )  # fmt: skip
     mine = replace(AIRCRAFT, simulator="jsbsim:c172p", model=model)
-    (one,) = carry_out([Order("jsbsim", tmp_path / "x.xml")], flown, mine)
+    (one,) = carry_out([ExportOrder("jsbsim", tmp_path / "x.xml")], flown, mine)
     assert one.problem == ""
     assert "M_alpha as flown" in (tmp_path / "x.xml").read_text()

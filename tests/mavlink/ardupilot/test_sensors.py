@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from advisor.mavlink.ardupilot.sensors import flown, said
-from advisor.mavlink.records.dataflash import Table
+from advisor.mavlink.records.dataflash import RecordTable
 
 
 def table(*rows, names):
@@ -12,7 +12,7 @@ def table(*rows, names):
     fields = {name: np.array(values) for name, values in zip(names, zip(*rows, strict=True), strict=True)}
     fields["TimeUS"] = 100_000 * np.arange(len(rows))
     fields["row"] = np.arange(len(rows))
-    return Table(10 * np.arange(len(rows)), fields)
+    return RecordTable(10 * np.arange(len(rows)), fields)
 
 
 def airspeeds(*rows):
@@ -70,8 +70,8 @@ def test_no_sensor_flew_while_none_is_healthy_and_that_is_said():
 def test_a_model_without_noise_at_rest_is_no_dead_sensor():
     fields = {name: np.zeros(40) for name in ("GyrX", "GyrY", "GyrZ", "AccX", "AccY")}
     fields |= {"AccZ": np.full(40, -9.81), "TimeUS": 50_000 * np.arange(40)}
-    assert len(flown(Table(10 * np.arange(40), fields))) == 40
-    assert len(flown(Table(10 * np.arange(40), {**fields, "AccZ": np.zeros(40)}))) == 0
+    assert len(flown(RecordTable(10 * np.arange(40), fields))) == 40
+    assert len(flown(RecordTable(10 * np.arange(40), {**fields, "AccZ": np.zeros(40)}))) == 0
 
 
 def test_an_unused_sensor_flew_where_it_is_the_only_one():
@@ -85,11 +85,11 @@ def test_an_inertial_sensor_that_repeats_itself_gives_way_whatever_its_health_sa
     fields = {name: values[:, k] for k, name in enumerate(names)}
     fields |= {"I": np.arange(40) % 2, "GH": np.arange(40) % 2, "AH": np.ones(40)}
     fields["TimeUS"] = 50_000 * np.arange(40)
-    chosen = flown(Table(10 * np.arange(40), fields))
+    chosen = flown(RecordTable(10 * np.arange(40), fields))
     assert chosen.time_us.tolist() == [50_000 * row for row in range(1, 19, 2)]
 
 
 def test_records_that_do_not_tell_their_sensor_are_all_of_one():
-    records = Table(np.arange(3), {"Airspeed": np.array([20.0, 21.0, 22.0])})
+    records = RecordTable(np.arange(3), {"Airspeed": np.array([20.0, 21.0, 22.0])})
     assert flown(records) is records
     assert said(records, records, "Air speed") == []

@@ -16,7 +16,7 @@ from distributed import LocalCluster
 from threadpoolctl import threadpool_info
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.batch.flight import Task, analyze_shared, sha256_of
+from advisor.batch.flight import BatchTask, analyze_shared, sha256_of
 from advisor.process.tasks.cluster import compare_versions, run_on_cluster
 from advisor.words.problems import ConfigurationError
 from tests.batch.test_command import folder as folder
@@ -207,7 +207,7 @@ def test_workers_of_another_numpy_are_told_with_their_version() -> None:
 def test_a_worker_that_sees_another_log_refuses_to_analyze_one(tmp_path: Path) -> None:
     log = tmp_path / "flight.tlog"
     log.write_bytes(b"a log")
-    task = Task(log, Aircraft(), "", sha256_of(log))
+    task = BatchTask(log, Aircraft(), "", sha256_of(log))
     log.write_bytes(b"another")
     with pytest.raises(ConfigurationError, match="sees another log there"):
         analyze_shared(task)

@@ -17,7 +17,7 @@ from advisor.exports.models.jsbsim.knobs import Knob, knob_for, missed, settled
 from advisor.exports.models.jsbsim.run import Model, measure
 from advisor.exports.models.jsbsim.slopes import Request, Slopes
 from advisor.exports.models.jsbsim.source import SURFACES, corrected, parse, surface_of, terms_of
-from advisor.exports.models.servo import Servo
+from advisor.exports.models.servo import ExportedServo
 from advisor.words.problems import ConfigurationError
 
 
@@ -38,7 +38,7 @@ def aircraft_text(improvement: Improvement, model: Model) -> Exported:
 
     def measured(knobs: Sequence[Knob]) -> Slopes:
         # Measured without the servo, because backlash and dead band would hide a small deflection.
-        changed = corrected(content, name, [knob.change for knob in knobs], Servo(), "")
+        changed = corrected(content, name, [knob.change for knob in knobs], ExportedServo(), "")
         return measure(changed.encode(), model, asked)
 
     first = measure(content, model, asked)

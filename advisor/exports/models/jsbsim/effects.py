@@ -8,7 +8,7 @@ dynamic pressure.
 from collections.abc import Mapping
 
 from advisor.exports.models.jsbsim.slopes import Slopes
-from advisor.exports.models.jsbsim.source import AXES, PLAIN, SURFACES, Added
+from advisor.exports.models.jsbsim.source import AXES, PLAIN, SURFACES, AddedFunction
 
 CURVES = {
     "nonlinear_pitching_moment": ("alpha", {"M_alpha2": 2, "M_alpha3": 3}),
@@ -20,7 +20,7 @@ CURVES = {
 
 def functions_of(
     effects: Mapping[str, Mapping[str, float]], slopes: Slopes, surface: str
-) -> tuple[list[Added], list[str]]:
+) -> tuple[list[AddedFunction], list[str]]:
     """Return the functions, and the names of the effects that the functions carry completely.
 
     Parameters
@@ -32,20 +32,22 @@ def functions_of(
     surface
         Property of the elevator's position.
     """
-    functions: list[Added] = []
+    functions: list[AddedFunction] = []
     carried = []
     for effect, values in effects.items():
         variable, powers = CURVES.get(effect, ("", {}))
         unit = SURFACES.get(surface) if variable == "delta_e" else 1.0
         if effect == "alpha_dot":
             strength = values["M_alpha_dot"] * slopes.inertia / slopes.pressure_psf / slopes.chord_time_s
-            functions.append(Added(effect, "PITCH", strength, "aero/alphadot-rad_sec", further="aero/ci2vel"))
+            functions.append(
+                AddedFunction(effect, "PITCH", strength, "aero/alphadot-rad_sec", further="aero/ci2vel")
+            )
             carried.append(effect)
         elif powers and values.keys() <= {*powers, "about_rad"} and unit is not None:
             # A separated flow has further parameters, which no square and no cube expresses.
             about = unit * values["about_rad"] if "about_rad" in values else slopes.trim[variable]
             functions += [
-                Added(
+                AddedFunction(
                     name,
                     AXES[name[0]],
                     values[name] / unit**power / (slopes.per_force(name[0]) * slopes.pressure_psf),

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from advisor.exports.models.jsbsim.slopes import COLUMNS, Slopes
-from advisor.exports.models.jsbsim.source import AXES, PLAIN, Added, Factor
+from advisor.exports.models.jsbsim.source import AXES, PLAIN, AddedFunction, Factor
 
 ROUNDS = 8
 """Number of rounds in which the numbers settle. Each round divides the error by ten or more."""
@@ -22,7 +22,7 @@ class Knob:
     """One number in the corrected aircraft that moves one derivative."""
 
     parameter: str
-    change: Factor | Added
+    change: Factor | AddedFunction
     gain: float
     """Change of the derivative by the number."""
 
@@ -39,14 +39,14 @@ def knob_for(parameter: str, terms: Sequence[str], first: Slopes, surface: str) 
     if share != 0.0:
         return Knob(parameter, Factor(parameter, axis, tuple(terms), 1.0), share)
     property_ = surface if variable == "delta_e" else PLAIN[variable]
-    added = Added(parameter, axis, 0.0, property_, first.trim[variable])
+    added = AddedFunction(parameter, axis, 0.0, property_, first.trim[variable])
     return Knob(parameter, added, per_force * first.pressure_psf)
 
 
 def _turned(knob: Knob, missing: float, first: Slopes, surface: str) -> Knob:
     """Return the knob turned by the missing part. A factor below zero becomes an added function."""
     turned = knob.turned(missing)
-    if isinstance(turned.change, Added) or turned.change.value > 0.0:
+    if isinstance(turned.change, AddedFunction) or turned.change.value > 0.0:
         return turned
     instead = knob_for(knob.parameter, (), first, surface)
     return instead.turned(missing + (knob.change.value - 1.0) * knob.gain)

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from advisor.exports.models.exported import xml_comment
-from advisor.exports.models.servo import Servo
+from advisor.exports.models.servo import ExportedServo
 from advisor.words.problems import ConfigurationError
 
 VARIABLES = {
@@ -27,7 +27,7 @@ PLAIN = {"alpha": "aero/alpha-rad", "q": "velocities/q-aero-rad_sec", "delta_e":
 
 
 @dataclass(frozen=True)
-class Added:
+class AddedFunction:
     """A function that is added to an axis: dynamic pressure times a power of one variable."""
 
     name: str
@@ -98,7 +98,9 @@ def surface_of(root: ET.Element) -> str:
     return "fcs/elevator-pos-rad"
 
 
-def corrected(content: bytes, name: str, changes: Sequence[Factor | Added], servo: Servo, note: str) -> str:
+def corrected(
+    content: bytes, name: str, changes: Sequence[Factor | AddedFunction], servo: ExportedServo, note: str
+) -> str:
     """Return the aircraft's text with all changes made and the servo behind the elevator's command.
 
     Raises
@@ -109,7 +111,7 @@ def corrected(content: bytes, name: str, changes: Sequence[Factor | Added], serv
     root = parse(content, name)
     for change in changes:
         axis = next(a for a in root.iterfind("aerodynamics/axis") if a.get("name") == change.axis)
-        if isinstance(change, Added):
+        if isinstance(change, AddedFunction):
             axis.append(_function(change))
             continue
         for function in axis.iterfind("function"):
@@ -155,7 +157,7 @@ def _multiply(function: ET.Element, factor: Factor) -> None:
     function.append(product)
 
 
-def _function(added: Added) -> ET.Element:
+def _function(added: AddedFunction) -> ET.Element:
     function = ET.Element("function", {"name": f"aero/advisor/{added.name}"})
     function.append(_element("description", f"advisor gap: {added.name} as flown"))
     product = ET.SubElement(function, "product")
@@ -171,7 +173,7 @@ def _function(added: Added) -> ET.Element:
     return function
 
 
-def _insert(servo: Servo, root: ET.Element) -> None:
+def _insert(servo: ExportedServo, root: ET.Element) -> None:
     """Add JSBSim's actuator in a channel of its own, after everything that moves the elevator, from and to
     one property."""
     surface = surface_of(root)
