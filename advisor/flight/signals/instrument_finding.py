@@ -1,4 +1,4 @@
-"""What the data say about one property of one instrument, next to what the file or the message states.
+"""Property of an instrument: the value that the data tell, next to the stated one.
 
 An instrument is a model with parameters: sign, scale, unit, delay, lag, place, bias, rate. The motion tells
 them without aerodynamics, or the fit tells them together with the derivatives. Doctor, screens, fit, verdict
