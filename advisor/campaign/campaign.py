@@ -97,7 +97,7 @@ class Campaign:
         self._flight_test = flight_test((), aircraft.campaign, aircraft, self._course)
         self._together = Together(aircraft)
         self._ended = False
-        self._settling = Settling(aircraft) if settle else None
+        self._settling = Settling() if settle else None
 
     def feed(self, columns: Sequence[Columns]) -> list[CampaignEvent]:
         """Take the next messages, in order of arrival. The result does not depend on how they are cut into
@@ -123,8 +123,9 @@ class Campaign:
         """State after the newest message, as shown on screens."""
         stream, flights = self._stream, self._flights
         flying, channels = flights.so_far(), stream.channels
-        settled = self._settling.follow(flying) if self._settling else None
         joined = self._joined
+        model = self._together.estimate([judged.maneuver for judged in joined])
+        settled = self._settling.follow(flying, self._learnt, model) if self._settling else None
         return CampaignState(
             vehicle=stream.vehicle,
             now_s=stream.now_s,
@@ -133,10 +134,11 @@ class Campaign:
             channels=channels,
             maneuvers=self._judged,
             flight_test=self._flight_test,
-            model=self._together.estimate([judged.maneuver for judged in joined]),
+            model=model,
             flying=flying,
             marking_since_s=stream.marks.by_hand_since_s,
             settling=settled.estimate if settled else None,
+            readable=settled is not None and settled.readable,
             enough=settled.enough if settled else None,
             estimate_from=tuple(judged.maneuver.number for judged in joined),
             elevator_notes=flights.elevator_notes,

@@ -1,14 +1,22 @@
-"""The running estimate of the manoeuvre being flown, and the moment at which further response adds
-nothing."""
+"""The running estimate of the manoeuvre being flown: when its numbers may be read, and when further response
+adds nothing.
+
+A fit of half an input explains the data so far with wrong numbers and narrow intervals. So numbers wait until
+the input is over, the servo is known, and the estimate agrees with the manoeuvres before.
+"""
 
 from collections import deque
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.special import chdtri
 
-from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.aircraft import PARAMETERS, Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.messages import FloatArray
+from advisor.model.short_period import SPEED_EXPONENTS
 from advisor.oem.estimate import Estimate
+from advisor.oem.estimator import lag_is_unknown
 from advisor.oem.following import Follower
 
 REFRESH_S = 0.2
@@ -17,6 +25,11 @@ SPAN_S = 0.5
 """Further response over which the standard deviations are compared, s."""
 GAIN = 0.01
 """Least relative improvement of any standard deviation over ``SPAN_S`` that is worth waiting for."""
+SHOWN = ("Z_alpha", "M_alpha", "M_q", "M_delta_e")
+"""Derivatives that screens show while a manoeuvre is being flown."""
+AGREES_BELOW = float(chdtri(len(SHOWN), 0.05))
+"""Largest squared distance from the joint estimate, in standard deviations, that chance exceeds once in
+twenty."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,24 +37,40 @@ class Settled:
     """State of the running manoeuvre's estimate."""
 
     estimate: Estimate
+    readable: bool
+    """Whether its numbers may be shown."""
     enough: str | None
+    """Advice to recover, set when further free response would add nothing."""
 
 
 class Settling:
     """Estimates again while the manoeuvre being flown grows."""
 
-    def __init__(self, aircraft: Aircraft) -> None:
-        self._follower = Follower(aircraft)
+    def __init__(self) -> None:
+        self._follower: Follower | None = None
+        self._aircraft: Aircraft | None = None
         self._number: int | None = None
         self._newest_s = -np.inf
         self._stds: deque[tuple[float, np.ndarray]] = deque()
         self._settled: Settled | None = None
 
-    def follow(self, flying: Maneuver | None) -> Settled | None:
-        """Return the estimate from the data so far; None without one."""
+    def follow(self, flying: Maneuver | None, aircraft: Aircraft, model: Estimate | None) -> Settled | None:
+        """Return the estimate from the data so far; None without one.
+
+        Parameters
+        ----------
+        flying
+            Manoeuvre being flown, up to the newest sample.
+        aircraft
+            The crew's aircraft, with a servo's lag that earlier manoeuvres told.
+        model
+            Joint estimate over the accepted manoeuvres.
+        """
         if flying is None:
             self._number, self._settled = None, None
             return None
+        if self._follower is None or aircraft is not self._aircraft:
+            self._follower, self._aircraft = Follower(aircraft), aircraft
         if flying.number != self._number:
             self._number, self._newest_s, self._settled = flying.number, -np.inf, None
             self._stds.clear()
@@ -51,8 +80,11 @@ class Settling:
         self._newest_s = newest_s
         estimated = self._follower.refresh(flying)
         if isinstance(estimated, Estimate):
-            self._stds.append((newest_s, estimated.std_cr))
-            self._settled = Settled(estimated, self._enough(newest_s))
+            over = flying.span.input_is_over
+            if over:
+                self._stds.append((newest_s, estimated.std_cr))
+            known = over and not lag_is_unknown(aircraft) and agrees(estimated, model)
+            self._settled = Settled(estimated, known, self._enough(newest_s) if over else None)
         return self._settled
 
     def _enough(self, newest_s: float) -> str | None:
@@ -63,3 +95,21 @@ class Settling:
             return None
         gain = float(np.max(1.0 - self._stds[-1][1] / before))
         return "enough: recover; more free response adds nothing" if gain < GAIN else None
+
+
+def agrees(estimate: Estimate, model: Estimate | None) -> bool:
+    """Return whether an estimate agrees with the joint estimate within both errors; True without one.
+
+    The distance is that of the derivatives that screens show, at the joint estimate's air speed.
+    """
+    if model is None:
+        return True
+    rows = [PARAMETERS.index(name) for name in SHOWN]
+    scale = np.ones(len(SHOWN))
+    if model.airspeed_m_s and estimate.airspeed_m_s:
+        powers = np.array([SPEED_EXPONENTS[name] for name in SHOWN])
+        scale = (model.airspeed_m_s / estimate.airspeed_m_s) ** powers
+    apart: FloatArray = scale * estimate.theta[rows] - model.theta[rows]
+    inside = np.ix_(rows, rows)
+    covariance = np.outer(scale, scale) * estimate.covariance[inside] + model.covariance[inside]
+    return bool(float(apart @ np.linalg.solve(covariance, apart)) <= AGREES_BELOW)

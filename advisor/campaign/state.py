@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from statistics import median
 
 from advisor.decision.verdict import FlightTestVerdict, ManeuverVerdict
 from advisor.flight.elevator.elevator_guess import Guess
@@ -49,6 +50,9 @@ class CampaignState:
     """Begin of an open mark by hand, s since boot. None without an open mark."""
     settling: Estimate | None = None
     """Estimate from the manoeuvre being flown, refreshed as the manoeuvre grows."""
+    readable: bool = False
+    """Whether the numbers of ``settling`` may be shown: the input is over, the servo is known, and they agree
+    with ``model``."""
     enough: str | None = None
     """Advice to recover, set when further free response would add nothing."""
     estimate_from: tuple[int, ...] = ()
@@ -75,3 +79,15 @@ class CampaignState:
     """Every log and link so far. The one being heard is the last."""
     activity: tuple[Activity, ...] = ()
     """Movements of the elevator that were no test inputs, oldest first. Similar neighbours are one entry."""
+
+    @property
+    def progress(self) -> str:
+        """How long the manoeuvre being flown lasts so far, and how long its forerunners lasted; empty between
+        manoeuvres."""
+        if self.flying is None:
+            return ""
+        flown_s = self.now_s - self.flying.span.start_s
+        before = [
+            j.maneuver.span.end_s - j.maneuver.span.start_s for j in self.maneuvers if j.verdict.accepted
+        ]
+        return f"flown {flown_s:.0f} s of {median(before):.0f}" if before else f"flown {flown_s:.0f} s"

@@ -181,6 +181,7 @@ def state(flown: int = 7, bad: tuple[int, ...] = (2,), in_the_air: bool = False)
         model=_estimate({}, np.random.default_rng(0)) if flown else None,
         flying=flying,
         settling=judged(flown + 1).estimate if flying else None,  # type: ignore[arg-type]
+        readable=flying is not None,
         notices=("      –  following ardupilot 1/1", *notices),
     )
 

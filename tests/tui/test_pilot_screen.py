@@ -124,4 +124,10 @@ async def test_before_the_first_heartbeat_the_screen_says_what_it_waits_for():
 async def test_the_estimate_is_seen_to_settle_while_the_manoeuvre_is_flown():
     async with stage(flights.state(3, in_the_air=True)) as here:
         await here.until(lambda: "M_α" in here.words("CrewNotes"))
-        assert "3-2-1-1, 4 s; M_α −" in here.words("CrewNotes")
+        assert "flown 4 s of 8; M_α −" in here.words("CrewNotes")
+
+
+async def test_a_number_that_is_none_yet_is_not_on_the_pilots_screen():
+    async with stage(replace(flights.state(3, in_the_air=True), readable=False)) as here:
+        await here.until(lambda: "flown 4 s of 8" in here.words("CrewNotes"))
+        assert "M_α" not in here.words("CrewNotes")

@@ -37,6 +37,12 @@ class ElevatorWatch:
         """Beginning of the input being flown, s. None between inputs."""
         return self._segmenter.onset_s
 
+    @property
+    def last_step_s(self) -> float | None:
+        """Last step of the input whose free response is being flown, s. None before the input is over."""
+        recognised = self._segmenter.recognised
+        return recognised.last_step_s if recognised else None
+
     def mode_changed(self, t: float, order: int) -> None:
         """Take a change of the flight mode, at vehicle time ``t`` at the earliest."""
         heapq.heappush(self._waiting, (t, order, None))

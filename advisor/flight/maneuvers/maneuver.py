@@ -28,7 +28,13 @@ class Span:
     """Steps of the input: (onset in s, level in rad from trim) for each."""
     closed_by: str
     """Reason of the end: ``quiet``, ``mode change``, ``next input``, ``gap``, ``end of log`` or ``no rest``.
-    A marked stretch has ``marked by hand``, ``marked by a switch`` or ``marked by a text of the vehicle``."""
+    A marked stretch has ``marked by hand``, ``marked by a switch`` or ``marked by a text of the vehicle``.
+    A movement that is being flown has ``still flying``."""
+
+    @property
+    def input_is_over(self) -> bool:
+        """Whether the elevator has come to rest after its last step."""
+        return self.last_step_s < self.end_s
 
 
 @dataclass(frozen=True, slots=True)

@@ -58,7 +58,9 @@ class ElevatorPath:
             return None
         if marked_s is None and not self._cutting.pilot_flies(onset):
             return None
-        span = Span(onset - LEAD_IN_S, onset, now, now, "other", (), "still flying")
+        over_s = self._watch.last_step_s if marked_s is None else None
+        last_step_s = now if over_s is None else over_s
+        span = Span(onset - LEAD_IN_S, onset, last_step_s, now, "other", (), "still flying")
         if marked_s is None and self._cutting.why_on_ground(span) is not None:
             return None
         return self._cutting.so_far(span, self._boot)

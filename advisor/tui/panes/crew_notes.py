@@ -22,13 +22,11 @@ def flying_in_words(view: View) -> str:
         return f"marked by hand for {view.state.now_s - marked_s:.0f} s"
     if flying is None:
         return "between manoeuvres"
-    seconds = view.state.now_s - flying.span.start_s
-    kind = "a manoeuvre" if flying.span.kind == "other" else flying.span.kind
-    words = f"{kind}, {seconds:.0f} s"
-    if settling is None:
-        return words
+    if settling is None or not view.state.readable:
+        return view.state.progress
     m_alpha, std = PARAMETERS["M_alpha"], float(settling.std[NAMES.index("M_alpha")])
-    return f"{words}; {m_alpha.symbol} {m_alpha.with_interval(settling.value('M_alpha'), std)} {m_alpha.unit}"
+    value = m_alpha.with_interval(settling.value("M_alpha"), std)
+    return f"{view.state.progress}; {m_alpha.symbol} {value} {m_alpha.unit}"
 
 
 def _link_in_words(view: View) -> str:

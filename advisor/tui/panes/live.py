@@ -4,6 +4,7 @@ from textual.app import ComposeResult
 from textual.events import Resize
 
 from advisor.aircraft.aircraft import PARAMETERS as NAMES
+from advisor.campaign.state import CampaignState
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.estimate import Estimate
 from advisor.session.view import View
@@ -26,8 +27,9 @@ class Live(Pane):
 # Live
 
 The manoeuvre in the air: measured (dots) and the model fitted so far (line), as it comes in,
-and the moment derivatives with their 95 % intervals as they settle. When further free response
-adds nothing, the pane says so: recover. Between manoeuvres nothing moves here; the last trace stays.
+and the moment derivatives with their 95 % intervals once the input is over, the servo is
+known and they agree with the manoeuvres before. When further free response adds nothing, the pane says
+so: recover. Between manoeuvres nothing moves here; the last trace stays.
 """
 
     def compose(self) -> ComposeResult:
@@ -47,7 +49,7 @@ adds nothing, the pane says so: recover. Between manoeuvres nothing moves here; 
             self.subtitle("")
             return
         self.subtitle(f"in the air: manoeuvre {flying.number}")
-        self.query_one("#settling", Lines).write(view.state.enough or _settling_in_words(settling))
+        self.query_one("#settling", Lines).write(view.state.enough or _settling_in_words(view.state))
         for name, ink in TRACES.items():
             self.query_one(f"#live-{name}", Plot).chart = _trace(flying, settling, name, ink)
 
@@ -71,9 +73,10 @@ def _trace(flying: Maneuver, settling: Estimate | None, name: str, ink: Ink) -> 
     return Chart(quantity.label, "t [s]", series=(measured, fitted))
 
 
-def _settling_in_words(settling: Estimate | None) -> str:
-    if settling is None:
-        return "Too little flown yet for an estimate."
+def _settling_in_words(state: CampaignState) -> str:
+    settling = state.settling
+    if settling is None or not state.readable:
+        return f"{state.progress}; numbers come when the input is over and they agree with the tests before."
     words = []
     for name in ("M_alpha", "M_q", "M_delta_e", "Z_alpha"):
         quantity, std = PARAMETERS[name], float(settling.std[NAMES.index(name)])
