@@ -8,7 +8,9 @@ from typing import Any
 
 import pytest
 
+from advisor.bundled.demo import Demonstration
 from advisor.cli import group as cli
+from advisor.process.first_run import compile_once
 
 Advisor = Callable[..., "CompletedProcess[str]"]
 """Called with the words that follow ``advisor`` on the command line."""
@@ -19,6 +21,13 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 
 MOST_DIAGNOSES = 20
 """Whole diagnoses of flights that all tests without the mark ``study`` may make, seconds each."""
+
+
+def pytest_sessionstart(session: pytest.Session) -> None:
+    """Compile every kernel before the first test, because no test's time limit allows for it."""
+    if not hasattr(session.config, "workerinput"):
+        compile_once(print)
+        compile_once(print, {"bundled aircraft": Demonstration.fly_once})
 
 
 @pytest.fixture

@@ -2,20 +2,24 @@
 
 An exception that a signal raises is printed and lost where a library calls back from C. Outside the advisor's
 own code the exception leaves a traceback. So Ctrl-C ends the process itself. While a recording or a screen is
-open, a signal raises :class:`Interrupted` instead, which closes both.
+open, a signal raises :class:`Interrupted` instead, which closes both. A busy computer may take long for that.
+A second Ctrl-C ends the process at once.
 """
 
 import os
 import signal
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from types import FrameType
 
-_PATIENCE_S = 5.0
-"""Longest time for an orderly end, s. A recording is closed within 0.5 s. The limit is needed because an
-exception may be lost."""
+_LOST_AFTER_S = 1.0
+"""Time after which an exception that nothing handles counts as lost, s. A lost exception is raised again."""
+_ONE_PRESS_S = 0.3
+"""Longest time between two signals of one Ctrl-C, s: ``timeout`` signals a program and then its group. No
+user presses the keys twice that fast."""
 STOPPED = "Stopped."
 """Sentence for the user where nothing else is to be said."""
 _KINDS = tuple(
@@ -48,39 +52,72 @@ def end_at_once() -> None:
 def in_order(sentence: Callable[[], str] = lambda: STOPPED) -> Iterator[None]:
     """Let Ctrl-C, SIGTERM and SIGHUP raise :class:`Interrupted` within the block, once.
 
-    An ignored signal, as under ``nohup``, stays ignored.
+    An ignored signal, as under ``nohup``, stays ignored. A block within another block adds nothing.
 
     Parameters
     ----------
     sentence
         Gives the sentence for the user when a signal comes.
     """
-
-    def interrupt(number: int, frame: FrameType | None) -> None:
-        for kind in heard:
-            signal.signal(kind, signal.SIG_IGN)
-        said, code = sentence(), 128 + number
-        _end_later(said, code)
-        sys.unraisablehook = _write_unless_interrupted
-        raised.append(Interrupted(said, code))
-        raise raised[0]
-
-    raised: list[Interrupted] = []
-    hook = sys.unraisablehook
-    heard = [kind for kind in _KINDS if signal.getsignal(kind) is not signal.SIG_IGN]
-    if threading.current_thread() is not threading.main_thread():
-        heard = []
-    before = [signal.signal(kind, interrupt) for kind in heard]
+    before = {kind: signal.getsignal(kind) for kind in _KINDS}
+    heard = [kind for kind, handler in before.items() if handler is not signal.SIG_IGN]
+    nested = any(isinstance(handler, _OrderlyEnd) for handler in before.values())
+    if nested or threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    end, hook = _OrderlyEnd(sentence), sys.unraisablehook
+    for kind in heard:
+        signal.signal(kind, end)
     try:
         yield
     except Exception as error:
-        if raised:  # a library that was being imported answers the signal with an error of its own
-            raise raised[0] from error
+        if end.raised:  # a library that was being imported answers the signal with an error of its own
+            raise end.raised from error
         raise
+    else:
+        if end.raised:  # a library has kept the exception to itself
+            raise end.raised
     finally:
+        end.settle()
         sys.unraisablehook = hook
-        for kind, handler in zip(heard, before, strict=True):
-            signal.signal(kind, handler)
+        for kind in heard:
+            signal.signal(kind, before[kind])
+
+
+class _OrderlyEnd:
+    """Handler: raises :class:`Interrupted` at the first signal, ends the process at a second Ctrl-C."""
+
+    def __init__(self, sentence: Callable[[], str]) -> None:
+        self._sentence = sentence
+        self.raised: Interrupted | None = None
+        """The exception that the first signal has raised."""
+        self._since_s = 0.0
+
+    def __call__(self, number: int, frame: FrameType | None) -> None:
+        if self.raised is None:
+            self.raised = Interrupted(self._sentence(), 128 + number)
+            self._since_s = time.monotonic()
+            sys.unraisablehook = _write_unless_interrupted
+            if hasattr(signal, "SIGALRM"):
+                self._alarm = signal.signal(signal.SIGALRM, self._raise_if_lost)
+                signal.setitimer(signal.ITIMER_REAL, _LOST_AFTER_S, _LOST_AFTER_S)
+            raise self.raised
+        if number == signal.SIGINT and time.monotonic() - self._since_s > _ONE_PRESS_S:
+            _say_and_exit(str(self.raised), self.raised.code)
+
+    def settle(self) -> None:
+        """Stop the alarm. An alarm after the end of Python's handlers would kill the process."""
+        if self.raised is not None and hasattr(signal, "SIGALRM"):
+            signal.setitimer(signal.ITIMER_REAL, 0.0)
+            signal.signal(signal.SIGALRM, self._alarm)
+
+    def _raise_if_lost(self, number: int, frame: FrameType | None) -> None:
+        """Raise the exception again, unless contexts are being closed because of it."""
+        handled = sys.exception()
+        while handled is not None and handled is not self.raised:
+            handled = handled.__context__
+        if handled is None and self.raised is not None:
+            raise self.raised
 
 
 def ignore() -> None:
@@ -97,13 +134,6 @@ def _write_unless_interrupted(lost: "sys.UnraisableHookArgs") -> None:
     """Write an exception that a callback from C has lost, unless a signal raised the exception."""
     if not isinstance(lost.exc_value, Interrupted):
         sys.__unraisablehook__(lost)
-
-
-def _end_later(sentence: str, code: int) -> None:
-    """End the process when the orderly end takes too long or the exception is lost."""
-    if hasattr(signal, "SIGALRM"):
-        signal.signal(signal.SIGALRM, lambda number, frame: _say_and_exit(sentence, code))
-        signal.setitimer(signal.ITIMER_REAL, _PATIENCE_S)
 
 
 def _say_and_exit(sentence: str, code: int) -> None:

@@ -35,7 +35,7 @@ class PageProcess(AppService):
             close=self._close,
             download_manager=downloads,
         )
-        self._door, self._socket = door, socket
+        self._door, self._socket, self._is_ending = door, socket, False
 
     async def run(self) -> None:
         """Pass on the application's output. A page whose process has ended is closed."""
@@ -48,7 +48,8 @@ class PageProcess(AppService):
         process = self._process
         if process is None:
             return
-        if self._task is not None and not self._task.done():
+        if not self._is_ending and self._task is not None and not self._task.done():
+            self._is_ending = True  # a second kill would take the exit code from asyncio, which says so
             with suppress(ProcessLookupError):
                 process.kill()
         await self.stop()

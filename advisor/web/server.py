@@ -12,10 +12,6 @@ from aiohttp import web
 from advisor.web.site import Site
 from advisor.words.problems import ConfigurationError
 
-PATIENCE_S = 4.0
-"""Longest time for the end of all pages, s. The recording is closed after them, and a Ctrl-C waits 5 s in
-all."""
-
 
 def listening(host: str, port: int) -> socket.socket:
     """Take a port, before anything else is begun.
@@ -68,7 +64,7 @@ class WebServer:
     ) -> None:
         if self.at_work:
             self._loop.call_soon_threadsafe(self._stop.set)
-        self._thread.join(PATIENCE_S)
+        self._thread.join()  # every page bounds its own end
 
     @property
     def at_work(self) -> bool:

@@ -22,6 +22,8 @@ LARGEST_MESSAGE = 65_536
 """Most bytes of one message of a browser: keys, or a pasted text."""
 HEARTBEAT_S = 15.0
 """Time after which a silent browser loses its place, s."""
+_GOODBYE_S = 2.0
+"""Longest time for a browser's answer to the closing of its page, s."""
 _COLUMNS, _ROWS = (20, 500), (5, 200)
 """Fewest and most characters of a page. A larger page would only take memory."""
 _OPEN_TO_ALL = ("/login", "/static/", "/textual/")
@@ -118,7 +120,9 @@ class Site:
             raise web.HTTPForbidden(text="This WebSocket is for the server's own page.")
         if self._is_full:
             raise web.HTTPServiceUnavailable(text=self._full)
-        socket = web.WebSocketResponse(heartbeat=HEARTBEAT_S, max_msg_size=LARGEST_MESSAGE)
+        socket = web.WebSocketResponse(
+            timeout=_GOODBYE_S, heartbeat=HEARTBEAT_S, max_msg_size=LARGEST_MESSAGE
+        )
         process = PageProcess(self._door, socket, self._textual.download_manager)
         self._pages.add(process)
         try:

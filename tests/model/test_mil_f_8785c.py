@@ -1,6 +1,7 @@
 """The boundaries of Figures 1 to 3 and of Table IV of MIL-F-8785C, each passed from one side to the other."""
 
 from dataclasses import replace
+from math import inf
 
 import pytest
 
@@ -65,3 +66,50 @@ def test_the_levels_that_the_intervals_reach_on_either_side_are_said() -> None:
 def test_what_no_level_allows_is_worse_than_the_third() -> None:
     one = ShortPeriodLimits((0.1, 0.1), (1.0, 1.0), (2.0, 2.0), (10.0, 10.0))
     assert assess("B", ShortPeriodFound(one, one)).sentence == "Category B: worse than Level 3"
+
+
+_OPEN = (0.0, inf)
+PRINTED: dict[str, tuple[dict[str, tuple[float, float]], ...]] = {
+    "A": (
+        {"damping": (0.35, 1.30), "cap": (0.28, 3.6), "frequency": (1.0, inf)},
+        {"damping": (0.25, 2.00), "cap": (0.16, 10.0), "frequency": (0.6, inf)},
+        {"damping": (0.15, inf), "cap": (0.16, inf)},
+    ),
+    "B": (
+        {"damping": (0.30, 2.00), "cap": (0.085, 3.6)},
+        {"damping": (0.20, 2.00), "cap": (0.038, 10.0)},
+        {"damping": (0.15, inf), "cap": (0.038, inf)},
+    ),
+    "C": (
+        {"damping": (0.35, 1.30), "cap": (0.16, 3.6), "frequency": (0.87, inf), "load": (2.7, inf)},
+        {"damping": (0.25, 2.00), "cap": (0.096, 10.0), "frequency": (0.6, inf), "load": (1.8, inf)},
+        {"damping": (0.15, inf), "cap": (0.096, inf)},
+    ),
+}
+"""Limits of Levels 1 to 3 as the specification prints them, read anew and not from the module."""
+INSIDE = {"damping": 0.7, "cap": 1.0, "frequency": 5.0, "load": 10.0}
+"""Values within Level 1 of every category."""
+LIMITS = [
+    (category, level, name, end)
+    for category, levels in PRINTED.items()
+    for level in range(1, len(levels) + 1)
+    for name in INSIDE
+    for end in (0, 1)
+]
+
+
+def level_of(category: str, **changed: float) -> int:
+    """Return the level of values that are within Level 1 but for those changed."""
+    one = ShortPeriodLimits(**{name: (value, value) for name, value in (INSIDE | changed).items()})
+    return assess(category, ShortPeriodFound(one, one)).level  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("category", "level", "name", "end"), LIMITS)
+def test_every_printed_limit_holds_to_the_last_digit(category: str, level: int, name: str, end: int) -> None:
+    """A value at the limit has the level or a better one. A value beyond the limit has a worse one."""
+    bound = PRINTED[category][level - 1].get(name, _OPEN)[end]
+    if bound in _OPEN:
+        assert level_of(category, **{name: (1e-9, 1e9)[end]}) <= level
+    else:
+        assert level_of(category, **{name: bound}) <= level
+        assert level_of(category, **{name: bound * (BELOW, ABOVE)[end]}) > level

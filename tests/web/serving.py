@@ -49,7 +49,7 @@ class Serving:
     def interrupt(self) -> int:
         """End the command as Ctrl-C does, and wait for its exit code."""
         self.process.send_signal(signal.SIGINT)
-        return self.process.wait(10.0)
+        return self.process.wait(PATIENCE_S)
 
     def clear(self) -> None:
         """End the command if it still runs."""

@@ -9,7 +9,7 @@ import pytest
 from playwright.sync_api import Browser
 
 from tests.mavlink.link.builders import Sender, attitude, heartbeat, wait_until
-from tests.web.serving import BROWSER, Screen, Serving, a_browser
+from tests.web.serving import BROWSER, PATIENCE_S, Screen, Serving, a_browser
 
 LOGS = Path(__file__).parents[2] / "logs"
 pytestmark = [
@@ -35,7 +35,7 @@ def test_a_log_is_replayed_in_a_page_that_asks_nothing_of_another_host(
         assert page.wrong == []
         page.press("q")
         page.until(lambda: page.is_closed)
-        wait_until(lambda: serving.children == [])
+        wait_until(lambda: serving.children == [], timeout_s=PATIENCE_S)
     finally:
         serving.clear()
 
@@ -68,7 +68,9 @@ def test_two_pages_show_one_campaign_on_one_link_and_nothing_outlives_the_comman
             with pytest.raises(TimeoutError):  # nobody has called the vehicle a second time
                 vehicle.accept()
             assert serving.interrupt() == 130
-            wait_until(lambda: not any(Path(f"/proc/{pid}").exists() for pid, _ in started))
+            wait_until(
+                lambda: not any(Path(f"/proc/{pid}").exists() for pid, _ in started), timeout_s=PATIENCE_S
+            )
             one.until(lambda: one.is_closed and other.is_closed)
             assert (tmp_path / "flight.tlog").stat().st_size > 0
             link.close()

@@ -1,5 +1,6 @@
 """The script for MATLAB and Octave: run by Octave, its matrices are those of the model found."""
 
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -60,6 +61,39 @@ def test_octave_reads_the_servo_as_numbers_of_its_own(tmp_path):
     servo = ExportedServo(delay_s=0.03, lag_s=0.08, play_rad=0.01)
     asked = "[servo.delay_s, servo.lag_s, servo.backlash_rad, isinf(servo.rate_limit_rad_s)]"
     assert run(tmp_path, asked, servo=servo) == pytest.approx([0.03, 0.08, 0.01, 1.0])
+
+
+def matrix(name: str) -> np.ndarray:
+    """A matrix of the script, read without Octave: semicolons end rows, commas end columns."""
+    text = next(
+        line for line in script_text(improvement()).text.splitlines() if line.startswith(f"{name} = [")
+    )
+    rows = text.removeprefix(f"{name} = [").removesuffix("];").split(";")
+    return np.array([[product(entry) for entry in row.split(",")] for row in rows])
+
+
+def product(entry: str) -> float:
+    """The value of a number, or of V times a number in brackets."""
+    return SPEED * float(entry.strip()[3:-1]) if "V*" in entry else float(entry)
+
+
+def test_the_matrices_are_the_state_space_of_the_eight_parameters() -> None:
+    """α̇ = Z_α·α + (1 + Z_q)·q + Z_δe·δe, and a_z = V·(α̇ - q)."""
+    m = MODEL
+    assert matrix("A") == pytest.approx(np.array([[m["Z_alpha"], 1.0 + m["Z_q"]], [m["M_alpha"], m["M_q"]]]))
+    assert matrix("B") == pytest.approx(np.array([[m["Z_delta_e"]], [m["M_delta_e"]]]))
+    normal = [SPEED * m["Z_alpha"], SPEED * m["Z_q"]]
+    assert matrix("C") == pytest.approx(np.array([[1.0, 0.0], [0.0, 1.0], normal]))
+    assert matrix("D") == pytest.approx(np.array([[0.0], [0.0], [SPEED * m["Z_delta_e"]]]))
+
+
+def test_each_parameter_is_written_with_its_interval() -> None:
+    written = dict(re.findall(r"parameters\.(\w+\.\w+) = (.*?);", script_text(improvement()).text))
+    for name, value in MODEL.items():
+        half = 1.96 * abs(value) / 50.0
+        assert float(written[f"{name}.value"]) == pytest.approx(value)
+        interval = [float(end) for end in written[f"{name}.ci95"].strip("[]").split(",")]
+        assert interval == pytest.approx([value - half, value + half])
 
 
 def test_each_of_the_eight_parameters_has_a_unit_in_its_comment():
