@@ -76,13 +76,13 @@ study: .venv/.developed ## the paper's campaign, 2,000 times a noise level, with
 	$(BIN)/advisor study --campaigns 2000 --readings --figure docs/validation/figure-5.svg
 
 study-advice: .venv/.developed ## what following the advice saves
-	$(BIN)/advisor study --advice --campaigns 100
+	$(BIN)/python -m benchmarks.studies advice --campaigns 100
 
 study-stops: .venv/.developed ## how often the default rule stops too early, and what each rule needs
-	$(BIN)/advisor study --stops --campaigns 150
+	$(BIN)/python -m benchmarks.studies stops --campaigns 150
 
 study-change: .venv/.developed ## how soon a change of the aircraft is told
-	$(BIN)/advisor study --change --campaigns 400
+	$(BIN)/python -m benchmarks.studies change --campaigns 400
 
 SEED ?= 360127
 study-second: .venv/.developed ## the diagnosis on 240 flights of the second generator (SEED=...; about fifteen minutes)

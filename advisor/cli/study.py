@@ -1,9 +1,10 @@
 """``advisor study``: the paper's simulated campaign, many times."""
 
 import json
+from collections.abc import Callable
 from concurrent.futures import BrokenExecutor
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
@@ -17,15 +18,26 @@ if TYPE_CHECKING:
     from advisor.process.tasks.runner import Runner
 
 
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+def campaign_options(command: F) -> F:
+    """Add the options ``--campaigns N`` and ``--seed N``."""
+    campaigns = click.option(
+        "--campaigns",
+        type=click.IntRange(10, 20000),
+        default=500,
+        show_default=True,
+        help="Number of simulated campaigns.",
+    )
+    seed = click.option(
+        "--seed", type=click.IntRange(0), default=1, show_default=True, help="Seed of the noise."
+    )
+    return campaigns(seed(command))
+
+
 @click.command
-@click.option(
-    "--campaigns",
-    type=click.IntRange(10, 20000),
-    default=500,
-    show_default=True,
-    help="Number of simulated campaigns.",
-)
-@click.option("--seed", type=click.IntRange(0), default=1, show_default=True, help="Seed of the noise.")
+@campaign_options
 @click.option(
     "--noise-reading",
     type=click.Choice(["std", "peak", "rms", "sample"]),
@@ -37,13 +49,6 @@ if TYPE_CHECKING:
     "--figure", type=click.Path(path_type=Path), metavar="FILE", help="File for Figure 5, .png or .svg."
 )
 @click.option("--readings", is_flag=True, help="Compare other readings of the paper's rules as well.")
-@click.option(
-    "--advice", is_flag=True, help="Instead: measure the manoeuvres that the advice saves, on two aircraft."
-)
-@click.option("--change", is_flag=True, help="Instead: measure how soon a change of the aircraft is noticed.")
-@click.option(
-    "--stops", is_flag=True, help="Instead: measure how often the rule information stops too early."
-)
 @running_options
 @json_option
 def command(
@@ -52,9 +57,6 @@ def command(
     noise_reading: "NoiseReading",
     figure: Path | None,
     readings: bool,
-    advice: bool,
-    change: bool,
-    stops: bool,
     workers: int | None,
     scheduler: str | None,
     as_json: bool,
@@ -67,54 +69,34 @@ def command(
     Example:
       advisor study
       advisor study --campaigns 2000 --figure figure5.png
-      advisor study --stops --campaigns 150 --workers 8
       advisor study --json > study.json
     """
     if figure is not None:
-        if advice or change or stops:
-            raise ConfigurationError(
-                "--figure draws the campaigns: leave out --advice, --change and --stops."
-            )
         from advisor.bundled.study.figure import refuse_undrawable
 
         refuse_unwritable("--figure", figure)
         refuse_undrawable(figure)
     run = runner_of(workers, scheduler, guarded=False)
-    report = _flown(_chosen(campaigns, seed, noise_reading, readings, advice, change, stops), run)
+    from advisor.bundled.study.run import table_1
+
+    report = fly(table_1(campaigns, seed, noise_reading, readings), run)
     if figure is not None:
         from advisor.bundled.study.figure import draw
 
         with writing("--figure", figure):
             draw(report.curves, figure)
-    if as_json:
-        click.echo(json.dumps(report.document, allow_nan=False))
-    else:
-        click.echo("\n".join(report.lines).rstrip())
+    tell(report, as_json)
     return 0
 
 
-def _chosen(
-    campaigns: int,
-    seed: int,
-    noise_reading: "NoiseReading",
-    readings: bool,
-    advice: bool,
-    change: bool,
-    stops: bool,
-) -> "Study[Any, Any]":
-    from advisor.bundled.study import run
+def fly(study: "Study[Any, Any]", run: "Runner") -> "StudyReport":
+    """Fly all campaigns, and print the progress.
 
-    if advice:
-        return run.advice(campaigns, seed)
-    if change:
-        return run.change(campaigns, seed)
-    if stops:
-        return run.early_stops(campaigns, seed)
-    return run.table_1(campaigns, seed, noise_reading, readings)
-
-
-def _flown(study: "Study[Any, Any]", run: "Runner") -> "StudyReport":
-    """Fly all campaigns, and print the progress."""
+    Raises
+    ------
+    ConfigurationError
+        A process ended every time.
+    """
     from advisor.process.tasks.runner import results_in_order
 
     progress = Progress(sum(task.campaigns for task in study.tasks), "campaigns")
@@ -127,3 +109,11 @@ def _flown(study: "Study[Any, Any]", run: "Runner") -> "StudyReport":
             "A process of the study was ended every time, as for want of memory. Repeat with fewer --workers."
         ) from None
     return study.report(results)
+
+
+def tell(report: "StudyReport", as_json: bool) -> None:
+    """Print a report, as lines or as one JSON document."""
+    if as_json:
+        click.echo(json.dumps(report.document, allow_nan=False))
+    else:
+        click.echo("\n".join(report.lines).rstrip())

@@ -6,12 +6,9 @@ from textwrap import wrap
 import numpy as np
 
 from advisor.aircraft.aircraft import PARAMETERS, CampaignPlan
-from advisor.bundled.study.advised import PLAN, Saving
-from advisor.bundled.study.changed import BEFORE, LOSS, Detection
 from advisor.bundled.study.flaws import NOISE_PERCENT, Flaws
 from advisor.bundled.study.flying import NOISE_READINGS, NoiseReading, Scene
 from advisor.bundled.study.readings import ReadingResult
-from advisor.bundled.study.stops import Stops
 from advisor.bundled.study.table import Row
 
 COMMON = (5.0, 95.0)
@@ -31,12 +28,12 @@ def heading(campaigns: int, scene: Scene, reading: NoiseReading) -> list[str]:
     """Return lines on the campaigns flown."""
     degrees = np.degrees(scene.amplitude_rad)
     return [
-        *_wrapped(
+        *wrapped(
             f"The paper's campaign, {campaigns} times: modified 3-2-1-1 and its reverse (seven manoeuvres, "
             f"{scene.unit_s:g} s steps, {degrees:.0f} deg), {scene.duration_s:g} s at {scene.rate_hz:g} Hz, "
             f'white noise on angle of attack and pitch rate; "noise 1 %" is 1 % {NOISE_READINGS[reading]}.'
         ),
-        *_wrapped(
+        *wrapped(
             "The paper's rules are continuous (Eqs. 10 and 12) and separate (Eqs. 11 and 12); "
             "on real flights information decides."
         ),
@@ -48,7 +45,7 @@ def table(rows: Sequence[Row]) -> list[str]:
     """Return three lines for each row: the median error, the range of the middle 80 %, the paper's error."""
     names = "".join(f"{_symbol(name):>{_CELL}}" for name in PARAMETERS)
     lines = [
-        *_wrapped(
+        *wrapped(
             "Nominal error in % at the stop: median, 10 % and 90 % of the campaigns, and the paper's. "
             "Needed: the median number of manoeuvres, and what nine campaigns in ten need at most."
         ),
@@ -56,10 +53,10 @@ def table(rows: Sequence[Row]) -> list[str]:
     ]
     for row in rows:
         low, middle, high = np.quantile(row.error_percent, [0.1, 0.5, 0.9], axis=0)
-        paper = "" if row.paper is None else f"; paper {_count(row.paper.needed)}"
+        paper = "" if row.paper is None else f"; paper {count(row.paper.needed)}"
         lines.append(
-            f"{row.rule}, noise {row.noise_percent:g} %: needed {_count(row.needed_quantile(0.5))} (9 in 10: "
-            f"{_count(row.needed_quantile(0.9))}), never {row.never_percent:.0f} %{paper}"
+            f"{row.rule}, noise {row.noise_percent:g} %: needed {count(row.needed_quantile(0.5))} (9 in 10: "
+            f"{count(row.needed_quantile(0.9))}), never {row.never_percent:.0f} %{paper}"
         )
         lines += [_numbers("median", middle), _numbers("10 %", low), _numbers("90 %", high)]
         if row.paper is not None:
@@ -94,7 +91,7 @@ def where_the_paper_lies(rows: Sequence[Row]) -> list[str]:
             *([f"smaller than nearly all of ours: {', '.join(below)}"] if below else []),
         ]
         ended = "never ended" if row.paper.needed is None else f"needed {row.paper.needed}"
-        lines += _wrapped(
+        lines += wrapped(
             f"  {row.rule}, {row.noise_percent:g} %: it {ended}, as {same:.0f} % of ours; {'; '.join(words)}."
         )
     return [*lines, ""]
@@ -107,7 +104,7 @@ def tolerances(rows: Sequence[Row]) -> list[str]:
         if row.outside_tolerance_percent is not None:
             outside = {name: row.outside_tolerance_percent[PARAMETERS.index(name)] for name in NAMED}
             worst = max(outside, key=lambda name: outside[name])
-            lines += _wrapped(
+            lines += wrapped(
                 f"information, {row.noise_percent:g} %: outside its tolerance at the stop "
                 f"{np.mean(list(outside.values())):.1f} % of the named derivatives, at most "
                 f"{outside[worst]:.1f} % ({worst})."
@@ -119,14 +116,14 @@ def flaws(found: Flaws) -> list[str]:
     """Return lines on flaws of the paper's rules that users must know."""
     return [
         "Two flaws of the paper's rules:",
-        *_wrapped(
+        *wrapped(
             f"  separate computation rejects {found.thrown_away_percent:.0f} % of equally good manoeuvres: "
             "a new cost is as likely above the median of the earlier ones as below."
         ),
-        *_wrapped(
+        *wrapped(
             f"  a parameter near zero keeps Eq. (12) from falling: with Z_q = 0 and {NOISE_PERCENT:g} % "
             f"noise, {found.near_zero_never_percent:.0f} % of {found.near_zero_campaigns} campaigns never "
-            f"end; the rule information ends them after {_count(found.near_zero_information)} (median)."
+            f"end; the rule information ends them after {count(found.near_zero_information)} (median)."
         ),
         "",
     ]
@@ -134,77 +131,19 @@ def flaws(found: Flaws) -> list[str]:
 
 def readings(results: Iterable[ReadingResult]) -> list[str]:
     """Return lines on other readings of the paper."""
-    lines = _wrapped(
+    lines = wrapped(
         "Other readings of the rules: median needed, never, share of campaigns that need exactly what the "
         "paper's did"
     )
     lines += [
-        f"  {r.reading:<25}{r.rule:<11}{r.noise_percent:>4g} %{_count(r.median):>6}  never "
+        f"  {r.reading:<25}{r.rule:<11}{r.noise_percent:>4g} %{count(r.median):>6}  never "
         f"{r.never_percent:3.0f} %  as paper {r.as_paper_percent:3.0f} %"
         for r in results
     ]
     return [*lines, ""]
 
 
-def savings(found: Sequence[Saving], campaigns: int) -> list[str]:
-    """Return lines on manoeuvres needed with and without the advice."""
-    lines = _wrapped(
-        f"Manoeuvres until the response is known to {PLAN.tolerance_percent:g} % of its peak, the named "
-        f"derivatives accordingly (rule information), {campaigns} campaigns each, repeating the standard "
-        "3-2-1-1 in alternating directions, and flying what was advised:"
-    )
-    for one in found:
-        limits = (
-            "angle of attack as in the standard input" if one.same_excursion else "within the usual limits"
-        )
-        lines += _wrapped(
-            f"  {one.aircraft}, noise {one.noise_percent:g} %, {limits}: {np.mean(one.standard):.1f} and "
-            f"{np.mean(one.advised):.1f} on average (median {np.median(one.standard):.0f} and "
-            f"{np.median(one.advised):.0f}): {one.percent:.0f} % fewer."
-        )
-    return lines
-
-
-def detections(found: Sequence[Detection], campaigns: int) -> list[str]:
-    """Return lines on changes noticed, and on false alarms."""
-    lines = [f"Something changed, {campaigns} campaigns each:"]
-    for one in found:
-        if one.lost is None:
-            lines += _wrapped(
-                f"  noise {one.noise_percent:g} %, nothing changed: suspected in "
-                f"{one.suspected_percent:.1f} %, confirmed in {one.confirmed_percent:.1f} %."
-            )
-        else:
-            lines += _wrapped(
-                f"  noise {one.noise_percent:g} %, {one.lost} loses {100 * LOSS:.0f} % after {BEFORE} "
-                f"manoeuvres: suspected at once in {one.suspected_percent:.1f} %, confirmed and named "
-                f"after two in {one.confirmed_percent:.1f} % ({one.sigma:.0f} sigma)."
-            )
-    return lines
-
-
-def early_stops(found: Sequence[Stops], campaigns: int) -> list[str]:
-    """Return lines on false stops of the rule ``information``, and on manoeuvres needed under each rule."""
-    lines = _wrapped(
-        "Stops of the rule information. False: the predicted response is wrong by more than the tolerance; "
-        "error: how wrong it is in 95 % of the stops at most. "
-        f"Needed by {campaigns} campaigns of seven manoeuvres: median (share without stop)."
-    )
-    for one in found:
-        case, error = one.case, one.error_quantile(0.95)
-        wrong = "no stop" if error is None else f"false {one.false_percent:.1f} %, error {error:.2f} %"
-        needed = ", ".join(
-            f"{rule} {_count(one.median_needed(rule))} ({one.never_percent(rule):.0f} %)"
-            for rule in ("information", "continuous", "separate")
-        )
-        lines += _wrapped(
-            f"{case.name}, noise {case.noise_percent:g} %, tolerance {case.tolerance_percent:g} %: {wrong}"
-        )
-        lines += _wrapped(f"  needed: {needed}")
-    return lines
-
-
-def _wrapped(text: str) -> list[str]:
+def wrapped(text: str) -> list[str]:
     """Wrap a sentence into lines of 80 columns, those after the first indented; no number without its %."""
     told = text.lstrip().replace(" %", "\N{NO-BREAK SPACE}%")
     begins = " " * (len(text) - len(text.lstrip()))
@@ -212,5 +151,6 @@ def _wrapped(text: str) -> list[str]:
     return [line.replace("\N{NO-BREAK SPACE}", " ") for line in lines]
 
 
-def _count(number: int | None) -> str:
+def count(number: int | None) -> str:
+    """Return a number of manoeuvres in words: ``never`` for None."""
     return "never" if number is None else str(number)

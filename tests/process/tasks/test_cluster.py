@@ -98,7 +98,7 @@ def test_a_cluster_gives_the_tables_of_one_process_and_a_second_run_does_nothing
 
 
 def test_a_cluster_gives_the_study_of_one_process(scheduler: str, advisor: Advisor) -> None:
-    words = ("study", "--change", "--campaigns", 10, "--json")
+    words = ("study", "--campaigns", 10, "--json")
     shared = advisor(*words, "--scheduler", scheduler)
     assert shared.returncode == 0, shared.stderr
     assert shared.stdout == advisor(*words, "--workers", 1).stdout

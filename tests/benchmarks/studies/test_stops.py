@@ -5,9 +5,9 @@ import json
 import pytest
 from click.testing import CliRunner
 
-from advisor.bundled.study import stops
-from advisor.bundled.study.stops import Case, Stops, by_case, fly, stop_blocks
-from advisor.cli.study import command
+from benchmarks.studies import stops
+from benchmarks.studies.__main__ import main
+from benchmarks.studies.stops import Case, Stops, by_case, fly, stop_blocks
 
 
 def one(case: Case, campaigns: int = 6) -> Stops:
@@ -45,9 +45,9 @@ def test_an_error_beyond_the_tolerance_counts_as_a_false_stop() -> None:
 
 def test_the_study_of_stops_is_told_in_lines_and_as_a_document(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(stops, "CASES", (Case("white noise", 1.0),))
-    words = ["--stops", "--campaigns", "10", "--workers", "1"]
-    assert "white noise" in CliRunner().invoke(command, words).stdout
-    document = json.loads(CliRunner().invoke(command, [*words, "--json"]).stdout)
+    words = ["stops", "--campaigns", "10", "--workers", "1"]
+    assert "white noise" in CliRunner().invoke(main, words).stdout
+    document = json.loads(CliRunner().invoke(main, [*words, "--json"]).stdout)
     assert document["schema"] == "advisor.study.stops/1"
     assert document["rows"][0]["needed"]["information"]["median"] == 2
     assert document["rows"][0]["false_percent"] == 0.0

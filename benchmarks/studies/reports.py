@@ -1,0 +1,140 @@
+"""Three studies beside the paper's: each divided into tasks, with the report that the results make."""
+
+from collections.abc import Sequence
+from dataclasses import asdict
+
+import numpy as np
+
+from advisor.bundled.study.campaigns import RULES
+from advisor.bundled.study.plan import Study, StudyReport
+from advisor.bundled.study.text import count, wrapped
+from benchmarks.studies import advised, changed, stops
+
+
+def advice(campaigns: int, seed: int) -> Study[advised.Pair, tuple[int, int]]:
+    """Return the study of the manoeuvres that the advice saves, on two aircraft."""
+    pairs = advised.pairs(campaigns, seed)
+
+    def report(results: Sequence[tuple[int, int]]) -> StudyReport:
+        savings = advised.savings(pairs, results)
+        entries = [
+            {
+                "aircraft": s.aircraft,
+                "noise_percent": s.noise_percent,
+                "same_excursion": s.same_excursion,
+                "standard": {"mean": float(np.mean(s.standard)), "median": float(np.median(s.standard))},
+                "advised": {"mean": float(np.mean(s.advised)), "median": float(np.median(s.advised))},
+                "fewer_percent": s.percent,
+            }
+            for s in savings
+        ]
+        document = {"schema": "advisor.study.advice/1", "campaigns": campaigns, "rows": entries}
+        return StudyReport(_savings(savings, campaigns), document)
+
+    return Study(pairs, advised.fly, report)
+
+
+def change(campaigns: int, seed: int) -> Study[changed.ChangedBlock, changed.Noticed]:
+    """Return the study of changed aircraft: how soon noticed, and how often suspected without a change."""
+    flown = changed.change_blocks(campaigns, seed)
+
+    def report(results: Sequence[changed.Noticed]) -> StudyReport:
+        found = changed.detections(flown, results)
+        entries = [
+            {
+                "noise_percent": d.noise_percent,
+                "lost": d.lost,
+                "suspected_percent": d.suspected_percent,
+                "confirmed_percent": d.confirmed_percent,
+                "sigma": None if np.isnan(d.sigma) else d.sigma,
+            }
+            for d in found
+        ]
+        document = {"schema": "advisor.study.change/1", "campaigns": campaigns, "rows": entries}
+        return StudyReport(_detections(found, campaigns), document)
+
+    return Study(flown, changed.notice, report)
+
+
+def early_stops(campaigns: int, seed: int) -> Study[stops.StopsBlock, stops.Stops]:
+    """Return the study of early stops by the rule ``information``, and of the manoeuvres that each rule
+    needs."""
+    flown = stops.stop_blocks(campaigns, seed, stops.CASES)
+
+    def report(results: Sequence[stops.Stops]) -> StudyReport:
+        found = stops.by_case(results)
+        entries = [
+            {
+                **asdict(s.case),
+                "needed": {
+                    rule: {"median": s.median_needed(rule), "never_percent": s.never_percent(rule)}
+                    for rule in RULES
+                },
+                "stops": len(s.error_percent),
+                "false_percent": s.false_percent if s.error_percent else None,
+                "error_percent": {"median": s.error_quantile(0.5), "p95": s.error_quantile(0.95)},
+            }
+            for s in found
+        ]
+        document = {"schema": "advisor.study.stops/1", "campaigns": campaigns, "rows": entries}
+        return StudyReport(_stops(found, campaigns), document)
+
+    return Study(flown, stops.fly, report)
+
+
+def _savings(found: Sequence[advised.Saving], campaigns: int) -> list[str]:
+    """Return lines on manoeuvres needed with and without the advice."""
+    lines = wrapped(
+        f"Manoeuvres until the response is known to {advised.PLAN.tolerance_percent:g} % of its peak, the "
+        f"named derivatives accordingly (rule information), {campaigns} campaigns each, repeating the "
+        "standard 3-2-1-1 in alternating directions, and flying what was advised:"
+    )
+    for one in found:
+        limits = (
+            "angle of attack as in the standard input" if one.same_excursion else "within the usual limits"
+        )
+        lines += wrapped(
+            f"  {one.aircraft}, noise {one.noise_percent:g} %, {limits}: {np.mean(one.standard):.1f} and "
+            f"{np.mean(one.advised):.1f} on average (median {np.median(one.standard):.0f} and "
+            f"{np.median(one.advised):.0f}): {one.percent:.0f} % fewer."
+        )
+    return lines
+
+
+def _detections(found: Sequence[changed.Detection], campaigns: int) -> list[str]:
+    """Return lines on changes noticed, and on false alarms."""
+    lines = [f"Something changed, {campaigns} campaigns each:"]
+    for one in found:
+        if one.lost is None:
+            lines += wrapped(
+                f"  noise {one.noise_percent:g} %, nothing changed: suspected in "
+                f"{one.suspected_percent:.1f} %, confirmed in {one.confirmed_percent:.1f} %."
+            )
+        else:
+            lines += wrapped(
+                f"  noise {one.noise_percent:g} %, {one.lost} loses {100 * changed.LOSS:.0f} % after "
+                f"{changed.BEFORE} manoeuvres: suspected at once in {one.suspected_percent:.1f} %, confirmed "
+                f"and named after two in {one.confirmed_percent:.1f} % ({one.sigma:.0f} sigma)."
+            )
+    return lines
+
+
+def _stops(found: Sequence[stops.Stops], campaigns: int) -> list[str]:
+    """Return lines on false stops of the rule ``information``, and on manoeuvres needed under each rule."""
+    lines = wrapped(
+        "Stops of the rule information. False: the predicted response is wrong by more than the tolerance; "
+        "error: how wrong it is in 95 % of the stops at most. "
+        f"Needed by {campaigns} campaigns of seven manoeuvres: median (share without stop)."
+    )
+    for one in found:
+        case, error = one.case, one.error_quantile(0.95)
+        wrong = "no stop" if error is None else f"false {one.false_percent:.1f} %, error {error:.2f} %"
+        needed = ", ".join(
+            f"{rule} {count(one.median_needed(rule))} ({one.never_percent(rule):.0f} %)"
+            for rule in ("information", "continuous", "separate")
+        )
+        lines += wrapped(
+            f"{case.name}, noise {case.noise_percent:g} %, tolerance {case.tolerance_percent:g} %: {wrong}"
+        )
+        lines += wrapped(f"  needed: {needed}")
+    return lines
