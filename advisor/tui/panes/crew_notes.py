@@ -1,10 +1,10 @@
 """Further notes for a pilot: the next input, the source of alpha, changes."""
 
-from advisor.aircraft.aircraft import PARAMETERS as NAMES
+from advisor.report.result_rows import parameter_row
 from advisor.session.view import View
 from advisor.tui.panes.hanging import HangingLines
 from advisor.tui.panes.part import Part
-from advisor.tui.words import PARAMETERS, headline
+from advisor.tui.words import headline
 
 
 def alpha_in_words(view: View) -> str:
@@ -27,8 +27,8 @@ def flying_in_words(view: View) -> str:
     words = f"{kind}, {seconds:.0f} s"
     if settling is None:
         return words
-    m_alpha, std = PARAMETERS["M_alpha"], float(settling.std[NAMES.index("M_alpha")])
-    return f"{words}; {m_alpha.symbol} {m_alpha.with_interval(settling.value('M_alpha'), std)} {m_alpha.unit}"
+    row = parameter_row("M_alpha", settling, {})
+    return f"{words}; {row.quantity.symbol} {row.cell} {row.quantity.unit}"
 
 
 def _link_in_words(view: View) -> str:

@@ -3,15 +3,15 @@
 from textual.app import ComposeResult
 from textual.events import Resize
 
-from advisor.aircraft.aircraft import PARAMETERS as NAMES
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.estimate import Estimate
+from advisor.report.result_rows import parameter_row
 from advisor.session.view import View
 from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.pane import Pane
 from advisor.tui.plot.chart import Chart, Ink, Series
 from advisor.tui.plot.widget import Plot
-from advisor.tui.words import PARAMETERS, channel
+from advisor.words.quantities import channel
 
 TRACES: dict[str, Ink] = {"alpha": "measured", "q": "measured", "elevator": "input"}
 _ROWS_FOR_ONE = 5
@@ -74,8 +74,5 @@ def _trace(flying: Maneuver, settling: Estimate | None, name: str, ink: Ink) -> 
 def _settling_in_words(settling: Estimate | None) -> str:
     if settling is None:
         return "Too little flown yet for an estimate."
-    words = []
-    for name in ("M_alpha", "M_q", "M_delta_e", "Z_alpha"):
-        quantity, std = PARAMETERS[name], float(settling.std[NAMES.index(name)])
-        words.append(f"{quantity.symbol} {quantity.with_interval(settling.value(name), std)}")
-    return "   ".join(words)
+    rows = [parameter_row(name, settling, {}) for name in ("M_alpha", "M_q", "M_delta_e", "Z_alpha")]
+    return "   ".join(f"{row.quantity.symbol} {row.cell}" for row in rows)
