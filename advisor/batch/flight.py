@@ -17,7 +17,8 @@ from advisor.analysis.log_series import began_s
 from advisor.analysis.marks_file import path_beside
 from advisor.oem.estimate import Estimate
 from advisor.process.atomic_file import write_atomically
-from advisor.report.document import analysis_document, number
+from advisor.report.document import analysis_document
+from advisor.words.plain import plain
 from advisor.words.problems import ConfigurationError, Problem, UnusableInputError
 
 
@@ -105,8 +106,8 @@ def analyze(task: BatchTask) -> Analyzed:
     document = analysis_document(state, [str(task.log)], task.aircraft, left_out)
     joint: dict[str, Any] = {}
     if state.model is not None:
-        joint = {name: _finite(getattr(state.model, name)) for name in _KEPT}
-        joint["airspeed_m_s"] = number(state.model.airspeed_m_s)
+        joint = {name: plain(getattr(state.model, name)) for name in _KEPT}
+        joint["airspeed_m_s"] = plain(state.model.airspeed_m_s)
     began = began_s(task.log)
     return Analyzed(str(task.log), task.aircraft_file, task.sha256, began, document, joint)
 
@@ -136,13 +137,6 @@ def failed(task: BatchTask, problems: Sequence[Problem]) -> Analyzed:
     return Analyzed(str(task.log), task.aircraft_file, task.sha256, nan, document)
 
 
-def _finite(values: np.ndarray[Any, Any]) -> list[Any]:
-    """Return nested lists of numbers for JSON, with None for a number that is not finite."""
-    if values.ndim > 1:
-        return [_finite(row) for row in values]
-    return [number(value) for value in values.tolist()]
-
-
 def keep(result: Analyzed, path: Path) -> None:
     """Write a result. The file is always whole, old or new.
 
@@ -151,7 +145,7 @@ def keep(result: Analyzed, path: Path) -> None:
     OSError
         The file cannot be written.
     """
-    kept = {**asdict(result), "began_s": number(result.began_s)}
+    kept = {**asdict(result), "began_s": plain(result.began_s)}
     write_atomically(path, json.dumps(kept, allow_nan=False))
 
 

@@ -16,8 +16,8 @@ from advisor.batch.trend import ChangeOverFlights
 from advisor.decision.pooling import DERIVATIVES, common_airspeed, posteriors_at_one_speed
 from advisor.exports.flights.found import PARAMETER_UNITS
 from advisor.oem.estimate import Estimate
-from advisor.report.document import NORMAL_95
 from advisor.words.printable import printable
+from advisor.words.quantiles import NORMAL_95
 
 _COLUMNS = ("Flight", "Log", "Begun, UTC", "Aircraft", "Accepted", "Result")
 

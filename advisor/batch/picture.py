@@ -5,7 +5,7 @@ from html import escape
 from math import floor, isfinite, log10
 from typing import NamedTuple
 
-from advisor.report.digits import signed, with_half
+from advisor.words.digits import signed, with_half
 
 WIDTH, HEIGHT = 320, 182
 _LEFT, _RIGHT, _TOP, _BOTTOM = 56, 312, 24, 144

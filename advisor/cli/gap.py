@@ -1,7 +1,7 @@
 """``advisor gap``: why the real aircraft does not fly like the simulator."""
 
 import json
-import os
+import shlex
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -57,7 +57,11 @@ _OF_A_PLAN = {
     metavar="SPEC",
     help="Your own simulator: linear, jsbsim:MODEL, fmu:FILE, python:module:factory or log:FILE.",
 )
-@click.option("--out", type=click.Path(path_type=Path), help="File for the improved simulator.")
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    help="File for the improved simulator; without it none is written.",
+)
 @export_option
 @click.option(
     "--why", is_flag=True, help="Print every decision on the way: its number, its limit, the margin."
@@ -128,8 +132,6 @@ def command(
         refuse_unwritable("--out", out)
         if aircraft_file is not None and out.resolve() == aircraft_file.resolve():
             raise ConfigurationError(f"--out: {out} is the aircraft file itself; name another file.")
-    elif not os.access(Path(), os.W_OK):
-        raise ConfigurationError("This folder cannot be written to: name a file in another with --out.")
     if specification is not None:
         aircraft = replace(aircraft, simulator=specification)
     orders = orders_of(exports, aircraft, [*logs, aircraft_file, out])
@@ -154,11 +156,10 @@ def command(
             simulator.close()
         if watched:
             click.echo("\r\033[K", nl=False, err=True)
-    improved = None
-    if found.verdict in ("effect", "parameters"):
-        place = out or Path(improved_name(found, aircraft_file))
-        with writing("--out", place):
-            improved = str(write_improved(found, compared.aircraft, place))
+    improvable = found.verdict in ("effect", "parameters")
+    if out is not None and improvable:
+        with writing("--out", out):
+            write_improved(found, compared.aircraft, out)
     elif out is not None:
         click.echo(
             f"{printable(str(out))} was not written: no cause was named and no number found wrong.", err=True
@@ -167,13 +168,17 @@ def command(
     as_given = replace(compared.aircraft, simulator=aircraft.simulator, elevator=aircraft.elevator)
     outcomes = write_exports(orders, found, as_given)
     if as_json:
-        document = gap_document(found, (), improved) | {"exports": listed(outcomes)}
-        click.echo(json.dumps(document, allow_nan=False, indent=1))
+        document = gap_document(found, (), str(out) if out and improvable else None)
+        click.echo(json.dumps(document | {"exports": listed(outcomes)}, allow_nan=False, indent=1))
     else:
         from advisor.report.console import PlainConsole
         from advisor.report.gap_screen import GapScreen
 
-        PlainConsole().print(GapScreen(found, improved and printable(improved), why))
+        written = printable(str(out)) if out and improvable else None
+        PlainConsole().print(GapScreen(found, written, why))
+    if improvable and out is None and not orders:
+        asked = [*sys.argv[1:], "--out", improved_name(found, aircraft_file)]
+        click.echo(f"To write the improved simulator: {printable(shlex.join(['advisor', *asked]))}", err=True)
     return USAGE if any(one.problem for one in outcomes) else 0
 
 

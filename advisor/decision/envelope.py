@@ -14,7 +14,7 @@ from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.record import Channel
 from advisor.flight.signals.trust import distrusted
-from advisor.words.rounding import distinct_texts
+from advisor.words.digits import distinct_texts
 
 NEEDED = ("elevator", "q")
 SAMPLES_PER_PERIOD = 8.0

@@ -5,8 +5,8 @@ import numpy as np
 from advisor.aircraft.aircraft import PARAMETERS
 from advisor.decision.information import Knowledge
 from advisor.decision.pooling import DERIVATIVES
-from advisor.decision.prediction import Z95
-from advisor.words.rounding import distinct_texts
+from advisor.words.digits import distinct_texts
+from advisor.words.quantiles import NORMAL_95
 
 SPOKEN = {"alpha": "angle of attack", "q": "pitch rate", "a_z": "normal acceleration"}
 """Predicted output to its name for people."""
@@ -58,7 +58,7 @@ def evidence(known: Knowledge) -> tuple[str, ...]:
     bands = ", ".join(f"{SPOKEN[name]} {band:.1f} %" for name, band in known.prediction_percent.items())
     named = ", ".join(f"{name} {100.0 * share[name]:.0f} %" for name in known.named)
     weak = ", ".join(
-        f"{PARAMETERS[k]} {known.posterior.theta[k]:.3g} ± {Z95 * known.posterior.std[k]:.2g}"
+        f"{PARAMETERS[k]} {known.posterior.theta[k]:.3g} ± {NORMAL_95 * known.posterior.std[k]:.2g}"
         for k in DERIVATIVES
         if PARAMETERS[k] not in known.named
     )

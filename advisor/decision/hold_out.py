@@ -8,10 +8,11 @@ import numpy as np
 from advisor.decision.consistency import consensus
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.pooling import DERIVATIVES, Shared, common_airspeed, posteriors_at_one_speed
-from advisor.decision.prediction import PREDICTED, Z95, Response, measured, response_to
+from advisor.decision.prediction import PREDICTED, Response, measured, response_to
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.record import Channel
 from advisor.oem.estimate import Estimate
+from advisor.words.quantiles import NORMAL_95
 
 FEWEST = 2
 """Fewest manoeuvres behind a prediction. A single manoeuvre has no confirmation of its errors."""
@@ -81,13 +82,13 @@ def _output(
     after_s = after_s[seen]
     other = np.interp(after_s, predicted.after_s, predicted.values[k])
     other -= np.interp(after_s, alone.after_s, alone.values[k])
-    half = Z95 * scale * np.interp(after_s, predicted.after_s, np.sqrt(np.maximum(variance, 0.0)))
+    half = NORMAL_95 * scale * np.interp(after_s, predicted.after_s, np.sqrt(np.maximum(variance, 0.0)))
     return PredictedOutput(
         t=fit.t[seen],
         measured=fit.measured[seen],
         predicted=fit.fitted[seen] + scale * other,
         half=half,
-        half_of_samples=np.hypot(half, Z95 * fit.noise),
+        half_of_samples=np.hypot(half, NORMAL_95 * fit.noise),
     )
 
 

@@ -17,9 +17,10 @@ from advisor.aircraft.aircraft import PARAMETERS, CampaignPlan
 from advisor.decision.consistency import consensus, widened
 from advisor.decision.history import CandidateManeuver, estimates_of
 from advisor.decision.pooling import Posterior, Shared, common_airspeed, disagreement, posteriors_at_one_speed
-from advisor.decision.prediction import Z95, Prediction, missed_percent, predict
+from advisor.decision.prediction import Prediction, missed_percent, predict
 from advisor.decision.tolerance import tolerances
 from advisor.flight.signals.messages import FloatArray
+from advisor.words.quantiles import NORMAL_95
 
 SURPRISING = 0.01
 """Probability below which a manoeuvre contradicts its prediction."""
@@ -83,7 +84,7 @@ class Knowledge:
         """
         known = np.isfinite(self.posterior.std) & np.isfinite(self.posterior.theta)
         known &= [name not in self.not_identifiable for name in PARAMETERS]
-        half = np.where(known, Z95 * np.where(known, self.posterior.std, 0.0) / self.tolerance, np.inf)
+        half = np.where(known, NORMAL_95 * np.where(known, self.posterior.std, 0.0) / self.tolerance, np.inf)
         return self.shares_with(self.prediction_percent, half)
 
     def shares_with(self, band_percent: Mapping[str, float], half: FloatArray) -> Mapping[str, float]:

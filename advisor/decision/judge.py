@@ -12,7 +12,7 @@ from advisor.decision.larger import Larger, larger_and_agreeing
 from advisor.decision.pooling import posteriors_at_one_speed
 from advisor.decision.verdict import ManeuverVerdict, Reason, RuleResult
 from advisor.oem.estimate import Estimate, NoEstimate
-from advisor.words.rounding import distinct_texts
+from advisor.words.digits import distinct_texts
 
 COLOURED = 0.5
 """Lag-1 correlation of a residual above which the residual counts as driven, by moving air or a model

@@ -22,11 +22,10 @@ from advisor.model.short_period import SPEED_EXPONENTS
 from advisor.oem.estimate import Estimate
 from advisor.oem.problem import OutputErrorProblem, Record, Signal, assemble
 from advisor.oem.surface import Servo
+from advisor.words.quantiles import NORMAL_95
 
 PREDICTED = ("alpha", "q", "a_z")
 """Outputs whose prediction is judged, where measured. The pitch angle follows from q."""
-Z95 = 1.959963984540054
-"""Half-width of a 95 % interval in standard deviations."""
 MOMENTS = 200
 """Number of times at which a response is compared: 50 ms apart in a record of 10 s."""
 MOST_INPUTS = 12
@@ -89,7 +88,7 @@ def _widest(slope: FloatArray, covariance: FloatArray, known: np.ndarray) -> flo
     if not np.all(np.isfinite(slope)) or np.any(slope[:, ~known]):
         return float("inf")
     variance = np.einsum("ni,ni->n", slope @ covariance, slope)
-    return Z95 * float(np.sqrt(max(np.max(variance, initial=0.0), 0.0)))
+    return NORMAL_95 * float(np.sqrt(max(np.max(variance, initial=0.0), 0.0)))
 
 
 def predict(

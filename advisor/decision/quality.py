@@ -22,7 +22,7 @@ from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.purpose import LEAST_PITCH_RATE_DEG_S
 from advisor.flight.signals.messages import FloatArray
 from advisor.oem.estimate import ChannelFit, Estimate, NoEstimate
-from advisor.words.rounding import distinct_texts
+from advisor.words.digits import distinct_texts
 
 WIDEST_PREDICTION_PERCENT = 25.0
 """Largest half-width of the predicted pitch rate's 95 % band, % of its peak. A standard deviation of 12 % in

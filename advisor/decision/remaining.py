@@ -10,10 +10,10 @@ from advisor.decision.history import CandidateManeuver
 from advisor.decision.information import Knowledge
 from advisor.decision.inverses import covariance_of, information_of
 from advisor.decision.pooling import DERIVATIVES, Posterior
-from advisor.decision.prediction import Z95
 from advisor.decision.scatter import SCATTER_FACTOR
 from advisor.decision.verdict import Remaining
 from advisor.flight.signals.messages import FloatArray
+from advisor.words.quantiles import NORMAL_95
 
 MOST = 50
 """Largest number that is predicted. Beyond it there is no end in sight."""
@@ -53,7 +53,7 @@ def share_after(known: Knowledge, next_covariance: FloatArray, more: int) -> flo
     with np.errstate(divide="ignore", invalid="ignore"):
         variance = 1.0 / (1.0 / known.posterior.std**2 + more / np.diag(next_covariance))
         variance[list(DERIVATIVES)] = np.diag(covariance)
-        half = np.nan_to_num(Z95 * np.sqrt(variance) / known.tolerance, nan=np.inf)
+        half = np.nan_to_num(NORMAL_95 * np.sqrt(variance) / known.tolerance, nan=np.inf)
     return max(known.shares_with(known.prediction.percent(covariance), half).values(), default=np.inf)
 
 

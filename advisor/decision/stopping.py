@@ -17,7 +17,7 @@ from advisor.decision.scatter import scatter_percent, scattered_most, window
 from advisor.decision.verdict import FlightTestVerdict, RuleProgress, limit_percent
 from advisor.decision.warnings import warnings
 from advisor.oem.estimate import Estimate
-from advisor.words.rounding import distinct_texts
+from advisor.words.digits import distinct_texts
 
 _NO_SCALE_PERCENT = 1000.0
 

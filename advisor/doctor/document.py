@@ -3,11 +3,12 @@
 from collections.abc import Sequence
 from typing import Any
 
-from advisor.doctor.examination import Examination, Limit
+from advisor.doctor.examination import Examination
 from advisor.doctor.expectation import RESPONSE_ALPHA_DEG, frequency
-from advisor.report.document import NORMAL_95, number
-from advisor.report.text import UNITS
+from advisor.words.plain import picked, plain
 from advisor.words.problems import Problem
+from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import PARAMETERS as QUANTITIES
 
 SCHEMA = "advisor.doctor/1"
 
@@ -26,7 +27,7 @@ def doctor_document(
     """
     if findings is None:
         assert problem is not None
-        told = {"code": problem.code, "text": problem.text, "fix": problem.fix}
+        told = plain(problem)
         return {
             "schema": SCHEMA,
             "usable": False,
@@ -40,80 +41,36 @@ def doctor_document(
             "expected_std": None,
             "expected_ci95": None,
         }
-    vehicle, elevator, alpha, clocks = findings.vehicle, findings.elevator, findings.alpha, findings.clocks
+    elevator = findings.elevator
     stopping = [limit for limit in findings.limits if limit.stops]
     expectation = findings.expectation
     return {
         "schema": SCHEMA,
         "usable": not stopping,
         "verdict": findings.verdict,
-        "problems": [{"code": limit.code, "text": limit.text, "fix": limit.fix} for limit in stopping],
-        "vehicle": vehicle
-        and {
-            "system": vehicle.system,
-            "component": vehicle.component,
-            "autopilot": vehicle.autopilot,
-            "firmware": vehicle.firmware,
-        },
-        "messages": [
-            {
-                "name": arrival.name,
-                "count": arrival.count,
-                "rate_hz": number(arrival.rate_hz),
-                "lowest_hz": number(arrival.lowest_hz),
-                "jitter_ms": number(arrival.jitter_ms),
-                "largest_gap_s": number(arrival.largest_gap_s),
-                "renewed_hz": number(arrival.renewed_hz),
-            }
-            for arrival in findings.messages
-        ],
-        "clocks": clocks
-        and {
-            "boots": clocks.boots,
-            "drift_percent": number(clocks.drift_percent),
-            "arrival_jitter_ms": number(clocks.arrival_jitter_ms),
-            "strayed": dict(clocks.strayed),
-        },
-        "elevator": elevator
-        and {
-            "output": elevator.outputs[0],
-            "outputs": list(elevator.outputs),
-            "resolution_deg": number(elevator.resolution_deg),
-            "calibrated": elevator.calibrated,
-        },
-        "alpha": alpha
-        and {
-            "source": alpha.source,
-            "provenance": alpha.provenance,
-            "renewed_hz": number(alpha.renewed_hz),
-        },
-        "limits": [_limit(limit) for limit in findings.limits],
+        "problems": [picked(limit, "code text fix") for limit in stopping],
+        "vehicle": picked(findings.vehicle, "system component autopilot firmware"),
+        "messages": plain(findings.messages),
+        "clocks": plain(findings.clocks),
+        "elevator": elevator and {"output": elevator.outputs[0], **plain(elevator)},
+        "alpha": plain(findings.alpha),
+        "limits": plain(findings.limits),
         "notes": list(findings.notes),
         "next": list(commands),
-        "expected_std": expectation and {name: number(std) for name, std in expectation.std.items()},
+        "expected_std": expectation and plain(expectation.std),
         "expected_ci95": expectation
         and {
-            name: {"half": number(NORMAL_95 * std), "unit": UNITS[name].replace("deg", "rad")}
+            name: {"half": plain(NORMAL_95 * std), "unit": QUANTITIES[name].unit.replace("deg", "rad")}
             for name, std in expectation.std.items()
         },
         "expected_for": expectation
         and {
             "input": "3-2-1-1",
-            "unit_s": number(expectation.unit_s),
-            "amplitude_deg": number(expectation.amplitude_deg),
+            "unit_s": plain(expectation.unit_s),
+            "amplitude_deg": plain(expectation.amplitude_deg),
             "alpha_change_deg": RESPONSE_ALPHA_DEG,
-            "noise": {name: number(std) for name, std in findings.assumed.noise.items()},
+            "noise": plain(findings.assumed.noise),
             "model": findings.assumed.source,
-            "natural_frequency_rad_s": number(frequency(findings.assumed.model)),
+            "natural_frequency_rad_s": plain(frequency(findings.assumed.model)),
         },
-    }
-
-
-def _limit(limit: Limit) -> dict[str, Any]:
-    return {
-        "code": limit.code,
-        "text": limit.text,
-        "fix": limit.fix,
-        "stops": limit.stops,
-        "std_ratio": {name: number(ratio) for name, ratio in limit.std_ratio.items()},
     }

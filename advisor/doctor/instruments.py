@@ -9,8 +9,8 @@ from advisor.flight.signals.track import ChannelStatus
 from advisor.flight.signals.trust import Distrust
 from advisor.flight.vehicle.surfaces import joined_numbers
 from advisor.flight.vehicle.vehicle import Vehicle
+from advisor.words.digits import distinct_texts
 from advisor.words.problems import Problem
-from advisor.words.rounding import distinct_texts
 
 COARSE_DEG = 0.5
 """Resolution of the command, deg, above which small steps are not reproduced as steps."""

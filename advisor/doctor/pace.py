@@ -10,8 +10,8 @@ from advisor.doctor.expectation import Assumed, ExpectedErrors, expect, frequenc
 from advisor.doctor.survey import Arrival
 from advisor.flight.stream.suitability import SLOWEST_HZ
 from advisor.flight.vehicle.vehicle import Vehicle
+from advisor.words.digits import distinct_texts
 from advisor.words.mends import GOOD_HZ, Carrier
-from advisor.words.rounding import distinct_texts
 
 FEWEST_PER_PERIOD = 6.0
 """Samples in one natural period below which the short period cannot be followed."""

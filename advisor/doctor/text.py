@@ -4,16 +4,17 @@ import math
 from collections.abc import Sequence
 
 from rich.console import Console, ConsoleOptions, RenderResult
-from rich.table import Table
 from rich.text import Text
 
 from advisor.aircraft.aircraft import PARAMETERS
 from advisor.doctor.examination import Examination, Limit
 from advisor.doctor.expectation import frequency
 from advisor.doctor.instruments import STRAYED_SHARE
-from advisor.report.document import NORMAL_95
-from advisor.report.text import UNITS, shown
+from advisor.report.result_rows import message_table
+from advisor.words.plain import plain
 from advisor.words.printable import printable
+from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import PARAMETERS as QUANTITIES
 
 _SIGNS = {"ready": "✓", "usable with limits": "!", "not usable": "✗"}
 _STYLES = {"ready": "bold green", "usable with limits": "bold yellow", "not usable": "bold red"}
@@ -38,7 +39,7 @@ class ExaminationText:
         yield Text(self._alpha())
         yield Text(self._clocks())
         yield Text()
-        yield self._messages()
+        yield message_table("messages", plain(found.messages)).on_console()
         if found.expectation is not None:
             yield Text()
             yield Text(
@@ -48,8 +49,9 @@ class ExaminationText:
                 "Half of the 95 % interval (1.96 standard deviations):"
             )
             for name in PARAMETERS:
-                half = shown(name, NORMAL_95 * found.expectation.std[name])
-                unit = UNITS[name].removeprefix("1") if UNITS[name] == "1" else UNITS[name]
+                quantity = QUANTITIES[name]
+                half = NORMAL_95 * found.expectation.std[name] * quantity.factor
+                unit = "" if quantity.unit == "1" else quantity.unit
                 said = f"± {half:.2g} {unit}" if math.isfinite(half) else "not told by these rates"
                 yield Text(f"  {name:<10} {said}".rstrip())
         if self._commands:
@@ -87,22 +89,6 @@ class ExaminationText:
             f"{clocks.arrival_jitter_ms:.1f} ms, {clocks.boots} power-on{'s' if clocks.boots > 1 else ''}"
         )
 
-    def _messages(self) -> Table:
-        table = Table(box=None, pad_edge=False)
-        table.add_column("message", no_wrap=True)
-        for column in ("rate Hz", "lowest Hz", "renewed Hz", "jitter ms", "gap s"):
-            table.add_column(column, justify="right", no_wrap=True)
-        for arrival in self._findings.messages:
-            table.add_row(
-                arrival.name,
-                _digits(arrival.rate_hz, 1),
-                _digits(arrival.lowest_hz, 1),
-                _digits(arrival.renewed_hz, 1),
-                _digits(arrival.jitter_ms, 1),
-                _digits(arrival.largest_gap_s, 3),
-            )
-        return table
-
 
 def _told(limit: Limit) -> list[Text]:
     """Return the lines of a defect: its text, its remedy and its cost."""
@@ -112,7 +98,3 @@ def _told(limit: Limit) -> list[Text]:
     if notable:
         lines.append(Text(f"    costs: expected errors times {', '.join(notable)}"))
     return lines
-
-
-def _digits(value: float, digits: int) -> str:
-    return f"{value:.{digits}f}" if math.isfinite(value) else "-"

@@ -3,9 +3,7 @@
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-
-_WHITE_BOUND = 1.96
-"""Standard deviations that hold 95 % of a normal distribution."""
+from advisor.words.quantiles import NORMAL_95
 
 HIGH_CORRELATION = 0.9
 """Absolute correlation of two parameters above which a note says that the input moved both alike."""
@@ -48,7 +46,7 @@ def white_noise_bound(samples: int) -> float:
     samples
         Number N of samples, at least 1.
     """
-    return float(_WHITE_BOUND / np.sqrt(samples))
+    return float(NORMAL_95 / np.sqrt(samples))
 
 
 def correlation_matrix(covariance: FloatArray) -> FloatArray:

@@ -22,8 +22,8 @@ from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.instruments.atmosphere import AirFlown
 from advisor.model.mil_f_8785c import CATEGORIES, LevelFound, ShortPeriodFound, ShortPeriodLimits, assess
 from advisor.oem.estimate import Estimate
+from advisor.words.quantiles import NORMAL_95
 
-NORMAL_95 = 1.959963984540054
 UNITS: Mapping[str, str] = {
     "natural_frequency": "rad/s",
     "damping": "1",

@@ -10,6 +10,7 @@ from advisor.oem.instruments import KNOWN_TO, Identified
 from advisor.oem.missing import in_words, price
 from advisor.oem.prepare import Prepared
 from advisor.oem.solution import Solution
+from advisor.words.quantiles import NORMAL_95
 
 N = len(PARAMETERS)
 NOTED_LAG_S = 0.05
@@ -64,7 +65,7 @@ def _outputs(solution: Solution, prepared: Prepared) -> str:
 
 def _instrument(identified: Identified, solution: Solution) -> str:
     """Return a sentence about one instrument, with the line that puts its value into the aircraft file."""
-    value, half = identified.value, 1.96 * identified.std
+    value, half = identified.value, NORMAL_95 * identified.std
     match identified.instrument.name:
         case "servo_lag_s":
             return (

@@ -14,8 +14,8 @@ from advisor.aircraft.aircraft import PARAMETERS
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import N_SHARED, SHARED
 from advisor.oem.solution import Solution
+from advisor.words.quantiles import NORMAL_95
 
-NORMAL_95 = 1.959963984540054
 _DERIVATIVES = tuple(name for name in SHARED if name in PARAMETERS)
 
 

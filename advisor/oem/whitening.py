@@ -1,14 +1,11 @@
 """The whitening filter of noise that is white plus a first-order autoregression.
 
-With Γ = L·Lᵀ the autocovariance of
+    ν_k = w_k + x_k,   x_{k+1} = φ·x_k + e_k,   var x = 1,   var w = share
 
-the innovations of a scalar Kalman filter over ν, each over its standard deviation, are L⁻¹·ν. The source is
-Harvey, *Forecasting, Structural Time Series Models and the Kalman Filter*, section 3.4. The filter starts
-with the stationary variance of x, so it needs no time to settle.
-
-the innovations of a scalar Kalman filter over ν, each over its standard deviation, are L⁻¹·ν
-(Harvey, *Forecasting, Structural Time Series Models and the Kalman Filter*, section 3.4). The filter
-begins with the stationary variance of x, so nothing has to settle.
+With Γ = L·Lᵀ the autocovariance of ν, the innovations of a scalar Kalman filter over ν, each over its
+standard deviation, are L⁻¹·ν. The source is Harvey, *Forecasting, Structural Time Series Models and the
+Kalman Filter*, section 3.4. The filter starts with the stationary variance of x, so it needs no time to
+settle.
 """
 
 from dataclasses import dataclass

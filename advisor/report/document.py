@@ -1,21 +1,21 @@
 """The ``advisor.analyze/1`` document for scripts, in SI units, with None in place of missing values and
 NaN."""
 
-import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
 from advisor.aircraft.aircraft import PARAMETERS, Aircraft
 from advisor.campaign.state import CampaignState, JudgedManeuver
-from advisor.decision.verdict import FlightTestVerdict, RuleProgress, RuleResult
+from advisor.decision.verdict import FlightTestVerdict, Remaining
 from advisor.flight.stream.flights import FlightHeard
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.report.qualities import coefficients_of, qualities_document, qualities_of
+from advisor.words.plain import picked, plain
 from advisor.words.problems import Problem
+from advisor.words.quantiles import NORMAL_95
 
 SCHEMA = "advisor.analyze/1"
-NORMAL_95 = 1.959963984540054
 
 
 def analysis_document(
@@ -51,115 +51,87 @@ def analysis_document(
     if several:
         for flight, log in enumerate(logs):
             log["again"] = heard[flight].again if flight in heard else 0
-            log["problems"] = [_problem(problem) for problem in left_out.get(flight, ())]
+            log["problems"] = plain(left_out.get(flight, ()))
     return {
         "schema": SCHEMA,
         "usable": len(left_out) < len(files),
         "problems": [
-            {**_problem(problem), **of_log(flight)}
+            {**plain(problem), **of_log(flight)}
             for flight, found in sorted(left_out.items())
             for problem in found
         ],
         "log": {**logs[0], "notes": read},
         **({"logs": logs, "notes": list(notes)} if several else {}),
-        "maneuvers": [{**_maneuver(m), **of_log(m.maneuver.flight)} for m in state.maneuvers]
-        if state
-        else [],
-        "flight_test": _flight_test(state.flight_test) if state else None,
-        "model": _model(state.model) if state else None,
-        "coefficients": {
-            name: {"value": number(coefficient.value), "std": number(coefficient.std)}
-            for name, coefficient in coefficients_of(state, aircraft.reference).items()
-        }
-        if state
-        else {},
-        "flying_qualities": qualities_document(qualities_of(state, aircraft.reference)) if state else None,
-        "estimate_from": list(state.estimate_from) if state else [],
-        "activity": [
-            {
-                "start_boot_s": number(activity.start_s),
-                "end_boot_s": number(activity.end_s),
-                "reason": activity.reason,
-                "text": activity.text,
-                "boot": activity.boot,
-                **of_log(activity.flight),
-            }
-            for activity in (state.activity if state else ())
-        ],
-        "notices": list(state.notices) if state else [],
+        **_OF_NO_CAMPAIGN,
+        **(_campaign(state, aircraft, of_log) if state else {}),
     }
 
 
-def _problem(problem: Problem) -> dict[str, Any]:
-    return {"code": problem.code, "text": problem.text, "fix": problem.fix}
+_OF_NO_CAMPAIGN: Mapping[str, Any] = {
+    "maneuvers": [], "flight_test": None, "model": None, "coefficients": {}, "flying_qualities": None,
+    "estimate_from": [], "activity": [], "notices": [],
+}  # fmt: skip
+"""Keys and values of a document without a readable log."""
+
+
+def _campaign(
+    state: CampaignState, aircraft: Aircraft, of_log: Callable[[int], dict[str, Any]]
+) -> dict[str, Any]:
+    found = coefficients_of(state, aircraft.reference)
+    return {
+        "maneuvers": [{**_maneuver(m), **of_log(m.maneuver.flight)} for m in state.maneuvers],
+        "flight_test": _flight_test(state.flight_test),
+        "model": _model(state.model),
+        "coefficients": {name: picked(one, "value std") for name, one in found.items()},
+        "flying_qualities": qualities_document(qualities_of(state, aircraft.reference)),
+        "estimate_from": list(state.estimate_from),
+        "activity": [
+            {
+                "start_boot_s": plain(one.start_s), "end_boot_s": plain(one.end_s),
+                **picked(one, "reason text boot"), **of_log(one.flight),
+            }
+            for one in state.activity
+        ],
+        "notices": list(state.notices),
+    }  # fmt: skip
 
 
 def _log(heard: FlightHeard | None, file: str) -> dict[str, Any]:
-    vehicle = heard.vehicle if heard else None
+    channels = heard.channels.items() if heard else ()
     return {
         "file": file,
-        "duration_s": number(heard.duration_s) if heard else None,
-        "vehicle": vehicle
-        and {
-            "system": vehicle.system,
-            "component": vehicle.component,
-            "autopilot": vehicle.autopilot,
-            "firmware": vehicle.firmware,
-        },
-        "channels": {
-            name: {
-                "source": channel.source,
-                "provenance": channel.provenance,
-                "rate_hz": number(channel.rate_hz),
-                "largest_gap_s": number(channel.largest_gap_s),
-            }
-            for name, channel in (heard.channels.items() if heard else ())
-        },
+        "duration_s": plain(heard.duration_s) if heard else None,
+        "vehicle": picked(heard and heard.vehicle, "system component autopilot firmware"),
+        "channels": {name: picked(one, "source provenance rate_hz largest_gap_s") for name, one in channels},
     }
 
 
 def _maneuver(judged: JudgedManeuver) -> dict[str, Any]:
-    span, verdict = judged.maneuver.span, judged.verdict
+    maneuver, span, verdict = judged.maneuver, judged.maneuver.span, judged.verdict
     estimate = judged.estimate if isinstance(judged.estimate, Estimate) else None
+    fits = estimate.fits[0].items() if estimate else ()
+    prediction = estimate.prediction.items() if estimate else ()
     return {
-        "number": judged.maneuver.number,
-        "boot": judged.maneuver.boot,
-        "start_boot_s": number(span.start_s),
-        "end_boot_s": number(span.end_s),
-        "record_from_boot_s": number(span.record_from_s),
-        "last_step_boot_s": number(span.last_step_s),
+        **picked(maneuver, "number boot mode"),
+        "start_boot_s": plain(span.start_s),
+        "end_boot_s": plain(span.end_s),
+        "record_from_boot_s": plain(span.record_from_s),
+        "last_step_boot_s": plain(span.last_step_s),
         "input": span.kind,
-        "mode": judged.maneuver.mode,
-        "verdict": "accepted" if verdict.accepted else "rejected",
-        "sentence": verdict.sentence,
-        "reasons": [
-            {"code": r.code, "text": r.text, "value": number(r.value), "limit": number(r.limit)}
-            for r in verdict.reasons
-        ],
-        "cautions": list(verdict.cautions),
-        "excluded_because": judged.excluded_because,
-        "notes": list(judged.notes),
         "closed_by": span.closed_by,
-        "cost": number(estimate.cost) if estimate else None,
-        "fit": {
-            name: {"rms": number(fit.rms), "tic": number(fit.tic), "r2": number(fit.r2)}
-            for name, fit in (estimate.fits[0].items() if estimate else ())
-        },
+        "verdict": "accepted" if verdict.accepted else "rejected",
+        **picked(verdict, "sentence reasons cautions rules"),
+        **picked(judged, "excluded_because notes"),
+        "cost": plain(estimate.cost) if estimate else None,
+        "fit": {name: picked(fit, "rms tic r2") for name, fit in fits},
         "estimates": parameters(judged.estimate),
         "outputs": list(estimate.outputs) if estimate else [],
         "filter_error": estimate.filtered if estimate else False,
         "instruments": instruments(estimate),
-        "prediction_percent": {
-            name: number(100.0 * share) for name, share in (estimate.prediction.items() if estimate else ())
-        },
+        "prediction_percent": {name: plain(100.0 * share) for name, share in prediction},
         "not_identifiable": dict(estimate.not_identifiable) if estimate else {},
         "identifiability": identifiability(estimate),
-        "rules": {name: _rule(result) for name, result in verdict.rules.items()},
     }
-
-
-def _rule(result: RuleResult) -> dict[str, Any]:
-    return {"accepted": result.accepted, "limit": number(result.limit)}
 
 
 def parameters(estimate: Estimate | NoEstimate | None) -> dict[str, Any] | None:
@@ -170,7 +142,7 @@ def parameters(estimate: Estimate | NoEstimate | None) -> dict[str, Any] | None:
     return {
         name: {"value": None, "std": None, "std_cr": None, "reason": estimate.not_identifiable[name]}
         if name in estimate.not_identifiable
-        else {"value": number(value), "std": number(std), "std_cr": number(std_cr)}
+        else {"value": plain(value), "std": plain(std), "std_cr": plain(std_cr)}
         for name, value, std, std_cr in zip(
             PARAMETERS, estimate.theta, estimate.std, estimate.std_cr, strict=True
         )
@@ -179,8 +151,7 @@ def parameters(estimate: Estimate | NoEstimate | None) -> dict[str, Any] | None:
 
 def instruments(estimate: Estimate | None) -> dict[str, Any]:
     """Return parameters of the instruments that were estimated with the derivatives, by name."""
-    found = estimate.instruments if estimate else ()
-    return {x.name: {"value": number(x.value), "std": number(x.std)} for x in found}
+    return {x.name: picked(x, "value std") for x in (estimate.instruments if estimate else ())}
 
 
 def identifiability(estimate: Estimate | None) -> dict[str, Any] | None:
@@ -188,51 +159,33 @@ def identifiability(estimate: Estimate | None) -> dict[str, Any] | None:
     if estimate is None:
         return None
     return {
-        "condition": number(estimate.condition),
+        "condition": plain(estimate.condition),
         "correlated": [
-            {"parameters": [first, second], "correlation": number(value)}
+            {"parameters": [first, second], "correlation": plain(value)}
             for first, second, value in estimate.correlated
         ],
     }
 
 
 def _flight_test(verdict: FlightTestVerdict) -> dict[str, Any]:
+    following = verdict.next
     return {
-        "rule": verdict.rule,
-        "decision": verdict.decision,
-        "sentence": verdict.sentence,
-        "criterion_percent": number(verdict.criterion_percent),
-        "limit_percent": verdict.limit_percent,
-        "stopped_at": verdict.stopped_at,
+        **picked(verdict, "rule decision sentence criterion_percent limit_percent stopped_at warnings"),
         "by_rule": {
-            name: {
-                "stopped_at": progress.stopped_at,
-                "history_percent": [number(value) for value in progress.history_percent],
-                **_held_to(progress),
-            }
-            for name, progress in verdict.by_rule.items()
+            # Only the rule ``information`` holds quantities to their tolerances.
+            name: picked(one, "stopped_at history_percent")
+            | (
+                picked(one, "prediction_percent parameter_percent")
+                if one.prediction_percent or one.parameter_percent
+                else {}
+            )
+            for name, one in verdict.by_rule.items()
         },
-        "next": verdict.next
+        "next": following
         and {
-            "advice": verdict.next.advice,
-            "holding_back": verdict.next.holding_back,
-            "remaining_maneuvers": {
-                "median": verdict.next.remaining and verdict.next.remaining.median,
-                "p90": verdict.next.remaining and verdict.next.remaining.p90,
-            },
+            **picked(following, "advice holding_back"),
+            "remaining_maneuvers": plain(following.remaining or Remaining(None, None)),
         },
-        "warnings": list(verdict.warnings),
-    }
-
-
-def _held_to(progress: RuleProgress) -> dict[str, Any]:
-    """Return the quantities of the rule ``information`` with their tolerances; nothing for the other
-    rules."""
-    if not progress.prediction_percent and not progress.parameter_percent:
-        return {}
-    return {
-        "prediction_percent": dict(progress.prediction_percent),
-        "parameter_percent": dict(progress.parameter_percent),
     }
 
 
@@ -247,13 +200,9 @@ def _model(model: Estimate | None) -> dict[str, Any] | None:
             half = NORMAL_95 * entry["std"]
             ci95 = [entry["value"] - half, entry["value"] + half]
         document[name] = {**entry, "ci95": ci95}
-    document["reference_airspeed_m_s"] = number(model.airspeed_m_s)
-    document["identifiability"] = identifiability(model)
-    document["instruments"] = instruments(model)
-    document["notes"] = list(model.notes)
-    return document
-
-
-def number(value: float | None) -> float | None:
-    """Return a number that JSON can hold: None for a missing, infinite or undefined value."""
-    return None if value is None or not math.isfinite(value) else float(value)
+    return document | {
+        "reference_airspeed_m_s": plain(model.airspeed_m_s),
+        "identifiability": identifiability(model),
+        "instruments": instruments(model),
+        "notes": list(model.notes),
+    }

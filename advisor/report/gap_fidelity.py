@@ -1,7 +1,6 @@
 """Size of the gap: the error along the worst manoeuvre, and standard measures of fidelity, before and
 after."""
 
-import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -13,10 +12,8 @@ from rich.text import Text
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.result import Diagnosis, Trace
 from advisor.report.gap_sizes import short
+from advisor.words.quantities import CHANNELS
 
-_DEG = math.degrees(1.0)
-_UNITS = {"alpha": ("deg", _DEG), "q": ("deg/s", _DEG), "a_z": ("m/s²", 1.0), "theta": ("deg", _DEG)}
-_LETTERS = {"alpha": "α", "q": "q", "a_z": "a_z", "theta": "θ"}
 _TICKS = "▁▂▃▄▅▆▇█"
 _LEGEND = (
     "Theil: below 0.25 is called acceptable. Of error, after: per cent bias/variance/covariance. "
@@ -56,7 +53,7 @@ def _yardsticks(d: Diagnosis) -> Table:
         )  # fmt: skip
         split = "/".join(f"{100 * share:.0f}" for share in (after.bias, after.variance, after.covariance))
         table.add_row(
-            _LETTERS[channel],
+            CHANNELS[channel].symbol,
             f"{short(d.gap.by_channel[channel])} → {short(d.gap.by_channel_after[channel])}",
             f"{before.theil:.3f} → {after.theil:.3f}", split, f"{before.r2:.4f} → {after.r2:.4f}", inside,
         )  # fmt: skip
@@ -64,12 +61,12 @@ def _yardsticks(d: Diagnosis) -> Table:
 
 
 def _pair(trace: Trace, width: int) -> tuple[str, str]:
-    unit, factor = _UNITS[trace.channel]
-    before, after = (factor * np.abs(trace.measured - y) for y in (trace.before, trace.after))
+    quantity = CHANNELS[trace.channel]
+    before, after = (quantity.factor * np.abs(trace.measured - y) for y in (trace.before, trace.after))
     top = max(float(np.max(before)), float(np.max(after)), 1e-12)
     return (
-        f"{_LETTERS[trace.channel]:>4s} before {_bars(before, top, width)}  {_peak(before)} {unit}",
-        f"     after  {_bars(after, top, width)}  {_peak(after)} {unit}",
+        f"{quantity.symbol:>4s} before {_bars(before, top, width)}  {_peak(before)} {quantity.unit}",
+        f"     after  {_bars(after, top, width)}  {_peak(after)} {quantity.unit}",
     )
 
 

@@ -18,6 +18,7 @@ from advisor.gap.result import spelled
 from advisor.gap.verdict.notes import unusual_signs
 from advisor.report.console import PlainConsole
 from advisor.report.gap_sizes import in_units
+from advisor.words.plain import picked, plain
 
 _OF_LINEAR = {"M_alpha2": "M_alpha", "Z_alpha2": "Z_alpha", "M_delta2": "M_delta_e"}
 
@@ -143,12 +144,9 @@ def _document(found: Sequence[Foreseen], notes: Sequence[str]) -> dict[str, obje
         "schema": "advisor.foresee/1",
         "effects": [
             {
-                "effect": f.effect,
-                "parameter": f.parameter,
-                "smallest": f.smallest if math.isfinite(f.smallest) else None,
-                "share_of_linear": f.share,
-                "add": f.add,
-                "confused_with": [{"effect": name, "cosine": c} for name, c in f.confused_with],
+                **picked(f, "effect parameter smallest add"),
+                "share_of_linear": plain(f.share),
+                "confused_with": [{"effect": name, "cosine": plain(c)} for name, c in f.confused_with],
             }
             for f in found
         ],

@@ -1,6 +1,5 @@
 """Gap in the user's own simulator, and its qualification as a training simulator, as text."""
 
-import math
 from collections.abc import Iterator
 
 from rich import box
@@ -11,11 +10,9 @@ from rich.text import Text
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.gap.result import InSimulator, Qualification, spelled
 from advisor.report.gap_sizes import short
+from advisor.words.quantities import CHANNELS, Quantity
 
-_UNITS = {
-    "alpha": ("α", "deg", math.degrees(1.0)), "q": ("q", "deg/s", math.degrees(1.0)),
-    "a_z": ("a_z", "g", 1.0 / GRAVITY_M_S2), "theta": ("θ", "deg", math.degrees(1.0)),
-}  # fmt: skip
+_QUANTITIES = CHANNELS | {"a_z": Quantity("a_z", "g", 1.0 / GRAVITY_M_S2)}
 _LEGEND = (
     "Largest error in any manoeuvre. Limits: 14 CFR Part 60 App. A, 2.c.10, short period: pitch or pitch "
     "rate, and normal acceleration."
@@ -48,11 +45,19 @@ def _table(found: InSimulator) -> Table:
     for heading in ("", "limit", "before", "after", "", "Theil"):
         table.add_column(heading, justify="right" if heading else "left", no_wrap=True)
     for q in found.qualification:
-        letter, unit, factor = _UNITS[q.channel]
+        quantity = _QUANTITIES[q.channel]
+        factor = quantity.factor
         after = "" if q.after is None else f"{factor * q.after:.2f}"
         theil = f"{q.theil[0]:.3f}" + ("" if q.theil[1] is None else f" → {q.theil[1]:.3f}")
         limit = "" if q.limit is None else f"±{factor * q.limit:.2g}"
-        table.add_row(f"{letter}, {unit}", limit, f"{factor * q.before:.2f}", after, _in_words(q), theil)
+        table.add_row(
+            f"{quantity.symbol}, {quantity.unit}",
+            limit,
+            f"{factor * q.before:.2f}",
+            after,
+            _in_words(q),
+            theil,
+        )
     return table
 
 

@@ -11,6 +11,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.candidates.known import less_of_the_servo, together
 from advisor.gap.result import Diagnosis
 from advisor.process.atomic_file import write_atomically
+from advisor.words.plain import plain
 
 
 def improved_file(diagnosis: Diagnosis, aircraft: Aircraft) -> Mapping[str, Any]:
@@ -41,7 +42,7 @@ def _beyond(content: Mapping[str, Any], usual: Mapping[str, Any]) -> dict[str, A
 
 def write_improved(diagnosis: Diagnosis, aircraft: Aircraft, path: Path) -> Path:
     """Write the improved simulator as a file that ``advisor`` and ``python -m sim`` load."""
-    text = yaml.safe_dump(_plain(improved_file(diagnosis, aircraft)), sort_keys=False, allow_unicode=True)
+    text = yaml.safe_dump(plain(improved_file(diagnosis, aircraft)), sort_keys=False, allow_unicode=True)
     head = "# Written by `advisor gap`: the simulator with the findings of the flight.\n"
     write_atomically(path, head + text)
     return path
@@ -56,12 +57,3 @@ def improved_name(diagnosis: Diagnosis, aircraft_file: Path | None) -> str:
 
 def _digits(x: float) -> float:
     return float(f"{x:.6g}")
-
-
-def _plain(value: Any) -> Any:
-    """Return tuples as lists, so that the file reads as people write it."""
-    if isinstance(value, Mapping):
-        return {k: _plain(v) for k, v in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(v) for v in value]
-    return value

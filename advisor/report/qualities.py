@@ -9,6 +9,8 @@ from advisor.flight.instruments.atmosphere import AirFlown, air_flown
 from advisor.model.mil_f_8785c import CATEGORIES, MANNED, SOURCE
 from advisor.oem.coefficients import CONVENTION, Coefficient, coefficients
 from advisor.oem.flying_qualities import UNITS, FlyingQualities, flying_qualities
+from advisor.words.plain import picked
+from advisor.words.quantiles import NORMAL_95
 
 NAMES: Mapping[str, str] = {
     "natural_frequency": "short period ω_n",
@@ -44,7 +46,7 @@ def qualities_document(found: FlyingQualities | None) -> dict[str, Any] | None:
         return None
     return {
         **{
-            name: {"value": one.value, "std": one.std, "ci95": list(one.ci95), "unit": UNITS[name]}
+            name: {**picked(one, "value std ci95"), "unit": UNITS[name]}
             for name, one in found.qualities.items()
         },
         "left_out": dict(found.left_out),
@@ -75,7 +77,8 @@ def quality_lines(found: FlyingQualities, coefficients: Mapping[str, Coefficient
     """Yield flying qualities and coefficients, one on each line, with half the 95 % interval."""
     yield f"Flying qualities at {_speeds(found)}:"
     for name, one in found.qualities.items():
-        yield f"  {NAMES[name]:<17} {one.value:8.4g} ± {1.96 * one.std:.2g} {UNITS[name].replace('1', '')}"
+        half = NORMAL_95 * one.std
+        yield f"  {NAMES[name]:<17} {one.value:8.4g} ± {half:.2g} {UNITS[name].replace('1', '')}"
     for name, why in found.left_out.items():
         yield f"  {NAMES[name]:<17} not given: {why}"
     if found.levels:
@@ -84,7 +87,9 @@ def quality_lines(found: FlyingQualities, coefficients: Mapping[str, Coefficient
         yield f"  {MANNED}"
     if coefficients:
         yield f"Coefficients {CONVENTION}:"
-        listed = "  ".join(f"{name} {c.value:.4g} ± {1.96 * c.std:.2g}" for name, c in coefficients.items())
+        listed = "  ".join(
+            f"{name} {c.value:.4g} ± {NORMAL_95 * c.std:.2g}" for name, c in coefficients.items()
+        )
         yield f"  {listed}"
     yield f"note: {found.air.sentence[0].upper()}{found.air.sentence[1:]}."
 

@@ -1,8 +1,7 @@
 """The analysis as text for people: angles in degrees, one sentence for each verdict, stop or continue at the
 end."""
 
-import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import groupby
 
 from rich.console import Console, ConsoleOptions, RenderResult
@@ -13,37 +12,11 @@ from advisor.aircraft.aircraft import PARAMETERS, Aircraft
 from advisor.campaign.state import CampaignState, JudgedManeuver
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.flight.maneuvers.events import Activity
-from advisor.flight.signals.track import ChannelStatus
 from advisor.oem.estimate import Estimate
+from advisor.report import table as report_table
 from advisor.report.qualities import coefficients_of, qualities_of, quality_lines
+from advisor.report.result_rows import ParameterRow, channel_table, parameter_row
 from advisor.words.vehicle_time import CLOCK, clock
-
-SYMBOLS = {
-    "Z_0": "Z_0",
-    "Z_alpha": "Z_α",
-    "Z_q": "Z_q",
-    "Z_delta_e": "Z_δe",
-    "M_0": "M_0",
-    "M_alpha": "M_α",
-    "M_q": "M_q",
-    "M_delta_e": "M_δe",
-}
-UNITS = {
-    "Z_0": "deg/s",
-    "Z_alpha": "1/s",
-    "Z_q": "1",
-    "Z_delta_e": "1/s",
-    "M_0": "deg/s²",
-    "M_alpha": "1/s²",
-    "M_q": "1/s",
-    "M_delta_e": "1/s²",
-}
-"""Parameter to its unit for people. Only Z_0 and M_0 carry an angle."""
-
-
-def shown(parameter: str, value: float) -> float:
-    """Return a parameter's value in the unit of ``UNITS``, from SI."""
-    return math.degrees(value) if parameter in ("Z_0", "M_0") else value
 
 
 def maneuver_line(judged: JudgedManeuver) -> str:
@@ -88,6 +61,14 @@ def next_line(verdict: FlightTestVerdict) -> str:
     return "; ".join(filter(None, (verdict.next.advice, more)))
 
 
+def _cells(row: ParameterRow) -> tuple[str, ...]:
+    known = "" if row.prior is None else f"{row.prior:.4g}"
+    if row.reason:
+        return row.quantity.symbol, "–", "", "", known, row.reason
+    numbers = f"{row.value:.4g}", f"{row.half:.2g}", f"{row.half_if_white:.2g}"
+    return row.quantity.symbol, *numbers, known, row.quantity.unit
+
+
 class AnalysisText:
     """Text of the whole analysis; rich prints it at the width of the terminal, without colour where
     unwanted."""
@@ -106,7 +87,7 @@ class AnalysisText:
         for flight in self.state.flights:
             vehicle = flight.vehicle if flight.vehicle else "no vehicle"
             yield Text(f"{self.files[flight.flight]}: {vehicle}", style="bold")
-            yield self._channels(flight.channels)
+            yield channel_table("channels", "", flight.channels).on_console()
             if flight.again:
                 yield Text(f"note: {flight.again} of its manoeuvres came before: they count once.")
         yield from (
@@ -148,52 +129,13 @@ class AnalysisText:
                 yield Text(f"{self.files[flight]}:", style="bold")
             yield from (line for _, line in here)
 
-    def _channels(self, channels: Mapping[str, ChannelStatus]) -> Table:
-        table = Table(box=None, pad_edge=False, header_style="dim")
-        for column in ("channel", "source", "provenance"):
-            table.add_column(column)
-        for column in ("rate Hz", "largest gap s"):
-            table.add_column(column, justify="right")
-        for name, channel in channels.items():
-            table.add_row(
-                name,
-                channel.source,
-                channel.provenance,
-                f"{channel.rate_hz:.1f}",
-                f"{channel.largest_gap_s:.2f}",
-            )
-        return table
-
     def _parameters(self, model: Estimate) -> Table:
         speed = "" if model.airspeed_m_s is None else f" at {model.airspeed_m_s:.1f} m/s"
         numbers = ", ".join(str(number) for number in self.state.estimate_from)
-        table = Table(
-            title=f"Joint estimate from manoeuvres {numbers}{speed}",
-            title_justify="left",
-            title_style="bold",
-            box=None,
-            pad_edge=False,
-            header_style="dim",
-        )
-        table.add_column("parameter")
-        for column in ("value", "± 95 %", "± 95 % if white", "today's model"):
-            table.add_column(column, justify="right")
-        table.add_column("unit")
-        for i, name in enumerate(PARAMETERS):
-            prior = self.aircraft.model.get(name)
-            known = "" if prior is None else f"{shown(name, prior):.4g}"
-            if name in model.not_identifiable:
-                table.add_row(SYMBOLS[name], "–", "", "", known, model.not_identifiable[name])
-                continue
-            table.add_row(
-                SYMBOLS[name],
-                f"{shown(name, model.theta[i]):.4g}",
-                f"{shown(name, 1.96 * model.std[i]):.2g}",
-                f"{shown(name, 1.96 * model.std_cr[i]):.2g}",
-                known,
-                UNITS[name],
-            )
-        return table
+        rows = (parameter_row(name, model, self.aircraft.model) for name in PARAMETERS)
+        head = ("parameter", "value", "± 95 %", "± 95 % if white", "today's model", "unit")
+        table = report_table.Table("joint", "", head, tuple(map(_cells, rows)), frozenset({1, 2, 3, 4}))
+        return table.on_console(f"Joint estimate from manoeuvres {numbers}{speed}")
 
     def _qualities(self) -> Iterator[Text]:
         reference = self.aircraft.reference

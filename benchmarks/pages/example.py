@@ -80,7 +80,8 @@ EXAMPLES: Sequence[Example] = (
         },
     ),
     Example(
-        "gap logs/arduplane-calm.tlog --aircraft logs/arduplane-calm.yaml --why",
+        "gap logs/arduplane-calm.tlog --aircraft logs/arduplane-calm.yaml --why"
+        " --out arduplane-calm-with-actuator-lag.yaml",
         {"gap-why": [Part("╭─ why", "╭─ error in")]},
     ),
     Example(

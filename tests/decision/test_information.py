@@ -11,9 +11,9 @@ from advisor.bundled.study.flying import Scene, as_maneuver, fly_named
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.information import Knowledge
 from advisor.decision.information import knowledge as known_from
-from advisor.decision.prediction import Z95
 from advisor.decision.stopping import flight_test
 from advisor.oem.estimate import Estimate
+from advisor.words.quantiles import NORMAL_95
 from tests.decision.campaigns import THETA, drawn, estimate, with_change
 
 PLAN = CampaignPlan(rule="information")
@@ -63,7 +63,7 @@ def test_a_tolerance_given_for_one_parameter_is_taken_as_it_stands() -> None:
     known = knowledge([estimate(std_percent=1.0)] * 2, plan)
     assert known.tolerance[5] == 0.01
     assert known.holding_back == "M_alpha"
-    assert known.percent == pytest.approx(100.0 * Z95 * 0.0493 / np.sqrt(2.0) / 0.01)
+    assert known.percent == pytest.approx(100.0 * NORMAL_95 * 0.0493 / np.sqrt(2.0) / 0.01)
 
 
 def test_a_manoeuvre_that_was_not_predicted_withholds_the_stop() -> None:
@@ -92,7 +92,7 @@ def test_the_band_of_the_response_must_be_within_the_tolerance() -> None:
     any_derivative = replace(PLAN, parameters=())
     known = known_from(unsure, any_derivative)
     # The response is proportional to M_delta_e, but for the share of Z_delta_e.
-    expected = Z95 * 6.0 / np.sqrt(3.0)
+    expected = NORMAL_95 * 6.0 / np.sqrt(3.0)
     assert known.prediction_percent["q"] == pytest.approx(expected, rel=0.1)
     assert known.percent == pytest.approx(100.0 * max(known.prediction_percent.values()) / 5.0)
     verdict = flight_test(unsure, any_derivative)
@@ -155,7 +155,7 @@ def test_the_interval_holds_the_truth_as_often_as_it_says() -> None:
     inside = []
     for _ in range(300):
         posterior = knowledge([drawn(rng) for _ in range(3)], PLAN).posterior
-        inside.append(np.abs(posterior.theta - THETA) < Z95 * posterior.std)
+        inside.append(np.abs(posterior.theta - THETA) < NORMAL_95 * posterior.std)
     np.testing.assert_allclose(np.mean(inside, axis=0), 0.95, atol=0.04)
 
 

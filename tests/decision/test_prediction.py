@@ -8,10 +8,11 @@ import pytest
 from advisor.bundled.study.flying import Scene, as_maneuver, fly_named, follow
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.pooling import DERIVATIVES
-from advisor.decision.prediction import MOMENTS, Z95, missed_percent, predict, response_to
+from advisor.decision.prediction import MOMENTS, missed_percent, predict, response_to
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.record import Channel
 from advisor.oem.surface import Servo
+from advisor.words.quantiles import NORMAL_95
 from tests.decision.campaigns import THETA, estimate
 
 SCENE = Scene()
@@ -86,7 +87,7 @@ def test_the_band_is_that_of_responses_drawn_from_the_covariance() -> None:
     drawn = [response_to(ONE, d, None) for d in rng.multivariate_normal(DERIVED, covariance, 1500)]
     spread = np.std([r.values for r in drawn if r is not None], axis=0)
     for k, name in ((0, "alpha"), (1, "q")):
-        widest = 100.0 * Z95 * np.max(spread[k]) / here.peak[k]
+        widest = 100.0 * NORMAL_95 * np.max(spread[k]) / here.peak[k]
         assert band[name] == pytest.approx(widest, rel=0.08)
 
 

@@ -43,13 +43,10 @@ def test_a_place_that_cannot_be_written_is_refused_before_the_log_is_read(
     assert error.count("\n") == 1
 
 
-@pytest.mark.parametrize("arguments", [["--out", "better.yaml"], []])
-def test_a_folder_without_permission_is_refused_before_the_log_is_read(
-    capsys, monkeypatch, tmp_path, arguments
-):
+def test_a_folder_without_permission_is_refused_before_the_log_is_read(capsys, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(os, "access", lambda *_: False)
-    code, error = said(capsys, monkeypatch, "missing.tlog", *arguments)
+    code, error = said(capsys, monkeypatch, "missing.tlog", "--out", "better.yaml")
     assert code == 2
     assert "cannot be written to" in error
 
@@ -91,6 +88,18 @@ def test_where_there_is_nothing_to_improve_it_says_that_no_file_was_written(
     assert code == 0
     assert "better.yaml was not written" in error
     assert not out.exists()
+
+
+def test_without_an_order_no_file_is_written_and_the_command_that_would_is_said(
+    capsys, monkeypatch, tmp_path
+):
+    found: Diagnosis = diagnosis(verdict="effect")
+    monkeypatch.setattr(reading, "compare_logs", lambda *_: Compared(found, Aircraft()))
+    monkeypatch.chdir(tmp_path)
+    code, error = said(capsys, monkeypatch, "flight.tlog")
+    assert code == 0
+    assert "advisor gap flight.tlog --out aircraft-with-" in error
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_log_that_is_given_twice_counts_once_and_a_note_says_so(monkeypatch):

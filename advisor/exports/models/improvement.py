@@ -12,9 +12,8 @@ from advisor.gap.candidates.known import less_of_the_servo, together
 from advisor.gap.result import Diagnosis, Value
 from advisor.oem.coefficients import Coefficient, scales
 from advisor.words.problems import ConfigurationError
+from advisor.words.quantiles import NORMAL_95
 
-NORMAL_95 = 1.96
-"""Half of a 95 % interval of a normal distribution, in standard deviations."""
 SLOPES = ("Z_alpha", "Z_q", "Z_delta_e", "M_alpha", "M_q", "M_delta_e")
 """The derivatives among the eight parameters."""
 REFERENCE_KEYS = ("mass_kg", "wing_area_m2", "chord_m", "iyy_kg_m2")

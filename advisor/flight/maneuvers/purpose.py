@@ -15,7 +15,7 @@ from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.rest import SMALLEST_RAD
 from advisor.flight.signals.derived_alpha import SLOWEST_FLIGHT_M_S
 from advisor.flight.vehicle.modes import closes_pitch_loop, has_an_errand, hovers, is_manual
-from advisor.words.rounding import distinct_texts
+from advisor.words.digits import distinct_texts
 
 LEAST_PITCH_RATE_DEG_S = 1.0
 """Least answer of the pitch rate to a test input, deg/s. Smaller ones drown in light turbulence. The gentlest

@@ -46,7 +46,7 @@ def euler_angles(q: FloatArray) -> dict[str, FloatArray]:
     Parameters
     ----------
     q
-        Shape (4, n): Shape (4, n): w, x, y, z of the rotation from north-east-down into body axes.
+        Shape (4, n): w, x, y, z of the rotation from north-east-down into body axes.
     """
     w, x, y, z = q
     return {

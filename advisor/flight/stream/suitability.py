@@ -17,9 +17,9 @@ from advisor.flight.signals.track import ChannelStatus
 from advisor.flight.signals.trust import Distrust
 from advisor.flight.vehicle.surfaces import Surface, joined_numbers, listed
 from advisor.flight.vehicle.vehicle import Vehicle
+from advisor.words.digits import distinct_texts
 from advisor.words.mends import GOOD_HZ, sentence
 from advisor.words.problems import Problem
-from advisor.words.rounding import distinct_texts
 
 SLOWEST_HZ = 8.0
 """Least rate of elevator, pitch rate and angle of attack for any aircraft, Hz."""

@@ -2,8 +2,9 @@
 
 from collections.abc import Iterator
 
-from advisor.report.page.blocks import Block, Paragraph, Section, Table, listing
+from advisor.report.page.blocks import Block, Paragraph, Section, listing
 from advisor.report.page.content import Content
+from advisor.report.result_rows import channel_table
 
 
 def assumptions(content: Content) -> Section:
@@ -16,23 +17,5 @@ def _blocks(content: Content) -> Iterator[Block]:
     model = analysis["model"]
     said = [*analysis.get("notes", ()), *analysis["log"]["notes"], *(model["notes"] if model else ())]
     yield from listing(said) or (Paragraph("Neither the logs nor the joint estimate leave a note."),)
-    logs = analysis.get("logs", [analysis["log"]])
-    for flight, (name, log) in enumerate(zip(content.names, logs, strict=True)):
-        rows = tuple(
-            (
-                channel,
-                one["source"],
-                one["provenance"],
-                _digits(one["rate_hz"], 1),
-                _digits(one["largest_gap_s"], 2),
-            )
-            for channel, one in log["channels"].items()
-        )
-        yield Table(
-            f"channels-{flight}", f"Channels of {name}.",
-            ("channel", "source", "provenance", "rate [Hz]", "largest gap [s]"), rows, frozenset({3, 4}),
-        )  # fmt: skip
-
-
-def _digits(value: float | None, digits: int) -> str:
-    return "–" if value is None else f"{value:.{digits}f}"
+    for flight, (name, heard) in enumerate(zip(content.names, content.state.flights, strict=True)):
+        yield channel_table(f"channels-{flight}", f"Channels of {name}.", heard.channels)

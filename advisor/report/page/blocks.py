@@ -4,6 +4,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+from advisor.report.table import Table
+
 
 @dataclass(frozen=True, slots=True)
 class Paragraph:
@@ -18,19 +20,6 @@ class Listing:
     """List of sentences, one for each item."""
 
     items: tuple[str, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Table:
-    """Table of cells as text. The first row names the columns."""
-
-    name: str
-    """Anchor of the table in the page."""
-    caption: str
-    head: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
-    numbers: frozenset[int] = frozenset()
-    """Columns with numbers, counted from 0."""
 
 
 @dataclass(frozen=True, slots=True)

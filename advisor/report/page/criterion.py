@@ -8,9 +8,10 @@ from matplotlib.figure import Figure as Drawing
 from matplotlib.ticker import FixedLocator, FuncFormatter, MaxNLocator, NullLocator
 
 from advisor.decision.verdict import limit_percent
-from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, Table
+from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section
 from advisor.report.page.content import Content
 from advisor.report.page.drawing import BLACK, BLUE, picture
+from advisor.report.table import Table
 
 _MOST_TICKS = 8
 _EXPLAINED = (

@@ -1,17 +1,20 @@
 """The estimates with their intervals: joint estimate against the file's model, and each manoeuvre."""
 
-from collections.abc import Iterator, Mapping
-from typing import Any
+from collections.abc import Iterator, Mapping, Sequence
 
 from matplotlib.figure import Figure as Drawing
 
 from advisor.aircraft.aircraft import PARAMETERS
-from advisor.report.digits import decimals_for, signed, with_half
-from advisor.report.document import NORMAL_95
-from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, Table
+from advisor.oem.estimate import Estimate
+from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section
 from advisor.report.page.content import Content
 from advisor.report.page.drawing import BLACK, BLUE, ORANGE, picture
-from advisor.report.text import SYMBOLS, UNITS, shown
+from advisor.report.result_rows import ParameterRow, parameter_row
+from advisor.report.table import Table
+from advisor.words.quantities import PARAMETERS as QUANTITIES
+
+Rows = Mapping[str, ParameterRow]
+"""Parameter to its row."""
 
 
 def estimates(content: Content) -> Section:
@@ -21,48 +24,36 @@ def estimates(content: Content) -> Section:
 
 
 def _blocks(content: Content) -> Iterator[Block]:
-    model, prior = content.analysis["model"], content.aircraft.model
+    model, prior = content.state.model, content.aircraft.model
     if model is None:
         yield Paragraph("No manoeuvre is accepted, so there is no joint estimate.")
         return
-    numbers = ", ".join(map(str, content.analysis["estimate_from"]))
-    speed = model["reference_airspeed_m_s"]
-    at = "" if speed is None else f" at {speed:.1f} m/s"
+    numbers = ", ".join(map(str, content.state.estimate_from))
+    at = "" if model.airspeed_m_s is None else f" at {model.airspeed_m_s:.1f} m/s"
+    joint = {name: parameter_row(name, model, prior) for name in PARAMETERS}
     yield Table(
         "joint", f"Joint estimate from manoeuvres {numbers}{at}; ± is half the 95 % interval.",
         ("parameter", "estimate ± 95 %", "± 95 % if white", "file's model", "unit"),
-        tuple(_joint(name, model[name], prior.get(name)) for name in PARAMETERS), frozenset({1, 2, 3}),
+        tuple(map(_joint, joint.values())), frozenset({1, 2, 3}),
     )  # fmt: skip
-    accepted = [m for m in content.analysis["maneuvers"] if m["verdict"] == "accepted" and m["estimates"]]
-    yield Gallery(tuple(_forest(name, accepted, model[name], prior.get(name)) for name in PARAMETERS))
+    alone = {
+        str(one.maneuver.number): {name: parameter_row(name, one.estimate, prior) for name in PARAMETERS}
+        for one in content.state.maneuvers
+        if one.verdict.accepted and isinstance(one.estimate, Estimate)
+    }
+    yield Gallery(tuple(_forest(name, alone, joint) for name in PARAMETERS))
     yield Table(
         "by-maneuver", "Estimate of each accepted manoeuvre alone, ± half the 95 % interval.",
-        ("no.", *(f"{SYMBOLS[name]} [{UNITS[name]}]" for name in PARAMETERS)),
-        tuple(map(_alone, accepted)),
+        ("no.", *(QUANTITIES[name].label for name in PARAMETERS)),
+        tuple((number, *(_narrow(row.cell) for row in rows.values())) for number, rows in alone.items()),
         frozenset(range(len(PARAMETERS) + 1)),
     )  # fmt: skip
 
 
-def _joint(name: str, entry: Mapping[str, Any], prior: float | None) -> tuple[str, ...]:
-    known = "–"
-    if prior is not None:
-        half = 0.0 if entry["std"] is None else shown(name, NORMAL_95 * entry["std"])
-        known = signed(shown(name, prior), decimals_for(half))
-    if entry["value"] is None:
-        return SYMBOLS[name], f"– ({entry['reason']})", "–", known, UNITS[name]
-    white = shown(name, NORMAL_95 * entry["std_cr"])
-    return SYMBOLS[name], _cell(name, entry), f"{white:.2g}", known, UNITS[name]
-
-
-def _cell(name: str, entry: Mapping[str, Any]) -> str:
-    if entry["value"] is None or entry["std"] is None:
-        return "–"
-    return with_half(shown(name, entry["value"]), shown(name, NORMAL_95 * entry["std"]))
-
-
-def _alone(maneuver: Mapping[str, Any]) -> tuple[str, ...]:
-    cells = (_narrow(_cell(name, maneuver["estimates"][name])) for name in PARAMETERS)
-    return str(maneuver["number"]), *cells
+def _joint(row: ParameterRow) -> tuple[str, ...]:
+    value = f"– ({row.reason})" if row.reason else row.cell
+    white = "–" if row.reason else f"{row.half_if_white:.2g}"
+    return row.quantity.symbol, value, white, row.prior_cell, row.quantity.unit
 
 
 def _narrow(cell: str) -> str:
@@ -71,31 +62,30 @@ def _narrow(cell: str) -> str:
 
 
 def _forest(
-    name: str, accepted: list[Mapping[str, Any]], joint: Mapping[str, Any], prior: float | None
+    name: str, alone: Mapping[str, Mapping[str, ParameterRow]], joint: Mapping[str, ParameterRow]
 ) -> Figure:
-    rows = [(str(m["number"]), m["estimates"][name]) for m in accepted] + [("joint", joint)]
-    known = [(label, one) for label, one in rows if one["value"] is not None and one["std"] is not None]
-    svg = picture(f"forest-{name}", 2.4, 0.9 + 0.15 * len(rows), _paint, name, known, prior)
-    told = "" if prior is None else " Dashes: the file's model."
+    rows = [*((number, found[name]) for number, found in alone.items()), ("joint", joint[name])]
+    known = [(label, row) for label, row in rows if row.is_known]
+    svg = picture(f"forest-{name}", 2.4, 0.9 + 0.15 * len(rows), _paint, joint[name], known)
+    told = "" if joint[name].prior is None else " Dashes: the file's model."
+    symbol = joint[name].quantity.symbol
     return Figure(
-        svg, f"{SYMBOLS[name]}: each manoeuvre and the joint estimate with 95 % intervals.{told}", "quarter"
+        svg, f"{symbol}: each manoeuvre and the joint estimate with 95 % intervals.{told}", "quarter"
     )
 
 
-def _paint(
-    drawing: Drawing, name: str, known: list[tuple[str, Mapping[str, Any]]], prior: float | None
-) -> None:
+def _paint(drawing: Drawing, joint: ParameterRow, known: Sequence[tuple[str, ParameterRow]]) -> None:
     axes = drawing.subplots()
-    for row, (label, one) in enumerate(known):
-        joint = label == "joint"
+    for at, (label, row) in enumerate(known):
+        of_all = label == "joint"
         axes.errorbar(
-            shown(name, one["value"]), row, xerr=shown(name, NORMAL_95 * one["std"]),
-            fmt="D" if joint else "o", color=BLACK if joint else BLUE, markersize=5 if joint else 3.5,
-            linewidth=1.6 if joint else 0.9, capsize=2,
+            row.value, at, xerr=row.half,
+            fmt="D" if of_all else "o", color=BLACK if of_all else BLUE, markersize=5 if of_all else 3.5,
+            linewidth=1.6 if of_all else 0.9, capsize=2,
         )  # fmt: skip
-    if prior is not None:
-        axes.axvline(shown(name, prior), color=ORANGE, linestyle="--", linewidth=1.0)
+    if joint.prior is not None:
+        axes.axvline(joint.prior, color=ORANGE, linestyle="--", linewidth=1.0)
     axes.set_yticks(range(len(known)), [label for label, _ in known])
     axes.invert_yaxis()
-    axes.set_xlabel(f"{SYMBOLS[name]} [{UNITS[name]}]")
+    axes.set_xlabel(joint.quantity.label)
     axes.locator_params(axis="x", nbins=5)

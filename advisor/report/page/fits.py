@@ -7,11 +7,11 @@ from matplotlib.figure import Figure as Drawing
 from advisor.campaign.state import JudgedManeuver
 from advisor.flight.signals.record import Channel
 from advisor.oem.estimate import ChannelFit, Estimate
-from advisor.report.document import NORMAL_95
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section
 from advisor.report.page.content import Content
 from advisor.report.page.drawing import BLACK, BLUE, GREY, ORANGE, picture
-from advisor.report.quantities import CHANNELS
+from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import CHANNELS
 
 _EXPLAINED = (
     "Grey: measured. Dark dashes: the short-period model fitted to this manoeuvre alone. "

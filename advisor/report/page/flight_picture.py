@@ -14,7 +14,7 @@ from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Sectio
 from advisor.report.page.content import Content
 from advisor.report.page.drawing import BLUE, ORANGE, picture
 from advisor.report.page.thinned import thinned
-from advisor.report.quantities import CHANNELS
+from advisor.words.quantities import CHANNELS
 from advisor.words.vehicle_time import CLOCK, clock
 
 _SHOWN = ("elevator", "alpha", "q", "airspeed", "height")

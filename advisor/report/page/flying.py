@@ -2,11 +2,12 @@
 
 from collections.abc import Iterator
 
-from advisor.report.digits import with_half
-from advisor.report.document import NORMAL_95
-from advisor.report.page.blocks import Block, Paragraph, Section, Table, listing
+from advisor.report.page.blocks import Block, Paragraph, Section, listing
 from advisor.report.page.content import Content, Document
 from advisor.report.qualities import NAMES
+from advisor.report.table import Table
+from advisor.words.digits import with_half
+from advisor.words.quantiles import NORMAL_95
 
 
 def flying(content: Content) -> Section:

@@ -8,12 +8,13 @@ from matplotlib.ticker import FuncFormatter
 
 from advisor.gap.result import spelled
 from advisor.gap.verdict.text import place
-from advisor.report.digits import with_half
-from advisor.report.document import NORMAL_95
-from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, Table, listing
+from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, listing
 from advisor.report.page.content import Content, Document
 from advisor.report.page.drawing import BLUE, picture
-from advisor.report.quantities import CHANNELS
+from advisor.report.table import Table
+from advisor.words.digits import with_half
+from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import CHANNELS
 
 _ROUNDING = 1e-9
 """Gap below which a number is only rounding and is shown as 0."""

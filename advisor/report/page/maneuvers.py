@@ -3,8 +3,9 @@
 from collections.abc import Mapping
 from typing import Any
 
-from advisor.report.page.blocks import Section, Table, listing
+from advisor.report.page.blocks import Section, listing
 from advisor.report.page.content import Content
+from advisor.report.table import Table
 from advisor.report.text import caution_lines
 from advisor.words.vehicle_time import CLOCK, clock
 

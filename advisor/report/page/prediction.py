@@ -13,7 +13,7 @@ from advisor.oem.surface import Servo
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section
 from advisor.report.page.content import Content
 from advisor.report.page.drawing import BLUE, GREY, ORANGE, picture
-from advisor.report.quantities import CHANNELS, Quantity
+from advisor.words.quantities import CHANNELS, Quantity
 
 _EXPLAINED = (
     "Manoeuvre {last} is held out: manoeuvres {before} predict its response. "

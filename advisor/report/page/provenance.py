@@ -1,7 +1,8 @@
 """Origin of the page: files with their hashes, versions, and the command that repeats the page."""
 
-from advisor.report.page.blocks import Paragraph, Section, Table, Verbatim
+from advisor.report.page.blocks import Paragraph, Section, Verbatim
 from advisor.report.page.content import Content
+from advisor.report.table import Table
 
 
 def provenance(content: Content) -> Section:

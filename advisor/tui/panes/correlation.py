@@ -12,11 +12,11 @@ from advisor.aircraft.aircraft import PARAMETERS as NAMES
 from advisor.flight.signals.messages import FloatArray
 from advisor.oem.correlation import HIGH_CORRELATION, correlation_matrix
 from advisor.oem.estimate import Estimate
-from advisor.report.digits import signed
 from advisor.session.view import View
 from advisor.tui.panes.pane import Pane
 from advisor.tui.rows import TableRows
-from advisor.tui.words import PARAMETERS
+from advisor.words.digits import signed
+from advisor.words.quantities import PARAMETERS
 
 _LABEL = 5
 _WIDE_CELL, _NARROW_CELL = 6, 5

@@ -12,7 +12,7 @@ from advisor.tui.panes.pane import Pane
 from advisor.tui.plot.chart import Chart
 from advisor.tui.plot.widget import Plot
 from advisor.tui.rows import TableRows
-from advisor.tui.words import PARAMETERS
+from advisor.words.quantities import PARAMETERS
 
 _MANY = 4
 """Plots that stand side by side without room for the name of their x axis."""

@@ -1,10 +1,10 @@
 """Further notes for a pilot: the next input, the source of alpha, changes."""
 
-from advisor.aircraft.aircraft import PARAMETERS as NAMES
+from advisor.report.result_rows import parameter_row
 from advisor.session.view import View
 from advisor.tui.panes.hanging import HangingLines
 from advisor.tui.panes.part import Part
-from advisor.tui.words import PARAMETERS, headline
+from advisor.tui.words import headline
 
 
 def alpha_in_words(view: View) -> str:
@@ -24,9 +24,8 @@ def flying_in_words(view: View) -> str:
         return "between manoeuvres"
     if settling is None or not view.state.readable:
         return view.state.progress
-    m_alpha, std = PARAMETERS["M_alpha"], float(settling.std[NAMES.index("M_alpha")])
-    value = m_alpha.with_interval(settling.value("M_alpha"), std)
-    return f"{view.state.progress}; {m_alpha.symbol} {value} {m_alpha.unit}"
+    row = parameter_row("M_alpha", settling, {})
+    return f"{view.state.progress}; {row.quantity.symbol} {row.cell} {row.quantity.unit}"
 
 
 def _link_in_words(view: View) -> str:

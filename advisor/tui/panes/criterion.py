@@ -10,7 +10,7 @@ from advisor.tui.panes.hanging import HangingLines, Labelled
 from advisor.tui.panes.pane import Pane
 from advisor.tui.plot.chart import Chart, Ink, Level, Series
 from advisor.tui.plot.widget import Plot
-from advisor.words.rounding import distinct_texts
+from advisor.words.digits import distinct_texts
 
 RULE_INKS: dict[str, Ink] = {"continuous": "measured", "separate": "residual", "information": "input"}
 

@@ -6,7 +6,6 @@ from textual.events import Resize
 
 from advisor.campaign.state import JudgedManeuver
 from advisor.flight.signals.messages import FloatArray
-from advisor.report.digits import signed
 from advisor.session.view import View
 from advisor.tui import keys
 from advisor.tui.panes.fit_charts import (
@@ -27,6 +26,7 @@ from advisor.tui.plot.sight import Sight
 from advisor.tui.plot.widget import Plot
 from advisor.tui.plot.window import Window
 from advisor.tui.rows import TableRows
+from advisor.words.digits import signed
 
 _ROWS_FOR_ONE = 11
 """Rows that an output and its residual need where several stand above one another."""

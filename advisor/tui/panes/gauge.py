@@ -5,8 +5,7 @@ from advisor.session.view import View
 from advisor.tui.panes.hanging import HangingLines
 from advisor.tui.panes.last_verdict import symbol_and_word
 from advisor.tui.panes.part import Part
-from advisor.tui.words import percent
-from advisor.words.rounding import distinct_texts
+from advisor.words.digits import distinct_texts, percent
 
 _LAST_SHOWN = 16
 

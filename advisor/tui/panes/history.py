@@ -4,12 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.aircraft.aircraft import PARAMETERS as NAMES
 from advisor.flight.signals.messages import FloatArray
-from advisor.oem.estimate import Estimate
+from advisor.report.result_rows import parameter_row
 from advisor.session.view import View
 from advisor.tui.plot.chart import Chart, Level, Series
-from advisor.tui.words import PARAMETERS
+from advisor.words.quantities import PARAMETERS
 
 _MARGIN = 0.5
 """Manoeuvres to the left of the first and to the right of the last: no bar stands on the edge of a plot."""
@@ -34,22 +33,20 @@ class ParameterCourse:
 
 def course(view: View | None, name: str) -> ParameterCourse:
     """Collect one parameter's estimates, manoeuvre by manoeuvre."""
-    factor, k = PARAMETERS[name].factor, NAMES.index(name)
-    points = [
-        (judged.maneuver.number, judged.estimate)
+    known = view.aircraft.model if view else {}
+    rows = [
+        (judged.maneuver.number, parameter_row(name, judged.estimate, known))
         for judged in (view.state.maneuvers if view else ())
-        if isinstance(judged.estimate, Estimate) and name not in judged.estimate.not_identifiable
     ]
-    joint = view.state.model if view else None
-    told = joint is not None and name not in joint.not_identifiable
-    prior = view.aircraft.model.get(name) if view else None
+    points = [(number, row) for number, row in rows if row.is_known]
+    joint = parameter_row(name, view.state.model if view else None, known)
     return ParameterCourse(
         name,
         np.array([number for number, _ in points], dtype=np.float64),
-        np.array([e.theta[k] for _, e in points], dtype=np.float64) * factor,
-        1.96 * np.array([e.std[k] for _, e in points], dtype=np.float64) * factor,
-        float(joint.theta[k]) * factor if joint is not None and told else None,
-        None if prior is None else prior * factor,
+        np.array([row.value for _, row in points], dtype=np.float64),
+        np.array([row.half for _, row in points], dtype=np.float64),
+        joint.value if joint.is_known else None,
+        joint.prior,
     )
 
 

@@ -3,16 +3,16 @@
 from textual.app import ComposeResult
 from textual.events import Resize
 
-from advisor.aircraft.aircraft import PARAMETERS as NAMES
 from advisor.campaign.state import CampaignState
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.estimate import Estimate
+from advisor.report.result_rows import parameter_row
 from advisor.session.view import View
 from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.pane import Pane
 from advisor.tui.plot.chart import Chart, Ink, Series
 from advisor.tui.plot.widget import Plot
-from advisor.tui.words import PARAMETERS, channel
+from advisor.words.quantities import channel
 
 TRACES: dict[str, Ink] = {"alpha": "measured", "q": "measured", "elevator": "input"}
 _ROWS_FOR_ONE = 5
@@ -77,8 +77,5 @@ def _settling_in_words(state: CampaignState) -> str:
     settling = state.settling
     if settling is None or not state.readable:
         return f"{state.progress}; numbers come when the input is over and they agree with the tests before."
-    words = []
-    for name in ("M_alpha", "M_q", "M_delta_e", "Z_alpha"):
-        quantity, std = PARAMETERS[name], float(settling.std[NAMES.index(name)])
-        words.append(f"{quantity.symbol} {quantity.with_interval(settling.value(name), std)}")
-    return "   ".join(words)
+    rows = [parameter_row(name, settling, {}) for name in ("M_alpha", "M_q", "M_delta_e", "Z_alpha")]
+    return "   ".join(f"{row.quantity.symbol} {row.cell}" for row in rows)

@@ -1,5 +1,6 @@
 """The eight parameters with their intervals, against the prior model and manoeuvre by manoeuvre."""
 
+from collections.abc import Mapping
 from itertools import accumulate
 
 from rich.text import Text
@@ -8,13 +9,11 @@ from textual.events import Resize
 from textual.widgets import DataTable
 
 from advisor.aircraft.aircraft import PARAMETERS as NAMES
-from advisor.oem.estimate import Estimate
-from advisor.report.digits import decimals_for, signed
+from advisor.report.result_rows import parameter_row
 from advisor.session.view import View
 from advisor.tui.panes.history import history_chart
 from advisor.tui.panes.pane import Pane
 from advisor.tui.plot.widget import Plot
-from advisor.tui.words import PARAMETERS
 
 _COLUMNS = (("parameter", 11), ("model ± 95 %", 18), ("selected ± 95 %", 18), ("prior", 8), ("off by", 6))
 """Name and width, with a space at the end: what grows must not push the others about. The last ones are left
@@ -79,7 +78,7 @@ verdict pane says why.
         with self.prevent(DataTable.RowHighlighted):
             table.clear()
             for name in NAMES:
-                cells = _cells(name, view.state.model, selected, view.aircraft.model.get(name))
+                cells = _cells(name, view.state.model, selected, view.aircraft.model)
                 table.add_row(*(Text(cell) for cell in cells[: self._columns]), key=name)
             table.move_cursor(row=row)
         self._draw_history(NAMES[row])
@@ -94,14 +93,13 @@ verdict pane says why.
         self.query_one(Plot).chart = history_chart(self._view, name)
 
 
-def _cells(name: str, model: object, selected: object, prior: float | None) -> tuple[str, ...]:
-    quantity = PARAMETERS[name]
+def _cells(name: str, model: object, selected: object, known: Mapping[str, float]) -> tuple[str, ...]:
+    joint, alone = (parameter_row(name, estimate, known) for estimate in (model, selected))
     return (
-        f"{quantity.symbol} {quantity.unit}".removesuffix(" -"),
-        _value(name, model),
-        _value(name, selected),
-        _prior(name, model, prior),
-        _off_by(name, model, prior),
+        f"{joint.quantity.symbol} {joint.quantity.unit}".removesuffix(" 1"),
+        *("not identifiable" if row.reason else row.cell for row in (joint, alone)),
+        joint.prior_cell,
+        "–" if joint.off_by is None else f"{joint.off_by:.1f} σ",
     )
 
 
@@ -109,26 +107,3 @@ def _columns_in(width: int) -> int:
     """Count the columns that have room, at least those of the names and of the model."""
     ends = accumulate(width for _, width in _COLUMNS)
     return max(sum(end <= width for end in ends), 2)
-
-
-def _prior(name: str, estimate: object, prior: float | None) -> str:
-    """Write the prior in as many digits as the estimate deserves."""
-    if prior is None:
-        return "-"
-    factor = PARAMETERS[name].factor
-    half = 1.96 * factor * float(estimate.std[NAMES.index(name)]) if isinstance(estimate, Estimate) else 0.0
-    return signed(prior * factor, decimals_for(half))
-
-
-def _value(name: str, estimate: object) -> str:
-    if not isinstance(estimate, Estimate):
-        return "-"
-    if name in estimate.not_identifiable:
-        return "not identifiable"
-    return PARAMETERS[name].with_interval(estimate.value(name), float(estimate.std[NAMES.index(name)]))
-
-
-def _off_by(name: str, estimate: object, prior: float | None) -> str:
-    if prior is None or not isinstance(estimate, Estimate) or name in estimate.not_identifiable:
-        return "-"
-    return f"{abs(estimate.value(name) - prior) / float(estimate.std[NAMES.index(name)]):.1f} σ"

@@ -14,7 +14,7 @@ from advisor.tui.panes.pane import Pane
 from advisor.tui.plot.chart import Chart, Level, Series
 from advisor.tui.plot.widget import Plot
 from advisor.tui.rows import TableRows
-from advisor.tui.words import channel
+from advisor.words.quantities import channel
 
 _LAGS_SHARE = 4
 """Share of the record that the longest lag takes: a quarter (Box and Jenkins). A longer lag averages too few

@@ -6,13 +6,13 @@ from textual.containers import VerticalScroll
 from advisor.campaign.state import JudgedManeuver
 from advisor.decision.verdict import ManeuverVerdict
 from advisor.oem.estimate import Estimate
-from advisor.report.digits import signed
 from advisor.session.view import View
 from advisor.tui.panes.hanging import HangingLines, Labelled
 from advisor.tui.panes.last_verdict import symbol_and_word
 from advisor.tui.panes.pane import Pane
-from advisor.tui.words import channel, without_word
-from advisor.words.rounding import distinct_texts
+from advisor.tui.words import without_word
+from advisor.words.digits import distinct_texts, signed
+from advisor.words.quantities import channel
 from advisor.words.vehicle_time import between
 
 

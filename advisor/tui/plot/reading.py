@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from advisor.report.digits import signed
 from advisor.tui.plot.axis import Axis, LogAxis
 from advisor.tui.plot.chart import Chart, Series
 from advisor.tui.plot.window import nearest
+from advisor.words.digits import signed
 
 _DIGITS = 4
 """Digits for the length of an axis: one part in a thousand or less of what can be seen."""

@@ -1,10 +1,8 @@
-"""Channels for people: symbol, unit, factor from SI."""
+"""Channels and parameters for people: symbol, unit, factor from SI."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import degrees
-
-from advisor.report.digits import with_half
 
 DEG = degrees(1.0)
 """Degrees in a radian."""
@@ -23,12 +21,8 @@ class Quantity:
         """Label of an axis: ``q [deg/s]``."""
         return f"{self.symbol} [{self.unit}]"
 
-    def with_interval(self, value: float, std: float) -> str:
-        """Return an SI value with its 95 % interval, in significant digits: ``-48.3 ± 2.1``."""
-        return with_half(value * self.factor, 1.96 * std * self.factor)
 
-
-CHANNELS: Mapping[str, Quantity] = {
+CHANNELS: dict[str, Quantity] = {
     "elevator": Quantity("δe", "deg", DEG),
     "alpha": Quantity("α", "deg", DEG),
     "q": Quantity("q", "deg/s", DEG),
@@ -37,3 +31,20 @@ CHANNELS: Mapping[str, Quantity] = {
     "airspeed": Quantity("V", "m/s"),
     "height": Quantity("h", "m"),
 }
+
+PARAMETERS: Mapping[str, Quantity] = {
+    "Z_0": Quantity("Z_0", "deg/s", DEG),
+    "Z_alpha": Quantity("Z_α", "1/s"),
+    "Z_q": Quantity("Z_q", "1"),
+    "Z_delta_e": Quantity("Z_δe", "1/s"),
+    "M_0": Quantity("M_0", "deg/s²", DEG),
+    "M_alpha": Quantity("M_α", "1/s²"),
+    "M_q": Quantity("M_q", "1/s"),
+    "M_delta_e": Quantity("M_δe", "1/s²"),
+}
+"""Parameter to its quantity. Only Z_0 and M_0 carry an angle."""
+
+
+def channel(name: str) -> Quantity:
+    """Return the quantity of a channel. A channel without an entry keeps its own name and SI."""
+    return CHANNELS.get(name, Quantity(name, "SI"))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from advisor.words.rounding import distinct_texts
+from advisor.words.digits import distinct_texts
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,89 @@
+"""Rows of results, one model for terminal, page, panes and CSV: parameters of an estimate, and channels."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import isfinite, nan
+from typing import Any
+
+from advisor.aircraft.aircraft import PARAMETERS
+from advisor.flight.signals.track import ChannelStatus
+from advisor.oem.estimate import Estimate
+from advisor.report.table import Table, digits
+from advisor.words.digits import decimals_for, signed, with_half
+from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import PARAMETERS as QUANTITIES
+from advisor.words.quantities import Quantity
+
+
+@dataclass(frozen=True, slots=True)
+class ParameterRow:
+    """One parameter of an estimate, in the unit for people."""
+
+    quantity: Quantity
+    value: float
+    """Estimate; NaN where the estimate does not tell the parameter."""
+    half: float
+    """Half of the 95 % interval, corrected for coloured residuals; NaN without a value."""
+    half_if_white: float
+    """Half of the 95 % interval by the Cramér-Rao bound; NaN without a value."""
+    prior: float | None
+    """Value of the aircraft file's model; None where the file has none."""
+    reason: str = ""
+    """Reason for which the estimate does not tell the parameter."""
+
+    @property
+    def is_known(self) -> bool:
+        """Whether value and interval are numbers."""
+        return isfinite(self.value) and isfinite(self.half)
+
+    @property
+    def cell(self) -> str:
+        """Value with half its interval: ``−48.3 ± 2.1``."""
+        return with_half(self.value, self.half) if self.is_known else "–"
+
+    @property
+    def prior_cell(self) -> str:
+        """Value of the aircraft file with the decimals of the estimate."""
+        return "–" if self.prior is None else signed(self.prior, decimals_for(self.half))
+
+    @property
+    def off_by(self) -> float | None:
+        """Distance of the file's value from the estimate in standard deviations."""
+        if self.prior is None or not self.is_known:
+            return None
+        return abs(self.value - self.prior) / self.half * NORMAL_95
+
+
+def parameter_row(name: str, estimate: object, prior: Mapping[str, float]) -> ParameterRow:
+    """Return one parameter of an estimate against the aircraft file's model, which may lack it."""
+    quantity, stated = QUANTITIES[name], prior.get(name)
+    known = None if stated is None else stated * quantity.factor
+    if not isinstance(estimate, Estimate):
+        return ParameterRow(quantity, nan, nan, nan, known)
+    if name in estimate.not_identifiable:
+        return ParameterRow(quantity, nan, nan, nan, known, estimate.not_identifiable[name])
+    k, half = PARAMETERS.index(name), NORMAL_95 * quantity.factor
+    value = float(estimate.theta[k]) * quantity.factor
+    return ParameterRow(
+        quantity, value, half * float(estimate.std[k]), half * float(estimate.std_cr[k]), known
+    )
+
+
+def channel_table(name: str, caption: str, channels: Mapping[str, ChannelStatus]) -> Table:
+    """Return the table of the channels of a log: source, provenance, rate and largest gap."""
+    return Table(
+        name, caption, ("channel", "source", "provenance", "rate [Hz]", "largest gap [s]"),
+        tuple(
+            (channel, one.source, one.provenance, digits(one.rate_hz, 1), digits(one.largest_gap_s, 2))
+            for channel, one in channels.items()
+        ),
+        frozenset({3, 4}),
+    )  # fmt: skip
+
+
+def message_table(name: str, messages: Sequence[Mapping[str, Any]]) -> Table:
+    """Return the table of the messages of ``advisor.doctor/1``: rates, jitter and largest gap."""
+    decimals = {"rate_hz": 1, "lowest_hz": 1, "renewed_hz": 1, "jitter_ms": 1, "largest_gap_s": 3}
+    head = ("message", "rate [Hz]", "lowest [Hz]", "renewed [Hz]", "jitter [ms]", "largest gap [s]")
+    rows = tuple((one["name"], *(digits(one[k], n) for k, n in decimals.items())) for one in messages)
+    return Table(name, "How the messages arrive.", head, rows, frozenset(range(1, 6)))

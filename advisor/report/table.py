@@ -1,0 +1,39 @@
+"""A table of results as text cells, for the terminal and for the page."""
+
+from dataclasses import dataclass
+
+from rich import table as console
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """Table of cells as text. The first row names the columns."""
+
+    name: str
+    """Anchor of the table in the page."""
+    caption: str
+    head: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    numbers: frozenset[int] = frozenset()
+    """Columns with numbers, counted from 0."""
+
+    def on_console(self, title: str | None = None) -> console.Table:
+        """Return the table for a terminal, without frame, under a title."""
+        shown = console.Table(
+            title=title,
+            title_justify="left",
+            title_style="bold",
+            box=None,
+            pad_edge=False,
+            header_style="dim",
+        )
+        for k, name in enumerate(self.head):
+            shown.add_column(name, justify="right" if k in self.numbers else "left")
+        for row in self.rows:
+            shown.add_row(*row)
+        return shown
+
+
+def digits(value: float | None, count: int) -> str:
+    """Return a number with ``count`` decimals; a dash for a missing or undefined one."""
+    return "–" if value is None or value != value else f"{value:.{count}f}"

@@ -1,0 +1,61 @@
+"""Numbers as text: two significant digits of an interval, unequal numbers that read as unequal."""
+
+from math import floor, isfinite, log10
+from typing import Literal
+
+MOST_DIGITS = 9
+"""Most decimals or significant digits of a text. Numbers that agree to so many digits read as equal."""
+
+
+def distinct_texts(
+    value: float, limit: float, digits: int = 0, style: Literal["f", "g"] = "f"
+) -> tuple[str, str]:
+    """Write a number and its limit with ``digits`` digits, and with more digits where both texts would be
+    equal.
+
+    "1.9 s (at least 1.9)" contradicts itself; "1.86 s (at least 1.90)" does not.
+
+    Parameters
+    ----------
+    value, limit
+        Two numbers of one unit.
+    digits
+        Fewest decimals (``f``) or significant digits (``g``).
+
+    Returns
+    -------
+    tuple of str
+        Value and limit with equal numbers of digits. Texts are equal only where both agree to `MOST_DIGITS`.
+    """
+    for more in (*range(digits, MOST_DIGITS), digits):
+        texts = f"{value:.{more}{style}}", f"{limit:.{more}{style}}"
+        if texts[0] != texts[1]:
+            break
+    return texts
+
+
+def decimals_for(spread: float) -> int:
+    """Return the number of decimals that show two significant digits of ``spread``, between 0 and 6."""
+    if not (isfinite(spread) and spread > 0.0):
+        return 3
+    return min(max(1 - floor(log10(spread)), 0), 6)
+
+
+def signed(value: float, decimals: int) -> str:
+    """Return a number with a real minus sign, never "-0"."""
+    if not isfinite(value):
+        return "-"
+    return f"{round(value, decimals) + 0.0:.{decimals}f}".replace("-", "−")
+
+
+def with_half(value: float, half: float) -> str:
+    """Return a number with half its 95 % interval: ``−48.3 ± 2.1``."""
+    decimals = decimals_for(half)
+    return f"{signed(value, decimals)} ± {signed(half, decimals)}"
+
+
+def percent(value: float | None) -> str:
+    """Return a percentage for a glance, without decimals above 10."""
+    if value is None or not isfinite(value):
+        return "-"
+    return f"{value:.1f} %" if abs(value) < 10.0 else f"{value:.0f} %"
