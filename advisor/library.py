@@ -20,7 +20,7 @@ from advisor.flight.signals.power_on import PowerOn
 from advisor.flight.stream.stream import FlightStream
 from advisor.flight.vehicle.vehicle import Vehicle
 from advisor.gap.result import Diagnosis
-from advisor.mavlink.logs.logs import open_log
+from advisor.mavlink.logs.whole import read_whole_log
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import estimate as estimate_one
 from advisor.oem.estimator import estimate_jointly
@@ -73,7 +73,7 @@ def read(log: str | PathLike[str], aircraft: Aircraft | str | PathLike[str] | No
     path = Path(log)
     described = aircraft if isinstance(aircraft, Aircraft) else _described(aircraft)
     stream = FlightStream(described, marks=read_by_hand(path).marks, keep_all=True)
-    events = [event for columns in open_log(path) for event in stream.feed(columns)] + stream.finish()
+    events = [event for columns in read_whole_log(path) for event in stream.feed(columns)] + stream.finish()
     return Flight(
         path,
         described,

@@ -17,7 +17,7 @@ from advisor.gap.diagnose import diagnose
 from advisor.gap.result import Diagnosis
 from advisor.gap.search.baseline import prior_derivatives
 from advisor.gap.without_simulator import without_simulator
-from advisor.mavlink.logs.logs import open_log
+from advisor.mavlink.logs.whole import read_whole_log
 from advisor.simulators.compare import Compared, compare
 from advisor.simulators.protocol import Simulator
 from advisor.simulators.specification import simulator_of
@@ -71,7 +71,8 @@ def _recorded(
     one_aircraft = OneAircraft()
     for flight, (log, decided) in enumerate(zip(logs, by_hand, strict=True)):
         stream = FlightStream(aircraft, target_system, decided.marks)
-        events = [event for columns in open_log(log) for event in stream.feed(columns)]
+        others = [*reversed(logs[:flight]), *logs[flight + 1 :]]
+        events = [event for columns in read_whole_log(log, others) for event in stream.feed(columns)]
         events += stream.finish()
         name = printable(log.name)
         problems = stream.problems()

@@ -53,15 +53,20 @@ class LogSeries:
     def batches(self) -> Iterator[list[Columns]]:
         """Yield the messages of all logs. A log that cannot be read is left out and listed in
         ``unreadable``."""
-        # The log reader takes longer to load than the first screen to paint.
-        from advisor.mavlink.logs.logs import open_log
-
-        for flight, log in enumerate(self.logs):
+        for flight in range(len(self.logs)):
             try:
-                for columns in open_log(log):
+                for columns in self._read(flight):
                     yield of_flight(columns, flight)
             except UnusableInputError as error:
                 self.unreadable[flight] = error.problem
+
+    def _read(self, flight: int) -> Iterator[list[Columns]]:
+        """Stream one log as a whole. The nearest other log lends parameters to a log without any."""
+        # The log reader takes longer to load than the first screen to paint.
+        from advisor.mavlink.logs.whole import read_whole_log
+
+        others = sorted(set(range(len(self.logs))) - {flight}, key=lambda n: (abs(n - flight), n))
+        return read_whole_log(self.logs[flight], [self.logs[n] for n in others])
 
     def load(self) -> list[Columns]:
         """Return the messages of all logs that can be read.

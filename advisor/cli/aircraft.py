@@ -132,7 +132,7 @@ def _list(title: str, lacks: "list[Lack]") -> None:
 
 def _facts(log: Path, aircraft: Aircraft, target_system: int | None) -> "LogFacts":
     from advisor.aircraft_file.log_facts import facts_of
-    from advisor.mavlink.logs.logs import open_log
+    from advisor.mavlink.logs.whole import read_whole_log
 
     compile_once(partial(click.echo, err=True))
-    return facts_of(open_log(log), aircraft, target_system)
+    return facts_of(read_whole_log(log), aircraft, target_system)

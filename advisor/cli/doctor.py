@@ -117,11 +117,11 @@ def examine_log(log: Path, aircraft: Aircraft, target_system: int | None) -> "Ex
         The log cannot be read.
     """
     from advisor.doctor.examiner import Examiner
-    from advisor.mavlink.logs.logs import open_log
+    from advisor.mavlink.logs.whole import read_whole_log
     from advisor.mavlink.wire.frames import FrameScanner, Received
 
     examiner, scanner = Examiner(aircraft, target_system), FrameScanner()
-    for columns in open_log(log, scanner=scanner):
+    for columns in read_whole_log(log, scanner=scanner):
         examiner.feed(columns)
     vehicle = examiner.vehicle
     senders = scanner.statistics.senders

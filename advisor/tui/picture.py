@@ -15,7 +15,7 @@ from pathlib import Path
 from advisor.aircraft_file.read import load_aircraft
 from advisor.campaign.campaign import Campaign
 from advisor.flight.signals.messages import Columns
-from advisor.mavlink.logs.logs import open_log
+from advisor.mavlink.logs.whole import read_whole_log
 from advisor.session.conductor import Conductor
 from advisor.session.replay import LogPlayer
 from advisor.session.source import Tempo
@@ -31,7 +31,7 @@ async def picture(log: Path, aircraft_file: Path | None, face: Face, after: int,
     aircraft = load_aircraft(aircraft_file)
 
     def load() -> Sequence[Columns]:
-        return [columns for batch in open_log(log) for columns in batch]
+        return [columns for batch in read_whole_log(log) for columns in batch]
 
     player = LogPlayer(log.name, load, inf)
     conductor = Conductor(player, lambda by_hand: Campaign(aircraft, settle=True, by_hand=by_hand))
