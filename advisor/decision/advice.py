@@ -12,7 +12,7 @@ from advisor.decision.history import CandidateManeuver, usable_ones
 from advisor.decision.information import Knowledge
 from advisor.decision.inputs import StepInput
 from advisor.decision.judge import accepted_estimates
-from advisor.decision.remaining import by_information, by_scatter, share_after, usable_share
+from advisor.decision.remaining import by_information, by_scatter, errors_as_flown, odds_of, share_after
 from advisor.decision.scatter import scattered_most, window
 from advisor.decision.verdict import NO_CURE_BY_INPUT, NextInput, Remaining
 from advisor.flight.signals.messages import FloatArray
@@ -44,11 +44,8 @@ def next_input(
         return NextInput(f"next: {spoken}", None)
     known = course.known(usable_ones(history))
     choice = None if mend else _choose(conditions, known, plan)
-    if choice is None:
-        spoken, errors = mend or "the same again", conditions.last_covariance
-    else:
-        spoken, errors = choice[0].spoken(conditions.travel_rad), choice[1]
-    remaining = _remaining(history, plan, known, errors)
+    spoken = choice[0].spoken(conditions.travel_rad) if choice else mend or "the same again"
+    remaining = forecast(history, course)
     return NextInput(f"next: {spoken}", remaining, _held_by(history, plan, known))
 
 
@@ -78,15 +75,18 @@ def _distance_to_stop(covariance: FloatArray, plan: CampaignPlan, known: Knowled
     return float(np.linalg.norm(std / size))
 
 
-def _remaining(
-    history: Sequence[CandidateManeuver], plan: CampaignPlan, known: Knowledge, next_covariance: FloatArray
-) -> Remaining:
-    share = usable_share(history)
+def forecast(history: Sequence[CandidateManeuver], course: CriterionCourse) -> Remaining:
+    """Return the number of further manoeuvres of a crew that flies on as it has flown, whatever the advice
+    is. At least one manoeuvre of ``history`` is usable."""
+    plan, usable = course.plan, usable_ones(history)
+    known = course.known(usable)
+    odds = odds_of(history, course)
+    as_flown = errors_as_flown(usable, known.widening)
     if plan.rule == "information":
-        return by_information(known, next_covariance, share)
+        return by_information(known, as_flown, odds)
     members = np.array([e.theta for e in accepted_estimates(history, plan.rule)]).reshape(-1, len(PARAMETERS))
-    next_std = np.sqrt(np.diag(next_covariance))
-    return by_scatter(members, known.posterior, next_std, plan, share * PASSING.get(plan.rule, 1.0))
+    passing = odds.usable.mean * PASSING.get(plan.rule, 1.0)
+    return by_scatter(members, known.posterior, np.sqrt(np.diag(as_flown)), plan, passing)
 
 
 def _held_by(history: Sequence[CandidateManeuver], plan: CampaignPlan, known: Knowledge) -> str:

@@ -1,12 +1,13 @@
 """Expected number of further manoeuvres, for each rule, if the next ones give the expected information."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import nbdtr
 
 from advisor.aircraft.aircraft import CampaignPlan
-from advisor.decision.history import CandidateManeuver
+from advisor.decision.course import CriterionCourse
+from advisor.decision.history import CandidateManeuver, estimates_of, usable_ones
 from advisor.decision.information import Knowledge
 from advisor.decision.inverses import covariance_of, information_of
 from advisor.decision.pooling import DERIVATIVES, Posterior
@@ -15,14 +16,41 @@ from advisor.decision.verdict import Remaining
 from advisor.flight.signals.messages import FloatArray
 from advisor.words.quantiles import NORMAL_95
 
+
+@dataclass(frozen=True, slots=True)
+class Share:
+    """Successes among trials, with a prior of nine successes in ten."""
+
+    hits: int
+    misses: int
+
+    @property
+    def mean(self) -> float:
+        """Expected share."""
+        return (self.hits + 9.0) / (self.hits + self.misses + 10.0)
+
+    def draw(self, rng: np.random.Generator) -> FloatArray:
+        """Return shares drawn from the posterior (beta distribution)."""
+        return rng.beta(self.hits + 9.0, self.misses + 1.0, _DRAWS)
+
+
+@dataclass(frozen=True, slots=True)
+class Odds:
+    """Record of a campaign's manoeuvres."""
+
+    usable: Share
+    predicted: Share
+    """Share of usable manoeuvres that the earlier ones predicted."""
+
+
 MOST = 50
 """Largest number that is predicted. Beyond it there is no end in sight."""
 _DRAWS = 400
 
 
-def by_information(known: Knowledge, next_covariance: FloatArray, usable_share: float) -> Remaining:
+def by_information(known: Knowledge, next_covariance: FloatArray, odds: Odds) -> Remaining:
     """Return the number of further manoeuvres until every tolerance is met and the newest manoeuvre is
-    predicted.
+    predicted, by simulation.
 
     Parameters
     ----------
@@ -30,15 +58,21 @@ def by_information(known: Knowledge, next_covariance: FloatArray, usable_share: 
         Present knowledge.
     next_covariance
         (8, 8) covariance of the errors expected from each further manoeuvre.
-    usable_share
-        Share of manoeuvres that are usable.
+    odds
+        Record of this campaign: how many of its manoeuvres were usable, and how many were predicted.
     """
     good = 1 if np.isnan(known.surprise) or not known.predicted else 0
     while good <= MOST and share_after(known, next_covariance, good) >= 1.0:
         good += 1
     if good > MOST:
         return Remaining(None, None)
-    return Remaining(good, _flights_for(good, usable_share, 0.9))
+    rng = np.random.default_rng(0)
+    usable, predicted = odds.usable.draw(rng), odds.predicted.draw(rng)
+    # The test stops with a manoeuvre that was predicted. Each one that was not costs another.
+    needed = np.maximum(good, 1) - 1 + rng.geometric(predicted)
+    flights = needed + rng.negative_binomial(needed, usable)
+    median, p90 = np.quantile(flights, [0.5, 0.9], method="higher")
+    return Remaining(*(int(n) if n <= MOST else None for n in (median, p90)))
 
 
 def share_after(known: Knowledge, next_covariance: FloatArray, more: int) -> float:
@@ -92,17 +126,22 @@ def by_scatter(
     return Remaining(*(int(n) if n <= MOST else None for n in (median, p90)))
 
 
-def usable_share(history: Sequence[CandidateManeuver]) -> float:
-    """Return the share of usable manoeuvres so far, with a prior of nine good manoeuvres out of ten."""
-    good = sum(flown.usable is not None for flown in history)
-    return (good + 9.0) / (len(history) + 10.0)
+def odds_of(history: Sequence[CandidateManeuver], course: CriterionCourse) -> Odds:
+    """Return how many manoeuvres of a campaign were usable, and how many of these were predicted."""
+    usable = usable_ones(history)
+    told = [course.standing(usable[:k]).predicted for k in range(2, len(usable) + 1)]
+    return Odds(Share(len(usable), len(history) - len(usable)), Share(sum(told), len(told) - sum(told)))
 
 
-def _flights_for(good: int, share: float, confidence: float) -> int:
-    """Return the number of flights that give ``good`` usable ones with this confidence (negative
-    binomial)."""
-    spoilt = 0
-    # To rounding: half of all chances may be reached exactly.
-    while good and nbdtr(spoilt, good, share) < confidence - 1e-12:
-        spoilt += 1
-    return good + spoilt
+def errors_as_flown(usable: Sequence[CandidateManeuver], widening: float) -> FloatArray:
+    """Return the covariance of a manoeuvre with the mean information of those flown, shape (8, 8).
+
+    Parameters
+    ----------
+    usable
+        Usable manoeuvres so far, at least one.
+    widening
+        Variance ratio by which the manoeuvres scatter more than their stated errors.
+    """
+    information = np.mean([information_of(e.covariance) for e in estimates_of(usable)], axis=0)
+    return np.asarray(widening * covariance_of(information))

@@ -72,6 +72,7 @@ def early_stops(campaigns: int, seed: int) -> Study[stops.StopsBlock, stops.Stop
                 },
                 "stops": len(s.error_percent),
                 "false_percent": s.false_percent if s.error_percent else None,
+                "forecast_kept_percent": s.kept_percent if s.promises else None,
                 "error_percent": {"median": s.error_quantile(0.5), "p95": s.error_quantile(0.95)},
             }
             for s in found
@@ -137,4 +138,6 @@ def _stops(found: Sequence[stops.Stops], campaigns: int) -> list[str]:
             f"{case.name}, noise {case.noise_percent:g} %, tolerance {case.tolerance_percent:g} %: {wrong}"
         )
         lines += wrapped(f"  needed: {needed}")
+        if one.promises:
+            lines += wrapped(f"  forecast for nine campaigns in ten: held by {one.kept_percent:.0f} %")
     return lines

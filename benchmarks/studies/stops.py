@@ -4,7 +4,7 @@ A stop is false when the model then predicts the true response to the campaign's
 tolerance. The error is the largest over time, in percent of the peak, of the worst output.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -23,6 +23,8 @@ from advisor.bundled.study.flying import (
     respond,
 )
 from advisor.bundled.study.paper import ORDER
+from advisor.decision.advice import forecast
+from advisor.decision.course import CriterionCourse
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.information import knowledge
 from advisor.decision.prediction import MOMENTS, PREDICTED, response_to
@@ -82,6 +84,15 @@ class Stops:
     """Manoeuvres flown when each rule first said stop, for each campaign. None: no stop in seven."""
     error_percent: tuple[float, ...]
     """Error of the predicted response where ``information`` stopped, in percent of its peak."""
+    promises: tuple[tuple[int, int | None], ...]
+    """For each forecast before the stop: the number that nine campaigns in ten do not exceed, and the number
+    flown. None: no stop in seven."""
+
+    @property
+    def kept_percent(self) -> float:
+        """Share of the forecasts with a number that held; NaN without a forecast."""
+        kept = [needed is not None and needed <= promised for promised, needed in self.promises]
+        return 100.0 * float(np.mean(kept)) if kept else float("nan")
 
     @property
     def false_percent(self) -> float:
@@ -146,6 +157,7 @@ def by_case(found: Sequence[Stops]) -> list[Stops]:
             case,
             {rule: tuple(n for one in several for n in one.needed[rule]) for rule in RULES},
             tuple(error for one in several for error in one.error_percent),
+            tuple(promise for one in several for promise in one.promises),
         )
         for case, several in cases.items()
     ]
@@ -246,7 +258,23 @@ def _measured(
         for campaign, number in zip(campaigns, needed["information"], strict=True)
         if number is not None
     ]
-    return Stops(case, needed, tuple(errors))
+    promises = [
+        promise
+        for campaign, number in zip(campaigns, needed["information"], strict=True)
+        for promise in _promises(campaign, number, plan)
+    ]
+    return Stops(case, needed, tuple(errors), tuple(promises))
+
+
+def _promises(
+    campaign: Sequence[CandidateManeuver], stopped_at: int | None, plan: CampaignPlan
+) -> Iterator[tuple[int, int | None]]:
+    """Yield the forecasts before the stop of a campaign that does not follow the advice."""
+    course = CriterionCourse(plan)
+    for flown in range(1, len(campaign) if stopped_at is None else stopped_at):
+        promised = forecast(campaign[:flown], course).p90
+        if promised is not None:
+            yield promised, None if stopped_at is None else stopped_at - flown
 
 
 def _error_percent(

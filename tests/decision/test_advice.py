@@ -11,7 +11,9 @@ from advisor.bundled.study.flying import Scene, follow
 from advisor.decision.advice import next_input
 from advisor.decision.foresight import Instruments, expect
 from advisor.decision.history import CandidateManeuver
+from advisor.decision.information import knowledge
 from advisor.decision.inputs import StepInput
+from advisor.decision.remaining import share_after
 from advisor.decision.stopping import flight_test
 from advisor.decision.verdict import NO_CURE_BY_INPUT, Reason, Remaining
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
@@ -154,17 +156,37 @@ def test_fewer_manoeuvres_remain_the_more_have_been_flown() -> None:
 @pytest.mark.parametrize("rule", ["continuous", "separate"])
 def test_where_chance_decides_ninety_per_cent_need_more_than_half_and_the_more_the_noisier(rule) -> None:
     aircraft = replace(AIRCRAFT, campaign=CampaignPlan(rule=rule))
-    calm, noisy = (next_input([flown(n)], aircraft, stopped=False).remaining for n in (1.0, 4.0))
+    calm, noisy = (next_input([flown(n)], aircraft, stopped=False).remaining for n in (1.0, 2.0))
     assert calm.median is not None
     assert calm.p90 is not None
     assert noisy.p90 is not None
     assert 1 <= calm.median < calm.p90 < noisy.p90
 
 
-def test_what_information_still_needs_is_one_number() -> None:
+def test_one_time_in_ten_a_manoeuvre_is_spoilt_or_not_predicted() -> None:
     aircraft = replace(AIRCRAFT, campaign=CampaignPlan(rule="information"))
     remaining = next_input([flown(1.0)], aircraft, stopped=False).remaining
-    assert remaining.median == remaining.p90 == 1
+    assert (remaining.median, remaining.p90) == (1, 2)
+
+
+def test_a_crew_that_spoils_half_of_its_manoeuvres_is_promised_more() -> None:
+    aircraft = replace(AIRCRAFT, campaign=CampaignPlan(rule="information", tolerance={"M_alpha": 0.05}))
+    spoilt = replace(flown(2.0), reasons=(Reason("bank", "banked", 40.0, 30.0),))
+    clean = next_input([flown(2.0)] * 8, aircraft, stopped=False).remaining
+    poor = next_input([spoilt, flown(2.0)] * 8, aircraft, stopped=False).remaining
+    assert None not in (clean.p90, poor.p90)
+    assert poor.median > clean.median
+    assert poor.p90 > clean.p90
+
+
+def test_the_forecast_is_of_inputs_as_flown_and_not_of_the_advised_one() -> None:
+    strict = replace(AIRCRAFT, campaign=CampaignPlan(rule="information", tolerance={"M_alpha": 0.03}))
+    history = [flown(2.0)] * 2
+    known = knowledge(history, strict.campaign)
+    needed = 1
+    while share_after(known, history[0].estimate.covariance, needed) >= 1.0:
+        needed += 1
+    assert next_input(history, strict, stopped=False).remaining.median >= needed
 
 
 def test_no_end_in_sight_is_said_as_none() -> None:

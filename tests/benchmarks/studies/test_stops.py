@@ -39,8 +39,13 @@ def test_the_default_rule_needs_no_more_manoeuvres_than_the_papers() -> None:
 
 
 def test_an_error_beyond_the_tolerance_counts_as_a_false_stop() -> None:
-    found = Stops(Case("any", 1.0, tolerance_percent=2.0), {}, (1.0, 3.0, 1.5, 1.9))
+    found = Stops(Case("any", 1.0, tolerance_percent=2.0), {}, (1.0, 3.0, 1.5, 1.9), ())
     assert found.false_percent == 25.0
+
+
+def test_a_forecast_is_kept_by_a_campaign_that_stops_no_later() -> None:
+    found = Stops(Case("any", 1.0), {}, (), ((1, 1), (2, 1), (1, 2), (3, None)))
+    assert found.kept_percent == 50.0
 
 
 def test_the_study_of_stops_is_told_in_lines_and_as_a_document(monkeypatch: pytest.MonkeyPatch) -> None:
