@@ -56,7 +56,7 @@ imports: .venv/.developed ## the walls of the house
 	$(BIN)/lint-imports
 
 .PHONY: sizes
-sizes: .venv/.developed ## lines, constants and names of the gap diagnosis, which may only fall
+sizes: .venv/.developed ## lines, constants and names of the gap's rules, each with an upper bound
 	$(BIN)/python -m benchmarks.gap_size
 
 .PHONY: english
