@@ -36,7 +36,7 @@ run: setup ## the bundled aircraft flies, the advisor advises (HEADLESS=1: as te
 test: .venv/.developed ## run all tests (long studies have their own targets)
 	$(BIN)/python -m pytest -n 2 --dist loadgroup
 
-check: .venv/.developed format-check lint types imports sizes english words site test ## format, lint, types, import contracts, sizes, English, documentation, tests
+check: .venv/.developed format-check files lint types imports sizes english words site test ## format, files, lint, types, import contracts, sizes, English, documentation, tests
 
 format: .venv/.developed ## format the code
 	$(BIN)/ruff format .
@@ -45,6 +45,10 @@ format: .venv/.developed ## format the code
 .PHONY: format-check
 format-check: .venv/.developed
 	$(BIN)/ruff format --check .
+
+.PHONY: files
+files: .venv/.developed ## no large file, no mark of a merge, no broken YAML
+	SKIP=format,lint,types,imports $(BIN)/pre-commit run --all-files
 
 lint: .venv/.developed
 	$(BIN)/ruff check .
