@@ -144,12 +144,19 @@ examples: .venv/.developed ## run the worked examples of the documentation, and 
 pictures: .venv/.developed ## the screens in the README, drawn by the running program
 	$(BIN)/python -m advisor.tui.picture logs/bundled-demo.tlog --after 3 --out docs/assets
 
-.PHONY: wheel install-check container coverage
+.PHONY: wheel install-check lowest release container coverage
 wheel: .venv/.developed ## the wheel and the source archive, in dist
 	$(BIN)/python -m build
 
+VERSION ?=
+release: ## turn Unreleased of CHANGELOG.md into VERSION=1.2.3, commit, tag
+	.ci/release $(VERSION)
+
 install-check: ## the wheel in empty environments, by pip, pipx and uv (ten minutes)
 	.ci/install-check
+
+lowest: ## the lowest versions that pyproject.toml allows: text, report and both screens (five minutes)
+	.ci/lowest $(PYTHON)
 
 container: ## the container image (docker or podman)
 	docker build -f Containerfile -t inflight-advisor .
