@@ -1,12 +1,14 @@
 """`make release`: the heading in CHANGELOG.md, one commit and its tag, or a sentence and nothing else."""
 
+import re
 import shutil
 import subprocess
 from pathlib import Path
 
 import pytest
 
-SCRIPT = Path(__file__).parents[1] / ".ci" / "release"
+ROOT = Path(__file__).parents[1]
+SCRIPT = ROOT / ".ci" / "release"
 CHANGELOG = "# Changelog\n\n## Unreleased\n\n- A command is new.\n\n## 0.1.0 (2026-01-01)\n\n- All is new.\n"
 
 
@@ -53,6 +55,13 @@ def test_release_refuses_a_changelog_without_entries(checkout: Path) -> None:
     assert_refused(checkout, "0.3.0", "no entry")
 
 
+def test_every_action_of_a_workflow_is_pinned_by_a_commit() -> None:
+    workflows = [path.read_text(encoding="utf-8") for path in (ROOT / ".github" / "workflows").iterdir()]
+    actions = [action for text in workflows for action in re.findall(r"uses: (.*)", text)]
+    loose = [action for action in actions if not re.fullmatch(r"\S+@[0-9a-f]{40} # v\d+\.\d+\.\d+", action)]
+    assert (len(actions) >= 5, loose) == (True, [])
+
+
 def assert_refused(checkout: Path, version: str, reason: str) -> None:
     before = git(checkout, "log", "--decorate", "--oneline")
     done = release(checkout, version)
@@ -62,7 +71,8 @@ def assert_refused(checkout: Path, version: str, reason: str) -> None:
 
 
 def release(checkout: Path, version: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run([checkout / ".ci" / "release", version], capture_output=True, text=True, check=False)
+    command = [checkout / ".ci" / "release", version]
+    return subprocess.run(command, capture_output=True, text=True, check=False)
 
 
 def git(folder: Path, *arguments: str) -> str:
