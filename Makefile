@@ -36,7 +36,7 @@ run: setup ## the bundled aircraft flies, the advisor advises (HEADLESS=1: as te
 test: .venv/.developed ## run all tests (long studies have their own targets)
 	$(BIN)/python -m pytest -n 2 --dist loadgroup
 
-check: .venv/.developed format-check lint types imports sizes english words site test ## format, lint, types, import contracts, sizes, English, documentation, tests
+check: .venv/.developed format-check files lint types imports sizes english words site test ## format, files, lint, types, import contracts, sizes, English, documentation, tests
 
 format: .venv/.developed ## format the code
 	$(BIN)/ruff format .
@@ -45,6 +45,10 @@ format: .venv/.developed ## format the code
 .PHONY: format-check
 format-check: .venv/.developed
 	$(BIN)/ruff format --check .
+
+.PHONY: files
+files: .venv/.developed ## no large file, no mark of a merge, no broken YAML
+	SKIP=format,lint,types,imports $(BIN)/pre-commit run --all-files
 
 lint: .venv/.developed
 	$(BIN)/ruff check .
@@ -56,7 +60,7 @@ imports: .venv/.developed ## the walls of the house
 	$(BIN)/lint-imports
 
 .PHONY: sizes
-sizes: .venv/.developed ## lines, constants and names of the gap diagnosis, which may only fall
+sizes: .venv/.developed ## lines, constants and names of the gap's rules, each with an upper bound
 	$(BIN)/python -m benchmarks.gap_size
 
 .PHONY: english
@@ -140,12 +144,19 @@ examples: .venv/.developed ## run the worked examples of the documentation, and 
 pictures: .venv/.developed ## the screens in the README, drawn by the running program
 	$(BIN)/python -m advisor.tui.picture logs/bundled-demo.tlog --after 3 --out docs/assets
 
-.PHONY: wheel install-check container coverage
+.PHONY: wheel install-check lowest release container coverage
 wheel: .venv/.developed ## the wheel and the source archive, in dist
 	$(BIN)/python -m build
 
+VERSION ?=
+release: ## turn Unreleased of CHANGELOG.md into VERSION=1.2.3, commit, tag
+	.ci/release $(VERSION)
+
 install-check: ## the wheel in empty environments, by pip, pipx and uv (ten minutes)
 	.ci/install-check
+
+lowest: ## the lowest versions that pyproject.toml allows: text, report and both screens (five minutes)
+	.ci/lowest $(PYTHON)
 
 container: ## the container image (docker or podman)
 	docker build -f Containerfile -t inflight-advisor .

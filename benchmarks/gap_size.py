@@ -1,12 +1,12 @@
-"""How large the gap diagnosis is, and that no count of it grows.
+"""How large the rules of the gap diagnosis are, and that no count of them passes its limit.
 
     python -m benchmarks.gap_size
 
-Counted over ``advisor/gap`` are its lines of code, without docstrings, comments and blank lines, so that an
-explanation costs nothing; its constants, which are names of numbers, outside the table of effects;
-comparisons with the name of an effect or a block outside that table; and functions of a cyclomatic complexity
-above 15 (McCabe 1976). ``LIMITS`` holds what the tree has. A limit falls, never rises: ``make check`` fails
-above one, and below one too, until the limit is lowered.
+Counted over ``advisor/gap`` are lines of code, without docstrings, comments and blank lines, so that an
+explanation costs nothing; constants, which are names of numbers; comparisons with the name of an effect or a
+block; and functions of a cyclomatic complexity above 15 (McCabe 1976). A new effect does not count: the two
+folders that describe effects, ``EFFECTS``, are left out of all counts but the last. ``make check`` and
+``.ci/run`` fail above a limit.
 """
 
 import ast
@@ -20,11 +20,12 @@ from advisor.gap.candidates.traits import TRAITS
 from benchmarks.pages.constants import constants_in
 
 ROOM = Path(__file__).parents[1] / "advisor" / "gap"
-TABLE = ROOM / "candidates"
-"""Where names of effects belong."""
+EFFECTS = (ROOM / "candidates", ROOM / "simulator")
+"""Folders that describe effects: their table, and their equations."""
 BLOCKS = frozenset(trait.block for trait in TRAITS.values()) | {"attitude_sensor"}
 NAMES = frozenset(TRAITS) | BLOCKS
-LIMITS = {"lines of code": 7493, "constants": 340, "names compared": 20, "complex functions": 0}
+LIMITS = {"lines of code": 6100, "constants": 291, "names compared": 20, "complex functions": 0}
+"""Upper bound of each count. Lines have 2 % to spare, so that a mend needs no cut elsewhere."""
 MOST_COMPLEX = 15
 _LAYOUT = frozenset(
     {tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT, tokenize.ENDMARKER}
@@ -33,13 +34,11 @@ _BRANCHES = (ast.If, ast.IfExp, ast.For, ast.While, ast.ExceptHandler, ast.compr
 
 
 def main() -> int:
-    """Print every count beside its limit; 1 where one is not what the limit says."""
+    """Print every count next to its limit; return 1 where a count is above its limit."""
     counts = counted()
     for name, count in counts.items():
-        limit = LIMITS[name]
-        verdict = "" if count == limit else "  ABOVE" if count > limit else f"  lower the limit to {count}"
-        print(f"{name:18s}{count:7d}  limit {limit}{verdict}")
-    return int(counts != LIMITS)
+        print(f"{name:18s}{count:7d}  limit {LIMITS[name]}{'  ABOVE' if count > LIMITS[name] else ''}")
+    return int(any(count > LIMITS[name] for name, count in counts.items()))
 
 
 def counted() -> dict[str, int]:
@@ -48,9 +47,9 @@ def counted() -> dict[str, int]:
     for path in sorted(ROOM.rglob("*.py")):
         text = path.read_text(encoding="utf-8")
         tree = ast.parse(text)
-        found["lines of code"] += len(_lines_of_code(text, tree))
         found["complex functions"] += sum(_complexity(f) > MOST_COMPLEX for f in _functions(tree))
-        if not path.is_relative_to(TABLE):
+        if not any(path.is_relative_to(folder) for folder in EFFECTS):
+            found["lines of code"] += len(_lines_of_code(text, tree))
             found["constants"] += sum(len(constant.names) for constant in constants_in(tree))
             found["names compared"] += sum(map(_compares_a_name, ast.walk(tree)))
     return found
