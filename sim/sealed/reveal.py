@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from .score import Rate, by_effect, in_time, judge, score
+from .judge import Judged, judge
+from .score import Rate, by_effect, in_time, score
 from .seal import SealError, unseal
 
 
@@ -40,24 +41,28 @@ def report(folder: Path, answers: Path, key_file: Path, details: bool = False) -
     """
     said = read_answers(answers)
     key = unseal(folder, answers, key_file)
-    judged = judge(key, said)
+    judged = {name: judge(truth, said.get(name, {})) for name, truth in key.items()}
     yield f"{len(key)} cases, {len(set(said) & set(key))} answered; percent with 95 % intervals"
-    for rate in score(judged):
+    for rate in (*score(list(judged.values())), in_time(_seconds_of(answers))):
         yield rate.line()
     if not details:
         return
     yield "right cause first, by effect"
-    for rate in by_effect(judged):
+    for rate in by_effect(list(judged.values())):
         yield rate.line()
     yield "not right"
-    for name, j in zip(key, judged, strict=True):
-        expected = {"none": "none", "parameters": "parameters", "outside": "unknown"}.get(j.group)
-        fine = j.verdict == expected if expected else j.right or j.is_left_alone
-        if not fine:
-            told = f"{j.verdict} {j.named[0] if j.named else ''}".strip()
-            sizes = {effect: {k: round(v, 5) for k, v in own.items()} for effect, own in j.sizes.items()}
-            truth = f"{name} {j.group:10s} {sizes or '-'} gap {j.gap:.2f}"
-            yield f"  {truth} -> {told} @ {j.block} p={j.probability:.2f}"
+    for name, j in judged.items():
+        if not j.is_right:
+            yield _wrong(name, j)
+
+
+def _wrong(name: str, j: Judged) -> str:
+    """Return the line of an answer that is not right: the truth, and what was told."""
+    told = f"{j.verdict} {j.named[0] if j.named else ''}".strip()
+    sizes = {effect: {k: round(v, 5) for k, v in own.items()} for effect, own in j.sizes.items()}
+    gap = "" if j.gap is None else f" gap {j.gap:.2f}"
+    truth = f"{name} {j.kind:10s} {j.condition:8s} {sizes or '-'}{gap}"
+    return f"  {truth} -> {told} @ {j.block} p={j.probability:.2f}"
 
 
 def score_document(folder: Path, answers: Path, key_file: Path) -> dict[str, Any]:
@@ -72,12 +77,13 @@ def score_document(folder: Path, answers: Path, key_file: Path) -> dict[str, Any
     """
     said = read_answers(answers)
     key = unseal(folder, answers, key_file)
+    judged = [judge(truth, said.get(name, {})) for name, truth in key.items()]
     return {
         "schema": "score/1",
         "cases": len(key),
         "answered": len(set(said) & set(key)),
         "answers_sha256": hashlib.sha256(answers.read_bytes()).hexdigest(),
-        "figures": [_figure(rate) for rate in (*score(judge(key, said)), in_time(_seconds_of(answers)))],
+        "figures": [_figure(rate) for rate in (*score(judged), in_time(_seconds_of(answers)))],
     }
 
 
