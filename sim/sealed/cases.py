@@ -1,4 +1,4 @@
-"""Write a set of sealed cases: logs and aircraft files under meaningless names, the key next to the folder."""
+"""Write a set of sealed cases: logs and aircraft files under names that say nothing, and the sealed key."""
 
 import os
 from collections.abc import Iterable, Mapping
