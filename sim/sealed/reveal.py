@@ -31,6 +31,22 @@ def read_answers(path: Path) -> dict[str, dict[str, Any]]:
     return answers
 
 
+def judge_all(folder: Path, answers: Path, key_file: Path) -> tuple[dict[str, Judged], int]:
+    """Open the key, and return each case judged and the number of cases that are answered.
+
+    Raises
+    ------
+    SealError
+        The answers are not those committed, the key is not the one sealed, or an earlier version wrote it.
+    """
+    said = read_answers(answers)
+    key = unseal(folder, answers, key_file)
+    if any("kind" not in truth for truth in key.values()):
+        raise SealError(f"{key_file}: sealed by an earlier version; score it with that version")
+    judged = {name: judge(truth, said.get(name, {})) for name, truth in key.items()}
+    return judged, len(set(said) & set(key))
+
+
 def report(folder: Path, answers: Path, key_file: Path, details: bool = False) -> Iterator[str]:
     """Yield the lines of the score table.
 
@@ -39,10 +55,8 @@ def report(folder: Path, answers: Path, key_file: Path, details: bool = False) -
     SealError
         The answers are not those committed, or the key is not the one sealed.
     """
-    said = read_answers(answers)
-    key = unseal(folder, answers, key_file)
-    judged = {name: judge(truth, said.get(name, {})) for name, truth in key.items()}
-    yield f"{len(key)} cases, {len(set(said) & set(key))} answered; percent with 95 % intervals"
+    judged, answered = judge_all(folder, answers, key_file)
+    yield f"{len(judged)} cases, {answered} answered; percent with 95 % intervals"
     for rate in (*score(list(judged.values())), in_time(_seconds_of(answers))):
         yield rate.line()
     if not details:
@@ -75,15 +89,14 @@ def score_document(folder: Path, answers: Path, key_file: Path) -> dict[str, Any
     SealError
         The answers are not those committed, or the key is not the one sealed.
     """
-    said = read_answers(answers)
-    key = unseal(folder, answers, key_file)
-    judged = [judge(truth, said.get(name, {})) for name, truth in key.items()]
+    judged, answered = judge_all(folder, answers, key_file)
+    rates = (*score(list(judged.values())), in_time(_seconds_of(answers)))
     return {
         "schema": "score/1",
-        "cases": len(key),
-        "answered": len(set(said) & set(key)),
+        "cases": len(judged),
+        "answered": answered,
         "answers_sha256": hashlib.sha256(answers.read_bytes()).hexdigest(),
-        "figures": [_figure(rate) for rate in (*score(judged), in_time(_seconds_of(answers)))],
+        "figures": [_figure(rate) for rate in rates],
     }
 
 

@@ -20,7 +20,7 @@ from sim.flight import noise_sigma
 from sim.scenario import Maneuver, Noise, Scenario
 from sim.sealed.cases import key_beside
 from sim.sealed.reveal import report
-from sim.sealed.seal import SEAL, SealError, commit, unseal
+from sim.sealed.seal import SEAL, SealError, commit, seal, unseal
 from sim.tlog import read_tlog
 
 # Cases take seconds to draw.
@@ -98,6 +98,16 @@ def test_a_report_lists_every_figure_with_its_interval(cases, tmp_path):
     nothing = sum(case["kind"] == "none" for case in key_of(cases).values())
     assert "2 cases, 2 answered" in text
     assert f"n={nothing}" in next(line for line in text.splitlines() if line.startswith("false alarms"))
+
+
+def test_a_key_of_an_earlier_version_is_refused_in_a_sentence(tmp_path):
+    folder, answers = tmp_path / "cases", tmp_path / "answers.jsonl"
+    folder.mkdir()
+    answers.write_text("")
+    seal({"0001": {"group": "none", "effects": {}}}, key_beside(folder), folder)
+    commit(folder, answers)
+    with pytest.raises(SealError, match="sealed by an earlier version; score it with that version"):
+        list(report(folder, answers, key_beside(folder)))
 
 
 @pytest.mark.parametrize("group", ["clean", "jsbsim", "outside", "two"])
