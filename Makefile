@@ -89,17 +89,18 @@ study-change: .venv/.developed ## how soon a change of the aircraft is told
 	$(BIN)/python -m benchmarks.studies change --campaigns 400
 
 SEED ?= 360127
+define sealed
+	rm -rf build/$(1) build/$(1).key.json build/$(1).jsonl
+	$(BIN)/python -m benchmarks.$(1)_generator --cases 240 --seed $(SEED) --out build/$(1)
+	$(BIN)/python -m benchmarks.sealed.answer build/$(1) build/$(1).jsonl
+	$(BIN)/python -m sim commit build/$(1) build/$(1).jsonl
+	$(BIN)/python -m sim reveal build/$(1) build/$(1).jsonl --details
+endef
 study-second: .venv/.developed ## the diagnosis on 240 flights of the second generator (SEED=...; about fifteen minutes)
-	rm -rf build/second build/second.key.json build/second.jsonl
-	$(BIN)/python -m benchmarks.second_generator draw --cases 240 --seed $(SEED) --out build/second
-	$(BIN)/python -m benchmarks.answer_sealed build/second build/second.jsonl
-	$(BIN)/python -m benchmarks.second_generator score build/second build/second.jsonl --details
+	$(call sealed,second)
 
 study-third: .venv/.developed ## the diagnosis on 240 flights of the third generator (SEED=...; about fifteen minutes)
-	rm -rf build/third build/third.key.json build/third.jsonl
-	$(BIN)/python -m benchmarks.third_generator draw --cases 240 --seed $(SEED) --out build/third
-	$(BIN)/python -m benchmarks.answer_sealed build/third build/third.jsonl
-	$(BIN)/python -m benchmarks.third_generator score build/third build/third.jsonl --details
+	$(call sealed,third)
 
 .PHONY: corpus
 corpus: .venv/.developed ## 160 flights whose keys are open: at most 2 % of the verdicts may flip (about ten minutes)

@@ -15,10 +15,12 @@ from pathlib import Path
 from typing import Any
 
 from advisor.cli.running import runner_of
-from benchmarks.answer_sealed import answer
-from benchmarks.second_generator import case_files as second
-from benchmarks.third_generator import files as third
-from sim.blind.generate import generate
+from benchmarks.sealed.answer import answer
+from benchmarks.second_generator.cases import cases as second
+from benchmarks.third_generator.files import cases as third
+from sim.blind.draw import GROUPS
+from sim.blind.generate import draw
+from sim.sealed.cases import SealedCase, key_beside, write_set
 
 EXPECTED = Path(__file__).with_suffix(".json")
 FOLDER = Path("build") / "corpus"
@@ -29,19 +31,11 @@ Verdict = list[str | None]
 """The verdict, and the first cause or the block."""
 
 
-def _own(folder: Path) -> None:
-    generate(60, 530271946, folder)
-
-
-def _second(folder: Path) -> None:
-    second.draw_set(folder, 60, 360127)
-
-
-def _third(folder: Path) -> None:
-    third.draw_set(folder, 40, 4545)
-
-
-SETS: Mapping[str, Callable[[Path], None]] = {"own": _own, "second": _second, "third": _third}
+SETS: Mapping[str, Callable[[], Iterator[SealedCase]]] = {
+    "own": lambda: draw(60, 530271946, GROUPS),
+    "second": lambda: second(60, 360127),
+    "third": lambda: third(40, 4545),
+}
 """Each with the draw of its flights, from a seed whose key is open."""
 
 
@@ -58,10 +52,10 @@ def verdict_of(document: Mapping[str, Any]) -> Verdict:
 def answered() -> Iterator[tuple[str, Verdict]]:
     """Every flight of the corpus, drawn where it is not there yet, with its verdict."""
     cases = []
-    for name, draw in SETS.items():
+    for name, drawn in SETS.items():
         folder = FOLDER / name
-        if not folder.with_suffix(".key.json").exists():
-            draw(folder)
+        if not key_beside(folder).exists():
+            write_set(folder, drawn())
         cases += sorted(path for path in folder.iterdir() if path.is_dir())
     for case, result in runner_of(None, None)(answer, cases):
         if isinstance(result, Exception):

@@ -9,12 +9,12 @@ from typing import Any
 
 import click
 
-from .blind.seal import SealError
 from .effects.fitting import flight_of
 from .flight import Flight
 from .loading import ScenarioError
 from .modelled import modelled_flight
 from .scenario import Scenario, read_scenario
+from .sealed.seal import SealError
 from .trim import TrimError
 
 
@@ -141,7 +141,8 @@ def blind(cases: int, seed: int, out: Path, only: tuple[str, ...]) -> None:
     Example: python -m sim blind --cases 200 --seed 11 --out cases
     """
     from .blind.draw import GROUPS
-    from .blind.generate import generate, key_beside
+    from .blind.generate import generate
+    from .sealed.cases import key_beside
 
     unknown = [name for name in only if name not in GROUPS]
     if unknown:
@@ -163,7 +164,7 @@ def commit(folder: Path, answers: Path) -> None:
 
     ANSWERS holds one JSON object a line: {"case": NAME, "answer": document of advisor gap --json}.
     """
-    from .blind.seal import commit as commit_answers
+    from .sealed.seal import commit as commit_answers
 
     click.echo(commit_answers(folder, answers))
 
@@ -180,8 +181,8 @@ def commit(folder: Path, answers: Path) -> None:
 @click.option("--json", "as_json", is_flag=True, help="Print the figures as one JSON document.")
 def reveal(folder: Path, answers: Path, key: Path | None, details: bool, as_json: bool) -> None:
     """Open the key and score committed answers, with 95 % intervals."""
-    from .blind.generate import key_beside
-    from .blind.reveal import report, score_document
+    from .sealed.cases import key_beside
+    from .sealed.reveal import report, score_document
 
     opened = key or key_beside(folder)
     if as_json:

@@ -30,6 +30,8 @@ from benchmarks.pages.__main__ import DATA, ROOT, main
 from benchmarks.pages.example import EXAMPLES, FILES, Part, shown, transcripts
 from benchmarks.pages.figure import errors, svg
 from benchmarks.pages.hooks import on_page_content
+from sim.sealed.judge import judge
+from sim.sealed.score import in_time, score
 from tests.gap.test_report_screen import diagnosis
 from tests.schemas import SCHEMAS
 
@@ -203,20 +205,31 @@ def test_a_run_has_known_figures_and_no_more_hits_than_trials(run):
     assert all(0 <= share.hits <= share.trials for share in shares)
 
 
-def test_runs_of_one_set_are_added_up_and_outside_ones_come_first():
-    share = results.Figure
-    own = [
-        results.Run("A", "g", True, 10, seed, "c", "2026-01-01", "", {"two": share(10, hits)})
-        for seed, hits in ((1, 4), (2, 6))
-    ]
-    outside = results.Run("B", "h", False, 5, 3, "d", "2026-01-02", "", {"two": share(5, 5)})
-    figures = results.figures_table([*own, outside]).splitlines()
-    assert any(
-        row.startswith("| two effects: both named | 5/5, 100.0 %") and "10/20, 50.0 %" in row
-        for row in figures
+def run_of(name, own, seed, commit, two, digest="01234567"):
+    return results.Run(
+        name, "g", own, 10, seed, commit, "2026-01-01", digest, {"two": results.Figure(10, two)}
     )
-    sets = results.sets_table([*own, outside]).splitlines()
-    assert [row.split(" | ")[0] for row in sets[-2:]] == ["| B", "| A"]
+
+
+def test_the_figures_are_those_of_the_newest_commit_whose_answers_are_kept():
+    runs = [
+        run_of("records", False, None, "d", 0, digest=""),
+        run_of("B", False, 3, "c", 10),
+        run_of("A", True, 1, "c", 4),
+        run_of("A", True, 2, "c", 6),
+        run_of("B", False, 4, "b", 0),
+    ]
+    assert {run.commit for run in results.newest(runs)} == {"c"}
+    figures = results.figures_table(runs).splitlines()
+    (row,) = (row for row in figures if row.startswith("| two effects: both named |"))
+    assert "10/10, 100.0 %" in row
+    assert "10/20, 50.0 %" in row
+    assert figures[-1].startswith("Commit `c`, 2026-01-01: B (10 flights, answers `01234567`); A (10 flights")
+
+
+def test_every_set_stands_in_the_table_and_the_outside_ones_first():
+    runs = [run_of("A", True, 1, "c", 4), run_of("B", False, 3, "b", 10)]
+    assert [row.split(" | ")[0] for row in results.sets_table(runs).splitlines()[-2:]] == ["| B", "| A"]
 
 
 @pytest.fixture
@@ -288,16 +301,25 @@ def test_a_file_that_is_no_json_or_is_not_there_is_refused_in_a_sentence(root, c
     Path(arguments[1]).unlink()
     assert main(arguments, root) == 2
     first, second = capsys.readouterr().err.splitlines()
-    assert first.endswith("no score; write it with `score --json` or `reveal --json`")
+    assert first.endswith("no score; write it with `python -m sim reveal --json`")
     assert second.endswith("No such file or directory; give a file that is there")
 
 
-def test_every_row_of_the_two_scores_that_the_page_wants_exists_there():
-    sources = [ROOT / "sim" / "blind" / "score.py", ROOT / "benchmarks" / "second_generator" / "score.py"]
-    text = "\n".join(path.read_text(encoding="utf-8") for path in sources)
-    rows = [row for kind in results.FIGURES.values() for row in kind.rows]
-    made_of_two = {"CPU seconds at most 5", *(r for r in rows if r.startswith("one named effect, "))}
-    assert [row for row in rows if row not in text and row not in made_of_two] == []
+def test_every_row_that_the_page_wants_is_a_row_of_the_score():
+    cases = [
+        {
+            "kind": "one",
+            "condition": name,
+            "effects": {"icing": {}},
+            "blocks": [],
+            "gap": None,
+            "background": [],
+        }
+        for name in ("clean", "hard", "filtered", "JSBSim")
+    ]
+    rates = [*score([judge(case, {}) for case in cases]), in_time([1.0])]
+    wanted = {kind.row for kind in results.FIGURES.values() if kind.row}
+    assert wanted - {rate.name.strip() for rate in rates} == set()
 
 
 def test_the_figure_has_both_errors_of_every_channel():

@@ -4,7 +4,7 @@
     python -m benchmarks.pages --examples       # before that run the worked examples, and draw the figures
     python -m benchmarks.pages add score.json --own --set SS --seed 7 --generator NAME --commit 1a2b3c4
 
-``python -m sim reveal --json`` and ``python -m benchmarks.second_generator score --json`` print such scores.
+``python -m sim reveal --json`` prints such a score, whatever the generator.
 """
 
 import argparse
@@ -62,10 +62,9 @@ def add(data: Path, given: argparse.Namespace) -> None:
     except ValueError:
         score = None
     if not isinstance(score, dict) or score.get("schema") != "score/1":
-        raise ValueError(f"{given.score}: no score; write it with `score --json` or `reveal --json`")
-    seed = score.get("seed") if given.seed is None else given.seed
+        raise ValueError(f"{given.score}: no score; write it with `python -m sim reveal --json`")
     run = results.Run(
-        given.set, given.generator, given.own, score["cases"], seed, given.commit, given.date,
+        given.set, given.generator, given.own, score["cases"], given.seed, given.commit, given.date,
         score["answers_sha256"][:8], results.figures_of(score), given.note,
     )  # fmt: skip
     results.write(data, results.added(results.read(data), run))
@@ -78,13 +77,13 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--examples", action="store_true", help="run the worked examples, too (a minute)")
     commands = parser.add_subparsers(dest="command")
     run = commands.add_parser("add", help="add a scored run to the data")
-    run.add_argument("score", type=Path, help="output of `score --json` or of `reveal --json`")
+    run.add_argument("score", type=Path, help="output of `python -m sim reveal --json`")
     run.add_argument("--set", required=True, help="name of the set; several draws of one set have the same")
     run.add_argument("--generator", required=True, help="what made the flights")
     where = run.add_mutually_exclusive_group(required=True)
     where.add_argument("--own", action="store_true", help="by the project's own simulator")
     where.add_argument("--outside", action="store_true", help="by anything else")
-    run.add_argument("--seed", type=int, help="of the draw; default: as the score says")
+    run.add_argument("--seed", type=int, help="of the draw")
     run.add_argument("--commit", required=True, help="of the code that answered")
     run.add_argument("--date", default=date.today().isoformat(), help="of the answers; default: today")
     run.add_argument("--note", default="")

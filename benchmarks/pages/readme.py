@@ -28,10 +28,9 @@ def _records() -> str:
 
 
 def _gap() -> str:
-    table = results.figures_table(results.read(GAP_RESULTS)).splitlines()
-    return "\n".join(
-        [*table[:2], *(row for row in table if row.startswith(tuple(f"| {f} |" for f in _FIGURES)))]
-    )
+    *table, empty, source = results.figures_table(results.read(GAP_RESULTS)).splitlines()
+    shown = [row for row in table if row.startswith(tuple(f"| {f} |" for f in _FIGURES))]
+    return "\n".join([*table[:2], *shown, empty, source])
 
 
 BLOCKS: Mapping[str, Callable[[], str]] = {

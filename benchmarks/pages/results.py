@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-from benchmarks.second_generator.score import wilson
+from sim.sealed.score import HARD, wilson
 
 
 @dataclass(frozen=True)
@@ -42,62 +42,38 @@ class Run:
 
 @dataclass(frozen=True)
 class Kind:
-    """A kind of figure: its name on the page, its goal, and the rows of the two scores that tell it."""
+    """A kind of figure: its name on the page, its goal, and the row of the score that tells it."""
 
     title: str
     goal: str
-    rows: tuple[str, ...] = ()
+    row: str = ""
 
 
 FIGURES: Mapping[str, Kind] = {
-    "cause": Kind("right cause first, one effect", "", ("one named effect: right cause first",)),
-    "cause_clean": Kind(
-        "– clean", "at least 98 %", ("right cause first, clean", "one named effect, clean")
-    ),
-    "cause_hard": Kind(
-        "– hard", "at least 95 %", ("right cause first, hard, moderate or stronger", "one named effect, hard")
-    ),
-    "cause_filtered": Kind("– filtered on the ground", "", ("one named effect, pre-filtered",)),
-    "cause_engine": Kind("– JSBSim", "at least 95 %", ("right cause first, JSBSim",)),
-    "named_hard": Kind("a named cause is right, hard", "at least 98 %", ("a named cause is right (hard)",)),
-    "alarm": Kind(
-        "false alarms where nothing is", "at most 1 %",
-        ("false alarms without an effect", "nothing there: false alarm"),
-    ),
-    "parameters": Kind(
-        "wrong numbers diagnosed as such", "",
-        ("parameters told when only they are off", "parameters told as parameters"),
-    ),
-    "unknown": Kind(
-        "no named effect: unknown", "at least 90 %",
-        ("outside the catalogue: unknown", "outside the catalogue: verdict unknown"),
-    ),
-    "block": Kind(
-        "– in the right block", "at least 97 %",
-        ("outside the catalogue: right block", "outside the catalogue: block right"),
-    ),
-    "two": Kind(
-        "two effects: both named", "at least 90 %",
-        ("two effects: both named", "two named effects: both found"),
-    ),
-    "size": Kind(
-        "size within its 95 % interval", "92 to 98 %",
-        ("size within its stated 95 % interval", "size inside value +- 1.96 std"),
-    ),
+    "cause": Kind("right cause first, one effect", "", "right cause first, one effect"),
+    "cause_clean": Kind("– clean", "at least 98 %", "right cause first, clean"),
+    "cause_hard": Kind("– hard", "at least 95 %", HARD),
+    "cause_filtered": Kind("– filtered on the ground", "", "right cause first, filtered"),
+    "cause_engine": Kind("– JSBSim", "at least 95 %", "right cause first, JSBSim"),
+    "named_hard": Kind("a named cause is right, hard", "at least 98 %", "a named cause is right (hard)"),
+    "alarm": Kind("false alarms where nothing is", "at most 1 %", "false alarms without an effect"),
+    "parameters": Kind("wrong numbers diagnosed as such", "", "parameters told when only they are off"),
+    "unknown": Kind("no named effect: unknown", "at least 90 %", "outside the catalogue: unknown"),
+    "block": Kind("– in the right block", "at least 97 %", "outside the catalogue: right block"),
+    "two": Kind("two effects: both named", "at least 90 %", "two effects: both named"),
+    "size": Kind("size within its 95 % interval", "92 to 98 %", "size within its stated 95 % interval"),
     "again": Kind("improved file diagnosed again: none", ""),
-    "fast": Kind("diagnosed within 5 s of CPU", "all", ("CPU seconds at most 5",)),
+    "fast": Kind("diagnosed within 5 s of CPU", "all", "CPU seconds at most 5"),
     "shrink_clean": Kind(
-        "median held-out shrink, clean", "at least 97 %",
-        ("held-out shrink, right cause, clean (median %)",),
+        "median held-out shrink, clean", "at least 97 %", "held-out shrink, right cause, clean (median %)"
     ),
     "shrink_hard": Kind(
-        "median held-out shrink, hard", "at least 90 %",
-        ("held-out shrink, right cause, hard (median %)",),
+        "median held-out shrink, hard", "at least 90 %", "held-out shrink, right cause, hard (median %)"
     ),
     "calibration": Kind(
-        "expected calibration error", "at most 5 %", ("expected calibration error of probabilities",)
+        "expected calibration error", "at most 5 %", "expected calibration error of probabilities"
     ),
-}  # fmt: skip
+}
 """Every figure that a run may have, in the order of the page."""
 _PARTS = ("cause_clean", "cause_hard", "cause_filtered", "cause_engine")
 """Shares of ``cause``."""
@@ -118,7 +94,7 @@ def write(path: Path, runs: Sequence[Run]) -> None:
 
 def figures_of(score: Mapping[str, Any]) -> dict[str, Figure]:
     """The figures of a score's JSON that the page knows; rows without a case are left out."""
-    by_row = {row: name for name, kind in FIGURES.items() for row in kind.rows}
+    by_row = {kind.row: name for name, kind in FIGURES.items()}
     found = {}
     for figure in score["figures"]:
         row = figure["name"]
@@ -144,14 +120,27 @@ def added(runs: Sequence[Run], run: Run) -> list[Run]:
     return [run, *runs]
 
 
+def newest(runs: Sequence[Run]) -> list[Run]:
+    """The sealed sets that the newest commit answered: one state of the code, so they may be added."""
+    sealed = [run for run in runs if run.hash]
+    return [run for run in sealed if run.commit == sealed[0].commit]
+
+
 def figures_table(runs: Sequence[Run]) -> str:
-    """Every figure over all outside runs and over all own runs, as Markdown."""
+    """Every figure of the newest commit, over outside and over own sets, as Markdown, with the sets below."""
+    whole = newest(runs)
     lines = ["| figure | outside generators | own sets | goal |", "|---|---|---|---|"]
     for name, kind in FIGURES.items():
-        outside, own = (_of_all([r for r in runs if r.own is is_own], name) for is_own in (False, True))
+        outside, own = (_of_all([r for r in whole if r.own is is_own], name) for is_own in (False, True))
         if outside or own:
             lines.append(f"| {kind.title} | {outside or '–'} | {own or '–'} | {kind.goal or '–'} |")
-    return "\n".join(lines)
+    return "\n".join([*lines, "", _source(whole)])
+
+
+def _source(whole: Sequence[Run]) -> str:
+    """The commit, the date and the sets of a run, with the hashes of the answers."""
+    told = [f"{r.set} ({r.cases} flights, answers `{r.hash}`)" for r in whole]
+    return f"Commit `{whole[0].commit}`, {whole[0].date}: {'; '.join(told)}."
 
 
 def sets_table(runs: Sequence[Run]) -> str:

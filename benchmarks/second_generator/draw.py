@@ -4,6 +4,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from benchmarks.sealed.tlog import Wiring
+
 from .actuator import Servo
 from .aircraft import FLEET, scattered
 from .atmosphere import dryden, still_air
@@ -19,7 +21,6 @@ from .pilot import suitable_pilot
 from .planning import STEP, Wishes, draw_plan
 from .sensors import Accelerometer, Instruments, Vane
 from .telemetry import Noise, Recorder
-from .tlog import Wiring
 from .trim import LinearModel, linearised, trimmed
 from .visibility import NAMED_RATIO, OUTSIDE_RATIO, Flown, Sized, fly_experiment, flyable, sized
 

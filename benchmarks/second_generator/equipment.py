@@ -2,9 +2,10 @@
 
 import numpy as np
 
+from benchmarks.sealed.tlog import IMU_MESSAGES, Wiring
+
 from .planning import STEP
 from .telemetry import Noise, Recorder
-from .tlog import IMU_MESSAGES, Wiring
 
 FILTERED_SHARE = 0.10
 
@@ -33,8 +34,7 @@ def draw_recorder(
     choices = [25.0, 50.0, 100.0, 200.0] if omega < 6.0 else [50.0, 100.0, 200.0]
     weights = np.array([0.15, 0.5, 0.3, 0.05][-len(choices) :])
     rates = {
-        name: float(rng.choice(choices, p=weights / weights.sum()))
-        for name in ("air_data", "attitude", "imu")
+        name: float(rng.choice(choices, p=weights / weights.sum())) for name in ("alpha", "attitude", "imu")
     }
     rates["servo"] = 1.0 / (period * STEP) if digital else float(rng.choice([50.0, 100.0]))
     rates["hud"], rates["position"] = float(rng.uniform(5.0, 10.0)), float(rng.choice([5.0, 10.0]))
@@ -42,7 +42,7 @@ def draw_recorder(
     if rng.random() < FILTERED_SHARE:
         low_pass = omega / (2.0 * np.pi) * float(rng.uniform(2.0, 5.0))
         stored = float(rng.choice([25.0, 50.0]))
-        rates.update(dict.fromkeys(("air_data", "attitude", "imu", "servo"), stored))
+        rates.update(dict.fromkeys(("alpha", "attitude", "imu", "servo"), stored))
     in_step = digital and low_pass is None
     return Recorder(rates=rates, jitter=jitter, low_pass=low_pass, servo_in_step=in_step)
 

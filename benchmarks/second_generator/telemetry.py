@@ -5,12 +5,14 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.signal import butter, lfilter, sosfiltfilt
 
+from benchmarks.sealed.tlog import Stream
+
 from .flight import Truth
 from .kernel import Floats
 
 # Which channels travel together: one stamp for all of them.
 STREAMS = {
-    "air_data": ("alpha",),
+    "alpha": ("alpha",),
     "attitude": ("q", "theta"),
     "imu": ("a_x", "a_z", "imu_q"),
     "servo": ("command", "thrust"),
@@ -52,14 +54,6 @@ class Recorder:
     jitter: float = 0.0
     low_pass: float | None = None
     servo_in_step: bool = True
-
-
-@dataclass(frozen=True)
-class Stream:
-    """One stream: stamps [s] and what each channel says at them."""
-
-    stamps: Floats
-    channels: dict[str, Floats]
 
 
 def noise_series(count: int, period: float, std: float, noise: Noise, rng: np.random.Generator) -> Floats:
@@ -117,4 +111,7 @@ def record(
                 fast = series[channel] + noise_series(len(time), period, 2.0 * noise.of(channel), noise, rng)
                 values[channel] = np.interp(instants, time, _filtered(fast, 1.0 / period, recorder.low_pass))
         streams[name] = Stream(np.maximum(instants + jitter, 0.0), values)
+    servo, hud = streams["servo"], streams["hud"]
+    servo.channels["throttle_us"] = 1100.0 + 270.0 * servo.channels["thrust"]
+    hud.channels["throttle_percent"] = 34.0 * np.interp(hud.stamps, servo.stamps, servo.channels["thrust"])
     return streams

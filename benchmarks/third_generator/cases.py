@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.random import Generator
 
-from benchmarks.second_generator.tlog import Wiring
+from benchmarks.sealed.tlog import Wiring
 
 from .fleet import Aircraft
 from .flight import Channels

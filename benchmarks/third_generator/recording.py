@@ -1,9 +1,9 @@
 """Samples of the shown channels as an autopilot sends them: uneven, rounded, noisy."""
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.random import Generator
+
+from benchmarks.sealed.tlog import Stream
 
 from .fleet import Floats
 from .flight import STEP_S, Channels
@@ -19,14 +19,6 @@ CARRIES = {
 }
 ATTITUDE_ERROR_S = 1.0
 MILLISECOND = 1e-3
-
-
-@dataclass(frozen=True)
-class Stream:
-    """One message's samples: stamps [s since take-off of the log] and values by channel, SI."""
-
-    stamps: Floats
-    channels: dict[str, Floats]
 
 
 def record(shown: Channels, kit: Instruments, rng: Generator) -> dict[str, Stream]:
@@ -45,7 +37,11 @@ def record(shown: Channels, kit: Instruments, rng: Generator) -> dict[str, Strea
             count, STEP_S, kit.colour_s, rng
         )
     sent = [name for name in CARRIES if name != "alpha" or kit.sends_alpha]
-    return {name: _stream(name, CARRIES[name], time, seen, kit, rng) for name in sent}
+    streams = {name: _stream(name, CARRIES[name], time, seen, kit, rng) for name in sent}
+    servo, hud = streams["servo"].channels, streams["hud"].channels
+    servo["throttle_us"] = 1100.0 + 500.0 * servo["throttle"]
+    hud["throttle_percent"] = 62.5 * hud["throttle"]
+    return streams
 
 
 def _stream(

@@ -1,1 +1,1 @@
-"""Sealed cases: flights whose effect is withheld, and the score of their diagnosis."""
+"""Sealed cases of the bundled aircraft: flights whose effect is withheld."""

@@ -1,7 +1,7 @@
 """Draw a case: aircraft, manoeuvres, air, noise, and the withheld effect."""
 
-from dataclasses import asdict, dataclass, field, replace
-from typing import Literal, get_args
+from dataclasses import dataclass, field, replace
+from typing import Any, Literal, get_args
 
 import numpy as np
 
@@ -49,12 +49,27 @@ class Case:
     background: list[str] = field(default_factory=list)
     """Further disturbances of a hard case, in addition to the effect."""
 
-    def key(self) -> dict[str, object]:
+    @property
+    def kind(self) -> str:
+        """Kind of the case, as ``judge`` knows it."""
+        return "one" if self.group in ("clean", "hard", "jsbsim") else self.group
+
+    @property
+    def condition(self) -> str:
+        """Troubles of the flight, in a word."""
+        return "JSBSim" if self.group == "jsbsim" else "hard" if self.hard else "clean"
+
+    def key(self) -> dict[str, Any]:
         """Return the content of the sealed key for this case."""
-        said = asdict(self)
-        del said["scenario"], said["prior"]
-        said["aircraft"] = self.scenario.aircraft
-        return said
+        return {
+            "kind": self.kind,
+            "condition": self.condition,
+            "effects": self.effects,
+            "blocks": self.blocks,
+            "gap": self.gap,
+            "background": self.background,
+            "aircraft": self.scenario.aircraft,
+        }
 
 
 def draw_case(group: Group, generator: np.random.Generator) -> Case:

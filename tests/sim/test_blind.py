@@ -1,4 +1,4 @@
-"""Sealed cases: fairly drawn, honestly sealed, correctly scored."""
+"""Sealed cases of the bundled aircraft: fairly drawn, honestly sealed."""
 
 import json
 from dataclasses import replace
@@ -10,10 +10,7 @@ import yaml
 
 from sim.blind import simulated
 from sim.blind.draw import SMALLEST_GAP, draw_case
-from sim.blind.generate import aircraft_file, generate, key_beside
-from sim.blind.reveal import report
-from sim.blind.score import judge, score
-from sim.blind.seal import SEAL, SealError, commit, unseal
+from sim.blind.generate import aircraft_file, generate
 from sim.blind.simulated import draw_simulated
 from sim.blind.sizes import INSIDE, OUTSIDE
 from sim.blind.visibility import structural_gap
@@ -21,6 +18,9 @@ from sim.effects import catalogue, outside
 from sim.effects.fitting import flight_of
 from sim.flight import noise_sigma
 from sim.scenario import Maneuver, Noise, Scenario
+from sim.sealed.cases import key_beside
+from sim.sealed.reveal import report
+from sim.sealed.seal import SEAL, SealError, commit, seal, unseal
 from sim.tlog import read_tlog
 
 # Cases take seconds to draw.
@@ -95,9 +95,19 @@ def test_a_report_lists_every_figure_with_its_interval(cases, tmp_path):
         text = "\n".join(report(cases, answers, key_beside(cases), details=True))
     finally:
         (cases / "COMMITMENT").unlink()
-    nothing = sum(case["group"] == "none" for case in key_of(cases).values())
+    nothing = sum(case["kind"] == "none" for case in key_of(cases).values())
     assert "2 cases, 2 answered" in text
     assert f"n={nothing}" in next(line for line in text.splitlines() if line.startswith("false alarms"))
+
+
+def test_a_key_of_an_earlier_version_is_refused_in_a_sentence(tmp_path):
+    folder, answers = tmp_path / "cases", tmp_path / "answers.jsonl"
+    folder.mkdir()
+    answers.write_text("")
+    seal({"0001": {"group": "none", "effects": {}}}, key_beside(folder), folder)
+    commit(folder, answers)
+    with pytest.raises(SealError, match="sealed by an earlier version; score it with that version"):
+        list(report(folder, answers, key_beside(folder)))
 
 
 @pytest.mark.parametrize("group", ["clean", "jsbsim", "outside", "two"])
@@ -140,88 +150,6 @@ def test_a_change_that_eight_parameters_can_hide_has_hardly_a_structural_gap():
 def test_the_structural_gap_grows_with_the_square_of_a_small_effect():
     small, large = (gap_of(replace(PLAIN, effects={"alpha_lag": {"lag_s": lag}})) for lag in (0.004, 0.008))
     assert large / small == pytest.approx(4.0, rel=0.15)
-
-
-def truth(group, effects, blocks, gap=1.0):
-    return {
-        "group": group,
-        "effects": effects,
-        "blocks": blocks,
-        "gap": gap,
-        "hard": group == "hard",
-        "background": ["turbulence"] if group == "hard" else [],
-    }
-
-
-def answer(verdict, effect=None, probability=0.99, parameters=None, block="", waterfall=(), shrink=98.0):
-    causes = (
-        [{"effect": effect, "probability": probability, "parameters": parameters or {}}] if effect else []
-    )
-    return {
-        "verdict": verdict,
-        "causes": causes,
-        "where": {"block": block},
-        "waterfall": [{"effect": name} for name in waterfall],
-        "shrink": {"percent": shrink},
-    }
-
-
-def figures(key, answers):
-    return {rate.name: rate for rate in score(judge(key, answers))}
-
-
-def test_perfect_answers_score_full_marks_and_shuffled_labels_fall():
-    names = sorted(INSIDE)
-    key = {f"{i:02d}": truth("clean", {name: {"lag_s": 0.05}}, ["input"]) for i, name in enumerate(names)}
-    size = {"lag_s": {"value": 0.051, "std": 0.001}}
-    answers = {
-        case: answer("effect", next(iter(t["effects"])), 1.0, size, "input") for case, t in key.items()
-    }
-    told = figures(key, answers)
-    assert told["right cause first, clean"].value == 100.0
-    assert told["size within its stated 95 % interval"].value == 100.0
-    assert told["expected calibration error of probabilities"].value == 0.0
-    assert told["held-out shrink, right cause, clean (median %)"].value == 98.0
-    assert told["label shuffle: right by chance (20 shuffles)"].value < 10.0
-
-
-def test_wrong_answers_are_counted_where_they_belong():
-    key = {
-        "a": truth("none", {}, []),
-        "b": truth("none", {}, []),
-        "c": truth("outside", {"fuel_slosh": {}}, ["moment_equation"]),
-        "d": truth("two", {"alpha_lag": {}, "alpha_dot": {}}, ["alpha_sensor", "moment_equation"]),
-        "e": truth("hard", {"alpha_lag": {"lag_s": 0.05}}, ["alpha_sensor"]),
-    }
-    answers = {
-        "a": answer("effect", "alpha_lag"),
-        "b": answer("none"),
-        "c": answer("unknown", block="moment_equation"),
-        "d": answer("effect", "alpha_lag", waterfall=("alpha_lag", "alpha_dot")),
-        "e": answer("effect", "alpha_skew", 0.6),
-    }
-    told = figures(key, answers)
-    assert told["false alarms without an effect"].value == 50.0
-    assert told["outside the catalogue: unknown"].value == 100.0
-    assert told["outside the catalogue: right block"].value == 100.0
-    assert told["two effects: both named"].value == 100.0
-    assert told["right cause first, hard, moderate or stronger"].value == 0.0
-    assert told["a named cause is right (hard)"].value == 0.0
-
-
-def test_the_air_that_a_flight_was_made_in_is_a_cause_that_is_there_but_not_the_one_that_was_drawn():
-    key = {case: truth("hard", {"alpha_scale": {"scale": 0.03}}, ["alpha_sensor"]) for case in "abc"}
-    named = {"a": "alpha_scale", "b": "turbulence", "c": "alpha_skew"}
-    told = figures(key, {case: answer("effect", effect) for case, effect in named.items()})
-    assert told["a named cause is right (hard)"].value == pytest.approx(100.0 / 3.0)
-    assert told["  the same, or the air it was flown in"].value == pytest.approx(200.0 / 3.0)
-
-
-def test_an_interval_is_wilsons():
-    key = {f"{i}": truth("none", {}, []) for i in range(20)}
-    rate = figures(key, {case: answer("none") for case in key})["false alarms without an effect"]
-    assert (rate.value, rate.low) == (0.0, 0.0)
-    assert rate.high == pytest.approx(16.1, abs=0.1)
 
 
 def test_a_case_of_the_group_simulator_names_jsbsim_and_no_model():

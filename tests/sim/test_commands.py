@@ -8,8 +8,8 @@ import pytest
 import yaml
 
 from sim.__main__ import run
-from sim.blind.generate import key_beside
 from sim.linear import RESEARCH_JET
+from sim.sealed.cases import key_beside
 
 
 @pytest.fixture

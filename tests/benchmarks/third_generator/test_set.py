@@ -12,9 +12,9 @@ from click.testing import CliRunner
 
 import benchmarks.third_generator
 from advisor.cli.group import advisor
-from benchmarks.third_generator import late_alpha
 from benchmarks.third_generator.cases import EFFECTS, NAMED, UNNAMED, Assignment, assignments, draw_case
-from benchmarks.third_generator.files import draw_set
+from benchmarks.third_generator.files import cases, truth
+from sim.sealed.cases import key_beside, write_set
 
 BLOCKS = {
     "input",
@@ -33,19 +33,19 @@ BLOCKS = {
 def quiet(tmp_path_factory) -> Path:
     """Two flights with nothing wrong."""
     folder = tmp_path_factory.mktemp("third") / "cases"
-    draw_set(folder, 2, 31, "none")
+    write_set(folder, cases(2, 31, "none"))
     return folder
 
 
 def key(folder: Path) -> dict:
-    return json.loads((folder.parent / f"{folder.name}.key.json").read_text())["cases"]
+    return json.loads(key_beside(folder).read_text())["key"]
 
 
 def document(*arguments: str) -> dict:
     return json.loads(CliRunner().invoke(advisor, [*arguments, "--json"], standalone_mode=False).stdout)
 
 
-def test_the_generator_shares_only_records_key_and_score_with_anything_of_the_project():
+def test_the_generator_shares_only_records_and_protocol_with_anything_of_the_project():
     shared = set()
     for path in Path(benchmarks.third_generator.__file__).parent.glob("*.py"):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
@@ -54,17 +54,18 @@ def test_the_generator_shares_only_records_key_and_score_with_anything_of_the_pr
             elif isinstance(node, ast.Import):
                 shared |= {name.name for name in node.names}
     ours = {name for name in shared if name.split(".")[0] in ("advisor", "sim", "benchmarks", "tests")}
-    assert ours == {f"benchmarks.second_generator.{name}" for name in ("tlog", "case_files", "score")}
+    shared = {"benchmarks.sealed", "benchmarks.sealed.generator", "benchmarks.sealed.tlog"}
+    assert ours == {"sim.sealed.cases", *shared}
 
 
 def test_a_seed_gives_the_same_bytes_again(quiet, tmp_path):
-    draw_set(tmp_path / "cases", 2, 31, "none")
+    write_set(tmp_path / "cases", cases(2, 31, "none"))
     for name in ("0001/flight.tlog", "0001/aircraft.yaml", "0002/flight.tlog"):
         assert (tmp_path / "cases" / name).read_bytes() == (quiet / name).read_bytes()
 
 
 def test_another_seed_gives_another_flight(quiet, tmp_path):
-    draw_set(tmp_path / "cases", 1, 32, "none")
+    write_set(tmp_path / "cases", cases(1, 32, "none"))
     assert (tmp_path / "cases/0001/flight.tlog").read_bytes() != (quiet / "0001/flight.tlog").read_bytes()
 
 
@@ -126,15 +127,11 @@ def test_the_aircraft_file_states_the_servo_that_is_flown(quiet):
         assert (stated["lag_s"] or 0.0) == pytest.approx(true["servo"]["lag_s"], rel=1e-4)
 
 
-def test_an_autopilots_late_angle_of_attack_has_a_row_of_its_own(tmp_path):
-    (tmp_path / "cases.key.json").write_text(
-        json.dumps(
-            {"cases": {"0001": {"class": "none", "condition": {"troubles": ["alpha_made_by_autopilot"]}}}}
-        )
-    )
-    answer = {"case": "0001", "answer": {"verdict": "effect", "causes": [{"effect": "alpha_skew"}]}}
-    (tmp_path / "answers.jsonl").write_text(json.dumps(answer) + "\n")
-    assert "1 of 1" in late_alpha.lines(tmp_path / "cases", tmp_path / "answers.jsonl")
+def test_the_truth_tells_that_an_autopilots_own_angle_of_attack_is_late():
+    told = [truth(draw_case(Assignment("none", ()), 31, index)) for index in range(1, 9)]
+    made = [one for one in told if "alpha_made_by_autopilot" in one["troubles"]]
+    assert 0 < len(made) < len(told)
+    assert all(bool(one["also_true"]) == (one in made) for one in told)
 
 
 @pytest.mark.study

@@ -16,7 +16,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 import benchmarks.second_generator
 from benchmarks.second_generator.aircraft import FLEET, Aircraft
 from benchmarks.second_generator.atmosphere import from_upward
-from benchmarks.second_generator.case_files import aircraft_text, draw_set, key_entry, key_file, log_bytes
+from benchmarks.second_generator.cases import aircraft_file, cases, log_bytes, truth
 from benchmarks.second_generator.catalogue import EFFECTS, NAMED, OUTSIDE
 from benchmarks.second_generator.design import Assignment, assignments
 from benchmarks.second_generator.draw import Case, draw_case, suitable_experiment
@@ -38,7 +38,6 @@ from benchmarks.second_generator.motion import (
     derivatives,
 )
 from benchmarks.second_generator.planning import Wishes
-from benchmarks.second_generator.score import report, score_document, wilson
 from benchmarks.second_generator.telemetry import Noise
 from benchmarks.second_generator.trim import level_state, linearised, trimmed
 from benchmarks.second_generator.visibility import (
@@ -50,6 +49,8 @@ from benchmarks.second_generator.visibility import (
     ratios,
     sized,
 )
+from sim.sealed.cases import write_set
+from sim.sealed.judge import judge
 
 # The two flights that most tests look at are flown once.
 pytestmark = pytest.mark.xdist_group("second generator")
@@ -59,13 +60,14 @@ SOURCES = sorted(Path(benchmarks.second_generator.__file__).parent.glob("*.py"))
 STEP_S = 0.002
 
 
-def test_it_imports_nothing_of_the_diagnosis_and_nothing_of_the_simulator():
+def test_it_imports_nothing_of_the_diagnosis_and_of_the_simulator_only_the_protocol():
     lines = [line for path in SOURCES for line in path.read_text(encoding="utf-8").splitlines()]
     imported = [line.split()[1] for line in lines if line.startswith(("import ", "from "))]
     assert len(imported) > 50
     # Of the advisor only what keeps compiled functions on disk.
-    ours = {name for name in imported if name.split(".")[0] in ("advisor", "sim")}
-    assert ours == {"advisor.process.compiled"}
+    ours = {name for name in imported if name.split(".")[0] in ("advisor", "benchmarks", "sim")}
+    shared = {"benchmarks.sealed", "benchmarks.sealed.generator", "benchmarks.sealed.tlog"}
+    assert ours == {"advisor.process.compiled", "sim.sealed.cases", *shared}
 
 
 @pytest.fixture(scope="module")
@@ -152,8 +154,8 @@ def test_a_case_is_the_same_to_the_byte_when_drawn_twice() -> None:
     assignment = Assignment("outside", (EFFECTS["vane_spikes"],))
     first, second = (draw_case(assignment, 5, 2) for _ in range(2))
     assert log_bytes(first) == log_bytes(second)
-    assert aircraft_text(first) == aircraft_text(second)
-    assert json.dumps(key_entry(first)) == json.dumps(key_entry(second))
+    assert aircraft_file(first) == aircraft_file(second)
+    assert json.dumps(truth(first)) == json.dumps(truth(second))
 
 
 def test_stored_ratio_is_the_difference_with_and_without_the_effect() -> None:
@@ -226,7 +228,7 @@ def test_log_and_calibration_tell_the_command(quiet_case: Case) -> None:
     field = f"servo{case.wiring.elevator_output}_raw"
     servo = [m for m in messages_of(log_bytes(case)) if m.get_type() == "SERVO_OUTPUT_RAW"]
     stamps = np.array([m.time_usec for m in servo]) * 1e-6 - case.wiring.boot_s
-    widths, degrees = np.array(yaml.safe_load(aircraft_text(case))["elevator"]["calibration"]).T
+    widths, degrees = np.array(aircraft_file(case)["elevator"]["calibration"]).T
     told = np.radians(np.interp([getattr(m, field) for m in servo], widths, degrees))
     true = np.interp(stamps, case.experiment.time, case.flown.truth.command)
     # Stamps of a clean case wander by 0.3 ms, which shows where the command jumps.
@@ -235,9 +237,8 @@ def test_log_and_calibration_tell_the_command(quiet_case: Case) -> None:
 
 def test_files_give_nothing_away(tmp_path: Path) -> None:
     folder = tmp_path / "set"
-    draw_set(folder, 4, 9)
-    assert key_file(folder).parent == tmp_path
-    places = sorted(folder.iterdir())
+    write_set(folder, cases(4, 9))
+    places = sorted(place for place in folder.iterdir() if place.is_dir())
     assert [place.name for place in places] == [f"{index:04d}" for index in range(1, 5)]
     structures = set()
     for place in places:
@@ -251,6 +252,13 @@ def test_files_give_nothing_away(tmp_path: Path) -> None:
     assert len(structures) == 1
 
 
+def test_the_truth_of_a_case_is_what_the_judge_reads() -> None:
+    case = draw_case(Assignment("one", (EFFECTS["pitch_rate_scale"],)), 6, 1)
+    said = {"pitch_rate_scale": {"scale": case.effects[0].parameters["scale"]}}
+    told = judge(truth(case), {"verdict": "effect", "causes": [{"effect": "pitch_rate_scale"}]})
+    assert (told.kind, told.sizes, told.is_right) == ("one", said, True)
+
+
 def test_size_of_a_log_does_not_depend_on_the_effect() -> None:
     sizes = [
         len(log_bytes(draw_case(Assignment(kind, effects), 8, 4)))
@@ -262,63 +270,3 @@ def test_size_of_a_log_does_not_depend_on_the_effect() -> None:
     ]
     # MAVLink 2 leaves out zeros at the end of a message, which a few bytes of noise decide.
     assert np.ptp(sizes) < 0.002 * sizes[0]
-
-
-def test_wilson_interval() -> None:
-    low, high = wilson(8, 10)
-    assert (low, high) == pytest.approx((0.490, 0.943), abs=1e-3)
-
-
-def test_score_counts_a_perfect_set_of_answers(tmp_path: Path) -> None:
-    verdicts = {
-        "none": "none",
-        "one": "effect",
-        "two": "effect",
-        "parameters": "parameters",
-        "outside": "unknown",
-    }
-    cases, lines = {}, []
-    for number, kind in enumerate(verdicts, start=1):
-        effects = {"one": ["alpha_skew"], "two": ["alpha_lag", "icing"], "outside": ["wake_crossings"]}.get(
-            kind, []
-        )
-        entries = [
-            {
-                "effect": name,
-                "block": EFFECTS[name].block,
-                "dynamic": True,
-                "largest_dynamic_ratio": 2.0,
-                "parameters": {"skew_s": -0.05},
-            }
-            for name in effects
-        ]
-        name = f"{number:04d}"
-        cases[name] = {
-            "class": kind,
-            "effects": entries,
-            "condition": {"name": "clean", "troubles": [], "pre_filtered_hz": None},
-            "aircraft": {"name": "any"},
-        }
-        answer = {
-            "usable": True,
-            "verdict": verdicts[kind],
-            "where": {"block": entries[0]["block"]} if entries else {},
-            "causes": [
-                {"effect": entry["effect"], "parameters": {"skew_s": {"value": 0.051, "std": 0.001}}}
-                for entry in entries
-            ],
-        }
-        lines.append(json.dumps({"case": name, "answer": answer, "cpu_s": 1.0}))
-    folder = tmp_path / "set"
-    key_file(folder).write_text(json.dumps({"cases": cases}))
-    answers = tmp_path / "answers.jsonl"
-    answers.write_text("\n".join(lines))
-    table = report(folder, answers, details=True)
-    assert "0 of 1" in table.split("false alarm")[1]
-    assert table.count("0 of 1") == 2  # both rows of false alarms, nothing else missed
-    document = score_document(folder, answers)
-    assert (document["cases"], document["answered"]) == (5, 5)
-    assert {"name": "CPU seconds at most 5", "hits": 5, "trials": 5} in document["figures"]
-    assert {"name": "nothing there: false alarm", "hits": 0, "trials": 1} in document["figures"]
-    answers.write_text("")
-    assert "usable" in report(folder, answers)

@@ -7,18 +7,29 @@ from dataclasses import dataclass
 os.environ.setdefault("MAVLINK20", "1")
 
 import numpy as np
+from numpy.typing import NDArray
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
-
-from .motion import GRAVITY
-from .telemetry import Stream
 
 EPOCH_US = (
     1_750_000_000_000_000  # every log begins at the same moment, so that a log depends on its seed only
 )
+STANDARD_GRAVITY = 9.80665
+"""Unit of the accelerometers in RAW_IMU and SCALED_IMU2, m/s²."""
 SERVO_FUNCTIONS = {"aileron": 4, "throttle": 70, "rudder": 21, "elevator": 19}
 IMU_MESSAGES = ("RAW_IMU", "SCALED_IMU2", "HIGHRES_IMU")
 
+MANUAL, STABILIZE = 0, 2
+"""Modes of ArduPlane."""
+
 Timed = tuple[float, mavlink.MAVLink_message]
+
+
+@dataclass(frozen=True)
+class Stream:
+    """Samples that travel in one message: stamps [s since the log began] and values by channel, SI."""
+
+    stamps: NDArray[np.float64]
+    channels: dict[str, NDArray[np.float64]]
 
 
 @dataclass(frozen=True)
@@ -75,7 +86,7 @@ def imu_message(name: str, stamp: float, a_x: float, a_z: float, q: float) -> ma
         return mavlink.MAVLink_highres_imu_message(
             microseconds(stamp), a_x, 0.0, a_z, 0.0, q, 0.0, 0.2, 0.0, 0.4, 950.0, 0.0, 500.0, 20.0, 63
         )
-    milli_g, milli_rate = 1e3 / GRAVITY, 1e3
+    milli_g, milli_rate = 1e3 / STANDARD_GRAVITY, 1e3
     values = (int16(a_x * milli_g), 0, int16(a_z * milli_g), 0, int16(q * milli_rate), 0, 200, 0, 400)
     if name == "RAW_IMU":
         return mavlink.MAVLink_raw_imu_message(microseconds(stamp), *values)
@@ -95,18 +106,22 @@ def _rows(stream: Stream, *channels: str) -> zip:  # type: ignore[type-arg]
     return zip(stream.stamps.tolist(), *columns, strict=True)
 
 
-def messages(streams: dict[str, Stream], wiring: Wiring, elevation_m: float) -> list[Timed]:
-    """Every message with the time since boot [s] at which the vehicle sent it."""
-    boot, out = wiring.boot_s, []
-    last = float(streams["attitude"].stamps[-1])
-    for k in range(int(last) + 1):
-        beat = mavlink.MAVLink_heartbeat_message(1, 3, 81, 0, 4, 3)
-        out.append((boot + k, beat))
+def messages(
+    streams: dict[str, Stream], wiring: Wiring, elevation_m: float, mode: int = MANUAL
+) -> list[Timed]:
+    """Every message with the time since boot [s] at which the vehicle sent it.
+
+    The streams are ``attitude``, ``imu``, ``servo`` (with ``throttle_us``), ``hud`` (with
+    ``throttle_percent``), ``position``, and ``alpha`` where the vehicle sends an angle of attack.
+    """
+    boot, last = wiring.boot_s, float(streams["attitude"].stamps[-1])
+    beat = mavlink.MAVLink_heartbeat_message(1, 3, 81, mode, 4, 3)
+    out: list[Timed] = [(boot + k, beat) for k in range(int(last) + 1)]
     values = parameters(wiring)
     for k, (name, value) in enumerate(values.items()):
         message = mavlink.MAVLink_param_value_message(name.encode(), value, 9, len(values), k)
         out.append((boot + 0.01 + 0.005 * k, message))
-    for stamp, alpha in _rows(streams["air_data"], "alpha"):
+    for stamp, alpha in _rows(streams["alpha"], "alpha") if "alpha" in streams else ():
         sent = boot + stamp
         out.append((sent, mavlink.MAVLink_aoa_ssa_message(microseconds(sent), float(np.degrees(alpha)), 0.0)))
     for stamp, q, theta in _rows(streams["attitude"], "q", "theta"):
@@ -115,18 +130,18 @@ def messages(streams: dict[str, Stream], wiring: Wiring, elevation_m: float) -> 
         out.append((sent, message))
     for stamp, a_x, a_z, q in _rows(streams["imu"], "a_x", "a_z", "imu_q"):
         out.append((boot + stamp, imu_message(wiring.imu, boot + stamp, a_x, a_z, q)))
-    for stamp, command, thrust in _rows(streams["servo"], "command", "thrust"):
-        throttle = round(float(np.clip(1100.0 + 270.0 * thrust, 1100.0, 1900.0)))
-        out.append((boot + stamp, _servo(boot + stamp, wiring.pulse_width(command), throttle, wiring)))
+    for stamp, command, throttle_us in _rows(streams["servo"], "command", "throttle_us"):
+        width = round(float(np.clip(throttle_us, 1100.0, 1900.0)))
+        out.append((boot + stamp, _servo(boot + stamp, wiring.pulse_width(command), width, wiring)))
     out += _slow_messages(streams, wiring, elevation_m)
     return out
 
 
 def _slow_messages(streams: dict[str, Stream], wiring: Wiring, elevation_m: float) -> list[Timed]:
     boot, out = wiring.boot_s, []
-    power = streams["servo"]
-    for stamp, airspeed, climb, height in _rows(streams["hud"], "airspeed", "climb", "height"):
-        throttle = float(np.interp(stamp, power.stamps, power.channels["thrust"])) * 34.0
+    for stamp, airspeed, climb, height, throttle in _rows(
+        streams["hud"], "airspeed", "climb", "height", "throttle_percent"
+    ):
         message = mavlink.MAVLink_vfr_hud_message(
             airspeed, airspeed, 0, int(np.clip(throttle, 0.0, 100.0)), elevation_m + height, climb
         )
@@ -161,6 +176,6 @@ def packed(timed: list[Timed]) -> bytes:
     return b"".join(parts)
 
 
-def tlog(streams: dict[str, Stream], wiring: Wiring, elevation_m: float) -> bytes:
+def tlog(streams: dict[str, Stream], wiring: Wiring, elevation_m: float, mode: int = MANUAL) -> bytes:
     """The whole log."""
-    return packed(messages(streams, wiring, elevation_m))
+    return packed(messages(streams, wiring, elevation_m, mode))

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from .score import Rate, by_effect, in_time, judge, score
+from .judge import Judged, judge
+from .score import Rate, by_effect, in_time, score
 from .seal import SealError, unseal
 
 
@@ -30,6 +31,22 @@ def read_answers(path: Path) -> dict[str, dict[str, Any]]:
     return answers
 
 
+def judge_all(folder: Path, answers: Path, key_file: Path) -> tuple[dict[str, Judged], int]:
+    """Open the key, and return each case judged and the number of cases that are answered.
+
+    Raises
+    ------
+    SealError
+        The answers are not those committed, the key is not the one sealed, or an earlier version wrote it.
+    """
+    said = read_answers(answers)
+    key = unseal(folder, answers, key_file)
+    if any("kind" not in truth for truth in key.values()):
+        raise SealError(f"{key_file}: sealed by an earlier version; score it with that version")
+    judged = {name: judge(truth, said.get(name, {})) for name, truth in key.items()}
+    return judged, len(set(said) & set(key))
+
+
 def report(folder: Path, answers: Path, key_file: Path, details: bool = False) -> Iterator[str]:
     """Yield the lines of the score table.
 
@@ -38,26 +55,28 @@ def report(folder: Path, answers: Path, key_file: Path, details: bool = False) -
     SealError
         The answers are not those committed, or the key is not the one sealed.
     """
-    said = read_answers(answers)
-    key = unseal(folder, answers, key_file)
-    judged = judge(key, said)
-    yield f"{len(key)} cases, {len(set(said) & set(key))} answered; percent with 95 % intervals"
-    for rate in score(judged):
+    judged, answered = judge_all(folder, answers, key_file)
+    yield f"{len(judged)} cases, {answered} answered; percent with 95 % intervals"
+    for rate in (*score(list(judged.values())), in_time(_seconds_of(answers))):
         yield rate.line()
     if not details:
         return
     yield "right cause first, by effect"
-    for rate in by_effect(judged):
+    for rate in by_effect(list(judged.values())):
         yield rate.line()
     yield "not right"
-    for name, j in zip(key, judged, strict=True):
-        expected = {"none": "none", "parameters": "parameters", "outside": "unknown"}.get(j.group)
-        fine = j.verdict == expected if expected else j.right or j.is_left_alone
-        if not fine:
-            told = f"{j.verdict} {j.named[0] if j.named else ''}".strip()
-            sizes = {effect: {k: round(v, 5) for k, v in own.items()} for effect, own in j.sizes.items()}
-            truth = f"{name} {j.group:10s} {sizes or '-'} gap {j.gap:.2f}"
-            yield f"  {truth} -> {told} @ {j.block} p={j.probability:.2f}"
+    for name, j in judged.items():
+        if not j.is_right:
+            yield _wrong(name, j)
+
+
+def _wrong(name: str, j: Judged) -> str:
+    """Return the line of an answer that is not right: the truth, and what was told."""
+    told = f"{j.verdict} {j.named[0] if j.named else ''}".strip()
+    sizes = {effect: {k: round(v, 5) for k, v in own.items()} for effect, own in j.sizes.items()}
+    gap = "" if j.gap is None else f" gap {j.gap:.2f}"
+    truth = f"{name} {j.kind:10s} {j.condition:8s} {sizes or '-'}{gap}"
+    return f"  {truth} -> {told} @ {j.block} p={j.probability:.2f}"
 
 
 def score_document(folder: Path, answers: Path, key_file: Path) -> dict[str, Any]:
@@ -70,14 +89,14 @@ def score_document(folder: Path, answers: Path, key_file: Path) -> dict[str, Any
     SealError
         The answers are not those committed, or the key is not the one sealed.
     """
-    said = read_answers(answers)
-    key = unseal(folder, answers, key_file)
+    judged, answered = judge_all(folder, answers, key_file)
+    rates = (*score(list(judged.values())), in_time(_seconds_of(answers)))
     return {
         "schema": "score/1",
-        "cases": len(key),
-        "answered": len(set(said) & set(key)),
+        "cases": len(judged),
+        "answered": answered,
         "answers_sha256": hashlib.sha256(answers.read_bytes()).hexdigest(),
-        "figures": [_figure(rate) for rate in (*score(judge(key, said)), in_time(_seconds_of(answers)))],
+        "figures": [_figure(rate) for rate in rates],
     }
 
 

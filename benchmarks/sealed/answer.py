@@ -1,7 +1,7 @@
-"""Answer sealed cases of ``python -m sim blind`` with the diagnosis of ``advisor gap``, from the logs alone.
+"""Answer sealed cases of any generator with the diagnosis of ``advisor gap``, from the logs alone.
 
     python -m sim blind --cases 300 --seed S --out cases
-    python -m benchmarks.answer_sealed cases answers.jsonl --workers 8
+    python -m benchmarks.sealed.answer cases answers.jsonl --workers 8
     python -m sim commit cases answers.jsonl
     python -m sim reveal cases answers.jsonl --details
 
@@ -27,12 +27,13 @@ def answer(case: Path) -> tuple[dict[str, Any], float]:
     from advisor.cli.options import read_aircraft
     from advisor.gap.document import gap_document
     from advisor.words.problems import UnusableInputError
+    from sim.sealed.cases import AIRCRAFT, LOG
 
     began = time.process_time()
-    aircraft = read_aircraft(case / "aircraft.yaml")
+    aircraft = read_aircraft(case / AIRCRAFT)
     simulator = named_simulator(aircraft)
     try:
-        document = gap_document(compare_logs([case / "flight.tlog"], aircraft, simulator).diagnosis)
+        document = gap_document(compare_logs([case / LOG], aircraft, simulator).diagnosis)
     except UnusableInputError as error:
         print(f"{case.name}: {error.problem}", file=sys.stderr)
         document = {}

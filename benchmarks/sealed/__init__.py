@@ -1,0 +1,1 @@
+"""What the generators of sealed flights share beside ``sim.sealed``: no physics."""
