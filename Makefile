@@ -59,6 +59,10 @@ imports: .venv/.developed ## the walls of the house
 sizes: .venv/.developed ## lines, constants and names of the gap diagnosis, which may only fall
 	$(BIN)/python -m benchmarks.gap_size
 
+.PHONY: mutants
+mutants: .venv/.developed ## changed numbers that decide or are shown: tests must notice each (four minutes)
+	$(BIN)/python -m benchmarks.mutants
+
 .PHONY: english
 english: .venv/.developed ## docstrings, messages and pages against docs/developer/style.md
 	$(BIN)/python -m benchmarks.english
