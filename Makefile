@@ -115,11 +115,15 @@ accuracy: .venv/.developed ## the estimator against the Cramér-Rao bound, inter
 robustness: .venv/.developed ## the estimator's own start on 2,000 random aircraft
 	$(BIN)/python -m benchmarks.robustness
 
+.PHONY: nightly
+nightly: .venv/.developed ## every test that `make test` leaves out: study-gap, study-quality and survival (an hour)
+	$(BIN)/python -m pytest -n 2 --dist loadgroup --timeout 900 -m study
+
 study-quality: .venv/.developed ## good manoeuvres rejected, and other tests marked as studies
 	$(BIN)/python -m pytest -m study --ignore tests/gap
 
 study-gap: .venv/.developed ## whole diagnoses of flights whose cause is known (about fifteen minutes)
-	$(BIN)/python -m pytest -n 2 --dist loadgroup -m study tests/gap
+	$(BIN)/python -m pytest -n 2 --dist loadgroup --timeout 900 -m study tests/gap
 
 survival: .venv/.developed ## a live campaign in which fifty processes are killed (three minutes)
 	$(BIN)/python -m pytest -m study tests/mavlink/link/test_never_lost.py
