@@ -63,6 +63,10 @@ imports: .venv/.developed ## the walls of the house
 sizes: .venv/.developed ## lines, constants and names of the gap's rules, each with an upper bound
 	$(BIN)/python -m benchmarks.gap_size
 
+.PHONY: mutants
+mutants: .venv/.developed ## changed numbers that decide or are shown: tests must notice each (four minutes)
+	$(BIN)/python -m benchmarks.mutants
+
 .PHONY: english
 english: .venv/.developed ## docstrings, messages and pages against docs/developer/style.md
 	$(BIN)/python -m benchmarks.english
@@ -116,11 +120,15 @@ accuracy: .venv/.developed ## the estimator against the Cramér-Rao bound, inter
 robustness: .venv/.developed ## the estimator's own start on 2,000 random aircraft
 	$(BIN)/python -m benchmarks.robustness
 
+.PHONY: nightly
+nightly: .venv/.developed ## every test that `make test` leaves out: study-gap, study-quality and survival (an hour)
+	$(BIN)/python -m pytest -n 2 --dist loadgroup --timeout 900 -m study
+
 study-quality: .venv/.developed ## good manoeuvres rejected, and other tests marked as studies
 	$(BIN)/python -m pytest -m study --ignore tests/gap
 
 study-gap: .venv/.developed ## whole diagnoses of flights whose cause is known (about fifteen minutes)
-	$(BIN)/python -m pytest -n 2 --dist loadgroup -m study tests/gap
+	$(BIN)/python -m pytest -n 2 --dist loadgroup --timeout 900 -m study tests/gap
 
 survival: .venv/.developed ## a live campaign in which fifty processes are killed (three minutes)
 	$(BIN)/python -m pytest -m study tests/mavlink/link/test_never_lost.py

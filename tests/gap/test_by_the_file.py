@@ -18,20 +18,6 @@ def plane() -> Aircraft:
     return Aircraft(model=model, reference_airspeed_m_s=sound.reference_airspeed_m_s)
 
 
-@pytest.mark.parametrize(
-    ("late_s", "arm_m"), [(0.05, 0.8), pytest.param(0.06, -0.8, marks=pytest.mark.study)]
-)
-def test_a_late_vane_and_an_accelerometer_off_its_place_are_no_scale_with_a_lag_and_wrong_numbers(
-    plane, late_s, arm_m
-):
-    flown = fly(Setup(maneuvers=6, skew={"alpha": late_s}, switches={"acc_arm": arm_m}, noise=0.01, seed=7))
-    found = diagnose(flown, plane)
-    present = {c.effect: c for c in found.causes if c.present}
-    assert set(present) == {"alpha_skew", "accelerometer_offset"}
-    assert present["alpha_skew"].parameters["skew_s"].value == pytest.approx(late_s, abs=0.004)
-    assert present["accelerometer_offset"].parameters["arm_m"].value == pytest.approx(arm_m, abs=0.05)
-
-
 def test_a_file_that_does_not_say_at_which_speed_it_holds_is_believed_at_one_that_was_flown(plane):
     powers = {"Z_alpha": 1, "Z_delta_e": 1, "M_alpha": 2, "M_q": 1, "M_delta_e": 2}
     faster = {name: value * 1.05 ** powers.get(name, 0) for name, value in plane.model.items()}

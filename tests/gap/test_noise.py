@@ -7,7 +7,6 @@ import pytest
 from scipy.signal import lfilter
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.fit import fit
@@ -151,35 +150,6 @@ def wandering(channel, share, memory_s, others=0.0):
             channels[name] = replace(read, y=read.y + course)
         flown.append(replace(maneuver, channels=channels))
     return flown
-
-
-@pytest.mark.parametrize(
-    ("channel", "block"),
-    [
-        ("q", "pitch_rate_sensor"),
-        pytest.param("alpha", "alpha_sensor", marks=pytest.mark.study),
-        ("theta", "attitude_sensor"),
-    ],
-)
-def test_an_instrument_that_wanders_alone_is_unknown_and_no_noise(channel, block):
-    found = diagnose(wandering(channel, 0.12, 1.5), Aircraft())
-    assert (found.verdict, found.where.block) == ("unknown", block)
-    assert found.gap.before > 0.5
-    assert any("wanders by itself" in note for note in found.notes)
-
-
-@pytest.mark.parametrize("seed", [14, 15])
-def test_an_attitude_that_accelerations_pull_and_that_forgets_is_unknown(seed):
-    """Diagnose an estimator whose gain is too high: it leans towards the plumb line, and returns."""
-    flown = []
-    for maneuver in fly(Setup(maneuvers=6, seed=seed)):
-        read, felt = maneuver.channels["theta"], maneuver.channels["a_x"]
-        plumb = np.arcsin(np.interp(read.t, felt.t, felt.y) / GRAVITY_M_S2) - read.y
-        keep = np.exp(-np.median(np.diff(read.t)) / 2.0)
-        pulled = replace(read, y=read.y + 0.5 * lfilter([1.0 - keep], [1.0, -keep], plumb - plumb[0]))
-        flown.append(replace(maneuver, channels={**maneuver.channels, "theta": pulled}))
-    found = diagnose(flown, Aircraft())
-    assert (found.verdict, found.where.block) == ("unknown", "attitude_sensor")
 
 
 @pytest.mark.parametrize(("share", "memory_s", "others"), [(0.06, 0.1, 0.0), (0.03, 1.0, 0.02)])

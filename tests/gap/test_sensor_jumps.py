@@ -59,7 +59,7 @@ def test_a_jump_exceeds_six_standard_deviations_of_the_changes(size, block):
 
 
 def test_a_jump_within_the_noise_assumed_for_a_filtered_channel_is_none():
-    assert judged((0, 0, 20), tolerance=100.0) is None
+    assert judged((0, 0, 20), tolerance=15.0) is None
 
 
 def test_jumps_while_the_stick_moves_do_not_count():

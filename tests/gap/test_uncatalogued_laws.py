@@ -109,7 +109,6 @@ def test_a_gyro_that_feels_the_acceleration_is_unknown_in_the_gyro(setup, felt):
 @pytest.mark.parametrize(("setup", "lowest", "highest"), [
     (Setup(maneuvers=6, seed=40), -0.05, 0.035),
     pytest.param(Setup(seed=40), -0.045, 0.5, marks=pytest.mark.study),
-    pytest.param(HARD, -0.5, 0.03, marks=pytest.mark.study),
 ])  # fmt: skip
 def test_a_surface_that_stops_before_the_command_is_no_bent_moment(setup, lowest, highest):
     found = diagnose(fly(replace(setup, switches={"stop_low": lowest, "stop_high": highest})), Aircraft())

@@ -104,6 +104,7 @@ def test_a_cluster_gives_the_study_of_one_process(scheduler: str, advisor: Advis
     assert shared.stdout == advisor(*words, "--workers", 1).stdout
 
 
+@pytest.mark.study
 def test_a_worker_that_is_killed_in_the_middle_loses_nothing(scheduler: str, tmp_path: Path) -> None:
     marks = [tmp_path / name for name in ("a", "b", "first", "c", "d")]
     done = dict(run_on_cluster(die_the_first_time, marks, scheduler, pytest.fail))
@@ -111,6 +112,7 @@ def test_a_worker_that_is_killed_in_the_middle_loses_nothing(scheduler: str, tmp
     assert done == {mark: mark.name for mark in marks}
 
 
+@pytest.mark.study
 def test_a_task_that_kills_every_worker_costs_itself_only(scheduler: str) -> None:
     done = dict(run_on_cluster(die_always, [1, 13, 2], scheduler, pytest.fail))
     assert isinstance(done.pop(13), BrokenExecutor)
