@@ -214,7 +214,7 @@ class Examiner:
         pulses = np.repeat(np.arange(800.0, 2201.0)[:, None], len(elevator.parts), axis=1)
         steps = np.degrees(np.max(np.abs(np.diff(elevator.angles(pulses), axis=0)), axis=0))
         coarsest = max(part.share * float(step) for part, step in zip(elevator.parts, steps, strict=True))
-        return ElevatorFound(elevator.outputs, coarsest, elevator.calibrated)
+        return ElevatorFound(elevator.outputs, coarsest, elevator.calibrated, elevator.doubts)
 
     def _alpha(self, paced: dict[str, Paced]) -> AlphaFound | None:
         status = self._stream.channels.get("alpha")

@@ -48,8 +48,9 @@ def alpha_limits(alpha: ChannelStatus, vehicle: Vehicle) -> list[Limit]:
 
 def elevator_limits(found: ElevatorFound, elevator: Elevator) -> list[Limit]:
     """Return defects of the elevator's calibration, resolution and servo."""
-    limits = []
+    limits = [Limit(d.code, d.text.rstrip("."), _continued(d.fix)) for d in found.doubts]
     if not found.calibrated:
+        given = "whose pulses are assumed" if found.doubts else "as the parameters have them"
         listed = joined_numbers(found.outputs)
         several = len(found.outputs) > 1
         outputs = f"Outputs {listed} are" if several else f"Output {listed} is"
@@ -57,7 +58,7 @@ def elevator_limits(found: ElevatorFound, elevator: Elevator) -> list[Limit]:
         limits.append(
             Limit(
                 "calibration",
-                f"{outputs} not calibrated: full strokes, as the parameters have them, count as 25 deg, "
+                f"{outputs} not calibrated: full strokes, {given}, count as 25 deg, "
                 "so Z_delta_e and M_delta_e have an assumed scale",
                 f"measure the deflection at three pulse widths and give {key} in the aircraft file",
             )
@@ -81,6 +82,10 @@ def elevator_limits(found: ElevatorFound, elevator: Elevator) -> list[Limit]:
             )
         )
     return limits
+
+
+def _continued(fix: str) -> str:
+    return f"{fix[:1].lower()}{fix[1:].rstrip('.')}"
 
 
 def distrust_limits(found: Iterable[Distrust]) -> list[Limit]:
