@@ -15,6 +15,7 @@ from advisor.doctor.instruments import (
     elevator_limits,
     loss_limits,
     path_limits,
+    repeat_limits,
     sender_limits,
 )
 from advisor.doctor.pace import Paced, cost_of_missing, rate_limits, steadiness_limits
@@ -130,6 +131,7 @@ class Examiner:
             limits += alpha_limits(self._stream.channels["alpha"], vehicle) if "alpha" in paced else []
         elevator = self._elevator()
         limits += elevator_limits(elevator, self._aircraft.elevator) if elevator else []
+        limits += repeat_limits(arrivals.values())
         limits += clock_limits(clocks) if clocks else []
         limits += sender_limits(self._stream.two_senders)
         limits += company_limits(self._stream.other_systems) if not self._chosen else []
