@@ -7,6 +7,7 @@ from typing import Literal
 from advisor.doctor.expectation import Assumed, ExpectedErrors
 from advisor.doctor.survey import Arrival, Clocks
 from advisor.flight.vehicle.vehicle import Vehicle
+from advisor.words.problems import Problem
 
 DoctorVerdict = Literal["ready", "usable with limits", "not usable"]
 
@@ -38,6 +39,8 @@ class ElevatorFound:
     calibrated: bool
     """Whether the file has a calibration. Without one, the parameters' limits and assumed full strokes give
     the scale."""
+    doubts: tuple[Problem, ...] = ()
+    """Problems of limits that are assumed in the scale."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,6 +15,7 @@ from advisor.doctor.instruments import (
     elevator_limits,
     loss_limits,
     path_limits,
+    repeat_limits,
     sender_limits,
 )
 from advisor.doctor.pace import Paced, cost_of_missing, rate_limits, steadiness_limits
@@ -130,6 +131,7 @@ class Examiner:
             limits += alpha_limits(self._stream.channels["alpha"], vehicle) if "alpha" in paced else []
         elevator = self._elevator()
         limits += elevator_limits(elevator, self._aircraft.elevator) if elevator else []
+        limits += repeat_limits(arrivals.values())
         limits += clock_limits(clocks) if clocks else []
         limits += sender_limits(self._stream.two_senders)
         limits += company_limits(self._stream.other_systems) if not self._chosen else []
@@ -214,7 +216,7 @@ class Examiner:
         pulses = np.repeat(np.arange(800.0, 2201.0)[:, None], len(elevator.parts), axis=1)
         steps = np.degrees(np.max(np.abs(np.diff(elevator.angles(pulses), axis=0)), axis=0))
         coarsest = max(part.share * float(step) for part, step in zip(elevator.parts, steps, strict=True))
-        return ElevatorFound(elevator.outputs, coarsest, elevator.calibrated)
+        return ElevatorFound(elevator.outputs, coarsest, elevator.calibrated, elevator.doubts)
 
     def _alpha(self, paced: dict[str, Paced]) -> AlphaFound | None:
         status = self._stream.channels.get("alpha")

@@ -4,7 +4,7 @@ from collections.abc import Collection, Iterable
 
 from advisor.aircraft.aircraft import Elevator
 from advisor.doctor.examination import ElevatorFound, Limit
-from advisor.doctor.survey import Clocks
+from advisor.doctor.survey import Arrival, Clocks
 from advisor.flight.signals.track import ChannelStatus
 from advisor.flight.signals.trust import Distrust
 from advisor.flight.vehicle.surfaces import joined_numbers
@@ -19,6 +19,11 @@ REPEATED_PERCENT = 1.0
 """Share of repeated packets, %, above which a second path is assumed. A network alone repeats only single
 packets."""
 DRIFTING_PERCENT = 1.0
+_MOTION = ("ATTITUDE", "RAW_IMU", "SCALED_IMU", "HIGHRES_IMU")
+"""Messages whose values change with every sample of a sensor in flight."""
+_MOSTLY_NEW = 0.7
+"""Least ratio of the rate of renewal to the rate of arrival of a message that repeats no values, as in
+``renewal.py``. Two copies have 0.5; records of sound messages have 0.95 to 1."""
 STRAYED_SHARE = 0.01
 """Share of a message's stamps that may fit on neither clock. Around a reboot a few always do."""
 
@@ -48,8 +53,9 @@ def alpha_limits(alpha: ChannelStatus, vehicle: Vehicle) -> list[Limit]:
 
 def elevator_limits(found: ElevatorFound, elevator: Elevator) -> list[Limit]:
     """Return defects of the elevator's calibration, resolution and servo."""
-    limits = []
+    limits = [Limit(d.code, d.text.rstrip("."), _continued(d.fix)) for d in found.doubts]
     if not found.calibrated:
+        given = "whose pulses are assumed" if found.doubts else "as the parameters have them"
         listed = joined_numbers(found.outputs)
         several = len(found.outputs) > 1
         outputs = f"Outputs {listed} are" if several else f"Output {listed} is"
@@ -57,7 +63,7 @@ def elevator_limits(found: ElevatorFound, elevator: Elevator) -> list[Limit]:
         limits.append(
             Limit(
                 "calibration",
-                f"{outputs} not calibrated: full strokes, as the parameters have them, count as 25 deg, "
+                f"{outputs} not calibrated: full strokes, {given}, count as 25 deg, "
                 "so Z_delta_e and M_delta_e have an assumed scale",
                 f"measure the deflection at three pulse widths and give {key} in the aircraft file",
             )
@@ -83,11 +89,29 @@ def elevator_limits(found: ElevatorFound, elevator: Elevator) -> list[Limit]:
     return limits
 
 
+def _continued(fix: str) -> str:
+    return f"{fix[:1].lower()}{fix[1:].rstrip('.')}"
+
+
 def distrust_limits(found: Iterable[Distrust]) -> list[Limit]:
     """Return defects for channels that cannot be right, each once. A frozen pitch rate is already a problem
     elsewhere."""
     told = {d.channel: d for d in found if not (d.stops and d.code == "frozen")}
     return [Limit(d.code, d.sentence, d.fix, stops=d.stops) for d in told.values()]
+
+
+def repeat_limits(arrivals: Iterable[Arrival]) -> list[Limit]:
+    """Return a defect where the motion's messages bring old values again under new stamps."""
+    return [
+        Limit(
+            "repeats",
+            f"{one.name} arrives at {one.rate_hz:.0f} Hz, but its values change at {one.renewed_hz:.0f} Hz "
+            "only; a repeated value counts once",
+            f"record one stream of {one.name} only: one radio, one rate request, one output of the router",
+        )
+        for one in arrivals
+        if one.name in _MOTION and one.renewed_hz < _MOSTLY_NEW * one.rate_hz
+    ]
 
 
 def clock_limits(clocks: Clocks) -> list[Limit]:

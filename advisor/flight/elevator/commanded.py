@@ -50,8 +50,8 @@ class Commanded:
 def commanded(
     surfaces: Mapping[str, Surface], pulses: Pulses, t: FloatArray, autopilot: str
 ) -> list[Commanded]:
-    """Return the deflection that these pulses command for each surface, where all of its outputs carry a
-    pulse.
+    """Return the deflection that these pulses command for each surface, where an output of each demand
+    carries a pulse.
 
     Pulses outside a calibration give the deflection at its end.
 
@@ -69,11 +69,35 @@ def commanded(
     found = []
     for channel, surface in surfaces.items():
         pwm = pulses.of(surface.outputs)
-        good = driven(pwm, autopilot) & np.isfinite(t)
-        message, source = pulses.columns.name, pulses.source(surface.outputs)
-        angles, order = surface.angles(pwm[good]), pulses.columns.order[good]
-        found.append(Commanded(channel, message, source, surface, t[good], angles, order))
+        alive = driven(pwm, autopilot)
+        good = np.all(np.isfinite(pwm), axis=1) & np.any(alive, axis=1) & np.isfinite(t)
+        for rows in _alike(alive, np.flatnonzero(good)):
+            carry = alive[rows[0]]
+            heard = surface.without(
+                [n for n, carries in zip(surface.outputs, carry, strict=True) if not carries]
+            )
+            if heard is None:
+                continue
+            angles, order = heard.angles(pwm[rows][:, carry]), pulses.columns.order[rows]
+            source = pulses.source(heard.outputs)
+            found.append(Commanded(channel, pulses.columns.name, source, heard, t[rows], angles, order))
     return found
+
+
+def _alike(alive: NDArray[np.bool_], rows: IntArray) -> list[IntArray]:
+    """Return the rows in stretches within which the same outputs carry a pulse.
+
+    Parameters
+    ----------
+    alive
+        Shape (n, number of outputs), whether an output carries a pulse.
+    rows
+        Rows of ``alive`` that count, rising.
+    """
+    if len(rows) == 0:
+        return []
+    changes = np.any(np.diff(alive[rows], axis=0), axis=1)
+    return np.split(rows, np.flatnonzero(changes) + 1)
 
 
 def joined(pieces: Sequence[Commanded]) -> Commanded:

@@ -60,7 +60,9 @@ def _as_listed(outputs: Sequence[ElevatorOutput], wiring: Wiring) -> Surface | P
         f"Only one side of the {kind} pair is among them: its other axis counts as elevator as well."
         for kind in _one_sided(halves)
     ]
-    return Surface(parts, calibrated, " ".join(said if calibrated else [*said, _assumed(wiring)]))
+    if calibrated:
+        return Surface(parts, True, " ".join(said))
+    return _scaled(parts, " ".join(said), wiring)
 
 
 def _as_given(output: int, calibration: Pairs | None, wiring: Wiring, why: str) -> Surface | Problem:
@@ -92,7 +94,13 @@ def _as_found(calibration: Pairs | None, wiring: Wiring) -> Surface | Problem:
     if not whole:
         return _nothing_found(wiring)
     parts = in_shares(
-        Part(n, wiring.scale(n), 1.0 / (len(sides) * len(side)), _has_known_direction(n, wiring))
+        Part(
+            n,
+            wiring.scale(n),
+            1.0 / (len(sides) * len(side)),
+            _has_known_direction(n, wiring),
+            f"{wiring.roles[n].surface} {wiring.roles[n].side}",
+        )
         for sides in whole
         for side in sides
         for n in side
@@ -102,7 +110,7 @@ def _as_found(calibration: Pairs | None, wiring: Wiring) -> Surface | Problem:
         return _carried_over(calibration, parts, found, wiring)
     if len(parts) == 1:
         return _uncalibrated(parts[0], _why(found, wiring), wiring)
-    return Surface(parts, False, f"{_formed(parts, _why(found, wiring), found)} {_assumed(wiring)}")
+    return _scaled(parts, _formed(parts, _why(found, wiring), found), wiring)
 
 
 def _carried_over(
@@ -126,6 +134,7 @@ def _carried_over(
             part.output,
             Calibration(calibration).carried_over(measured, wiring.scale(part.output)),
             part.share,
+            side=part.side,
         )
         for part in parts
     )
@@ -143,18 +152,31 @@ def _carried_over(
 
 
 def _uncalibrated(part: Part, why: str, wiring: Wiring) -> Surface:
+    doubts = _doubts([part], wiring)
     said = (
-        f"No elevator.calibration: output {part.output} ({why}) is scaled by {wiring.words.limits} "
+        f"No elevator.calibration: output {part.output} ({why}) is scaled by {_limits(doubts, wiring)} "
         "as full strokes of 25 deg, so Z_delta_e and M_delta_e are per assumed degree."
     )
-    return Surface((part,), False, said)
+    return Surface((part,), False, " ".join([said, *map(str, doubts)]), doubts)
 
 
-def _assumed(wiring: Wiring) -> str:
-    return (
-        f"No calibration: they are scaled by {wiring.words.limits} as full strokes of 25 deg, so Z_delta_e "
-        "and M_delta_e are per assumed degree."
+def _scaled(parts: tuple[Part, ...], formed: str, wiring: Wiring) -> Surface:
+    """Return the surface of several outputs without a calibration."""
+    doubts = _doubts(parts, wiring)
+    said = (
+        f"No calibration: they are scaled by {_limits(doubts, wiring)} as full strokes of 25 deg, so "
+        "Z_delta_e and M_delta_e are per assumed degree."
     )
+    return Surface(parts, False, " ".join([formed, said, *map(str, doubts)]), doubts)
+
+
+def _doubts(parts: Sequence[Part], wiring: Wiring) -> tuple[Problem, ...]:
+    """Return the problems of limits that are assumed."""
+    return tuple(doubt for n in _numbers(parts) if (doubt := wiring.doubt(n)) is not None)
+
+
+def _limits(doubts: Sequence[Problem], wiring: Wiring) -> str:
+    return "assumed limits" if doubts else wiring.words.limits
 
 
 def _is_half(n: int, wiring: Wiring) -> bool:

@@ -15,6 +15,7 @@ from advisor.flight.maneuvers.marks import Mark
 from advisor.flight.maneuvers.purpose import not_an_input
 from advisor.flight.maneuvers.segmentation import LEAD_IN_S
 from advisor.flight.signals.record import AIR_UNITS, UNITS
+from advisor.flight.signals.renewal import counted_once
 from advisor.flight.signals.tracks import Tracks
 from advisor.flight.signals.trust import distrusted
 from advisor.flight.stream.identity import Identity
@@ -104,9 +105,8 @@ class Cutting:
         for name in UNITS:
             channel = self._tracks.cut(name, span.record_from_s, span.end_s, up_to_order)
             if channel is not None:
-                channels[name] = replace(
-                    channel, provenance=self._who.provenance(channel.source, channel.provenance)
-                )
+                provenance = self._who.provenance(channel.source, channel.provenance)
+                channels[name] = counted_once(replace(channel, provenance=provenance))
         distrusts = self._who.distrusts(distrusted(channels))
         for still in distrusts:
             if still.channel == "a_z":

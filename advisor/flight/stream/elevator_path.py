@@ -38,6 +38,8 @@ class ElevatorPath:
         self._boot = boot
         self._watch = ElevatorWatch()
         self._message: str | None = None
+        self.heard: frozenset[int] = frozenset()
+        """Outputs that carried a pulse in the newest sample; empty before the first."""
 
     @property
     def newest_s(self) -> float:
@@ -82,6 +84,7 @@ class ElevatorPath:
             self._message = min(arrived, key=lambda new: int(new.order[0])).message
         for new in arrived:
             if new.message == self._message:
+                self.heard = frozenset(new.surface.outputs)
                 for known in self._mixing.take(new, closes_loop):
                     events += [known] if isinstance(known, Notice) else self._follow([known])
         return events

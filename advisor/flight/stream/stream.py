@@ -138,7 +138,10 @@ class FlightStream:
     @property
     def elevator(self) -> Surface | Problem:
         """Outputs and scale of the elevator, or the reason for their absence."""
-        return self._who.elevator
+        stated = self._who.elevator
+        if isinstance(stated, Problem) or not self._path.heard:
+            return stated
+        return stated.without(set(stated.outputs) - self._path.heard) or stated
 
     @property
     def elevator_notes(self) -> tuple[str, ...]:

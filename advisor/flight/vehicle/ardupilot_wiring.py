@@ -1,5 +1,6 @@
 """Roles and scales of servo outputs from ArduPilot's parameters SERVOn_*."""
 
+from advisor.flight.vehicle.limits import limits
 from advisor.flight.vehicle.surfaces import Scale
 from advisor.flight.vehicle.wiring import AILERON, ELEVATOR, RUDDER, Parameters, Role, Wiring, Words
 
@@ -36,18 +37,18 @@ def ardupilot_wiring(parameters: Parameters) -> Wiring:
     """Return the outputs by SERVOn_FUNCTION, MIN, TRIM, MAX and REVERSED, with ArduPilot's defaults where
     unknown."""
     functions = {n: parameters[f"SERVO{n}_FUNCTION"] for n in _OUTPUTS if f"SERVO{n}_FUNCTION" in parameters}
-    default = Scale()
+    scaled = {
+        n: limits(
+            (f"SERVO{n}_MIN", f"SERVO{n}_TRIM", f"SERVO{n}_MAX"),
+            parameters,
+            Scale(reversed=bool(parameters.get(f"SERVO{n}_REVERSED", 0.0))),
+        )
+        for n in _OUTPUTS
+    }
     return Wiring(
         WORDS,
         {n: _ROLES.get(int(function), Role("")) for n, function in functions.items()},
-        {
-            n: Scale(
-                low_us=parameters.get(f"SERVO{n}_MIN", default.low_us),
-                trim_us=parameters.get(f"SERVO{n}_TRIM", default.trim_us),
-                high_us=parameters.get(f"SERVO{n}_MAX", default.high_us),
-                reversed=bool(parameters.get(f"SERVO{n}_REVERSED", 0.0)),
-            )
-            for n in _OUTPUTS
-        },
+        {n: scale for n, (scale, _) in scaled.items()},
         frozenset(n for n in _OUTPUTS if f"SERVO{n}_REVERSED" in parameters),
+        doubts={n: doubt for n, (_, doubt) in scaled.items() if doubt is not None},
     )

@@ -8,6 +8,7 @@ positive command of an elevator lifts the nose where its torque effectiveness CA
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
+from advisor.flight.vehicle.limits import assumed_limits
 from advisor.flight.vehicle.surfaces import Scale
 from advisor.flight.vehicle.wiring import AILERON, ELEVATOR, RUDDER, Parameters, Role, Wiring, Words
 
@@ -101,11 +102,27 @@ def px4_wiring(parameters: Parameters) -> Wiring:
     if not surfaces:
         return _followers(parameters)
     carried = [output for output in servo_outputs(parameters) if output.servo in surfaces]
+    stated = _stated_limits(parameters)
     return Wiring(
         WORDS,
         {output.number: surfaces[output.servo] for output in carried},
         {output.number: _turned(output, surfaces[output.servo], parameters) for output in carried},
         frozenset(output.number for output in carried if _effect(output.servo, "P", parameters)),
+        doubts={
+            output.number: assumed_limits(output.number, output.scale)
+            for output in carried
+            if output.number not in stated
+        },
+    )
+
+
+def _stated_limits(parameters: Parameters) -> frozenset[int]:
+    """Return the outputs whose both limits are stated."""
+    return frozenset(
+        16 * bank + k
+        for bank, group in enumerate(banks(parameters))
+        for k in OUTPUTS
+        if {f"{group}_MIN{k}", f"{group}_MAX{k}"} <= parameters.keys()
     )
 
 

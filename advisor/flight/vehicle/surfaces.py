@@ -7,13 +7,14 @@ more PWM is trailing edge up unless the output is reversed. The elevator channel
 positive, which explains the minus in `Scale.deflection`.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from advisor.flight.signals.messages import FloatArray
+from advisor.words.problems import Problem
 
 _FULL_STROKE_RAD = np.radians(25.0)
 _UNUSED_PX4 = 900.0
@@ -73,6 +74,14 @@ class Part:
     """Share of the surface's deflection. The shares of one surface sum to 1."""
     sure: bool = True
     """Whether a calibration or a parameter gives the output's sign."""
+    side: str = ""
+    """Outputs of one side follow one demand, so that each can replace the others. Empty: a side of its
+    own."""
+
+    @property
+    def demand(self) -> str:
+        """Name of the demand that the output follows."""
+        return self.side or f"output {self.output}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,6 +94,8 @@ class Surface:
     scale."""
     said: str
     """Sentence for the user on the outputs and their scale."""
+    doubts: tuple[Problem, ...] = ()
+    """Problems of limits that are assumed in the scale."""
 
     @property
     def outputs(self) -> tuple[int, ...]:
@@ -128,14 +139,48 @@ class Surface:
         """Return the surface angle in rad from pulses of shape (n, number of outputs)."""
         return self.combined(self.angles(pwm_us))
 
+    def without(self, silent: Collection[int]) -> "Surface | None":
+        """Return the surface of the outputs that carry a pulse; None where nothing follows a demand then.
+
+        Parameters
+        ----------
+        silent
+            Outputs without a pulse.
+        """
+        kept = [part for part in self.parts if part.output not in silent]
+        if len(kept) == len(self.parts):
+            return self
+        if {part.demand for part in kept} != {part.demand for part in self.parts}:
+            return None
+        told = joined_numbers([n for n in self.outputs if n in silent])
+        has = f"Outputs {told} carry" if len(self.parts) - len(kept) > 1 else f"Output {told} carries"
+        counts = joined_numbers([part.output for part in kept])
+        return replace(
+            self,
+            parts=_as_before(kept, self.parts),
+            said=f"{self.said} {has} no pulse; {counts} alone {'count' if len(kept) > 1 else 'counts'}.",
+        )
+
+
+def _as_before(kept: Sequence[Part], before: Sequence[Part]) -> tuple[Part, ...]:
+    """Return the parts with shares that give each demand the share that it had."""
+
+    def total(parts: Iterable[Part], demand: str) -> float:
+        return sum(part.share for part in parts if part.demand == demand)
+
+    return tuple(
+        replace(part, share=part.share * total(before, part.demand) / total(kept, part.demand))
+        for part in kept
+    )
+
 
 def driven(pwm_us: FloatArray, autopilot: str) -> NDArray[np.bool_]:
-    """Return the rows in which every output carries a pulse. 0, 65535 and NaN mean none; on PX4, 900 as
-    well."""
+    """Return which outputs carry a pulse, in the shape of ``pwm_us``. 0, 65535 and NaN mean none; on PX4, 900
+    as well."""
     alive = (pwm_us > 0) & (pwm_us < 65535)
     if autopilot == "px4":
         alive &= pwm_us != _UNUSED_PX4
-    return np.asarray(np.all(alive, axis=1))
+    return alive
 
 
 def in_shares(parts: Iterable[Part]) -> tuple[Part, ...]:

@@ -4,7 +4,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
+from advisor.flight.vehicle.limits import assumed_limits
 from advisor.flight.vehicle.surfaces import Part, Scale, Surface, in_shares
+from advisor.words.problems import Problem
 
 Parameters = Mapping[str, float]
 """Name to the value of each of the vehicle's parameters."""
@@ -57,10 +59,18 @@ class Wiring:
     """Outputs whose direction the parameters give."""
     assumed: str = ""
     """Sentence on guesses among the roles."""
+    doubts: Mapping[int, Problem] = field(default_factory=dict)
+    """Output number to the problem of its limits, where some of them are assumed."""
 
     def scale(self, n: int) -> Scale:
         """Return the scale of output ``n``, with ArduPilot's defaults for unknown parameters."""
         return self.scales.get(n, Scale())
+
+    def doubt(self, n: int) -> Problem | None:
+        """Return the problem of the assumed limits of output ``n``; None where parameters state them."""
+        if n in self.scales:
+            return self.doubts.get(n)
+        return assumed_limits(n, self.scale(n))
 
     def outputs_of(self, role: Role) -> list[int]:
         """Return the outputs with this role, rising."""
@@ -70,5 +80,5 @@ class Wiring:
         """Return the surface of the outputs with this role; None without such a parameter, or for two
         banks."""
         outputs = self.outputs_of(role)
-        surface = Surface(in_shares([Part(n, self.scale(n)) for n in outputs]), False, "")
+        surface = Surface(in_shares([Part(n, self.scale(n), side=role.surface) for n in outputs]), False, "")
         return surface if len(surface.ports) == 1 else None

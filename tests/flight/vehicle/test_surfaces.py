@@ -172,5 +172,5 @@ def test_aileron_and_rudder_are_found_where_the_parameters_say():
 
 def test_idle_outputs_carry_no_pulse():
     pulses = np.array([[0.0], [65535.0], [900.0], [1500.0]])
-    assert driven(pulses, "ardupilot").tolist() == [False, False, True, True]
-    assert driven(pulses, "px4").tolist() == [False, False, False, True]
+    assert driven(pulses, "ardupilot").all(axis=1).tolist() == [False, False, True, True]
+    assert driven(pulses, "px4").all(axis=1).tolist() == [False, False, False, True]

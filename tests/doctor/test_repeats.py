@@ -1,0 +1,22 @@
+"""Messages of the motion that repeat old values under new stamps are named."""
+
+from advisor.doctor.instruments import repeat_limits
+from advisor.doctor.survey import Arrival
+
+
+def arrival(name: str, rate_hz: float, renewed_hz: float) -> Arrival:
+    return Arrival(name, 1000, rate_hz, 0.1, 0.02, renewed_hz, rate_hz)
+
+
+def test_a_stream_sent_twice_is_named_with_the_rate_that_counts() -> None:
+    (limit,) = repeat_limits([arrival("ATTITUDE", 100.0, 50.0)])
+    assert "its values change at 50 Hz only" in limit.text
+    assert not limit.stops
+
+
+def test_a_sound_stream_is_no_defect() -> None:
+    assert repeat_limits([arrival("ATTITUDE", 50.0, 49.5), arrival("RAW_IMU", 50.0, float("nan"))]) == []
+
+
+def test_servo_outputs_may_rest() -> None:
+    assert repeat_limits([arrival("SERVO_OUTPUT_RAW", 50.0, 6.6)]) == []
