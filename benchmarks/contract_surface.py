@@ -5,6 +5,7 @@ the second is a capability lost..
 """
 
 import json
+import re
 import subprocess
 import sys
 import tempfile
@@ -54,7 +55,7 @@ def commands(group: click.Group, path: str = "advisor") -> Iterator[tuple[str, l
 def _parameter(one: click.Parameter) -> dict[str, Any]:
     return {
         "name": [one.name, *one.opts],
-        "type": repr(one.type),
+        "type": re.sub(r" at 0x\w+", "", repr(one.type)),
         "default": repr(one.to_info_dict().get("default")),
         "help": getattr(one, "help", None),
     }

@@ -1,11 +1,11 @@
 """Keys that an aircraft file lacks, and the cost of each missing key."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
+from operator import attrgetter
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft_file.keys import BY_PATH, KEYS
+from advisor.aircraft_file.keys import KEYS
 from advisor.aircraft_file.log_facts import LogFacts
 from advisor.flight.vehicle.surfaces import Surface
 
@@ -55,10 +55,7 @@ def _given(path: str, aircraft: Aircraft) -> bool:
             return aircraft.elevator.is_calibrated
         case "model":
             return bool(aircraft.model) or aircraft.simulator is not None
-    value: Any = aircraft
-    for name in path.split("."):
-        value = getattr(value, name)
-    return value is not None
+    return attrgetter(path)(aircraft) is not None
 
 
 def _counts(path: str, aircraft: Aircraft, facts: LogFacts | None) -> bool:
@@ -108,21 +105,17 @@ def _beyond_calibration(aircraft: Aircraft, facts: LogFacts) -> Iterator[Lack]:
         if pairs is None or output not in facts.pulses_us:
             continue
         low, high = facts.pulses_us[output]
-        ends = _ends([pwm for pwm, _ in pairs])
-        if low < ends[0] - BEYOND_US or high > ends[1] + BEYOND_US:
+        first, last = min(pwm for pwm, _ in pairs), max(pwm for pwm, _ in pairs)
+        if low < first - BEYOND_US or high > last + BEYOND_US:
             yield Lack(
                 "elevator.calibration",
                 f"Output {output} moves from {low:.0f} to {high:.0f} us in the log, the calibration ends at "
-                f"{ends[0]:.0f} and {ends[1]:.0f} us: beyond, the deflection is held.",
+                f"{first:.0f} and {last:.0f} us: beyond, the deflection is held.",
                 "measure the deflection at the pulses that were flown",
                 wrong=True,
             )
 
 
-def _ends(pulses: Sequence[float]) -> tuple[float, float]:
-    return min(pulses), max(pulses)
-
-
 def known_keys(aircraft: Aircraft) -> list[str]:
     """List the paths of the given keys, of all keys that cost something when missing."""
-    return [path for path, key in BY_PATH.items() if key.cost and _given(path, aircraft)]
+    return [key.path for key in KEYS if key.cost and _given(key.path, aircraft)]

@@ -11,9 +11,9 @@ from typing import Any
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError, with_config
 
-import advisor.aircraft.aircraft as parts
 from advisor.aircraft.aircraft import PARAMETERS, Aircraft, Elevator, FmuVariables, Markers, Pairs
 from advisor.aircraft.aircraft_effects import mistakes_in
+from advisor.aircraft.key import keys_of, sections_of
 from advisor.process.yaml_file import read_yaml
 from advisor.words.printable import printable
 from advisor.words.problems import ConfigurationError
@@ -73,6 +73,11 @@ def parse_aircraft(content: Any, origin: str = "aircraft file", mend: str = "") 
     raise ConfigurationError(f"{origin}: {listed}. {mend}".rstrip())
 
 
+def aircraft_schema() -> dict[str, Any]:
+    """Return the JSON schema of the aircraft file, with meaning and cost of each key, for an editor."""
+    return _reader().json_schema()
+
+
 def _without_empty(content: Any) -> Any:
     # "elevator:" with nothing under it is a section that the user leaves for later.
     return {k: v for k, v in content.items() if v is not None} if isinstance(content, dict) else content
@@ -129,19 +134,7 @@ def _meant(key: str) -> str:
     return f" (did you mean {near[0]}?)" if near else ""
 
 
-_PARTS = (
-    parts.ElevatorOutput,
-    parts.Elevator,
-    parts.Alpha,
-    parts.Accelerometer,
-    parts.Reference,
-    parts.FmuTrim,
-    parts.FmuVariables,
-    parts.CampaignPlan,
-    parts.Limits,
-    parts.Markers,
-    parts.Aircraft,
-)
+_PARTS = tuple(dict.fromkeys(kind for _, kind in sections_of(Aircraft)))[::-1]
 """The sections of the file, innermost first."""
 _EXAMPLE = "To see every key with its meaning, type: advisor aircraft new --blank -o example.yaml."
 """Next step after a file was refused."""
@@ -151,9 +144,6 @@ _MOST_POINTS = 500
 """Most points of a calibration: one for every second microsecond of a servo's travel."""
 _LONGEST_WINDOW = 50
 """Largest window of Eq. (12), in manoeuvres: more than any flight has."""
-_FARTHEST_CG_PERCENT = 200.0
-"""Largest distance of the centre of gravity from the leading edge, % of the chord. Canards fly ahead of the
-wing, and no aircraft flies two chords away."""
 _OUTPUTS = 32
 """Number of servo outputs that SERVO_OUTPUT_RAW and ACTUATOR_OUTPUT_STATUS can carry."""
 _LONGEST_STEP_S = 0.1
@@ -169,28 +159,7 @@ def _beyond_types(aircraft: Aircraft) -> Iterator[str]:
         source.startswith("named_value:") and 1 <= len(source.split(":", 1)[1]) <= 10
     ):
         yield f"alpha.source: {source!r} is none of auto, aoa_ssa, derived, none, named_value:NAME"
-    positive = {
-        "airspeed_m_s": aircraft.airspeed_m_s,
-        "reference_airspeed_m_s": aircraft.reference_airspeed_m_s,
-        "reference.mass_kg": aircraft.reference.mass_kg,
-        "reference.wing_area_m2": aircraft.reference.wing_area_m2,
-        "reference.chord_m": aircraft.reference.chord_m,
-        "reference.iyy_kg_m2": aircraft.reference.iyy_kg_m2,
-        "campaign.limit_percent": aircraft.campaign.limit_percent,
-        "campaign.tolerance_percent": aircraft.campaign.tolerance_percent,
-        "limits.bank_deg": aircraft.limits.bank_deg,
-        "limits.airspeed_change_percent": aircraft.limits.airspeed_change_percent,
-        "limits.alpha_deg": aircraft.limits.alpha_deg,
-    }
-    for path, value in positive.items():
-        if value is not None and value <= 0.0:
-            yield f"{path}: must be above 0, is {value}"
-    cg = aircraft.reference.cg_percent_chord
-    if cg is not None and abs(cg) > _FARTHEST_CG_PERCENT:
-        yield f"reference.cg_percent_chord: {cg} is outside ±{_FARTHEST_CG_PERCENT:.0f} percent of the chord"
-    temperature = aircraft.reference.air_temperature_c
-    if temperature is not None and not -80.0 <= temperature <= 60.0:
-        yield f"reference.air_temperature_c: {temperature} is outside -80..60 degrees Celsius"
+    yield from _out_of_bounds(aircraft)
     for name in aircraft.model:
         if name not in PARAMETERS:
             yield f"model.{name}: unknown key, the parameters are {' '.join(PARAMETERS)}"
@@ -212,6 +181,16 @@ def _beyond_types(aircraft: Aircraft) -> Iterator[str]:
     yield from _mistakes_in_markers(aircraft.markers)
     if aircraft.fmu is not None:
         yield from _mistakes_in_fmu(aircraft.fmu)
+
+
+def _out_of_bounds(aircraft: Aircraft) -> Iterator[str]:
+    """Yield the numbers outside the bounds that their keys state."""
+    for key in keys_of(Aircraft):
+        value: Any = aircraft
+        for name in key.path.split("."):
+            value = getattr(value, name, None)
+        if mistake := key.mistake(value):
+            yield f"{key.path}: {mistake}"
 
 
 def _elevator_mistakes(elevator: Elevator) -> Iterator[str]:
@@ -239,9 +218,6 @@ def _elevator_mistakes(elevator: Elevator) -> Iterator[str]:
             yield from _calibration_mistakes(f"{path}.calibration", one.calibration)
         elif elevator.is_calibrated:
             yield f"{path}.calibration: give one for every output, or for none"
-    for path, value in (("elevator.lag_s", elevator.lag_s), ("elevator.delay_s", elevator.delay_s)):
-        if value is not None and not 0.0 <= value <= 2.0:
-            yield f"{path}: {value} s is outside 0..2"
 
 
 def _calibration_mistakes(path: str, points: Pairs) -> Iterator[str]:
@@ -261,8 +237,6 @@ def _calibration_mistakes(path: str, points: Pairs) -> Iterator[str]:
 def _mistakes_in_markers(markers: Markers) -> Iterator[str]:
     if markers.rc is not None and not 1 <= markers.rc <= 18:
         yield f"markers.rc: {markers.rc} is not a channel 1..18 of RC_CHANNELS"
-    if not 800.0 <= markers.above_us <= 2200.0:
-        yield f"markers.above_us: {markers.above_us} us is outside 800..2200"
     if markers.text is not None:
         begins, ends = markers.text
         if not begins.strip() or not ends.strip() or begins == ends:

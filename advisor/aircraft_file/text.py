@@ -7,7 +7,8 @@ from typing import Any
 
 import yaml
 
-from advisor.aircraft_file.keys import KEYS, Key
+from advisor.aircraft.key import Key
+from advisor.aircraft_file.keys import KEYS
 
 _WIDTH = 100
 """Columns of a comment line."""
@@ -43,7 +44,7 @@ def aircraft_text(draft: Draft) -> str:
     for key in KEYS:
         if key.path in draft.needless:
             continue
-        within, _, name = key.path.rpartition(".")
+        within = key.path.rpartition(".")[0]
         if within != section:
             section = within
             # An empty section counts as left for later.
@@ -52,7 +53,7 @@ def aircraft_text(draft: Draft) -> str:
                 lines += _outputs(values["elevator.outputs"], draft.comments)
         if "elevator.outputs" in values and key.path in ("elevator.output", "elevator.calibration"):
             continue
-        lines += _entry(key, name, "  " if section else "", draft)
+        lines += _entry(key, "  " if section else "", draft)
     return "\n".join(lines) + "\n"
 
 
@@ -61,16 +62,16 @@ def _outputs(outputs: Sequence[Mapping[str, Any]], comments: Mapping[str, str]) 
     return [*lines, "  outputs:", *(f"    - {_inline(one)}" for one in outputs)]
 
 
-def _entry(key: Key, name: str, indent: str, draft: Draft) -> list[str]:
-    said = draft.comments.get(key.path, "")
+def _entry(key: Key, indent: str, draft: Draft) -> list[str]:
+    said, meaning = draft.comments.get(key.path, ""), key.meaning.replace("``", "")
     if key.path in draft.values:
-        about, line = said or key.meaning, f"{indent}{name}: {_inline(draft.values[key.path])}"
+        about, line = said or meaning.rstrip("."), f"{indent}{key.name}: {_inline(draft.values[key.path])}"
         beside = f"{line}  # {about}"
         return [beside] if len(beside) <= _WIDTH else [*_commented(about, indent), line]
     cost = f"Without it: {key.cost[0].lower()}{key.cost[1:]}" if key.cost else ""
-    notes = [f"{key.meaning[0].upper()}{key.meaning[1:]}.", cost, said]
+    notes = [meaning, cost, said]
     lines = [line for note in notes if note for line in _commented(note, indent)]
-    return [*lines, f"{indent}# {name}: {draft.examples.get(key.path, key.example)}"]
+    return [*lines, f"{indent}# {key.name}: {draft.examples.get(key.path, key.example)}"]
 
 
 def _commented(sentence: str, indent: str = "") -> list[str]:

@@ -30,6 +30,7 @@ def command() -> None:
     Example:
       advisor aircraft new --from flight.tlog -o my-aircraft.yaml
       advisor aircraft check my-aircraft.yaml --log flight.tlog
+      advisor aircraft schema > aircraft.schema.json
     """
 
 
@@ -118,6 +119,19 @@ def check(file: Path, log: Path | None, target_system: int | None, as_json: bool
     _list("Missing, with the cost:", [lack for lack in lacks if not lack.wrong])
     if not lacks:
         click.echo("Nothing is missing.")
+
+
+@command.command
+def schema() -> None:
+    """Print the JSON schema of the aircraft file, by which an editor completes and explains its keys.
+
+    \b
+    Example:
+      advisor aircraft schema > aircraft.schema.json
+    """
+    from advisor.aircraft_file.read import aircraft_schema
+
+    click.echo(json.dumps(aircraft_schema(), indent=1, ensure_ascii=False))
 
 
 def _list(title: str, lacks: "list[Lack]") -> None:

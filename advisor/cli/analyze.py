@@ -1,24 +1,16 @@
 """``advisor analyze``: verdicts on the manoeuvres of a log, as text or JSON."""
 
 import json
-from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import click
 
-from advisor.aircraft.aircraft import Rule
 from advisor.campaign.hand_decisions import NOTHING
 from advisor.campaign.state import CampaignState
+from advisor.cli.log_options import LogsAsked, log_options
 from advisor.cli.options import (
     UNUSABLE,
-    aircraft_option,
     json_option,
-    maneuver_option,
-    no_marks_option,
-    read_aircraft,
-    refuse_marks_on_several,
-    rule_option,
-    target_system_option,
 )
 from advisor.words.printable import printable
 from advisor.words.problems import Problem
@@ -26,16 +18,10 @@ from advisor.words.problems import Problem
 if TYPE_CHECKING:
     from advisor.analysis.log_series import LogSeries
     from advisor.campaign.campaign import Campaign
-    from advisor.flight.maneuvers.marks import Mark
 
 
 @click.command
-@click.argument("logs", nargs=-1, required=True, type=click.Path(path_type=Path))
-@aircraft_option
-@rule_option
-@target_system_option
-@maneuver_option
-@no_marks_option
+@log_options("rule", "marks", "no_marks")
 @click.option(
     "--method",
     type=click.Choice(["gauss-newton", "nelder-mead"]),
@@ -48,12 +34,7 @@ if TYPE_CHECKING:
 )
 @json_option
 def command(
-    logs: tuple[Path, ...],
-    aircraft_file: Path | None,
-    rule: Rule | None,
-    target_system: int | None,
-    marks: "tuple[Mark, ...]",
-    no_marks: bool,
+    asked: LogsAsked,
     method: Literal["gauss-newton", "nelder-mead"],
     every_movement: bool,
     as_json: bool,
@@ -70,19 +51,18 @@ def command(
       advisor analyze flight.tlog --maneuver +12:+24 --maneuver 312.5:320
       advisor analyze flight.tlog --json | python -m json.tool
     """
-    aircraft = read_aircraft(aircraft_file, rule)
-    refuse_marks_on_several(marks, logs)
+    aircraft = asked.read_aircraft()
     from advisor.analysis.log_series import LogSeries
 
-    series = LogSeries(logs)
-    by_hand = NOTHING if no_marks else series.read_by_hand()
+    series = LogSeries(asked.logs)
+    by_hand = NOTHING if asked.no_marks else series.read_by_hand()
     from advisor.campaign.campaign import Campaign
 
     campaign = Campaign(
-        aircraft, target_system, method=method, by_hand=by_hand, marks=marks, names=series.names
+        aircraft, asked.target_system, method=method, by_hand=by_hand, marks=asked.marks, names=series.names
     )
     state, left_out = _analyze(series, campaign)
-    usable = len(left_out) < len(logs)
+    usable = len(left_out) < len(asked.logs)
     said = [series.order_said] if series.order_said else []
     for flight, problems in sorted(left_out.items()):
         said += [problem.about(series.names[flight]) for problem in problems]

@@ -4,18 +4,10 @@ from typing import Any
 
 import click
 
+from advisor.aircraft.key import Key
 from advisor.aircraft_file.keys import KEYS
 from advisor.aircraft_file.read import parse_aircraft
 from advisor.words.problems import ConfigurationError
-
-_DEFAULTS = {
-    "name": "my aircraft",
-    "elevator.output": "auto",
-    "alpha.source": "auto",
-    "limits.bank_deg": "30",
-}
-"""Path of a key to its default answer. Without a default, Enter leaves the key out."""
-_TEXTS = frozenset({"name", "alpha.source"})
 
 
 def ask() -> dict[str, Any]:
@@ -38,7 +30,7 @@ def ask() -> dict[str, Any]:
         if key.path == "elevator.calibration":
             _ask_calibrations(key.question, values)
         elif key.question:
-            _put(key.path, key.question, values)
+            _put(key, values)
     return values
 
 
@@ -58,14 +50,14 @@ def _has_vane(values: dict[str, Any]) -> bool:
     return str(values.get("alpha.source", "")).startswith(("named_value:", "aoa_ssa"))
 
 
-def _put(path: str, question: str, values: dict[str, Any]) -> None:
+def _put(key: Key, values: dict[str, Any]) -> None:
     """Ask until an answer is valid."""
     while True:
-        text = _answer(question, _DEFAULTS.get(path, "-"))
+        text = _answer(key.question, key.answer)
         if text == "-":
             return
         try:
-            found = _value(path, text)
+            found = _value(key, text)
             parse_aircraft(nested(values | found), "This answer")
         except (ValueError, ConfigurationError) as error:
             click.echo(f"  {error}", err=True)
@@ -74,18 +66,18 @@ def _put(path: str, question: str, values: dict[str, Any]) -> None:
             return
 
 
-def _value(path: str, text: str) -> dict[str, Any]:
-    if path in _TEXTS:
-        return {path: text}
-    if path == "elevator.output":
+def _value(key: Key, text: str) -> dict[str, Any]:
+    if key.hint is str:
+        return {key.path: text}
+    if key.path == "elevator.output":
         if text == "auto":
-            return {path: text}
+            return {key.path: text}
         numbers = [_whole(word) for word in text.replace(",", " ").split()]
         if len(numbers) == 1:
-            return {path: numbers[0]}
+            return {key.path: numbers[0]}
         return {"elevator.outputs": [{"output": number} for number in numbers]}
     try:
-        return {path: float(text)}
+        return {key.path: float(text)}
     except ValueError:
         raise ValueError(f"{text} is no number: give one, or - to leave this out.") from None
 

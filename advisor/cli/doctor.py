@@ -9,12 +9,10 @@ import click
 from click.shell_completion import CompletionItem
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.cli.log_options import LogsAsked, log_options
 from advisor.cli.options import (
     UNUSABLE,
-    aircraft_option,
     json_option,
-    read_aircraft,
-    target_system_option,
 )
 from advisor.words.printable import printable
 from advisor.words.problems import Problem, UnusableInputError
@@ -39,15 +37,13 @@ _LOG_ENDINGS = (".tlog", ".bin", ".ulg")
     is_flag=True,
     help="First ask the vehicle for streams of 50 Hz and for its servo parameters.",
 )
-@aircraft_option
-@target_system_option
+@log_options(logs=False)
 @json_option
 def command(
+    asked: LogsAsked,
     target: str,
     seconds: float,
     request_rates: bool,
-    aircraft_file: Path | None,
-    target_system: int | None,
     as_json: bool,
 ) -> int:
     """Check whether the telemetry is good enough to identify the aircraft, and say what to change.
@@ -59,23 +55,23 @@ def command(
       advisor doctor udpin:0.0.0.0:14550 --aircraft my-aircraft.yaml
       advisor doctor flight.tlog --json
     """
-    aircraft = read_aircraft(aircraft_file)
+    aircraft = asked.read_aircraft()
     findings, problem = None, None
     try:
         if _is_log(target):
-            findings = examine_log(Path(target), aircraft, target_system)
+            findings = examine_log(Path(target), aircraft, asked.target_system)
         else:
-            findings = _examine_link(target, aircraft, target_system, seconds, request_rates)
+            findings = _examine_link(target, aircraft, asked.target_system, seconds, request_rates)
     except UnusableInputError as error:
         problem = error.problem
     commands: tuple[str, ...] = ()
     if findings is not None:
         from advisor.doctor.next_steps import ExaminedInput, next_commands
 
-        file = str(aircraft_file) if aircraft_file else None
+        file = str(asked.aircraft_file) if asked.aircraft_file else None
         has_model = bool(aircraft.model) or aircraft.simulator is not None
         commands = next_commands(
-            findings, ExaminedInput(target, _is_log(target), file, target_system, has_model)
+            findings, ExaminedInput(target, _is_log(target), file, asked.target_system, has_model)
         )
     if as_json:
         from advisor.doctor.document import doctor_document

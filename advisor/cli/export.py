@@ -2,33 +2,22 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
-from advisor.aircraft.aircraft import Rule
+from advisor.cli.log_options import LogsAsked, log_options
 from advisor.cli.options import (
-    aircraft_option,
-    maneuver_option,
-    no_marks_option,
-    read_aircraft,
-    refuse_marks_on_several,
     refuse_unwritable,
     refuse_unwritable_folder,
-    rule_option,
-    target_system_option,
 )
 from advisor.exports.flights.formats import WRITERS, parse_formats, write_formats
 from advisor.exports.flights.staging import refuse_inputs, staged
 from advisor.words.printable import printable
 from advisor.words.problems import ConfigurationError
 
-if TYPE_CHECKING:
-    from advisor.flight.maneuvers.marks import Mark
-
 
 @click.command
-@click.argument("logs", nargs=-1, required=True, type=click.Path(path_type=Path))
+@log_options("rule", "marks", "no_marks")
 @click.option(
     "-o",
     "--out",
@@ -50,21 +39,11 @@ if TYPE_CHECKING:
     metavar="N",
     help="Write only the packets of manoeuvre N, as a tlog.",
 )
-@aircraft_option
-@rule_option
-@target_system_option
-@maneuver_option
-@no_marks_option
 def command(
-    logs: tuple[Path, ...],
+    asked: LogsAsked,
     out: Path,
     formats: str | None,
     cut: int | None,
-    aircraft_file: Path | None,
-    rule: Rule | None,
-    target_system: int | None,
-    marks: "tuple[Mark, ...]",
-    no_marks: bool,
 ) -> int:
     """Write channels, manoeuvres, estimates and residuals for other tools, with names and units.
 
@@ -75,24 +54,23 @@ def command(
       advisor export flight.tlog -o flight --format csv,parquet,mat,mcap
       advisor export flight.tlog -o maneuver-3.tlog --cut 3
     """
-    inputs = [*logs, *([aircraft_file] if aircraft_file else [])]
+    inputs = asked.inputs
     if cut is not None:
         _refuse_wrong_cut(formats, out, inputs)
     else:
         refuse_unwritable_folder("-o", out)
     chosen = () if cut is not None else parse_formats(formats or "csv")
-    aircraft = read_aircraft(aircraft_file, rule)
-    refuse_marks_on_several(marks, logs)
+    aircraft = asked.read_aircraft()
     from advisor.analysis.whole_flights import read_whole
     from advisor.exports.flights.reading import dataset
 
-    flights = read_whole(logs, aircraft, target_system, marks, no_marks=no_marks)
+    flights = read_whole(asked.logs, aircraft, asked.target_system, asked.marks, no_marks=asked.no_marks)
     for note in flights.notes:
         click.echo(printable(note), err=True)
     if cut is not None:
         from advisor.exports.flights.maneuver_log import log_of_maneuver
 
-        data = log_of_maneuver(flights, cut, aircraft, target_system)
+        data = log_of_maneuver(flights, cut, aircraft, asked.target_system)
         with staged(out.parent, inputs) as stage:
             (stage / out.name).write_bytes(data)
         click.echo(f"{printable(str(out))}: manoeuvre {cut}, {len(data)} bytes.")

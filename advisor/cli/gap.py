@@ -5,31 +5,22 @@ import shlex
 import sys
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 from click.core import ParameterSource
 
 from advisor.cli.improvement_export import export_option, listed, orders_of, write_exports
+from advisor.cli.log_options import LogsAsked, log_options
 from advisor.cli.options import (
     UNUSABLE,
     USAGE,
-    aircraft_option,
     decided_on,
     json_option,
-    maneuver_option,
-    no_marks_option,
-    read_aircraft,
-    refuse_marks_on_several,
     refuse_unwritable,
-    target_system_option,
     writing,
 )
 from advisor.words.printable import printable
 from advisor.words.problems import ConfigurationError, UnusableInputError
-
-if TYPE_CHECKING:
-    from advisor.flight.maneuvers.marks import Mark
 
 _OF_A_FLIGHT = {
     "holdout": "--holdout", "out": "--out", "target_system": "--target-system", "marks": "--maneuver",
@@ -41,11 +32,7 @@ _OF_A_PLAN = {
 
 
 @click.command
-@click.argument("logs", nargs=-1, type=click.Path(path_type=Path))
-@aircraft_option
-@target_system_option
-@maneuver_option
-@no_marks_option
+@log_options("marks", "no_marks", required=False)
 @click.option(
     "--holdout",
     type=click.IntRange(1),
@@ -84,11 +71,7 @@ _OF_A_PLAN = {
 @click.option("--without", default="", help="With --foresee: missing channels, e.g. a_z,theta.")
 @json_option
 def command(
-    logs: tuple[Path, ...],
-    aircraft_file: Path | None,
-    target_system: int | None,
-    marks: "tuple[Mark, ...]",
-    no_marks: bool,
+    asked: LogsAsked,
     holdout: int | None,
     specification: str | None,
     out: Path | None,
@@ -113,28 +96,27 @@ def command(
       advisor gap --foresee --aircraft my-aircraft.yaml --rate 20 --without a_z
     """
     _refuse_foreign(foresee)
-    aircraft = read_aircraft(aircraft_file)
+    aircraft = asked.read_aircraft()
     if foresee:
-        if logs:
+        if asked.logs:
             raise ConfigurationError(
-                f"advisor gap --foresee plans a flight and reads no log: leave out {logs[0]}, "
+                f"advisor gap --foresee plans a flight and reads no log: leave out {asked.logs[0]}, "
                 "or leave out --foresee to diagnose it."
             )
         from advisor.report.gap_plan import print_foresight
 
         return print_foresight(aircraft, plan, rate_hz, amplitude_deg, without, as_json)
-    if not logs:
+    if not asked.logs:
         raise ConfigurationError("advisor gap needs at least one log, or --foresee with an aircraft file.")
-    refuse_marks_on_several(marks, logs)
-    decided = [decided_on(log, no_marks) for log in logs]
-    by_hand = [replace(before, marks=(*marks, *before.marks)) for before in decided]
+    decided = [decided_on(log, asked.no_marks) for log in asked.logs]
+    by_hand = [replace(before, marks=(*asked.marks, *before.marks)) for before in decided]
     if out is not None:
         refuse_unwritable("--out", out)
-        if aircraft_file is not None and out.resolve() == aircraft_file.resolve():
+        if asked.aircraft_file is not None and out.resolve() == asked.aircraft_file.resolve():
             raise ConfigurationError(f"--out: {out} is the aircraft file itself; name another file.")
     if specification is not None:
         aircraft = replace(aircraft, simulator=specification)
-    orders = orders_of(exports, aircraft, [*logs, aircraft_file, out])
+    orders = orders_of(exports, aircraft, [*asked.inputs, out])
     from advisor.analysis.gap import compare_logs, named_simulator
     from advisor.gap.document import gap_document
     from advisor.report.improved import improved_name, write_improved
@@ -143,8 +125,10 @@ def command(
     progress = _progress if watched else lambda *_: None
     simulator = None
     try:
-        simulator = named_simulator(aircraft, target_system)
-        compared = compare_logs(logs, aircraft, simulator, holdout, target_system, progress, by_hand)
+        simulator = named_simulator(aircraft, asked.target_system)
+        compared = compare_logs(
+            asked.logs, aircraft, simulator, holdout, asked.target_system, progress, by_hand
+        )
         found = compared.diagnosis
     except UnusableInputError as error:
         if as_json:
@@ -177,8 +161,8 @@ def command(
         written = printable(str(out)) if out and improvable else None
         PlainConsole().print(GapScreen(found, written, why))
     if improvable and out is None and not orders:
-        asked = [*sys.argv[1:], "--out", improved_name(found, aircraft_file)]
-        click.echo(f"To write the improved simulator: {printable(shlex.join(['advisor', *asked]))}", err=True)
+        again = ["advisor", *sys.argv[1:], "--out", improved_name(found, asked.aircraft_file)]
+        click.echo(f"To write the improved simulator: {printable(shlex.join(again))}", err=True)
     return USAGE if any(one.problem for one in outcomes) else 0
 
 

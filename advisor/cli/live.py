@@ -7,13 +7,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from advisor.aircraft.aircraft import Rule
+from advisor.cli.log_options import LogsAsked, log_options
 from advisor.cli.options import (
     NEWEST,
-    aircraft_option,
-    no_marks_option,
-    rule_option,
-    target_system_option,
 )
 from advisor.cli.screen import Show, advise
 from advisor.process.interrupt import STOPPED, in_order
@@ -27,7 +23,7 @@ if TYPE_CHECKING:
 
 
 @click.command
-@click.argument("logs", nargs=-1, type=click.Path(path_type=Path))
+@log_options("rule", "no_marks", required=False)
 @click.option(
     "--master",
     metavar="CONN",
@@ -71,12 +67,8 @@ if TYPE_CHECKING:
     show_default=True,
     help="System id of the advisor.",
 )
-@aircraft_option
-@rule_option
-@target_system_option
-@no_marks_option
 def command(
-    logs: tuple[Path, ...],
+    asked: LogsAsked,
     master: str | None,
     record_to: str | None,
     no_record: bool,
@@ -86,10 +78,6 @@ def command(
     announce_to: str | None,
     signing_key: Path | None,
     source_system: int,
-    aircraft_file: Path | None,
-    rule: Rule | None,
-    target_system: int | None,
-    no_marks: bool,
     show: Show | None = None,
 ) -> None:
     """Advise during a flight. Nothing is sent to the vehicle unless an option here asks for it.
@@ -107,7 +95,7 @@ def command(
     if no_record and (record_to is not None or resume is not None):
         other = "--record" if record_to is not None else "--resume"
         raise ConfigurationError(f"{other} and --no-record contradict each other; give one of them.")
-    if logs and resume is None:
+    if asked.logs and resume is None:
         raise ConfigurationError("LOG needs --resume, which continues the flight test of these logs.")
     from advisor.campaign.hand_decisions import NOTHING
     from advisor.cli.flight_start import Speaking, start_of, started
@@ -116,15 +104,15 @@ def command(
     from advisor.process.yaml_file import read_yaml
     from advisor.session.campaign_file import CampaignFile
 
-    content = read_yaml(aircraft_file) if aircraft_file else None
-    asked = CampaignFile(master or "", rule, target_system, content)
-    start = start_of(asked, resume, logs, record_to, recorded=not no_record)
+    content = read_yaml(asked.aircraft_file) if asked.aircraft_file else None
+    wanted = CampaignFile(master or "", asked.rule, asked.target_system, content)
+    start = start_of(wanted, resume, asked.logs, record_to, recorded=not no_record)
     for connection in filter(None, (start.campaign.master, announce_to)):
         parse_connection(connection)
-    aircraft = start.campaign.parsed_aircraft(str(aircraft_file or start.recording))
+    aircraft = start.campaign.parsed_aircraft(str(asked.aircraft_file or start.recording))
     # A recording that exists and is not taken up is another flight's, and so are the decisions on it.
     mine = start.goes_on or not (start.recording and start.recording.exists())
-    by_hand = NOTHING if no_marks else _decided((*start.earlier, start.recording if mine else None))
+    by_hand = NOTHING if asked.no_marks else _decided((*start.earlier, start.recording if mine else None))
     speaking = Speaking(
         source_system, read_key(signing_key) if signing_key else None, request_rates, announce, announce_to
     )

@@ -5,7 +5,7 @@ import hashlib
 import platform
 import shlex
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from importlib.metadata import version
 from pathlib import Path
 
@@ -14,6 +14,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.gap import compare_logs, named_simulator
 from advisor.analysis.whole_flights import WholeFlights, read_whole
 from advisor.cli.doctor import examine_log
+from advisor.cli.log_options import LogsAsked
 from advisor.doctor.document import doctor_document
 from advisor.gap.document import gap_document
 from advisor.report.document import analysis_document
@@ -25,14 +26,7 @@ _COUNTED = ("numpy", "scipy", "matplotlib", "jinja2", "pymavlink")
 """Libraries that numbers and pictures depend on; the page lists their versions."""
 
 
-def gather(
-    logs: Sequence[Path],
-    aircraft: Aircraft,
-    aircraft_file: Path | None,
-    target_system: int | None,
-    no_marks: bool,
-    with_gap: bool,
-) -> tuple[Content, list[str]]:
+def gather(asked: LogsAsked, aircraft: Aircraft, with_gap: bool) -> tuple[Content, list[str]]:
     """Return the content of the page, and sentences on logs that do not count.
 
     Raises
@@ -42,7 +36,7 @@ def gather(
     ConfigurationError
         As :func:`advisor.analysis.marks_file.read_by_hand`.
     """
-    flights = read_whole(logs, aircraft, target_system, no_marks=no_marks)
+    flights = read_whole(asked.logs, aircraft, asked.target_system, no_marks=asked.no_marks)
     said = flights.said
     content = Content(
         state=flights.state,
@@ -52,10 +46,10 @@ def gather(
         names=tuple(map(printable, flights.names)),
         aircraft=aircraft,
         power_ons=flights.power_ons,
-        doctor=tuple(_examined(log, aircraft, target_system) for log in flights.logs),
-        gap=_gap(flights, aircraft, target_system) if with_gap else None,
+        doctor=tuple(_examined(log, aircraft, asked.target_system) for log in flights.logs),
+        gap=_gap(flights, aircraft, asked.target_system) if with_gap else None,
         origin=Origin(
-            _hashes(flights, aircraft_file),
+            _hashes(flights, asked.aircraft_file),
             dict(_versions()),
             printable(shlex.join(["advisor", *sys.argv[1:]])),
         ),

@@ -6,14 +6,9 @@ from pathlib import Path
 
 import click
 
-from advisor.aircraft.aircraft import Rule
+from advisor.cli.log_options import LogsAsked, log_options
 from advisor.cli.options import (
-    aircraft_option,
-    no_marks_option,
-    read_aircraft,
     refuse_unwritable,
-    rule_option,
-    target_system_option,
     writing,
 )
 from advisor.words.problems import ConfigurationError
@@ -22,7 +17,7 @@ _NEEDED = ("jinja2", "matplotlib")
 
 
 @click.command
-@click.argument("logs", nargs=-1, required=True, type=click.Path(path_type=Path))
+@log_options("rule", "no_marks")
 @click.option("-o", "--out", required=True, type=click.Path(path_type=Path), help="File for the page.")
 @click.option(
     "--format",
@@ -31,19 +26,11 @@ _NEEDED = ("jinja2", "matplotlib")
     help="Format of the page. Default: md where the file ends in .md, else html.",
 )
 @click.option("--gap", "with_gap", is_flag=True, help="Diagnose the sim-to-real gap as well.")
-@aircraft_option
-@rule_option
-@target_system_option
-@no_marks_option
 def command(
-    logs: tuple[Path, ...],
+    asked: LogsAsked,
     out: Path,
     form: str | None,
     with_gap: bool,
-    aircraft_file: Path | None,
-    rule: Rule | None,
-    target_system: int | None,
-    no_marks: bool,
 ) -> int:
     """Write one self-contained page about a flight: verdicts, fits, estimates, flying qualities, telemetry.
 
@@ -55,13 +42,13 @@ def command(
       advisor report battery-1.tlog battery-2.bin --gap -o report.html
       advisor report flight.tlog --format md -o report.md
     """
-    _refuse(logs, aircraft_file, out)
-    aircraft = read_aircraft(aircraft_file, rule)
+    _refuse(asked.inputs, out)
+    aircraft = asked.read_aircraft()
     from advisor.cli.page_content import gather
     from advisor.process.atomic_file import write_atomically
     from advisor.report.page.render import page
 
-    content, said = gather(logs, aircraft, aircraft_file, target_system, no_marks, with_gap)
+    content, said = gather(asked, aircraft, with_gap)
     markdown = form == "md" or (form is None and out.suffix.lower() == ".md")
     with writing("-o", out):
         write_atomically(out, page(content, "md" if markdown else "html"))
@@ -70,7 +57,7 @@ def command(
     return 0
 
 
-def _refuse(logs: Sequence[Path], aircraft_file: Path | None, out: Path) -> None:
+def _refuse(inputs: Sequence[Path], out: Path) -> None:
     """Refuse, before any work, orders that would fail after it.
 
     Raises
@@ -84,6 +71,6 @@ def _refuse(logs: Sequence[Path], aircraft_file: Path | None, out: Path) -> None
             f"advisor report needs {' and '.join(missing)}: pip install 'inflight-advisor[report]'."
         )
     refuse_unwritable("-o", out)
-    for given in (*logs, *([aircraft_file] if aircraft_file else [])):
+    for given in inputs:
         if out.exists() and given.exists() and out.samefile(given):
             raise ConfigurationError(f"-o: {out} is an input of the report; name another file.")

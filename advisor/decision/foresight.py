@@ -9,7 +9,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import LOCAL, N_LOCAL, N_PARAMETERS, SHARED, respond
 from advisor.model.short_period import ShortPeriod
 from advisor.oem.covariance import cramer_rao, influence
-from advisor.oem.problem import OutputErrorProblem, Record, Signal, assemble
+from advisor.oem.problem import Assembly, OutputErrorProblem, Record, Signal, assemble
 from advisor.oem.surface import Servo
 
 UNMEASURED = 1e3
@@ -39,6 +39,8 @@ class Expectation:
     """(8, 8) Cramér-Rao bound, in the order of ``PARAMETERS``."""
     alpha_excursion: float
     """Largest deviation of α from its initial value, rad."""
+    influence: FloatArray
+    """(n, 8) change of the estimate with each sample."""
 
     @property
     def std(self) -> FloatArray:
@@ -61,34 +63,75 @@ def expect(theta: FloatArray, elevator: Signal, instruments: Instruments) -> Exp
     Expectation or None
         None when the input cannot separate the parameters, or the model diverges.
     """
-    end = elevator.t[-1]
-    outputs = {
-        name: Signal(t := np.arange(0.0, end, step), np.zeros_like(t))
-        for name, step in zip(("alpha", "q"), instruments.step_s, strict=True)
-    }
+    steps = dict(zip(("alpha", "q"), instruments.step_s, strict=True))
     if instruments.specific_force is not None:
-        t = np.arange(0.0, end, instruments.specific_force[0])
-        outputs["a_z"] = Signal(t, np.zeros_like(t))
-    assembly = assemble(
-        OutputErrorProblem((Record(elevator, outputs),), servo=instruments.servo, airspeed_may_be_off=False)
+        steps["a_z"] = instruments.specific_force[0]
+    outputs = {name: unmeasured(float(elevator.t[-1]), step) for name, step in steps.items()}
+    problem = OutputErrorProblem(
+        (Record(elevator, outputs),), servo=instruments.servo, airspeed_may_be_off=False
     )
-    shared = np.array([theta[PARAMETERS.index(s)] if s in PARAMETERS else 0.0 for s in SHARED])
+    force = instruments.specific_force[1] if instruments.specific_force else 0.0
+    return foresee(theta, assemble(problem), np.array([*instruments.noise, force, 0.0]))
+
+
+def unmeasured(end_s: float, step_s: float) -> Signal:
+    """Return the stamps of an output that is not flown yet, with zeros for its values."""
+    t = np.arange(0.0, end_s, step_s)
+    return Signal(t, np.zeros_like(t))
+
+
+def foresee(
+    theta: FloatArray, assembly: Assembly, noise: FloatArray, prior: FloatArray | None = None
+) -> Expectation | None:
+    """Return the expected errors of one manoeuvre at the stamps of an assembly.
+
+    Parameters
+    ----------
+    theta
+        (8,) model of the aircraft.
+    noise
+        (4,) standard deviation of each output's noise.
+    prior
+        Precision of the parameters before the flight, as in :func:`advisor.oem.covariance.influence`.
+
+    Returns
+    -------
+    Expectation or None
+        None when the input cannot separate the parameters, or the model diverges.
+    """
+    sensitivities = np.empty((len(assembly.z), N_PARAMETERS))
+    y = response_from_trim(theta, assembly, sensitivities)
+    effect = None if y is None else influence(assembly, sensitivities, noise, prior=prior)
+    if y is None or effect is None:
+        return None
+    alpha = y[assembly.rows[0]["alpha"]] if "alpha" in assembly.rows[0] else np.zeros(1)
+    excursion = float(np.max(np.abs(alpha - alpha[0])))
+    return Expectation(cramer_rao(assembly, effect.rows, noise), excursion, effect.rows)
+
+
+def response_from_trim(
+    theta: FloatArray, assembly: Assembly, sensitivities: FloatArray | None = None
+) -> FloatArray | None:
+    """Return the outputs (n,) of one manoeuvre that begins in equilibrium; None where the model diverges.
+
+    Parameters
+    ----------
+    sensitivities
+        (n, N_PARAMETERS), filled in. None: not wanted.
+    """
     model = ShortPeriod(theta)
     try:
-        begin = -np.linalg.solve(model.a, model.b * elevator.y[0] + model.c)
+        begin = -np.linalg.solve(model.a, model.b * assembly.grid.elevator[0] + model.c)
     except np.linalg.LinAlgError:
         return None
     local = np.zeros((1, N_LOCAL))
     for name, value in zip(("Z_0", "M_0", "alpha_initial", "q_initial"), (*model.c, *begin), strict=True):
         local[0, LOCAL.index(name)] = value
-    y, g = np.empty(len(assembly.z)), np.empty((len(assembly.z), N_PARAMETERS))
-    if not respond(assembly.grid, shared, local, y, g):
-        return None
-    force = instruments.specific_force[1] if instruments.specific_force else 0.0
-    noise = np.array([*instruments.noise, force, 0.0])
-    effect = influence(assembly, g, noise)
-    if effect is None:
-        return None
-    covariance = cramer_rao(assembly, effect.rows, noise)
-    alpha = y[assembly.rows[0]["alpha"]]
-    return Expectation(covariance, float(np.max(np.abs(alpha - begin[0]))))
+    y = np.empty(len(assembly.z))
+    wanted = np.empty((0, N_PARAMETERS)) if sensitivities is None else sensitivities
+    return y if respond(assembly.grid, shared_of(theta), local, y, wanted) else None
+
+
+def shared_of(theta: FloatArray) -> FloatArray:
+    """Return the parameters that manoeuvres share, in the order of ``SHARED``, with zero for instruments."""
+    return np.array([theta[PARAMETERS.index(s)] if s in PARAMETERS else 0.0 for s in SHARED])

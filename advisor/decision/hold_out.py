@@ -12,6 +12,7 @@ from advisor.decision.prediction import PREDICTED, Response, measured, response_
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.record import Channel
 from advisor.oem.estimate import Estimate
+from advisor.oem.prediction import half_widths
 from advisor.words.quantiles import NORMAL_95
 
 FEWEST = 2
@@ -76,13 +77,13 @@ def _output(
     assert isinstance(last.estimate, Estimate)
     k, fit = PREDICTED.index(name), last.estimate.fits[0][name]
     scale = (_airspeed_m_s(last) or 1.0) if name == "a_z" else 1.0
-    variance = np.einsum("ni,ij,nj->n", predicted.slopes[k], known.covariance, predicted.slopes[k])
     after_s = fit.t - begun_s
     seen = (after_s >= 0.0) & (after_s <= min(predicted.after_s[-1], alone.after_s[-1]))
     after_s = after_s[seen]
     other = np.interp(after_s, predicted.after_s, predicted.values[k])
     other -= np.interp(after_s, alone.after_s, alone.values[k])
-    half = NORMAL_95 * scale * np.interp(after_s, predicted.after_s, np.sqrt(np.maximum(variance, 0.0)))
+    band = half_widths(predicted.slopes[k], known.covariance)
+    half = scale * np.interp(after_s, predicted.after_s, band)
     return PredictedOutput(
         t=fit.t[seen],
         measured=fit.measured[seen],

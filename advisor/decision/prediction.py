@@ -20,9 +20,9 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import N_LOCAL, N_PARAMETERS, SHARED, respond
 from advisor.model.short_period import SPEED_EXPONENTS
 from advisor.oem.estimate import Estimate
+from advisor.oem.prediction import half_widths
 from advisor.oem.problem import OutputErrorProblem, Record, Signal, assemble
 from advisor.oem.surface import Servo
-from advisor.words.quantiles import NORMAL_95
 
 PREDICTED = ("alpha", "q", "a_z")
 """Outputs whose prediction is judged, where measured. The pitch angle follows from q."""
@@ -87,8 +87,7 @@ class Prediction:
 def _widest(slope: FloatArray, covariance: FloatArray, known: np.ndarray) -> float:
     if not np.all(np.isfinite(slope)) or np.any(slope[:, ~known]):
         return float("inf")
-    variance = np.einsum("ni,ni->n", slope @ covariance, slope)
-    return NORMAL_95 * float(np.sqrt(max(np.max(variance, initial=0.0), 0.0)))
+    return float(np.max(half_widths(slope, covariance), initial=0.0))
 
 
 def predict(

@@ -10,10 +10,10 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from advisor.aircraft.aircraft import PARAMETERS
+from advisor.decision.foresight import foresee, response_from_trim, shared_of, unmeasured
 from advisor.flight.signals.messages import FloatArray
-from advisor.model.response import LOCAL, N_LOCAL, N_SHARED, OUTPUTS, SHARED, respond
+from advisor.model.response import OUTPUTS
 from advisor.model.short_period import ShortPeriod
-from advisor.oem.covariance import cramer_rao, influence
 from advisor.oem.prepare import OUTPUTS as COUNTED
 from advisor.oem.prior import precision_without_alpha
 from advisor.oem.problem import Assembly, OutputErrorProblem, Record, Signal, assemble
@@ -87,13 +87,19 @@ def expect(assumed: Assumed, rates_hz: Mapping[str, float], airspeed_m_s: float 
     end_s = float(edges[-1]) + max(2.0, 10.0 * unit_s)
     outputs = [name for name in COUNTED if name in rates_hz and (name != "a_z" or airspeed_m_s)]
     shape = _assembly(edges, 1.0, end_s, {"alpha": rates_hz["q"], **rates_hz}, ["alpha", "q"], airspeed_m_s)
-    unit_response = _answer(shape, model)
-    peak = float(np.max(np.abs(unit_response[shape.rows[0]["alpha"]])))
-    amplitude = np.radians(RESPONSE_ALPHA_DEG) / peak
+    unit_response = response_from_trim(_about_trim(model), shape)
+    if unit_response is None:
+        return ExpectedErrors(dict.fromkeys(PARAMETERS, np.nan), unit_s, np.nan)
+    amplitude = np.radians(RESPONSE_ALPHA_DEG) / float(np.max(np.abs(unit_response[shape.rows[0]["alpha"]])))
     std = assumed.colour * _errors(assumed, edges, amplitude, end_s, rates_hz, outputs, airspeed_m_s)
     return ExpectedErrors(
         dict(zip(PARAMETERS, std.tolist(), strict=True)), unit_s, float(np.degrees(amplitude))
     )
+
+
+def _about_trim(model: ShortPeriod) -> FloatArray:
+    """Return the parameters (8,) about trim, where both constants are zero."""
+    return np.where(np.isin(PARAMETERS, ("Z_0", "M_0")), 0.0, model.theta)
 
 
 def _errors(
@@ -108,24 +114,21 @@ def _errors(
     def assembly(at: FloatArray) -> Assembly:
         return _assembly(at, amplitude, end_s, rates_hz, outputs, airspeed_m_s)
 
-    model = assumed.model
-    manoeuvre = assembly(edges)
-    sensitivities = np.empty((len(manoeuvre.z), N_SHARED + N_LOCAL))
-    respond(manoeuvre.grid, *_parameters(model), np.empty(len(manoeuvre.z)), sensitivities)
+    theta = _about_trim(assumed.model)
     noise = np.array([assumed.noise.get(name, NOISE[name]) for name in OUTPUTS])
-    prior = None if "alpha" in outputs else precision_without_alpha(_parameters(model)[0])
-    effect = influence(manoeuvre, sensitivities, noise, prior=prior)
-    if effect is None:
+    prior = None if "alpha" in outputs else precision_without_alpha(shared_of(theta))
+    expected = foresee(theta, assembly(edges), noise, prior)
+    if expected is None:
         return np.full(len(PARAMETERS), np.nan)
-    covariance = cramer_rao(manoeuvre, effect.rows, noise)
+    covariance = expected.covariance.copy()
     lateness = edge_error_s(rates_hz["elevator"]) ** 2
     for k in range(len(edges)):
         shift = np.zeros(len(edges))
         shift[k] = _SHIFT_S
-        slope = (_answer(assembly(edges + shift), model) - _answer(assembly(edges - shift), model)) / (
-            2.0 * _SHIFT_S
-        )
-        moved = effect.rows.T @ slope
+        ends = [response_from_trim(theta, assembly(at)) for at in (edges + shift, edges - shift)]
+        if ends[0] is None or ends[1] is None:
+            return np.full(len(PARAMETERS), np.nan)
+        moved = expected.influence.T @ (ends[0] - ends[1]) / (2.0 * _SHIFT_S)
         covariance += np.outer(moved, moved) * lateness
     result: FloatArray = np.sqrt(np.diag(covariance))
     return result
@@ -151,18 +154,6 @@ def edge_error_s(rate_hz: float) -> float:
     return float(np.sqrt(np.mean(np.square(errors))))
 
 
-def _answer(assembly: Assembly, model: ShortPeriod) -> FloatArray:
-    y = np.empty(len(assembly.z))
-    respond(assembly.grid, *_parameters(model), y, np.empty((0, N_SHARED + N_LOCAL)))
-    return y
-
-
-def _parameters(model: ShortPeriod) -> tuple[FloatArray, FloatArray]:
-    values = dict(zip(PARAMETERS, model.theta.tolist(), strict=True))
-    # The response starts from trim, so that constants and initial states are zero.
-    return np.array([values.get(name, 0.0) for name in SHARED]), np.zeros((1, len(LOCAL)))
-
-
 def _assembly(
     edges: FloatArray,
     amplitude: float,
@@ -179,10 +170,7 @@ def _assembly(
         np.concatenate([[0.0], corners, [end_s]]),
         np.concatenate([[0.0], np.repeat(levels, 2)[1:-1], [0.0]]),
     )
-    measured = {}
-    for name in outputs:
-        t = np.arange(0.0, end_s, 1.0 / rates_hz[name])
-        measured[name] = Signal(t, np.zeros(len(t)))
+    measured = {name: unmeasured(end_s, 1.0 / rates_hz[name]) for name in outputs}
     speed = None if airspeed_m_s is None else Signal(np.array([0.0, end_s]), np.full(2, airspeed_m_s))
     record = Record(elevator=command, outputs=measured, airspeed=speed)
     return assemble(OutputErrorProblem(records=(record,)))

@@ -41,7 +41,7 @@ def prediction_band(solution: Solution) -> Mapping[str, float]:
     for named in assembly.rows:
         rows = np.concatenate([np.arange(s.start, s.stop) for s in named.values()])
         left = _without(solution.sensitivities[rows][:, own], columns[rows], weight[rows])
-        half = NORMAL_95 * np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", left, covariance, left), 0.0))
+        half = half_widths(left, covariance)
         first = 0
         for name, s in named.items():
             band = float(np.max(half[first : first + s.stop - s.start]))
@@ -49,6 +49,20 @@ def prediction_band(solution: Solution) -> Mapping[str, float]:
             peak = float(np.max(np.abs(solution.fitted[s] - solution.fitted[s.start])))
             widest[name] = max(widest.get(name, 0.0), band / peak if peak > 0.0 else np.inf)
     return widest
+
+
+def half_widths(slopes: FloatArray, covariance: FloatArray) -> FloatArray:
+    """Return half of the 95 % band of a response, shape (n,), by the delta method.
+
+    Parameters
+    ----------
+    slopes
+        (n, k) change of each sample with each parameter.
+    covariance
+        (k, k) covariance of the parameters.
+    """
+    variance = np.einsum("ni,ni->n", slopes @ covariance, slopes)
+    return np.asarray(NORMAL_95 * np.sqrt(np.maximum(variance, 0.0)))
 
 
 def _without(own: FloatArray, columns: FloatArray, weight: FloatArray) -> FloatArray:

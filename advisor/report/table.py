@@ -28,7 +28,7 @@ class Table:
             header_style="dim",
         )
         for k, name in enumerate(self.head):
-            shown.add_column(name, justify="right" if k in self.numbers else "left")
+            shown.add_column(name, justify="right" if k in self.numbers else "left", no_wrap=k == 0)
         for row in self.rows:
             shown.add_row(*row)
         return shown

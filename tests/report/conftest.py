@@ -12,6 +12,7 @@ import pytest
 
 from advisor.aircraft_file.read import load_aircraft
 from advisor.cli import group as cli
+from advisor.cli.log_options import LogsAsked
 from advisor.cli.page_content import gather
 from advisor.report.page.content import Content
 from advisor.report.page.render import page
@@ -72,9 +73,9 @@ def reported(tmp_path_factory: pytest.TempPathFactory) -> Reported:
         improved = folder / "improved.yaml"
         gap = json.loads(call("gap", short_log, "--aircraft", path, "--json", "--out", improved))
         doctor = json.loads(call("doctor", log, "--aircraft", path, "--json"))
-        short, _ = gather((short_log,), aircraft, path, None, False, True)
+        short, _ = gather(LogsAsked((short_log,), path), aircraft, True)
         call("report", log, "--aircraft", path, "-o", out)
-        content, _ = gather((log,), aircraft, path, None, False, False)
+        content, _ = gather(LogsAsked((log,), path), aircraft, False)
     with_gap = replace(content, gap=short.gap)
     html = page(with_gap, "html")
     written = out.read_text(encoding="utf-8")

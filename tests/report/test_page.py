@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.cli.log_options import LogsAsked
 from advisor.cli.page_content import gather
 from advisor.report.page.drawing import draw
 from advisor.report.page.render import page
@@ -69,7 +70,7 @@ def test_a_log_that_cannot_be_used_leaves_no_page(advisor: Advisor, tmp_path: Pa
 
 
 def test_a_log_next_to_a_good_one_is_left_out_and_said(reported: Reported) -> None:
-    content, said = gather((reported.short_log, USELESS), Aircraft(), None, None, False, False)
+    content, said = gather(LogsAsked((reported.short_log, USELESS)), Aircraft(), False)
     assert any("arduplane-default-rates.tlog" in one and "too slow to identify" in one for one in said)
     assert said[-1] in page(content, "md")
 

@@ -43,15 +43,12 @@ drifts shows an aircraft that changes.
         """Begin without an estimate."""
         super().on_mount()
         self._view: View | None = None
-        self._shown: tuple[object, ...] = ()
 
     def show(self, view: View) -> None:
         """Draw all courses when an estimate changed."""
-        what = (view.state.maneuvers, view.state.model)
-        if self._shown and all(a is b for a, b in zip(what, self._shown, strict=True)):
-            return
-        self._view, self._shown = view, what
-        self._draw()
+        if self.changed(view.state.maneuvers, view.state.model):
+            self._view = view
+            self._draw()
 
     def on_resize(self, event: Resize) -> None:
         """Number the manoeuvres only under the lowest plots on a small terminal, where the others have no

@@ -2,12 +2,11 @@
 
 import numpy as np
 from textual.app import ComposeResult
-from textual.containers import VerticalScroll
 
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.session.view import View
-from advisor.tui.panes.hanging import HangingLines, Labelled
-from advisor.tui.panes.pane import Pane
+from advisor.tui.panes.hanging import Labelled
+from advisor.tui.panes.pane import TextPane
 from advisor.tui.plot.chart import Chart, Ink, Level, Series
 from advisor.tui.plot.widget import Plot
 from advisor.words.digits import distinct_texts
@@ -17,11 +16,10 @@ RULE_INKS: dict[str, Ink] = {"continuous": "measured", "separate": "residual", "
 _Y, _X = "[% of limit]", "manoeuvre"
 
 
-class Criterion(Pane):
+class Criterion(TextPane):
     """One curve for each rule against the limit, and each rule's decision."""
 
     TITLE = "6 Criterion"
-    can_focus = False
     SHORT = "6 Crit"
     HELP = """\
 # Criterion
@@ -36,23 +34,16 @@ prediction of the newest manoeuvre are within their tolerances; the lines above 
 
     def compose(self) -> ComposeResult:
         """Lay out the rules' lines over the curves."""
-        with VerticalScroll():
-            yield HangingLines("No manoeuvre has ended yet.")
+        yield from super().compose()
         yield Plot(_chart(None))
-
-    def on_mount(self) -> None:
-        """Begin without a curve."""
-        super().on_mount()
-        self._shown: FlightTestVerdict | None = None
 
     def show(self, view: View) -> None:
         """Draw the histories when the verdict changed."""
         verdict = view.state.flight_test
-        if verdict is self._shown:
+        if not self.changed(verdict):
             return
-        self._shown = verdict
         self.query_one(Plot).chart = _chart(verdict)
-        self.query_one(HangingLines).write_rows(_rows(verdict))
+        self.write(_rows(verdict))
 
 
 def _rows(verdict: FlightTestVerdict) -> list[Labelled]:

@@ -1,10 +1,13 @@
 """The base of all panes."""
 
+from collections.abc import Iterable
 from typing import ClassVar
 
-from textual.containers import Vertical
+from textual.app import ComposeResult
+from textual.containers import Vertical, VerticalScroll
 from textual.widgets import DataTable
 
+from advisor.tui.panes.hanging import HangingLines, Labelled
 from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.part import Part
 from advisor.tui.plot.widget import Plot
@@ -25,6 +28,9 @@ class Pane(Part, Vertical):
     """Whether the pane takes the focus. A pane whose content takes the keys (a table, a scrolling text) does
     not."""
 
+    _parts: tuple[object, ...] = ()
+    """Parts of the last moment that was painted."""
+
     def on_mount(self) -> None:
         """Write the title into the frame."""
         self.border_title = self.TITLE
@@ -33,6 +39,12 @@ class Pane(Part, Vertical):
     def wants_showing(self) -> bool:
         """Whether the pane is in sight. Only panes in sight are updated."""
         return bool(self.display)
+
+    def changed(self, *parts: object) -> bool:
+        """Return whether any part is another object than at the last call, so that painting is needed."""
+        same = len(parts) == len(self._parts) and all(a is b for a, b in zip(parts, self._parts, strict=True))
+        self._parts = parts
+        return not same
 
     def subtitle(self, text: str) -> None:
         """Write into the lower edge of the frame. An equal text costs nothing."""
@@ -56,3 +68,20 @@ class Pane(Part, Vertical):
             return rows.csv()
         said = [str(lines.render()) for lines in self.query(Lines) if lines.display]
         return "\n".join(line for line in said if line) + "\n"
+
+
+class TextPane(Pane):
+    """A pane of text that scrolls."""
+
+    can_focus = False
+    EMPTY: ClassVar[str] = "No manoeuvre has ended yet."
+    """Text before there is any content."""
+
+    def compose(self) -> ComposeResult:
+        """Lay out the text."""
+        with VerticalScroll():
+            yield HangingLines(self.EMPTY)
+
+    def write(self, rows: Iterable[Labelled]) -> None:
+        """Write the rows of the text."""
+        self.query_one(HangingLines).write_rows(rows)

@@ -48,7 +48,6 @@ verdict pane says why.
         """Begin without an estimate."""
         super().on_mount()
         self._view: View | None = None
-        self._shown: tuple[object, ...] | None = None
         self._columns = 0
 
     def on_resize(self, event: Resize) -> None:
@@ -56,7 +55,7 @@ verdict pane says why.
         columns = _columns_in(self.size.width - _SCROLL_BAR)
         if columns == self._columns:
             return
-        self._columns, self._shown = columns, None
+        self._columns, self._parts = columns, ()
         table = self.query_one(DataTable)
         table.clear(columns=True)
         for name, width in _COLUMNS[:columns]:
@@ -67,11 +66,8 @@ verdict pane says why.
     def show(self, view: View) -> None:
         """Fill the table anew when an estimate changed."""
         self._view = view
-        what = (view.state.maneuvers, view.state.model, view.judged)
-        same = self._shown is not None and all(a is b for a, b in zip(what, self._shown, strict=True))
-        if same or not self._columns:
+        if not self._columns or not self.changed(view.state.maneuvers, view.state.model, view.judged):
             return
-        self._shown = what
         table = self.query_one(DataTable)
         row = max(table.cursor_row, 0)
         selected = view.judged.estimate if view.judged else None

@@ -1,23 +1,19 @@
 """Flying qualities of the joint estimate."""
 
-from textual.app import ComposeResult
-from textual.containers import VerticalScroll
-
-from advisor.oem.estimate import Estimate
 from advisor.report.qualities import coefficients_of, qualities_of, quality_lines
 from advisor.session.view import View
-from advisor.tui.panes.hanging import HangingLines, Labelled
-from advisor.tui.panes.pane import Pane
+from advisor.tui.panes.hanging import Labelled
+from advisor.tui.panes.pane import TextPane
 
 _NONE_YET = "No manoeuvre is accepted yet; flying qualities come from the joint estimate."
 
 
-class Qualities(Pane):
+class Qualities(TextPane):
     """Natural frequency, damping, n/α, CAP, T_θ2 and level, each with its 95 % interval."""
 
     TITLE = "u Flying qualities"
     SHORT = "u FQ"
-    can_focus = False
+    EMPTY = _NONE_YET
     HELP = """\
 # Flying qualities
 
@@ -27,22 +23,11 @@ neutral point and coefficients need `reference` in the aircraft file. The air de
 are given for stand below.
 """
 
-    def compose(self) -> ComposeResult:
-        """Lay out text that scrolls."""
-        with VerticalScroll():
-            yield HangingLines(_NONE_YET)
-
-    def on_mount(self) -> None:
-        """Show nothing before the first estimate."""
-        super().on_mount()
-        self._shown: Estimate | None = None
-
     def show(self, view: View) -> None:
         """Write the flying qualities when the joint estimate is another one."""
-        if view.state.model is self._shown:
+        if not self.changed(view.state.model):
             return
-        self._shown = view.state.model
-        self.query_one(HangingLines).write_rows(_rows(view))
+        self.write(_rows(view))
         numbers = ", ".join(map(str, view.state.estimate_from))
         self.subtitle(f"from manoeuvres {numbers}" if numbers else "")
 

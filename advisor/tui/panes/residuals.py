@@ -70,16 +70,14 @@ lacks. A wave means a mode that the model misses. Intervals allow for coloured r
     def on_mount(self) -> None:
         """Begin with the sentence of one output."""
         super().on_mount()
-        self._shown: object = None
         self._fits: dict[str, ChannelFit] = {}
         self._only_with_fit()
 
     def show(self, view: View) -> None:
         """Draw the selected manoeuvre when it is another one."""
         judged = view.judged
-        if judged is None or judged is self._shown:
+        if judged is None or not self.changed(judged):
             return
-        self._shown = judged
         estimate = judged.estimate
         self._fits = dict(estimate.fits[0]) if isinstance(estimate, Estimate) else {}
         why = "" if isinstance(estimate, Estimate) else estimate.text

@@ -1,28 +1,24 @@
 """Reasons for the verdict on the selected manoeuvre."""
 
-from textual.app import ComposeResult
-from textual.containers import VerticalScroll
-
 from advisor.campaign.state import JudgedManeuver
 from advisor.decision.verdict import ManeuverVerdict
 from advisor.oem.estimate import Estimate
 from advisor.session.view import View
-from advisor.tui.panes.hanging import HangingLines, Labelled
+from advisor.tui.panes.hanging import Labelled
 from advisor.tui.panes.last_verdict import symbol_and_word
-from advisor.tui.panes.pane import Pane
+from advisor.tui.panes.pane import TextPane
 from advisor.tui.words import without_word
 from advisor.words.digits import distinct_texts, signed
 from advisor.words.quantities import channel
 from advisor.words.vehicle_time import between
 
 
-class VerdictPane(Pane):
+class VerdictPane(TextPane):
     """Sentence, reasons with numbers and limits, quality of the fit, cautions."""
 
     TITLE = "2 Verdict"
     SHORT = "2 Ver"
     OF_SELECTED = True
-    can_focus = False
     HELP = """\
 # Verdict
 
@@ -32,11 +28,6 @@ explains each output (R², Theil's coefficient TIC, lag-1 correlation of the res
 with **!** does not reject the manoeuvre but belongs on its verdict.
 """
 
-    def compose(self) -> ComposeResult:
-        """Yield a text that scrolls."""
-        with VerticalScroll():
-            yield HangingLines("No manoeuvre has ended yet.")
-
     def show(self, view: View) -> None:
         """Write the selected manoeuvre's verdict."""
         if view.judged is not None:
@@ -44,7 +35,7 @@ with **!** does not reject the manoeuvre but belongs on its verdict.
             of = next(
                 (f" of {one.name}" for one in view.state.flights if one.flight == flight and one.name), ""
             )
-            self.query_one(HangingLines).write_rows(_rows(view.judged, of))
+            self.write(_rows(view.judged, of))
 
 
 def _rows(judged: JudgedManeuver, of: str) -> list[Labelled]:

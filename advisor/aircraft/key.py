@@ -1,0 +1,107 @@
+"""One key of the aircraft file: everything that the file, its page, its questions and its check say of it."""
+
+from collections.abc import Iterator
+from dataclasses import MISSING, dataclass, fields, is_dataclass, replace
+from functools import cache
+from typing import Annotated, Any, get_args, get_origin, get_type_hints
+
+_UNITS = {
+    "_kg_m2": "kg m²", "_percent_chord": "% of the chord", "_percent": "%", "_m_s": "m/s", "_m2": "m²",
+    "_kg": "kg", "_us": "us", "_deg": "deg", "_hz": "Hz", "_m": "m", "_s": "s", "_c": "°C",
+}  # fmt: skip
+"""Ending of a key to the unit of its value, longer endings first."""
+REQUIRED = object()
+"""Default of a key that its section needs."""
+
+
+@dataclass(frozen=True, slots=True)
+class Key:
+    """Metadata of one key, the only place that describes the key. A type carries it in ``Annotated``."""
+
+    meaning: str
+    """Quantity, sign, and the meaning of the default, in sentences."""
+    example: str = ""
+    """Value in YAML for the comment in a new file. Empty: a new file leaves the key out."""
+    question: str = ""
+    """Question on the terminal. Empty: never asked."""
+    answer: str = "-"
+    """Usual answer to the question; ``-``: not known, left out."""
+    cost: str = ""
+    """Sentence on the cost of the missing key. Empty: a missing key costs nothing."""
+    mend: str = ""
+    """Clause on how a crew finds the value."""
+    positive: bool = False
+    """Whether the value must be above 0."""
+    within: tuple[float, float] | None = None
+    """Least and largest value."""
+    path: str = ""
+    """Sections and name, e.g. ``elevator.lag_s``, filled in by :func:`keys_of`."""
+    hint: Any = None
+    """Type of the value, filled in by :func:`keys_of`."""
+    default: Any = REQUIRED
+    """Value without the key, filled in by :func:`keys_of`."""
+
+    @property
+    def name(self) -> str:
+        """Last part of the path."""
+        return self.path.rpartition(".")[2]
+
+    @property
+    def unit(self) -> str:
+        """Unit of the value by the ending of the name; empty without one."""
+        return next((unit for ending, unit in _UNITS.items() if self.name.endswith(ending)), "")
+
+    def mistake(self, value: Any) -> str:
+        """Return what is wrong with a number; empty for one within the bounds and for no number."""
+        if not isinstance(value, int | float):
+            return ""
+        if self.positive and value <= 0.0:
+            return f"must be above 0, is {value}"
+        if self.within is not None and not self.within[0] <= value <= self.within[1]:
+            low, high = self.within
+            return f"{' '.join(filter(None, (str(value), self.unit)))} is outside {low:g}..{high:g}"
+        return ""
+
+    def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> Any:
+        """Return the schema for an editor, with meaning, unit and cost."""
+        said = (self.meaning, f"Without it: {self.cost}" if self.cost else "")
+        return {**handler(schema), "description": " ".join(filter(None, said))}
+
+
+@cache
+def keys_of(section: type, path: str = "") -> tuple[Key, ...]:
+    """Return the keys of a section in the order of the file, those of inner sections in their place."""
+    return tuple(_keys_of(section, path))
+
+
+def _keys_of(section: type, path: str) -> Iterator[Key]:
+    hints = get_type_hints(section, include_extras=True)
+    for one in fields(section):
+        at = f"{path}.{one.name}" if path else one.name
+        inner, listed = section_in(hints[one.name])
+        if inner is not None:
+            yield from keys_of(inner, f"{at}[]" if listed else at)
+        elif get_origin(hints[one.name]) is Annotated:
+            hint, key = get_args(hints[one.name])
+            made = one.default if one.default_factory is MISSING else one.default_factory()
+            made = REQUIRED if made is MISSING else made
+            yield replace(key, path=at, hint=hint, default=made)
+
+
+def section_in(hint: Any) -> tuple[type | None, bool]:
+    """Return the section that a key holds, and whether several; None where the key holds a plain value."""
+    for part in (hint, *get_args(hint)):
+        if isinstance(part, type) and is_dataclass(part):
+            return part, get_origin(hint) is tuple
+    return None, False
+
+
+def sections_of(section: type, path: str = "") -> Iterator[tuple[str, type]]:
+    """Yield a section with its path, then the sections within, in the order of the file."""
+    yield path, section
+    hints = get_type_hints(section)
+    for one in fields(section):
+        inner, listed = section_in(hints[one.name])
+        if inner is not None:
+            at = f"{path}.{one.name}" if path else one.name
+            yield from sections_of(inner, f"{at}[]" if listed else at)

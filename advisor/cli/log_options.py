@@ -1,0 +1,93 @@
+"""The logs of a command and the options that say how to read them, once for every command."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import wraps
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from advisor.aircraft.aircraft import Aircraft, Rule
+from advisor.cli.options import (
+    aircraft_option,
+    maneuver_option,
+    no_marks_option,
+    read_aircraft,
+    refuse_marks_on_several,
+    rule_option,
+    target_system_option,
+)
+
+if TYPE_CHECKING:
+    from advisor.flight.maneuvers.marks import Mark
+
+_OPTIONS = {"rule": rule_option, "marks": maneuver_option, "no_marks": no_marks_option}
+"""Name of an option that not every command has, to what adds it."""
+
+
+@dataclass(frozen=True, slots=True)
+class LogsAsked:
+    """Logs of the command line, and how to read them."""
+
+    logs: tuple[Path, ...] = ()
+    aircraft_file: Path | None = None
+    target_system: int | None = None
+    rule: Rule | None = None
+    """Rule that overrides the aircraft file's."""
+    marks: "tuple[Mark, ...]" = ()
+    no_marks: bool = False
+    """Whether earlier decisions by hand are ignored."""
+
+    @property
+    def inputs(self) -> list[Path]:
+        """Every file that the command reads."""
+        return [*self.logs, *([self.aircraft_file] if self.aircraft_file else [])]
+
+    def read_aircraft(self) -> Aircraft:
+        """Read the aircraft file.
+
+        Raises
+        ------
+        ConfigurationError
+            As :func:`advisor.cli.options.read_aircraft`.
+        """
+        return read_aircraft(self.aircraft_file, self.rule)
+
+
+def log_options(
+    *names: str, logs: bool = True, required: bool = True
+) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    """Add LOG..., ``--aircraft`` and ``--target-system``, which the command receives as one `LogsAsked`.
+
+    Parameters
+    ----------
+    names
+        Further options: ``rule``, ``marks``, ``no_marks``.
+    logs, required
+        Whether the command has the argument LOG..., and whether at least one log is needed.
+    """
+
+    def add(command: Callable[..., Any]) -> Callable[..., Any]:
+        @wraps(command)
+        def call(
+            logs: tuple[Path, ...] = (),
+            aircraft_file: Path | None = None,
+            target_system: int | None = None,
+            rule: Rule | None = None,
+            marks: "tuple[Mark, ...]" = (),
+            no_marks: bool = False,
+            **options: Any,
+        ) -> Any:
+            refuse_marks_on_several(marks, logs)
+            asked = LogsAsked(tuple(logs), aircraft_file, target_system, rule, marks, no_marks)
+            return command(asked, **options)
+
+        for name in reversed(names):
+            call = _OPTIONS[name](call)
+        call = aircraft_option(target_system_option(call))
+        if not logs:
+            return call
+        return click.argument("logs", nargs=-1, required=required, type=click.Path(path_type=Path))(call)
+
+    return add
