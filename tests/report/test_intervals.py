@@ -4,11 +4,11 @@ from math import degrees
 from types import SimpleNamespace
 
 import pytest
+from advisor.report.digits import with_half
+from advisor.report.quantities import CHANNELS
 
 from advisor.oem.coefficients import Coefficient
-from advisor.report.digits import with_half
 from advisor.report.qualities import quality_lines
-from advisor.report.quantities import CHANNELS
 
 HALF = 1.96
 
