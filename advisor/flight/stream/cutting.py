@@ -8,13 +8,14 @@ import numpy as np
 
 from advisor.flight.elevator.elevator_sign import ElevatorSign, turned
 from advisor.flight.maneuvers.events import Activity, FlightEvent, ManeuverFlown
+from advisor.flight.maneuvers.feedback import HISTORY_S
 from advisor.flight.maneuvers.ground import why_on_ground
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.maneuvers.marked_input import marked_span
 from advisor.flight.maneuvers.marks import Mark
 from advisor.flight.maneuvers.purpose import not_an_input
 from advisor.flight.maneuvers.segmentation import LEAD_IN_S
-from advisor.flight.signals.record import AIR_UNITS, UNITS
+from advisor.flight.signals.record import AIR_UNITS, UNITS, Channel
 from advisor.flight.signals.tracks import Tracks
 from advisor.flight.signals.trust import distrusted
 from advisor.flight.stream.identity import Identity
@@ -63,7 +64,9 @@ class Cutting:
     def flown(self, span: Span, boot: int, up_to_order: int | None) -> list[FlightEvent]:
         """Return the event of a movement that has ended: a manoeuvre, or an activity with its reason."""
         maneuver = self._cut(span, boot, up_to_order)
-        because = not_an_input(maneuver, self.why_on_ground(span, up_to_order))
+        because = not_an_input(
+            maneuver, self.why_on_ground(span, up_to_order), self._motion(span, up_to_order)
+        )
         if because is not None:
             self.activities[because.what] += 1
             stay_s, _ = self._stay(_middle_s(span))
@@ -86,6 +89,12 @@ class Cutting:
     def why_on_ground(self, span: Span, up_to_order: int | None = None) -> str | None:
         """Return evidence that the aircraft was on the ground during a movement; None without evidence."""
         return why_on_ground(span, partial(self._tracks.cut, up_to_order=up_to_order))
+
+    def _motion(self, span: Span, up_to_order: int | None) -> dict[str, Channel]:
+        """Return the pitch rate and angle of a movement and of the time before."""
+        from_s = span.start_s - HISTORY_S
+        cut = {name: self._tracks.cut(name, from_s, span.end_s, up_to_order) for name in ("q", "theta")}
+        return {name: channel for name, channel in cut.items() if channel is not None}
 
     def pilot_flies(self, at_s: float) -> bool:
         """Return whether the pilot moves the elevator at this time, by the flight mode."""
