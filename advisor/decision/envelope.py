@@ -39,7 +39,9 @@ _ASSUMED_STROKE_DEG = 25.0
 """Full travel of the elevator where the aircraft file has no calibration, deg."""
 
 
-def incomplete(maneuver: Maneuver, period_s: float, counted: Collection[str]) -> list[Reason]:
+def incomplete(
+    maneuver: Maneuver, period_s: float, counted: Collection[str], is_informed: bool
+) -> list[Reason]:
     """Return reasons for an incomplete record: missing or faulty channels, slow ones, gaps, a short free
     response.
 
@@ -51,6 +53,8 @@ def incomplete(maneuver: Maneuver, period_s: float, counted: Collection[str]) ->
         Natural period of the short-period motion, estimated or assumed, s.
     counted
         Outputs that the estimate used. Gaps in other channels do no harm.
+    is_informed
+        Whether the estimate determines the short period. The free response is then long enough.
     """
     missing = [name for name in NEEDED if name not in maneuver.channels]
     if missing:
@@ -64,7 +68,7 @@ def incomplete(maneuver: Maneuver, period_s: float, counted: Collection[str]) ->
     return [
         *_rate(needed, period_s),
         *_gap(used, maneuver, period_s),
-        *_free_response(maneuver, period_s),
+        *([] if is_informed else _free_response(maneuver, period_s)),
     ]
 
 
