@@ -6,6 +6,7 @@ from functools import partial
 
 import numpy as np
 
+from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.elevator.elevator_sign import ElevatorSign, turned
 from advisor.flight.maneuvers.events import Activity, FlightEvent, ManeuverFlown
 from advisor.flight.maneuvers.feedback import HISTORY_S
@@ -15,6 +16,7 @@ from advisor.flight.maneuvers.marked_input import marked_span
 from advisor.flight.maneuvers.marks import Mark
 from advisor.flight.maneuvers.purpose import not_an_input
 from advisor.flight.maneuvers.segmentation import LEAD_IN_S
+from advisor.flight.maneuvers.steady_speed import at_steady_speed
 from advisor.flight.signals.record import AIR_UNITS, UNITS, Channel
 from advisor.flight.signals.tracks import Tracks
 from advisor.flight.signals.trust import distrusted
@@ -29,13 +31,13 @@ class Cutting:
     ----------
     tracks, who
         Channels and identity of the vehicle.
-    calibrated
-        Whether the aircraft file gives the elevator's sign.
+    aircraft
+        The aircraft file: the elevator's sign, and the limits of the model.
     """
 
-    def __init__(self, tracks: Tracks, who: Identity, calibrated: bool) -> None:
-        self._tracks, self._who = tracks, who
-        self._sign = None if calibrated else ElevatorSign()
+    def __init__(self, tracks: Tracks, who: Identity, aircraft: Aircraft) -> None:
+        self._tracks, self._who, self._limits = tracks, who, aircraft.limits
+        self._sign = None if aircraft.elevator.is_calibrated else ElevatorSign()
         self._modes = [(-np.inf, who.mode)]
         self._released = (0, -np.inf)
         self.maneuvers = 0
@@ -71,7 +73,9 @@ class Cutting:
             self.activities[because.what] += 1
             stay_s, _ = self._stay(_middle_s(span))
             return [Activity(span.start_s, span.end_s, because.reason, because.text, stay_s, boot)]
-        return self._counted(maneuver)
+        airspeed = maneuver.channels.get("airspeed")
+        steady = at_steady_speed(maneuver.span, airspeed, self._limits.airspeed_change_percent)
+        return self._counted(maneuver if steady is maneuver.span else self._cut(steady, boot, up_to_order))
 
     def marked(self, mark: Mark, boot: int, up_to_order: int | None) -> list[FlightEvent]:
         """Return the manoeuvre of a marked stretch, which counts without the finder's criteria."""
