@@ -17,6 +17,7 @@ import numpy as np
 
 from advisor.aircraft.aircraft import PARAMETERS, Aircraft
 from advisor.decision.envelope import changed_speed, flown, incomplete, outside, too_quick
+from advisor.decision.prediction import Z95
 from advisor.decision.verdict import NO_CURE_BY_INPUT, UNTRUSTED, Reason
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.purpose import LEAST_PITCH_RATE_DEG_S
@@ -49,7 +50,10 @@ def judge_quality(
     """
     period_s = natural_period(maneuver, estimate)
     fits = estimate.fits[0] if isinstance(estimate, Estimate) else {}
-    reasons = [*incomplete(maneuver, period_s, fits), *outside(maneuver, aircraft)]
+    reasons = [
+        *incomplete(maneuver, period_s, fits, is_informed(estimate)),
+        *outside(maneuver, aircraft),
+    ]
     codes = {reason.code for reason in reasons}
     if codes & UNTRUSTED:
         return tuple(reasons)
@@ -89,6 +93,21 @@ def _knows_the_motion(estimate: Estimate) -> bool:
     stiffness = PARAMETERS.index("M_alpha")
     known = abs(float(estimate.theta[stiffness])) > float(estimate.std[stiffness])
     return known and estimate.prediction.get("q", 0.0) < 1.0
+
+
+def is_informed(estimate: Estimate | NoEstimate) -> bool:
+    """Return whether a manoeuvre determines the short period, whatever the shape of its end.
+
+    The bands of all predicted outputs are narrow, and the intervals of stiffness, damping and control exclude
+    zero. Without a free response these intervals are wider, and a short tail that they allow does no harm.
+    """
+    if isinstance(estimate, NoEstimate) or not estimate.prediction:
+        return False
+    known = all(
+        abs(estimate.value(name)) > Z95 * float(estimate.std[PARAMETERS.index(name)])
+        for name in ("M_alpha", "M_q", "M_delta_e")
+    )
+    return known and 100.0 * max(estimate.prediction.values()) <= WIDEST_PREDICTION_PERCENT
 
 
 def _too_gentle(maneuver: Maneuver, fits: Mapping[str, ChannelFit]) -> list[Reason]:

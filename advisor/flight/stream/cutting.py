@@ -6,15 +6,18 @@ from functools import partial
 
 import numpy as np
 
+from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.elevator.elevator_sign import ElevatorSign, turned
 from advisor.flight.maneuvers.events import Activity, FlightEvent, ManeuverFlown
+from advisor.flight.maneuvers.feedback import HISTORY_S
 from advisor.flight.maneuvers.ground import why_on_ground
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.maneuvers.marked_input import marked_span
 from advisor.flight.maneuvers.marks import Mark
 from advisor.flight.maneuvers.purpose import not_an_input
 from advisor.flight.maneuvers.segmentation import LEAD_IN_S
-from advisor.flight.signals.record import AIR_UNITS, UNITS
+from advisor.flight.maneuvers.steady_speed import at_steady_speed
+from advisor.flight.signals.record import AIR_UNITS, UNITS, Channel
 from advisor.flight.signals.renewal import counted_once
 from advisor.flight.signals.tracks import Tracks
 from advisor.flight.signals.trust import distrusted
@@ -29,13 +32,13 @@ class Cutting:
     ----------
     tracks, who
         Channels and identity of the vehicle.
-    calibrated
-        Whether the aircraft file gives the elevator's sign.
+    aircraft
+        The aircraft file: the elevator's sign, and the limits of the model.
     """
 
-    def __init__(self, tracks: Tracks, who: Identity, calibrated: bool) -> None:
-        self._tracks, self._who = tracks, who
-        self._sign = None if calibrated else ElevatorSign()
+    def __init__(self, tracks: Tracks, who: Identity, aircraft: Aircraft) -> None:
+        self._tracks, self._who, self._limits = tracks, who, aircraft.limits
+        self._sign = None if aircraft.elevator.is_calibrated else ElevatorSign()
         self._modes = [(-np.inf, who.mode)]
         self._released = (0, -np.inf)
         self.maneuvers = 0
@@ -64,12 +67,16 @@ class Cutting:
     def flown(self, span: Span, boot: int, up_to_order: int | None) -> list[FlightEvent]:
         """Return the event of a movement that has ended: a manoeuvre, or an activity with its reason."""
         maneuver = self._cut(span, boot, up_to_order)
-        because = not_an_input(maneuver, self.why_on_ground(span, up_to_order))
+        because = not_an_input(
+            maneuver, self.why_on_ground(span, up_to_order), self._motion(span, up_to_order)
+        )
         if because is not None:
             self.activities[because.what] += 1
             stay_s, _ = self._stay(_middle_s(span))
             return [Activity(span.start_s, span.end_s, because.reason, because.text, stay_s, boot)]
-        return self._counted(maneuver)
+        airspeed = maneuver.channels.get("airspeed")
+        steady = at_steady_speed(maneuver.span, airspeed, self._limits.airspeed_change_percent)
+        return self._counted(maneuver if steady is maneuver.span else self._cut(steady, boot, up_to_order))
 
     def marked(self, mark: Mark, boot: int, up_to_order: int | None) -> list[FlightEvent]:
         """Return the manoeuvre of a marked stretch, which counts without the finder's criteria."""
@@ -87,6 +94,12 @@ class Cutting:
     def why_on_ground(self, span: Span, up_to_order: int | None = None) -> str | None:
         """Return evidence that the aircraft was on the ground during a movement; None without evidence."""
         return why_on_ground(span, partial(self._tracks.cut, up_to_order=up_to_order))
+
+    def _motion(self, span: Span, up_to_order: int | None) -> dict[str, Channel]:
+        """Return the pitch rate and angle of a movement and of the time before."""
+        from_s = span.start_s - HISTORY_S
+        cut = {name: self._tracks.cut(name, from_s, span.end_s, up_to_order) for name in ("q", "theta")}
+        return {name: channel for name, channel in cut.items() if channel is not None}
 
     def pilot_flies(self, at_s: float) -> bool:
         """Return whether the pilot moves the elevator at this time, by the flight mode."""

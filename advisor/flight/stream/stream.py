@@ -83,7 +83,7 @@ class FlightStream:
         self._attitudes = Attitudes()
         self._clock = BootClock()
         self._tracks = Tracks(aircraft.alpha.source, aircraft.airspeed_m_s)
-        self._cutting = Cutting(self._tracks, self._who, aircraft.elevator.is_calibrated)
+        self._cutting = Cutting(self._tracks, self._who, aircraft)
         self._mixing = Mixing(self._tracks)
         self.marks = Marks(marks)
         """Marks by hand, by a switch and by texts."""
