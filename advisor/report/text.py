@@ -15,7 +15,7 @@ from advisor.decision.verdict import FlightTestVerdict
 from advisor.flight.maneuvers.events import Activity
 from advisor.flight.signals.track import ChannelStatus
 from advisor.oem.estimate import Estimate
-from advisor.report.qualities import coefficients_of, qualities_of, quality_lines
+from advisor.report.qualities import coefficients_of, qualities_of, quality_lines, reference_speed
 from advisor.words.vehicle_time import CLOCK, clock
 
 SYMBOLS = {
@@ -165,7 +165,7 @@ class AnalysisText:
         return table
 
     def _parameters(self, model: Estimate) -> Table:
-        speed = "" if model.airspeed_m_s is None else f" at {model.airspeed_m_s:.1f} m/s"
+        speed = reference_speed(self.state)
         numbers = ", ".join(str(number) for number in self.state.estimate_from)
         table = Table(
             title=f"Joint estimate from manoeuvres {numbers}{speed}",
