@@ -17,13 +17,13 @@ import numpy as np
 
 from advisor.aircraft.aircraft import PARAMETERS, Aircraft
 from advisor.decision.envelope import changed_speed, flown, incomplete, outside, too_quick
-from advisor.decision.prediction import Z95
 from advisor.decision.verdict import NO_CURE_BY_INPUT, UNTRUSTED, Reason
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.purpose import LEAST_PITCH_RATE_DEG_S
 from advisor.flight.signals.messages import FloatArray
 from advisor.oem.estimate import ChannelFit, Estimate, NoEstimate
 from advisor.words.digits import distinct_texts
+from advisor.words.quantiles import NORMAL_95
 
 WIDEST_PREDICTION_PERCENT = 25.0
 """Largest half-width of the predicted pitch rate's 95 % band, % of its peak. A standard deviation of 12 % in
@@ -104,7 +104,7 @@ def is_informed(estimate: Estimate | NoEstimate) -> bool:
     if isinstance(estimate, NoEstimate) or not estimate.prediction:
         return False
     known = all(
-        abs(estimate.value(name)) > Z95 * float(estimate.std[PARAMETERS.index(name)])
+        abs(estimate.value(name)) > NORMAL_95 * float(estimate.std[PARAMETERS.index(name)])
         for name in ("M_alpha", "M_q", "M_delta_e")
     )
     return known and 100.0 * max(estimate.prediction.values()) <= WIDEST_PREDICTION_PERCENT

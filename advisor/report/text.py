@@ -14,7 +14,7 @@ from advisor.decision.verdict import FlightTestVerdict
 from advisor.flight.maneuvers.events import Activity
 from advisor.oem.estimate import Estimate
 from advisor.report import table as report_table
-from advisor.report.qualities import coefficients_of, qualities_of, quality_lines
+from advisor.report.qualities import coefficients_of, qualities_of, quality_lines, reference_speed
 from advisor.report.result_rows import ParameterRow, channel_table, parameter_row
 from advisor.words.vehicle_time import CLOCK, clock
 
@@ -130,7 +130,7 @@ class AnalysisText:
             yield from (line for _, line in here)
 
     def _parameters(self, model: Estimate) -> Table:
-        speed = "" if model.airspeed_m_s is None else f" at {model.airspeed_m_s:.1f} m/s"
+        speed = reference_speed(self.state)
         numbers = ", ".join(str(number) for number in self.state.estimate_from)
         rows = (parameter_row(name, model, self.aircraft.model) for name in PARAMETERS)
         head = ("parameter", "value", "± 95 %", "± 95 % if white", "today's model", "unit")

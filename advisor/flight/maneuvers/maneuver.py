@@ -27,9 +27,9 @@ class Span:
     steps: tuple[tuple[float, float], ...]
     """Steps of the input: (onset in s, level in rad from trim) for each."""
     closed_by: str
-    """Reason of the end: ``quiet``, ``mode change``, ``next input``, ``gap``, ``end of log``, ``air speed`` or
-    ``no rest``. A marked stretch has ``marked by hand``, ``marked by a switch`` or ``marked by a text of the
-    vehicle``. A movement that is being flown has ``still flying``."""
+    """Reason of the end: ``quiet``, ``mode change``, ``next input``, ``gap``, ``end of log``, ``air speed``,
+    ``no rest``. A marked stretch has ``marked by hand``, ``marked by a switch`` or ``marked by a text of
+    the vehicle``. A movement that is being flown has ``still flying``."""
 
     @property
     def input_is_over(self) -> bool:

@@ -82,7 +82,12 @@ class FlightStream:
         self._texts = VehicleTexts()
         self._attitudes = Attitudes()
         self._clock = BootClock()
-        self._tracks = Tracks(aircraft.alpha.source, aircraft.airspeed_m_s)
+        self._tracks = Tracks(
+            aircraft.alpha.source,
+            aircraft.airspeed_m_s,
+            aircraft.reference.air_temperature_c,
+            lambda: self._who.simulated,
+        )
         self._cutting = Cutting(self._tracks, self._who, aircraft)
         self._mixing = Mixing(self._tracks)
         self.marks = Marks(marks)
