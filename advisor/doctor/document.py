@@ -5,7 +5,7 @@ from typing import Any
 
 from advisor.doctor.examination import Examination, Limit
 from advisor.doctor.expectation import RESPONSE_ALPHA_DEG, frequency
-from advisor.report.document import NORMAL_95, number
+from advisor.report.document import NORMAL_95, instrument_document, number
 from advisor.report.text import UNITS
 from advisor.words.problems import Problem
 
@@ -37,6 +37,7 @@ def doctor_document(
             "elevator": None,
             "alpha": None,
             "limits": [told],
+            "instruments": [],
             "expected_std": None,
             "expected_ci95": None,
         }
@@ -88,6 +89,7 @@ def doctor_document(
             "renewed_hz": number(alpha.renewed_hz),
         },
         "limits": [_limit(limit) for limit in findings.limits],
+        "instruments": [instrument_document(found) for found in findings.instruments],
         "notes": list(findings.notes),
         "next": list(commands),
         "expected_std": expectation and {name: number(std) for name, std in expectation.std.items()},

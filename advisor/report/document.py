@@ -9,6 +9,7 @@ from typing import Any
 from advisor.aircraft.aircraft import PARAMETERS, Aircraft
 from advisor.campaign.state import CampaignState, JudgedManeuver
 from advisor.decision.verdict import FlightTestVerdict, RuleProgress, RuleResult
+from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.stream.flights import FlightHeard
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.report.qualities import coefficients_of, qualities_document, qualities_of
@@ -74,6 +75,7 @@ def analysis_document(
         if state
         else {},
         "flying_qualities": qualities_document(qualities_of(state, aircraft.reference)) if state else None,
+        "instruments": [instrument_document(found) for found in state.instruments] if state else [],
         "estimate_from": list(state.estimate_from) if state else [],
         "activity": [
             {
@@ -181,6 +183,23 @@ def instruments(estimate: Estimate | None) -> dict[str, Any]:
     """Return parameters of the instruments that were estimated with the derivatives, by name."""
     found = estimate.instruments if estimate else ()
     return {x.name: {"value": number(x.value), "std": number(x.std)} for x in found}
+
+
+def instrument_document(found: InstrumentFinding) -> dict[str, Any]:
+    """Return one finding on an instrument."""
+    value = found.value if isinstance(found.value, str) else number(found.value)
+    stated = found.stated if isinstance(found.stated, str) else number(found.stated)
+    return {
+        "code": found.code,
+        "channel": found.channel,
+        "quantity": found.quantity,
+        "stated": stated,
+        "found": {"value": value, "std": number(found.std)},
+        "contradicts": found.contradicts,
+        "used": found.used,
+        "text": found.text,
+        "fix": found.fix,
+    }
 
 
 def identifiability(estimate: Estimate | None) -> dict[str, Any] | None:
