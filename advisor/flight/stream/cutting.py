@@ -16,7 +16,7 @@ from advisor.flight.maneuvers.ground import why_on_ground
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.maneuvers.marked_input import marked_span
 from advisor.flight.maneuvers.marks import Mark
-from advisor.flight.maneuvers.purpose import not_an_input
+from advisor.flight.maneuvers.purpose import Because, not_an_input
 from advisor.flight.maneuvers.segmentation import LEAD_IN_S
 from advisor.flight.maneuvers.steady_speed import at_steady_speed
 from advisor.flight.signals.instrument_finding import InstrumentFinding
@@ -67,17 +67,18 @@ class Cutting:
         """Begin another flight mode."""
         self._modes.append((since_s, mode))
 
-    def so_far(self, span: Span, boot: int) -> Maneuver:
-        """Return the manoeuvre that would result if the movement ended here."""
+    def so_far(self, span: Span, boot: int) -> Maneuver | None:
+        """Return the manoeuvre that would result if the movement ended here; None where its input is over and
+        was no test input."""
         maneuver, _ = self._cut(span, boot, None)
+        if span.input_is_over and self._not_an_input(maneuver, None) is not None:
+            return None
         return turned(maneuver) if self.is_backwards else maneuver
 
     def flown(self, span: Span, boot: int, up_to_order: int | None) -> list[FlightEvent]:
         """Return the event of a movement that has ended: a manoeuvre, or an activity with its reason."""
         maneuver, evidence = self._cut(span, boot, up_to_order)
-        because = not_an_input(
-            maneuver, self.why_on_ground(span, up_to_order), self._motion(span, up_to_order)
-        )
+        because = self._not_an_input(maneuver, up_to_order)
         if because is not None:
             self.activities[because.what] += 1
             stay_s, _ = self._stay(_middle_s(span))
@@ -106,6 +107,10 @@ class Cutting:
     def why_on_ground(self, span: Span, up_to_order: int | None = None) -> str | None:
         """Return evidence that the aircraft was on the ground during a movement; None without evidence."""
         return why_on_ground(span, partial(self._tracks.cut, up_to_order=up_to_order))
+
+    def _not_an_input(self, maneuver: Maneuver, up_to_order: int | None) -> Because | None:
+        span = maneuver.span
+        return not_an_input(maneuver, self.why_on_ground(span, up_to_order), self._motion(span, up_to_order))
 
     def _motion(self, span: Span, up_to_order: int | None) -> dict[str, Channel]:
         """Return the pitch rate and angle of a movement and of the time before."""
