@@ -2,10 +2,9 @@
 
     python -m benchmarks.autopilot_truth FLIGHTS TLOGS [--only NAME ...]
 
-Each log runs as in ``advisor analyze``: once with the servo's lag of the aircraft file, once without it. A row
-holds when the estimate lies within 5 % of the truth, or when the 95 % interval holds the truth. The truth
-is that of the README beside the logs, at the air speed that the estimate states.
-"""
+Each log runs as in ``advisor analyze``: once with the servo's lag of the aircraft file, once without it. A
+row holds when the estimate lies within 5 % of the truth, or when the 95 % interval holds the truth. The truth
+is that of the README beside the logs, at the air speed that the estimate states."""
 
 import argparse
 import sys

@@ -104,9 +104,7 @@ class Cutting:
         for name in UNITS:
             channel = self._tracks.cut(name, span.record_from_s, span.end_s, up_to_order)
             if channel is not None:
-                channels[name] = replace(
-                    channel, provenance=self._who.provenance(channel.source, channel.provenance)
-                )
+                channels[name] = self._who.known(channel)
         distrusts = self._who.distrusts(distrusted(channels))
         for still in distrusts:
             if still.channel == "a_z":
