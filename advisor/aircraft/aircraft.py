@@ -46,8 +46,8 @@ class Elevator:
     delay_s: float | None = None
     """Delay between command and servo, s. None: unknown."""
     lag_found_s: float | None = None
-    """Lag that all manoeuvres together identify, s, used where ``lag_s`` is unknown. The file has no such
-    key."""
+    """Lag that all manoeuvres together identify, s, used where ``lag_s`` is unknown or excluded. The file has
+    no such key."""
 
     @property
     def is_calibrated(self) -> bool:

@@ -17,7 +17,6 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import N_PARAMETERS, Index, respond
 from advisor.oem.extra import Extra
 from advisor.oem.gauss_newton import CONVERGED, Optimum
-from advisor.oem.instruments import Instrument, extra_of, moved_by, penalty
 from advisor.oem.problem import OutputErrorProblem, Record, Signal, assemble
 from advisor.oem.solution import Solution, evaluate, search
 from advisor.oem.weighing import Weighing
@@ -71,50 +70,42 @@ def sharpened(command: Signal, edges: Edges) -> Signal:
     return Signal(np.array(t), np.array(y))
 
 
-def with_edges(plain: Solution, names: Sequence[Instrument] = ()) -> Solution:
+def with_edges(plain: Solution) -> Solution:
     """Return the solution with every large step at its own time; ``plain`` where that gains too little.
 
-    A step is equally likely everywhere between its two stamps.
-
-    Parameters ---------- names : instruments of ``plain``, which move together with the steps. A ramp instead
-    of a step passes for a
-        delay of the command. Their columns come first, those of the edges after them.
-    """
+    The additional parameters of ``plain`` keep their values and their errors, and the times come after them.
+    A step is equally likely everywhere between its two stamps."""
     records = plain.problem.records
     edges = [large_steps(record.elevator) for record in records]
     count = sum(len(e.interval) for e in edges)
     if count == 0 or len(records) > MOST_MANEUVERS or any(record.held for record in records):
         return plain
-    near, whole, problem, assembly, optimum = (
-        plain.optimum, plain.problem, plain.problem, plain.assembly, plain.optimum
-    )  # fmt: skip
+    own = plain.extra or Extra.none(len(plain.fitted))
+    near, problem, assembly, optimum = plain.optimum, plain.problem, plain.assembly, plain.optimum
     weighing = Weighing.by(plain.noise, plain.assembly)
-    before = weighing.misfit(plain.residual, plain.sensitivities) + penalty(whole, names)
-    extra, gain, upright = Extra.none(len(plain.fitted)), 0.0, 0.0
+    before = weighing.misfit(plain.residual, plain.sensitivities)
+    extra, gain, upright = own, 0.0, 0.0
     for round_ in range(ROUNDS + 1):
-        problem = _edged(whole, edges, records)
+        problem = _edged(plain.problem, edges, records)
         assembly, optimum = search(problem, begin=(near.shared, near.local), flat=CLOSE_ENOUGH)
         if optimum.status != CONVERGED:
             return plain
         near = optimum
         residual, g = assembly.z - optimum.fitted, optimum.sensitivities
-        gain = before - weighing.misfit(residual, g) - penalty(whole, names)
+        gain = before - weighing.misfit(residual, g)
         if round_ == 0:
             upright = gain
-        columns = _by_edges(whole, edges, records, optimum, assembly.owner)
-        own = extra_of(problem, optimum.shared, optimum.local, names)
+        columns = _by_edges(plain.problem, edges, records, optimum, assembly.owner)
         extra = own.joined(_within_intervals(edges, records, columns))
         if round_ == ROUNDS:
             break
         effect = weighing.influence(g, extra)
         if effect is None:
             return plain
-        step = effect.step(residual, extra)[len(PARAMETERS) :]
-        whole = moved_by(step[: len(names)], whole, names)
-        edges = _moved(edges, step[len(names) :], records)
+        edges = _moved(edges, effect.step(residual, extra)[len(PARAMETERS) + len(own) :], records)
     if gain < chdtri(count, CHANCE) and upright < GAIN_UPRIGHT:
         return plain
-    final = evaluate(problem, assembly, optimum, extra, kept=len(names))
+    final = evaluate(problem, assembly, optimum, extra, kept=len(own))
     return final if isinstance(final, Solution) else plain
 
 

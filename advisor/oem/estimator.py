@@ -66,8 +66,8 @@ def _estimate(maneuvers: Sequence[Maneuver], aircraft: Aircraft, method: Method)
         return solution
     if method != "gauss-newton":
         return report(solution, prepared, aircraft, lagged=_supposing_a_lag(solution, aircraft))
-    fitted = _with_instruments(solution, aircraft)
-    solution = with_edges(fitted.solution, [x.instrument for x in fitted.identified])
+    fitted = _with_instruments(solution, aircraft, _derives_alpha(maneuvers))
+    solution = with_edges(fitted.solution)
     identified = refreshed(fitted.identified, solution)
     has_lag = any(x.instrument.name == "servo_lag_s" for x in identified)
     lagged = None if has_lag else _supposing_a_lag(solution, aircraft)
@@ -82,13 +82,13 @@ def _estimate(maneuvers: Sequence[Maneuver], aircraft: Aircraft, method: Method)
     )
 
 
-def _with_instruments(plain: Solution, aircraft: Aircraft) -> InstrumentFit:
+def _with_instruments(plain: Solution, aircraft: Aircraft, derived: bool) -> InstrumentFit:
     """Return the fit with the instruments, and with the likelier reading of the command.
 
     A smooth command may be held instead of linear between its stamps, which is half an interval later. Large
     steps get their own times (``edges``).
     """
-    linear = fit_instruments(plain, unknown_instruments(plain.problem, aircraft))
+    linear = fit_instruments(plain, unknown_instruments(plain.problem, aircraft, derived))
     records = plain.problem.records
     if any(large_steps(record.elevator).interval for record in records):
         return linear
@@ -97,7 +97,7 @@ def _with_instruments(plain: Solution, aircraft: Aircraft) -> InstrumentFit:
     other = solve(problem, begin=(plain.optimum.shared, plain.optimum.local))
     if isinstance(other, NoEstimate):
         return linear
-    held = fit_instruments(other, unknown_instruments(problem, aircraft))
+    held = fit_instruments(other, unknown_instruments(problem, aircraft, derived))
     weighing = Weighing.by(linear.solution.noise, linear.solution.assembly)
     return held if held.misfit(weighing) < linear.misfit(weighing) else linear
 
@@ -113,9 +113,13 @@ def _air(solution: Solution, maneuvers: Sequence[Maneuver], prepared: Prepared) 
     fits = [fit["q"] for fit in channel_fits(solution)]
     if all(fit.lag1 < COLOURED or 1.0 - fit.r2 < UNEXPLAINED for fit in fits):
         return None
-    derived = any(m.channels["alpha"].provenance == "derived" for m in maneuvers)
-    found = moving_air(solution, seen_by_alpha=not derived)
+    found = moving_air(solution, seen_by_alpha=not _derives_alpha(maneuvers))
     return found if found.present else None
+
+
+def _derives_alpha(maneuvers: Sequence[Maneuver]) -> bool:
+    """Return whether the angle of attack comes from inertial sensors, instead of from a vane."""
+    return any("alpha" in m.channels and m.channels["alpha"].provenance == "derived" for m in maneuvers)
 
 
 def lag_is_unknown(aircraft: Aircraft) -> bool:

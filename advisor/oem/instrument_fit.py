@@ -257,7 +257,11 @@ def identified_at(solution: Solution, names: Sequence[Instrument]) -> tuple[Iden
 
 def _identified(x: Instrument, problem: OutputErrorProblem, std: float) -> Identified:
     value = x.read(problem)
-    if x.stated is None or x.prior is not None:
+    if x.prior is not None:
+        # Sound instruments all lie within the prior; a servo's lag with a prior was told by other manoeuvres.
+        odd = abs(value - x.prior.mean) > CONTRADICTS * float(np.hypot(std, x.prior.std))
+        return Identified(x, value, std, value, std, contradicts=odd and x.name == "command_delay_s")
+    if x.stated is None:
         return Identified(x, value, std, value, std)
     apart = abs(value - x.stated)
     excluded = apart > CONTRADICTS * float(np.hypot(std, x.known_to * x.stated))
