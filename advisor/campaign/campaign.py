@@ -11,7 +11,7 @@ from advisor.campaign.joint_estimate import NEWEST, Together
 from advisor.campaign.journal import Journal
 from advisor.campaign.running_estimate import Settling
 from advisor.campaign.servo_lag import learnt as learnt_from
-from advisor.campaign.servo_lag import may_learn, reserved
+from advisor.campaign.servo_lag import may_learn, reserved, told
 from advisor.campaign.single_maneuver import assess
 from advisor.campaign.state import CampaignState, JudgedManeuver
 from advisor.decision.course import CriterionCourse
@@ -348,11 +348,7 @@ class Campaign:
             replace(flown, excluded_because=before.excluded_because)
             for flown, before in zip(again, self._history, strict=True)
         ]
-        lag = learnt.elevator.lag_found_s
-        self._journal.write(
-            f"the servo's lag is {lag:.3f} s by all manoeuvres together; every estimate uses it now;"
-            f" for the aircraft file: elevator: {{lag_s: {lag:.3f}}}"
-        )
+        self._journal.write(told(learnt))
         self._decide()
 
     def _decide_by_hand(self, number: int, because: str | None) -> None:

@@ -112,9 +112,31 @@ def test_a_vane_ahead_of_the_centre_of_gravity_is_moved_back_when_its_arm_is_kno
 def test_a_known_servo_is_applied_to_the_command_before_the_fit():
     flight = equipped(lag_s=0.1, delay_s=0.04)
     known = Aircraft(airspeed_m_s=SPEED, elevator=Elevator(lag_s=0.1, delay_s=0.04))
-    ignored = aircraft()
-    assert estimate(flight, known).value("M_delta_e") == pytest.approx(UAV[7], rel=0.03)
-    assert abs(estimate(flight, ignored).value("M_delta_e")) < 0.7 * abs(UAV[7])
+    found = estimate(flight, known)
+    assert found.value("M_delta_e") == pytest.approx(UAV[7], rel=0.03)
+    assert not found.instrument("servo_lag_s").contradicts
+
+
+@pytest.mark.parametrize(("stated_s", "true_s"), [(0.0, 0.1), (0.04, 0.1), (0.14, 0.22), (0.2, 0.1)])
+def test_a_stated_lag_that_the_data_exclude_is_named_and_not_used(stated_s, true_s):
+    described = Aircraft(airspeed_m_s=SPEED, elevator=Elevator(lag_s=stated_s))
+    found = estimate(equipped(lag_s=true_s, noise=0.01), described)
+    lag = found.instrument("servo_lag_s")
+    assert lag.contradicts
+    assert lag.stated == stated_s
+    assert abs(lag.value - true_s) < 3.0 * lag.std + 0.005
+    assert found.value("M_delta_e") == pytest.approx(UAV[7], rel=0.05)
+
+
+@pytest.mark.parametrize("lag_s", [0.04, 0.1, 0.2])
+def test_a_stated_lag_that_the_data_confirm_stays_and_its_width_is_in_the_interval(lag_s):
+    flight = equipped(lag_s=lag_s, noise=0.02)
+    found = estimate(flight, Aircraft(airspeed_m_s=SPEED, elevator=Elevator(lag_s=lag_s)))
+    lag = found.instrument("servo_lag_s")
+    assert not lag.contradicts
+    assert abs(lag.told - lag_s) < 3.0 * lag.told_std
+    assert lag.std <= 0.1 * lag_s
+    assert abs(found.value("M_delta_e") - UAV[7]) < 3.0 * found.std[7]
 
 
 def test_an_unknown_servo_lag_is_found_from_all_manoeuvres_together():

@@ -136,8 +136,7 @@ class Cutting:
         for name in UNITS:
             channel = self._tracks.cut(name, span.record_from_s, span.end_s, up_to_order)
             if channel is not None:
-                provenance = self._who.provenance(channel.source, channel.provenance)
-                channels[name] = counted_once(replace(channel, provenance=provenance))
+                channels[name] = counted_once(self._who.known(channel))
         distrusts = self._who.distrusts(distrusted(channels))
         for still in distrusts:
             if still.channel == "a_z":

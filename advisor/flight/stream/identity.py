@@ -8,8 +8,10 @@ from advisor.aircraft.aircraft import Elevator
 from advisor.flight.elevator.elevator_outputs import find_elevator
 from advisor.flight.maneuvers.events import FlightEvent, Notice, VehicleFound
 from advisor.flight.signals.messages import Columns
+from advisor.flight.signals.record import Channel
 from advisor.flight.signals.trust import Distrust
 from advisor.flight.vehicle.following import FOLLOW, TAKE, Following, chosen
+from advisor.flight.vehicle.imu_filters import filter_delay_s
 from advisor.flight.vehicle.modes import in_hover, mode_name
 from advisor.flight.vehicle.parameters import Parameters, read_by
 from advisor.flight.vehicle.surfaces import Surface
@@ -95,6 +97,15 @@ class Identity:
         if self.simulated:
             return "simulated"
         return "derived" if self.vehicle.autopilot == "ardupilot" else "unknown"
+
+    def known(self, channel: Channel) -> Channel:
+        """Return a channel with its provenance and with the known delay of the autopilot's filters."""
+        vehicle, provenance = self.vehicle, self.provenance(channel.source, channel.provenance)
+        if vehicle is None or self.simulated:
+            return replace(channel, provenance=provenance)
+        stated = self._parameters.stated(_speakers(vehicle), vehicle.autopilot)
+        delay_s = filter_delay_s(channel.name, channel.source, vehicle.autopilot, stated)
+        return replace(channel, provenance=provenance, delay_s=delay_s)
 
     def distrusts(self, found: Sequence[Distrust]) -> list[Distrust]:
         """Return the channels that are wrong, among those that cannot be right: the paper's model has one air

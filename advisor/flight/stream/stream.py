@@ -275,11 +275,7 @@ class FlightStream:
     def _power_on(self) -> PowerOn:
         """Return everything that was heard since the vehicle's clock began."""
         found = {name: self._tracks.cut(name, -np.inf, np.inf) for name in ALL_UNITS}
-        channels = {
-            name: replace(c, provenance=self._who.provenance(c.source, c.provenance))
-            for name, c in found.items()
-            if c is not None
-        }
+        channels = {name: self._who.known(c) for name, c in found.items() if c is not None}
         if self._cutting.is_backwards and "elevator" in channels:
             channels["elevator"] = replace(channels["elevator"], y=-channels["elevator"].y)
         heard = [(master.order, master.t) for master in self._clock_heard if len(master.t)]

@@ -6,12 +6,12 @@ from math import isfinite
 import numpy as np
 
 from advisor.flight.signals.messages import Columns
-from advisor.flight.vehicle import ardupilot_wiring, px4_wiring
+from advisor.flight.vehicle import ardupilot_wiring, imu_filters, px4_wiring
 from advisor.flight.vehicle.wiring import Wiring
 
 _INTEGERS = frozenset(range(1, 7))
 """Values of MAV_PARAM_TYPE that are integers of up to 32 bits."""
-_PREFIXES = (*ardupilot_wiring.PREFIXES, *px4_wiring.PREFIXES)
+_PREFIXES = (*ardupilot_wiring.PREFIXES, *px4_wiring.PREFIXES, *imu_filters.PREFIXES)
 
 Sender = tuple[int, int]
 """System id and component id of a sender."""
@@ -20,7 +20,7 @@ Stated = tuple[float, float]
 
 
 def tells_of_outputs(name: str) -> bool:
-    """Return whether a parameter describes the servo outputs."""
+    """Return whether a parameter describes the servo outputs, or a filter of the inertial sensors."""
     return name.startswith(_PREFIXES)
 
 
@@ -35,7 +35,7 @@ def read_by(autopilot: str, stated: Stated) -> float:
 
 
 class Parameters:
-    """Keeps the parameters that describe the servo outputs.
+    """Keeps the parameters that describe the servo outputs and the filters of the inertial sensors.
 
     PARAM_VALUE carries every value in a field of floating point. ArduPilot converts integers to floating
     point; PX4 puts their bytes there (MAVLink's parameter protocol, "C cast" and "bytewise").
@@ -69,11 +69,14 @@ class Parameters:
         autopilot
             Name of the autopilot in the vehicle's identity.
         """
-        stated = {
+        find = px4_wiring.px4_wiring if autopilot == "px4" else ardupilot_wiring.ardupilot_wiring
+        return find(self.stated(senders, autopilot))
+
+    def stated(self, senders: Sequence[Sender], autopilot: str) -> dict[str, float]:
+        """Return the values of all kept parameters by name; the arguments are those of ``wiring``."""
+        return {
             name: value
             for sender in senders
             for name, values in self._known.get(sender, {}).items()
             if isfinite(value := read_by(autopilot, values))
         }
-        find = px4_wiring.px4_wiring if autopilot == "px4" else ardupilot_wiring.ardupilot_wiring
-        return find(stated)
