@@ -202,7 +202,7 @@ class FlightStream:
     @property
     def guess(self) -> Guess | None:
         """Guess of the elevator's output, while no parameter states the output."""
-        return self._guesses.newest
+        return None if self.vehicle is not None and self.vehicle.is_multicopter else self._guesses.newest
 
     @property
     def no_data(self) -> tuple[Problem, ...]:

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 from advisor.flight.signals.messages import Columns
 from advisor.words.mends import Carrier, Mends, mends_of
+from advisor.words.problems import Problem
 
 # Numbers of MAV_AUTOPILOT and MAV_TYPE, MAVLink common.xml.
 _AUTOPILOT_INVALID = 8
@@ -37,6 +38,17 @@ class Vehicle:
     def is_multicopter(self) -> bool:
         """Whether rotors alone steer the vehicle."""
         return self.type in _MULTICOPTERS
+
+    @property
+    def no_elevator(self) -> Problem | None:
+        """Reason for which the vehicle can have no elevator, whatever its outputs; None where it can."""
+        if not self.is_multicopter:
+            return None
+        return Problem(
+            "multicopter",
+            f"{self} is a multicopter: it has no elevator.",
+            "Give the log or link of an aircraft with an elevator.",
+        )
 
     @property
     def mends(self) -> Mends:
