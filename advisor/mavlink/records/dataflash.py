@@ -5,7 +5,7 @@ AP_Logger, "Log message formats"). Records carry no checksum. So a record counts
 the end of the file, follows right behind it.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -79,13 +79,24 @@ class RecordTable:
         return RecordTable(self.order[rows], {name: values[rows] for name, values in self.fields.items()})
 
 
-def read_tables(path: Path, names: Iterable[str]) -> dict[str, RecordTable]:
-    """Return the records of the named types; a type without records is left out."""
+def read_logs(path: Path, names: Iterable[str]) -> Iterator[dict[str, RecordTable]]:
+    """Yield the records of the named types, for each log that was joined into the file.
+
+    A log begins with the definition of its definitions. Two logs may number their types differently. A type
+    without records is left out.
+    """
     stream = np.fromfile(path, dtype=np.uint8)
     starts = np.empty(len(stream) // 4 + 1, dtype=np.int64)
     starts = starts[: scan_records(stream, starts)]
-    types = stream[starts + 2]
+    begins = np.flatnonzero((stream[starts + 2] == _FMT) & (stream[starts + 3] == _FMT))
     wanted = set(names)
+    for log in np.split(starts, begins[1:]):
+        yield _tables(stream, log, wanted)
+
+
+def _tables(stream: NDArray[np.uint8], starts: IntArray, wanted: set[str]) -> dict[str, RecordTable]:
+    """Return the records of one log, which begin at ``starts``."""
+    types = stream[starts + 2]
     tables = {}
     definition: Any
     for definition in _records(stream, starts[types == _FMT] + 3, _FMT_LAYOUT):
