@@ -1,6 +1,7 @@
 """An ArduPilot log as the messages that its telemetry would have carried."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -68,18 +69,27 @@ def read_dataflash(path: Path, wanted: Iterable[str] | None = None) -> Iterator[
     """
     apart = (name for names in SENSORS_APART.values() for name in names)
     names = None if wanted is None else set(wanted)
-    is_log = False
+    is_log, newest = False, -1
     for every in read_logs(path, (*_RECORDS, *SDLOG2_RECORDS, *apart)):
         messages = _messages({name: _believable(table) for name, table in every.items()})
         if messages is not None:
             is_log = True
-            yield from _batch(messages, names)
+            for batch in _batch(messages, names):
+                after = [_after(newest, batch, c) for c in batch]
+                newest = max(int(c.order[-1]) for c in after)
+                yield after
     if not is_log:
         raise UnusableInputError(
             "no_messages",
             f"{path.name} holds no ATT, IMU or RCOU records.",
             "Set LOG_BITMASK so that attitude, IMU and RC output are logged, or give a .tlog.",
         )
+
+
+def _after(newest: int, batch: Sequence[Columns], columns: Columns) -> Columns:
+    """Return columns of a batch with orders beyond the newest one of the log before."""
+    late_by = newest + 1 - min(int(c.order[0]) for c in batch)
+    return replace(columns, order=columns.order + late_by) if newest >= 0 and late_by > 0 else columns
 
 
 def _messages(stored: Mapping[str, RecordTable]) -> Iterator[Columns] | None:
