@@ -11,8 +11,8 @@ from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.signals.clocks import place
 from advisor.flight.signals.messages import Columns, FloatArray
 
-_ARMED = 128
-"""MAV_MODE_FLAG_SAFETY_ARMED, MAVLink common.xml."""
+ARMED = 128
+"""MAV_MODE_FLAG_SAFETYARMED, MAVLink common.xml."""
 _MILLI_G = GRAVITY_M_S2 / 1000.0
 
 # The counters that stamp messages (field, length of a tick in s); MAVLink common.xml, ardupilotmega.xml.
@@ -71,7 +71,7 @@ READINGS = (
     Reading("static_pressure", "HIGHRES_IMU", "abs_pressure", _scaled(100.0)),
     Reading("groundspeed", "VFR_HUD", "groundspeed", _scaled(1.0)),
     Reading("landed_state", "EXTENDED_SYS_STATE", "landed_state", _scaled(1.0)),
-    Reading("armed", "HEARTBEAT", "base_mode", lambda raw: (np.asarray(raw) & _ARMED > 0).astype(np.float64)),
+    Reading("armed", "HEARTBEAT", "base_mode", lambda raw: (np.asarray(raw) & ARMED > 0).astype(np.float64)),
 )
 """Sources of each channel, the best first where several messages carry the channel."""
 

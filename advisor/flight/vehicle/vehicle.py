@@ -12,7 +12,7 @@ _AUTOPILOTS = {0: "generic", 3: "ardupilot", 12: "px4", 4: "openpilot", 15: "arm
 _PERIPHERALS = frozenset({5, 6, 18, 26, 27, 30, 31, 32, 33, 34, 36, 37, 38, 39, 40, 41, 42})
 """Types that are no vehicle: antenna tracker, ground station, onboard controller, gimbal, ADS-B, camera, and
 other parts."""
-_MULTICOPTERS = frozenset({2, 13, 14, 15, 29, 35})
+MULTICOPTERS = frozenset({2, 13, 14, 15, 29, 35})
 """Aircraft on four, six, eight, three, twelve and ten rotors."""
 
 
@@ -37,7 +37,7 @@ class Vehicle:
     @property
     def is_multicopter(self) -> bool:
         """Whether rotors alone steer the vehicle."""
-        return self.type in _MULTICOPTERS
+        return self.type in MULTICOPTERS
 
     @property
     def no_elevator(self) -> Problem | None:
