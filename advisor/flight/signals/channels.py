@@ -1,7 +1,7 @@
 """From messages to physical quantities: units, signs and sources, each sample at its own stamp."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -11,8 +11,8 @@ from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.signals.clocks import place
 from advisor.flight.signals.messages import Columns, FloatArray
 
-_ARMED = 128
-"""MAV_MODE_FLAG_SAFETY_ARMED, MAVLink common.xml."""
+ARMED = 128
+"""MAV_MODE_FLAG_SAFETYARMED, MAVLink common.xml."""
 _MILLI_G = GRAVITY_M_S2 / 1000.0
 
 # The counters that stamp messages (field, length of a tick in s); MAVLink common.xml, ardupilotmega.xml.
@@ -71,9 +71,14 @@ READINGS = (
     Reading("static_pressure", "HIGHRES_IMU", "abs_pressure", _scaled(100.0)),
     Reading("groundspeed", "VFR_HUD", "groundspeed", _scaled(1.0)),
     Reading("landed_state", "EXTENDED_SYS_STATE", "landed_state", _scaled(1.0)),
-    Reading("armed", "HEARTBEAT", "base_mode", lambda raw: (np.asarray(raw) & _ARMED > 0).astype(np.float64)),
+    Reading("armed", "HEARTBEAT", "base_mode", lambda raw: (np.asarray(raw) & ARMED > 0).astype(np.float64)),
 )
 """Sources of each channel, the best first where several messages carry the channel."""
+
+COMPANIONS = ("NAMED_VALUE_FLOAT", "AOA_SSA")
+"""Messages that another component of the vehicle, such as a companion computer with a vane, may send."""
+COMPANION_ALPHA = "AOA_SSA.AOA of a companion computer"
+"""Source of an angle of attack from another component than the autopilot."""
 
 _STAMPS = {
     "ATTITUDE": _BOOT_MS,
@@ -136,6 +141,12 @@ def quantities(columns: Columns, t: FloatArray) -> Iterator[Decoded]:
         if reading.message == columns.name and reading.field in columns.fields:
             y = reading.value(columns.fields[reading.field])
             yield _decoded(reading.channel, reading.source, reading.provenance, t, y, columns)
+
+
+def of_companion(decoded: Decoded) -> Decoded:
+    """Return a quantity under the name of another component than the autopilot. Nobody knows how the
+    component finds it."""
+    return replace(decoded, source=f"{decoded.source} of a companion computer", provenance="unknown")
 
 
 def named_value(columns: Columns, t: FloatArray, name: str) -> Decoded:

@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from advisor.flight.signals.channels import GIVEN_AIRSPEED, READINGS, Decoded
+from advisor.flight.signals.channels import COMPANION_ALPHA, GIVEN_AIRSPEED, READINGS, Decoded
 from advisor.flight.signals.derived_alpha import DERIVED_ALPHA, DerivedAlpha
 from advisor.flight.signals.record import AIR_UNITS, UNITS, Channel
 from advisor.flight.signals.track import ChannelStatus, Track
@@ -50,9 +50,9 @@ class Tracks:
         self._sources["airspeed"].append(GIVEN_AIRSPEED)
         named = alpha_source.removeprefix("named_value:")
         self._sources["alpha"] = {
-            "auto": ["AOA_SSA.AOA", DERIVED_ALPHA],
-            "none": ["AOA_SSA.AOA", DERIVED_ALPHA],
-            "aoa_ssa": ["AOA_SSA.AOA"],
+            "auto": ["AOA_SSA.AOA", COMPANION_ALPHA, DERIVED_ALPHA],
+            "none": ["AOA_SSA.AOA", COMPANION_ALPHA, DERIVED_ALPHA],
+            "aoa_ssa": ["AOA_SSA.AOA", COMPANION_ALPHA],
             "derived": [DERIVED_ALPHA],
         }.get(alpha_source, [f"NAMED_VALUE_FLOAT.{named}"])
 

@@ -238,8 +238,11 @@ class Identity:
         return [Notice(READER_NOTICE, f"{name} changed from {before:g} to {value:g}{at}: {used}.")]
 
     def _settle_surfaces(self) -> list[FlightEvent]:
-        wiring = self._wiring()
-        self.elevator = find_elevator(self._elevator, wiring)
+        wiring, vehicle = self._wiring(), self._finder.vehicle
+        self.elevator = (vehicle and vehicle.no_elevator) or find_elevator(self._elevator, wiring)
+        if vehicle is not None and vehicle.is_multicopter:
+            self.surfaces = {}
+            return []
         if isinstance(self.elevator, Problem) and self._taken is not None:
             self.elevator = find_elevator(self._taken, wiring, "by a guess that a hand has taken")
         found = {

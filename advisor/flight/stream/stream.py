@@ -20,7 +20,15 @@ from advisor.flight.maneuvers.markers import HEARD, MarkerWatch
 from advisor.flight.maneuvers.marks import Mark, Marks
 from advisor.flight.signals.attitude import Attitudes
 from advisor.flight.signals.banks import Banks, merged
-from advisor.flight.signals.channels import Decoded, given_airspeed, named_value, quantities, stamps
+from advisor.flight.signals.channels import (
+    COMPANIONS,
+    Decoded,
+    given_airspeed,
+    named_value,
+    of_companion,
+    quantities,
+    stamps,
+)
 from advisor.flight.signals.clocks import BootClock
 from advisor.flight.signals.derived_alpha import DERIVED_ALPHA, promised
 from advisor.flight.signals.instrument_finding import InstrumentFinding
@@ -206,7 +214,7 @@ class FlightStream:
     @property
     def guess(self) -> Guess | None:
         """Guess of the elevator's output, while no parameter states the output."""
-        return self._guesses.newest
+        return None if self.vehicle is not None and self.vehicle.is_multicopter else self._guesses.newest
 
     @property
     def no_data(self) -> tuple[Problem, ...]:
@@ -367,12 +375,14 @@ class FlightStream:
             now = np.searchsorted(orders, columns.order, side="right") - 1
             if columns.name in HEARD:
                 self.marks.hear(self._markers.heard(columns, stamps(columns, clock[now])))
-            if columns.component != vehicle.component and columns.name != "NAMED_VALUE_FLOAT":
+            companion = columns.component != vehicle.component
+            if companion and columns.name not in COMPANIONS:
                 continue
-            t = clock[now] if columns.component != vehicle.component else stamps(columns, clock[now])
+            # A companion computer has a clock of its own.
+            t = clock[now] if companion else stamps(columns, clock[now])
             if columns.name == "HEARTBEAT" and np.isfinite(t[-1]):
                 self._heartbeat_s = float(t[-1])
-            for new in self._decode(columns, t):
+            for new in self._decode(columns, t, companion):
                 self._tracks.append(new)
                 if self._tracks.serves(new):
                     self._service.take(new.channel, new.source, arrivals(columns, new.order))
@@ -397,8 +407,8 @@ class FlightStream:
             return followed
         return [*followed, *self._guesses.advance(self._first_s, self._master_s, self._tracks.cut)]
 
-    def _decode(self, columns: Columns, t: FloatArray) -> Iterator[Decoded]:
-        yield from quantities(columns, t)
+    def _decode(self, columns: Columns, t: FloatArray, companion: bool) -> Iterator[Decoded]:
+        yield from map(of_companion, quantities(columns, t)) if companion else quantities(columns, t)
         if columns.name == "ATTITUDE" and self._aircraft.airspeed_m_s is not None:
             yield given_airspeed(columns, t, self._aircraft.airspeed_m_s)
         if columns.name == "NAMED_VALUE_FLOAT" and self._aircraft.alpha.source.startswith("named_value:"):
