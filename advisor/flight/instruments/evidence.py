@@ -45,6 +45,8 @@ _SIDE_FORCE = 0.1
 _YAW_SHARE = 0.5
 """Largest share of the yaw rate in the pitch angle's rate, by root mean squares. Above it the record tells of
 the yaw rate as much as of the pitch rate."""
+_LARGEST_ALPHA_RAD = radians(30.0)
+"""Largest angle of attack, rad, at which a short period is flown. Every wing has stalled there."""
 _STEP = 0.05
 """Step of the scale of α by which delays and air speed are differentiated, as a share."""
 
@@ -176,7 +178,9 @@ def _parts(
     t_alpha, alpha = renewed(source.t, source.y)
     theta, bank = _at("theta", t, channels), bank_at(t, channels)
     along = _at("a_x", t, channels) if "a_x" in channels else GRAVITY_M_S2 * np.sin(theta)
-    turning = path_turning(along, _at("a_z", t, channels), theta, np.interp(t, t_alpha, alpha), bank) / speed
+    # A reading in another unit may give any angle; the force's direction takes a possible one.
+    angle = np.clip(np.interp(t, t_alpha, alpha), -_LARGEST_ALPHA_RAD, _LARGEST_ALPHA_RAD)
+    turning = path_turning(along, _at("a_z", t, channels), theta, angle, bank) / speed
     return t, q.y, turning, t_alpha, alpha
 
 

@@ -72,8 +72,7 @@ def examine(channels: Mapping[str, Channel], earlier: Evidence | None = None) ->
         Pooled evidence of earlier records of the same instruments.
     """
     work = _Work(dict(channels), earlier or {})
-    if _attitude_and_rate(work):
-        _force_unit(work)
+    if _attitude_and_rate(work) and _force_unit(work):
         _clock_of_rate(work)
         _alpha_and_force(work)
     return Examined(work.channels, work.evidence, tuple(work.findings))
@@ -157,11 +156,12 @@ def _attitude_and_rate(work: _Work) -> bool:
     return False
 
 
-def _force_unit(work: _Work) -> None:
-    """Hold the mean vertical force against gravity, and correct a known unit or sense."""
+def _force_unit(work: _Work) -> bool:
+    """Hold the mean vertical force against gravity, and correct a known unit or sense; return whether the
+    force has a known unit."""
     known = work.learn(force_against_gravity(work.channels)).get("a_z_scale")
     if known is None or not work.has("a_z"):
-        return
+        return True
     source = work.channels["a_z"].source
     stated = "m/s^2" if source.startswith("HIGHRES_IMU") else "mg"
     units = {name: _FORCE_UNITS_M_S2[stated] / size for name, size in _FORCE_UNITS_M_S2.items()}
@@ -169,14 +169,14 @@ def _force_unit(work: _Work) -> None:
     factors |= {f"{REVERSED}, {name}": -factor for name, factor in units.items()}
     weighed = weigh(known, factors, _FORCE_WIDTH)
     if not weighed.contradicts:
-        return
+        return True
     told = f"in the mean it reads {_with_error(known)} g where the motion is 1 g"
     if weighed.best == ANY:
         work.contradict(
             "a_z", "scale", 1.0, known.value, known, f"a_z has an unknown unit: {told}",
             f"check unit and calibration of the accelerometer ({source})",
         )  # fmt: skip
-        return
+        return False
     reverse, unit = weighed.factor < 0.0, weighed.best.removeprefix(f"{REVERSED}, ")
     other_unit = unit != stated
     said = " and ".join([*([f"in {unit}"] if other_unit else []), *(["z up"] if reverse else [])])
@@ -187,6 +187,7 @@ def _force_unit(work: _Work) -> None:
     )  # fmt: skip
     work.divide("a_z", weighed.factor)
     work.divide("a_x", abs(weighed.factor))
+    return True
 
 
 def _clock_of_rate(work: _Work) -> None:
@@ -224,7 +225,8 @@ def _alpha_and_force(work: _Work) -> None:
 def _unwrap_alpha(work: _Work) -> None:
     """Turn an angle of attack that is counted from 0 to 360 deg into one about zero."""
     alpha = work.channels["alpha"]
-    if not np.any(alpha.y > pi):
+    around = (alpha.y >= 0.0) & (alpha.y <= 2.0 * pi) & (np.abs(alpha.y - pi) > pi / 2.0)
+    if not np.all(around) or np.max(alpha.y) < pi:
         return
     turned = (alpha.y + pi) % (2.0 * pi) - pi
     work.contradict(
