@@ -225,8 +225,8 @@ def _alpha_and_force(work: _Work) -> None:
 def _unwrap_alpha(work: _Work) -> None:
     """Turn an angle of attack that is counted from 0 to 360 deg into one about zero."""
     alpha = work.channels["alpha"]
-    around = (alpha.y >= 0.0) & (alpha.y <= 2.0 * pi) & (np.abs(alpha.y - pi) > pi / 2.0)
-    if not np.all(around) or np.max(alpha.y) < pi:
+    near_zero = (alpha.y >= 0.0) & (np.abs(alpha.y - pi) > pi / 2.0) & (alpha.y < 2.01 * pi)
+    if not np.all(near_zero) or np.max(alpha.y) < pi:
         return
     turned = (alpha.y + pi) % (2.0 * pi) - pi
     work.contradict(
