@@ -43,8 +43,8 @@ _ALIGNMENT = 0.02
 _SIDE_FORCE = 0.1
 """Standard deviation of the specific force along body y, in g: a sideslip of some degrees."""
 _YAW_SHARE = 0.5
-"""Largest share of the yaw rate in the pitch angle's rate, by root mean squares. Above it the record tells of
-the yaw rate as much as of the pitch rate."""
+"""Largest share of the yaw rate in the pitch angle's rate, by root mean squares. Above it the yaw rate
+decides the result."""
 _LARGEST_ALPHA_RAD = radians(30.0)
 """Largest angle of attack, rad, at which a short period is flown. Every wing has stalled there."""
 _STEP = 0.05

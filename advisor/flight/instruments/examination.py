@@ -1,7 +1,7 @@
 """Examination of the instruments of one record: what contradicts, and the channels with known errors removed.
 
-The order is that of dependence: attitude and pitch rate, the unit of the specific force, the clocks, then the
-angle of attack and the air speed, which are checked by all of these.
+Each check relies on the earlier ones. The order is: attitude and pitch rate, unit of the specific force,
+clocks, angle of attack, air speed.
 """
 
 from collections.abc import Mapping
