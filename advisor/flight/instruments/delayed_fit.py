@@ -20,7 +20,7 @@ _FIRST_ROUNDS, _ROUNDS = 2, 15
 _SETTLED_S = 1e-5
 _LARGEST_STEP_S = 0.05
 _FEWEST_SAMPLES = 20
-_DRIFT = 2
+DRIFT = 2
 """Degree of the polynomial in time with which biases and slow errors enter an integral."""
 
 
@@ -64,7 +64,11 @@ class _Point(NamedTuple):
 
 
 def fit_delays(
-    t: FloatArray, y: FloatArray, summands: Sequence[Summand], near_s: FloatArray | None = None
+    t: FloatArray,
+    y: FloatArray,
+    summands: Sequence[Summand],
+    near_s: FloatArray | None = None,
+    drift: int = DRIFT,
 ) -> DelayedFit | None:
     """Fit y(t) = Σ f·S(t − τ) + b_0 + b_1 t + b_2 t² by Gauss-Newton in the delays τ.
 
@@ -78,20 +82,23 @@ def fit_delays(
         One or two summands, all on one grid of stamps.
     near_s
         Shape (k,): delays near the optimum, where they are known.
+    drift
+        Degree of the polynomial b in time.
     """
     grid = summands[0].t
     inside = (t >= grid[0] + LONGEST_DELAY_S) & (t <= grid[-1] - LONGEST_DELAY_S)
     t, y = t[inside], y[inside]
     if len(t) < _FEWEST_SAMPLES or np.ptp(y) == 0.0 or any(np.ptp(s.rate) == 0.0 for s in summands):
         return None
+    slow = np.vander((t - t.mean()) / np.ptp(t), drift + 1)
     shapes = [integrated(s.t, s.rate) for s in summands]
     starts = np.stack(np.meshgrid(*[_STARTS_S] * len(summands)), axis=-1).reshape(-1, len(summands))
     looked = [
-        _descended(t, y, summands, shapes, start, _FIRST_ROUNDS)
+        _descended(t, y, slow, summands, shapes, start, _FIRST_ROUNDS)
         for start in (starts if near_s is None else near_s[None])
     ]
     nearest = min(looked, key=lambda point: point.cost)
-    best = _descended(t, y, summands, shapes, nearest.delays, _ROUNDS)
+    best = _descended(t, y, slow, summands, shapes, nearest.delays, _ROUNDS)
     covariance = _covariance(best.jacobian, best.residual)
     k = len(summands)
     free = [i for i, s in enumerate(summands) if s.factor is None]
@@ -103,6 +110,7 @@ def fit_delays(
 def _descended(
     t: FloatArray,
     y: FloatArray,
+    slow: FloatArray,
     summands: Sequence[Summand],
     shapes: Sequence[FloatArray],
     start: FloatArray,
@@ -110,7 +118,6 @@ def _descended(
 ) -> _Point:
     """Return the point that Gauss-Newton reaches from a start within some rounds."""
     grid, delays = summands[0].t, start.copy()
-    slow = np.vander((t - t.mean()) / np.ptp(t), _DRIFT + 1)
     free = [i for i, s in enumerate(summands) if s.factor is None]
     known = np.array([0.0 if s.factor is None else s.factor for s in summands])
     while True:

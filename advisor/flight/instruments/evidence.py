@@ -15,7 +15,7 @@ from advisor.flight.instruments.delayed_fit import Summand, fit_delays
 from advisor.flight.instruments.measured import Evidence, Measured
 from advisor.flight.signals.derived_alpha import DERIVED_ALPHA, SLOWEST_FLIGHT_M_S
 from advisor.flight.signals.messages import FloatArray
-from advisor.flight.signals.motion import bank_at, path_turning
+from advisor.flight.signals.motion import bank_at, path_turning, speed_rate
 from advisor.flight.signals.record import Channel
 from advisor.flight.signals.renewal import renewed
 
@@ -96,6 +96,23 @@ def force_against_gravity(channels: Channels) -> Evidence:
     scale = -mean / GRAVITY_M_S2 / motion
     sideways = _SIDE_FORCE * float(np.mean(np.abs(np.sin(bank))))
     return {"a_z_scale": Measured(scale, abs(scale / motion) * hypot(unsure * per_g, _ALIGNMENT, sideways))}
+
+
+def speed_against_force(channels: Channels) -> Evidence:
+    """Return ``speed_scale``, the change of the air speed over that by the accelerometers.
+
+    V̇ = a_x cos α + a_z sin α − g sin γ holds in steadily moving air. An error of α cancels to first order.
+    """
+    if not _usable(channels, "a_x", "a_z", "theta", "airspeed"):
+        return {}
+    force, speed = channels["a_z"], channels["airspeed"]
+    t, alpha = force.t, np.clip(_at("alpha", force.t, channels), -_LARGEST_ALPHA_RAD, _LARGEST_ALPHA_RAD)
+    theta = _at("theta", t, channels)
+    rate = speed_rate(_at("a_x", t, channels), force.y, theta, alpha, bank_at(t, channels))
+    fit = fit_delays(speed.t, speed.y, [Summand(t, rate)], drift=1)
+    if fit is None:
+        return {}
+    return {"speed_scale": Measured(float(fit.factors[0]), float(fit.factor_stds[0]))}
 
 
 def alpha_against_motion(channels: Channels) -> Evidence:

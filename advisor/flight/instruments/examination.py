@@ -18,6 +18,7 @@ from advisor.flight.instruments.evidence import (
     rate_against_attitude,
     rate_moves_alpha,
     scale_width,
+    speed_against_force,
 )
 from advisor.flight.instruments.hypotheses import ANY, Weighed, weigh
 from advisor.flight.instruments.measured import Evidence, Measured, pooled
@@ -74,7 +75,8 @@ def examine(channels: Mapping[str, Channel], earlier: Evidence | None = None) ->
     work = _Work(dict(channels), earlier or {})
     if _attitude_and_rate(work) and _force_unit(work):
         _clock_of_rate(work)
-        _alpha_and_force(work)
+        if _speed_unit(work):
+            _alpha_and_force(work)
     return Examined(work.channels, work.evidence, tuple(work.findings))
 
 
@@ -290,16 +292,38 @@ def _clock_of_force(work: _Work, told: Mapping[str, Measured]) -> bool:
     return False
 
 
+def _speed_unit(work: _Work) -> bool:
+    """Hold the change of the air speed against the accelerometers; return whether its unit is as stated."""
+    known = work.learn(speed_against_force(work.channels)).get("speed_scale")
+    if known is None or not work.has("airspeed"):
+        return True
+    weighed = _weighed_speed(known)
+    # A gust changes the air speed by any amount, which is no unit.
+    if weighed.contradicts and weighed.best != ANY:
+        _name_speed(work, weighed, known, "it changes {} times as much as the accelerometers say")
+        return False
+    return True
+
+
+def _weighed_speed(known: Measured) -> Weighed:
+    factors = {unit: 1.0 / size for unit, size in _SPEED_UNITS_M_S.items()}
+    return weigh(known, factors, _AIRSPEED_WIDTH, _AIRSPEED_MEAN)
+
+
 def _airspeed(work: _Work, told: Mapping[str, Measured]) -> bool:
     """Hold the air speed against the motion; return whether they contradict."""
     known = told.get("airspeed_scale")
     if known is None:
         return False
-    factors = {unit: 1.0 / size for unit, size in _SPEED_UNITS_M_S.items()}
-    weighed = weigh(known, factors, _AIRSPEED_WIDTH, _AIRSPEED_MEAN)
-    if not weighed.contradicts:
-        return False
-    told_so = f"it reads {_with_error(known)} times the speed by pitch rate, specific force and alpha"
+    weighed = _weighed_speed(known)
+    if weighed.contradicts:
+        by = "it reads {} times the speed by pitch rate, specific force and alpha"
+        _name_speed(work, weighed, known, by)
+    return weighed.contradicts
+
+
+def _name_speed(work: _Work, weighed: Weighed, known: Measured, by: str) -> None:
+    told_so = by.format(_with_error(known))
     if weighed.best == ANY:
         work.contradict(
             "airspeed", "scale", 1.0, known.value, known, f"the air speed is wrong: {told_so}",
@@ -310,7 +334,6 @@ def _airspeed(work: _Work, told: Mapping[str, Measured]) -> bool:
             "airspeed", "unit", "m/s", weighed.best, known, f"the air speed is in {weighed.best}: {told_so}",
             "send the air speed in m/s",
         )  # fmt: skip
-    return True
 
 
 def _late(

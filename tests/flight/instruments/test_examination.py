@@ -181,3 +181,14 @@ def test_a_steady_turn_is_no_contradiction() -> None:
     values = {"theta": theta, "q": q, "r": np.full(len(T), turn * np.cos(bank))}
     values["bank"] = np.full(len(T), bank)
     assert codes({name: Channel(name, T, y) for name, y in values.items()}) == []
+
+
+@pytest.mark.parametrize("unit", [1.944, 3.6])
+def test_an_air_speed_in_another_unit_shows_without_a_measured_alpha(unit: float) -> None:
+    sound = flight(DERIVED_ALPHA)
+    changing = SPEED + 1.5 * np.sin(0.8 * T)
+    force = sound["a_x"].y + np.gradient(changing, T)
+    faster = sound | {"airspeed": Channel("airspeed", T, changing), "a_x": Channel("a_x", T, force)}
+    assert codes(faster) == []
+    (wrong,) = examine(times(unit, "airspeed")(faster)).findings
+    assert (wrong.code, wrong.refuses) == ("airspeed_unit", True)
