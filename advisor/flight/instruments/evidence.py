@@ -15,7 +15,7 @@ from advisor.flight.instruments.delayed_fit import Summand, fit_delays
 from advisor.flight.instruments.measured import Evidence, Measured
 from advisor.flight.signals.derived_alpha import DERIVED_ALPHA, SLOWEST_FLIGHT_M_S
 from advisor.flight.signals.messages import FloatArray
-from advisor.flight.signals.motion import bank_at, path_turning
+from advisor.flight.signals.motion import bank_at, path_turning, speed_rate
 from advisor.flight.signals.record import Channel
 from advisor.flight.signals.renewal import renewed
 
@@ -43,8 +43,10 @@ _ALIGNMENT = 0.02
 _SIDE_FORCE = 0.1
 """Standard deviation of the specific force along body y, in g: a sideslip of some degrees."""
 _YAW_SHARE = 0.5
-"""Largest share of the yaw rate in the pitch angle's rate, by root mean squares. Above it the record tells of
-the yaw rate as much as of the pitch rate."""
+"""Largest share of the yaw rate in the pitch angle's rate, by root mean squares. Above it the yaw rate
+decides the result."""
+_LARGEST_ALPHA_RAD = radians(30.0)
+"""Largest angle of attack, rad, at which a short period is flown. Every wing has stalled there."""
 _STEP = 0.05
 """Step of the scale of α by which delays and air speed are differentiated, as a share."""
 
@@ -94,6 +96,23 @@ def force_against_gravity(channels: Channels) -> Evidence:
     scale = -mean / GRAVITY_M_S2 / motion
     sideways = _SIDE_FORCE * float(np.mean(np.abs(np.sin(bank))))
     return {"a_z_scale": Measured(scale, abs(scale / motion) * hypot(unsure * per_g, _ALIGNMENT, sideways))}
+
+
+def speed_against_force(channels: Channels) -> Evidence:
+    """Return ``speed_scale``, the change of the air speed over that by the accelerometers.
+
+    V̇ = a_x cos α + a_z sin α − g sin γ holds in steadily moving air. An error of α cancels to first order.
+    """
+    if not _usable(channels, "a_x", "a_z", "theta", "airspeed"):
+        return {}
+    force, speed = channels["a_z"], channels["airspeed"]
+    t, alpha = force.t, np.clip(_at("alpha", force.t, channels), -_LARGEST_ALPHA_RAD, _LARGEST_ALPHA_RAD)
+    theta = _at("theta", t, channels)
+    rate = speed_rate(_at("a_x", t, channels), force.y, theta, alpha, bank_at(t, channels))
+    fit = fit_delays(speed.t, speed.y, [Summand(t, rate)], drift=1)
+    if fit is None:
+        return {}
+    return {"speed_scale": Measured(float(fit.factors[0]), float(fit.factor_stds[0]))}
 
 
 def alpha_against_motion(channels: Channels) -> Evidence:
@@ -176,7 +195,9 @@ def _parts(
     t_alpha, alpha = renewed(source.t, source.y)
     theta, bank = _at("theta", t, channels), bank_at(t, channels)
     along = _at("a_x", t, channels) if "a_x" in channels else GRAVITY_M_S2 * np.sin(theta)
-    turning = path_turning(along, _at("a_z", t, channels), theta, np.interp(t, t_alpha, alpha), bank) / speed
+    # A reading in another unit may give any angle; the force's direction takes a possible one.
+    angle = np.clip(np.interp(t, t_alpha, alpha), -_LARGEST_ALPHA_RAD, _LARGEST_ALPHA_RAD)
+    turning = path_turning(along, _at("a_z", t, channels), theta, angle, bank) / speed
     return t, q.y, turning, t_alpha, alpha
 
 

@@ -1,7 +1,7 @@
 """Examination of the instruments of one record: what contradicts, and the channels with known errors removed.
 
-The order is that of dependence: attitude and pitch rate, the unit of the specific force, the clocks, then the
-angle of attack and the air speed, which are checked by all of these.
+Each check relies on the earlier ones. The order is: attitude and pitch rate, unit of the specific force,
+clocks, angle of attack, air speed.
 """
 
 from collections.abc import Mapping
@@ -18,6 +18,7 @@ from advisor.flight.instruments.evidence import (
     rate_against_attitude,
     rate_moves_alpha,
     scale_width,
+    speed_against_force,
 )
 from advisor.flight.instruments.hypotheses import ANY, Weighed, weigh
 from advisor.flight.instruments.measured import Evidence, Measured, pooled
@@ -72,10 +73,10 @@ def examine(channels: Mapping[str, Channel], earlier: Evidence | None = None) ->
         Pooled evidence of earlier records of the same instruments.
     """
     work = _Work(dict(channels), earlier or {})
-    if _attitude_and_rate(work):
-        _force_unit(work)
+    if _attitude_and_rate(work) and _force_unit(work):
         _clock_of_rate(work)
-        _alpha_and_force(work)
+        if _speed_unit(work):
+            _alpha_and_force(work)
     return Examined(work.channels, work.evidence, tuple(work.findings))
 
 
@@ -157,11 +158,12 @@ def _attitude_and_rate(work: _Work) -> bool:
     return False
 
 
-def _force_unit(work: _Work) -> None:
-    """Hold the mean vertical force against gravity, and correct a known unit or sense."""
+def _force_unit(work: _Work) -> bool:
+    """Hold the mean vertical force against gravity, and correct a known unit or sense; return whether the
+    force has a known unit."""
     known = work.learn(force_against_gravity(work.channels)).get("a_z_scale")
     if known is None or not work.has("a_z"):
-        return
+        return True
     source = work.channels["a_z"].source
     stated = "m/s^2" if source.startswith("HIGHRES_IMU") else "mg"
     units = {name: _FORCE_UNITS_M_S2[stated] / size for name, size in _FORCE_UNITS_M_S2.items()}
@@ -169,14 +171,14 @@ def _force_unit(work: _Work) -> None:
     factors |= {f"{REVERSED}, {name}": -factor for name, factor in units.items()}
     weighed = weigh(known, factors, _FORCE_WIDTH)
     if not weighed.contradicts:
-        return
+        return True
     told = f"in the mean it reads {_with_error(known)} g where the motion is 1 g"
     if weighed.best == ANY:
         work.contradict(
             "a_z", "scale", 1.0, known.value, known, f"a_z has an unknown unit: {told}",
             f"check unit and calibration of the accelerometer ({source})",
         )  # fmt: skip
-        return
+        return False
     reverse, unit = weighed.factor < 0.0, weighed.best.removeprefix(f"{REVERSED}, ")
     other_unit = unit != stated
     said = " and ".join([*([f"in {unit}"] if other_unit else []), *(["z up"] if reverse else [])])
@@ -187,6 +189,7 @@ def _force_unit(work: _Work) -> None:
     )  # fmt: skip
     work.divide("a_z", weighed.factor)
     work.divide("a_x", abs(weighed.factor))
+    return True
 
 
 def _clock_of_rate(work: _Work) -> None:
@@ -224,7 +227,8 @@ def _alpha_and_force(work: _Work) -> None:
 def _unwrap_alpha(work: _Work) -> None:
     """Turn an angle of attack that is counted from 0 to 360 deg into one about zero."""
     alpha = work.channels["alpha"]
-    if not np.any(alpha.y > pi):
+    near_zero = (alpha.y >= 0.0) & (np.abs(alpha.y - pi) > pi / 2.0) & (alpha.y < 2.01 * pi)
+    if not np.all(near_zero) or np.max(alpha.y) < pi:
         return
     turned = (alpha.y + pi) % (2.0 * pi) - pi
     work.contradict(
@@ -288,16 +292,38 @@ def _clock_of_force(work: _Work, told: Mapping[str, Measured]) -> bool:
     return False
 
 
+def _speed_unit(work: _Work) -> bool:
+    """Hold the change of the air speed against the accelerometers; return whether its unit is as stated."""
+    known = work.learn(speed_against_force(work.channels)).get("speed_scale")
+    if known is None or not work.has("airspeed"):
+        return True
+    weighed = _weighed_speed(known)
+    # A gust changes the air speed by any amount, which is no unit.
+    if weighed.contradicts and weighed.best != ANY:
+        _name_speed(work, weighed, known, "it changes {} times as much as the accelerometers say")
+        return False
+    return True
+
+
+def _weighed_speed(known: Measured) -> Weighed:
+    factors = {unit: 1.0 / size for unit, size in _SPEED_UNITS_M_S.items()}
+    return weigh(known, factors, _AIRSPEED_WIDTH, _AIRSPEED_MEAN)
+
+
 def _airspeed(work: _Work, told: Mapping[str, Measured]) -> bool:
     """Hold the air speed against the motion; return whether they contradict."""
     known = told.get("airspeed_scale")
     if known is None:
         return False
-    factors = {unit: 1.0 / size for unit, size in _SPEED_UNITS_M_S.items()}
-    weighed = weigh(known, factors, _AIRSPEED_WIDTH, _AIRSPEED_MEAN)
-    if not weighed.contradicts:
-        return False
-    told_so = f"it reads {_with_error(known)} times the speed by pitch rate, specific force and alpha"
+    weighed = _weighed_speed(known)
+    if weighed.contradicts:
+        by = "it reads {} times the speed by pitch rate, specific force and alpha"
+        _name_speed(work, weighed, known, by)
+    return weighed.contradicts
+
+
+def _name_speed(work: _Work, weighed: Weighed, known: Measured, by: str) -> None:
+    told_so = by.format(_with_error(known))
     if weighed.best == ANY:
         work.contradict(
             "airspeed", "scale", 1.0, known.value, known, f"the air speed is wrong: {told_so}",
@@ -308,7 +334,6 @@ def _airspeed(work: _Work, told: Mapping[str, Measured]) -> bool:
             "airspeed", "unit", "m/s", weighed.best, known, f"the air speed is in {weighed.best}: {told_so}",
             "send the air speed in m/s",
         )  # fmt: skip
-    return True
 
 
 def _late(

@@ -15,8 +15,8 @@ from advisor.flight.instruments.measured import Measured
 AS_STATED = "as stated"
 ANY = "any other scale"
 _DECADES = 4.0
-"""Decades of scale over which "any other scale" is spread evenly, on both sides of zero: from 0.01 to 100,
-which every pair of units in use lies within."""
+"""Decades of scale, from 0.01 to 100 on both sides of zero, over which "any other scale" is spread evenly.
+The ratio of any two units in use lies within."""
 _EXCLUDED = 0.01
 """Largest posterior probability of an excluded hypothesis: the usual level of 99 %."""
 _RESOLVED_SIGMAS = 3.0
