@@ -16,6 +16,7 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.aircraft.aircraft import PARAMETERS, Aircraft
+from advisor.decision.coupling import coupled
 from advisor.decision.envelope import changed_speed, flown, incomplete, outside, too_quick
 from advisor.decision.prediction import Z95
 from advisor.decision.verdict import NO_CURE_BY_INPUT, UNTRUSTED, Reason
@@ -64,6 +65,7 @@ def judge_quality(
     gentle = _mended(maneuver, _too_gentle(maneuver, fits))
     if isinstance(estimate, NoEstimate):
         return (*reasons, *follows, *gentle)
+    follows = [*(r for r in coupled(maneuver, estimate) if r.code not in codes), *follows]
     lacking = _badly_explained(estimate) or ([] if gentle else _mended(maneuver, _poor(maneuver, estimate)))
     if lacking and lacking[0].code == "turbulence":
         return (*reasons, *lacking, *follows)

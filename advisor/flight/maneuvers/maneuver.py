@@ -28,8 +28,8 @@ class Span:
     """Steps of the input: (onset in s, level in rad from trim) for each."""
     closed_by: str
     """Reason of the end: ``quiet``, ``mode change``, ``next input``, ``gap``, ``end of log``, ``air speed``
-    or ``no rest``. A marked stretch has ``marked by hand``, ``marked by a switch`` or ``marked by a text of the
-    vehicle``."""
+    or ``no rest``. A marked stretch has ``marked by hand``, ``marked by a switch`` or ``marked by a text of
+    the vehicle``."""
 
 
 @dataclass(frozen=True, slots=True)
