@@ -40,11 +40,8 @@ _ASSUMED_STROKE_DEG = 25.0
 """Full travel of the elevator where the aircraft file has no calibration, deg."""
 
 
-def incomplete(
-    maneuver: Maneuver, period_s: float, counted: Collection[str], is_informed: bool
-) -> list[Reason]:
-    """Return reasons for an incomplete record: missing or faulty channels, slow ones, gaps, a short free
-    response.
+def incomplete(maneuver: Maneuver, period_s: float, counted: Collection[str]) -> list[Reason]:
+    """Return reasons for incomplete data: missing or faulty channels, slow ones, gaps.
 
     Parameters
     ----------
@@ -54,8 +51,6 @@ def incomplete(
         Natural period of the short-period motion, estimated or assumed, s.
     counted
         Outputs that the estimate used. Gaps in other channels do no harm.
-    is_informed
-        Whether the estimate determines the short period. The free response is then long enough.
     """
     missing = [name for name in NEEDED if name not in maneuver.channels]
     if missing:
@@ -66,11 +61,7 @@ def incomplete(
         return [Reason(d.code, f"{d.text}; {d.fix}", d.value, 0.0) for d in wrong]
     needed = [maneuver.channels[name] for name in NEEDED]
     used = [maneuver.channels[name] for name in {*NEEDED, *counted} if name in maneuver.channels]
-    return [
-        *_rate(needed, period_s),
-        *_gap(used, maneuver, period_s),
-        *([] if is_informed else _free_response(maneuver, period_s)),
-    ]
+    return [*_rate(needed, period_s), *_gap(used, maneuver, period_s)]
 
 
 def outside(maneuver: Maneuver, aircraft: Aircraft) -> list[Reason]:
@@ -135,7 +126,8 @@ def _gap(channels: list[Channel], maneuver: Maneuver, period_s: float) -> list[R
     return sorted(reasons, key=lambda reason: (-reason.value, reason.text))[:1]
 
 
-def _free_response(maneuver: Maneuver, period_s: float) -> list[Reason]:
+def short_response(maneuver: Maneuver, period_s: float) -> list[Reason]:
+    """Return a reason where the record ends before the motion has died down."""
     if maneuver.span.closed_by == LEFT:
         return _left_too_soon(maneuver)
     if _is_broken_off(maneuver.span):
