@@ -67,7 +67,7 @@ class Cutting:
         """Return the event of a movement that has ended: a manoeuvre, or an activity with its reason."""
         maneuver = self._cut(span, boot, up_to_order)
         because = not_an_input(
-            maneuver, self.why_on_ground(span, up_to_order), self._motion(span, up_to_order)
+            maneuver, self.why_on_ground(span, up_to_order), self._motion(span, up_to_order), self._limits
         )
         if because is not None:
             self.activities[because.what] += 1
