@@ -1,14 +1,14 @@
 """Bias that an omitted pitching moment causes in the derivatives, from the fit of one manoeuvre.
 
-Let S be the sensitivities of the fitted outputs with respect to the parameters, s the response to the omitted
-term with the coefficient one, and W the inverse of the noise's covariance. Near the optimum the parameters
-take up
+S holds the sensitivities of the fitted outputs with respect to the parameters. s is the response to the
+omitted term with the coefficient one. W is the inverse of the noise's covariance. Near the optimum the
+parameters take up
 
     Δθ = (SᵀWS)⁻¹·SᵀW·s
 
-for each unit of the coefficient (omitted-variable bias; Greene, Econometric Analysis, 2012, ch. 4). Where
-nobody knows the coefficient, least squares with s as one more column estimates the coefficient from the
-residual, after both were made white by the residual's lag-1 correlation.
+for each unit of the coefficient (omitted-variable bias; Greene, Econometric Analysis, 2012, ch. 4). An
+unknown coefficient follows from the residual, by least squares with s as one more column. The residual's
+lag-1 correlation is removed first.
 """
 
 from dataclasses import dataclass

@@ -31,8 +31,8 @@ inputs on record have 0.01 to 0.12 in calm air and 0.16 in gusts of 0.5 m/s. Whe
 counts they have up to 0.21, and an attitude hold in such gusts has 0.3 to 2."""
 _MOSTLY = 0.5
 """Share of a movement's variation that feedback of the motion may explain. Beyond one half the movement is
-mostly an answer. Recoveries of an attitude by hand on record have 0.63 to 0.93; test inputs that bring the
-attitude back have at most 0.35, with hand-flown steps and in gusts."""
+mostly an answer. Recoveries of an attitude by hand on record have 0.63 to 0.94. Test inputs that bring the
+attitude back have at most 0.35."""
 _STANDS_OUT = 3.0
 """Least ratio of a movement's fastest motion to the root mean square of the motion before: three standard
 deviations, which chance hardly exceeds. Hands that keep an attitude have 0.3 to 3.6, test inputs on record at
@@ -103,12 +103,20 @@ def not_an_input(
     if hovers(maneuver.mode):
         return Because("hover", f"the elevator moved in {maneuver.mode}, where rotors carry the aircraft")
     because = _tells_nothing(maneuver, maneuver.channels if motion is None else motion)
-    inside = has_an_errand(maneuver.mode) or not _is_external(maneuver)
-    if closes_pitch_loop(maneuver.mode) and (because or inside):
-        return Because("autopilot", f"the elevator moved in {maneuver.mode}; not a test input")
+    if closes_pitch_loop(maneuver.mode) and (lacks := _lacks_in_a_loop(maneuver, because)):
+        return Because("autopilot", f"the elevator moved in {maneuver.mode}{lacks}; not a test input")
     if because is None and (how := flown_elsewhere(maneuver, limits or Limits())) is not None:
         return Because("elsewhere", f"the elevator moved slowly {how}; not a test input")
     return because
+
+
+def _lacks_in_a_loop(maneuver: Maneuver, because: Because | None) -> str:
+    """Return in words what a movement in a closed loop lacks for a test input; empty for a test input."""
+    if has_an_errand(maneuver.mode):
+        return " by the autopilot's own task"
+    if not _is_external(maneuver):
+        return " without the sharp steps of a test"
+    return f", and {because.text.partition('; ')[0]}" if because else ""
 
 
 def _tells_nothing(maneuver: Maneuver, motion: Mapping[str, Channel]) -> Because | None:
