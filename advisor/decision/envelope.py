@@ -10,6 +10,7 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.decision.verdict import Reason
+from advisor.flight.maneuvers.hand_flying import OTHER_CONTROLS_DEG, THROTTLE_PERCENT
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.maneuvers.steady_speed import LEFT, speed_before
 from advisor.flight.signals.messages import FloatArray
@@ -28,8 +29,6 @@ _SHORTEST_FREE = 0.75
 """Least free response, in natural periods. Most of one swing is needed to determine the damping."""
 _SHORTEST_STEP = 0.15
 """Least length of the shortest step, in natural periods. The servo smears shorter steps."""
-_OTHER_CONTROLS_DEG = 5.0
-_THROTTLE_PERCENT = 15.0
 _CUT_SHORT_BY = {
     "gap": ("the telemetry breaks off", "check the link"),
     "end of log": ("the recording ends", "let the recording run on for some seconds"),
@@ -40,11 +39,8 @@ _ASSUMED_STROKE_DEG = 25.0
 """Full travel of the elevator where the aircraft file has no calibration, deg."""
 
 
-def incomplete(
-    maneuver: Maneuver, period_s: float, counted: Collection[str], is_informed: bool
-) -> list[Reason]:
-    """Return reasons for an incomplete record: missing or faulty channels, slow ones, gaps, a short free
-    response.
+def incomplete(maneuver: Maneuver, period_s: float, counted: Collection[str]) -> list[Reason]:
+    """Return reasons for incomplete data: missing or faulty channels, slow ones, gaps.
 
     Parameters
     ----------
@@ -54,8 +50,6 @@ def incomplete(
         Natural period of the short-period motion, estimated or assumed, s.
     counted
         Outputs that the estimate used. Gaps in other channels do no harm.
-    is_informed
-        Whether the estimate determines the short period. The free response is then long enough.
     """
     missing = [name for name in NEEDED if name not in maneuver.channels]
     if missing:
@@ -66,11 +60,7 @@ def incomplete(
         return [Reason(d.code, f"{d.text}; {d.fix}", d.value, 0.0) for d in wrong]
     needed = [maneuver.channels[name] for name in NEEDED]
     used = [maneuver.channels[name] for name in {*NEEDED, *counted} if name in maneuver.channels]
-    return [
-        *_rate(needed, period_s),
-        *_gap(used, maneuver, period_s),
-        *([] if is_informed else _free_response(maneuver, period_s)),
-    ]
+    return [*_rate(needed, period_s), *_gap(used, maneuver, period_s)]
 
 
 def outside(maneuver: Maneuver, aircraft: Aircraft) -> list[Reason]:
@@ -135,7 +125,8 @@ def _gap(channels: list[Channel], maneuver: Maneuver, period_s: float) -> list[R
     return sorted(reasons, key=lambda reason: (-reason.value, reason.text))[:1]
 
 
-def _free_response(maneuver: Maneuver, period_s: float) -> list[Reason]:
+def short_response(maneuver: Maneuver, period_s: float) -> list[Reason]:
+    """Return a reason where the record ends before the motion has died down."""
     if maneuver.span.closed_by == LEFT:
         return _left_too_soon(maneuver)
     if _is_broken_off(maneuver.span):
@@ -213,18 +204,18 @@ def _other_controls(maneuver: Maneuver) -> list[Reason]:
     reasons = []
     for name in ("aileron", "rudder"):
         moved = float(np.degrees(np.ptp(flown(maneuver, name)))) / 2.0 if len(flown(maneuver, name)) else 0.0
-        if moved > _OTHER_CONTROLS_DEG:
-            shown, most = distinct_texts(moved, _OTHER_CONTROLS_DEG)
+        if moved > OTHER_CONTROLS_DEG:
+            shown, most = distinct_texts(moved, OTHER_CONTROLS_DEG)
             text = f"{name} moved by {shown} deg (limit {most}); use the elevator alone"
-            reasons.append(Reason(name, text, moved, _OTHER_CONTROLS_DEG))
+            reasons.append(Reason(name, text, moved, OTHER_CONTROLS_DEG))
     return reasons
 
 
 def _throttle(maneuver: Maneuver) -> list[Reason]:
     throttle = flown(maneuver, "throttle")
     change = 100.0 * float(np.ptp(throttle)) if len(throttle) else 0.0
-    if change <= _THROTTLE_PERCENT:
+    if change <= THROTTLE_PERCENT:
         return []
-    shown, most = distinct_texts(change, _THROTTLE_PERCENT)
+    shown, most = distinct_texts(change, THROTTLE_PERCENT)
     text = f"throttle moved by {shown} % (limit {most}); leave it where it is"
-    return [Reason("throttle", text, change, _THROTTLE_PERCENT)]
+    return [Reason("throttle", text, change, THROTTLE_PERCENT)]

@@ -1,7 +1,7 @@
 """Objections to a manoeuvre itself, before any rule compares it with others.
 
-The checks run in this order: complete, sound instruments, within the model, rich enough, well explained. The
-first reason is the one that the crew can act on. Its consequences come after it.
+The checks run in this order: complete data, sound instruments, within the model, long enough, rich enough,
+well explained. The first reason is the one that the crew can act on. Its consequences come after it.
 
 Richness is information, not amplitude: the precision with which the estimate from this manoeuvre alone
 predicts the pitch rate of its own input. Moving air, a slow channel, a missing vane or a gentle input all
@@ -16,7 +16,8 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.aircraft.aircraft import PARAMETERS, Aircraft
-from advisor.decision.envelope import changed_speed, flown, incomplete, outside, too_quick
+from advisor.decision.coupling import coupled
+from advisor.decision.envelope import changed_speed, flown, incomplete, outside, short_response, too_quick
 from advisor.decision.verdict import NO_CURE_BY_INPUT, UNTRUSTED, Reason
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.purpose import LEAST_PITCH_RATE_DEG_S
@@ -51,22 +52,21 @@ def judge_quality(
     """
     period_s = natural_period(maneuver, estimate)
     fits = estimate.fits[0] if isinstance(estimate, Estimate) else {}
-    reasons = [
-        *incomplete(maneuver, period_s, fits, is_informed(estimate)),
-        *outside(maneuver, aircraft),
-    ]
+    reasons = [*incomplete(maneuver, period_s, fits), *outside(maneuver, aircraft)]
     codes = {reason.code for reason in reasons}
     if codes & UNTRUSTED:
         return tuple(reasons)
     if refused := refusals(maneuver.findings):
         return refused
-    follows = [*changed_speed(maneuver, aircraft), *too_quick(maneuver, period_s)]
+    tail = [] if is_informed(estimate) else short_response(maneuver, period_s)
+    follows = [*changed_speed(maneuver, aircraft), *tail, *too_quick(maneuver, period_s)]
     if codes & NO_CURE_BY_INPUT:
         # A larger input remedies no faulty record: reasons that ask for one would mislead.
         return (*reasons, *follows)
     gentle = _mended(maneuver, _too_gentle(maneuver, fits))
     if isinstance(estimate, NoEstimate):
         return (*reasons, *follows, *gentle)
+    follows = [*(r for r in coupled(maneuver, estimate) if r.code not in codes), *follows]
     lacking = _badly_explained(estimate) or ([] if gentle else _mended(maneuver, _poor(maneuver, estimate)))
     if lacking and lacking[0].code == "turbulence":
         return (*reasons, *lacking, *follows)

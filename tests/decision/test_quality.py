@@ -277,3 +277,11 @@ def test_no_larger_input_is_asked_for_while_a_channel_stands_still():
     assert [reason.code for reason in mended] == [reason.code for reason in told]
     assert not any("times the stick" in reason.text for reason in mended)
     assert any("check the accelerometer" in reason.text for reason in mended)
+
+
+def test_the_limits_of_the_flight_come_before_the_hands_of_the_pilot():
+    maneuver, estimated, _ = bad_flight()[1 + list(BAD_MANOEUVRES).index("airspeed")]
+    codes = [
+        reason.code for reason in judge_quality(cut_short(maneuver, 0.1), uncertain(estimated), AIRCRAFT)
+    ]
+    assert codes.index("airspeed") < codes.index("free_response")

@@ -6,9 +6,8 @@ A pilot who brings the aircraft back to steady flight answers what the aircraft 
 
 with s the sign of the steadying side, and with a delay τ of the hand. Such a movement begins where the
 attitude is off, and ends where the attitude is back. A test input begins in steady flight, and moves the
-aircraft away. The coefficients are a non-negative least-squares fit from the onset on, because hands that
-were still before the onset begin to act there (Lawson & Hanson, Solving Least Squares Problems, 1974,
-ch. 23).
+aircraft away. The coefficients are a non-negative least-squares fit (Lawson & Hanson, Solving Least Squares
+Problems, 1974, ch. 23). The fit begins at the onset, because hands that were still before begin to act there.
 """
 
 from collections.abc import Mapping

@@ -11,8 +11,10 @@ from math import degrees, isfinite, radians
 
 import numpy as np
 
+from advisor.aircraft.aircraft import Limits
 from advisor.flight.maneuvers.excitation import excitation
 from advisor.flight.maneuvers.feedback import explained_by_feedback
+from advisor.flight.maneuvers.hand_flying import EDGE_S, flown_elsewhere, motion_of
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.rest import SMALLEST_RAD
 from advisor.flight.signals.derived_alpha import SLOWEST_FLIGHT_M_S
@@ -29,14 +31,12 @@ inputs on record have 0.01 to 0.12 in calm air and 0.16 in gusts of 0.5 m/s. Whe
 counts they have up to 0.21, and an attitude hold in such gusts has 0.3 to 2."""
 _MOSTLY = 0.5
 """Share of a movement's variation that feedback of the motion may explain. Beyond one half the movement is
-mostly an answer. Recoveries of an attitude by hand on record have 0.63 to 0.93; test inputs that bring the
-attitude back have at most 0.35, with hand-flown steps and in gusts."""
+mostly an answer. Recoveries of an attitude by hand on record have 0.63 to 0.94. Test inputs that bring the
+attitude back have at most 0.35."""
 _STANDS_OUT = 3.0
 """Least ratio of a movement's fastest motion to the root mean square of the motion before: three standard
 deviations, which chance hardly exceeds. Hands that keep an attitude have 0.3 to 3.6, test inputs on record at
 least 10."""
-_EDGE_S = 0.2
-"""Time over which the motion of the elevator is measured, s: half of the slowest hand-flown edge."""
 _FEWEST_BEFORE = 5
 """Fewest samples of the motion before, for its root mean square."""
 _SHARP_S = 0.06
@@ -53,6 +53,7 @@ jumps."""
 _WHAT = {
     "ground": "movements without flight",
     "small": "corrections",
+    "elsewhere": "movements in turns, climbs and changes of speed",
     "feedback": "recoveries of the attitude",
     "no_information": "movements without a visible effect",
     "unsettled": "movements that never came to rest",
@@ -64,7 +65,8 @@ class Because:
     """Reason for which a movement is no test input."""
 
     reason: str
-    """``autopilot``, ``ground``, ``hover``, ``small``, ``feedback``, ``no_information`` or ``unsettled``."""
+    """``autopilot``, ``elsewhere``, ``feedback``, ``ground``, ``hover``, ``no_information``, ``small`` or
+    ``unsettled``."""
     text: str
     """Sentence on the reason, with its number and limit."""
 
@@ -75,7 +77,10 @@ class Because:
 
 
 def not_an_input(
-    maneuver: Maneuver, on_ground: str | None = None, motion: Mapping[str, Channel] | None = None
+    maneuver: Maneuver,
+    on_ground: str | None = None,
+    motion: Mapping[str, Channel] | None = None,
+    limits: Limits | None = None,
 ) -> Because | None:
     """Return the reason for which an elevator movement is no test input; None where it may be one.
 
@@ -88,6 +93,8 @@ def not_an_input(
     motion
         Channels ``q`` and ``theta`` from a time before the movement, for `explained_by_feedback`. None: those
         of the record.
+    limits
+        Limits of bank and air speed. None: the usual ones.
     """
     if on_ground is not None:
         return Because("ground", f"the elevator moved on the ground: {on_ground}")
@@ -96,10 +103,20 @@ def not_an_input(
     if hovers(maneuver.mode):
         return Because("hover", f"the elevator moved in {maneuver.mode}, where rotors carry the aircraft")
     because = _tells_nothing(maneuver, maneuver.channels if motion is None else motion)
-    inside = has_an_errand(maneuver.mode) or not _is_external(maneuver)
-    if closes_pitch_loop(maneuver.mode) and (because or inside):
-        return Because("autopilot", f"the elevator moved in {maneuver.mode}; not a test input")
+    if closes_pitch_loop(maneuver.mode) and (lacks := _lacks_in_a_loop(maneuver, because)):
+        return Because("autopilot", f"the elevator moved in {maneuver.mode}{lacks}; not a test input")
+    if because is None and (how := flown_elsewhere(maneuver, limits or Limits())) is not None:
+        return Because("elsewhere", f"the elevator moved slowly {how}; not a test input")
     return because
+
+
+def _lacks_in_a_loop(maneuver: Maneuver, because: Because | None) -> str:
+    """Return in words what a movement in a closed loop lacks for a test input; empty for a test input."""
+    if has_an_errand(maneuver.mode):
+        return " by the autopilot's own task"
+    if not _is_external(maneuver):
+        return " without the sharp steps of a test"
+    return f", and {because.text.partition('; ')[0]}" if because else ""
 
 
 def _tells_nothing(maneuver: Maneuver, motion: Mapping[str, Channel]) -> Because | None:
@@ -138,10 +155,9 @@ def _tells_nothing(maneuver: Maneuver, motion: Mapping[str, Channel]) -> Because
 
 def _stands_out(maneuver: Maneuver) -> bool:
     """Return whether the elevator moves faster than before the movement. Hands that fly on do not."""
-    elevator, span = maneuver.channels["elevator"], maneuver.span
-    moved = np.abs(elevator.y - np.interp(elevator.t - _EDGE_S, elevator.t, elevator.y))
-    before = moved[(elevator.t >= span.record_from_s + _EDGE_S) & (elevator.t < span.start_s)]
-    within = moved[(elevator.t >= span.start_s) & (elevator.t <= span.last_step_s + _EDGE_S)]
+    span = maneuver.span
+    before = motion_of(maneuver, span.record_from_s + EDGE_S, span.start_s)[:-1]
+    within = motion_of(maneuver, span.start_s, span.last_step_s + EDGE_S)
     if len(before) < _FEWEST_BEFORE or len(within) == 0:
         return True
     return float(within.max()) >= _STANDS_OUT * float(np.sqrt(np.mean(before**2)))

@@ -193,7 +193,10 @@ class Segmenter:
             self._fastest = max(self._fastest, self._edges.popleft()[1])
         self._edges.append((t, edge))
         steady_s = onset_s - LEAD_IN_S
-        if edge < 2.0 * SMALLEST_RAD or self._fastest > _ABRUPT * edge or steady_s < from_s:
+        # Neither slow samples nor a gap show an abrupt step.
+        if t - onset_s > 2.0 * _EDGE_S or edge < 2.0 * SMALLEST_RAD:
+            return
+        if self._fastest > _ABRUPT * edge or steady_s < from_s:
             return
         steady = samples.since(steady_s, before + 1)
         if not is_still(steady, edge):

@@ -110,7 +110,9 @@ class Cutting:
 
     def _not_an_input(self, maneuver: Maneuver, up_to_order: int | None) -> Because | None:
         span = maneuver.span
-        return not_an_input(maneuver, self.why_on_ground(span, up_to_order), self._motion(span, up_to_order))
+        return not_an_input(
+            maneuver, self.why_on_ground(span, up_to_order), self._motion(span, up_to_order), self._limits
+        )
 
     def _motion(self, span: Span, up_to_order: int | None) -> dict[str, Channel]:
         """Return the pitch rate and angle of a movement and of the time before."""
