@@ -12,7 +12,7 @@ from advisor.analysis.log_series import SINCE_1970_S
 from advisor.batch.flight import Analyzed
 from advisor.batch.picture import Point, trend_svg
 from advisor.batch.tables import aircraft_of, changes_of, estimates_of
-from advisor.batch.trend import ChangeOverFlights
+from advisor.batch.trend import ChangeOverFlights, lying_apart
 from advisor.decision.pooling import DERIVATIVES, common_airspeed, posteriors_at_one_speed
 from advisor.exports.flights.found import PARAMETER_UNITS
 from advisor.oem.estimate import Estimate
@@ -70,18 +70,24 @@ def _trends(name: str, flights: Sequence[tuple[int, Estimate]], change: ChangeOv
     at = f" brought to an air speed of {speed:.1f} m/s" if speed is not None else ""
     return (
         f"<h2>{_shown(name) or 'Aircraft'}</h2>\n"
-        f'<p class="verdict">{_shown(_sentence(len(flights), change))}</p>\n'
+        f'<p class="verdict">{_shown(_sentence(flights, change))}</p>\n'
         f'<p class="note">Joint estimate of each flight{at} with its 95 % interval; a dashed line marks'
         f' a change.</p>\n<div class="gallery">{"".join(pictures)}</div>'
     )
 
 
-def _sentence(flights: int, change: ChangeOverFlights | None) -> str:
+def _sentence(flights: Sequence[tuple[int, Estimate]], change: ChangeOverFlights | None) -> str:
     if change is not None:
         return change.sentence
-    if flights < 3:
-        return f"Flights with a joint estimate: {flights}; a change shows in three or more."
-    return f"The change test over {flights} flights finds no change; it cannot judge the first flight alone."
+    apart = lying_apart(flights)
+    if apart:
+        return f"{apart} The change test over {len(flights)} flights does not tell since when."
+    if len(flights) < 3:
+        return f"Flights with a joint estimate: {len(flights)}; a change shows in three or more."
+    return (
+        f"The change test over {len(flights)} flights finds no change, and all intervals overlap;"
+        " it cannot judge the first flight alone."
+    )
 
 
 def _table(flights: Sequence[Analyzed]) -> str:

@@ -2,10 +2,15 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import combinations
 
+from advisor.aircraft.aircraft import PARAMETERS
 from advisor.decision.change import Change, find_change
 from advisor.decision.history import CandidateManeuver
+from advisor.decision.pooling import DERIVATIVES, posteriors_at_one_speed
 from advisor.oem.estimate import Estimate
+from advisor.words.digits import with_half
+from advisor.words.quantiles import NORMAL_95
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,3 +44,28 @@ def change_over_flights(flights: Sequence[tuple[int, Estimate]]) -> ChangeOverFl
     cause = f"; it looks like {change.looks_like}" if change.looks_like else ""
     doubt = "" if change.confirmed else "; only one flight shows the change"
     return ChangeOverFlights(since, change, f"Since flight {since} {moved}{cause}{doubt}.")
+
+
+def lying_apart(flights: Sequence[tuple[int, Estimate]]) -> str:
+    """Return a sentence on the two flights whose 95 % intervals of one derivative lie farthest apart; empty
+    where all intervals of every derivative overlap.
+
+    Parameters
+    ----------
+    flights
+        Number and joint estimate of each flight, in the order of flying.
+    """
+    posteriors = posteriors_at_one_speed([estimate for _, estimate in flights])
+    farthest, sentence = 1.0, ""
+    for (i, first), (j, second) in combinations(enumerate(posteriors), 2):
+        for k in DERIVATIVES:
+            widths = NORMAL_95 * (first.std[k] + second.std[k])
+            distance = abs(float(first.theta[k] - second.theta[k]))
+            if distance > farthest * widths:
+                farthest = distance / widths
+                values = " and ".join(
+                    with_half(float(one.theta[k]), NORMAL_95 * float(one.std[k])) for one in (first, second)
+                )
+                numbers = f"{flights[i][0]} and {flights[j][0]}"
+                sentence = f"{PARAMETERS[k]} of flights {numbers} lies apart: {values}."
+    return sentence

@@ -11,6 +11,7 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.decision.verdict import Reason
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
+from advisor.flight.maneuvers.steady_speed import LEFT, speed_before
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.record import Channel
 from advisor.flight.signals.trust import distrusted
@@ -39,7 +40,9 @@ _ASSUMED_STROKE_DEG = 25.0
 """Full travel of the elevator where the aircraft file has no calibration, deg."""
 
 
-def incomplete(maneuver: Maneuver, period_s: float, counted: Collection[str]) -> list[Reason]:
+def incomplete(
+    maneuver: Maneuver, period_s: float, counted: Collection[str], is_informed: bool
+) -> list[Reason]:
     """Return reasons for an incomplete record: missing or faulty channels, slow ones, gaps, a short free
     response.
 
@@ -51,6 +54,8 @@ def incomplete(maneuver: Maneuver, period_s: float, counted: Collection[str]) ->
         Natural period of the short-period motion, estimated or assumed, s.
     counted
         Outputs that the estimate used. Gaps in other channels do no harm.
+    is_informed
+        Whether the estimate determines the short period. The free response is then long enough.
     """
     missing = [name for name in NEEDED if name not in maneuver.channels]
     if missing:
@@ -64,7 +69,7 @@ def incomplete(maneuver: Maneuver, period_s: float, counted: Collection[str]) ->
     return [
         *_rate(needed, period_s),
         *_gap(used, maneuver, period_s),
-        *_free_response(maneuver, period_s),
+        *([] if is_informed else _free_response(maneuver, period_s)),
     ]
 
 
@@ -131,6 +136,8 @@ def _gap(channels: list[Channel], maneuver: Maneuver, period_s: float) -> list[R
 
 
 def _free_response(maneuver: Maneuver, period_s: float) -> list[Reason]:
+    if maneuver.span.closed_by == LEFT:
+        return _left_too_soon(maneuver)
     if _is_broken_off(maneuver.span):
         what, mend = _CUT_SHORT_BY[maneuver.span.closed_by]
         return [Reason("aborted", f"{what} before the elevator came to rest; {mend}", 0.0, 1.0)]
@@ -142,6 +149,13 @@ def _free_response(maneuver: Maneuver, period_s: float) -> list[Reason]:
     mend = "hands still after the last step" if ended is None else f"{ended[0]} there; {ended[1]}"
     text = f"free response too short, {shown} s (at least {limit}); {mend}"
     return [Reason("free_response", text, free, least)]
+
+
+def _left_too_soon(maneuver: Maneuver) -> list[Reason]:
+    """Return a reason where the record ends with the change of air speed, before it tells enough."""
+    lasted = maneuver.span.end_s - maneuver.span.start_s
+    text = f"air speed left the model after {lasted:.1f} s, too soon; smaller steps, from steady speed"
+    return [Reason("airspeed", text, lasted, maneuver.span.end_s - maneuver.span.record_from_s)]
 
 
 def _is_broken_off(span: Span) -> bool:
@@ -164,8 +178,7 @@ def changed_speed(maneuver: Maneuver, aircraft: Aircraft) -> list[Reason]:
     channel, speed = maneuver.channels.get("airspeed"), flown(maneuver, "airspeed")
     if channel is None or len(speed) < 2 or not np.median(channel.y) > 0.0:
         return []
-    before = channel.cut(maneuver.span.record_from_s, maneuver.span.start_s).y
-    trim = float(np.median(before if len(before) else channel.y[:1]))
+    trim = speed_before(channel, maneuver.span)
     # The second largest deviation: one wild reading of the air speed is no change of speed.
     change = 100.0 * float(np.sort(np.abs(speed / trim - 1.0))[-2:][0])
     if change <= limit:

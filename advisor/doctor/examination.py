@@ -6,6 +6,7 @@ from typing import Literal
 
 from advisor.doctor.expectation import Assumed, ExpectedErrors
 from advisor.doctor.survey import Arrival, Clocks
+from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.vehicle.vehicle import Vehicle
 from advisor.words.problems import Problem
 
@@ -68,6 +69,8 @@ class Examination:
     """Expected errors. None when a needed channel is missing."""
     assumed: Assumed
     """Model and noise behind the expected errors and the demands on rates."""
+    instruments: tuple[InstrumentFinding, ...] = ()
+    """Contradictions of the instruments. Each is a limit, too."""
     notes: tuple[str, ...] = ()
     """Choices made in reading the log, and pauses of the autopilot's own log, as sentences."""
 

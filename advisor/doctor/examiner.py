@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from advisor.aircraft.aircraft import PARAMETERS, Aircraft
+from advisor.campaign.instruments import together
 from advisor.doctor.examination import AlphaFound, ElevatorFound, Examination, Limit
 from advisor.doctor.expectation import NOISE, TYPICAL, Assumed, expect, frequency
 from advisor.doctor.instruments import (
@@ -120,6 +121,8 @@ class Examiner:
         # aircraft.
         limits = [_stopping(problem, vehicle) for problem in found if problem.code != "rate" or not complete]
         limits += distrust_limits([*still, *(d for m in self._maneuvers for d in m.distrusts)])
+        instruments = together(self._maneuvers, self._stream.instruments)
+        limits += [Limit(f.code, f.sentence, f.fix, stops=f.refuses) for f in instruments]
         if vehicle is not None and complete:
             limits += rate_limits(paced, assumed, vehicle, speed)
         period_s = 2.0 * np.pi / frequency(assumed.model)
@@ -147,6 +150,7 @@ class Examiner:
             limits=tuple(sorted(limits, key=lambda limit: not limit.stops)),
             expectation=expect(assumed, rates, speed) if complete else None,
             assumed=assumed,
+            instruments=instruments,
             notes=(*self._notes, *(self._survey.pauses if self._survey else ())),
         )
 

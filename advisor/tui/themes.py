@@ -1,5 +1,7 @@
 """Colour themes: for a dark room, for a cockpit in the sun, high contrast, and safe for the colour-blind."""
 
+from typing import Any
+
 from textual.theme import Theme
 
 _SCROLLBAR, _SCROLLBAR_BACKGROUND = "#808080", "#80808033"
@@ -18,74 +20,52 @@ every widget, with or without a scroll bar. A colour that changes with the theme
 of each widget, which would take most of the time of a change."""
 
 
-def _variables(
-    measured: str, fitted: str, residual: str, elevator: str, limit: str, prior: str
-) -> dict[str, str]:
-    names = ("measured", "fitted", "residual", "input", "limit", "prior")
-    inks = zip(names, (measured, fitted, residual, elevator, limit, prior), strict=True)
-    return _IN_EVERY_THEME | {f"ink-{name}": colour for name, colour in inks}
+_ROLES = [
+    "primary",
+    "secondary",
+    "accent",
+    "success",
+    "warning",
+    "error",
+    "foreground",
+    "background",
+    "surface",
+    "panel",
+]
+_INKS = ["measured", "fitted", "residual", "input", "limit", "prior"]
+
+
+def _theme(name: str, roles: str, inks: str, *, dark: bool = True, text_alpha: float = 0.95) -> Theme:
+    """Return a theme from colours in the order of ``_ROLES`` and of ``_INKS``."""
+    variables = {f"ink-{ink}": colour for ink, colour in zip(_INKS, inks.split(), strict=True)}
+    colours: dict[str, Any] = dict(zip(_ROLES, roles.split(), strict=True))
+    return Theme(name, dark=dark, text_alpha=text_alpha, variables=_IN_EVERY_THEME | variables, **colours)
 
 
 THEMES = (
-    Theme(
-        name="dark",
-        primary="#5aa9e6",
-        secondary="#3c6e91",
-        accent="#f2c14e",
-        success="#57cc99",
-        warning="#f2a65a",
-        error="#ef6461",
-        foreground="#e6e6e6",
-        background="#10151b",
-        surface="#161d25",
-        panel="#1f2933",
-        variables=_variables("#7fb8e6", "#f2c14e", "#c79bf2", "#57cc99", "#ef6461", "#b0b8c0"),
+    _theme(
+        "dark",
+        "#5aa9e6 #3c6e91 #f2c14e #57cc99 #f2a65a #ef6461 #e6e6e6 #10151b #161d25 #1f2933",
+        "#7fb8e6 #f2c14e #c79bf2 #57cc99 #ef6461 #b0b8c0",
     ),
-    Theme(
-        name="light",
-        primary="#004a8f",
-        secondary="#5b7c99",
-        accent="#8a4b00",
-        success="#006b3c",
-        warning="#8a4b00",
-        error="#b00020",
-        foreground="#000000",
-        background="#ffffff",
-        surface="#ffffff",
-        panel="#e4e8ec",
+    _theme(
+        "light",
+        "#004a8f #5b7c99 #8a4b00 #006b3c #8a4b00 #b00020 #000000 #ffffff #ffffff #e4e8ec",
+        "#0057b8 #b34700 #6a1b9a #00695c #b00020 #444444",
         dark=False,
         text_alpha=1.0,
-        variables=_variables("#0057b8", "#b34700", "#6a1b9a", "#00695c", "#b00020", "#444444"),
     ),
-    Theme(
-        name="high contrast",
-        primary="#ffffff",
-        secondary="#ffffff",
-        accent="#ffff00",
-        success="#00ff00",
-        warning="#ffff00",
-        error="#ff5555",
-        foreground="#ffffff",
-        background="#000000",
-        surface="#000000",
-        panel="#000000",
+    _theme(
+        "high contrast",
+        "#ffffff #ffffff #ffff00 #00ff00 #ffff00 #ff5555 #ffffff #000000 #000000 #000000",
+        "#00ffff #ffff00 #ff88ff #00ff00 #ff5555 #ffffff",
         text_alpha=1.0,
-        variables=_variables("#00ffff", "#ffff00", "#ff88ff", "#00ff00", "#ff5555", "#ffffff"),
     ),
     # Okabe and Ito's palette, distinguishable with any of the common colour vision deficiencies.
-    Theme(
-        name="colour-blind safe",
-        primary="#56b4e9",
-        secondary="#0072b2",
-        accent="#f0e442",
-        success="#56b4e9",
-        warning="#e69f00",
-        error="#d55e00",
-        foreground="#f2f2f2",
-        background="#101010",
-        surface="#181818",
-        panel="#262626",
-        variables=_variables("#56b4e9", "#e69f00", "#cc79a7", "#009e73", "#d55e00", "#f2f2f2"),
+    _theme(
+        "colour-blind safe",
+        "#56b4e9 #0072b2 #f0e442 #56b4e9 #e69f00 #d55e00 #f2f2f2 #101010 #181818 #262626",
+        "#56b4e9 #e69f00 #cc79a7 #009e73 #d55e00 #f2f2f2",
     ),
 )
 

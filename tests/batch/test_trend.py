@@ -6,7 +6,7 @@ import numpy as np
 
 from advisor.aircraft.aircraft import PARAMETERS
 from advisor.batch.flight import Analyzed
-from advisor.batch.trend import change_over_flights
+from advisor.batch.trend import change_over_flights, lying_apart
 from advisor.oem.estimate import Estimate
 
 THETA = np.array([-0.009, -0.483, 0.104, 0.676, 0.475, -4.93, -2.01, -7.21])
@@ -37,6 +37,16 @@ def test_flights_that_differ_by_their_errors_show_no_change() -> None:
 
 def test_two_flights_are_too_few_for_a_change() -> None:
     assert change_over_flights([(1, flight(1)), (2, flight(2, 0.5))]) is None
+
+
+def test_two_flights_whose_intervals_lie_apart_are_told() -> None:
+    told = lying_apart([(4, flight(1)), (7, flight(2, 0.5))])
+    assert told.startswith("M_delta_e of flights 4 and 7 lies apart: −7.")
+    assert told.count("±") == 2
+
+
+def test_flights_whose_intervals_overlap_are_not_told_apart() -> None:
+    assert lying_apart([(1, flight(1)), (2, flight(2))]) == ""
 
 
 def test_an_estimate_that_was_kept_is_compared_as_it_was() -> None:

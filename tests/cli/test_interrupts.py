@@ -48,10 +48,11 @@ def hears_interrupts(pid: int) -> bool:
     return bool(int(caught.split()[1], 16) & 1 << (signal.SIGINT - 1))
 
 
+@pytest.mark.parametrize("times", [1, pytest.param(10, marks=pytest.mark.study)])
 @pytest.mark.parametrize("command", _COMMANDS)
-def test_ctrl_c_at_a_random_moment_ends_in_one_sentence(command: str) -> None:
+def test_ctrl_c_at_a_random_moment_ends_in_one_sentence(command: str, times: int) -> None:
     arguments = _COMMANDS[command] + ([flight()] if command in ("analyze", "gap", "replay") else [])
-    for _ in range(3):
+    for _ in range(times):
         with start(*arguments) as process:
             wait_until(lambda: hears_interrupts(process.pid))
             time.sleep(_STARTS_S + random.uniform(0.0, 2.0))

@@ -79,7 +79,7 @@ class Activity:
     """Begin of the movement, s since boot."""
     end_s: float
     reason: str
-    """``autopilot``, ``ground``, ``hover``, ``small``, ``no_information`` or ``unsettled``."""
+    """``autopilot``, ``ground``, ``hover``, ``small``, ``feedback``, ``no_information`` or ``unsettled``."""
     text: str
     """Sentence for people."""
     stay_s: float

@@ -48,6 +48,7 @@ READINGS = (
     Reading("theta", "ATTITUDE", "pitch", _scaled(1.0)),
     Reading("bank", "ATTITUDE", "roll", _scaled(1.0)),
     Reading("alpha", "AOA_SSA", "AOA", np.radians, "derived"),
+    Reading("airspeed", "VFR_HUD", "true_airspeed", _scaled(1.0)),
     Reading("airspeed", "VFR_HUD", "airspeed", _scaled(1.0)),
     Reading("climb_rate", "VFR_HUD", "climb", _scaled(1.0)),
     Reading("throttle", "VFR_HUD", "throttle", _scaled(0.01)),
@@ -67,6 +68,7 @@ READINGS = (
     Reading("height", "GLOBAL_POSITION_INT", "relative_alt", _scaled(1e-3)),
     Reading("altitude", "GLOBAL_POSITION_INT", "alt", _scaled(1e-3)),
     Reading("static_pressure", "SCALED_PRESSURE", "press_abs", _scaled(100.0)),
+    Reading("static_pressure", "HIGHRES_IMU", "abs_pressure", _scaled(100.0)),
     Reading("groundspeed", "VFR_HUD", "groundspeed", _scaled(1.0)),
     Reading("landed_state", "EXTENDED_SYS_STATE", "landed_state", _scaled(1.0)),
     Reading("armed", "HEARTBEAT", "base_mode", lambda raw: (np.asarray(raw) & _ARMED > 0).astype(np.float64)),
@@ -94,6 +96,9 @@ _STAMPS = {
 Autopilots' own logs stamp VFR_HUD."""
 
 GIVEN_AIRSPEED = "airspeed_m_s of the aircraft file"
+"""Source of an air speed of the aircraft file."""
+TRUE_AIRSPEED = "VFR_HUD.true_airspeed"
+"""Source of a true air speed that the autopilot has logged next to the calibrated one. No link carries it."""
 
 
 @dataclass(frozen=True, slots=True)

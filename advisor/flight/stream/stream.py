@@ -23,6 +23,7 @@ from advisor.flight.signals.banks import Banks, merged
 from advisor.flight.signals.channels import Decoded, given_airspeed, named_value, quantities, stamps
 from advisor.flight.signals.clocks import BootClock
 from advisor.flight.signals.derived_alpha import DERIVED_ALPHA, promised
+from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.messages import Columns, FloatArray, IntArray, arrivals
 from advisor.flight.signals.power_on import PowerOn
 from advisor.flight.signals.record import ALL_UNITS, Channel
@@ -32,6 +33,7 @@ from advisor.flight.signals.trust import Distrust, frozen
 from advisor.flight.stream.cutting import Cutting
 from advisor.flight.stream.elevator_path import ElevatorPath
 from advisor.flight.stream.identity import Identity
+from advisor.flight.stream.instrument_watch import InstrumentWatch
 from advisor.flight.stream.service import Service
 from advisor.flight.stream.suitability import problems, with_guess
 from advisor.flight.stream.vehicle_texts import VehicleTexts
@@ -82,8 +84,13 @@ class FlightStream:
         self._texts = VehicleTexts()
         self._attitudes = Attitudes()
         self._clock = BootClock()
-        self._tracks = Tracks(aircraft.alpha.source, aircraft.airspeed_m_s)
-        self._cutting = Cutting(self._tracks, self._who, aircraft.elevator.is_calibrated)
+        self._tracks = Tracks(
+            aircraft.alpha.source,
+            aircraft.airspeed_m_s,
+            aircraft.reference.air_temperature_c,
+            lambda: self._who.simulated,
+        )
+        self._cutting = Cutting(self._tracks, self._who, aircraft)
         self._mixing = Mixing(self._tracks)
         self.marks = Marks(marks)
         """Marks by hand, by a switch and by texts."""
@@ -93,6 +100,7 @@ class FlightStream:
         self.boot = 0
         """Number of the power-on, 0 for the first in the stream."""
         self._guesses = ElevatorGuesses()
+        self._instruments = InstrumentWatch(self._tracks.cut)
         self._start_boot()
         self.seen: set[str] = set()
         """Names of the messages that the vehicle has sent."""
@@ -114,6 +122,7 @@ class FlightStream:
         self._master_s = np.nan
         self._heartbeat_s = -np.inf
         self._guesses.begin()
+        self._instruments.begin()
 
     @property
     def vehicle(self) -> Vehicle | None:
@@ -224,6 +233,13 @@ class FlightStream:
         ranges = {name: (status.lowest, status.highest) for name, status in self._at_best().items()}
         return self._who.distrusts(frozen(ranges))
 
+    @property
+    def instruments(self) -> tuple[InstrumentFinding, ...]:
+        """Contradictions of the instruments: by the manoeuvres, and before the first by any motion."""
+        return self._cutting.findings or (
+            self._instruments.findings if self._cutting.maneuvers == self._flown_before else ()
+        )
+
     def recent(self, name: str, seconds: float) -> Channel | None:
         """Return the newest stretch of a channel; None without samples."""
         return self._tracks.recent(name, seconds)
@@ -242,6 +258,8 @@ class FlightStream:
 
     def finish(self) -> list[FlightEvent]:
         """Take the end of the messages, and close every open movement."""
+        if self._cutting.maneuvers == self._flown_before:
+            self._instruments.finish(self._first_s, self._master_s)
         events = self._finish_boot()
         self._service.end()
         self._over = True
@@ -377,6 +395,8 @@ class FlightStream:
                         self._tracks.append(moved.combined())
         self._set_clock(part, orders, clock)
         followed = self._path.feed(elevator, closes_pitch_loop(self._who.mode))
+        if self._cutting.maneuvers == self._flown_before:
+            self._instruments.advance(self._first_s, self._master_s)
         if not isinstance(self.elevator, Problem) or not np.isfinite(self._master_s):
             return followed
         return [*followed, *self._guesses.advance(self._first_s, self._master_s, self._tracks.cut)]

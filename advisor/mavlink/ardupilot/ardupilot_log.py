@@ -144,6 +144,8 @@ class _Translation:
             yield self._message("PARAM_VALUE", self._tables["PARM"], parameter_fields(self._tables["PARM"]))
         if "VER" in self._tables:
             yield self._message("AUTOPILOT_VERSION", self._tables["VER"], version_fields(self._tables["VER"]))
+        if "BARO" in self._tables and "Press" in self._tables["BARO"].fields:
+            yield self._scaled_pressure(self._tables["BARO"].first_instance())
         yield from self._servo_outputs()
         yield from self._vfr_hud()
         yield self._statustext()
@@ -199,6 +201,11 @@ class _Translation:
     def _aoa_ssa(self, aoa: RecordTable) -> Columns:
         angles = {"AOA": aoa.fields["AOA"], "SSA": aoa.fields["SSA"]}
         return self._message("AOA_SSA", aoa, {"time_usec": aoa.time_us, **angles})
+
+    def _scaled_pressure(self, baro: RecordTable) -> Columns:
+        hectopascal = 0.01 * baro.fields["Press"].astype(np.float64)
+        fields: dict[str, ArrayLike] = {"time_boot_ms": _milliseconds(baro.time_us), "press_abs": hectopascal}
+        return self._message("SCALED_PRESSURE", baro, fields)
 
     def _servo_outputs(self) -> Iterator[Columns]:
         """Yield SERVO_OUTPUT_RAW, one for each bank of 16. RCOU has outputs 1 to 14, RCO2 15 to 18, RCO3 19
