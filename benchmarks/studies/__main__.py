@@ -4,7 +4,7 @@
     python -m benchmarks.studies stops --campaigns 150     # does the rule information stop too early
     python -m benchmarks.studies advice --campaigns 100    # what following the advice saves
     python -m benchmarks.studies change --campaigns 400    # how soon a change of the aircraft is told
-    python -m benchmarks.studies coverage --campaigns 60   # do intervals and stops hold with faulty instruments
+    python -m benchmarks.studies coverage --campaigns 60   # do intervals hold with faulty instruments
 
 Equal seeds give equal studies, whatever ``--workers`` and ``--scheduler`` are.
 """

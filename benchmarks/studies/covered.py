@@ -271,11 +271,11 @@ def _stop(state: CampaignState, model: Estimate, flight: Flight, errors: Errors)
     allowed = tolerances(truth, Prediction({}), PLAN)
     rows = [PARAMETERS.index(name) for name in NAMED]
     derivative = float(np.max(np.abs(model.theta - truth)[rows] / allowed[rows]))
-    response = _response_error_percent(model.theta, truth, flight.scenario) / PLAN.tolerance_percent
+    response = response_error_percent(model.theta, truth, flight.scenario) / PLAN.tolerance_percent
     return Stop(len(state.maneuvers), response, derivative)
 
 
-def _response_error_percent(theta: FloatArray, truth: FloatArray, scenario: Scenario) -> float:
+def response_error_percent(theta: FloatArray, truth: FloatArray, scenario: Scenario) -> float:
     """Return the largest error of the response to the surface's standard 3-2-1-1, in percent of its peak."""
     usual = habits(scenario)
     true, found = (replace(ShortPeriod(*map(float, values)), Z_0=0.0, M_0=0.0) for values in (truth, theta))
