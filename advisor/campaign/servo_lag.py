@@ -1,8 +1,9 @@
 """The servo's lag, identified during a campaign and used in every later estimate.
 
-The lag is estimated from all accepted manoeuvres together. Where the crew gives none, single estimates,
-verdicts and criteria use the lag as soon as its standard deviation is at most a tenth of it. Where the crew
-gives another one that the manoeuvres exclude, all of them use the lag that the data tell."""
+The lag is estimated from all accepted manoeuvres together. Where the crew gives none, all estimates
+use the lag as soon as its standard deviation is at most a tenth of it. Where the manoeuvres exclude the
+crew's value, all estimates use the lag that the data tell.
+"""
 
 from dataclasses import replace
 
