@@ -147,7 +147,11 @@ class Examiner:
             limits=tuple(sorted(limits, key=lambda limit: not limit.stops)),
             expectation=expect(assumed, rates, speed) if complete else None,
             assumed=assumed,
-            notes=(*self._notes, *(self._survey.pauses if self._survey else ())),
+            notes=(
+                *self._notes,
+                *dict.fromkeys(note for m in self._maneuvers for note in m.data_notes),
+                *(self._survey.pauses if self._survey else ()),
+            ),
         )
 
     def _keep(self, events: Sequence[object]) -> None:

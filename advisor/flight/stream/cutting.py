@@ -14,8 +14,9 @@ from advisor.flight.maneuvers.marked_input import marked_span
 from advisor.flight.maneuvers.marks import Mark
 from advisor.flight.maneuvers.purpose import not_an_input
 from advisor.flight.maneuvers.segmentation import LEAD_IN_S
-from advisor.flight.signals.record import AIR_UNITS, UNITS
+from advisor.flight.signals.record import AIR_UNITS, UNITS, Channel
 from advisor.flight.signals.renewal import counted_once
+from advisor.flight.signals.repair import repaired
 from advisor.flight.signals.tracks import Tracks
 from advisor.flight.signals.trust import distrusted
 from advisor.flight.stream.identity import Identity
@@ -101,12 +102,15 @@ class Cutting:
         if earlier_boot == boot and earlier_s > span.record_from_s:
             # The lead-in does not reach into the record of another manoeuvre.
             span = replace(span, record_from_s=min(earlier_s, span.start_s))
-        channels = {}
+        channels: dict[str, Channel] = {}
+        notes = self._airspeed_notes(span, up_to_order)
         for name in UNITS:
             channel = self._tracks.cut(name, span.record_from_s, span.end_s, up_to_order)
             if channel is not None:
                 provenance = self._who.provenance(channel.source, channel.provenance)
-                channels[name] = counted_once(replace(channel, provenance=provenance))
+                sound = repaired(counted_once(replace(channel, provenance=provenance)))
+                channels[name] = sound.channel
+                notes += sound.said
         distrusts = self._who.distrusts(distrusted(channels))
         for still in distrusts:
             if still.channel == "a_z":
@@ -116,7 +120,19 @@ class Cutting:
             if (air := self._tracks.cut(name, span.record_from_s, span.end_s, up_to_order)) is not None:
                 channels[name] = air
         mode = self._stay(_middle_s(span))[1]
-        return Maneuver(self.maneuvers + 1, boot, span, channels, mode, tuple(distrusts))
+        number = self.maneuvers + 1
+        return Maneuver(number, boot, span, channels, mode, tuple(distrusts), data_notes=tuple(notes))
+
+    def _airspeed_notes(self, span: Span, up_to_order: int | None) -> list[str]:
+        """Return sentences on an air speed that no sensor measured."""
+        if self._who.airspeed_doubt:
+            return [self._who.airspeed_doubt]
+        if self._tracks.speeds_are_one(span.record_from_s, span.end_s, up_to_order):
+            return [
+                "Air speed and ground speed are equal in every sample, so that one stands for the other. "
+                "If no sensor measured the air speed, wind makes the derivatives wrong."
+            ]
+        return []
 
 
 def _middle_s(span: Span) -> float:
