@@ -151,7 +151,11 @@ class Examiner:
             expectation=expect(assumed, rates, speed) if complete else None,
             assumed=assumed,
             instruments=instruments,
-            notes=(*self._notes, *(self._survey.pauses if self._survey else ())),
+            notes=(
+                *self._notes,
+                *dict.fromkeys(note for m in self._maneuvers for note in m.data_notes),
+                *(self._survey.pauses if self._survey else ()),
+            ),
         )
 
     def _keep(self, events: Sequence[object]) -> None:

@@ -57,6 +57,8 @@ class Maneuver:
     those that are used."""
     flight: int = 0
     """Number of the campaign's log or link, 0 for the first."""
+    data_notes: tuple[str, ...] = ()
+    """Sentences on samples that no aircraft can have flown, and on an air speed that no sensor measured."""
 
     @property
     def power_on(self) -> tuple[int, int]:

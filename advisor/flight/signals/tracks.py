@@ -108,6 +108,13 @@ class Tracks:
             spare = spare or channel
         return spare
 
+    def speeds_are_one(self, start_s: float, end_s: float, up_to_order: int | None) -> bool:
+        """Return whether air speed and ground speed change, and are equal in every sample of a stretch."""
+        air, ground = (self._cut(name, start_s, end_s, up_to_order) for name in ("airspeed", "groundspeed"))
+        if air is None or ground is None or float(np.ptp(air.y)) == 0.0 or self._logs_true_speed():
+            return False
+        return np.array_equal(air.t, ground.t) and np.array_equal(air.y, ground.y)
+
     def recent(self, name: str, seconds: float) -> Channel | None:
         """Return the newest stretch of a channel; None without samples."""
         newest = max((track.newest_s for track in self._candidates(name)), default=None)

@@ -22,6 +22,7 @@ from advisor.flight.maneuvers.steady_speed import at_steady_speed
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.record import AIR_UNITS, UNITS, Channel
 from advisor.flight.signals.renewal import counted_once
+from advisor.flight.signals.repair import repaired
 from advisor.flight.signals.tracks import Tracks
 from advisor.flight.signals.trust import distrusted
 from advisor.flight.stream.identity import Identity
@@ -134,11 +135,14 @@ class Cutting:
         if earlier_boot == boot and earlier_s > span.record_from_s:
             # The lead-in does not reach into the record of another manoeuvre.
             span = replace(span, record_from_s=min(earlier_s, span.start_s))
-        channels = {}
+        channels: dict[str, Channel] = {}
+        notes = self._airspeed_notes(span, up_to_order)
         for name in UNITS:
             channel = self._tracks.cut(name, span.record_from_s, span.end_s, up_to_order)
             if channel is not None:
-                channels[name] = counted_once(self._who.known(channel))
+                sound = repaired(counted_once(self._who.known(channel)))
+                channels[name] = sound.channel
+                notes += sound.said
         distrusts = self._who.distrusts(distrusted(channels))
         for still in distrusts:
             if still.channel == "a_z":
@@ -151,9 +155,27 @@ class Cutting:
                 channels[name] = air
         mode = self._stay(_middle_s(span))[1]
         maneuver = Maneuver(
-            self.maneuvers + 1, boot, span, channels, mode, tuple(distrusts), examined.findings
+            self.maneuvers + 1,
+            boot,
+            span,
+            channels,
+            mode,
+            tuple(distrusts),
+            examined.findings,
+            data_notes=tuple(notes),
         )
         return maneuver, examined.evidence
+
+    def _airspeed_notes(self, span: Span, up_to_order: int | None) -> list[str]:
+        """Return sentences on an air speed that no sensor measured."""
+        if self._who.airspeed_doubt:
+            return [self._who.airspeed_doubt]
+        if self._tracks.speeds_are_one(span.record_from_s, span.end_s, up_to_order):
+            return [
+                "Air speed and ground speed are equal in every sample, so that one stands for the other. "
+                "If no sensor measured the air speed, wind makes the derivatives wrong."
+            ]
+        return []
 
 
 def _middle_s(span: Span) -> float:

@@ -13,7 +13,7 @@ from advisor.flight.signals.trust import Distrust
 from advisor.flight.vehicle.following import FOLLOW, TAKE, Following, chosen
 from advisor.flight.vehicle.imu_filters import filter_delay_s
 from advisor.flight.vehicle.modes import in_hover, mode_name
-from advisor.flight.vehicle.parameters import Parameters, read_by
+from advisor.flight.vehicle.parameters import AIRSPEED_SENSOR, Parameters, read_by
 from advisor.flight.vehicle.surfaces import Surface
 from advisor.flight.vehicle.vehicle import Vehicle, VehicleFinder
 from advisor.flight.vehicle.wiring import AILERON, RUDDER, Wiring
@@ -106,6 +106,21 @@ class Identity:
         stated = self._parameters.stated(_speakers(vehicle), vehicle.autopilot)
         delay_s = filter_delay_s(channel.name, channel.source, vehicle.autopilot, stated)
         return replace(channel, provenance=provenance, delay_s=delay_s)
+
+    @property
+    def airspeed_doubt(self) -> str:
+        """Sentence on an air speed that no sensor measures, by the parameters; empty without a doubt."""
+        vehicle = self._finder.vehicle
+        if vehicle is None:
+            return ""
+        stated = self._parameters.stated(_speakers(vehicle), vehicle.autopilot)
+        off = next((name for name in AIRSPEED_SENSOR if stated.get(name) == 0.0), None)
+        if off is None:
+            return ""
+        return (
+            f"{off} is 0: no sensor measures the air speed. The autopilot computes it from the ground speed, "
+            "and wind makes the derivatives wrong."
+        )
 
     def distrusts(self, found: Sequence[Distrust]) -> list[Distrust]:
         """Return the channels that are wrong, among those that cannot be right: the paper's model has one air
