@@ -61,6 +61,20 @@ def test_a_wrong_vane_refuses_the_manoeuvre_and_asks_nothing_of_the_pilot(factor
     assert code in {limit.code for limit in examined.limits}
 
 
+def test_a_wrong_vane_is_named_before_anything_is_flown() -> None:
+    reverse = changed("AOA_SSA", "AOA", lambda y: -y)
+    examiner = Examiner(Aircraft())
+    for columns in open_log(CASES / "t_base.tlog"):
+        examiner.feed([reverse(c) for c in columns if c.name != "SERVO_OUTPUT_RAW"])
+    assert told(examiner.findings().instruments) == [("alpha_sign", False)]
+
+
+def test_a_correction_is_written_into_the_event_log() -> None:
+    state, _ = both("t_base.tlog", changed("RAW_IMU", "zacc", lambda z: -z))
+    assert told(state.instruments) == [("a_z_sign", True)]
+    assert any("A_z is z up" in line for line in state.notices)
+
+
 def test_a_force_in_counts_is_estimated_as_the_sound_log() -> None:
     def counts(columns: Columns) -> Columns:
         for field in ("xacc", "zacc"):

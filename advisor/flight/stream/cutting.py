@@ -10,7 +10,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.elevator.elevator_sign import ElevatorSign, turned
 from advisor.flight.instruments.examination import examine
 from advisor.flight.instruments.measured import Evidence, pooled
-from advisor.flight.maneuvers.events import Activity, FlightEvent, ManeuverFlown
+from advisor.flight.maneuvers.events import Activity, FlightEvent, ManeuverFlown, Notice
 from advisor.flight.maneuvers.feedback import HISTORY_S
 from advisor.flight.maneuvers.ground import why_on_ground
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
@@ -98,12 +98,14 @@ class Cutting:
     def _counted(self, maneuver: Maneuver, evidence: Evidence) -> list[FlightEvent]:
         self.maneuvers += 1
         self._evidence = pooled((self._evidence, evidence))
+        known = {f.code for f in self.findings}
+        news = [Notice(f.code, str(f.problem)) for f in maneuver.findings if f.code not in known]
         self.findings = maneuver.findings
         self._released = (maneuver.boot, maneuver.span.end_s)
         if self._sign is None or "elevator" not in maneuver.channels:
-            return [ManeuverFlown(maneuver)]
+            return [*news, ManeuverFlown(maneuver)]
         maneuver, found = self._sign.right(maneuver)
-        return [*found, ManeuverFlown(maneuver)]
+        return [*news, *found, ManeuverFlown(maneuver)]
 
     def why_on_ground(self, span: Span, up_to_order: int | None = None) -> str | None:
         """Return evidence that the aircraft was on the ground during a movement; None without evidence."""
