@@ -110,7 +110,7 @@ def influence(
     information = projected.T @ weighted_shared
     if prior is not None:
         information[: len(common), : len(common)] += np.diag(prior[common])
-    weights = np.empty(0) if extra is None else extra.weight
+    weights = np.empty(0) if extra is None else extra.weight / extra.share
     information[len(common) :, len(common) :] += np.diag(weights**2)
     if not np.all(np.isfinite(information)):
         return None
@@ -124,7 +124,8 @@ def influence(
     for j, at in places:
         columns[:, j] = -inverse @ np.mean([mix[at] for *_, mix in parts], axis=0)
     result: FloatArray = weighted_shared @ columns
-    prior_rows: FloatArray = weights[:, None] * columns[len(common) :]
+    spread = weights if extra is None else weights / extra.share
+    prior_rows: FloatArray = spread[:, None] * columns[len(common) :]
     for rows, own_inverse, weighted, _ in parts:
         for j, at in places:
             result[rows, j] += own_inverse[at] @ weighted / len(parts)

@@ -15,7 +15,7 @@ from scipy.special import chdtri
 from advisor.aircraft.aircraft import PARAMETERS
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import N_PARAMETERS, Index, respond
-from advisor.oem.extra import Extra
+from advisor.oem.extra import Extra, Prior
 from advisor.oem.gauss_newton import CONVERGED, Optimum
 from advisor.oem.problem import OutputErrorProblem, Record, Signal, assemble
 from advisor.oem.solution import Solution, evaluate, search
@@ -128,7 +128,8 @@ def _within_intervals(edges: Sequence[Edges], records: Sequence[Record], columns
     first = np.concatenate([t[list(e.interval)] for t, e in stamps])
     last = np.concatenate([t[[i + 1 for i in e.interval]] for t, e in stamps])
     time = np.concatenate([e.time for e in edges])
-    return Extra.at(columns, time, (first + last) / 2.0, (last - first) / np.sqrt(12.0))
+    priors = [Prior((a + b) / 2.0, (b - a) / np.sqrt(12.0)) for a, b in zip(first, last, strict=True)]
+    return Extra.at(columns, time, priors)
 
 
 def _moved(edges: Sequence[Edges], steps: FloatArray, records: Sequence[Record]) -> list[Edges]:

@@ -5,6 +5,7 @@ one more measurement of its parameter. The prior adds to the information and pul
 is part of the estimate's covariance.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,6 +19,9 @@ class Prior:
 
     mean: float
     std: float
+    share: float = 1.0
+    """Standard deviation with which white noise weighs the prior, over ``std``. White noise makes coloured
+    data look more certain than they are, and the prior must look as much more certain."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,17 +34,20 @@ class Extra:
     """(k,) inverse standard deviation of each prior; 0 without a prior."""
     pull: FloatArray
     """(k,) prior's mean minus the value, over the prior's standard deviation; 0 without a prior."""
+    share: FloatArray
+    """(k,) share of each standard deviation with which the fit weighs the prior (``Prior.share``)."""
 
     @classmethod
-    def at(cls, columns: FloatArray, values: FloatArray, mean: FloatArray, std: FloatArray) -> "Extra":
-        """Return parameters at ``values`` with priors of ``mean`` and ``std``, shape (k,) each; infinite
-        without a prior."""
-        return cls(columns, 1.0 / std, (mean - values) / std)
+    def at(cls, columns: FloatArray, values: FloatArray, priors: Sequence[Prior | None]) -> "Extra":
+        """Return parameters at ``values`` (k,) with their priors."""
+        known = [prior or Prior(0.0, np.inf) for prior in priors]
+        mean, std, share = np.array([(p.mean, p.std, p.share) for p in known]).reshape(-1, 3).T
+        return cls(columns, 1.0 / std, (mean - values) / std, share)
 
     @classmethod
     def none(cls, rows: int) -> "Extra":
         """Return no parameter, for a problem with this number of measurements."""
-        return cls(np.empty((rows, 0)), np.empty(0), np.empty(0))
+        return cls(np.empty((rows, 0)), np.empty(0), np.empty(0), np.empty(0))
 
     def __len__(self) -> int:
         return len(self.weight)
@@ -50,9 +57,9 @@ class Extra:
         """-2 log of the priors' density, up to a constant."""
         return float(self.pull @ self.pull)
 
-    def with_columns(self, columns: FloatArray) -> "Extra":
-        """Return the parameters with other derivatives, such as whitened ones."""
-        return Extra(columns, self.weight, self.pull)
+    def whitened(self, columns: FloatArray) -> "Extra":
+        """Return the parameters with whitened derivatives, to which a prior is as certain as it is."""
+        return Extra(columns, self.weight, self.pull, np.ones(len(self)))
 
     def joined(self, other: "Extra") -> "Extra":
         """Return these parameters, and then the other ones."""
@@ -60,4 +67,5 @@ class Extra:
             np.column_stack([self.columns, other.columns]),
             np.concatenate([self.weight, other.weight]),
             np.concatenate([self.pull, other.pull]),
+            np.concatenate([self.share, other.share]),
         )

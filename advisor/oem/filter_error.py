@@ -148,7 +148,7 @@ def _solution(start: Solution, place: Linearization, air: AirModel) -> Solution 
     columns = np.column_stack([place.residual, place.sensitivities, place.extra.columns])
     for order, gains in gains_along(place, air):
         white[order] = gains.innovations(columns[order])
-    g, extra = white[:, 1 : 1 + N_PARAMETERS], place.extra.with_columns(white[:, 1 + N_PARAMETERS :])
+    g, extra = white[:, 1 : 1 + N_PARAMETERS], place.extra.whitened(white[:, 1 + N_PARAMETERS :])
     effect = influence(assembly, g, _UNIT, extra, precision(place.problem, place.shared))
     if effect is None:
         return None

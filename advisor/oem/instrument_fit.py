@@ -148,17 +148,21 @@ def _with_statements(
 ) -> InstrumentFit:
     """Return the fit in which every stated value that the data do not exclude is a prior."""
     alone = identified_at(solution, names)
+    white = np.sqrt(np.diag(solution.covariance_cr)[N:])
     if all(x.instrument.stated is None or x.contradicts for x in alone):
         return InstrumentFit(solution, alone)
     kept, reset = [], best
-    for found in alone:
+    for found, white_std in zip(alone, white, strict=True):
         x = found.instrument
-        if x.stated is None or found.contradicts:
+        share = min(1.0, float(white_std) / found.std)
+        if x.prior is not None:
+            kept.append(replace(found, instrument=replace(x, prior=replace(x.prior, share=share))))
+        elif x.stated is None or found.contradicts:
             kept.append(found)
         elif x.known_to * abs(x.stated) > 0.0:
             # A statement is trusted no better than the data confirm it.
             width = max(x.known_to * abs(x.stated), abs(found.told - x.stated))
-            kept.append(replace(found, instrument=replace(x, prior=Prior(x.stated, width))))
+            kept.append(replace(found, instrument=replace(x, prior=Prior(x.stated, width, share))))
         else:
             reset = _at(x.write(reset.problem, x.stated), reset) or reset
     names = tuple(found.instrument for found in kept)

@@ -198,18 +198,14 @@ def extra_of(
         columns.append((sides[1] - sides[0]) / (2.0 * x.difference))
     if not columns:
         return Extra.none(len(assemble(problem).z))
-    priors = [x.prior or Prior(x.read(problem), np.inf) for x in names]
-    return Extra.at(
-        np.column_stack(columns),
-        np.array([x.read(problem) for x in names]),
-        np.array([prior.mean for prior in priors]),
-        np.array([prior.std for prior in priors]),
-    )
+    values = np.array([x.read(problem) for x in names])
+    return Extra.at(np.column_stack(columns), values, [x.prior for x in names])
 
 
 def penalty(problem: OutputErrorProblem, names: Sequence[Instrument]) -> float:
-    """Return -2 log of the instruments' prior density up to a constant."""
-    return sum(((x.read(problem) - x.prior.mean) / x.prior.std) ** 2 for x in names if x.prior is not None)
+    """Return -2 log of the instruments' prior density up to a constant, as white noise weighs the priors."""
+    known = [(x.read(problem), x.prior) for x in names if x.prior is not None]
+    return sum(((value - prior.mean) / (prior.std * prior.share)) ** 2 for value, prior in known)
 
 
 def moved_by(

@@ -56,7 +56,7 @@ class Weighing:
 
     def influence(self, g: FloatArray, extra: Extra | None) -> Influence | None:
         """Return the influence of every measurement on the efficient estimate; None where it overflows."""
-        seen = None if extra is None else extra.with_columns(self.forward(extra.columns))
+        seen = None if extra is None else extra.whitened(self.forward(extra.columns))
         weighed = influence(self.assembly, self.forward(g), UNIT, seen)
         return None if weighed is None else replace(weighed, rows=self.backward(weighed.rows))
 
