@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from advisor.aircraft.aircraft import PARAMETERS, Aircraft
-from advisor.doctor.examination import AlphaFound, ElevatorFound, Examination, Limit
+from advisor.doctor.examination import AlphaFound, ElevatorFound, Examination, Limit, in_order
 from advisor.doctor.expectation import NOISE, TYPICAL, Assumed, expect, frequency
 from advisor.doctor.instruments import (
     alpha_limits,
@@ -144,7 +144,7 @@ class Examiner:
             clocks=clocks,
             elevator=elevator,
             alpha=self._alpha(paced),
-            limits=tuple(sorted(limits, key=lambda limit: not limit.stops)),
+            limits=in_order(limits),
             expectation=expect(assumed, rates, speed) if complete else None,
             assumed=assumed,
             notes=(
