@@ -1,6 +1,6 @@
 """Result of an examination: facts, limits, and the verdict."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -28,6 +28,16 @@ class Limit:
     std_ratio: Mapping[str, float] = field(default_factory=dict)
     """Cost of the defect alone: parameter name to its expected error, divided by the error without the
     defect."""
+
+
+_OF_THE_FILE = frozenset({"servo_limits", "calibration", "resolution", "servo_unknown"})
+"""Codes of the limits that parameters or the aircraft file can mend. All others are limits of the data."""
+
+
+def in_order(limits: Sequence[Limit]) -> tuple[Limit, ...]:
+    """Return limits in the order in which they are said: what stops, then the data, then the numbers of
+    parameters and aircraft file. Within these they keep their order."""
+    return tuple(sorted(limits, key=lambda limit: (not limit.stops, limit.code in _OF_THE_FILE)))
 
 
 @dataclass(frozen=True, slots=True)

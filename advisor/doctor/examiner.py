@@ -6,7 +6,7 @@ import numpy as np
 
 from advisor.aircraft.aircraft import PARAMETERS, Aircraft
 from advisor.campaign.instruments import together
-from advisor.doctor.examination import AlphaFound, ElevatorFound, Examination, Limit
+from advisor.doctor.examination import AlphaFound, ElevatorFound, Examination, Limit, in_order
 from advisor.doctor.expectation import NOISE, TYPICAL, Assumed, expect, frequency
 from advisor.doctor.instruments import (
     alpha_limits,
@@ -147,7 +147,7 @@ class Examiner:
             clocks=clocks,
             elevator=elevator,
             alpha=self._alpha(paced),
-            limits=tuple(sorted(limits, key=lambda limit: not limit.stops)),
+            limits=in_order(limits),
             expectation=expect(assumed, rates, speed) if complete else None,
             assumed=assumed,
             instruments=instruments,

@@ -136,7 +136,7 @@ class Survey:
         self._master_s = float(clock[-1])
 
     def _helps(self, part: Columns) -> bool:
-        """Return whether a companion computer of the vehicle sends its angle of attack."""
+        """Return whether another component of the vehicle sends its angle of attack."""
         return part.system == self._who[0] and part.name == "AOA_SSA"
 
     def _advance(self, attitude: Columns | None) -> tuple[NDArray[np.int64], FloatArray, NDArray[np.int64]]:

@@ -76,8 +76,8 @@ READINGS = (
 """Sources of each channel, the best first where several messages carry the channel."""
 
 COMPANIONS = ("NAMED_VALUE_FLOAT", "AOA_SSA")
-"""Messages that another component of the vehicle, such as a companion computer with a vane, may send."""
-COMPANION_ALPHA = "AOA_SSA.AOA of a companion computer"
+"""Messages that another component of the vehicle may send, such as an onboard computer with a vane."""
+COMPANION_ALPHA = "AOA_SSA.AOA of an onboard computer"
 """Source of an angle of attack from another component than the autopilot."""
 
 _STAMPS = {
@@ -146,7 +146,7 @@ def quantities(columns: Columns, t: FloatArray) -> Iterator[Decoded]:
 def of_companion(decoded: Decoded) -> Decoded:
     """Return a quantity under the name of another component than the autopilot. Nobody knows how the
     component finds it."""
-    return replace(decoded, source=f"{decoded.source} of a companion computer", provenance="unknown")
+    return replace(decoded, source=f"{decoded.source} of an onboard computer", provenance="unknown")
 
 
 def named_value(columns: Columns, t: FloatArray, name: str) -> Decoded:

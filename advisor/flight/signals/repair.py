@@ -1,7 +1,7 @@
 """Samples of a manoeuvre that no aircraft can have flown: left out or put right, and said.
 
-A sample that leaves the motion by more than the whole range of the other samples, and is back at the next
-stamp, is a fault of a memory card, a radio or a driver. An angle counted from 0 to 360 deg is put right.
+A single sample may leave the motion by more than the whole range of the other samples. It is a fault of a
+memory card, a radio or a driver. An angle counted from 0 to 360 deg is put right.
 """
 
 from dataclasses import dataclass, replace
@@ -10,9 +10,11 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 
+from advisor.flight.signals.derived_alpha import SLOWEST_FLIGHT_M_S
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.record import Channel
 from advisor.flight.signals.robust import robust_std
+from advisor.words.vehicle_time import clock
 
 _WATCHED = {
     "q": "pitch rate",
@@ -55,6 +57,10 @@ def repaired(channel: Channel) -> Repaired:
     if channel.name == "alpha" and np.any(channel.y > pi):
         found = replace(channel, y=np.where(channel.y > pi, channel.y - 2.0 * pi, channel.y))
         said.append("The angle of attack is counted from 0 to 360 deg: above 180 deg it counts as negative.")
+    if channel.name == "airspeed" and (dead := _dropped_out(found)).any():
+        at = f"{clock(float(found.t[dead][0]))} to {clock(float(found.t[dead][-1]))}"
+        said.append(f"The air speed drops out from {at} and is bridged.")
+        found = replace(found, t=found.t[~dead], y=found.y[~dead])
     wild = _wild(found.y)
     n = int(np.count_nonzero(wild))
     if 0 < n <= _MOST * len(wild):
@@ -62,6 +68,14 @@ def repaired(channel: Channel) -> Repaired:
         are = "samples are" if n > 1 else "sample is"
         said.append(f"{n} of {len(wild)} {_WATCHED[channel.name]} {are} wild and left out.")
     return Repaired(found, tuple(said))
+
+
+def _dropped_out(airspeed: Channel) -> NDArray[np.bool_]:
+    """Return whether each air speed is one at which nothing flies, in a manoeuvre that is flown."""
+    dead = airspeed.y <= SLOWEST_FLIGHT_M_S
+    # The aircraft loses half of its speed at most, so that it would not have stopped in the air.
+    flies = float(np.median(airspeed.y)) > 2.0 * SLOWEST_FLIGHT_M_S
+    return np.asarray(dead & flies)
 
 
 def _wild(y: FloatArray) -> NDArray[np.bool_]:

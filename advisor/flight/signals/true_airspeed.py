@@ -3,7 +3,7 @@
 The equations of motion hold with the true air speed V. An autopilot's pressure sensor gives the speed that
 its pressure would have at sea level: V·√(ρ/ρ_0) with ρ_0 = 1.225 kg/m³. The density ρ comes from the static
 pressure, else from the height above mean sea level. A barometer's temperature is not used, because the board
-warms the sensor. In one simulator's log it says 30 °C, and V would be 3.5 % too large.
+warms the sensor. One simulated autopilot reports 30 °C, by which V would be 3.5 % too large.
 """
 
 from dataclasses import replace

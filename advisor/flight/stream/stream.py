@@ -4,7 +4,7 @@ Every decision follows the order of arrival and the vehicle's clock, never the b
 message by message, and a whole log end in equal events. Memory is bounded by two minutes of channels.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -20,25 +20,18 @@ from advisor.flight.maneuvers.markers import HEARD, MarkerWatch
 from advisor.flight.maneuvers.marks import Mark, Marks
 from advisor.flight.signals.attitude import Attitudes
 from advisor.flight.signals.banks import Banks, merged
-from advisor.flight.signals.channels import (
-    COMPANIONS,
-    Decoded,
-    given_airspeed,
-    named_value,
-    of_companion,
-    quantities,
-    stamps,
-)
+from advisor.flight.signals.channels import COMPANIONS, stamps
 from advisor.flight.signals.clocks import BootClock
 from advisor.flight.signals.derived_alpha import DERIVED_ALPHA, promised
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.messages import Columns, FloatArray, IntArray, arrivals
 from advisor.flight.signals.power_on import PowerOn
-from advisor.flight.signals.record import ALL_UNITS, Channel
+from advisor.flight.signals.record import Channel
 from advisor.flight.signals.track import ChannelStatus
 from advisor.flight.signals.tracks import Tracks
 from advisor.flight.signals.trust import Distrust, frozen
 from advisor.flight.stream.cutting import Cutting
+from advisor.flight.stream.decoding import decoded, power_on
 from advisor.flight.stream.elevator_path import ElevatorPath
 from advisor.flight.stream.identity import Identity
 from advisor.flight.stream.instrument_watch import InstrumentWatch
@@ -277,18 +270,10 @@ class FlightStream:
         events = [*self._path.finish(self._master_s), *self._texts.finish(self._master_s)]
         self._past = self._at_best()
         if self._keep_s == np.inf:
-            self.power_ons.append(self._power_on())
+            self.power_ons.append(
+                power_on(self.boot, self._tracks, self._who, self._cutting.is_backwards, self._clock_heard)
+            )
         return events
-
-    def _power_on(self) -> PowerOn:
-        """Return everything that was heard since the vehicle's clock began."""
-        found = {name: self._tracks.cut(name, -np.inf, np.inf) for name in ALL_UNITS}
-        channels = {name: self._who.known(c) for name, c in found.items() if c is not None}
-        if self._cutting.is_backwards and "elevator" in channels:
-            channels["elevator"] = replace(channels["elevator"], y=-channels["elevator"].y)
-        heard = [(master.order, master.t) for master in self._clock_heard if len(master.t)]
-        order, t = map(np.concatenate, zip(*heard, strict=True)) if heard else (np.empty(0, int), np.empty(0))
-        return PowerOn(self.boot, channels, order, t)
 
     def _at_best(self) -> dict[str, ChannelStatus]:
         """Return the arrival of each channel at its fastest, over all power-ons."""
@@ -382,7 +367,7 @@ class FlightStream:
             t = clock[now] if companion else stamps(columns, clock[now])
             if columns.name == "HEARTBEAT" and np.isfinite(t[-1]):
                 self._heartbeat_s = float(t[-1])
-            for new in self._decode(columns, t, companion):
+            for new in decoded(columns, t, self._aircraft, companion):
                 self._tracks.append(new)
                 if self._tracks.serves(new):
                     self._service.take(new.channel, new.source, arrivals(columns, new.order))
@@ -406,10 +391,3 @@ class FlightStream:
         if not isinstance(self.elevator, Problem) or not np.isfinite(self._master_s):
             return followed
         return [*followed, *self._guesses.advance(self._first_s, self._master_s, self._tracks.cut)]
-
-    def _decode(self, columns: Columns, t: FloatArray, companion: bool) -> Iterator[Decoded]:
-        yield from map(of_companion, quantities(columns, t)) if companion else quantities(columns, t)
-        if columns.name == "ATTITUDE" and self._aircraft.airspeed_m_s is not None:
-            yield given_airspeed(columns, t, self._aircraft.airspeed_m_s)
-        if columns.name == "NAMED_VALUE_FLOAT" and self._aircraft.alpha.source.startswith("named_value:"):
-            yield named_value(columns, t, self._aircraft.alpha.source.removeprefix("named_value:"))

@@ -21,6 +21,7 @@ from advisor.mavlink.ardupilot.ardupilot_vehicle import (
 )
 from advisor.mavlink.ardupilot.body_rates import RATE_RECORDS, body_rates, calmed
 from advisor.mavlink.ardupilot.former_records import SENSORS_APART, Clocked, in_todays_names
+from advisor.mavlink.ardupilot.log_health import HEALTH_RECORDS, health
 from advisor.mavlink.ardupilot.sensors import Said, flown, said, silent
 from advisor.mavlink.px4.sdlog2 import SDLOG2_RECORDS, Sdlog2Messages, is_sdlog2
 from advisor.mavlink.records.dataflash import RecordTable, gps_time_base_s, read_logs, seconds
@@ -30,6 +31,7 @@ from advisor.words.problems import UnusableInputError
 _RECORDS: dict[str, set[str]] = {
     **VEHICLE_RECORDS,
     **RATE_RECORDS,
+    **HEALTH_RECORDS,
     "ACC": {"AccX", "AccY", "AccZ"},
     "AOA": {"AOA", "SSA"},
     "ARSP": {"Airspeed"},
@@ -144,6 +146,7 @@ class _Translation:
         self._tables = {name: table for name, table in self._tables.items() if len(table)}
         if "PARM" in self._tables:
             self._tables["PARM"] = in_todays_parameters(self._tables["PARM"])
+        self._said += health(self._tables)
         self._base_s = float(read.epoch_s) or gps_time_base_s(self._tables.get("GPS"))
         self._system = system_of(self._tables)
 

@@ -27,8 +27,8 @@ def read_whole_log(
 ) -> Iterator[list[Columns]]:
     """Stream the messages of a log, those that tell of the whole log in front of the others.
 
-    In front stands the heartbeat of the vehicle that flew, where another one is heard first. The first value
-    of each parameter of the servo outputs follows.
+    In front stands the first value of each parameter of the servo outputs. The heartbeat of the vehicle that
+    flew stands there too, where another vehicle is heard first.
 
     Parameters
     ----------
@@ -66,9 +66,9 @@ def read_whole_log(
 
 
 def _flew_though_heard_later(batches: Iterable[Sequence[Columns]]) -> Columns | None:
-    """Return the first heartbeat of the only vehicle with wings that was armed.
+    """Return the first heartbeat of the vehicle with wings that alone was armed.
 
-    None where the first vehicle heard was armed, or where none or several of the others were.
+    None where the first vehicle heard was armed, or several others were.
     """
     first: dict[Sender, Columns] = {}
     armed: set[Sender] = set()

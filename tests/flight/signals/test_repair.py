@@ -53,3 +53,17 @@ def test_an_angle_of_attack_counted_from_0_to_360_deg_is_put_right() -> None:
     found = repaired(channel(np.mod(MOTION, 2.0 * np.pi), "alpha"))
     assert found.channel.y == pytest.approx(MOTION, abs=1e-12)
     assert "from 0 to 360 deg" in found.said[0]
+
+
+def test_an_air_speed_that_drops_out_is_bridged_and_named() -> None:
+    y = 25.0 + np.sin(T)
+    dead = (T > 3.0) & (T < 4.5)
+    y[dead] = 0.0
+    found = repaired(channel(y, "airspeed"))
+    assert found.channel.t.tolist() == T[~dead].tolist()
+    assert "drops out from 0:03.0 to 0:04.5 and is bridged" in found.said[0]
+
+
+def test_an_aircraft_on_the_ground_has_no_drop_out() -> None:
+    y = np.where(T < 6.0, 0.0, 1.0) + 0.01 * np.sin(50.0 * T)
+    assert len(repaired(channel(y, "airspeed")).channel) == len(T)
