@@ -77,6 +77,24 @@ def rate_against_attitude(channels: Channels) -> Evidence:
     }
 
 
+def force_against_climb(channels: Channels) -> Evidence:
+    """Return ``a_z_behind_climb``, the delay of the specific force relative to the climb rate, s.
+
+    The climb rate is the integral of the vertical force less gravity. A climb rate may be late and is never
+    early, so that the force is at least this late.
+    """
+    if not _usable(channels, "a_x", "a_z", "theta", "climb_rate"):
+        return {}
+    force, climb = channels["a_z"], channels["climb_rate"]
+    theta, bank = _at("theta", force.t, channels), bank_at(force.t, channels)
+    along = _at("a_x", force.t, channels)
+    rising = along * np.sin(theta) - force.y * np.cos(theta) * np.cos(bank) - GRAVITY_M_S2
+    fit = fit_delays(climb.t, climb.y, [Summand(force.t, rising)])
+    if fit is None:
+        return {}
+    return {"a_z_behind_climb": Measured(-float(fit.delays_s[0]), float(np.sqrt(fit.delay_covariance[0, 0])))}
+
+
 def force_against_gravity(channels: Channels) -> Evidence:
     """Return ``a_z_scale``, the mean vertical specific force over that of the motion; empty where unknown."""
     if not _usable(channels, "a_z", "theta"):

@@ -15,6 +15,7 @@ from advisor.flight.instruments.evidence import (
     VANE_WIDTH,
     alpha_against_motion,
     force_against_alpha,
+    force_against_climb,
     force_against_gravity,
     rate_against_attitude,
     rate_moves_alpha,
@@ -77,6 +78,7 @@ def examine(channels: Mapping[str, Channel], earlier: Evidence | None = None) ->
         _clock_of_rate(work)
         if _speed_unit(work):
             _alpha_and_force(work)
+        _force_behind_climb(work)
     return Examined(work.channels, work.evidence, tuple(work.findings))
 
 
@@ -292,6 +294,18 @@ def _clock_of_force(work: _Work, told: Mapping[str, Measured]) -> bool:
     if late_rate is not None and exact and most is not None and _SIGMAS * most.std < FILTER_S + range_s:
         work.findings[work.findings.index(late_rate)] = _used(late_rate)
     return False
+
+
+def _force_behind_climb(work: _Work) -> None:
+    """Hold the clock of the specific force against that of the climb rate, where nothing else has told it."""
+    if any(f.code == "a_z_delay_s" for f in work.findings):
+        return
+    least = work.learn(force_against_climb(work.channels)).get("a_z_behind_climb")
+    if least is None or not work.has("a_z", "climb_rate"):
+        return
+    range_s = FILTER_S + _half_intervals(work, "a_z", "climb_rate")
+    if least.value - _SIGMAS * least.std > range_s:
+        _late(work, "a_z", "the climb rate", least, used=False, bound=True)
 
 
 def _speed_unit(work: _Work) -> bool:
