@@ -27,9 +27,12 @@ more, and no parked aircraft does."""
 VANE_WIDTH = 0.15
 """Standard deviation of a vane's scale, as a share: upwash of wing and fuselage, and position. Vanes on
 record read 0.93 to 1.00 of the motion."""
-COMPUTED_WIDTH = 0.03
+_COMPUTED_WIDTH = 0.03
 """Standard deviation of the scale of an angle of attack that an autopilot computes from attitude and
 velocity, as a share. Wind and magnetic heading err by that much."""
+_LATEST_COMPUTED_S = 0.05
+"""Longest delay, s, of an angle of attack that an autopilot computes. Those on record are 20 to 35 ms late. A
+later one may be a vane's, ahead of the centre of gravity."""
 _LONGEST_GAP_S = 0.5
 """Longest gap, s, across which a rate is integrated."""
 _FEWEST_SAMPLES = 20
@@ -72,6 +75,24 @@ def rate_against_attitude(channels: Channels) -> Evidence:
         "theta_scale": Measured(float(fit.factors[0]), float(fit.factor_stds[0])),
         "q_delay": Measured(-float(fit.delays_s[0]), float(np.sqrt(fit.delay_covariance[0, 0]))),
     }
+
+
+def force_against_climb(channels: Channels) -> Evidence:
+    """Return ``a_z_behind_climb``, the delay of the specific force relative to the climb rate, s.
+
+    The climb rate is the integral of the vertical force less gravity. A climb rate may be late and is never
+    early, so that the force is at least this late.
+    """
+    if not _usable(channels, "a_x", "a_z", "theta", "climb_rate"):
+        return {}
+    force, climb = channels["a_z"], channels["climb_rate"]
+    theta, bank = _at("theta", force.t, channels), bank_at(force.t, channels)
+    along = _at("a_x", force.t, channels)
+    rising = along * np.sin(theta) - force.y * np.cos(theta) * np.cos(bank) - GRAVITY_M_S2
+    fit = fit_delays(climb.t, climb.y, [Summand(force.t, rising)])
+    if fit is None:
+        return {}
+    return {"a_z_behind_climb": Measured(-float(fit.delays_s[0]), float(np.sqrt(fit.delay_covariance[0, 0])))}
 
 
 def force_against_gravity(channels: Channels) -> Evidence:
@@ -159,10 +180,11 @@ def force_against_alpha(channels: Channels) -> Evidence:
     steeper = [Summand(t, pitching, 1.0 + _STEP), Summand(t, turning)]
     other = fit_delays(t_alpha, alpha, steeper, fit.delays_s)
     assert other is not None
-    width = scale_width(source)
+    of_rate, of_force = (float(delay) for delay in fit.delays_s)
+    computed = source.provenance == "derived" and abs(of_rate) < _LATEST_COMPUTED_S
+    width = _COMPUTED_WIDTH if computed else VANE_WIDTH
     by_scale = width * (other.delays_s - fit.delays_s) / _STEP
     covariance = fit.delay_covariance + np.outer(by_scale, by_scale)
-    of_rate, of_force = (float(delay) for delay in fit.delays_s)
     apart = float(np.sqrt(covariance[0, 0] + covariance[1, 1] - 2.0 * covariance[0, 1]))
     together = Measured(of_rate - of_force, apart)
     bound = Measured(-of_force, float(np.sqrt(covariance[1, 1])))
@@ -170,15 +192,10 @@ def force_against_alpha(channels: Channels) -> Evidence:
         return {"a_z_least": bound}
     by_width = width * float(other.factors[1] - fit.factors[1]) / _STEP
     return {
-        "a_z_least": together if source.provenance == "derived" else _lower(bound, together),
+        "a_z_least": _lower(bound, together),
         "a_z_most": together,
         "airspeed_scale": Measured(float(fit.factors[1]), hypot(float(fit.factor_stds[1]), by_width)),
     }
-
-
-def scale_width(alpha: Channel) -> float:
-    """Return the standard deviation of the scale of an angle of attack, as a share."""
-    return COMPUTED_WIDTH if alpha.provenance == "derived" else VANE_WIDTH
 
 
 def _parts(

@@ -12,12 +12,13 @@ import numpy as np
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.instruments.evidence import (
+    VANE_WIDTH,
     alpha_against_motion,
     force_against_alpha,
+    force_against_climb,
     force_against_gravity,
     rate_against_attitude,
     rate_moves_alpha,
-    scale_width,
     speed_against_force,
 )
 from advisor.flight.instruments.hypotheses import ANY, Weighed, weigh
@@ -77,6 +78,7 @@ def examine(channels: Mapping[str, Channel], earlier: Evidence | None = None) ->
         _clock_of_rate(work)
         if _speed_unit(work):
             _alpha_and_force(work)
+        _force_behind_climb(work)
     return Examined(work.channels, work.evidence, tuple(work.findings))
 
 
@@ -213,7 +215,7 @@ def _alpha_and_force(work: _Work) -> None:
         return
     _unwrap_alpha(work)
     known = work.learn(alpha_against_motion(work.channels)).get("alpha_scale")
-    weighed = _weighed_alpha(known, work.channels["alpha"]) if known is not None else None
+    weighed = _weighed_alpha(known) if known is not None else None
     if known is not None and weighed is not None and weighed.contradicts and weighed.best != ANY:
         _name_alpha(work, weighed, known)
         return
@@ -239,7 +241,7 @@ def _unwrap_alpha(work: _Work) -> None:
     work.channels["alpha"] = replace(alpha, y=turned)
 
 
-def _weighed_alpha(known: Measured, alpha: Channel) -> Weighed:
+def _weighed_alpha(known: Measured) -> Weighed:
     factors = {
         REVERSED: -1.0,
         "in rad": pi / 180.0,
@@ -247,7 +249,7 @@ def _weighed_alpha(known: Measured, alpha: Channel) -> Weighed:
         "reversed and in rad": -pi / 180.0,
         "reversed and in deg": -180.0 / pi,
     }
-    return weigh(known, factors, max(scale_width(alpha), 0.1))
+    return weigh(known, factors, VANE_WIDTH)
 
 
 def _name_alpha(work: _Work, weighed: Weighed, known: Measured) -> None:
@@ -276,20 +278,34 @@ def _clock_of_force(work: _Work, told: Mapping[str, Measured]) -> bool:
     """Hold the clock of the specific force against that of the pitch rate; return whether they differ."""
     least, most = told.get("a_z_least"), told.get("a_z_most")
     range_s = FILTER_S + _half_intervals(work, "q", "a_z")
+    exact = least is not None and most is not None and most.value - least.value < range_s
     late_rate = next((f for f in work.findings if f.code == "q_delay_s"), None)
     if least is not None and least.value - _SIGMAS * least.std > range_s:
-        exact = most is not None and most.value - least.value < FILTER_S
-        _late(work, "a_z", _PLAIN["q" if late_rate is None else "theta"], least, used=exact, bound=not exact)
-        for name in ("a_z", "a_x"):
-            work.shift(name, least.value if exact else 0.0)
+        late = most if exact and most is not None else least
+        _late(work, "a_z", _PLAIN["q" if late_rate is None else "theta"], late, used=exact, bound=not exact)
+        if exact:
+            work.shift("a_z", late.value)
+            work.shift("a_x", late.value)
         return True
     if most is not None and most.value + _SIGMAS * most.std < -range_s:
-        early = Measured(-most.value, most.std)
-        _late(work, "q", _PLAIN["a_z"], early, used=False)
+        _late(work, "q", _PLAIN["a_z"], Measured(-most.value, most.std), used=False)
         return True
-    if late_rate is not None and most is not None:
+    # A force as late as the pitch rate would have shown: nothing else but the pitch rate is late.
+    if late_rate is not None and exact and most is not None and _SIGMAS * most.std < FILTER_S + range_s:
         work.findings[work.findings.index(late_rate)] = _used(late_rate)
     return False
+
+
+def _force_behind_climb(work: _Work) -> None:
+    """Hold the clock of the specific force against that of the climb rate, where nothing else has told it."""
+    if any(f.code == "a_z_delay_s" for f in work.findings):
+        return
+    least = work.learn(force_against_climb(work.channels)).get("a_z_behind_climb")
+    if least is None or not work.has("a_z", "climb_rate"):
+        return
+    range_s = FILTER_S + _half_intervals(work, "a_z", "climb_rate")
+    if least.value - _SIGMAS * least.std > range_s:
+        _late(work, "a_z", "the climb rate", least, used=False, bound=True)
 
 
 def _speed_unit(work: _Work) -> bool:

@@ -192,3 +192,12 @@ def test_an_air_speed_in_another_unit_shows_without_a_measured_alpha(unit: float
     assert codes(faster) == []
     (wrong,) = examine(times(unit, "airspeed")(faster)).findings
     assert (wrong.code, wrong.refuses) == ("airspeed_unit", True)
+
+
+def test_a_late_force_shows_by_the_climb_rate_without_alpha_and_air_speed() -> None:
+    sound = {name: c for name, c in flight().items() if name not in ("alpha", "airspeed")}
+    assert codes(sound) == []
+    assert codes(late(0.2, "climb_rate")(sound)) == []
+    (wrong,) = examine(late(0.12, "a_z", "a_x")(sound)).findings
+    assert (wrong.code, wrong.refuses) == ("a_z_delay_s", True)
+    assert wrong.value == pytest.approx(0.12, abs=0.01)
