@@ -38,6 +38,8 @@ CLOSE_ENOUGH = 1e-7
 """Promised change of log J per sample at which an intermediate search ends."""
 CLEARLY = 9.0
 """Least gain in twice the log likelihood for a parameter: three standard deviations."""
+LEAST_SHARE = 0.01
+"""Least share by which white noise weighs a prior; data without noise have no colour."""
 CONTRADICTS = 3.0
 """Distance of a stated value from the value that the data tell, in standard deviations of both, beyond which
 they exclude each other."""
@@ -111,6 +113,7 @@ def fit_instruments(plain: Solution, unknown: Sequence[Instrument]) -> Instrumen
         Parameters with a prior, open ones, and stated ones.
     """
     begin = _Fit(plain.problem, plain.assembly, plain.optimum)
+    unknown = [_weighed(x, _share(plain)) for x in unknown]
     common = tuple(x for x in unknown if x.name not in OF_ALPHA)
     near = _looked_about(begin, common)
     choices = [(*common, x) for x in unknown if x.name in OF_ALPHA] or [common]
@@ -120,6 +123,17 @@ def fit_instruments(plain: Solution, unknown: Sequence[Instrument]) -> Instrumen
     if kept is None:
         return InstrumentFit(plain)
     return _with_statements(*kept, plain)
+
+
+def _share(plain: Solution) -> float:
+    """Return the errors by white noise over those by the residuals' colour, the median of the parameters."""
+    ratio = np.sqrt(np.diag(plain.covariance_cr) / np.diag(plain.covariance))
+    return float(np.clip(np.nanmedian(ratio), LEAST_SHARE, 1.0))
+
+
+def _weighed(x: Instrument, share: float) -> Instrument:
+    """Return the instrument with the share by which white noise weighs its prior."""
+    return x if x.prior is None else replace(x, prior=replace(x.prior, share=share))
 
 
 def _clear_ones(
@@ -133,13 +147,17 @@ def _clear_ones(
         weighing = Weighing.by(solution.noise, solution.assembly)
         opens = [x for x in names if x.prior is None and x.stated is None]
         rivals = [(x, _without(x, best, names, plain)) for x in opens]
-        gains = [_gain(weighing, x, best, rival, names) for x, rival in rivals]
+        std = {found.instrument.name: found.std for found in identified_at(solution, names)}
+        gains = [
+            0.0 if x.at_end(best.problem, std[x.name]) else _gain(weighing, x, best, rival, names)
+            for x, rival in rivals
+        ]
         if not gains or min(gains) >= CLEARLY:
             return names, best, solution
         weakest, rival = rivals[int(np.argmin(gains))]
         innocent = weakest.innocent(plain.problem)
         others = tuple(x for x in names if x is not weakest)
-        names = others if innocent is None else (*others, innocent)
+        names = others if innocent is None else (*others, _weighed(innocent, _share(plain)))
         best = _descend(rival, names)
 
 
@@ -156,7 +174,7 @@ def _with_statements(
         x = found.instrument
         share = min(1.0, float(white_std) / found.std)
         if x.prior is not None:
-            kept.append(replace(found, instrument=replace(x, prior=replace(x.prior, share=share))))
+            kept.append(replace(found, instrument=_weighed(x, share)))
         elif x.stated is None or found.contradicts:
             kept.append(found)
         elif x.known_to * abs(x.stated) > 0.0:
@@ -193,7 +211,7 @@ def _gain(weighing: Weighing, x: Instrument, fit: _Fit, rival: _Fit, names: Sequ
 
     The gain is 0 for a value that the record cannot show.
     """
-    if x.at_end(fit.problem) or abs(x.read(fit.problem)) < x.smallest(fit.problem):
+    if abs(x.read(fit.problem)) < x.smallest(fit.problem):
         return 0.0
 
     def misfit(of: _Fit) -> float:
@@ -271,7 +289,7 @@ def _identified(x: Instrument, problem: OutputErrorProblem, std: float) -> Ident
         return Identified(x, value, std, value, std)
     apart = abs(value - x.stated)
     excluded = apart > CONTRADICTS * float(np.hypot(std, x.known_to * x.stated))
-    beyond = excluded and apart > x.smallest(problem) and not x.at_end(problem)
+    beyond = excluded and apart > x.smallest(problem) and not x.at_end(problem, std)
     return Identified(x, value, std, value, std, contradicts=beyond)
 
 

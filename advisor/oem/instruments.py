@@ -31,6 +31,7 @@ KNOWN_TO = 0.1
 """Standard deviation over the value for which the value represents the aircraft, and that of a servo's lag in
 an aircraft file. An error of a tenth of a usual servo lag moves M_δe by some 5 %, the default tolerance of a
 campaign."""
+NORMAL_95 = 1.959963984540054
 SMALLEST_DELAY_S = 0.004
 """Smallest delay of the angle of attack that matters, s: a fifth of a sample at 50 Hz."""
 SMALLEST_ARM_M = 0.02
@@ -67,10 +68,13 @@ class Instrument:
             return None
         return replace(self, prior=Prior(self.read(problem), self.usual(problem)))
 
-    def at_end(self, problem: OutputErrorProblem) -> bool:
-        """Return whether the search ended at an end of the range, which is no estimate."""
+    def at_end(self, problem: OutputErrorProblem, std: float) -> bool:
+        """Return whether the value, with its standard deviation, reaches an end of the range of the search.
+
+        Such a value is no estimate.
+        """
         value = self.read(problem)
-        return not self.lowest + self.difference < value < self.highest - self.difference
+        return not self.lowest + self.difference < value < self.highest - NORMAL_95 * std
 
 
 def _with_lag(problem: OutputErrorProblem, value: float) -> OutputErrorProblem:

@@ -10,6 +10,8 @@ from advisor.flight.signals.record import Channel
 from advisor.oem.airspeed import airspeed
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import estimate, estimate_jointly
+from advisor.oem.instruments import SERVO_LAG
+from advisor.oem.prepare import prepare
 from advisor.oem.problem import Signal
 from advisor.oem.surface import Servo
 from tests.oem.builders import UAV, elevator_3211, flown, maneuver, simulate, trim_alpha, trim_elevator
@@ -287,3 +289,21 @@ def test_an_air_speed_that_disagrees_with_the_motion_is_believed():
     found = airspeed(channels | {"airspeed": gusty})
     assert not found.smooth
     np.testing.assert_array_equal(found.signal.y, gusty.y)
+
+
+def test_a_value_whose_error_reaches_the_end_of_the_search_is_no_estimate():
+    problem = prepare([equipped()], Aircraft(airspeed_m_s=SPEED)).problem
+    longest = replace(problem, servo=Servo(0.39))
+    assert not SERVO_LAG.at_end(longest, std=0.003)
+    assert SERVO_LAG.at_end(longest, std=0.03)
+    assert SERVO_LAG.at_end(replace(problem, servo=Servo(0.4)), std=0.0)
+
+
+def test_a_filtered_pitch_rate_and_specific_force_do_not_pass_for_other_derivatives():
+    flight, late_s = equipped(noise=0.01), 0.011
+    filtered = {
+        name: replace(c, t=c.t + late_s, delay_s=late_s) if name in ("q", "a_z") else c
+        for name, c in flight.channels.items()
+    }
+    there = estimate(replace(flight, channels=filtered), aircraft())
+    np.testing.assert_allclose(there.theta, estimate(flight, aircraft()).theta, rtol=1e-6, atol=1e-6)
