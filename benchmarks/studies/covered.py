@@ -24,6 +24,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.mavlink.logs.logs import open_log
 from advisor.model.short_period import SPEED_EXPONENTS
 from advisor.oem.estimate import Estimate
+from advisor.oem.findings import findings_of
 from advisor.session.timeline import Timeline
 from advisor.words.quantiles import NORMAL_95
 from sim.effects.fitting import flight_of
@@ -195,11 +196,16 @@ def fly(drawn: Drawn) -> Outcome:
     """Fly one campaign, and return what the advisor said of it."""
     errors = drawn.errors
     flight = flight_of(_scenario(drawn, errors))
-    campaign = Campaign(Aircraft(elevator=Elevator(lag_s=errors.stated_lag_s)))
+    aircraft = Aircraft(elevator=Elevator(lag_s=errors.stated_lag_s))
+    campaign = Campaign(aircraft)
     stop = _heard(campaign, flight, errors)
     state = campaign.state
-    off = _off(state.model, _truth(flight, state.model, errors)) if state.model is not None else {}
-    contradictions = [f for f in state.instruments if f.contradicts]
+    off: Mapping[str, float] = {}
+    told = {f.code: f for f in state.instruments}
+    if state.model is not None:
+        off = _off(state.model, _truth(flight, state.model, errors))
+        told |= {f.code: f for f in findings_of(state.model, aircraft)}
+    contradictions = [f for f in told.values() if f.contradicts]
     return Outcome(
         drawn,
         sum(judged.verdict.accepted for judged in state.maneuvers),
