@@ -24,6 +24,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.mavlink.logs.logs import open_log
 from advisor.model.short_period import SPEED_EXPONENTS
 from advisor.oem.estimate import Estimate
+from advisor.oem.findings import findings_of
 from advisor.session.timeline import Timeline
 from advisor.words.quantiles import NORMAL_95
 from sim.effects.fitting import flight_of
@@ -195,14 +196,16 @@ def fly(drawn: Drawn) -> Outcome:
     """Fly one campaign, and return what the advisor said of it."""
     errors = drawn.errors
     flight = flight_of(_scenario(drawn, errors))
-    campaign = Campaign(Aircraft(elevator=Elevator(lag_s=errors.stated_lag_s)))
-    stop = None
-    for said in _heard(campaign, flight):
-        if stop is None and said.flight_test.decision == "stop" and said.model is not None:
-            stop = _stop(said, said.model, flight, errors)
+    aircraft = Aircraft(elevator=Elevator(lag_s=errors.stated_lag_s))
+    campaign = Campaign(aircraft)
+    stop = _heard(campaign, flight, errors)
     state = campaign.state
-    off = _off(state.model, _truth(flight, state.model, errors)) if state.model is not None else {}
-    contradictions = [f for f in state.instruments if f.contradicts]
+    off: Mapping[str, float] = {}
+    told = {f.code: f for f in state.instruments}
+    if state.model is not None:
+        off = _off(state.model, _truth(flight, state.model, errors))
+        told |= {f.code: f for f in findings_of(state.model, aircraft)}
+    contradictions = [f for f in told.values() if f.contradicts]
     return Outcome(
         drawn,
         sum(judged.verdict.accepted for judged in state.maneuvers),
@@ -232,19 +235,19 @@ def _scenario(drawn: Drawn, errors: Errors) -> Scenario:
     )
 
 
-def _heard(campaign: Campaign, flight: Flight) -> Sequence[CampaignState]:
-    """Feed the flight's log as a link delivers it, and return the state after each manoeuvre."""
+def _heard(campaign: Campaign, flight: Flight, errors: Errors) -> Stop | None:
+    """Feed the flight's log to the end as a link delivers it, and return the first stop."""
     with tempfile.TemporaryDirectory() as folder:
         log = Path(folder) / "flight.tlog"
         record(flight, log)
         timeline = Timeline([columns for batch in open_log(log) for columns in batch])
-    states = []
+    stop = None
     for position_s in np.arange(0.0, timeline.duration_s + HEARD_EVERY_S, HEARD_EVERY_S):
         events = campaign.feed(timeline.up_to(float(position_s)))
-        if any(isinstance(event, ManeuverJudged) for event in events):
-            states.append(campaign.state)
+        if stop is None and any(isinstance(event, ManeuverJudged) for event in events):
+            stop = _stop(campaign.state, flight, errors)
     campaign.finish()
-    return [*states, campaign.state]
+    return stop or _stop(campaign.state, flight, errors)
 
 
 def _truth(flight: Flight, model: Estimate, errors: Errors) -> FloatArray:
@@ -266,7 +269,11 @@ def _off(model: Estimate, truth: FloatArray) -> dict[str, float]:
     }
 
 
-def _stop(state: CampaignState, model: Estimate, flight: Flight, errors: Errors) -> Stop:
+def _stop(state: CampaignState, flight: Flight, errors: Errors) -> Stop | None:
+    """Return the stop that the state says; None without."""
+    model = state.model
+    if state.flight_test.decision != "stop" or model is None:
+        return None
     truth = _truth(flight, model, errors)
     allowed = tolerances(truth, Prediction({}), PLAN)
     rows = [PARAMETERS.index(name) for name in NAMED]
