@@ -363,7 +363,7 @@ class FlightStream:
             companion = columns.component != vehicle.component
             if companion and columns.name not in COMPANIONS:
                 continue
-            # A companion computer has a clock of its own.
+            # An onboard computer has a clock of its own.
             t = clock[now] if companion else stamps(columns, clock[now])
             if columns.name == "HEARTBEAT" and np.isfinite(t[-1]):
                 self._heartbeat_s = float(t[-1])
