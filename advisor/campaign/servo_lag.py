@@ -1,8 +1,8 @@
 """The servo's lag, identified during a campaign and used in every later estimate.
 
-The lag is estimated from all accepted manoeuvres together. Where the crew gives none, all estimates
-use the lag as soon as its standard deviation is at most a tenth of it. Where the manoeuvres exclude the
-crew's value, all estimates use the lag that the data tell.
+The lag is estimated from all accepted manoeuvres together. Single estimates, verdicts and criteria use the
+lag in two cases. The crew gives none, and the standard deviation is at most a tenth of the lag. Or the crew
+gives one that the manoeuvres exclude.
 """
 
 from dataclasses import replace

@@ -1,7 +1,8 @@
 """Instruments of an estimate as findings: what the fit tells of each, next to what is stated.
 
-The findings hold for the estimate that they come from. A contradiction whose value the estimate uses refuses
-nothing. The sign of the elevator cannot be used, for the fit does not know which of two signs is wrong.
+The findings hold for the estimate that they come from. A contradiction refuses nothing where the estimate
+uses the value of the data. The sign of the elevator cannot be used, for the fit does not know which of two
+signs is wrong.
 """
 
 from advisor.aircraft.aircraft import PARAMETERS, Aircraft

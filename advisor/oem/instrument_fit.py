@@ -4,10 +4,10 @@ Gauss-Newton steps move all instruments of a problem, with everything else refit
 differ by what is known before the flight:
 
 - *The delay of the command* is a nuisance of every log. A prior holds it, and every interval contains it.
-- *An open parameter* is kept where the record is clearly likelier with it, for noise of the residuals'
-  colour. The likelihood ratio holds where an error from the curvature does not. On a well damped aircraft a
-  servo's lag is correlated with M_q and M_δe over a long range. An angle of attack whose lateness is not
-  clear keeps the lateness of sound instruments as its prior.
+- *An open parameter* is kept where the record is clearly likelier with the parameter, for noise of the
+  residuals' colour. The likelihood ratio holds where an error from the curvature does not. On a well damped
+  aircraft a servo's lag is correlated with M_q and M_δe over a long range. An angle of attack whose lateness
+  is not clear keeps the lateness of sound instruments as its prior.
 - *A stated parameter* is estimated next to the statement. Where both agree, the statement is a prior with a
   width. Where they exclude each other, the data decide alone, and the contradiction is told.
 """
@@ -209,7 +209,7 @@ def _without(x: Instrument, best: _Fit, names: Sequence[Instrument], plain: Solu
 def _gain(weighing: Weighing, x: Instrument, fit: _Fit, rival: _Fit, names: Sequence[Instrument]) -> float:
     """Return twice the log ratio of the posteriors of a fit and of a rival, under one noise model.
 
-    The gain is 0 for a value that the record cannot show.
+    A value that the record cannot show gains nothing.
     """
     if abs(x.read(fit.problem)) < x.smallest(fit.problem):
         return 0.0
