@@ -264,7 +264,6 @@ def test_size_of_a_log_does_not_depend_on_the_effect() -> None:
         len(log_bytes(draw_case(Assignment(kind, effects), 8, 4)))
         for kind, effects in (
             ("none", ()),
-            ("one", (EFFECTS["alpha_bias"],)),
             ("one", (EFFECTS["cg_shift"],)),
         )
     ]
