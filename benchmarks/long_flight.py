@@ -8,8 +8,8 @@ import numpy as np
 
 from advisor.flight.signals.messages import Columns
 from advisor.mavlink.logs.logs import open_log
+from advisor.session import conductor
 from advisor.session.replay import LogPlayer
-from advisor.tui import conductor
 
 
 def player(log: Path, minutes: float) -> LogPlayer:

@@ -92,8 +92,8 @@ MUTANTS = (
         "exports/models/test_ardupilot.py",
     ),
     Mutant(
-        "exports/models/improvement.py",
-        "NORMAL_95 = 1.96",
+        "words/quantiles.py",
+        "NORMAL_95 = 1.959963984540054",
         "NORMAL_95 = 1.0",
         "exports/models/test_matlab.py",
     ),
@@ -116,8 +116,13 @@ MUTANTS = (
     Mutant(
         "decision/scatter.py", "SCATTER_FACTOR = 5.0", "SCATTER_FACTOR = 50.0", "decision/test_scatter.py"
     ),
-    Mutant("report/qualities.py", "1.96 * one.std", "one.std", "report/test_intervals.py"),
-    Mutant("report/quantities.py", "1.96 * std", "std", "report/test_intervals.py"),
+    Mutant("report/qualities.py", "NORMAL_95 * one.std", "one.std", "report/test_intervals.py"),
+    Mutant(
+        "report/result_rows.py",
+        "NORMAL_95 * quantity.factor",
+        "quantity.factor",
+        "report/test_intervals.py",
+    ),
 )
 
 

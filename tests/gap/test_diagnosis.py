@@ -40,9 +40,9 @@ def test_a_delay_is_named_sized_and_removed_on_manoeuvres_kept_out(delayed):
 @pytest.mark.parametrize(
     ("effect", "changes"),
     [
-        ("alpha_lag", {"switches": {"vane_lag": 0.04}}),
+        pytest.param("alpha_lag", {"switches": {"vane_lag": 0.04}}, marks=pytest.mark.study),
         pytest.param("accelerometer_skew", {"skew": {"a_z": 0.03}}, marks=pytest.mark.study),
-        ("nonlinear_pitching_moment", {"switches": {"cm_a2": -3.0}}),
+        pytest.param("nonlinear_pitching_moment", {"switches": {"cm_a2": -3.0}}, marks=pytest.mark.study),
         ("mass_change", {"mass_step": 0.15}),
     ],
 )
@@ -119,6 +119,7 @@ def test_nothing_is_named_when_nothing_is_there():
     assert not any(c.present for c in found.causes)
 
 
+@pytest.mark.study
 def test_moving_air_is_called_turbulence_and_not_an_effect_of_the_aircraft():
     found = diagnose(fly(Setup(maneuvers=6, gust_std=0.5, seed=2)), Aircraft())
     assert found.causes[0].effect == "turbulence"

@@ -15,7 +15,6 @@ from advisor.cli import group as cli
 from advisor.cli.log_options import LogsAsked
 from advisor.cli.page_content import gather
 from advisor.report.page.content import Content
-from advisor.report.page.render import page
 from tests.flights import FOUR, TWO, recorded
 from tests.report.page_reader import Page
 
@@ -25,23 +24,19 @@ reference: {mass_kg: 9000.0, wing_area_m2: 33.0, chord_m: 2.9, iyy_kg_m2: 50000.
 model: {Z_0: -0.009, Z_alpha: -0.483, Z_q: 0.104, Z_delta_e: 0.676, M_0: 0.475, M_alpha: -6.0, M_q: -2.01,
   M_delta_e: -7.21}
 """
-SHORT = TWO
-"""Manoeuvres of the flight whose gap is diagnosed: enough to have one, and quickly diagnosed."""
 
 
 @dataclass(frozen=True)
 class Reported:
-    """What the commands say of one flight of three manoeuvres, and of the gap of a shorter one."""
+    """What the commands say of one flight of three manoeuvres."""
 
     log: Path
     short_log: Path
     aircraft: Path
     written: str
-    """The page as ``advisor report`` wrote it."""
+    """The page as ``advisor report --gap`` wrote it."""
     content: Content
-    """What that page was written from, gathered again; with the gap of the shorter flight."""
-    html: str
-    """The page with the gap."""
+    """What that page was written from, gathered again; the gap is what ``advisor gap`` says."""
     page: Page
     """The same, read."""
     analysis: dict[str, Any]
@@ -63,20 +58,17 @@ def _caller(patch: pytest.MonkeyPatch) -> Callable[..., str]:
 @pytest.fixture(scope="session")
 def reported(tmp_path_factory: pytest.TempPathFactory) -> Reported:
     folder = tmp_path_factory.mktemp("report")
-    log, short_log = recorded("linear", 1.0, maneuvers=FOUR[:3]), recorded("linear", 1.0, maneuvers=SHORT)
+    log, short_log = recorded("linear", 1.0, maneuvers=FOUR[:3]), recorded("linear", 1.0, maneuvers=TWO)
     path, out = folder / "twin.yaml", folder / "page.html"
     path.write_text(AIRCRAFT, encoding="utf-8")
     aircraft = load_aircraft(path)
     with pytest.MonkeyPatch.context() as patch:
         call = _caller(patch)
         analysis = json.loads(call("analyze", log, "--aircraft", path, "--json"))
-        improved = folder / "improved.yaml"
-        gap = json.loads(call("gap", short_log, "--aircraft", path, "--json", "--out", improved))
+        gap = json.loads(call("gap", log, "--aircraft", path, "--json"))
         doctor = json.loads(call("doctor", log, "--aircraft", path, "--json"))
-        short, _ = gather(LogsAsked((short_log,), path), aircraft, True)
-        call("report", log, "--aircraft", path, "-o", out)
+        call("report", log, "--aircraft", path, "--gap", "-o", out)
         content, _ = gather(LogsAsked((log,), path), aircraft, False)
-    with_gap = replace(content, gap=short.gap)
-    html = page(with_gap, "html")
     written = out.read_text(encoding="utf-8")
-    return Reported(log, short_log, path, written, with_gap, html, Page.read(html), analysis, gap, doctor)
+    content = replace(content, gap=gap)
+    return Reported(log, short_log, path, written, content, Page.read(written), analysis, gap, doctor)

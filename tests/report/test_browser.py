@@ -70,7 +70,7 @@ def opened(page: str, folder: Path) -> list[dict[str, Any]]:
 
 @pytest.mark.skipif(BROWSER is None, reason="Debian's chromium is not installed")
 def test_the_page_asks_for_nothing_and_overflows_nowhere(reported: Reported, tmp_path: Path) -> None:
-    seen = opened(reported.html, tmp_path)
+    seen = opened(reported.written, tmp_path)
     assert [one["width"] for one in seen] == list(WIDTHS)
     for one in seen:
         assert one["loaded"] == []

@@ -97,6 +97,7 @@ def test_a_cluster_gives_the_tables_of_one_process_and_a_second_run_does_nothing
     assert {path: path.stat().st_mtime_ns for path in (shared / "flights").iterdir()} == stamps
 
 
+@pytest.mark.study
 def test_a_cluster_gives_the_study_of_one_process(scheduler: str, advisor: Advisor) -> None:
     words = ("study", "--campaigns", 10, "--json")
     shared = advisor(*words, "--scheduler", scheduler)
