@@ -66,7 +66,7 @@ def _estimate(maneuvers: Sequence[Maneuver], aircraft: Aircraft, method: Method)
         return solution
     if method != "gauss-newton":
         return report(solution, prepared, aircraft, lagged=_supposing_a_lag(solution, aircraft))
-    fitted = _with_instruments(solution, aircraft, _derives_alpha(maneuvers))
+    fitted = _with_instruments(solution, aircraft)
     solution = with_edges(fitted.solution)
     identified = refreshed(fitted.identified, solution)
     has_lag = any(x.instrument.name == "servo_lag_s" for x in identified)
@@ -82,13 +82,13 @@ def _estimate(maneuvers: Sequence[Maneuver], aircraft: Aircraft, method: Method)
     )
 
 
-def _with_instruments(plain: Solution, aircraft: Aircraft, derived: bool) -> InstrumentFit:
+def _with_instruments(plain: Solution, aircraft: Aircraft) -> InstrumentFit:
     """Return the fit with the instruments, and with the likelier reading of the command.
 
     A smooth command may be held instead of linear between its stamps, which is half an interval later. Large
     steps get their own times (``edges``).
     """
-    linear = fit_instruments(plain, unknown_instruments(plain.problem, aircraft, derived))
+    linear = fit_instruments(plain, unknown_instruments(plain.problem, aircraft))
     records = plain.problem.records
     if any(large_steps(record.elevator).interval for record in records):
         return linear
@@ -97,7 +97,7 @@ def _with_instruments(plain: Solution, aircraft: Aircraft, derived: bool) -> Ins
     other = solve(problem, begin=(plain.optimum.shared, plain.optimum.local))
     if isinstance(other, NoEstimate):
         return linear
-    held = fit_instruments(other, unknown_instruments(problem, aircraft, derived))
+    held = fit_instruments(other, unknown_instruments(problem, aircraft))
     weighing = Weighing.by(linear.solution.noise, linear.solution.assembly)
     return held if held.misfit(weighing) < linear.misfit(weighing) else linear
 

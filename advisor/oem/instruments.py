@@ -221,18 +221,11 @@ def moved_by(
     return problem
 
 
-def unknown_instruments(
-    problem: OutputErrorProblem, aircraft: Aircraft, derived: bool = False
-) -> tuple[Instrument, ...]:
+def unknown_instruments(problem: OutputErrorProblem, aircraft: Aircraft) -> tuple[Instrument, ...]:
     """Return the instrument parameters that are estimated together with the derivatives.
 
     A vane and an accelerometer at one place describe the motion of that place. Instruments at the centre of
     gravity describe the aircraft's equally well. One of the two places must be known to determine the other.
-
-    Parameters
-    ----------
-    derived
-        Whether the angle of attack is derived from other sensors, so that it has no vane.
     """
     command = COMMAND_DELAY.innocent(problem)
     unknown = [_servo_lag(aircraft.elevator), *([command] if command else [])]
@@ -240,7 +233,7 @@ def unknown_instruments(
     vane_m, imu_m = aircraft.alpha.vane_arm_m, aircraft.accelerometer.arm_m
     if {"alpha", "a_z"} <= measured:
         if vane_m is None:
-            unknown += [ALPHA_DELAY] if derived else [VANE_ARM, ALPHA_DELAY]
+            unknown += [VANE_ARM, ALPHA_DELAY]
         elif imu_m is None:
             unknown.append(ACCELEROMETER_ARM)
         else:
