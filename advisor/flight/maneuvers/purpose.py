@@ -34,9 +34,9 @@ _MOSTLY = 0.5
 mostly an answer. Recoveries of an attitude by hand on record have 0.63 to 0.94. Test inputs that bring the
 attitude back have at most 0.35."""
 _STANDS_OUT = 4.0
-"""Least ratio of a movement's fastest motion to the root mean square of the motion before. Chance exceeds four
-standard deviations in 2 % of movements of 300 samples. Hands that keep an attitude have 0.3 to 3.6, test
-inputs on record at least 10."""
+"""Least ratio of a movement's fastest motion to the root mean square of the motion before. Chance exceeds
+four standard deviations in 2 % of movements of 300 samples. Hands that keep an attitude have 0.3 to 3.6,
+test inputs on record at least 10."""
 _FEWEST_BEFORE = 5
 """Fewest samples of the motion before, for its root mean square."""
 _SHARP_S = 0.06
