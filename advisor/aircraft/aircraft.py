@@ -339,7 +339,8 @@ class Aircraft:
         positive=True,
     )] = None  # fmt: skip
     reference_airspeed_m_s: Annotated[float | None, Key(
-        "Air speed at which derivatives are given, m/s. None: the mean over the accepted manoeuvres.",
+        "Air speed at which derivatives are given, as the aircraft reads it, m/s. "
+        "None: the mean over the accepted manoeuvres.",
         example="20.0",
         question="Air speed at which derivatives are given, m/s",
         cost=(

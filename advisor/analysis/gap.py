@@ -9,6 +9,7 @@ from advisor.campaign.hand_decisions import ByHand
 from advisor.flight.maneuvers.events import ManeuverFlown, Notice
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.repeated_maneuver import are_one, is_fuller
+from advisor.flight.signals.true_airspeed import true_over_read
 from advisor.flight.stream.identity import READER_NOTICE
 from advisor.flight.stream.stream import FlightStream
 from advisor.flight.vehicle.one_aircraft import OneAircraft
@@ -153,10 +154,12 @@ def compare_logs(
     """
     progress("reading", 0.0)
     flown = maneuvers_of(logs, aircraft, target_system, by_hand)
+    gain = true_over_read(m.channels for m in flown.maneuvers)
     if simulator is not None:
         compared = compare(flown.maneuvers, simulator, aircraft, holdout, progress)
     else:
-        found = diagnose(flown.maneuvers, aircraft, holdout, progress)
+        at_true_speed = _at_true_speed(aircraft, gain)
+        found = diagnose(flown.maneuvers, at_true_speed, holdout, progress)
         told = found if prior_derivatives(aircraft) is not None else without_simulator(found)
         compared = Compared(told, aircraft)
     notes = list(flown.notes)
@@ -165,7 +168,8 @@ def compare_logs(
         twice = f"{flown.again} of {every} manoeuvres came twice, as from the same log or a copy"
         notes.insert(0, f"{twice}: they count once.")
     every_note = (*notes, *compared.diagnosis.notes)
-    found = replace(compared.diagnosis, notes=every_note, height_m=_height_of(flown.maneuvers))
+    height_m = _height_of(flown.maneuvers)
+    found = replace(compared.diagnosis, notes=every_note, height_m=height_m, true_over_read=gain)
     return replace(compared, diagnosis=found)
 
 
@@ -186,6 +190,12 @@ def named_simulator(aircraft: Aircraft, target_system: int | None = None) -> Sim
         return maneuvers_of([log], aircraft, target_system).maneuvers
 
     return simulator_of(aircraft.simulator, aircraft, read)
+
+
+def _at_true_speed(aircraft: Aircraft, true_over_read: float) -> Aircraft:
+    """Return the aircraft with the true air speed at its reference speed, which is one as read."""
+    read = aircraft.reference_airspeed_m_s
+    return aircraft if read is None else replace(aircraft, reference_airspeed_m_s=read * true_over_read)
 
 
 def _height_of(maneuvers: Sequence[Maneuver]) -> float | None:

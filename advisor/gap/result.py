@@ -211,6 +211,8 @@ class Diagnosis:
     maneuvers: tuple[int, ...] = field(default=())
     height_m: float | None = None
     """Mean height of the manoeuvres in m; None where the height was not recorded."""
+    true_over_read: float = 1.0
+    """Factor from the air speed as the aircraft reads it to the true one."""
 
 
 def spelled(effect: str) -> str:

@@ -11,6 +11,7 @@ from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.motion import bank_at, gravity_in_plane, integrated
 from advisor.flight.signals.record import Channel
 from advisor.flight.signals.renewal import renewed
+from advisor.flight.signals.true_airspeed import true_over_read
 from advisor.oem.airspeed import Airspeed, airspeed
 from advisor.oem.alpha_use import FEWEST_SAMPLES, can_do_without, infer, lacking, why_left_out
 from advisor.oem.alpha_use import has as _has
@@ -128,7 +129,9 @@ def _prepared(
             _record(maneuver, signal, alpha, usable)
             for maneuver, signal, alpha in zip(maneuvers, signals, alphas, strict=True)
         ),
-        reference_airspeed_m_s=_reference(known, aircraft, all(v.smooth for v in measured))
+        reference_airspeed_m_s=_reference(
+            known, _stated(aircraft, maneuvers), all(v.smooth for v in measured)
+        )
         if together
         else None,
         servo=_servo(aircraft.elevator),
@@ -224,12 +227,18 @@ def _constant(maneuver: Maneuver, speed: float | None) -> Signal | None:
     return Signal(maneuver.channels["elevator"].t[[0, -1]], np.array([speed, speed]))
 
 
-def _reference(speeds: Sequence[Signal], aircraft: Aircraft, smooth: bool) -> float | None:
+def _stated(aircraft: Aircraft, maneuvers: Sequence[Maneuver]) -> float | None:
+    """Return the true air speed at the reference speed of the file, which is one as read."""
+    read = aircraft.reference_airspeed_m_s
+    return None if read is None else read * true_over_read(m.channels for m in maneuvers)
+
+
+def _reference(speeds: Sequence[Signal], stated: float | None, smooth: bool) -> float | None:
     """Return the reference air speed, where the speed changes enough to matter."""
     together = np.concatenate([speed.y for speed in speeds])
     if np.min(together) <= 0.0:
         return None
-    reference = aircraft.reference_airspeed_m_s or float(np.mean(together))
+    reference = stated or float(np.mean(together))
     enough = SMOOTH_SPEED_CHANGE if smooth else SPEED_CHANGE
     moved = float(np.max(together) - np.min(together)) > enough * reference
     differs = abs(float(np.mean(together)) / reference - 1.0) > enough / 2.0

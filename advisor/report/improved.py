@@ -21,7 +21,8 @@ def improved_file(diagnosis: Diagnosis, aircraft: Aircraft) -> Mapping[str, Any]
     kept = replace(flown, name=Aircraft().name, model={}, effects={}, simulator=None)
     content.update(_beyond(asdict(kept), asdict(Aircraft())))
     if diagnosis.reference_airspeed_m_s is not None:
-        content["reference_airspeed_m_s"] = round(diagnosis.reference_airspeed_m_s, 4)
+        as_read = diagnosis.reference_airspeed_m_s / diagnosis.true_over_read
+        content["reference_airspeed_m_s"] = round(as_read, 4)
     content["model"] = {name: _digits(v.value) for name, v in diagnosis.model.items()}
     content["effects"] = {
         effect: {name: _digits(value) for name, value in values.items()} for effect, values in effects.items()

@@ -6,6 +6,7 @@ pressure, else from the height above mean sea level. A barometer's temperature i
 warms the sensor. One simulated autopilot reports 30 °C, by which V would be 3.5 % too large.
 """
 
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -58,7 +59,17 @@ def true_airspeed(
     else:
         return logged
     ratio: FloatArray = np.sqrt(SEA_LEVEL_DENSITY_KG_M3 / density(pressure_pa, temperature_c))
-    return replace(logged, y=logged.y * np.interp(logged.t, at, ratio), source=f"{logged.source}{by}")
+    true = logged.y * np.interp(logged.t, at, ratio)
+    return replace(logged, y=true, source=f"{logged.source}{by}", gain=float(np.mean(ratio)))
+
+
+def true_over_read(records: Iterable[Mapping[str, Channel]]) -> float:
+    """Return the mean factor from the air speed as the aircraft reads it to the true one; 1 without any.
+
+    A crew states a reference speed as its instrument reads it.
+    """
+    gains = [channels["airspeed"].gain for channels in records if "airspeed" in channels]
+    return float(np.mean(gains)) if gains else 1.0
 
 
 def _plausible(channel: Channel | None) -> Channel | None:
