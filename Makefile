@@ -6,7 +6,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 export PIP_DISABLE_PIP_VERSION_CHECK = 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test check format lint types imports bench study study-advice study-change study-stops accuracy robustness study-quality study-gap survival study-second study-third damage pictures clean
+.PHONY: help setup run test check format lint types imports bench study study-advice study-change study-stops study-coverage accuracy robustness study-quality study-gap survival study-second study-third damage pictures clean
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
@@ -91,6 +91,9 @@ study-stops: .venv/.developed ## how often the default rule stops too early, and
 
 study-change: .venv/.developed ## how soon a change of the aircraft is told
 	$(BIN)/python -m benchmarks.studies change --campaigns 400
+
+study-coverage: .venv/.developed ## do intervals, stops and findings hold with faulty instruments (ten seconds a campaign)
+	$(BIN)/python -m benchmarks.studies coverage --campaigns 300
 
 SEED ?= 360127
 define sealed

@@ -38,7 +38,7 @@ PHRASES = {
     r"\bof itself\b": "say: alone, without a request",
     r"\bthe same of\b|\bas of\b": "name the quantity again",
     r"\bleftovers?\b|\b(?:the|its|no|a) remainder\b": "say: residual, rest",
-    r"\b(?:companions?|amid|unrest|strangeness)\b": "use the word of the field",
+    r"\b(?:companions?(?! computer)|amid|unrest|strangeness)\b": "use the word of the field",
     r"\bties\b": "say: bounds between parameters, equal values",
     r"\b(?:its|the|their|of) worth\b|\bworth of\b": "say: information, hold-out gain, value",
     r"\bbeliefs?\b": "say: prior, model file",

@@ -155,7 +155,9 @@ def _figures(record: Mapping[str, Any], document: Mapping[str, Any]) -> Iterator
 def _truth(known: Mapping[str, float], record: Mapping[str, Any], document: Mapping[str, Any]) -> float:
     if "value" in known:
         return known["value"]
-    speed = document["model"]["reference_airspeed_m_s"] * record["true_over_indicated"]
+    speed = document["model"]["reference_airspeed_m_s"]
+    if document["flying_qualities"]["air"]["airspeed_is"] != "true":
+        speed *= record["true_over_indicated"]
     if "per_speed" in known:
         return float(known["per_speed"] * speed)
     return float(known["per_speed_squared"] * speed**2)

@@ -9,7 +9,7 @@ import numpy as np
 from .atmosphere import DrydenTurbulence
 from .motion import Motion
 from .scenario import Scenario
-from .sensors import DerivedAlpha, SensorEffect
+from .sensors import DerivedAlpha, SensorEffect, low_passes
 from .servo import FirstOrderServo, Mechanism, SecondOrderServo, TransportDelay
 
 SERVO_HZ, SERVO_DAMPING = 20.0, 0.8
@@ -68,7 +68,8 @@ class Turbulent:
 
 
 def complete(scenario: Scenario, fittings: Fittings) -> Fittings:
-    """Put the scenario's own servo, air and alpha sensor before the effects."""
+    """Put the scenario's own servo, air and alpha sensor before the effects, the autopilot's filters after
+    them."""
     basics = Fittings(accelerometer_arm_m=scenario.instruments.accelerometer_arm_m)
     servo, air = scenario.servo, scenario.air
     if servo.delay_s > 0.0:
@@ -88,7 +89,7 @@ def complete(scenario: Scenario, fittings: Fittings) -> Fittings:
         basics.air + fittings.air,
         fittings.forces,
         fittings.plant,
-        basics.sensors + fittings.sensors,
+        basics.sensors + fittings.sensors + low_passes(scenario.faults.filters),
         fittings.skews,
         basics.accelerometer_arm_m + fittings.accelerometer_arm_m,
     )

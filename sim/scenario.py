@@ -8,6 +8,7 @@ from typing import Any, Literal
 import yaml
 
 from .airframe import Airframe
+from .faults import Faults
 from .loading import ScenarioError, load
 from .maneuvers import INPUTS
 
@@ -215,6 +216,8 @@ class Scenario:
     """Fields of the nonlinear airframe (``sim.airframe.Airframe``) that differ from the named aircraft's."""
     effects: dict[str, dict[str, float]] = field(default_factory=dict)
     """Effect name to its parameters, see ``sim.effects``."""
+    faults: Faults = field(default_factory=Faults)
+    """Faults of instruments and telemetry."""
 
 
 def read_scenario(path: Path) -> Scenario:
@@ -286,6 +289,8 @@ def _contradictions(scenario: Scenario) -> list[str]:
         errors.append("link.drop: must be at least 0 and below 1")
     if not 0.0 <= scenario.noise.colour < 1.0:
         errors.append("noise.colour: must be at least 0 and below 1")
+    if scenario.loop_hz > 0:
+        errors += scenario.faults.problems(1.0 / scenario.loop_hz)
     known = [entry.name for entry in fields(Airframe)]
     errors += [f"airframe.{name}: unknown field" for name in scenario.airframe if name not in known]
     errors += [f"rates.{name}: must be at least 0" for name, rate in scenario.rates.items() if rate < 0]

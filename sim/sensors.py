@@ -7,9 +7,10 @@ from typing import Protocol
 import numpy as np
 
 from .airframe import GRAVITY_M_S2
+from .faults import Filters
 from .motion import Motion
 from .scenario import AlphaSensor
-from .servo import FirstOrderServo
+from .servo import FirstOrderServo, SecondOrderServo
 
 
 @dataclass(slots=True)
@@ -86,6 +87,27 @@ class DerivedAlpha:
             self._shown = lagged + math.radians(self._sensor.bias_deg)
             self._next_s += 1.0 / self._sensor.renewed_hz
         reading.alpha = self._shown
+
+
+class LowPass:
+    """An instrument's second-order Butterworth filter: at low frequency √2/(2πf) late."""
+
+    def __init__(self, channels: tuple[str, ...], cutoff_hz: float) -> None:
+        self._filters = {name: SecondOrderServo(cutoff_hz, math.sqrt(0.5)) for name in channels}
+
+    def apply(self, motion: Motion, reading: Reading, dt: float) -> None:
+        """Show the filtered channels."""
+        for name, each in self._filters.items():
+            if dt == 0.0:
+                each.reset(getattr(reading, name))
+            else:
+                setattr(reading, name, each.step(getattr(reading, name), dt))
+
+
+def low_passes(filters: Filters) -> list[SensorEffect]:
+    """Return the filters that have a cut-off."""
+    pairs = ((("p", "q", "r"), filters.gyro_hz), (("a_x", "a_y", "a_z"), filters.accelerometer_hz))
+    return [LowPass(channels, cutoff_hz) for channels, cutoff_hz in pairs if cutoff_hz > 0.0]
 
 
 class ChannelNoise:

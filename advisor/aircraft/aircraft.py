@@ -81,8 +81,8 @@ class Elevator:
         within=(0.0, 2.0),
     )] = None  # fmt: skip
     lag_found_s: float | None = None
-    """Lag that all manoeuvres together identify, s, used where ``lag_s`` is unknown. The file has no such
-    key."""
+    """Lag that all manoeuvres together identify, s, used where ``lag_s`` is unknown or excluded. The file has
+    no such key."""
 
     @property
     def is_calibrated(self) -> bool:

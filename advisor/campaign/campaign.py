@@ -6,11 +6,12 @@ from dataclasses import dataclass, replace
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.campaign.hand_decisions import NOTHING, ByHand, Remark
+from advisor.campaign.instruments import as_known_by, together
 from advisor.campaign.joint_estimate import NEWEST, Together
 from advisor.campaign.journal import Journal
 from advisor.campaign.running_estimate import Settling
 from advisor.campaign.servo_lag import learnt as learnt_from
-from advisor.campaign.servo_lag import may_learn, reserved
+from advisor.campaign.servo_lag import may_learn, reserved, told
 from advisor.campaign.single_maneuver import assess
 from advisor.campaign.state import CampaignState, JudgedManeuver
 from advisor.decision.course import CriterionCourse
@@ -149,6 +150,7 @@ class Campaign:
             elevator_guess=stream.guess if isinstance(stream.elevator, Problem) else None,
             other_vehicles=tuple(sorted(stream.other_systems)),
             no_data=stream.no_data,
+            instruments=together(self._maneuvers, stream.instruments),
             mark_notes=self._mark_notes,
             notices=self._journal.lines,
             flight=flights.flight,
@@ -235,6 +237,7 @@ class Campaign:
         flown = assess(maneuver, self._learnt, self._method)
         because = self.by_hand.excluded_because(maneuver)
         self._history.append(replace(flown, excluded_because=because))
+        self._blame_instruments(maneuver)
         self._decide()
         self._learn()
         span = maneuver.span
@@ -242,6 +245,15 @@ class Campaign:
         self._journal.write_of_past(verdict, span.end_s)
         self._journal.write_of_past(self._flight_test.sentence, span.end_s)
         return ManeuverJudged(self._judged[-1], self._flight_test)
+
+    def _blame_instruments(self, newest: Maneuver) -> None:
+        """Judge the earlier manoeuvres again where the newest one contradicts their instruments."""
+        for i, maneuver in enumerate(self._maneuvers[:-1]):
+            known = as_known_by(maneuver, newest)
+            if known is not maneuver:
+                self._maneuvers[i] = known
+                flown = assess(known, self._learnt, self._method)
+                self._history[i] = replace(flown, excluded_because=self._history[i].excluded_because)
 
     def _note_down(self, notice: Notice) -> None:
         """Keep the notices about marks and about the reader for the report."""
@@ -336,11 +348,7 @@ class Campaign:
             replace(flown, excluded_because=before.excluded_because)
             for flown, before in zip(again, self._history, strict=True)
         ]
-        lag = learnt.elevator.lag_found_s
-        self._journal.write(
-            f"the servo's lag is {lag:.3f} s by all manoeuvres together; every estimate uses it now;"
-            f" for the aircraft file: elevator: {{lag_s: {lag:.3f}}}"
-        )
+        self._journal.write(told(learnt))
         self._decide()
 
     def _decide_by_hand(self, number: int, because: str | None) -> None:

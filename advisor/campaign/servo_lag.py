@@ -1,7 +1,8 @@
 """The servo's lag, identified during a campaign and used in every later estimate.
 
-A lag that the crew does not give is estimated from all accepted manoeuvres together. As soon as its standard
-deviation is at most a tenth of the lag, single estimates, verdicts and criteria use the lag.
+The lag is estimated from all accepted manoeuvres together. Single estimates, verdicts and criteria use the
+lag in two cases. The crew gives none, and the standard deviation is at most a tenth of the lag. Or the crew
+gives one that the manoeuvres exclude.
 """
 
 from dataclasses import replace
@@ -30,8 +31,7 @@ def may_learn(aircraft: Aircraft, all_of_them: bool) -> bool:
         Whether the joint estimate is made from all accepted manoeuvres. The newest alone do not improve a lag
         that is known already.
     """
-    elevator = aircraft.elevator
-    return elevator.lag_s is None and (elevator.lag_found_s is None or all_of_them)
+    return aircraft.elevator.lag_found_s is None or all_of_them
 
 
 def learnt(aircraft: Aircraft, model: Estimate | None, *, exactly: bool = False) -> Aircraft:
@@ -42,17 +42,37 @@ def learnt(aircraft: Aircraft, model: Estimate | None, *, exactly: bool = False)
     aircraft
         The crew's aircraft, with a lag that was identified before.
     model
-        Joint estimate over the accepted manoeuvres, made with the lag unknown.
+        Joint estimate over the accepted manoeuvres, made with the crew's aircraft.
     exactly
         Take the newest value even within its standard deviation of the value in use, as at the end of a log.
     """
-    elevator = aircraft.elevator
-    lag = model.instrument("servo_lag_s") if model is not None else None
-    if elevator.lag_s is not None or lag is None or not lag.std < KNOWN_TO * lag.value:
+    if model is None:
+        return aircraft
+    elevator, lag = aircraft.elevator, model.instrument("servo_lag_s")
+    if elevator.lag_s is not None and (lag is None or not lag.contradicts):
+        # The manoeuvres together do not exclude the crew's lag (any more).
+        return aircraft if elevator.lag_found_s is None else _using(aircraft, None)
+    if lag is None or not lag.std < KNOWN_TO * lag.value:
         return aircraft
     used = elevator.lag_found_s
     near = used is not None and abs(lag.value - used) <= (0.0 if exactly else lag.std)
-    return aircraft if near else replace(aircraft, elevator=replace(elevator, lag_found_s=lag.value))
+    return aircraft if near else _using(aircraft, lag.value)
+
+
+def _using(aircraft: Aircraft, lag_s: float | None) -> Aircraft:
+    return replace(aircraft, elevator=replace(aircraft.elevator, lag_found_s=lag_s))
+
+
+def told(aircraft: Aircraft) -> str:
+    """Return the sentence for the event log about the lag that every estimate uses now."""
+    found, stated = aircraft.elevator.lag_found_s, aircraft.elevator.lag_s
+    if found is None:
+        return "the manoeuvres together agree with elevator.lag_s again; every estimate uses it now"
+    against = "" if stated is None else f", against {stated:.3f} s in elevator.lag_s,"
+    return (
+        f"the servo's lag is {found:.3f} s{against} by all manoeuvres together; every estimate uses it now;"
+        f" for the aircraft file: elevator: {{lag_s: {found:.3f}}}"
+    )
 
 
 def reserved(

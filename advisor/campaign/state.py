@@ -8,6 +8,7 @@ from advisor.decision.verdict import FlightTestVerdict, ManeuverVerdict
 from advisor.flight.elevator.elevator_guess import Guess
 from advisor.flight.maneuvers.events import Activity
 from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.track import ChannelStatus
 from advisor.flight.stream.flights import FlightHeard
 from advisor.flight.vehicle.vehicle import Vehicle
@@ -67,6 +68,8 @@ class CampaignState:
     """System ids of the other vehicles on the link, rising."""
     no_data: tuple[Problem, ...] = ()
     """Reasons for which the present data cannot serve; empty while they can."""
+    instruments: tuple[InstrumentFinding, ...] = ()
+    """Contradictions of the instruments."""
     mark_notes: tuple[str, ...] = ()
     """Marks that could not be used, each with its reason."""
     notices: tuple[str, ...] = ()

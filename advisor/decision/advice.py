@@ -118,7 +118,7 @@ def _same_but_better(flown: CandidateManeuver) -> str:
 def _mend(flown: CandidateManeuver) -> str:
     """Return the remedy for a faulty channel, which comes before any other input; empty where all channels
     are sound."""
-    if flown.reasons and flown.reasons[0].code in NO_CURE_BY_INPUT:
+    if flown.reasons and (flown.reasons[0].by_instrument or flown.reasons[0].code in NO_CURE_BY_INPUT):
         return _remedy(flown)
     wrong = flown.maneuver.distrusts if flown.maneuver else ()
     return wrong[0].fix if wrong else ""

@@ -10,7 +10,9 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.decision.verdict import Reason
+from advisor.flight.maneuvers.hand_flying import OTHER_CONTROLS_DEG, THROTTLE_PERCENT
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
+from advisor.flight.maneuvers.steady_speed import LEFT, speed_before
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.record import Channel
 from advisor.flight.signals.trust import distrusted
@@ -27,8 +29,6 @@ _SHORTEST_FREE = 0.75
 """Least free response, in natural periods. Most of one swing is needed to determine the damping."""
 _SHORTEST_STEP = 0.15
 """Least length of the shortest step, in natural periods. The servo smears shorter steps."""
-_OTHER_CONTROLS_DEG = 5.0
-_THROTTLE_PERCENT = 15.0
 _CUT_SHORT_BY = {
     "gap": ("the telemetry breaks off", "check the link"),
     "end of log": ("the recording ends", "let the recording run on for some seconds"),
@@ -40,8 +40,7 @@ _ASSUMED_STROKE_DEG = 25.0
 
 
 def incomplete(maneuver: Maneuver, period_s: float, counted: Collection[str]) -> list[Reason]:
-    """Return reasons for an incomplete record: missing or faulty channels, slow ones, gaps, a short free
-    response.
+    """Return reasons for incomplete data: missing or faulty channels, slow ones, gaps.
 
     Parameters
     ----------
@@ -61,11 +60,7 @@ def incomplete(maneuver: Maneuver, period_s: float, counted: Collection[str]) ->
         return [Reason(d.code, f"{d.text}; {d.fix}", d.value, 0.0) for d in wrong]
     needed = [maneuver.channels[name] for name in NEEDED]
     used = [maneuver.channels[name] for name in {*NEEDED, *counted} if name in maneuver.channels]
-    return [
-        *_rate(needed, period_s),
-        *_gap(used, maneuver, period_s),
-        *_free_response(maneuver, period_s),
-    ]
+    return [*_rate(needed, period_s), *_gap(used, maneuver, period_s)]
 
 
 def outside(maneuver: Maneuver, aircraft: Aircraft) -> list[Reason]:
@@ -130,7 +125,10 @@ def _gap(channels: list[Channel], maneuver: Maneuver, period_s: float) -> list[R
     return sorted(reasons, key=lambda reason: (-reason.value, reason.text))[:1]
 
 
-def _free_response(maneuver: Maneuver, period_s: float) -> list[Reason]:
+def short_response(maneuver: Maneuver, period_s: float) -> list[Reason]:
+    """Return a reason where the record ends before the motion has died down."""
+    if maneuver.span.closed_by == LEFT:
+        return _left_too_soon(maneuver)
     if _is_broken_off(maneuver.span):
         what, mend = _CUT_SHORT_BY[maneuver.span.closed_by]
         return [Reason("aborted", f"{what} before the elevator came to rest; {mend}", 0.0, 1.0)]
@@ -142,6 +140,13 @@ def _free_response(maneuver: Maneuver, period_s: float) -> list[Reason]:
     mend = "hands still after the last step" if ended is None else f"{ended[0]} there; {ended[1]}"
     text = f"free response too short, {shown} s (at least {limit}); {mend}"
     return [Reason("free_response", text, free, least)]
+
+
+def _left_too_soon(maneuver: Maneuver) -> list[Reason]:
+    """Return a reason where the record ends with the change of air speed, before it tells enough."""
+    lasted = maneuver.span.end_s - maneuver.span.start_s
+    text = f"air speed left the model after {lasted:.1f} s, too soon; smaller steps, from steady speed"
+    return [Reason("airspeed", text, lasted, maneuver.span.end_s - maneuver.span.record_from_s)]
 
 
 def _is_broken_off(span: Span) -> bool:
@@ -164,8 +169,7 @@ def changed_speed(maneuver: Maneuver, aircraft: Aircraft) -> list[Reason]:
     channel, speed = maneuver.channels.get("airspeed"), flown(maneuver, "airspeed")
     if channel is None or len(speed) < 2 or not np.median(channel.y) > 0.0:
         return []
-    before = channel.cut(maneuver.span.record_from_s, maneuver.span.start_s).y
-    trim = float(np.median(before if len(before) else channel.y[:1]))
+    trim = speed_before(channel, maneuver.span)
     # The second largest deviation: one wild reading of the air speed is no change of speed.
     change = 100.0 * float(np.sort(np.abs(speed / trim - 1.0))[-2:][0])
     if change <= limit:
@@ -200,18 +204,18 @@ def _other_controls(maneuver: Maneuver) -> list[Reason]:
     reasons = []
     for name in ("aileron", "rudder"):
         moved = float(np.degrees(np.ptp(flown(maneuver, name)))) / 2.0 if len(flown(maneuver, name)) else 0.0
-        if moved > _OTHER_CONTROLS_DEG:
-            shown, most = distinct_texts(moved, _OTHER_CONTROLS_DEG)
+        if moved > OTHER_CONTROLS_DEG:
+            shown, most = distinct_texts(moved, OTHER_CONTROLS_DEG)
             text = f"{name} moved by {shown} deg (limit {most}); use the elevator alone"
-            reasons.append(Reason(name, text, moved, _OTHER_CONTROLS_DEG))
+            reasons.append(Reason(name, text, moved, OTHER_CONTROLS_DEG))
     return reasons
 
 
 def _throttle(maneuver: Maneuver) -> list[Reason]:
     throttle = flown(maneuver, "throttle")
     change = 100.0 * float(np.ptp(throttle)) if len(throttle) else 0.0
-    if change <= _THROTTLE_PERCENT:
+    if change <= THROTTLE_PERCENT:
         return []
-    shown, most = distinct_texts(change, _THROTTLE_PERCENT)
+    shown, most = distinct_texts(change, THROTTLE_PERCENT)
     text = f"throttle moved by {shown} % (limit {most}); leave it where it is"
-    return [Reason("throttle", text, change, _THROTTLE_PERCENT)]
+    return [Reason("throttle", text, change, THROTTLE_PERCENT)]

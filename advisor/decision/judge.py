@@ -93,7 +93,7 @@ def _verdict(
     if flown.excluded_because is not None:
         sentence = f"EXCLUDED by hand: {flown.excluded_because}"
     elif reasons:
-        sentence = f"REPEAT: {reasons[0].text}"
+        sentence = f"{'UNUSABLE' if reasons[0].by_instrument else 'REPEAT'}: {reasons[0].text}"
     else:
         sentence = f"ACCEPTED: {_why_accepted(flown, rule, rules[rule])}"
     return ManeuverVerdict(

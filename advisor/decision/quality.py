@@ -1,7 +1,7 @@
 """Objections to a manoeuvre itself, before any rule compares it with others.
 
-The checks run in this order: complete, within the model, rich enough, well explained. The first reason is the
-one that the crew can act on. Its consequences come after it.
+The checks run in this order: complete data, sound instruments, within the model, long enough, rich enough,
+well explained. The first reason is the one that the crew can act on. Its consequences come after it.
 
 Richness is information, not amplitude: the precision with which the estimate from this manoeuvre alone
 predicts the pitch rate of its own input. Moving air, a slow channel, a missing vane or a gentle input all
@@ -10,19 +10,22 @@ with the amplitude, so that the reason states the factor.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 import numpy as np
 
 from advisor.aircraft.aircraft import PARAMETERS, Aircraft
-from advisor.decision.envelope import changed_speed, flown, incomplete, outside, too_quick
+from advisor.decision.coupling import coupled
+from advisor.decision.envelope import changed_speed, flown, incomplete, outside, short_response, too_quick
 from advisor.decision.verdict import NO_CURE_BY_INPUT, UNTRUSTED, Reason
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.purpose import LEAST_PITCH_RATE_DEG_S
+from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.messages import FloatArray
 from advisor.oem.estimate import ChannelFit, Estimate, NoEstimate
 from advisor.words.digits import distinct_texts
+from advisor.words.quantiles import NORMAL_95
 
 WIDEST_PREDICTION_PERCENT = 25.0
 """Largest half-width of the predicted pitch rate's 95 % band, % of its peak. A standard deviation of 12 % in
@@ -53,17 +56,32 @@ def judge_quality(
     codes = {reason.code for reason in reasons}
     if codes & UNTRUSTED:
         return tuple(reasons)
-    follows = [*changed_speed(maneuver, aircraft), *too_quick(maneuver, period_s)]
+    if refused := refusals(maneuver.findings):
+        return refused
+    tail = [] if is_informed(estimate) else short_response(maneuver, period_s)
+    follows = [*changed_speed(maneuver, aircraft), *tail, *too_quick(maneuver, period_s)]
     if codes & NO_CURE_BY_INPUT:
         # A larger input remedies no faulty record: reasons that ask for one would mislead.
         return (*reasons, *follows)
     gentle = _mended(maneuver, _too_gentle(maneuver, fits))
     if isinstance(estimate, NoEstimate):
         return (*reasons, *follows, *gentle)
+    follows = [*(r for r in coupled(maneuver, estimate) if r.code not in codes), *follows]
     lacking = _badly_explained(estimate) or ([] if gentle else _mended(maneuver, _poor(maneuver, estimate)))
     if lacking and lacking[0].code == "turbulence":
         return (*reasons, *lacking, *follows)
     return (*reasons, *follows, *gentle, *lacking)
+
+
+def refusals(findings: Iterable[InstrumentFinding]) -> tuple[Reason, ...]:
+    """Return a reason for every contradiction of an instrument that no estimate allows for."""
+    return tuple(
+        Reason(
+            f.code, f"{f.text}; {f.fix}", f.value if isinstance(f.value, float) else math.nan,
+            f.stated if isinstance(f.stated, float) else math.nan, by_instrument=True,
+        )
+        for f in findings if f.refuses
+    )  # fmt: skip
 
 
 def natural_period(maneuver: Maneuver, estimate: Estimate | NoEstimate) -> float:
@@ -89,6 +107,21 @@ def _knows_the_motion(estimate: Estimate) -> bool:
     stiffness = PARAMETERS.index("M_alpha")
     known = abs(float(estimate.theta[stiffness])) > float(estimate.std[stiffness])
     return known and estimate.prediction.get("q", 0.0) < 1.0
+
+
+def is_informed(estimate: Estimate | NoEstimate) -> bool:
+    """Return whether a manoeuvre determines the short period, whatever the shape of its end.
+
+    The bands of all predicted outputs are narrow, and the intervals of stiffness, damping and control exclude
+    zero. Without a free response these intervals are wider, and a short tail that they allow does no harm.
+    """
+    if isinstance(estimate, NoEstimate) or not estimate.prediction:
+        return False
+    known = all(
+        abs(estimate.value(name)) > NORMAL_95 * float(estimate.std[PARAMETERS.index(name)])
+        for name in ("M_alpha", "M_q", "M_delta_e")
+    )
+    return known and 100.0 * max(estimate.prediction.values()) <= WIDEST_PREDICTION_PERCENT
 
 
 def _too_gentle(maneuver: Maneuver, fits: Mapping[str, ChannelFit]) -> list[Reason]:

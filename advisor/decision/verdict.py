@@ -15,7 +15,7 @@ def limit_percent(rule: Rule, plan: CampaignPlan) -> float:
     return INFORMATION_LIMIT_PERCENT if rule == "information" else plan.limit_percent
 
 
-UNTRUSTED = frozenset({"missing", "frozen", "contradiction"})
+UNTRUSTED = frozenset({"missing", "frozen"})
 """Codes of reasons for a faulty channel. No other finding from such data is reported."""
 NO_CURE_BY_INPUT = UNTRUSTED | {"rate", "gap"}
 """Codes of reasons that no input remedies. With them, no larger or other input is advised."""
@@ -32,6 +32,8 @@ class Reason:
     """Sentence for pilots, with the remedy."""
     value: float
     limit: float
+    by_instrument: bool = False
+    """Whether an instrument is to blame, so that no other flying is a remedy."""
 
 
 @dataclass(frozen=True, slots=True)

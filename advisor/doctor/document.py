@@ -5,6 +5,7 @@ from typing import Any
 
 from advisor.doctor.examination import Examination
 from advisor.doctor.expectation import RESPONSE_ALPHA_DEG, frequency
+from advisor.report.document import instrument_document
 from advisor.words.plain import picked, plain
 from advisor.words.problems import Problem
 from advisor.words.quantiles import NORMAL_95
@@ -38,6 +39,7 @@ def doctor_document(
             "elevator": None,
             "alpha": None,
             "limits": [told],
+            "instruments": [],
             "expected_std": None,
             "expected_ci95": None,
         }
@@ -55,6 +57,7 @@ def doctor_document(
         "elevator": elevator and {"output": elevator.outputs[0], **plain(elevator)},
         "alpha": plain(findings.alpha),
         "limits": plain(findings.limits),
+        "instruments": [instrument_document(found) for found in findings.instruments],
         "notes": list(findings.notes),
         "next": list(commands),
         "expected_std": expectation and plain(expectation.std),

@@ -1,11 +1,12 @@
 """Result of an examination: facts, limits, and the verdict."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
 from advisor.doctor.expectation import Assumed, ExpectedErrors
 from advisor.doctor.survey import Arrival, Clocks
+from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.vehicle.vehicle import Vehicle
 from advisor.words.problems import Problem
 
@@ -27,6 +28,16 @@ class Limit:
     std_ratio: Mapping[str, float] = field(default_factory=dict)
     """Cost of the defect alone: parameter name to its expected error, divided by the error without the
     defect."""
+
+
+_OF_THE_FILE = frozenset({"servo_limits", "calibration", "resolution", "servo_unknown"})
+"""Codes of the limits that parameters or the aircraft file can mend. All others are limits of the data."""
+
+
+def in_order(limits: Sequence[Limit]) -> tuple[Limit, ...]:
+    """Return limits in the order in which they are said: what stops, then the data, then the numbers of
+    parameters and aircraft file. Within these they keep their order."""
+    return tuple(sorted(limits, key=lambda limit: (not limit.stops, limit.code in _OF_THE_FILE)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,6 +79,8 @@ class Examination:
     """Expected errors. None when a needed channel is missing."""
     assumed: Assumed
     """Model and noise behind the expected errors and the demands on rates."""
+    instruments: tuple[InstrumentFinding, ...] = ()
+    """Contradictions of the instruments. Each is a limit, too."""
     notes: tuple[str, ...] = ()
     """Choices made in reading the log, and pauses of the autopilot's own log, as sentences."""
 

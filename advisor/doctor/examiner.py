@@ -5,7 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from advisor.aircraft.aircraft import PARAMETERS, Aircraft
-from advisor.doctor.examination import AlphaFound, ElevatorFound, Examination, Limit
+from advisor.campaign.instruments import together
+from advisor.doctor.examination import AlphaFound, ElevatorFound, Examination, Limit, in_order
 from advisor.doctor.expectation import NOISE, TYPICAL, Assumed, expect, frequency
 from advisor.doctor.instruments import (
     alpha_limits,
@@ -120,6 +121,8 @@ class Examiner:
         # aircraft.
         limits = [_stopping(problem, vehicle) for problem in found if problem.code != "rate" or not complete]
         limits += distrust_limits([*still, *(d for m in self._maneuvers for d in m.distrusts)])
+        instruments = together(self._maneuvers, self._stream.instruments)
+        limits += [Limit(f.code, f.sentence, f.fix, stops=f.refuses) for f in instruments]
         if vehicle is not None and complete:
             limits += rate_limits(paced, assumed, vehicle, speed)
         period_s = 2.0 * np.pi / frequency(assumed.model)
@@ -144,10 +147,15 @@ class Examiner:
             clocks=clocks,
             elevator=elevator,
             alpha=self._alpha(paced),
-            limits=tuple(sorted(limits, key=lambda limit: not limit.stops)),
+            limits=in_order(limits),
             expectation=expect(assumed, rates, speed) if complete else None,
             assumed=assumed,
-            notes=(*self._notes, *(self._survey.pauses if self._survey else ())),
+            instruments=instruments,
+            notes=(
+                *self._notes,
+                *dict.fromkeys(note for m in self._maneuvers for note in m.data_notes),
+                *(self._survey.pauses if self._survey else ()),
+            ),
         )
 
     def _keep(self, events: Sequence[object]) -> None:

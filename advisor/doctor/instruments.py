@@ -140,7 +140,7 @@ def clock_limits(clocks: Clocks) -> list[Limit]:
             Limit(
                 "clock_drift",
                 f"The vehicle's clock runs {clocks.drift_percent:+.1f} % against the host's",
-                "check the host's clock; estimates use the vehicle's clock alone and do not suffer",
+                "compare both with GPS time; a wrong clock of the vehicle makes every rate wrong by as much",
             )
         )
     return limits

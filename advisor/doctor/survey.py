@@ -124,7 +124,7 @@ class Survey:
 
     def feed(self, columns: Sequence[Columns]) -> None:
         """Take messages in order of arrival."""
-        mine = [part for part in columns if (part.system, part.component) == self._who]
+        mine = [part for part in columns if (part.system, part.component) == self._who or self._helps(part)]
         attitude = next((part for part in self._attitudes.of(mine) if part.name == "ATTITUDE"), None)
         orders, clock, boots = self._advance(attitude)
         for part in mine:
@@ -134,6 +134,10 @@ class Survey:
             for name, rows in _banks(part):
                 self._take(name, cut(part, rows), clock[at][rows], boots[at][rows])
         self._master_s = float(clock[-1])
+
+    def _helps(self, part: Columns) -> bool:
+        """Return whether another component of the vehicle sends its angle of attack."""
+        return part.system == self._who[0] and part.name == "AOA_SSA"
 
     def _advance(self, attitude: Columns | None) -> tuple[NDArray[np.int64], FloatArray, NDArray[np.int64]]:
         """Return the master clock after each ATTITUDE of this batch, and before the first."""
@@ -152,7 +156,8 @@ class Survey:
         sender = self._senders.setdefault(name, _Sender())
         # A heartbeat before the first ATTITUDE has no vehicle time, and is counted by arrival only.
         known = np.isfinite(master_s)
-        t = np.where(known, stamps(part, master_s), np.nan)
+        own_clock = part.component != self._who[1]
+        t = np.where(known, master_s if own_clock else stamps(part, master_s), np.nan)
         sender.strayed += int(np.count_nonzero(known & ~np.isfinite(t)))
         telling = _telling(part)
         # A dataflash log keeps angles and rates apart: a row without the telling field is no message.

@@ -99,7 +99,7 @@ class UpdatableSolution:
         """Return the new samples of an output. A repeated angle of attack is not new."""
         channel = maneuver.channels[name]
         last_s, last = self._rows[name][-1][0][-1], self._rows[name][-1][1][-1]
-        late = self._solution.problem.alpha_delay_s if name == "alpha" else 0.0
+        late = channel.delay_s + (self._solution.problem.alpha_delay_s if name == "alpha" else 0.0)
         first = int(np.searchsorted(channel.t, last_s + late + STAMP_S))
         t, y = channel.t[first:] - late, channel.y[first:]
         keep = np.isfinite(y)

@@ -14,7 +14,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from advisor.aircraft.aircraft import PARAMETERS, Reference
-from advisor.flight.instruments.atmosphere import SEA_LEVEL_DENSITY_KG_M3, AirFlown
+from advisor.flight.instruments.atmosphere import AirFlown
+from advisor.flight.signals.standard_atmosphere import SEA_LEVEL_DENSITY_KG_M3
 from advisor.oem.estimate import Estimate
 
 CONVENTION = "per radian; rates as q·c/(2·V) with the true air speed V"

@@ -8,7 +8,7 @@ here is that of ``colour``.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.special import stdtrit
@@ -17,6 +17,7 @@ from advisor.aircraft.aircraft import PARAMETERS
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import LOCAL, N_PARAMETERS, N_SHARED, OUTPUTS, SHARED
 from advisor.oem.colour import Colour, Stretch, find_colour, moved, product
+from advisor.oem.extra import Extra
 from advisor.oem.problem import Assembly
 
 LEAST_EIGENVALUE = 1e-13
@@ -42,6 +43,23 @@ class Influence:
     """Parameters in a direction about which the data say nothing."""
     extra_covariance: FloatArray
     """(k, k) inverse information of the extra parameters, with all others free."""
+    prior_rows: FloatArray
+    """(k, 8 + k) change of each parameter for a change of each extra parameter's prior mean by one standard
+    deviation of the prior."""
+
+    @property
+    def prior_covariance(self) -> FloatArray:
+        """(8 + k, 8 + k) covariance from the errors of the priors."""
+        return np.asarray(self.prior_rows.T @ self.prior_rows)
+
+    def step(self, residual: FloatArray, extra: Extra | None) -> FloatArray:
+        """Return the Gauss-Newton step of the parameters, shape (8 + k,), for ``residual`` (N,)."""
+        pulled = 0.0 if extra is None else self.prior_rows.T @ extra.pull
+        return np.asarray(self.rows.T @ residual + pulled)
+
+    def first(self, parameters: int) -> "Influence":
+        """Return the influence on the first parameters only; the others stay free."""
+        return replace(self, rows=self.rows[:, :parameters], prior_rows=self.prior_rows[:, :parameters])
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +76,7 @@ def influence(
     assembly: Assembly,
     g: FloatArray,
     noise: FloatArray,
-    extra: FloatArray | None = None,
+    extra: Extra | None = None,
     prior: FloatArray | None = None,
 ) -> Influence | None:
     """Return the influence of every measurement on the eight parameters; None when it overflows.
@@ -67,13 +85,12 @@ def influence(
 
     Parameters
     ----------
-    extra : (N, k) derivatives of the outputs by additional parameters, such as a servo's lag; the result
-        then has their columns after the eight.
+    extra : additional parameters, such as a servo's lag; the result then has their columns after the eight.
     prior : (7,) inverse prior variances of the shared parameters.
     """
     weight = 1.0 / noise[assembly.channel] ** 2
     common, own = assembly.free[assembly.free < N_SHARED], assembly.free[assembly.free >= N_SHARED]
-    shared_g = g[:, common] if extra is None else np.column_stack([g[:, common], extra])
+    shared_g = g[:, common] if extra is None else np.column_stack([g[:, common], extra.columns])
     places = [
         (j, int(np.searchsorted(own, N_SHARED + i))) for j, (shared, i) in enumerate(REPORTED) if not shared
     ]
@@ -93,6 +110,8 @@ def influence(
     information = projected.T @ weighted_shared
     if prior is not None:
         information[: len(common), : len(common)] += np.diag(prior[common])
+    weights = np.empty(0) if extra is None else extra.weight / extra.share
+    information[len(common) :, len(common) :] += np.diag(weights**2)
     if not np.all(np.isfinite(information)):
         return None
     inverse, left_open = _inverse(information)
@@ -105,11 +124,14 @@ def influence(
     for j, at in places:
         columns[:, j] = -inverse @ np.mean([mix[at] for *_, mix in parts], axis=0)
     result: FloatArray = weighted_shared @ columns
+    spread = weights if extra is None else weights / extra.share
+    prior_rows: FloatArray = spread[:, None] * columns[len(common) :]
     for rows, own_inverse, weighted, _ in parts:
         for j, at in places:
             result[rows, j] += own_inverse[at] @ weighted / len(parts)
     eight = result[:, : len(PARAMETERS)]
-    covariance = (eight / weight[:, None]).T @ eight
+    from_priors = prior_rows[:, : len(PARAMETERS)]
+    covariance = (eight / weight[:, None]).T @ eight + from_priors.T @ from_priors
     scale = np.sqrt(np.diag(covariance))
     if not np.all(np.isfinite(scale)):
         return None
@@ -124,6 +146,7 @@ def influence(
             if open_share[index if is_shared else N_SHARED + index] > OPEN_SHARE
         ),
         extra_covariance=inverse[len(common) :, len(common) :],
+        prior_rows=prior_rows,
     )
 
 

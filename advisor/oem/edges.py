@@ -15,6 +15,7 @@ from scipy.special import chdtri
 from advisor.aircraft.aircraft import PARAMETERS
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import N_PARAMETERS, Index, respond
+from advisor.oem.extra import Extra, Prior
 from advisor.oem.gauss_newton import CONVERGED, Optimum
 from advisor.oem.problem import OutputErrorProblem, Record, Signal, assemble
 from advisor.oem.solution import Solution, evaluate, search
@@ -69,24 +70,21 @@ def sharpened(command: Signal, edges: Edges) -> Signal:
     return Signal(np.array(t), np.array(y))
 
 
-def with_edges(plain: Solution, extra: FloatArray | None = None) -> Solution:
+def with_edges(plain: Solution) -> Solution:
     """Return the solution with every large step at its own time; ``plain`` where that gains too little.
 
-    Parameters
-    ----------
-    extra : derivatives by additional parameters, as in ``covariance.influence``; their columns come first,
-        those of the edges after them.
-    """
+    The additional parameters of ``plain`` keep their values and their errors, and the times come after them.
+    A step is equally likely everywhere between its two stamps."""
     records = plain.problem.records
     edges = [large_steps(record.elevator) for record in records]
     count = sum(len(e.interval) for e in edges)
     if count == 0 or len(records) > MOST_MANEUVERS or any(record.held for record in records):
         return plain
-    own = np.empty((len(plain.fitted), 0)) if extra is None else extra
+    own = plain.extra or Extra.none(len(plain.fitted))
     near, problem, assembly, optimum = plain.optimum, plain.problem, plain.assembly, plain.optimum
     weighing = Weighing.by(plain.noise, plain.assembly)
     before = weighing.misfit(plain.residual, plain.sensitivities)
-    columns, gain, upright = own, 0.0, 0.0
+    extra, gain, upright = own, 0.0, 0.0
     for round_ in range(ROUNDS + 1):
         problem = _edged(plain.problem, edges, records)
         assembly, optimum = search(problem, begin=(near.shared, near.local), flat=CLOSE_ENOUGH)
@@ -97,16 +95,17 @@ def with_edges(plain: Solution, extra: FloatArray | None = None) -> Solution:
         gain = before - weighing.misfit(residual, g)
         if round_ == 0:
             upright = gain
-        columns = np.column_stack([own, _by_edges(plain.problem, edges, records, optimum, assembly.owner)])
+        columns = _by_edges(plain.problem, edges, records, optimum, assembly.owner)
+        extra = own.joined(_within_intervals(edges, records, columns))
         if round_ == ROUNDS:
             break
-        rows = weighing.influence(g, columns)
-        if rows is None:
+        effect = weighing.influence(g, extra)
+        if effect is None:
             return plain
-        edges = _moved(edges, rows[:, len(PARAMETERS) + own.shape[1] :].T @ residual, records)
+        edges = _moved(edges, effect.step(residual, extra)[len(PARAMETERS) + len(own) :], records)
     if gain < chdtri(count, CHANCE) and upright < GAIN_UPRIGHT:
         return plain
-    final = evaluate(problem, assembly, optimum, columns, kept=own.shape[1])
+    final = evaluate(problem, assembly, optimum, extra, kept=len(own))
     return final if isinstance(final, Solution) else plain
 
 
@@ -121,6 +120,16 @@ def _edged(
             for record, e in zip(records, edges, strict=True)
         ),
     )
+
+
+def _within_intervals(edges: Sequence[Edges], records: Sequence[Record], columns: FloatArray) -> Extra:
+    """Return the times of all edges as parameters, with the prior of a time anywhere in its interval."""
+    stamps = [(record.elevator.t, e) for record, e in zip(records, edges, strict=True)]
+    first = np.concatenate([t[list(e.interval)] for t, e in stamps])
+    last = np.concatenate([t[[i + 1 for i in e.interval]] for t, e in stamps])
+    time = np.concatenate([e.time for e in edges])
+    priors = [Prior((a + b) / 2.0, (b - a) / np.sqrt(12.0)) for a, b in zip(first, last, strict=True)]
+    return Extra.at(columns, time, priors)
 
 
 def _moved(edges: Sequence[Edges], steps: FloatArray, records: Sequence[Record]) -> list[Edges]:

@@ -73,12 +73,17 @@ def efficient_step(solution: Solution) -> Step | None:
     found = weighing.influence(solution.sensitivities, solution.extra)
     if found is None:
         return None
-    rows, plain = found[:, :N], solution.influence.rows[:, :N]
+    best, usual = found.first(N), solution.influence.first(N)
+    rows, plain = best.rows, usual.rows
     exact = Coloured(colours, np.ones(N))
-    before, after = coloured(assembly, plain, exact), coloured(assembly, rows, exact)
-    change: FloatArray = rows.T @ solution.residual
-    covariance = coloured(assembly, rows, Coloured(colours, widening(assembly, rows, colours)))
-    long = _chance(change, coloured(assembly, rows - plain, exact), np.sqrt(np.diag(after)))
+    before = coloured(assembly, plain, exact) + usual.prior_covariance
+    after = coloured(assembly, rows, exact) + best.prior_covariance
+    change = best.step(solution.residual, solution.extra)
+    wide = Coloured(colours, widening(assembly, rows, colours))
+    covariance = coloured(assembly, rows, wide) + best.prior_covariance
+    pulled = best.prior_rows - usual.prior_rows
+    apart = coloured(assembly, rows - plain, exact) + pulled.T @ pulled
+    long = _chance(change, apart, np.sqrt(np.diag(after)))
     return Step(
         change=change,
         covariance=covariance + 2.0 * _unsure(solution, change),
@@ -101,9 +106,10 @@ def _unsure(solution: Solution, change: FloatArray) -> FloatArray:
             step[i] = DIFFERENCE
             other = {**solution.noise.colours, output: moved(colour, step)}
             weighing = Weighing.by(Coloured(other, np.ones(N)), solution.assembly)
-            rows = weighing.influence(solution.sensitivities, solution.extra)
-            if rows is not None:
-                slopes[i] = (rows[:, :N].T @ solution.residual - change) / DIFFERENCE
+            there = weighing.influence(solution.sensitivities, solution.extra)
+            if there is not None:
+                other_change = there.first(N).step(solution.residual, solution.extra)
+                slopes[i] = (other_change - change) / DIFFERENCE
         total += slopes.T @ colour.uncertainty @ slopes
     return total
 

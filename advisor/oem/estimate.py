@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from math import nan
 from typing import Literal
 
 import numpy as np
@@ -55,11 +56,21 @@ class ChannelFit:
 class InstrumentEstimate:
     """A parameter of the instruments that was estimated together with the derivatives."""
 
-    name: Literal["servo_lag_s", "vane_arm_m", "alpha_delay_s", "accelerometer_arm_m"]
+    name: Literal["servo_lag_s", "command_delay_s", "vane_arm_m", "alpha_delay_s", "accelerometer_arm_m"]
     value: float
-    """In the unit that ends the name."""
+    """Value in use, in the unit that ends the name."""
     std: float
-    """Standard deviation corrected for coloured residuals."""
+    """Standard deviation of ``value``, corrected for coloured residuals."""
+    stated: float | None = None
+    """Value in the aircraft file. None: the file states none."""
+    told: float = nan
+    """Value that the data tell without the statement; NaN without a statement."""
+    told_std: float = nan
+    """Standard deviation of ``told``, corrected for coloured residuals."""
+    contradicts: bool = False
+    """Whether the data exclude the stated value; ``value`` is then theirs."""
+    clear: bool = True
+    """Whether the data tell the value alone, instead of a prior together with them."""
 
 
 @dataclass(frozen=True, slots=True)

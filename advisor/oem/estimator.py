@@ -10,21 +10,13 @@ from advisor.model.response import OUTPUTS
 from advisor.oem.between import widened_by_scatter
 from advisor.oem.edges import large_steps, with_edges
 from advisor.oem.efficient import efficient
-from advisor.oem.estimate import ChannelFit, Estimate, InstrumentEstimate, NoEstimate
+from advisor.oem.estimate import ChannelFit, Estimate, NoEstimate
 from advisor.oem.filter_error import filter_error, moving_air
 from advisor.oem.gauss_newton import CONVERGED
 from advisor.oem.identifiability import SUPPOSED_LAG_S, correlated, not_identifiable
-from advisor.oem.instruments import (
-    ACCELEROMETER_ARM,
-    OF_ALPHA,
-    SERVO_LAG,
-    Identified,
-    Instrument,
-    fit_instruments,
-    identified_at,
-)
+from advisor.oem.instrument_fit import Identified, InstrumentFit, fit_instruments, refreshed
+from advisor.oem.instruments import COMMAND_DELAY, unknown_instruments
 from advisor.oem.notes import notes
-from advisor.oem.offset import with_offset
 from advisor.oem.prediction import prediction_band
 from advisor.oem.prepare import Prepared, prepare
 from advisor.oem.problem import OutputErrorProblem
@@ -69,25 +61,45 @@ def _estimate(maneuvers: Sequence[Maneuver], aircraft: Aircraft, method: Method)
     prepared = prepare(maneuvers, aircraft)
     if isinstance(prepared, NoEstimate):
         return prepared
-    servo_known = aircraft.elevator.lag_s is not None
-    solution = _solved(prepared.problem, method, servo_known)
+    solution = _solved(prepared.problem, method)
     if isinstance(solution, NoEstimate):
         return solution
     if method != "gauss-newton":
         return report(solution, prepared, aircraft, lagged=_supposing_a_lag(solution, aircraft))
-    fitted = fit_instruments(solution, unknown_instruments(prepared, aircraft))
-    instruments = tuple(identified.instrument for identified in fitted.identified)
-    solution = fitted.solution
-    if servo_known:
-        solution = with_offset(solution)
-    solution = with_edges(solution, solution.extra)
-    lagged = None if SERVO_LAG in instruments else _supposing_a_lag(solution, aircraft)
+    fitted = _with_instruments(solution, aircraft)
+    solution = with_edges(fitted.solution)
+    identified = refreshed(fitted.identified, solution)
+    has_lag = any(x.instrument.name == "servo_lag_s" for x in identified)
+    lagged = None if has_lag else _supposing_a_lag(solution, aircraft)
     air = _air(solution, maneuvers, prepared)
-    filtered = filter_error(solution, air.air, instruments) if air is not None else None
-    identified = fitted.identified if filtered is None else identified_at(filtered, instruments)
+    filtered = None
+    if air is not None:
+        filtered = filter_error(solution, air.air, [x.instrument for x in identified])
+    if filtered is not None:
+        identified = refreshed(identified, filtered)
     return report(
         solution, prepared, aircraft, identified=identified, lagged=lagged, air=air, filtered=filtered
     )
+
+
+def _with_instruments(plain: Solution, aircraft: Aircraft) -> InstrumentFit:
+    """Return the fit with the instruments, and with the likelier reading of the command.
+
+    A smooth command may be held instead of linear between its stamps, which is half an interval later. Large
+    steps get their own times (``edges``).
+    """
+    linear = fit_instruments(plain, unknown_instruments(plain.problem, aircraft))
+    records = plain.problem.records
+    if any(large_steps(record.elevator).interval for record in records):
+        return linear
+    problem = replace(plain.problem, records=tuple(replace(record, held=True) for record in records))
+    problem = COMMAND_DELAY.write(problem, COMMAND_DELAY.read(plain.problem))
+    other = solve(problem, begin=(plain.optimum.shared, plain.optimum.local))
+    if isinstance(other, NoEstimate):
+        return linear
+    held = fit_instruments(other, unknown_instruments(problem, aircraft))
+    weighing = Weighing.by(linear.solution.noise, linear.solution.assembly)
+    return held if held.misfit(weighing) < linear.misfit(weighing) else linear
 
 
 def _air(solution: Solution, maneuvers: Sequence[Maneuver], prepared: Prepared) -> Turbulence | None:
@@ -101,9 +113,13 @@ def _air(solution: Solution, maneuvers: Sequence[Maneuver], prepared: Prepared) 
     fits = [fit["q"] for fit in channel_fits(solution)]
     if all(fit.lag1 < COLOURED or 1.0 - fit.r2 < UNEXPLAINED for fit in fits):
         return None
-    derived = any(m.channels["alpha"].provenance == "derived" for m in maneuvers)
-    found = moving_air(solution, seen_by_alpha=not derived)
+    found = moving_air(solution, seen_by_alpha=not _derives_alpha(maneuvers))
     return found if found.present else None
+
+
+def _derives_alpha(maneuvers: Sequence[Maneuver]) -> bool:
+    """Return whether the angle of attack comes from inertial sensors, instead of from a vane."""
+    return any("alpha" in m.channels and m.channels["alpha"].provenance == "derived" for m in maneuvers)
 
 
 def lag_is_unknown(aircraft: Aircraft) -> bool:
@@ -111,39 +127,17 @@ def lag_is_unknown(aircraft: Aircraft) -> bool:
     return aircraft.elevator.lag_s is None and aircraft.elevator.lag_found_s is None
 
 
-def unknown_instruments(prepared: Prepared, aircraft: Aircraft) -> tuple[Instrument, ...]:
-    """Return the instrument parameters that the aircraft file leaves open and the record may determine.
-
-    A vane and an accelerometer at one place describe the motion of that place. Instruments at the centre of
-    gravity describe the aircraft's equally well. One of the two places must be known to determine the other.
-    """
-    unknown = [SERVO_LAG] if lag_is_unknown(aircraft) else []
-    measured = {name for record in prepared.problem.records for name in record.outputs}
-    if {"alpha", "a_z"} <= measured:
-        if aircraft.alpha.vane_arm_m is None:
-            unknown += OF_ALPHA
-        elif aircraft.accelerometer.arm_m is None:
-            unknown.append(ACCELEROMETER_ARM)
-    return tuple(unknown)
-
-
-def _solved(problem: OutputErrorProblem, method: Method, servo_known: bool) -> Solution | NoEstimate:
+def _solved(problem: OutputErrorProblem, method: Method) -> Solution | NoEstimate:
     """Return the solution with the reading of the record that the data clearly prefer.
 
     Eqs. (1)-(2) take the flight path as constant. Gravity's part in α̇ as the path turns is about 1e-4 rad/s,
-    and is left out where the data do not follow it. A command without large steps may be held instead of
-    linear; large steps get their own times (``edges``). With a smooth command, holding is a delay of half an
-    interval, which an unknown servo's lag absorbs. Such a command is read as linear.
+    and is left out where the data do not follow it.
     """
     best = solve(problem, method=method)
     if any(record.normal_gravity is not None and record.airspeed is not None for record in problem.records):
         straight = tuple(replace(record, normal_gravity=None) for record in problem.records)
         best = _clearer(best, replace(problem, records=straight), method)
-    if not servo_known or any(large_steps(record.elevator).interval for record in problem.records):
-        return best
-    records = problem.records if isinstance(best, NoEstimate) else best.problem.records
-    held = tuple(replace(record, held=True) for record in records)
-    return _clearer(best, replace(problem, records=held), method)
+    return best
 
 
 def _clearer(best: Solution | NoEstimate, other: OutputErrorProblem, method: Method) -> Solution | NoEstimate:
@@ -182,7 +176,7 @@ def report(
 
     Parameters
     ----------
-    identified : instrument parameters that the data determine.
+    identified : instrument parameters of the fit.
     lagged : (8,) the estimate under a servo lag of ``SUPPOSED_LAG_S``, for an unknown servo.
     air : moving air, where output error is not valid.
     filtered : solution of filter error, where moving air was allowed for.
@@ -204,7 +198,7 @@ def report(
         airspeed_m_s=solution.problem.reference_airspeed_m_s or prepared.airspeed_m_s,
         notes=notes(solution, prepared, aircraft, identified, lagged, best=best, priced=not quick),
         theta_of_lowest_cost=None if best.theta is solution.theta else solution.theta,
-        instruments=tuple(InstrumentEstimate(x.instrument.name, x.value, x.std) for x in identified),
+        instruments=tuple(x.reported for x in identified),
         gust_rad=air.gust_angle if air is not None and air.present else None,
         filtered=filtered is not None,
         servo_lag_s=best.problem.servo.lag_s,

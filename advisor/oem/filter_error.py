@@ -16,8 +16,9 @@ from advisor.aircraft.aircraft import PARAMETERS
 from advisor.flight.signals.robust import robust_std
 from advisor.model.response import N_PARAMETERS, N_SHARED, OUTPUTS
 from advisor.oem.covariance import Coloured, coloured, colours_of, influence, widening
+from advisor.oem.extra import Extra
 from advisor.oem.innovations import AirModel
-from advisor.oem.instruments import Instrument
+from advisor.oem.instruments import Instrument, moved_by
 from advisor.oem.place import Linearization, at, free_of, in_time, speeds_of, system_of
 from advisor.oem.prior import precision
 from advisor.oem.solution import Solution, contributions_of, reported
@@ -43,7 +44,6 @@ def moving_air(solution: Solution, seen_by_alpha: bool) -> Turbulence:
     seen_by_alpha
         Whether the angle of attack reads the air, like a vane, instead of coming from inertial sensors.
     """
-    none = np.empty((len(solution.residual), 0))
     place = Linearization(
         solution.problem,
         solution.assembly,
@@ -51,7 +51,7 @@ def moving_air(solution: Solution, seen_by_alpha: bool) -> Turbulence:
         solution.optimum.local,
         solution.residual,
         solution.sensitivities,
-        none,
+        Extra.none(len(solution.residual)),
     )
     rows = _rows(place)[-MOST_MANEUVERS:]
     white = np.array([_white(rows, c) for c in range(len(OUTPUTS))])
@@ -95,7 +95,7 @@ def filter_error(solution: Solution, air: AirModel, instruments: Sequence[Instru
     """
     optimum = solution.optimum
     here = at(solution.problem, optimum.shared, optimum.local, instruments)
-    seen = None if here is None else whitened(here, air, len(instruments))
+    seen = None if here is None else whitened(here, air)
     if here is None or seen is None:
         return None
     for _ in range(ROUNDS):
@@ -120,7 +120,7 @@ def _better(
     lowest = seen.cost
     for scale in (1.0, 0.5, 0.25, 0.1, 0.03):
         there = _moved(here, seen, scale, instruments)
-        found = None if there is None else whitened(there, air, len(instruments))
+        found = None if there is None else whitened(there, air)
         if found is not None and found.cost < lowest:
             best, lowest = (there, found), found.cost
         elif best[1] is not None:
@@ -133,23 +133,22 @@ def _moved(
 ) -> Linearization | None:
     """Return the point after a share of the step; None where the model overflows there."""
     common, own = free_of(here.assembly)
-    shared, local, problem = here.shared.copy(), here.local.copy(), here.problem
+    shared, local = here.shared.copy(), here.local.copy()
     shared[common] += scale * seen.step[: len(common)]
     for m, step in enumerate(seen.own_steps):
         local[m, own - N_SHARED] += scale * step
-    for x, change in zip(instruments, seen.step[len(common) :], strict=True):
-        problem = x.write(problem, float(np.clip(x.read(problem) + scale * change, x.lowest, x.highest)))
+    problem = moved_by(scale * seen.step[len(common) :], here.problem, instruments)
     return at(problem, shared, local, instruments)
 
 
 def _solution(start: Solution, place: Linearization, air: AirModel) -> Solution | None:
     """Return the solution at the point, with Cramér-Rao errors and with errors for coloured innovations."""
     assembly, n = place.assembly, len(PARAMETERS)
-    white = np.empty((len(place.residual), 1 + N_PARAMETERS + place.extra.shape[1]))
-    columns = np.column_stack([place.residual, place.sensitivities, place.extra])
+    white = np.empty((len(place.residual), 1 + N_PARAMETERS + len(place.extra)))
+    columns = np.column_stack([place.residual, place.sensitivities, place.extra.columns])
     for order, gains in gains_along(place, air):
         white[order] = gains.innovations(columns[order])
-    g, extra = white[:, 1 : 1 + N_PARAMETERS], white[:, 1 + N_PARAMETERS :]
+    g, extra = white[:, 1 : 1 + N_PARAMETERS], place.extra.whitened(white[:, 1 + N_PARAMETERS :])
     effect = influence(assembly, g, _UNIT, extra, precision(place.problem, place.shared))
     if effect is None:
         return None
@@ -166,8 +165,8 @@ def _solution(start: Solution, place: Linearization, air: AirModel) -> Solution 
         optimum=optimum,
         influence=effect,
         theta=reported(place.shared, place.local),
-        covariance_cr=effect.rows[:, :n].T @ effect.rows[:, :n],
-        covariance=coloured(assembly, effect.rows, noise),
+        covariance_cr=effect.rows[:, :n].T @ effect.rows[:, :n] + effect.prior_covariance[:n, :n],
+        covariance=coloured(assembly, effect.rows, noise) + effect.prior_covariance,
         noise=noise,
         contributions=contributions_of(assembly, effect.rows, white[:, 0]),
         extra=place.extra,

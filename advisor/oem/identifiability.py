@@ -18,7 +18,6 @@ import numpy as np
 
 from advisor.aircraft.aircraft import PARAMETERS
 from advisor.flight.signals.messages import FloatArray
-from advisor.model.response import OUTPUTS
 from advisor.model.short_period import ShortPeriod
 from advisor.oem.correlation import HIGH_CORRELATION, correlation_matrix
 from advisor.oem.solution import Solution
@@ -102,17 +101,15 @@ def not_identifiable(solution: Solution, lagged: FloatArray | None) -> dict[str,
 
 
 def own_motion(solution: Solution) -> float:
-    """Return the share of the elevator's motion, root mean square, that no feedback of α and q explains."""
+    """Return the share of the command's motion, root mean square, that no feedback of α and q explains."""
     assembly, fitted = solution.assembly, solution.fitted
-    measured = assembly.grid.row[OUTPUTS.index("q")] >= 0
-    elevator = np.empty(len(fitted))
-    elevator[assembly.grid.row[OUTPUTS.index("q")][measured]] = assembly.grid.elevator[measured]
     motion, feedback = [], []
-    for rows in assembly.rows:
+    for record, rows in zip(solution.problem.records, assembly.rows, strict=True):
         lift, q = rows["alpha" if "alpha" in rows else "a_z"], rows["q"]
         at_q = np.interp(assembly.t[q], assembly.t[lift], fitted[lift])
         states = np.column_stack([at_q, fitted[q]])
-        motion.append(elevator[q] - elevator[q].mean())
+        command = record.elevator.at(assembly.t[q])
+        motion.append(command - command.mean())
         feedback.append(states - states.mean(axis=0))
     moved, followed = np.concatenate(motion), np.concatenate(feedback)
     left = moved - followed @ np.linalg.lstsq(followed, moved, rcond=None)[0]

@@ -1,43 +1,37 @@
-"""Instrument parameters estimated together with the derivatives: servo lag, arm or delay of the vane.
+"""Instruments of a log as parameters: servo lag, delay of the command, arm or delay of the vane.
 
 A log holds the command, not the surface. An ignored servo lag of 0.14 s halves M_α and M_δe of a small
-aircraft, while the fit still explains 95 % of the motion. A vane ahead of the centre of gravity reads α -
-(x/V)·q, and an autopilot's own angle of attack is late. Both change Z_α, Z_q, Z_δe and M_q while α and q fit
-as well as before. With a_z and air speed the kinematics distinguish instrument and aircraft.
+aircraft, while the fit still explains 95 % of the motion. A command that acts 10 ms after its stamps changes
+M_q and M_δe by 7 to 19 %. A vane ahead of the centre of gravity reads α - (x/V)·q, and an autopilot's own
+angle of attack is late. Both change Z_α, Z_q, Z_δe and M_q while α and q fit as well as before. With a_z and
+air speed the kinematics distinguish instrument and aircraft.
 
-Each unknown instrument is one more shared parameter. Gauss-Newton steps move all of them with everything else
-refitted. A value is kept only where the data distinguish it from zero beyond doubt.
+Each unknown instrument is one more shared parameter of the fit (``instrument_fit``).
 """
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import numpy as np
 
-from advisor.aircraft.aircraft import PARAMETERS
+from advisor.aircraft.aircraft import Aircraft, Elevator
+from advisor.flight.instruments.lateness import lateness_std
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import N_PARAMETERS, respond
-from advisor.oem.covariance import influence
-from advisor.oem.gauss_newton import CONVERGED, Optimum
-from advisor.oem.problem import Assembly, OutputErrorProblem, assemble
-from advisor.oem.solution import Solution, evaluate, search
+from advisor.oem.extra import Extra, Prior
+from advisor.oem.problem import OutputErrorProblem, assemble
 from advisor.oem.surface import Servo
-from advisor.oem.weighing import Weighing
 
-InstrumentName = Literal["servo_lag_s", "vane_arm_m", "alpha_delay_s", "accelerometer_arm_m"]
+InstrumentName = Literal[
+    "servo_lag_s", "command_delay_s", "vane_arm_m", "alpha_delay_s", "accelerometer_arm_m"
+]
 
-N = len(PARAMETERS)
-ROUNDS = 12
-SETTLED = 1e-2
-"""Change of Σ n·log σ², per round, below which the search for instrument parameters is done."""
-CLOSE_ENOUGH = 1e-7
-"""Promised change of log J per sample at which an intermediate search ends."""
-CLEARLY = 9.0
-"""Least gain in twice the log likelihood for a parameter: three standard deviations."""
 KNOWN_TO = 0.1
-"""Largest standard deviation over the value for which the value represents the aircraft. An error of a tenth
-of a usual servo lag moves M_δe by some 5 %, the default tolerance of a campaign."""
+"""Standard deviation over the value for which the value represents the aircraft, and that of a servo's lag in
+an aircraft file. An error of a tenth of a usual servo lag moves M_δe by some 5 %, the default tolerance of a
+campaign."""
+NORMAL_95 = 1.959963984540054
 SMALLEST_DELAY_S = 0.004
 """Smallest delay of the angle of attack that matters, s: a fifth of a sample at 50 Hz."""
 SMALLEST_ARM_M = 0.02
@@ -59,10 +53,46 @@ class Instrument:
     """Values at which the search starts, in addition to the present one."""
     smallest: Callable[[OutputErrorProblem], float]
     """Smallest value that the sampling of the record can show, in the parameter's unit."""
+    usual: Callable[[OutputErrorProblem], float] | None = None
+    """Standard deviation of the parameter over sound instruments. None: no such parameter without
+    evidence."""
+    known_to: float = 0.0
+    """Standard deviation of a stated value over the value."""
+    prior: Prior | None = None
+    stated: float | None = None
+    """Value in the aircraft file, in the parameter's unit. None: the file leaves the value open."""
+
+    def innocent(self, problem: OutputErrorProblem) -> "Instrument | None":
+        """Return the instrument with the prior of sound instruments about the problem's value."""
+        if self.usual is None:
+            return None
+        return replace(self, prior=Prior(self.read(problem), self.usual(problem)))
+
+    def at_end(self, problem: OutputErrorProblem, std: float) -> bool:
+        """Return whether the value, with its standard deviation, reaches an end of the range of the search.
+
+        Such a value is no estimate.
+        """
+        value = self.read(problem)
+        return not self.lowest + self.difference < value < self.highest - NORMAL_95 * std
 
 
 def _with_lag(problem: OutputErrorProblem, value: float) -> OutputErrorProblem:
     return replace(problem, servo=Servo(value, problem.servo.delay_s))
+
+
+def _command_delay(problem: OutputErrorProblem) -> float:
+    """Return the delay of the command behind its linear reading, s."""
+    return problem.servo.delay_s + _held_for(problem)
+
+
+def _with_command_delay(problem: OutputErrorProblem, value: float) -> OutputErrorProblem:
+    return replace(problem, servo=Servo(problem.servo.lag_s, value - _held_for(problem)))
+
+
+def _held_for(problem: OutputErrorProblem) -> float:
+    """Return the mean age of a held command, s."""
+    return _half_interval(problem) if problem.records[0].held else 0.0
 
 
 def _with_arm(problem: OutputErrorProblem, value: float) -> OutputErrorProblem:
@@ -83,9 +113,18 @@ def _half_interval(problem: OutputErrorProblem) -> float:
     return 0.5 * float(np.median(np.concatenate([np.diff(r.elevator.t) for r in problem.records])))
 
 
-def _smallest_arm(problem: OutputErrorProblem) -> float:
+def _command_lateness(problem: OutputErrorProblem) -> float:
+    return lateness_std([record.elevator.t for record in problem.records])
+
+
+def _alpha_lateness(problem: OutputErrorProblem) -> float:
+    return lateness_std([record.outputs["alpha"].t for record in problem.records])
+
+
+def _speed(problem: OutputErrorProblem) -> float:
+    """Return the mean air speed in m/s; 0 where none is measured."""
     speeds = [float(np.mean(r.airspeed.y)) for r in problem.records if r.airspeed is not None]
-    return SMALLEST_DELAY_S * float(np.mean(speeds)) if speeds else 0.0
+    return float(np.mean(speeds)) if speeds else 0.0
 
 
 SERVO_LAG = Instrument(
@@ -95,11 +134,31 @@ SERVO_LAG = Instrument(
     1e-4,
     0.0,
     0.4,
-    (0.03, 0.06, 0.1, 0.15, 0.22),
+    (0.03, 0.06, 0.1, 0.15, 0.22, 0.3),
     _half_interval,
+    known_to=KNOWN_TO,
+)
+COMMAND_DELAY = Instrument(
+    "command_delay_s",
+    _command_delay,
+    _with_command_delay,
+    1e-4,
+    -0.5,
+    1.0,
+    (),
+    lambda _: SMALLEST_DELAY_S,
+    usual=_command_lateness,
 )
 VANE_ARM = Instrument(
-    "vane_arm_m", lambda problem: problem.vane_arm_m, _with_arm, 1e-3, -100.0, 100.0, (), _smallest_arm
+    "vane_arm_m",
+    lambda problem: problem.vane_arm_m,
+    _with_arm,
+    1e-3,
+    -100.0,
+    100.0,
+    (),
+    lambda problem: SMALLEST_DELAY_S * _speed(problem),
+    usual=lambda problem: _alpha_lateness(problem) * _speed(problem),
 )
 ALPHA_DELAY = Instrument(
     "alpha_delay_s",
@@ -110,6 +169,7 @@ ALPHA_DELAY = Instrument(
     0.5,
     (),
     lambda _: SMALLEST_DELAY_S,
+    usual=_alpha_lateness,
 )
 ACCELEROMETER_ARM = Instrument(
     "accelerometer_arm_m",
@@ -121,94 +181,15 @@ ACCELEROMETER_ARM = Instrument(
     (),
     lambda _: SMALLEST_ARM_M,
 )
-OF_ALPHA = (VANE_ARM, ALPHA_DELAY)
+OF_ALPHA = ("vane_arm_m", "alpha_delay_s")
 """Two readings of an angle of attack that contradict the kinematics in nearly equal ways; at most one is
 kept."""
 
 
-@dataclass(frozen=True, slots=True)
-class Identified:
-    """An instrument parameter that the data determine."""
-
-    instrument: Instrument
-    value: float
-    std: float
-    """Corrected standard deviation, in the parameter's unit."""
-
-
-@dataclass(frozen=True, slots=True)
-class InstrumentFit:
-    """A solution with the instrument parameters that the data determine."""
-
-    solution: Solution
-    """Solution whose ``extra`` columns are the derivatives by ``identified``, in that order."""
-    identified: tuple[Identified, ...] = ()
-
-
-class _Fit(NamedTuple):
-    """The optimum at one setting of the instruments."""
-
-    problem: OutputErrorProblem
-    assembly: Assembly
-    optimum: Optimum
-
-    @property
-    def cost(self) -> float:
-        return self.optimum.log_likelihood_cost
-
-
-def fit_instruments(plain: Solution, unknown: Sequence[Instrument]) -> InstrumentFit:
-    """Estimate the unknown instrument parameters that the data determine; ``plain`` is the solution without
-    any.
-
-    A parameter is kept where the record is clearly likelier with it, for noise of the residuals' colour. The
-    likelihood ratio holds where an error from the curvature does not. On a well damped aircraft a servo's lag
-    is correlated with M_q and M_δe over a long range.
-    """
-    begin = _Fit(plain.problem, plain.assembly, plain.optimum)
-    common = tuple(x for x in unknown if x not in OF_ALPHA)
-    near = _looked_about(begin, common)
-    choices = [(*common, x) for x in unknown if x in OF_ALPHA] or [common]
-    fits = [(names, _descend(near, names)) for names in choices if names]
-    names, best = min(fits, key=lambda found: found[1].cost, default=((), begin))
-    while names:
-        solution = _solution(best, names)
-        if solution is None:
-            return InstrumentFit(plain)
-        rivals = [(x, _without(x, best, names, plain)) for x in names]
-        weighing = Weighing.by(solution.noise, solution.assembly)
-        gains = [_gain(weighing, best, rival) for _, rival in rivals]
-        small = [abs(x.read(best.problem)) < x.smallest(best.problem) for x in names]
-        gains = [0.0 if is_small else gain for gain, is_small in zip(gains, small, strict=True)]
-        weakest = int(np.argmin(gains))
-        if gains[weakest] >= CLEARLY:
-            return InstrumentFit(solution, identified_at(solution, names))
-        names, best = tuple(x for x in names if x is not names[weakest]), rivals[weakest][1]
-    return InstrumentFit(plain)
-
-
-def _without(x: Instrument, best: _Fit, names: Sequence[Instrument], plain: Solution) -> _Fit:
-    """Return the optimum with one instrument set back to the aircraft file's value."""
-    begin = _Fit(plain.problem, plain.assembly, plain.optimum)
-    others = [other for other in names if other is not x]
-    reset = x.write(best.problem, x.read(plain.problem))
-    return _descend(_at(reset, best) or begin, others)
-
-
-def _gain(weighing: Weighing, fit: _Fit, rival: _Fit) -> float:
-    """Return twice the log likelihood ratio of a fit over a rival, under one noise model."""
-
-    def misfit(of: _Fit) -> float:
-        return weighing.misfit(of.assembly.z - of.optimum.fitted, of.optimum.sensitivities)
-
-    return misfit(rival) - misfit(fit)
-
-
-def by_instruments(
+def extra_of(
     problem: OutputErrorProblem, shared: FloatArray, local: FloatArray, names: Sequence[Instrument]
-) -> FloatArray:
-    """Return (N, k) derivatives of the outputs by instrument parameters; ``shared`` (7,), ``local`` (m,
-    7)."""
+) -> Extra:
+    """Return the instruments as additional parameters of a fit; ``shared`` (7,), ``local`` (m, 7)."""
     columns = []
     for x in names:
         sides = []
@@ -219,72 +200,51 @@ def by_instruments(
             respond(assembly.grid, shared, local, y, np.empty((0, N_PARAMETERS)))
             sides.append(y)
         columns.append((sides[1] - sides[0]) / (2.0 * x.difference))
-    return np.column_stack(columns) if columns else np.empty((len(assemble(problem).z), 0))
+    if not columns:
+        return Extra.none(len(assemble(problem).z))
+    values = np.array([x.read(problem) for x in names])
+    return Extra.at(np.column_stack(columns), values, [x.prior for x in names])
 
 
-def _looked_about(begin: _Fit, names: Sequence[Instrument]) -> _Fit:
-    """Return the best of the starts of each instrument, one instrument after the other."""
-    best = begin
-    for x in names:
-        near = best
-        for start in x.starts:
-            near = _at(x.write(best.problem, start), near) or near
-            if near.cost > best.cost:
-                break
-            best = near
-    return best
+def penalty(problem: OutputErrorProblem, names: Sequence[Instrument]) -> float:
+    """Return -2 log of the instruments' prior density up to a constant, as white noise weighs the priors."""
+    known = [(x.read(problem), x.prior) for x in names if x.prior is not None]
+    return sum(((value - prior.mean) / (prior.std * prior.share)) ** 2 for value, prior in known)
 
 
-def _descend(begin: _Fit, names: Sequence[Instrument]) -> _Fit:
-    """Minimise the cost over the instruments by Gauss-Newton, with everything else refitted at each step."""
-    best = begin
-    for _ in range(ROUNDS if names else 0):
-        step = _step(best, names)
-        found = None
-        for _ in range(5):
-            found = _at(_moved(best.problem, names, step), best)
-            if found is not None and found.cost < best.cost:
-                break
-            step, found = step / 4.0, None
-        if found is None:
-            break
-        gain, best = best.cost - found.cost, found
-        if gain < SETTLED:
-            break
-    return best
-
-
-def _moved(problem: OutputErrorProblem, names: Sequence[Instrument], step: FloatArray) -> OutputErrorProblem:
+def moved_by(
+    step: FloatArray, problem: OutputErrorProblem, names: Sequence[Instrument]
+) -> OutputErrorProblem:
+    """Return the problem with its instruments moved by ``step`` (k,), each within its range."""
     for x, change in zip(names, step, strict=True):
         problem = x.write(problem, float(np.clip(x.read(problem) + change, x.lowest, x.highest)))
     return problem
 
 
-def _step(fit: _Fit, names: Sequence[Instrument]) -> FloatArray:
-    """Return the Gauss-Newton step of the instruments with everything else free, shape (k,)."""
-    optimum = fit.optimum
-    columns = by_instruments(fit.problem, optimum.shared, optimum.local, names)
-    effect = influence(fit.assembly, optimum.sensitivities, optimum.noise, columns)
-    if effect is None:
-        return np.zeros(len(names))
-    weight = 1.0 / optimum.noise[fit.assembly.channel] ** 2
-    gradient = columns.T @ (weight * (fit.assembly.z - optimum.fitted))
-    return np.asarray(effect.extra_covariance @ gradient)
+def unknown_instruments(problem: OutputErrorProblem, aircraft: Aircraft) -> tuple[Instrument, ...]:
+    """Return the instrument parameters that are estimated together with the derivatives.
+
+    A vane and an accelerometer at one place describe the motion of that place. Instruments at the centre of
+    gravity describe the aircraft's equally well. One of the two places must be known to determine the other.
+    """
+    command = COMMAND_DELAY.innocent(problem)
+    unknown = [_servo_lag(aircraft.elevator), *([command] if command else [])]
+    measured = {name for record in problem.records for name in record.outputs}
+    vane_m, imu_m = aircraft.alpha.vane_arm_m, aircraft.accelerometer.arm_m
+    if {"alpha", "a_z"} <= measured:
+        if vane_m is None:
+            unknown += [VANE_ARM, ALPHA_DELAY]
+        elif imu_m is None:
+            unknown.append(ACCELEROMETER_ARM)
+        else:
+            unknown.append(replace(VANE_ARM, stated=vane_m))
+    return tuple(unknown)
 
 
-def _at(problem: OutputErrorProblem, near: _Fit) -> _Fit | None:
-    begin = (near.optimum.shared, near.optimum.local)
-    assembly, optimum = search(problem, begin=begin, flat=CLOSE_ENOUGH)
-    return _Fit(problem, assembly, optimum) if optimum.status == CONVERGED else None
-
-
-def identified_at(solution: Solution, names: Sequence[Instrument]) -> tuple[Identified, ...]:
-    """Return values and errors of instruments in a solution whose first extra columns are theirs."""
-    std = np.sqrt(np.diag(solution.covariance)[N : N + len(names)])
-    return tuple(Identified(x, x.read(solution.problem), float(s)) for x, s in zip(names, std, strict=True))
-
-
-def _solution(fit: _Fit, names: Sequence[Instrument]) -> Solution | None:
-    columns = by_instruments(fit.problem, fit.optimum.shared, fit.optimum.local, names)
-    found = evaluate(*fit, columns)
-    return found if isinstance(found, Solution) else None
+def _servo_lag(elevator: Elevator) -> Instrument:
+    """Return the servo's lag as known before this fit: by earlier manoeuvres, by the aircraft file, or
+    not."""
+    found = elevator.lag_found_s
+    if found is not None:
+        return replace(SERVO_LAG, prior=Prior(found, KNOWN_TO * found))
+    return replace(SERVO_LAG, stated=elevator.lag_s)

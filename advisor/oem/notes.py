@@ -6,7 +6,8 @@ from advisor.aircraft.aircraft import PARAMETERS, Aircraft
 from advisor.flight.signals.messages import FloatArray
 from advisor.oem.correlation import HIGH_CORRELATION
 from advisor.oem.identifiability import SUPPOSED_LAG_S, correlated
-from advisor.oem.instruments import KNOWN_TO, Identified
+from advisor.oem.instrument_fit import Identified
+from advisor.oem.instruments import KNOWN_TO
 from advisor.oem.missing import in_words, price
 from advisor.oem.prepare import Prepared
 from advisor.oem.solution import Solution
@@ -38,14 +39,13 @@ def notes(
     """
     sentences = [
         _outputs(solution, prepared),
-        *(_instrument(x, solution) for x in identified),
+        *(_instrument(x, solution) for x in identified if _is_worth_saying(x)),
         _servo(solution, lagged),
         _found_lag(aircraft),
         _airspeed(prepared),
         _scale(solution),
         _held(prepared),
         _edges(solution, prepared),
-        _offset(solution, prepared),
         _vane(aircraft),
         _weighed(solution, best),
         _correlated(solution),
@@ -63,6 +63,14 @@ def _outputs(solution: Solution, prepared: Prepared) -> str:
     )
 
 
+def _is_worth_saying(identified: Identified) -> bool:
+    """Return whether the data tell a value that neither the file nor a sound instrument explains."""
+    x = identified.instrument
+    if x.prior is None:
+        return x.stated is None or identified.contradicts
+    return x.name == "command_delay_s" and abs(identified.value - x.prior.mean) > 3.0 * identified.std
+
+
 def _instrument(identified: Identified, solution: Solution) -> str:
     """Return a sentence about one instrument, with the line that puts its value into the aircraft file."""
     value, half = identified.value, NORMAL_95 * identified.std
@@ -78,6 +86,10 @@ def _instrument(identified: Identified, solution: Solution) -> str:
                 f"alpha reads like a vane {value:.2f} ± {half:.2f} m ahead of the centre of gravity"
                 f" ({value / speed:.3f} s of pitch rate); the estimate allows for that."
                 + _line(identified, f"alpha: {{vane_arm_m: {value:.2f}}}")
+            )
+        case "command_delay_s":
+            return (
+                f"The command acts {1e3 * value:+.1f} ± {1e3 * half:.1f} ms after its stamps, as estimated."
             )
         case "alpha_delay_s":
             return (
@@ -153,14 +165,6 @@ def _edges(solution: Solution, prepared: Prepared) -> str:
     if steps == 0:
         return ""
     return f"The times of {steps} elevator steps, each between two samples of the command, are estimated too."
-
-
-def _offset(solution: Solution, prepared: Prepared) -> str:
-    later = solution.problem.servo.delay_s - prepared.problem.servo.delay_s
-    if later == 0.0:
-        return ""
-    reading = "held" if solution.problem.records[0].held else "linear"
-    return f"The command, {reading} between its stamps, acts {1e3 * later:+.1f} ms after them, as estimated."
 
 
 def _vane(aircraft: Aircraft) -> str:

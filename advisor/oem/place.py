@@ -7,7 +7,8 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import N_PARAMETERS, N_SHARED, SHARED, Index, respond
-from advisor.oem.instruments import Instrument, by_instruments
+from advisor.oem.extra import Extra
+from advisor.oem.instruments import Instrument, extra_of
 from advisor.oem.problem import Assembly, OutputErrorProblem, assemble
 
 ASSUMED_M_S = 20.0
@@ -26,8 +27,8 @@ class Linearization:
     """(N,) residuals."""
     sensitivities: FloatArray
     """(N, 14) sensitivities."""
-    extra: FloatArray
-    """(N, k) derivatives by the instrument parameters."""
+    extra: Extra
+    """Instrument parameters."""
 
 
 def at(
@@ -39,7 +40,7 @@ def at(
     y, g = np.empty(len(assembly.z)), np.empty((len(assembly.z), N_PARAMETERS))
     if not respond(assembly.grid, shared, local, y, g):
         return None
-    extra = by_instruments(problem, shared, local, instruments)
+    extra = extra_of(problem, shared, local, instruments)
     return Linearization(problem, assembly, shared, local, assembly.z - y, g, extra)
 
 

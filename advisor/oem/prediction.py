@@ -32,7 +32,7 @@ def prediction_band(solution: Solution) -> Mapping[str, float]:
     columns = solution.sensitivities[:, [SHARED.index(name) for name in _DERIVATIVES]]
     kept = solution.covariance.shape[0] - len(PARAMETERS)
     if kept and solution.extra is not None:
-        columns = np.column_stack([columns, solution.extra[:, :kept]])
+        columns = np.column_stack([columns, solution.extra.columns[:, :kept]])
     among = [PARAMETERS.index(name) for name in _DERIVATIVES]
     among += range(len(PARAMETERS), len(PARAMETERS) + columns.shape[1] - len(_DERIVATIVES))
     covariance = solution.covariance[np.ix_(among, among)]

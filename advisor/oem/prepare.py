@@ -147,7 +147,7 @@ def _prepared(
 
 
 def _servo(elevator: Elevator) -> Servo:
-    lag_s = elevator.lag_found_s if elevator.lag_s is None else elevator.lag_s
+    lag_s = elevator.lag_s if elevator.lag_found_s is None else elevator.lag_found_s
     return Servo(lag_s or 0.0, elevator.delay_s or 0.0)
 
 
@@ -237,5 +237,6 @@ def _reference(speeds: Sequence[Signal], aircraft: Aircraft, smooth: bool) -> fl
 
 
 def _signal(channel: Channel) -> Signal:
+    """Return the finite samples of a channel, each at the time of which it tells."""
     keep = np.isfinite(channel.y)
-    return Signal(np.asarray(channel.t[keep], float), np.asarray(channel.y[keep], float))
+    return Signal(np.asarray(channel.t[keep], float) - channel.delay_s, np.asarray(channel.y[keep], float))

@@ -1,6 +1,6 @@
 """The solution of a problem: start, descent, errors, and identifiability."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
@@ -19,6 +19,7 @@ from advisor.oem.covariance import (
     widening,
 )
 from advisor.oem.estimate import NoEstimate
+from advisor.oem.extra import Extra
 from advisor.oem.gauss_newton import CONVERGED, FLAT, LEAST_NOISE, OVERFLOW, SINGULAR, Optimum, descend
 from advisor.oem.prior import precision
 from advisor.oem.problem import Assembly, OutputErrorProblem, assemble
@@ -51,8 +52,8 @@ class Solution:
     contributions: FloatArray
     """(m, 8 + k) contribution of each manoeuvre's residuals to each parameter; the contributions sum to
     zero."""
-    extra: FloatArray | None = None
-    """(N, e) derivatives by additional parameters, such as the times of edges; e >= k."""
+    extra: Extra | None = None
+    """The e >= k additional parameters, such as the times of edges."""
 
     @property
     def fitted(self) -> FloatArray:
@@ -139,7 +140,7 @@ def evaluate(
     problem: OutputErrorProblem,
     assembly: Assembly,
     optimum: Optimum,
-    extra: FloatArray | None = None,
+    extra: Extra | None = None,
     noise: Coloured | None = None,
     kept: int | None = None,
 ) -> Solution | NoEstimate:
@@ -155,7 +156,7 @@ def evaluate(
     if effect is None:
         return NoEstimate("singular", NOTHING_TO_TELL)
     if kept is not None:
-        effect = replace(effect, rows=effect.rows[:, : len(PARAMETERS) + kept])
+        effect = effect.first(len(PARAMETERS) + kept)
     if noise is None:
         colours = colours_of(assembly, assembly.z - optimum.fitted, g)
         noise = Coloured(colours, widening(assembly, effect.rows, colours))
@@ -165,8 +166,8 @@ def evaluate(
         optimum=optimum,
         influence=effect,
         theta=reported(optimum.shared, optimum.local),
-        covariance_cr=cramer_rao(assembly, effect.rows, optimum.noise),
-        covariance=coloured(assembly, effect.rows, noise),
+        covariance_cr=cramer_rao(assembly, effect.rows, optimum.noise) + effect.prior_covariance,
+        covariance=coloured(assembly, effect.rows, noise) + effect.prior_covariance,
         noise=noise,
         contributions=contributions_of(assembly, effect.rows, assembly.z - optimum.fitted),
         extra=extra,

@@ -6,13 +6,14 @@ output error's own weights, 1/σ².
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import OUTPUTS
-from advisor.oem.covariance import Coloured, influence
+from advisor.oem.covariance import Coloured, Influence, influence
+from advisor.oem.extra import Extra
 from advisor.oem.gauss_newton import arrow_step, normal_equations
 from advisor.oem.problem import Assembly
 from advisor.oem.whitening import Whitening
@@ -53,13 +54,11 @@ class Weighing:
         """Return L⁻ᵀ·rows, (N, k)."""
         return self._each(Whitening.backward, rows)
 
-    def influence(self, g: FloatArray, extra: FloatArray | None) -> FloatArray | None:
-        """Return the influence of every measurement on the efficient estimate, shape (N, 8 + k); None where
-        it overflows."""
-        weighed = influence(
-            self.assembly, self.forward(g), UNIT, None if extra is None else self.forward(extra)
-        )
-        return None if weighed is None else self.backward(weighed.rows)
+    def influence(self, g: FloatArray, extra: Extra | None) -> Influence | None:
+        """Return the influence of every measurement on the efficient estimate; None where it overflows."""
+        seen = None if extra is None else extra.whitened(self.forward(extra.columns))
+        weighed = influence(self.assembly, self.forward(g), UNIT, seen)
+        return None if weighed is None else replace(weighed, rows=self.backward(weighed.rows))
 
     def misfit(self, residual: FloatArray, g: FloatArray) -> float:
         """Return the weighted sum of squares, minus the decrease by a last step of all parameters.

@@ -34,22 +34,18 @@ class Whitened:
         return float(np.max(np.abs(self.step) / self.std))
 
 
-def whitened(place: Linearization, air: AirModel, instruments: int) -> Whitened | None:
-    """Return the whitened fit; None where numbers overflow.
-
-    Parameters
-    ----------
-    instruments : number of the place's extra columns that are instrument parameters.
-    """
+def whitened(place: Linearization, air: AirModel) -> Whitened | None:
+    """Return the whitened fit; None where numbers overflow."""
     common, own = free_of(place.assembly)
-    n = len(common) + instruments
+    n = len(common) + len(place.extra)
     prior = precision(place.problem, place.shared)[common]
     information, gradient = np.zeros((n, n)), np.zeros(n)
-    information[: len(common), : len(common)] = np.diag(prior)
-    gradient[: len(common)] = -prior * place.shared[common]
-    cost, parts = float(np.sum(prior * place.shared[common] ** 2)), []
-    columns = np.column_stack([place.residual, place.sensitivities, place.extra])
-    shared_columns = [*(1 + common), *range(1 + N_PARAMETERS, 1 + N_PARAMETERS + instruments)]
+    extra = place.extra
+    information += np.diag(np.concatenate([prior, extra.weight**2]))
+    gradient += np.concatenate([-prior * place.shared[common], extra.weight * extra.pull])
+    cost, parts = float(np.sum(prior * place.shared[common] ** 2)) + extra.penalty, []
+    columns = np.column_stack([place.residual, place.sensitivities, extra.columns])
+    shared_columns = [*(1 + common), *range(1 + N_PARAMETERS, 1 + N_PARAMETERS + len(extra))]
     for order, gains in gains_along(place, air):
         white = gains.innovations(columns[order])
         residual, mine = white[:, 0], white[:, shared_columns]

@@ -8,6 +8,7 @@ from typing import Any
 from advisor.aircraft.aircraft import PARAMETERS, Aircraft
 from advisor.campaign.state import CampaignState, JudgedManeuver
 from advisor.decision.verdict import FlightTestVerdict, Remaining
+from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.stream.flights import FlightHeard
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.report.qualities import coefficients_of, qualities_document, qualities_of
@@ -69,7 +70,7 @@ def analysis_document(
 
 _OF_NO_CAMPAIGN: Mapping[str, Any] = {
     "maneuvers": [], "flight_test": None, "model": None, "coefficients": {}, "flying_qualities": None,
-    "estimate_from": [], "activity": [], "notices": [],
+    "instruments": [], "estimate_from": [], "activity": [], "notices": [],
 }  # fmt: skip
 """Keys and values of a document without a readable log."""
 
@@ -84,6 +85,7 @@ def _campaign(
         "model": _model(state.model),
         "coefficients": {name: picked(one, "value std") for name, one in found.items()},
         "flying_qualities": qualities_document(qualities_of(state, aircraft.reference)),
+        "instruments": [instrument_document(found) for found in state.instruments],
         "estimate_from": list(state.estimate_from),
         "activity": [
             {
@@ -152,6 +154,14 @@ def parameters(estimate: Estimate | NoEstimate | None) -> dict[str, Any] | None:
 def instruments(estimate: Estimate | None) -> dict[str, Any]:
     """Return parameters of the instruments that were estimated with the derivatives, by name."""
     return {x.name: picked(x, "value std") for x in (estimate.instruments if estimate else ())}
+
+
+def instrument_document(found: InstrumentFinding) -> dict[str, Any]:
+    """Return one finding on an instrument."""
+    return {
+        **picked(found, "code channel quantity stated contradicts used text fix"),
+        "found": picked(found, "value std"),
+    }
 
 
 def identifiability(estimate: Estimate | None) -> dict[str, Any] | None:

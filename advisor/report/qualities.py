@@ -40,6 +40,14 @@ def _air(state: CampaignState, reference: Reference) -> AirFlown:
     return air_flown(flown, reference.air_temperature_c)
 
 
+def reference_speed(state: CampaignState) -> str:
+    """Return the speed of the derivatives for a heading, with its kind; empty without a speed."""
+    if state.model is None or state.model.airspeed_m_s is None:
+        return ""
+    kind = " true" if _air(state, Reference()).speed_kind == "true" else ""
+    return f" at {state.model.airspeed_m_s:.1f} m/s{kind}"
+
+
 def qualities_document(found: FlyingQualities | None) -> dict[str, Any] | None:
     """Return the part ``flying_qualities`` of ``advisor.analyze/1``. Each number has its unit."""
     if found is None:
@@ -98,5 +106,5 @@ def _speeds(found: FlyingQualities) -> str:
     if found.airspeed_m_s is None or found.true_airspeed_m_s is None:
         return "an unknown air speed"
     if found.air.speed_kind == "true":
-        return f"{found.true_airspeed_m_s:.1f} m/s"
-    return f"{found.airspeed_m_s:.1f} m/s indicated, {found.true_airspeed_m_s:.1f} m/s true"
+        return f"{found.true_airspeed_m_s:.1f} m/s true"
+    return f"{found.airspeed_m_s:.1f} m/s as logged"

@@ -1,7 +1,7 @@
 """The analysis as text for people: angles in degrees, one sentence for each verdict, stop or continue at the
 end."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import groupby
 
 from rich.console import Console, ConsoleOptions, RenderResult
@@ -12,9 +12,10 @@ from advisor.aircraft.aircraft import PARAMETERS, Aircraft
 from advisor.campaign.state import CampaignState, JudgedManeuver
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.flight.maneuvers.events import Activity
+from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.oem.estimate import Estimate
 from advisor.report import table as report_table
-from advisor.report.qualities import coefficients_of, qualities_of, quality_lines
+from advisor.report.qualities import coefficients_of, qualities_of, quality_lines, reference_speed
 from advisor.report.result_rows import ParameterRow, channel_table, parameter_row
 from advisor.words.vehicle_time import CLOCK, clock
 
@@ -31,6 +32,11 @@ def maneuver_line(judged: JudgedManeuver) -> str:
 def activity_line(activity: Activity) -> str:
     """Return one line for a movement of the elevator that was no test input: time and description."""
     return f" -  {clock(activity.start_s):>7}  to {clock(activity.end_s):<12}  {activity.text}"
+
+
+def instrument_lines(found: Iterable[InstrumentFinding]) -> list[str]:
+    """Return each contradiction of an instrument with its remedy."""
+    return [f"{'!' if f.used else '✗'} {f.sentence}. -> {f.fix}." for f in found]
 
 
 def caution_lines(maneuvers: Sequence[JudgedManeuver]) -> list[str]:
@@ -94,6 +100,7 @@ class AnalysisText:
             Text(f"note: {note}", style="yellow")
             for note in (*self.state.elevator_notes, *self.state.reader_notes, *self.state.mark_notes)
         )
+        yield from (Text(line, style="yellow") for line in instrument_lines(self.state.instruments))
         yield Text()
         yield from self._movements()
         yield Text()
@@ -130,7 +137,7 @@ class AnalysisText:
             yield from (line for _, line in here)
 
     def _parameters(self, model: Estimate) -> Table:
-        speed = "" if model.airspeed_m_s is None else f" at {model.airspeed_m_s:.1f} m/s"
+        speed = reference_speed(self.state)
         numbers = ", ".join(str(number) for number in self.state.estimate_from)
         rows = (parameter_row(name, model, self.aircraft.model) for name in PARAMETERS)
         head = ("parameter", "value", "± 95 %", "± 95 % if white", "today's model", "unit")

@@ -4,6 +4,7 @@
     python -m benchmarks.studies stops --campaigns 150     # does the rule information stop too early
     python -m benchmarks.studies advice --campaigns 100    # what following the advice saves
     python -m benchmarks.studies change --campaigns 400    # how soon a change of the aircraft is told
+    python -m benchmarks.studies coverage --campaigns 60   # do intervals hold with faulty instruments
 
 Equal seeds give equal studies, whatever ``--workers`` and ``--scheduler`` are.
 """
@@ -23,6 +24,7 @@ STUDIES: Mapping[str, Callable[[int, int], Study[Any, Any]]] = {
     "stops": reports.early_stops,
     "advice": reports.advice,
     "change": reports.change,
+    "coverage": reports.coverage,
 }
 
 

@@ -80,7 +80,6 @@ def test_the_newest_manoeuvres_alone_do_not_change_a_lag_that_is_learnt() -> Non
     assert may_learn(Aircraft(), all_of_them=False)
     assert may_learn(LEARNT, all_of_them=True)
     assert not may_learn(LEARNT, all_of_them=False)
-    assert not may_learn(KNOWN, all_of_them=True)
 
 
 def test_reading_the_state_again_seeks_no_other_joint_estimate() -> None:

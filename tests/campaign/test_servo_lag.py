@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft, Elevator
-from advisor.campaign.servo_lag import learnt, reserved
+from advisor.campaign.servo_lag import learnt, reserved, told
 from advisor.decision.verdict import ManeuverVerdict
 from advisor.oem.estimate import InstrumentEstimate
 from tests.decision.campaigns import estimate
@@ -29,9 +29,31 @@ def test_a_lag_that_is_unknown_or_unsure_is_not_learnt(model):
     assert learnt(nothing, model) is nothing
 
 
-def test_a_lag_that_the_crew_gives_stands():
-    given = Aircraft(elevator=Elevator(lag_s=0.05))
-    assert learnt(given, with_lag(0.14, 0.01)) is given
+def against(stated_s, told_s, std_s, *, contradicts):
+    value_s = told_s if contradicts else stated_s
+    lag = InstrumentEstimate("servo_lag_s", value_s, std_s, stated_s, told_s, std_s, contradicts)
+    return replace(estimate(), instruments=(lag,), servo_lag_s=value_s)
+
+
+GIVEN = Aircraft(elevator=Elevator(lag_s=0.14))
+
+
+def test_a_lag_that_the_crew_gives_stands_while_the_data_do_not_exclude_it():
+    assert learnt(GIVEN, against(0.14, 0.15, 0.01, contradicts=False)) is GIVEN
+    assert learnt(GIVEN, estimate()) is GIVEN
+
+
+def test_a_lag_that_the_data_tell_takes_the_place_of_an_excluded_one():
+    now = learnt(GIVEN, against(0.14, 0.22, 0.004, contradicts=True))
+    assert now.elevator.lag_found_s == 0.22
+    assert "0.220 s, against 0.140 s in elevator.lag_s" in told(now)
+
+
+def test_the_crew_s_lag_returns_when_later_manoeuvres_agree_with_it():
+    misled = learnt(GIVEN, against(0.14, 0.22, 0.004, contradicts=True))
+    back = learnt(misled, against(0.14, 0.15, 0.01, contradicts=False))
+    assert back == GIVEN
+    assert "agree with elevator.lag_s" in told(back)
 
 
 def test_a_lag_within_its_own_error_of_the_one_used_changes_nothing_but_at_the_end():

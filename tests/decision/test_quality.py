@@ -7,7 +7,7 @@ from io import BytesIO
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft, Elevator, Limits
+from advisor.aircraft.aircraft import PARAMETERS, Aircraft, Elevator, Limits
 from advisor.decision.quality import judge_quality, natural_period
 from advisor.flight.maneuvers.events import ManeuverFlown
 from advisor.flight.signals.trust import Distrust
@@ -63,7 +63,7 @@ BAD_FLIGHTS = {
         Aircraft(elevator=AIRCRAFT.elevator, limits=Limits(alpha_deg=4.0)),
     ),
     "amplitude": (Scenario(noise=Noise(percent=15.0), maneuvers=(Maneuver("3211"),)), AIRCRAFT),
-    "fit": (Scenario(effects={"transport_delay": {"delay_s": 0.3}}, maneuvers=(Maneuver("3211"),)), AIRCRAFT),
+    "fit": (Scenario(effects={"pitch_rate_skew": {"skew_s": 0.3}}, maneuvers=(Maneuver("3211"),)), AIRCRAFT),
 }
 
 
@@ -85,12 +85,50 @@ def test_what_spoils_a_whole_flight_is_named_on_its_manoeuvres(code):
         assert reasons[0].code == code
 
 
-def test_a_free_response_cut_short_is_named():
-    maneuver, _, _ = bad_flight()[0]
-    end_s = maneuver.span.last_step_s + 0.3
+def cut_short(maneuver, after_s, closed_by="end of log"):
+    """The manoeuvre with its record ended ``after_s`` after the last step, at trim."""
+    end_s = maneuver.span.last_step_s + after_s
     channels = {name: channel.cut(0.0, end_s) for name, channel in maneuver.channels.items()}
-    cut = replace(maneuver, span=replace(maneuver.span, end_s=end_s), channels=channels)
-    (reason,) = judge_quality(cut, estimate(cut, AIRCRAFT), AIRCRAFT)
+    steps = (*maneuver.span.steps[:-1], (maneuver.span.last_step_s, 0.0))
+    return replace(
+        maneuver,
+        span=replace(maneuver.span, end_s=end_s, closed_by=closed_by, steps=steps),
+        channels=channels,
+    )
+
+
+def uncertain(estimated):
+    """The estimate with a prediction that misses a third of the pitch rate."""
+    return replace(estimated, prediction={"q": 0.33})
+
+
+def test_a_record_that_ends_with_the_last_step_is_good_where_it_tells_enough():
+    maneuver, whole, _ = bad_flight()[0]
+    cut = cut_short(maneuver, 0.1)
+    estimated = estimate(cut, AIRCRAFT)
+    assert judge_quality(cut, estimated, AIRCRAFT) == ()
+    for name in ("M_alpha", "M_q", "M_delta_e", "Z_alpha"):
+        wide = estimated.std[PARAMETERS.index(name)]
+        assert abs(estimated.value(name) - whole.value(name)) < 3.0 * wide
+
+
+def test_a_record_that_breaks_off_in_its_last_step_is_good_where_it_tells_enough():
+    maneuver, _, _ = bad_flight()[0]
+    end_s = maneuver.span.last_step_s - 0.05
+    channels = {name: channel.cut(0.0, end_s) for name, channel in maneuver.channels.items()}
+    steps = maneuver.span.steps[:-1]
+    span = replace(maneuver.span, last_step_s=steps[-1][0], end_s=end_s, closed_by="end of log", steps=steps)
+    cut = replace(maneuver, span=span, channels=channels)
+    estimated = estimate(cut, AIRCRAFT)
+    assert judge_quality(cut, estimated, AIRCRAFT) == ()
+    assert judge_quality(cut, uncertain(estimated), AIRCRAFT)[0].code == "aborted"
+
+
+def test_an_estimate_whose_damping_may_be_zero_needs_a_free_response():
+    maneuver, estimated, _ = bad_flight()[0]
+    covariance = estimated.covariance.copy()
+    covariance[PARAMETERS.index("M_q"), PARAMETERS.index("M_q")] = estimated.value("M_q") ** 2
+    (reason,) = judge_quality(cut_short(maneuver, 0.1), replace(estimated, covariance=covariance), AIRCRAFT)
     assert reason.code == "free_response"
 
 
@@ -102,13 +140,9 @@ def test_a_free_response_cut_short_is_named():
     ],
 )  # fmt: skip
 def test_a_free_response_cut_short_is_laid_to_what_ended_it(closed_by, mend):
-    maneuver, _, _ = bad_flight()[0]
-    end_s = maneuver.span.last_step_s + 0.3
-    channels = {name: channel.cut(0.0, end_s) for name, channel in maneuver.channels.items()}
-    steps = (*maneuver.span.steps[:-1], (maneuver.span.last_step_s, 0.0))
-    span = replace(maneuver.span, end_s=end_s, closed_by=closed_by, steps=steps)
-    cut = replace(maneuver, span=span, channels=channels)
-    (reason,) = judge_quality(cut, estimate(cut, AIRCRAFT), AIRCRAFT)
+    maneuver, estimated, _ = bad_flight()[0]
+    reason, *_ = judge_quality(cut_short(maneuver, 0.3, closed_by), uncertain(estimated), AIRCRAFT)
+    assert reason.code == "free_response"
     assert mend in reason.text
 
 
@@ -243,3 +277,11 @@ def test_no_larger_input_is_asked_for_while_a_channel_stands_still():
     assert [reason.code for reason in mended] == [reason.code for reason in told]
     assert not any("times the stick" in reason.text for reason in mended)
     assert any("check the accelerometer" in reason.text for reason in mended)
+
+
+def test_the_limits_of_the_flight_come_before_the_hands_of_the_pilot():
+    maneuver, estimated, _ = bad_flight()[1 + list(BAD_MANOEUVRES).index("airspeed")]
+    codes = [
+        reason.code for reason in judge_quality(cut_short(maneuver, 0.1), uncertain(estimated), AIRCRAFT)
+    ]
+    assert codes.index("airspeed") < codes.index("free_response")

@@ -1,5 +1,6 @@
-"""Messages of the motion that repeat old values under new stamps are named."""
+"""Messages that repeat old values under new stamps are named, and data are blamed before the file."""
 
+from advisor.doctor.examination import Limit, in_order
 from advisor.doctor.instruments import repeat_limits
 from advisor.doctor.survey import Arrival
 
@@ -20,3 +21,15 @@ def test_a_sound_stream_is_no_defect() -> None:
 
 def test_servo_outputs_may_rest() -> None:
     assert repeat_limits([arrival("SERVO_OUTPUT_RAW", 50.0, 6.6)]) == []
+
+
+def test_defects_of_the_data_are_said_before_numbers_of_the_file() -> None:
+    limits = [
+        Limit("calibration", "not calibrated", "calibrate"),
+        Limit("repeats", "repeats", "send once"),
+        Limit("servo_limits", "assumed", "record them"),
+        Limit("no_elevator", "no elevator", "give it", stops=True),
+        Limit("clock_drift", "drifts", "compare"),
+    ]
+    said = [limit.code for limit in in_order(limits)]
+    assert said == ["no_elevator", "repeats", "clock_drift", "calibration", "servo_limits"]

@@ -4,9 +4,11 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft, Elevator
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.estimate import Estimate, NoEstimate
-from advisor.oem.estimator import estimate
+from advisor.oem.estimator import estimate, report
 from advisor.oem.following import Follower
 from advisor.oem.identifiability import natural_size
+from advisor.oem.prepare import prepare
+from advisor.oem.solution import solve
 from advisor.oem.warm import warm
 from advisor.report.document import identifiability
 from tests.oem.builders import JET, UAV, elevator_3211, flown, maneuver, trim_alpha, trim_elevator
@@ -24,7 +26,8 @@ def test_the_refreshed_estimate_is_the_complete_one():
     follower = Follower(AIRCRAFT)
     for until in np.arange(9.0, 14.0, 0.25):
         followed = follower.refresh(so_far(flight, until))
-    whole = estimate(so_far(flight, until), AIRCRAFT)
+    prepared = prepare([so_far(flight, until)], AIRCRAFT)
+    whole = report(solve(prepared.problem), prepared, AIRCRAFT)
     assert isinstance(followed, Estimate)
     np.testing.assert_allclose(followed.theta, whole.theta, atol=0.01 * whole.std.min(), rtol=1e-3)
     np.testing.assert_allclose(followed.std_cr, whole.std_cr, rtol=1e-3)
@@ -64,7 +67,8 @@ def looped(theta, pilot, seed=0):
     """Simulate, by Runge-Kutta, an elevator that feeds back α and q without delay, and a pilot's input."""
     h = 0.001
     t = np.arange(0.0, 10.0, h)
-    stick = pilot * elevator_3211(t, trim=0.0, amplitude=0.03, unit_s=0.5)
+    # The stick moves midway between two samples of the command.
+    stick = pilot * elevator_3211(t, trim=0.0, amplitude=0.03, unit_s=0.5, begin_s=1.01)
     trim = np.array([trim_alpha(theta), 0.0])
     a = np.array([[theta[1], 1.0 + theta[2]], [theta[5], theta[6]]])
     closed = a + np.outer(theta[[3, 7]], LOOP)

@@ -10,6 +10,8 @@ from advisor.flight.signals.record import Channel
 from advisor.oem.airspeed import airspeed
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import estimate, estimate_jointly
+from advisor.oem.instruments import SERVO_LAG
+from advisor.oem.prepare import prepare
 from advisor.oem.problem import Signal
 from advisor.oem.surface import Servo
 from tests.oem.builders import UAV, elevator_3211, flown, maneuver, simulate, trim_alpha, trim_elevator
@@ -112,9 +114,31 @@ def test_a_vane_ahead_of_the_centre_of_gravity_is_moved_back_when_its_arm_is_kno
 def test_a_known_servo_is_applied_to_the_command_before_the_fit():
     flight = equipped(lag_s=0.1, delay_s=0.04)
     known = Aircraft(airspeed_m_s=SPEED, elevator=Elevator(lag_s=0.1, delay_s=0.04))
-    ignored = aircraft()
-    assert estimate(flight, known).value("M_delta_e") == pytest.approx(UAV[7], rel=0.03)
-    assert abs(estimate(flight, ignored).value("M_delta_e")) < 0.7 * abs(UAV[7])
+    found = estimate(flight, known)
+    assert found.value("M_delta_e") == pytest.approx(UAV[7], rel=0.03)
+    assert not found.instrument("servo_lag_s").contradicts
+
+
+@pytest.mark.parametrize(("stated_s", "true_s"), [(0.0, 0.1), (0.04, 0.1), (0.14, 0.22), (0.2, 0.1)])
+def test_a_stated_lag_that_the_data_exclude_is_named_and_not_used(stated_s, true_s):
+    described = Aircraft(airspeed_m_s=SPEED, elevator=Elevator(lag_s=stated_s))
+    found = estimate(equipped(lag_s=true_s, noise=0.01), described)
+    lag = found.instrument("servo_lag_s")
+    assert lag.contradicts
+    assert lag.stated == stated_s
+    assert abs(lag.value - true_s) < 3.0 * lag.std + 0.005
+    assert found.value("M_delta_e") == pytest.approx(UAV[7], rel=0.05)
+
+
+@pytest.mark.parametrize("lag_s", [0.04, 0.1, 0.2])
+def test_a_stated_lag_that_the_data_confirm_stays_and_its_width_is_in_the_interval(lag_s):
+    flight = equipped(lag_s=lag_s, noise=0.02)
+    found = estimate(flight, Aircraft(airspeed_m_s=SPEED, elevator=Elevator(lag_s=lag_s)))
+    lag = found.instrument("servo_lag_s")
+    assert not lag.contradicts
+    assert abs(lag.told - lag_s) < 3.0 * lag.told_std
+    assert lag.std <= 0.1 * lag_s
+    assert abs(found.value("M_delta_e") - UAV[7]) < 3.0 * found.std[7]
 
 
 def test_an_unknown_servo_lag_is_found_from_all_manoeuvres_together():
@@ -265,3 +289,21 @@ def test_an_air_speed_that_disagrees_with_the_motion_is_believed():
     found = airspeed(channels | {"airspeed": gusty})
     assert not found.smooth
     np.testing.assert_array_equal(found.signal.y, gusty.y)
+
+
+def test_a_value_whose_error_reaches_the_end_of_the_search_is_no_estimate():
+    problem = prepare([equipped()], Aircraft(airspeed_m_s=SPEED)).problem
+    longest = replace(problem, servo=Servo(0.39))
+    assert not SERVO_LAG.at_end(longest, std=0.003)
+    assert SERVO_LAG.at_end(longest, std=0.03)
+    assert SERVO_LAG.at_end(replace(problem, servo=Servo(0.4)), std=0.0)
+
+
+def test_a_filtered_pitch_rate_and_specific_force_do_not_pass_for_other_derivatives():
+    flight, late_s = equipped(noise=0.01), 0.011
+    filtered = {
+        name: replace(c, t=c.t + late_s, delay_s=late_s) if name in ("q", "a_z") else c
+        for name, c in flight.channels.items()
+    }
+    there = estimate(replace(flight, channels=filtered), aircraft())
+    np.testing.assert_allclose(there.theta, estimate(flight, aircraft()).theta, rtol=1e-6, atol=1e-6)

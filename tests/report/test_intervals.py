@@ -4,11 +4,12 @@ from math import degrees
 from types import SimpleNamespace
 
 import pytest
-from advisor.report.digits import with_half
-from advisor.report.quantities import CHANNELS
 
 from advisor.oem.coefficients import Coefficient
 from advisor.report.qualities import quality_lines
+from advisor.report.result_rows import parameter_row
+from advisor.words.digits import with_half
+from tests.decision.campaigns import estimate
 
 HALF = 1.96
 
@@ -27,10 +28,10 @@ def test_flying_qualities_and_coefficients_are_shown_with_half_their_interval() 
     assert "C_L_alpha 5 ± 2" in text
 
 
-def test_a_channel_is_shown_in_degrees_with_half_its_interval() -> None:
-    value, half = (float(part) for part in CHANNELS["alpha"].with_interval(0.1, 0.01).split(" ± "))
-    assert value == pytest.approx(degrees(0.1), abs=0.05)
-    assert half == pytest.approx(HALF * degrees(0.01), abs=0.05)
+def test_a_trim_is_shown_in_degrees_with_half_its_interval() -> None:
+    value, half = (float(part) for part in parameter_row("M_0", estimate(), {}).cell.split(" ± "))
+    assert value == pytest.approx(degrees(0.475), abs=0.05)
+    assert half == pytest.approx(HALF * degrees(0.00475), abs=0.005)
 
 
 @pytest.mark.parametrize(

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 
+from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.session.source import LinkHealth
 from advisor.session.view import View
 from advisor.tui.advice import advise
@@ -52,6 +53,31 @@ def test_data_that_cannot_serve_are_told_at_any_time_with_their_mend(flown: int)
 
 def test_after_the_stop_no_data_are_wanted():
     assert advise(view(replace(flights.state(7), no_data=(SLOW,)))).word == "STOP TESTING"
+
+
+REVERSED = InstrumentFinding(
+    "alpha", "sign", "nose up", "nose down", 0.02, True, "alpha has the wrong sense", "turn the vane"
+)
+IN_COUNTS = InstrumentFinding(
+    "a_z", "unit", "mg", "2048 counts a g", 0.02, True, "a_z is in counts", "send a_z in mg", used=True
+)
+
+
+def test_a_contradicted_instrument_asks_for_its_mend_and_not_for_another_manoeuvre():
+    here = view(replace(flights.state(3, bad=(3,)), instruments=(IN_COUNTS, REVERSED)))
+    assert [problem.code for problem in here.obstacles] == ["alpha_sign"]
+    advice = advise(here)
+    assert (advice.word, advice.sentence) == ("NO DATA", "Alpha has the wrong sense. Mend: turn the vane.")
+
+
+async def test_both_screens_say_the_same_of_the_instruments():
+    async with stage(replace(flights.state(3), instruments=(IN_COUNTS, REVERSED))) as here:
+        await here.until(lambda: here.app.screen.query_one(BigWord).word == "NO DATA")
+        assert "Alpha has the wrong sense." in here.page()
+        assert "A_z is in counts" in here.page()
+        await here.press("e", "7")
+        await here.until(lambda: "! Alpha has the wrong sense." in here.words("Channels Lines"))
+        assert "! A_z is in counts." in here.words("Channels Lines")
 
 
 async def test_no_data_stands_on_the_screen_after_a_manoeuvre_and_goes_when_they_serve_again():

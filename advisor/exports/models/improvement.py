@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from advisor.aircraft.aircraft import Aircraft, Elevator, Reference
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.exports.models.servo import OF_THE_SERVO, ExportedServo, servo_of
-from advisor.flight.instruments.atmosphere import SEA_LEVEL_DENSITY_KG_M3
+from advisor.flight.signals.standard_atmosphere import SEA_LEVEL_DENSITY_KG_M3
 from advisor.gap.candidates.known import less_of_the_servo, together
 from advisor.gap.result import Diagnosis, Value
 from advisor.oem.coefficients import Coefficient, scales

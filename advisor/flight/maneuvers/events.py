@@ -79,7 +79,8 @@ class Activity:
     """Begin of the movement, s since boot."""
     end_s: float
     reason: str
-    """``autopilot``, ``ground``, ``hover``, ``small``, ``no_information`` or ``unsettled``."""
+    """``autopilot``, ``elsewhere``, ``feedback``, ``ground``, ``hover``, ``no_information``, ``small`` or
+    ``unsettled``."""
     text: str
     """Sentence for people."""
     stay_s: float

@@ -45,6 +45,8 @@ class Excitation:
     effect."""
     external_error: float
     """Relative standard error for the external input alone, as in a closed loop."""
+    effect: float
+    """Elevator's effect on the pitch rate, b0 + b1 + b2. Its sign is the control's; 0 where not estimated."""
 
 
 def excitation(maneuver: Maneuver) -> Excitation | None:
@@ -71,10 +73,11 @@ def excitation(maneuver: Maneuver) -> Excitation | None:
     pitch_rate = 0.5 * float(np.ptp(q.y))
     edges = np.arange(start, end, max(coarse, wanted))
     if len(edges) <= _FEWEST:
-        return Excitation(pitch_rate, inf, inf)
+        return Excitation(pitch_rate, inf, inf, 0.0)
     rate, moved = _means(edges, q.t, q.y), _means(edges, elevator.t, elevator.y - np.mean(elevator.y))
     external = _means(edges, elevator.t, _external(maneuver))
-    return Excitation(pitch_rate, _relative_error(rate, moved), _relative_error(rate, external))
+    error, effect = _effect(rate, moved)
+    return Excitation(pitch_rate, error, _effect(rate, external)[0], effect)
 
 
 def _external(maneuver: Maneuver) -> FloatArray:
@@ -99,18 +102,26 @@ def _means(edges: FloatArray, t: FloatArray, y: FloatArray) -> FloatArray:
     return means
 
 
-def _relative_error(q: FloatArray, elevator: FloatArray) -> float:
-    """Return the relative standard error of the elevator's effect, from F of the elevator's three terms."""
+def _effect(q: FloatArray, elevator: FloatArray) -> tuple[float, float]:
+    """Return the relative standard error of the elevator's effect, from F of the elevator's three terms, and
+    the sum of their coefficients."""
     n = len(q) - 2
     own = np.column_stack([q[1:-1], q[:-2], np.ones(n), np.linspace(-1.0, 1.0, n)])
     full = np.column_stack([own, elevator[2:], elevator[1:-1], elevator[:-2]])
-    without, left = (float(rest @ rest) for rest in (_left(own, q[2:]), _left(full, q[2:])))
+    coefficients = _fitted(full, q[2:])
+    without, left = (float(rest @ rest) for rest in (_left(own, q[2:]), q[2:] - full @ coefficients))
     explained = max(0.0, without - left)
-    return sqrt(left / (n - full.shape[1]) / explained) if explained > 0.0 else inf
+    error = sqrt(left / (n - full.shape[1]) / explained) if explained > 0.0 else inf
+    return error, float(np.sum(coefficients[-_INPUTS:]))
 
 
 def _left(terms: FloatArray, y: FloatArray) -> FloatArray:
     """Return the residual of a signal after least squares on these terms."""
-    scaled = terms / np.maximum(np.abs(terms).max(axis=0), 1e-12)
-    left: FloatArray = y - scaled @ np.linalg.lstsq(scaled, y, rcond=None)[0]
-    return left
+    return y - terms @ _fitted(terms, y)
+
+
+def _fitted(terms: FloatArray, y: FloatArray) -> FloatArray:
+    """Return the least-squares coefficients of these terms."""
+    size = np.maximum(np.abs(terms).max(axis=0), 1e-12)
+    coefficients: FloatArray = np.linalg.lstsq(terms / size, y, rcond=None)[0] / size
+    return coefficients

@@ -8,7 +8,7 @@ from advisor.flight.maneuvers.movement import Movement
 from advisor.flight.maneuvers.rest import is_still
 from advisor.flight.signals.samples import Samples
 
-_FREE_S = (3.0, 8.0)
+FREE_S = (3.0, 8.0)
 """Least and greatest length of the free response, s. Between them the free response is as long as the
 input."""
 _PARTING_S = (0.5, 0.6)
@@ -59,7 +59,7 @@ class FreeResponse:
         self._samples = samples
         self._away_s: list[float] = []
         duration_s = movement.last_step_s - movement.start_s
-        self._end_s = movement.last_step_s + min(max(duration_s, _FREE_S[0]), _FREE_S[1])
+        self._end_s = movement.last_step_s + min(max(duration_s, FREE_S[0]), FREE_S[1])
 
     def take(self, t: float, u: float) -> Ended | None:
         """Take the stamp (s) and elevator (rad) of the newest sample; return None while the response goes

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Literal
 
+from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.record import Channel
 from advisor.flight.signals.trust import Distrust
 
@@ -27,9 +28,9 @@ class Span:
     steps: tuple[tuple[float, float], ...]
     """Steps of the input: (onset in s, level in rad from trim) for each."""
     closed_by: str
-    """Reason of the end: ``quiet``, ``mode change``, ``next input``, ``gap``, ``end of log`` or ``no rest``.
-    A marked stretch has ``marked by hand``, ``marked by a switch`` or ``marked by a text of the vehicle``.
-    A movement that is being flown has ``still flying``."""
+    """Reason of the end: ``quiet``, ``mode change``, ``next input``, ``gap``, ``end of log``, ``air speed``,
+    ``no rest``. A marked stretch has ``marked by hand``, ``marked by a switch`` or ``marked by a text of
+    the vehicle``. A movement that is being flown has ``still flying``."""
 
     @property
     def input_is_over(self) -> bool:
@@ -51,8 +52,13 @@ class Maneuver:
     """Flight mode of the manoeuvre, by the autopilot's name or number."""
     distrusts: tuple[Distrust, ...] = ()
     """Channels that cannot be right. A frozen specific force is left out of ``channels``."""
+    findings: tuple[InstrumentFinding, ...] = ()
+    """Contradictions of the instruments, by all records of this power-on so far. ``channels`` are free of
+    those that are used."""
     flight: int = 0
     """Number of the campaign's log or link, 0 for the first."""
+    data_notes: tuple[str, ...] = ()
+    """Sentences on samples that no aircraft can have flown, and on an air speed that no sensor measured."""
 
     @property
     def power_on(self) -> tuple[int, int]:

@@ -8,6 +8,8 @@ at hand (`purpose`). The work per sample is bounded. A result depends on the sam
 delivery.
 """
 
+from collections import deque
+
 import numpy as np
 
 from advisor.flight.maneuvers.free_response import FreeResponse
@@ -42,6 +44,12 @@ _FAR = 0.3
 of a 3-2-1-1 with balanced areas has half of the amplitude."""
 _LEAST_REST_S = 0.3
 """Least length of a rest before the movement, s, where an earlier movement exists."""
+_EDGE_S = 0.2
+"""Time over which the speed of the elevator is measured, s: half of the slowest hand-flown edge."""
+_ABRUPT = 0.3
+"""Largest motion over ``_EDGE_S`` in a slow movement, as a share of an abrupt step that follows. The first
+edge of an input with half a first step is a third of the second edge. Hands that fly in gusts of 0.7 m/s have
+up to 0.3 of the first edge of a test."""
 _KEEP_S = _REACH_S + 30.0
 """Time for which samples are kept, s: a movement and its free response."""
 GAP_S = 1.0
@@ -76,6 +84,8 @@ class Segmenter:
         self._held_since_s: float | None = None
         self._held_rad = 0.0
         self._longest_hold_s = 0.0
+        self._edges: deque[tuple[float, float]] = deque()
+        self._fastest = 0.0
 
     @property
     def onset_s(self) -> float | None:
@@ -161,6 +171,7 @@ class Segmenter:
         deviation = min(abs(u - self._base), abs(float(samples.y[i - 1]) - self._base))
         if self._moved_from_s is not None:
             self._amplitude = max(self._amplitude, deviation)
+            self._watch_edges(i, t, self._moved_from_s)
         elif deviation > self._leaving:
             self._set_out(float(samples.t[max(i - 2, 0)]), deviation)
         if t >= self._next_check_s:
@@ -170,6 +181,29 @@ class Segmenter:
                     self._watch_rest(i, t)
             else:
                 self._look(i, t, self._moved_from_s, self._base)
+
+    def _watch_edges(self, i: int, t: float, from_s: float) -> None:
+        """Follow the speed of a movement, and separate an abrupt step from a slow movement before it."""
+        samples = self._samples
+        before = max(0, min(samples.index(t - _EDGE_S), i - 3))
+        level = float(samples.y[before])
+        edge = min(abs(float(samples.y[k]) - level) for k in (i - 1, i))
+        onset_s = float(samples.t[before])
+        while self._edges and self._edges[0][0] <= onset_s:
+            self._fastest = max(self._fastest, self._edges.popleft()[1])
+        self._edges.append((t, edge))
+        steady_s = onset_s - LEAD_IN_S
+        # Neither slow samples nor a gap show an abrupt step.
+        if t - onset_s > 2.0 * _EDGE_S or edge < 2.0 * SMALLEST_RAD:
+            return
+        if self._fastest > _ABRUPT * edge or steady_s < from_s:
+            return
+        steady = samples.since(steady_s, before + 1)
+        if not is_still(steady, edge):
+            return
+        self._cut_off("no rest", onset_s)
+        self._base = median(steady)
+        self._set_out(onset_s, edge)
 
     def _watch_rest(self, i: int, t: float) -> None:
         """Follow the slow motion of the rest's level and the elevator's movements at rest."""

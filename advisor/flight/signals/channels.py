@@ -1,7 +1,7 @@
 """From messages to physical quantities: units, signs and sources, each sample at its own stamp."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -11,8 +11,8 @@ from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.signals.clocks import place
 from advisor.flight.signals.messages import Columns, FloatArray
 
-_ARMED = 128
-"""MAV_MODE_FLAG_SAFETY_ARMED, MAVLink common.xml."""
+ARMED = 128
+"""MAV_MODE_FLAG_SAFETYARMED, MAVLink common.xml."""
 _MILLI_G = GRAVITY_M_S2 / 1000.0
 
 # The counters that stamp messages (field, length of a tick in s); MAVLink common.xml, ardupilotmega.xml.
@@ -48,6 +48,7 @@ READINGS = (
     Reading("theta", "ATTITUDE", "pitch", _scaled(1.0)),
     Reading("bank", "ATTITUDE", "roll", _scaled(1.0)),
     Reading("alpha", "AOA_SSA", "AOA", np.radians, "derived"),
+    Reading("airspeed", "VFR_HUD", "true_airspeed", _scaled(1.0)),
     Reading("airspeed", "VFR_HUD", "airspeed", _scaled(1.0)),
     Reading("climb_rate", "VFR_HUD", "climb", _scaled(1.0)),
     Reading("throttle", "VFR_HUD", "throttle", _scaled(0.01)),
@@ -67,11 +68,17 @@ READINGS = (
     Reading("height", "GLOBAL_POSITION_INT", "relative_alt", _scaled(1e-3)),
     Reading("altitude", "GLOBAL_POSITION_INT", "alt", _scaled(1e-3)),
     Reading("static_pressure", "SCALED_PRESSURE", "press_abs", _scaled(100.0)),
+    Reading("static_pressure", "HIGHRES_IMU", "abs_pressure", _scaled(100.0)),
     Reading("groundspeed", "VFR_HUD", "groundspeed", _scaled(1.0)),
     Reading("landed_state", "EXTENDED_SYS_STATE", "landed_state", _scaled(1.0)),
-    Reading("armed", "HEARTBEAT", "base_mode", lambda raw: (np.asarray(raw) & _ARMED > 0).astype(np.float64)),
+    Reading("armed", "HEARTBEAT", "base_mode", lambda raw: (np.asarray(raw) & ARMED > 0).astype(np.float64)),
 )
 """Sources of each channel, the best first where several messages carry the channel."""
+
+COMPANIONS = ("NAMED_VALUE_FLOAT", "AOA_SSA")
+"""Messages that another component of the vehicle may send, such as an onboard computer with a vane."""
+COMPANION_ALPHA = "AOA_SSA.AOA of an onboard computer"
+"""Source of an angle of attack from another component than the autopilot."""
 
 _STAMPS = {
     "ATTITUDE": _BOOT_MS,
@@ -94,6 +101,9 @@ _STAMPS = {
 Autopilots' own logs stamp VFR_HUD."""
 
 GIVEN_AIRSPEED = "airspeed_m_s of the aircraft file"
+"""Source of an air speed of the aircraft file."""
+TRUE_AIRSPEED = "VFR_HUD.true_airspeed"
+"""Source of a true air speed that the autopilot has logged next to the calibrated one. No link carries it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,6 +141,12 @@ def quantities(columns: Columns, t: FloatArray) -> Iterator[Decoded]:
         if reading.message == columns.name and reading.field in columns.fields:
             y = reading.value(columns.fields[reading.field])
             yield _decoded(reading.channel, reading.source, reading.provenance, t, y, columns)
+
+
+def of_companion(decoded: Decoded) -> Decoded:
+    """Return a quantity under the name of another component than the autopilot. Nobody knows how the
+    component finds it."""
+    return replace(decoded, source=f"{decoded.source} of an onboard computer", provenance="unknown")
 
 
 def named_value(columns: Columns, t: FloatArray, name: str) -> Decoded:

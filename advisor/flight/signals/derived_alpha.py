@@ -30,12 +30,20 @@ class DerivedAlpha:
     ----------
     track
         Gives the track of a channel's best source; None for a channel without samples.
+    speed
+        Gives the true air speed from a time to a time, of messages up to an order; None without samples.
     airspeed_m_s
         Air speed where none is measured, m/s. None: unknown.
     """
 
-    def __init__(self, track: Callable[[str], Track | None], airspeed_m_s: float | None) -> None:
+    def __init__(
+        self,
+        track: Callable[[str], Track | None],
+        speed: Callable[[float, float, int | None], Channel | None],
+        airspeed_m_s: float | None,
+    ) -> None:
         self._track = track
+        self._speed = speed
         self._airspeed_m_s = airspeed_m_s
 
     @property
@@ -68,9 +76,11 @@ class DerivedAlpha:
         at = climb.cut(start_s, end_s, up_to_order)
         around = {
             name: track.cut(start_s - _AROUND_S, end_s + _AROUND_S, up_to_order)
-            for name in ("theta", "bank", "airspeed")
+            for name in ("theta", "bank")
             if (track := self._track(name)) is not None
         }
+        speed = self._speed(start_s - _AROUND_S, end_s + _AROUND_S, up_to_order)
+        around |= {} if speed is None else {"airspeed": speed}
         t, alpha = _angles(at, around, self._airspeed_m_s)
         return Channel("alpha", t, alpha, DERIVED_ALPHA, "derived")
 

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 from math import nan
 from typing import Literal
 
+from advisor.words.problems import Problem
+
 Quantity = Literal["sign", "scale", "unit", "delay_s", "lag_s", "arm_m", "bias", "rate"]
 
 
@@ -39,6 +41,16 @@ class InstrumentFinding:
     def code(self) -> str:
         """Name of the finding, equal on every face: channel and quantity."""
         return f"{self.channel}_{self.quantity}"
+
+    @property
+    def sentence(self) -> str:
+        """Finding with a capital letter, without a full stop."""
+        return f"{self.text[:1].upper()}{self.text[1:]}"
+
+    @property
+    def problem(self) -> Problem:
+        """Finding as an obstacle, with its remedy."""
+        return Problem(self.code, f"{self.sentence}.", f"Mend: {self.fix}.")
 
     @property
     def refuses(self) -> bool:

@@ -1,6 +1,6 @@
 """Channels: physical quantities with units, each at its own time stamps on the vehicle's clock."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -44,6 +44,8 @@ class Channel:
     """Message and field of the channel, e.g. ``AOA_SSA.AOA``."""
     provenance: str = "unknown"
     """``vane``, ``derived``, ``simulated``, ``measured``, ``commanded`` or ``unknown``."""
+    delay_s: float = 0.0
+    """Known delay of the values relative to their stamps, s, such as that of an autopilot's filter."""
 
     def __len__(self) -> int:
         return len(self.t)
@@ -51,7 +53,7 @@ class Channel:
     def cut(self, start_s: float, end_s: float) -> "Channel":
         """Return the stretch with ``start_s <= t <= end_s``."""
         i, j = np.searchsorted(self.t, [start_s, np.nextafter(end_s, np.inf)])
-        return Channel(self.name, self.t[i:j], self.y[i:j], self.source, self.provenance)
+        return replace(self, t=self.t[i:j], y=self.y[i:j])
 
     @property
     def rate_hz(self) -> float:

@@ -1,13 +1,20 @@
 """All tracks of one vehicle, and the choice of each channel's source."""
 
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
-from advisor.flight.signals.channels import GIVEN_AIRSPEED, READINGS, Decoded
+from advisor.flight.signals.channels import COMPANION_ALPHA, GIVEN_AIRSPEED, READINGS, Decoded
 from advisor.flight.signals.derived_alpha import DERIVED_ALPHA, DerivedAlpha
-from advisor.flight.signals.record import UNITS, Channel
+from advisor.flight.signals.record import AIR_UNITS, UNITS, Channel
 from advisor.flight.signals.track import ChannelStatus, Track
+from advisor.flight.signals.true_airspeed import AS_REPORTED, true_airspeed
+
+_AIR_S = 10.0
+"""Margin around a stretch within which pressure and height tell the density of the air, s. They may come once
+in a few seconds."""
 
 
 class Tracks:
@@ -20,20 +27,32 @@ class Tracks:
         With ``none`` the channel is kept as with ``auto``, but no estimate uses it.
     airspeed_m_s
         Air speed of the aircraft file, for a log without air speed.
+    temperature_c
+        Temperature of the air by the aircraft file, deg C; None: the standard atmosphere's.
+    logs_true_speed
+        Returns whether the vehicle reports its true air speed in place of the calibrated one.
     """
 
-    def __init__(self, alpha_source: str, airspeed_m_s: float | None = None) -> None:
+    def __init__(
+        self,
+        alpha_source: str,
+        airspeed_m_s: float | None = None,
+        temperature_c: float | None = None,
+        logs_true_speed: Callable[[], bool] = lambda: False,
+    ) -> None:
         self._tracks: dict[tuple[str, str], Track] = {}
-        self._derived = DerivedAlpha(self._best, airspeed_m_s)
+        self._derived = DerivedAlpha(self._best, partial(self.cut, "airspeed"), airspeed_m_s)
+        self._temperature_c = temperature_c
+        self._logs_true_speed = logs_true_speed
         self._sources: dict[str, list[str]] = {}
         for reading in READINGS:
             self._sources.setdefault(reading.channel, []).append(reading.source)
         self._sources["airspeed"].append(GIVEN_AIRSPEED)
         named = alpha_source.removeprefix("named_value:")
         self._sources["alpha"] = {
-            "auto": ["AOA_SSA.AOA", DERIVED_ALPHA],
-            "none": ["AOA_SSA.AOA", DERIVED_ALPHA],
-            "aoa_ssa": ["AOA_SSA.AOA"],
+            "auto": ["AOA_SSA.AOA", COMPANION_ALPHA, DERIVED_ALPHA],
+            "none": ["AOA_SSA.AOA", COMPANION_ALPHA, DERIVED_ALPHA],
+            "aoa_ssa": ["AOA_SSA.AOA", COMPANION_ALPHA],
             "derived": [DERIVED_ALPHA],
         }.get(alpha_source, [f"NAMED_VALUE_FLOAT.{named}"])
 
@@ -65,7 +84,20 @@ class Tracks:
         return DERIVED_ALPHA in self._sources["alpha"]
 
     def cut(self, name: str, start_s: float, end_s: float, up_to_order: int | None = None) -> Channel | None:
-        """Return a stretch of a channel from its best source with samples there; None without one."""
+        """Return a stretch of a channel from its best source with samples there; None without one. The air
+        speed is the true one as far as the log allows."""
+        found = self._cut(name, start_s, end_s, up_to_order)
+        if name != "airspeed" or found is None:
+            return found
+        if self._logs_true_speed():
+            return replace(found, source=f"{found.source}{AS_REPORTED}")
+        air = (self._cut(n, start_s - _AIR_S, end_s + _AIR_S, up_to_order) for n in AIR_UNITS)
+        by_name = {channel.name: channel for channel in air if channel is not None}
+        return true_airspeed(
+            found, by_name.get("static_pressure"), by_name.get("altitude"), self._temperature_c
+        )
+
+    def _cut(self, name: str, start_s: float, end_s: float, up_to_order: int | None) -> Channel | None:
         spare = None
         for track in self._candidates(name):
             channel = track.cut(start_s, end_s, up_to_order)
@@ -75,6 +107,13 @@ class Tracks:
                 return _in_radians(channel)
             spare = spare or channel
         return spare
+
+    def speeds_are_one(self, start_s: float, end_s: float, up_to_order: int | None) -> bool:
+        """Return whether air speed and ground speed change, and are equal in every sample of a stretch."""
+        air, ground = (self._cut(name, start_s, end_s, up_to_order) for name in ("airspeed", "groundspeed"))
+        if air is None or ground is None or float(np.ptp(air.y)) == 0.0 or self._logs_true_speed():
+            return False
+        return np.array_equal(air.t, ground.t) and np.array_equal(air.y, ground.y)
 
     def recent(self, name: str, seconds: float) -> Channel | None:
         """Return the newest stretch of a channel; None without samples."""

@@ -1,6 +1,7 @@
-"""Channels that cannot be right: a frozen one while the aircraft moves, or two that contradict each other.
+"""Channels that stand still while the aircraft moves.
 
-A larger input remedies neither. Advice to a crew starts with this check.
+A larger input is no remedy. Advice to a crew starts with this check. ``advisor.flight.instruments``
+finds contradictions between channels.
 """
 
 from collections.abc import Mapping
@@ -10,21 +11,13 @@ from math import degrees, radians
 import numpy as np
 
 from advisor.flight.signals.derived_alpha import SLOWEST_FLIGHT_M_S
-from advisor.flight.signals.messages import FloatArray
-from advisor.flight.signals.motion import bank_at, integrated
 from advisor.flight.signals.record import Channel
 
 MOVED_RAD = radians(2.0)
 """Least range of the pitch angle, or of the integrated pitch rate, of an aircraft that has moved, rad. Every
 manoeuvre on record moves by more, and no parked aircraft does."""
-_ALIKE = (0.5, 2.0)
-"""Range of the ratio of the pitch angle's change to the integrated pitch rate, within which both belong to
-one motion. The manoeuvres on record have 0.96 to 1.04. A rate in deg/s has 0.02, and one with a wrong sign
--1."""
 _LEAST_SAMPLES = 20
 """Fewest samples that show whether a channel is frozen."""
-_LONGEST_GAP_S = 0.5
-"""Longest gap, s, across which the pitch rate is integrated."""
 _WATCHED = {
     "q": ("pitch rate", "deg/s", degrees(1.0)),
     "a_z": ("normal acceleration", "m/s^2", 1.0),
@@ -45,14 +38,14 @@ class Distrust:
     """A channel that cannot be right."""
 
     code: str
-    """``frozen`` or ``contradiction``."""
+    """``frozen``."""
     channel: str
     text: str
     """Description of the defect, without a full stop."""
     fix: str
     """Remedy, without a full stop."""
     value: float
-    """Frozen value in SI, or the ratio of both motions."""
+    """Frozen value, SI."""
 
     @property
     def sentence(self) -> str:
@@ -86,42 +79,12 @@ def frozen(ranges: Mapping[str, tuple[float, float]]) -> list[Distrust]:
 
 
 def distrusted(channels: Mapping[str, Channel]) -> list[Distrust]:
-    """Return the channels of one stretch of flight that cannot be right; empty where all seem sound."""
+    """Return the channels of one stretch of flight that stand still; empty where all change."""
     told = {name: c for name, c in channels.items() if len(c) >= _LEAST_SAMPLES}
-    found = frozen({name: (float(np.min(c.y)), float(np.max(c.y))) for name, c in told.items()})
-    if found or not {"q", "theta"} <= told.keys() or told["q"].largest_gap_s > _LONGEST_GAP_S:
-        return found
-    ratio = _angle_over_rate(channels)
-    if ratio is None or _ALIKE[0] <= ratio <= _ALIKE[1]:
-        return []
-    text = f"pitch angle moves {ratio:.2g} times as far as the pitch rate says"
-    return [Distrust("contradiction", "q", text, "check sign and unit of the pitch rate", ratio)]
+    return frozen({name: (float(np.min(c.y)), float(np.max(c.y))) for name, c in told.items()})
 
 
 def _stands_still(name: str, value: float) -> Distrust:
     plain, unit, factor = _WATCHED[name]
     text = f"{plain} stands still at {value * factor + 0.0:.3g} {unit}"
     return Distrust("frozen", name, text, _MENDS[name], value)
-
-
-def _angle_over_rate(channels: Mapping[str, Channel]) -> float | None:
-    """Return the regression of the pitch angle on the integral of its rate; None where the angle hardly
-    moves.
-
-    The pitch angle's rate is q cos φ − r sin φ. Offsets and drifts of both do not count.
-    """
-    q, theta, r = channels["q"], channels["theta"], channels.get("r")
-    bank = bank_at(q.t, channels)
-    yaw = np.zeros(len(q)) if r is None or len(r) == 0 else np.interp(q.t, r.t, r.y)
-    turned = _level(q.t, integrated(q.t, q.y * np.cos(bank) - yaw * np.sin(bank)))
-    angle = _level(q.t, np.interp(q.t, theta.t, theta.y))
-    if max(np.ptp(turned), np.ptp(angle)) < MOVED_RAD:
-        return None
-    power = float(turned @ turned)
-    return float(turned @ angle) / power if power > 0.0 else 0.0
-
-
-def _level(t: FloatArray, y: FloatArray) -> FloatArray:
-    """Return values without their mean and their trend."""
-    s = t - t.mean()
-    return np.asarray(y - y.mean() - s * float(s @ y) / float(s @ s))

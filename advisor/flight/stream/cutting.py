@@ -6,16 +6,23 @@ from functools import partial
 
 import numpy as np
 
+from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.elevator.elevator_sign import ElevatorSign, turned
-from advisor.flight.maneuvers.events import Activity, FlightEvent, ManeuverFlown
+from advisor.flight.instruments.examination import examine
+from advisor.flight.instruments.measured import Evidence, pooled
+from advisor.flight.maneuvers.events import Activity, FlightEvent, ManeuverFlown, Notice
+from advisor.flight.maneuvers.feedback import HISTORY_S
 from advisor.flight.maneuvers.ground import why_on_ground
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.maneuvers.marked_input import marked_span
 from advisor.flight.maneuvers.marks import Mark
-from advisor.flight.maneuvers.purpose import not_an_input
+from advisor.flight.maneuvers.purpose import Because, not_an_input
 from advisor.flight.maneuvers.segmentation import LEAD_IN_S
-from advisor.flight.signals.record import AIR_UNITS, UNITS
+from advisor.flight.maneuvers.steady_speed import at_steady_speed
+from advisor.flight.signals.instrument_finding import InstrumentFinding
+from advisor.flight.signals.record import AIR_UNITS, UNITS, Channel
 from advisor.flight.signals.renewal import counted_once
+from advisor.flight.signals.repair import repaired
 from advisor.flight.signals.tracks import Tracks
 from advisor.flight.signals.trust import distrusted
 from advisor.flight.stream.identity import Identity
@@ -29,15 +36,18 @@ class Cutting:
     ----------
     tracks, who
         Channels and identity of the vehicle.
-    calibrated
-        Whether the aircraft file gives the elevator's sign.
+    aircraft
+        The aircraft file: the elevator's sign, and the limits of the model.
     """
 
-    def __init__(self, tracks: Tracks, who: Identity, calibrated: bool) -> None:
-        self._tracks, self._who = tracks, who
-        self._sign = None if calibrated else ElevatorSign()
+    def __init__(self, tracks: Tracks, who: Identity, aircraft: Aircraft) -> None:
+        self._tracks, self._who, self._limits = tracks, who, aircraft.limits
+        self._sign = None if aircraft.elevator.is_calibrated else ElevatorSign()
         self._modes = [(-np.inf, who.mode)]
         self._released = (0, -np.inf)
+        self._evidence: Evidence = {}
+        self.findings: tuple[InstrumentFinding, ...] = ()
+        """Contradictions of the instruments by all manoeuvres of this power-on."""
         self.maneuvers = 0
         """Number of manoeuvres found."""
         self.activities: Counter[str] = Counter()
@@ -49,44 +59,69 @@ class Cutting:
         return self._sign is not None and bool(self._sign.backwards)
 
     def begin(self, mode: str) -> None:
-        """Begin a flight mode without earlier manoeuvres."""
+        """Begin a power-on in a flight mode, without earlier manoeuvres."""
         self._modes = [(-np.inf, mode)]
+        self._evidence = {}
+        self.findings = ()
 
     def change(self, mode: str, since_s: float) -> None:
         """Begin another flight mode."""
         self._modes.append((since_s, mode))
 
-    def so_far(self, span: Span, boot: int) -> Maneuver:
-        """Return the manoeuvre that would result if the movement ended here."""
-        maneuver = self._cut(span, boot, None)
+    def so_far(self, span: Span, boot: int) -> Maneuver | None:
+        """Return the manoeuvre that would result if the movement ended here; None where its input is over and
+        was no test input."""
+        maneuver, _ = self._cut(span, boot, None)
+        if span.input_is_over and self._not_an_input(maneuver, None) is not None:
+            return None
         return turned(maneuver) if self.is_backwards else maneuver
 
     def flown(self, span: Span, boot: int, up_to_order: int | None) -> list[FlightEvent]:
         """Return the event of a movement that has ended: a manoeuvre, or an activity with its reason."""
-        maneuver = self._cut(span, boot, up_to_order)
-        because = not_an_input(maneuver, self.why_on_ground(span, up_to_order))
+        maneuver, evidence = self._cut(span, boot, up_to_order)
+        because = self._not_an_input(maneuver, up_to_order)
         if because is not None:
             self.activities[because.what] += 1
             stay_s, _ = self._stay(_middle_s(span))
             return [Activity(span.start_s, span.end_s, because.reason, because.text, stay_s, boot)]
-        return self._counted(maneuver)
+        airspeed = maneuver.channels.get("airspeed")
+        steady = at_steady_speed(maneuver.span, airspeed, self._limits.airspeed_change_percent)
+        if steady is not maneuver.span:
+            maneuver, evidence = self._cut(steady, boot, up_to_order)
+        return self._counted(maneuver, evidence)
 
     def marked(self, mark: Mark, boot: int, up_to_order: int | None) -> list[FlightEvent]:
         """Return the manoeuvre of a marked stretch, which counts without the finder's criteria."""
         elevator = self._tracks.cut("elevator", mark.start_s - LEAD_IN_S, mark.end_s, up_to_order)
-        return self._counted(self._cut(marked_span(mark, elevator), boot, up_to_order))
+        return self._counted(*self._cut(marked_span(mark, elevator), boot, up_to_order))
 
-    def _counted(self, maneuver: Maneuver) -> list[FlightEvent]:
+    def _counted(self, maneuver: Maneuver, evidence: Evidence) -> list[FlightEvent]:
         self.maneuvers += 1
+        self._evidence = pooled((self._evidence, evidence))
+        known = {f.code for f in self.findings}
+        news = [Notice(f.code, str(f.problem)) for f in maneuver.findings if f.code not in known]
+        self.findings = maneuver.findings
         self._released = (maneuver.boot, maneuver.span.end_s)
         if self._sign is None or "elevator" not in maneuver.channels:
-            return [ManeuverFlown(maneuver)]
+            return [*news, ManeuverFlown(maneuver)]
         maneuver, found = self._sign.right(maneuver)
-        return [*found, ManeuverFlown(maneuver)]
+        return [*news, *found, ManeuverFlown(maneuver)]
 
     def why_on_ground(self, span: Span, up_to_order: int | None = None) -> str | None:
         """Return evidence that the aircraft was on the ground during a movement; None without evidence."""
         return why_on_ground(span, partial(self._tracks.cut, up_to_order=up_to_order))
+
+    def _not_an_input(self, maneuver: Maneuver, up_to_order: int | None) -> Because | None:
+        span = maneuver.span
+        return not_an_input(
+            maneuver, self.why_on_ground(span, up_to_order), self._motion(span, up_to_order), self._limits
+        )
+
+    def _motion(self, span: Span, up_to_order: int | None) -> dict[str, Channel]:
+        """Return the pitch rate and angle of a movement and of the time before."""
+        from_s = span.start_s - HISTORY_S
+        cut = {name: self._tracks.cut(name, from_s, span.end_s, up_to_order) for name in ("q", "theta")}
+        return {name: channel for name, channel in cut.items() if channel is not None}
 
     def pilot_flies(self, at_s: float) -> bool:
         """Return whether the pilot moves the elevator at this time, by the flight mode."""
@@ -96,27 +131,53 @@ class Cutting:
         """Return the flight mode at this time, and the time since which the vehicle was in that mode."""
         return next(stay for stay in reversed(self._modes) if stay[0] <= at_s)
 
-    def _cut(self, span: Span, boot: int, up_to_order: int | None) -> Maneuver:
+    def _cut(self, span: Span, boot: int, up_to_order: int | None) -> tuple[Maneuver, Evidence]:
+        """Return the manoeuvre, with the evidence of its record on the instruments."""
         earlier_boot, earlier_s = self._released
         if earlier_boot == boot and earlier_s > span.record_from_s:
             # The lead-in does not reach into the record of another manoeuvre.
             span = replace(span, record_from_s=min(earlier_s, span.start_s))
-        channels = {}
+        channels: dict[str, Channel] = {}
+        notes = self._airspeed_notes(span, up_to_order)
         for name in UNITS:
             channel = self._tracks.cut(name, span.record_from_s, span.end_s, up_to_order)
             if channel is not None:
-                provenance = self._who.provenance(channel.source, channel.provenance)
-                channels[name] = counted_once(replace(channel, provenance=provenance))
+                sound = repaired(counted_once(self._who.known(channel)))
+                channels[name] = sound.channel
+                notes += sound.said
         distrusts = self._who.distrusts(distrusted(channels))
         for still in distrusts:
             if still.channel == "a_z":
                 # An estimate can do without a specific force; a frozen one would spoil the estimate.
                 del channels["a_z"]
+        examined = examine(channels, self._evidence)
+        channels = dict(examined.channels)
         for name in AIR_UNITS:
             if (air := self._tracks.cut(name, span.record_from_s, span.end_s, up_to_order)) is not None:
                 channels[name] = air
         mode = self._stay(_middle_s(span))[1]
-        return Maneuver(self.maneuvers + 1, boot, span, channels, mode, tuple(distrusts))
+        maneuver = Maneuver(
+            self.maneuvers + 1,
+            boot,
+            span,
+            channels,
+            mode,
+            tuple(distrusts),
+            examined.findings,
+            data_notes=tuple(notes),
+        )
+        return maneuver, examined.evidence
+
+    def _airspeed_notes(self, span: Span, up_to_order: int | None) -> list[str]:
+        """Return sentences on an air speed that no sensor measured."""
+        if self._who.airspeed_doubt:
+            return [self._who.airspeed_doubt]
+        if self._tracks.speeds_are_one(span.record_from_s, span.end_s, up_to_order):
+            return [
+                "Air speed and ground speed are equal in every sample, so that one stands for the other. "
+                "If no sensor measured the air speed, wind makes the derivatives wrong."
+            ]
+        return []
 
 
 def _middle_s(span: Span) -> float:

@@ -8,10 +8,12 @@ from advisor.aircraft.aircraft import Elevator
 from advisor.flight.elevator.elevator_outputs import find_elevator
 from advisor.flight.maneuvers.events import FlightEvent, Notice, VehicleFound
 from advisor.flight.signals.messages import Columns
+from advisor.flight.signals.record import Channel
 from advisor.flight.signals.trust import Distrust
 from advisor.flight.vehicle.following import FOLLOW, TAKE, Following, chosen
+from advisor.flight.vehicle.imu_filters import filter_delay_s
 from advisor.flight.vehicle.modes import in_hover, mode_name
-from advisor.flight.vehicle.parameters import Parameters, read_by
+from advisor.flight.vehicle.parameters import AIRSPEED_SENSOR, Parameters, read_by
 from advisor.flight.vehicle.surfaces import Surface
 from advisor.flight.vehicle.vehicle import Vehicle, VehicleFinder
 from advisor.flight.vehicle.wiring import AILERON, RUDDER, Wiring
@@ -95,6 +97,30 @@ class Identity:
         if self.simulated:
             return "simulated"
         return "derived" if self.vehicle.autopilot == "ardupilot" else "unknown"
+
+    def known(self, channel: Channel) -> Channel:
+        """Return a channel with its provenance and with the known delay of the autopilot's filters."""
+        vehicle, provenance = self.vehicle, self.provenance(channel.source, channel.provenance)
+        if vehicle is None or self.simulated:
+            return replace(channel, provenance=provenance)
+        stated = self._parameters.stated(_speakers(vehicle), vehicle.autopilot)
+        delay_s = filter_delay_s(channel.name, channel.source, vehicle.autopilot, stated)
+        return replace(channel, provenance=provenance, delay_s=delay_s)
+
+    @property
+    def airspeed_doubt(self) -> str:
+        """Sentence on an air speed that no sensor measures, by the parameters; empty without a doubt."""
+        vehicle = self._finder.vehicle
+        if vehicle is None:
+            return ""
+        stated = self._parameters.stated(_speakers(vehicle), vehicle.autopilot)
+        off = next((name for name in AIRSPEED_SENSOR if stated.get(name) == 0.0), None)
+        if off is None:
+            return ""
+        return (
+            f"{off} is 0: no sensor measures the air speed. The autopilot computes it from the ground speed, "
+            "and wind makes the derivatives wrong."
+        )
 
     def distrusts(self, found: Sequence[Distrust]) -> list[Distrust]:
         """Return the channels that are wrong, among those that cannot be right: the paper's model has one air
@@ -227,8 +253,11 @@ class Identity:
         return [Notice(READER_NOTICE, f"{name} changed from {before:g} to {value:g}{at}: {used}.")]
 
     def _settle_surfaces(self) -> list[FlightEvent]:
-        wiring = self._wiring()
-        self.elevator = find_elevator(self._elevator, wiring)
+        wiring, vehicle = self._wiring(), self._finder.vehicle
+        self.elevator = (vehicle and vehicle.no_elevator) or find_elevator(self._elevator, wiring)
+        if vehicle is not None and vehicle.is_multicopter:
+            self.surfaces = {}
+            return []
         if isinstance(self.elevator, Problem) and self._taken is not None:
             self.elevator = find_elevator(self._taken, wiring, "by a guess that a hand has taken")
         found = {

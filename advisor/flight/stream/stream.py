@@ -4,7 +4,7 @@ Every decision follows the order of arrival and the vehicle's clock, never the b
 message by message, and a whole log end in equal events. Memory is bounded by two minutes of channels.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -20,18 +20,21 @@ from advisor.flight.maneuvers.markers import HEARD, MarkerWatch
 from advisor.flight.maneuvers.marks import Mark, Marks
 from advisor.flight.signals.attitude import Attitudes
 from advisor.flight.signals.banks import Banks, merged
-from advisor.flight.signals.channels import Decoded, given_airspeed, named_value, quantities, stamps
+from advisor.flight.signals.channels import COMPANIONS, stamps
 from advisor.flight.signals.clocks import BootClock
 from advisor.flight.signals.derived_alpha import DERIVED_ALPHA, promised
+from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.messages import Columns, FloatArray, IntArray, arrivals
 from advisor.flight.signals.power_on import PowerOn
-from advisor.flight.signals.record import ALL_UNITS, Channel
+from advisor.flight.signals.record import Channel
 from advisor.flight.signals.track import ChannelStatus
 from advisor.flight.signals.tracks import Tracks
 from advisor.flight.signals.trust import Distrust, frozen
 from advisor.flight.stream.cutting import Cutting
+from advisor.flight.stream.decoding import decoded, power_on
 from advisor.flight.stream.elevator_path import ElevatorPath
 from advisor.flight.stream.identity import Identity
+from advisor.flight.stream.instrument_watch import InstrumentWatch
 from advisor.flight.stream.service import Service
 from advisor.flight.stream.suitability import problems, with_guess
 from advisor.flight.stream.vehicle_texts import VehicleTexts
@@ -82,8 +85,13 @@ class FlightStream:
         self._texts = VehicleTexts()
         self._attitudes = Attitudes()
         self._clock = BootClock()
-        self._tracks = Tracks(aircraft.alpha.source, aircraft.airspeed_m_s)
-        self._cutting = Cutting(self._tracks, self._who, aircraft.elevator.is_calibrated)
+        self._tracks = Tracks(
+            aircraft.alpha.source,
+            aircraft.airspeed_m_s,
+            aircraft.reference.air_temperature_c,
+            lambda: self._who.simulated,
+        )
+        self._cutting = Cutting(self._tracks, self._who, aircraft)
         self._mixing = Mixing(self._tracks)
         self.marks = Marks(marks)
         """Marks by hand, by a switch and by texts."""
@@ -93,6 +101,7 @@ class FlightStream:
         self.boot = 0
         """Number of the power-on, 0 for the first in the stream."""
         self._guesses = ElevatorGuesses()
+        self._instruments = InstrumentWatch(self._tracks.cut)
         self._start_boot()
         self.seen: set[str] = set()
         """Names of the messages that the vehicle has sent."""
@@ -114,6 +123,7 @@ class FlightStream:
         self._master_s = np.nan
         self._heartbeat_s = -np.inf
         self._guesses.begin()
+        self._instruments.begin()
 
     @property
     def vehicle(self) -> Vehicle | None:
@@ -197,7 +207,7 @@ class FlightStream:
     @property
     def guess(self) -> Guess | None:
         """Guess of the elevator's output, while no parameter states the output."""
-        return self._guesses.newest
+        return None if self.vehicle is not None and self.vehicle.is_multicopter else self._guesses.newest
 
     @property
     def no_data(self) -> tuple[Problem, ...]:
@@ -224,6 +234,13 @@ class FlightStream:
         ranges = {name: (status.lowest, status.highest) for name, status in self._at_best().items()}
         return self._who.distrusts(frozen(ranges))
 
+    @property
+    def instruments(self) -> tuple[InstrumentFinding, ...]:
+        """Contradictions of the instruments: by the manoeuvres, and before the first by any motion."""
+        return self._cutting.findings or (
+            self._instruments.findings if self._cutting.maneuvers == self._flown_before else ()
+        )
+
     def recent(self, name: str, seconds: float) -> Channel | None:
         """Return the newest stretch of a channel; None without samples."""
         return self._tracks.recent(name, seconds)
@@ -242,6 +259,8 @@ class FlightStream:
 
     def finish(self) -> list[FlightEvent]:
         """Take the end of the messages, and close every open movement."""
+        if self._cutting.maneuvers == self._flown_before:
+            self._instruments.finish(self._first_s, self._master_s)
         events = self._finish_boot()
         self._service.end()
         self._over = True
@@ -251,22 +270,10 @@ class FlightStream:
         events = [*self._path.finish(self._master_s), *self._texts.finish(self._master_s)]
         self._past = self._at_best()
         if self._keep_s == np.inf:
-            self.power_ons.append(self._power_on())
+            self.power_ons.append(
+                power_on(self.boot, self._tracks, self._who, self._cutting.is_backwards, self._clock_heard)
+            )
         return events
-
-    def _power_on(self) -> PowerOn:
-        """Return everything that was heard since the vehicle's clock began."""
-        found = {name: self._tracks.cut(name, -np.inf, np.inf) for name in ALL_UNITS}
-        channels = {
-            name: replace(c, provenance=self._who.provenance(c.source, c.provenance))
-            for name, c in found.items()
-            if c is not None
-        }
-        if self._cutting.is_backwards and "elevator" in channels:
-            channels["elevator"] = replace(channels["elevator"], y=-channels["elevator"].y)
-        heard = [(master.order, master.t) for master in self._clock_heard if len(master.t)]
-        order, t = map(np.concatenate, zip(*heard, strict=True)) if heard else (np.empty(0, int), np.empty(0))
-        return PowerOn(self.boot, channels, order, t)
 
     def _at_best(self) -> dict[str, ChannelStatus]:
         """Return the arrival of each channel at its fastest, over all power-ons."""
@@ -353,12 +360,14 @@ class FlightStream:
             now = np.searchsorted(orders, columns.order, side="right") - 1
             if columns.name in HEARD:
                 self.marks.hear(self._markers.heard(columns, stamps(columns, clock[now])))
-            if columns.component != vehicle.component and columns.name != "NAMED_VALUE_FLOAT":
+            companion = columns.component != vehicle.component
+            if companion and columns.name not in COMPANIONS:
                 continue
-            t = clock[now] if columns.component != vehicle.component else stamps(columns, clock[now])
+            # An onboard computer has a clock of its own.
+            t = clock[now] if companion else stamps(columns, clock[now])
             if columns.name == "HEARTBEAT" and np.isfinite(t[-1]):
                 self._heartbeat_s = float(t[-1])
-            for new in self._decode(columns, t):
+            for new in decoded(columns, t, self._aircraft, companion):
                 self._tracks.append(new)
                 if self._tracks.serves(new):
                     self._service.take(new.channel, new.source, arrivals(columns, new.order))
@@ -377,13 +386,8 @@ class FlightStream:
                         self._tracks.append(moved.combined())
         self._set_clock(part, orders, clock)
         followed = self._path.feed(elevator, closes_pitch_loop(self._who.mode))
+        if self._cutting.maneuvers == self._flown_before:
+            self._instruments.advance(self._first_s, self._master_s)
         if not isinstance(self.elevator, Problem) or not np.isfinite(self._master_s):
             return followed
         return [*followed, *self._guesses.advance(self._first_s, self._master_s, self._tracks.cut)]
-
-    def _decode(self, columns: Columns, t: FloatArray) -> Iterator[Decoded]:
-        yield from quantities(columns, t)
-        if columns.name == "ATTITUDE" and self._aircraft.airspeed_m_s is not None:
-            yield given_airspeed(columns, t, self._aircraft.airspeed_m_s)
-        if columns.name == "NAMED_VALUE_FLOAT" and self._aircraft.alpha.source.startswith("named_value:"):
-            yield named_value(columns, t, self._aircraft.alpha.source.removeprefix("named_value:"))

@@ -58,8 +58,8 @@ def problems(
     """
     if vehicle is None:
         return [_no_vehicle(other_systems)]
-    if vehicle.is_multicopter and isinstance(elevator, Problem):
-        found = [_no_surfaces(vehicle)]
+    if vehicle.no_elevator is not None:
+        found = [vehicle.no_elevator]
     else:
         # A frozen angle of attack has a replacement: the one derived from climb rate and air speed.
         dead = {distrust.channel for distrust in still} & {"a_z"}
@@ -81,14 +81,6 @@ def with_guess(problem: Problem, guess: Guess) -> Problem:
     if problem.code != "no_elevator":
         return problem
     return Problem(problem.code, problem.text, f"{problem.fix.rstrip('.')}; {guess}.")
-
-
-def _no_surfaces(vehicle: Vehicle) -> Problem:
-    return Problem(
-        "multicopter",
-        f"{vehicle} is a multicopter: it has no elevator.",
-        "Give the log or link of an aircraft with an elevator.",
-    )
 
 
 def _no_maneuver(activities: Mapping[str, int]) -> Problem:

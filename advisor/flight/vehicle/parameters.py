@@ -6,12 +6,15 @@ from math import isfinite
 import numpy as np
 
 from advisor.flight.signals.messages import Columns
-from advisor.flight.vehicle import ardupilot_wiring, px4_wiring
+from advisor.flight.vehicle import ardupilot_wiring, imu_filters, px4_wiring
 from advisor.flight.vehicle.wiring import Wiring
 
 _INTEGERS = frozenset(range(1, 7))
 """Values of MAV_PARAM_TYPE that are integers of up to 32 bits."""
-_PREFIXES = (*ardupilot_wiring.PREFIXES, *px4_wiring.PREFIXES)
+_PREFIXES = (*ardupilot_wiring.PREFIXES, *px4_wiring.PREFIXES, *imu_filters.PREFIXES)
+
+AIRSPEED_SENSOR = ("ARSPD_TYPE", "ARSPD_USE")
+"""ArduPilot's parameters of its air speed sensor: its kind, and its use. 0 means none."""
 
 Sender = tuple[int, int]
 """System id and component id of a sender."""
@@ -20,8 +23,9 @@ Stated = tuple[float, float]
 
 
 def tells_of_outputs(name: str) -> bool:
-    """Return whether a parameter describes the servo outputs."""
-    return name.startswith(_PREFIXES)
+    """Return whether a parameter describes the servo outputs, a filter of the inertial sensors, or the use of
+    an air speed sensor."""
+    return name.startswith(_PREFIXES) or name in AIRSPEED_SENSOR
 
 
 def names_in(columns: Columns) -> list[str]:
@@ -35,7 +39,7 @@ def read_by(autopilot: str, stated: Stated) -> float:
 
 
 class Parameters:
-    """Keeps the parameters that describe the servo outputs.
+    """Keeps the parameters that describe the servo outputs and the filters of the inertial sensors.
 
     PARAM_VALUE carries every value in a field of floating point. ArduPilot converts integers to floating
     point; PX4 puts their bytes there (MAVLink's parameter protocol, "C cast" and "bytewise").
@@ -59,6 +63,15 @@ class Parameters:
         """Keep a value as the sender's present one."""
         self._known.setdefault(sender, {})[name] = stated
 
+    def stated(self, senders: Sequence[Sender], autopilot: str) -> dict[str, float]:
+        """Return the known values of these senders by name. The last sender overrides."""
+        return {
+            name: value
+            for sender in senders
+            for name, values in self._known.get(sender, {}).items()
+            if isfinite(value := read_by(autopilot, values))
+        }
+
     def wiring(self, senders: Sequence[Sender], autopilot: str) -> Wiring:
         """Return the roles and scales of the outputs by these senders' parameters. The last sender overrides.
 
@@ -69,11 +82,6 @@ class Parameters:
         autopilot
             Name of the autopilot in the vehicle's identity.
         """
-        stated = {
-            name: value
-            for sender in senders
-            for name, values in self._known.get(sender, {}).items()
-            if isfinite(value := read_by(autopilot, values))
-        }
+        stated = self.stated(senders, autopilot)
         find = px4_wiring.px4_wiring if autopilot == "px4" else ardupilot_wiring.ardupilot_wiring
         return find(stated)

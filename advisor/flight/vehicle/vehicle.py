@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 from advisor.flight.signals.messages import Columns
 from advisor.words.mends import Carrier, Mends, mends_of
+from advisor.words.problems import Problem
 
 # Numbers of MAV_AUTOPILOT and MAV_TYPE, MAVLink common.xml.
 _AUTOPILOT_INVALID = 8
@@ -11,7 +12,7 @@ _AUTOPILOTS = {0: "generic", 3: "ardupilot", 12: "px4", 4: "openpilot", 15: "arm
 _PERIPHERALS = frozenset({5, 6, 18, 26, 27, 30, 31, 32, 33, 34, 36, 37, 38, 39, 40, 41, 42})
 """Types that are no vehicle: antenna tracker, ground station, onboard controller, gimbal, ADS-B, camera, and
 other parts."""
-_MULTICOPTERS = frozenset({2, 13, 14, 15, 29, 35})
+MULTICOPTERS = frozenset({2, 13, 14, 15, 29, 35})
 """Aircraft on four, six, eight, three, twelve and ten rotors."""
 
 
@@ -36,7 +37,18 @@ class Vehicle:
     @property
     def is_multicopter(self) -> bool:
         """Whether rotors alone steer the vehicle."""
-        return self.type in _MULTICOPTERS
+        return self.type in MULTICOPTERS
+
+    @property
+    def no_elevator(self) -> Problem | None:
+        """Reason for which the vehicle can have no elevator, whatever its outputs; None where it can."""
+        if not self.is_multicopter:
+            return None
+        return Problem(
+            "multicopter",
+            f"{self} is a multicopter: it has no elevator.",
+            "Give the log or link of an aircraft with an elevator.",
+        )
 
     @property
     def mends(self) -> Mends:

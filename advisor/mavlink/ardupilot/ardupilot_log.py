@@ -1,6 +1,7 @@
 """An ArduPilot log as the messages that its telemetry would have carried."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -20,15 +21,17 @@ from advisor.mavlink.ardupilot.ardupilot_vehicle import (
 )
 from advisor.mavlink.ardupilot.body_rates import RATE_RECORDS, body_rates, calmed
 from advisor.mavlink.ardupilot.former_records import SENSORS_APART, Clocked, in_todays_names
+from advisor.mavlink.ardupilot.log_health import HEALTH_RECORDS, health
 from advisor.mavlink.ardupilot.sensors import Said, flown, said, silent
 from advisor.mavlink.px4.sdlog2 import SDLOG2_RECORDS, Sdlog2Messages, is_sdlog2
-from advisor.mavlink.records.dataflash import RecordTable, gps_time_base_s, read_tables, seconds
+from advisor.mavlink.records.dataflash import RecordTable, gps_time_base_s, read_logs, seconds
 from advisor.mavlink.records.equivalent import air_data, message, nearest
 from advisor.words.problems import UnusableInputError
 
 _RECORDS: dict[str, set[str]] = {
     **VEHICLE_RECORDS,
     **RATE_RECORDS,
+    **HEALTH_RECORDS,
     "ACC": {"AccX", "AccY", "AccZ"},
     "AOA": {"AOA", "SSA"},
     "ARSP": {"Airspeed"},
@@ -58,7 +61,8 @@ _NOT_LOGGED = 255
 
 
 def read_dataflash(path: Path, wanted: Iterable[str] | None = None) -> Iterator[list[Columns]]:
-    """Yield the messages of a ``.bin``, or of PX4's ``.px4log`` in its container, in one batch.
+    """Yield the messages of a ``.bin``, or of PX4's ``.px4log`` in its container: one batch for each log that
+    was joined into the file.
 
     Raises
     ------
@@ -66,12 +70,34 @@ def read_dataflash(path: Path, wanted: Iterable[str] | None = None) -> Iterator[
         The log holds neither attitude, inertial sensors, nor servo outputs.
     """
     apart = (name for names in SENSORS_APART.values() for name in names)
-    every = read_tables(path, (*_RECORDS, *SDLOG2_RECORDS, *apart))
-    stored = {name: _believable(table) for name, table in every.items()}
     names = None if wanted is None else set(wanted)
+    is_log, newest = False, -1
+    for every in read_logs(path, (*_RECORDS, *SDLOG2_RECORDS, *apart)):
+        messages = _messages({name: _believable(table) for name, table in every.items()})
+        if messages is not None:
+            is_log = True
+            for batch in _batch(messages, names):
+                after = [_after(newest, batch, c) for c in batch]
+                newest = max(int(c.order[-1]) for c in after)
+                yield after
+    if not is_log:
+        raise UnusableInputError(
+            "no_messages",
+            f"{path.name} holds no ATT, IMU or RCOU records.",
+            "Set LOG_BITMASK so that attitude, IMU and RC output are logged, or give a .tlog.",
+        )
+
+
+def _after(newest: int, batch: Sequence[Columns], columns: Columns) -> Columns:
+    """Return columns of a batch with orders beyond the newest one of the log before."""
+    late_by = newest + 1 - min(int(c.order[0]) for c in batch)
+    return replace(columns, order=columns.order + late_by) if newest >= 0 and late_by > 0 else columns
+
+
+def _messages(stored: Mapping[str, RecordTable]) -> Iterator[Columns] | None:
+    """Return the messages of one log; None without attitude, inertial sensors and servo outputs."""
     if is_sdlog2(stored):
-        yield from _batch(Sdlog2Messages(stored).columns(), names)
-        return
+        return Sdlog2Messages(stored).columns()
     read = in_todays_names(stored)
     tables = {
         name: table
@@ -79,12 +105,8 @@ def read_dataflash(path: Path, wanted: Iterable[str] | None = None) -> Iterator[
         if name in _RECORDS and _RECORDS[name] <= table.fields.keys()
     }
     if not tables.keys() & {"ATT", "IMU", "RCOU"}:
-        raise UnusableInputError(
-            "no_messages",
-            f"{path.name} holds no ATT, IMU or RCOU records.",
-            "Set LOG_BITMASK so that attitude, IMU and RC output are logged, or give a .tlog.",
-        )
-    yield from _batch(_Translation(Clocked(tables, read.epoch_s)).columns(), names)
+        return None
+    return _Translation(Clocked(tables, read.epoch_s)).columns()
 
 
 def _believable(table: RecordTable) -> RecordTable:
@@ -124,6 +146,7 @@ class _Translation:
         self._tables = {name: table for name, table in self._tables.items() if len(table)}
         if "PARM" in self._tables:
             self._tables["PARM"] = in_todays_parameters(self._tables["PARM"])
+        self._said += health(self._tables)
         self._base_s = float(read.epoch_s) or gps_time_base_s(self._tables.get("GPS"))
         self._system = system_of(self._tables)
 
@@ -144,6 +167,8 @@ class _Translation:
             yield self._message("PARAM_VALUE", self._tables["PARM"], parameter_fields(self._tables["PARM"]))
         if "VER" in self._tables:
             yield self._message("AUTOPILOT_VERSION", self._tables["VER"], version_fields(self._tables["VER"]))
+        if "BARO" in self._tables and "Press" in self._tables["BARO"].fields:
+            yield self._scaled_pressure(self._tables["BARO"].first_instance())
         yield from self._servo_outputs()
         yield from self._vfr_hud()
         yield self._statustext()
@@ -199,6 +224,11 @@ class _Translation:
     def _aoa_ssa(self, aoa: RecordTable) -> Columns:
         angles = {"AOA": aoa.fields["AOA"], "SSA": aoa.fields["SSA"]}
         return self._message("AOA_SSA", aoa, {"time_usec": aoa.time_us, **angles})
+
+    def _scaled_pressure(self, baro: RecordTable) -> Columns:
+        hectopascal = 0.01 * baro.fields["Press"].astype(np.float64)
+        fields: dict[str, ArrayLike] = {"time_boot_ms": _milliseconds(baro.time_us), "press_abs": hectopascal}
+        return self._message("SCALED_PRESSURE", baro, fields)
 
     def _servo_outputs(self) -> Iterator[Columns]:
         """Yield SERVO_OUTPUT_RAW, one for each bank of 16. RCOU has outputs 1 to 14, RCO2 15 to 18, RCO3 19

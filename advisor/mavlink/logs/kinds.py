@@ -1,5 +1,6 @@
 """Kind of a log file, recognised by its content and never by its name."""
 
+import re
 from dataclasses import dataclass
 from typing import Literal
 
@@ -23,6 +24,8 @@ _ARCHIVES = {
     b"\x28\xb5\x2f\xfd": "zstd",
 }
 """First bytes of packed files that the advisor does not unpack, to the name of the archive."""
+_TEXT_LOG = re.compile(rb"^FMT, ?\d+, ?\d+, ?\w+, ?\w+, ?\w+", re.MULTILINE)
+"""A definition of records as text. Ground stations write a few lines about the vehicle before the first."""
 _PACKED_INSIDE = (b"\x1f\x8b", b"PK\x03\x04")
 
 
@@ -93,7 +96,7 @@ def refusal(name: str, beginning: bytes) -> Problem:
             f"{name} is an encrypted log of PX4.",
             "Decrypt it with PX4's Tools/decrypt_ulog.py and the private key, and give the .ulg.",
         )
-    if text.startswith(b"fmt, 128"):
+    if _TEXT_LOG.search(beginning):
         return Problem(
             "text_log",
             f"{name} is a DataFlash log written as text.",

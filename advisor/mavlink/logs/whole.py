@@ -1,18 +1,20 @@
-"""A log known as a whole: its parameters count from its first message, whenever they were written down.
+"""A log known as a whole: which of its vehicles flew, and its parameters, count from its first message.
 
-Ground stations write PARAM_VALUE when their download is complete, some only after landing. A link cannot know
-these values earlier. A file can.
+Ground stations write PARAM_VALUE when their download is complete, some only after landing. A vehicle that is
+heard first may stand idle. A link cannot know these facts earlier. A file can.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
+from advisor.flight.signals.channels import ARMED
 from advisor.flight.signals.messages import Columns, cut
 from advisor.flight.stream.identity import READER
-from advisor.flight.vehicle.parameters import names_in, tells_of_outputs
+from advisor.flight.vehicle.parameters import Sender, names_in, tells_of_outputs
+from advisor.flight.vehicle.vehicle import MULTICOPTERS, is_aircraft
 from advisor.mavlink.logs.logs import open_log
 from advisor.mavlink.records.equivalent import message
 from advisor.mavlink.wire.frames import FrameScanner
@@ -23,7 +25,10 @@ from advisor.words.problems import UnusableInputError
 def read_whole_log(
     path: Path, others: Sequence[Path] = (), scanner: FrameScanner | None = None
 ) -> Iterator[list[Columns]]:
-    """Stream the messages of a log after the first value of each parameter of the servo outputs.
+    """Stream the messages of a log, those that tell of the whole log in front of the others.
+
+    In front stands the first value of each parameter of the servo outputs. The heartbeat of the vehicle that
+    flew stands there too, where another vehicle is heard first.
 
     Parameters
     ----------
@@ -44,15 +49,43 @@ def read_whole_log(
     first = next(batches, None)
     if first is None:
         return
-    known = _stated(open_log(path, ["PARAM_VALUE"])) if first[0].carrier == "telemetry" else _stated([first])
-    lender = None
+    is_tlog = first[0].carrier == "telemetry"
+    telling = list(open_log(path, ["HEARTBEAT", "PARAM_VALUE"])) if is_tlog else [first]
+    known, notes = _stated(telling), []
     if not known:
         lender, known = _lent(others)
-    yield [*_in_front(first, known, lender), *first]
+        if lender is not None:
+            notes.append(
+                f"The log states no parameters of its servo outputs. Those of {printable(lender.name)} count"
+            )
+    flew = _flew_though_heard_later(telling)
+    if flew is not None:
+        notes.append(f"Vehicle {flew.system} is followed: it alone was armed. Another one was heard first")
+    yield [*_in_front(first, [*([flew] if flew else []), *known], notes), *first]
     yield from batches
 
 
-def _stated(batches: Iterator[list[Columns]] | Sequence[list[Columns]]) -> list[Columns]:
+def _flew_though_heard_later(batches: Iterable[Sequence[Columns]]) -> Columns | None:
+    """Return the first heartbeat of the vehicle with wings that alone was armed.
+
+    None where the first vehicle heard was armed, or several others were.
+    """
+    first: dict[Sender, Columns] = {}
+    armed: set[Sender] = set()
+    for columns in (c for batch in batches for c in batch if c.name == "HEARTBEAT" and len(c)):
+        sender = (columns.system, columns.component)
+        autopilot, kind = (int(columns.fields[name][0]) for name in ("autopilot", "type"))
+        if is_aircraft(autopilot, kind):
+            first.setdefault(sender, cut(columns, slice(0, 1)))
+            if kind not in MULTICOPTERS and np.any(columns.fields["base_mode"] & ARMED):
+                armed.add(sender)
+    by_arrival = sorted(first, key=lambda sender: int(first[sender].order[0]))
+    if not by_arrival or by_arrival[0] in armed or len(armed) != 1:
+        return None
+    return first[armed.pop()]
+
+
+def _stated(batches: Iterable[Sequence[Columns]]) -> list[Columns]:
     """Return the first value of each parameter of the servo outputs, one message each, by sender."""
     heard: set[tuple[int, int, str]] = set()
     found: list[Columns] = []
@@ -79,28 +112,24 @@ def _lent(others: Sequence[Path]) -> tuple[Path | None, list[Columns]]:
     return None, []
 
 
-def _in_front(first: Sequence[Columns], known: Sequence[Columns], lender: Path | None) -> list[Columns]:
-    """Return parameters, and a note on the log that lends them, in front of the first messages of a log."""
+def _in_front(first: Sequence[Columns], known: Sequence[Columns], notes: Sequence[str]) -> list[Columns]:
+    """Return messages, and notes on them, in front of the first messages of a log."""
     begins = min(int(c.order[0]) for c in first)
     began_s = min(float(c.arrival_s[0]) for c in first)
-    place = begins - sum(map(len, known))
+    place = begins - sum(map(len, known)) - len(notes)
     moved: list[Columns] = []
     for columns in known:
         order = np.arange(place, place + len(columns))
         place += len(columns)
         moved.append(replace(columns, order=order, arrival_s=np.full(len(order), began_s)))
-    if lender is None:
+    if not notes:
         return moved
-    text = (
-        f"{READER.decode()}The log states no parameters of its servo outputs. "
-        f"Those of {printable(lender.name)} count"
-    )
-    note = message(
+    told = message(
         "STATUSTEXT",
-        known[0].system,
-        moved[0].order[:1] - 1,
-        moved[0].arrival_s[:1],
-        {"severity": 6, "text": np.array([text.encode()])},
+        first[0].system,
+        np.arange(place, begins),
+        np.full(len(notes), began_s),
+        {"severity": 6, "text": np.array([READER + note.encode() for note in notes])},
         first[0].carrier,
     )
-    return [note, *moved]
+    return [*moved, told]

@@ -1,6 +1,7 @@
 """Air data of a PX4 log: air speed, climb rate and throttle, each at the stamps of its own topic."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -23,12 +24,15 @@ _SOURCES = ("airspeed_source", "selected_airspeed_index")
 values 1 to 3 number a sensor, 0 is ground speed minus wind, 4 a synthetic speed, -1 none."""
 _SENSORS = (1, 2, 3)
 _CALIBRATED, _INDICATED = "calibrated_airspeed_m_s", "indicated_airspeed_m_s"
+_TRUE = "true_airspeed_m_s"
 _STANDS_IN = (
     "Air speed: no sensor measured it. The autopilot's own estimate stands in, which does not see gusts"
 )
 _REFUSED = "Air speed: the autopilot calls its sensor invalid, and nothing else tells the air speed"
 
 BoolArray = NDArray[np.bool_]
+Speed = dict[str, NDArray[Any]]
+"""Fields of VFR_HUD with the air speed, each of shape (n,)."""
 Series = tuple[IntArray, FloatArray]
 """Stamps in us since boot, and values, each of shape (n,)."""
 
@@ -36,15 +40,16 @@ Series = tuple[IntArray, FloatArray]
 def air(topics: Topics) -> tuple[list[TimedMessages], list[str]]:
     """Return VFR_HUD, and sentences on the source of the air speed."""
     speed, said = _airspeed(topics)
-    found = {"airspeed": speed, "climb": _climb(topics), "throttle": _throttle(topics)}
+    found = {"climb": _climb(topics), "throttle": _throttle(topics)}
     records = [{"time_usec": one[0], name: one[1]} for name, one in found.items() if one is not None]
+    records = [*([speed] if speed is not None else []), *records]
     if not records:
         return [], said
     fields: dict[str, ArrayLike] = dict(air_data(*records))
     return [TimedMessages("VFR_HUD", np.asarray(fields["time_usec"]), fields)], said
 
 
-def _airspeed(topics: Topics) -> tuple[Series | None, list[str]]:
+def _airspeed(topics: Topics) -> tuple[Speed | None, list[str]]:
     """Return the faster of the validated air speed and its sensor's, while the autopilot accepts a sensor."""
     validated, raw = first(topics, "airspeed_validated"), topics.get("airspeed", [])
     measured = [] if validated is None else [rows(validated, _is_measured(validated))]
@@ -93,17 +98,26 @@ def _joined(topics: Sequence[Topic]) -> Topic | None:
     return {name: values[by_time] for name, values in whole.items()}
 
 
-def _calibrated(speed: Topic, validated: Topic | None) -> Series:
-    """Return the calibrated air speed: a sensor's indicated speed times the validator's scale."""
-    if _CALIBRATED in speed:
-        return sampled_us(speed), speed[_CALIBRATED].astype(np.float64)
+def _calibrated(speed: Topic, validated: Topic | None) -> Speed:
+    """Return the calibrated air speed, a sensor's indicated speed times the validator's scale, with the true
+    one of the same samples."""
+    scale = 1.0 if _CALIBRATED in speed else _scale(validated)
+    fields = {"airspeed": _CALIBRATED if _CALIBRATED in speed else _INDICATED, "true_airspeed": _TRUE}
+    found = {
+        name: scale * speed[field].astype(np.float64) for name, field in fields.items() if field in speed
+    }
+    return {"time_usec": sampled_us(speed), **found}
+
+
+def _scale(validated: Topic | None) -> float:
+    """Return the validator's ratio of calibrated to indicated air speed; 1 where unknown."""
     scale = 1.0
     if validated is not None and _INDICATED in validated:
         with np.errstate(divide="ignore", invalid="ignore"):
             ratios = validated[_CALIBRATED] / validated[_INDICATED]
         good = np.isfinite(ratios) & _is_measured(validated)
         scale = float(np.median(ratios[good])) if good.any() else 1.0
-    return sampled_us(speed), scale * speed[_INDICATED].astype(np.float64)
+    return scale
 
 
 def _climb(topics: Topics) -> Series | None:

@@ -22,9 +22,15 @@ _RATES = ("rollspeed", "pitchspeed", "yawspeed")
 
 
 def motion(topics: Topics) -> Iterator[TimedMessages]:
-    """Yield ATTITUDE, HIGHRES_IMU and GLOBAL_POSITION_INT, where the log has their values."""
+    """Yield attitude, specific force, static pressure and height, where the log has their values."""
     yield from _attitude(topics)
     yield from _highres_imu(topics)
+    air = first(topics, "vehicle_air_data")
+    if air is not None:
+        at, hectopascal = sampled_us(air), 0.01 * air["baro_pressure_pa"]
+        yield TimedMessages(
+            "SCALED_PRESSURE", at, {"time_boot_ms": milliseconds(at), "press_abs": hectopascal}
+        )
     position = first(topics, "vehicle_local_position")
     if position is not None:
         at = sampled_us(position)

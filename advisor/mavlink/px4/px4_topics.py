@@ -26,6 +26,7 @@ TOPICS: dict[str, set[str]] = {
     "vehicle_attitude": {"q[3]"},
     "vehicle_global_position": {"vel_d"},
     "vehicle_gps_position": {"time_utc_usec"},
+    "vehicle_air_data": {"baro_pressure_pa"},
     "vehicle_local_position": {"z", "vz"},
     "vehicle_status": {"nav_state"},
     "vehicle_thrust_setpoint": {"xyz[0]"},

@@ -5,8 +5,9 @@ AP_Logger, "Log message formats"). Records carry no checksum. So a record counts
 the end of the file, follows right behind it.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -79,13 +80,39 @@ class RecordTable:
         return RecordTable(self.order[rows], {name: values[rows] for name, values in self.fields.items()})
 
 
-def read_tables(path: Path, names: Iterable[str]) -> dict[str, RecordTable]:
-    """Return the records of the named types; a type without records is left out."""
+def read_logs(path: Path, names: Iterable[str]) -> Iterator[dict[str, RecordTable]]:
+    """Yield the records of the named types, for each log that was joined into the file.
+
+    Two logs may number their types differently. A type without records is left out.
+    """
     stream = np.fromfile(path, dtype=np.uint8)
     starts = np.empty(len(stream) // 4 + 1, dtype=np.int64)
     starts = starts[: scan_records(stream, starts)]
-    types = stream[starts + 2]
     wanted = set(names)
+    for log in np.split(starts, _begins(stream, starts)):
+        yield _tables(stream, log, wanted)
+
+
+def _begins(stream: NDArray[np.uint8], starts: IntArray) -> list[int]:
+    """Return the rows of ``starts`` at which another log begins: definitions that redefine a type."""
+    rows = np.flatnonzero(stream[starts + 2] == _FMT)
+    known: dict[int, bytes] = {}
+    found: list[int] = []
+    run = -1
+    for before, row in pairwise([-1, *rows.tolist()]):
+        run = run if row == before + 1 else row
+        number, at = int(stream[starts[row] + 3]), int(starts[row])
+        definition = stream[at : at + _FMT_LENGTH].tobytes()
+        if number in known and (number == _FMT or known[number] != definition) and run not in found:
+            found.append(run)
+            known.clear()
+        known[number] = definition
+    return found
+
+
+def _tables(stream: NDArray[np.uint8], starts: IntArray, wanted: set[str]) -> dict[str, RecordTable]:
+    """Return the records of one log, which begin at ``starts``."""
+    types = stream[starts + 2]
     tables = {}
     definition: Any
     for definition in _records(stream, starts[types == _FMT] + 3, _FMT_LAYOUT):

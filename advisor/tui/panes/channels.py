@@ -47,6 +47,8 @@ gusts), or *simulated*. Then every channel with its source, its rate and its lon
         rows += [("", ""), ("", f"{CONDITIONS[health.condition]}: {health.sentence}")]
         rows += [(f"{name:<22}", value) for name, value in health.figures]
         problems = self.query_one("#problems", Lines)
-        problems.display = bool(view.obstacles)
-        problems.write("\n".join(f"! {problem}" for problem in view.obstacles))
+        corrected = [f"{f.sentence}. {f.fix}." for f in view.state.instruments if f.used]
+        said = [f"! {sentence}" for sentence in (*view.obstacles, *corrected)]
+        problems.display = bool(said)
+        problems.write("\n".join(said))
         self.query_one("#arriving", HangingLines).write_rows(rows)

@@ -40,7 +40,9 @@ def test_a_changed_aircraft_is_noticed_within_two_manoeuvres() -> None:
     assert all(row["confirmed_percent"] == 0.0 for row in document["rows"] if row["lost"] is None)
 
 
-@pytest.mark.parametrize("study", [reports.advice(3, 3), reports.change(30, 3), reports.early_stops(7, 3)])
+@pytest.mark.parametrize(
+    "study", [reports.advice(3, 3), reports.change(30, 3), reports.early_stops(7, 3), reports.coverage(7, 3)]
+)
 def test_no_two_tasks_of_a_study_have_the_same_seed_and_together_they_are_all_campaigns(
     study: Study[Any, Any],
 ) -> None:

@@ -8,7 +8,13 @@ import pytest
 from advisor.flight.maneuvers.events import Activity
 from tests.flights import SHIPPED
 
-CRUISE = Activity(10.0, 12.0, "autopilot", "the elevator moved in CRUISE; not a test input", stay_s=5.0)
+CRUISE = Activity(
+    10.0,
+    12.0,
+    "autopilot",
+    "the elevator moved in CRUISE without the sharp steps of a test; not a test input",
+    stay_s=5.0,
+)
 SMALL = Activity(40.0, 41.0, "small", "a correction", stay_s=5.0)
 
 
@@ -39,7 +45,10 @@ def test_the_document_lists_activities_with_time_reason_and_text(advisor):
             activity["start_boot_s"] >= end or activity["end_boot_s"] <= start for end, start in between
         )
     assert {a["reason"] for a in document["activity"]} == {"autopilot"}
-    assert document["activity"][0]["text"] == "the elevator moved in CRUISE; not a test input"
+    assert (
+        document["activity"][0]["text"]
+        == "the elevator moved in CRUISE without the sharp steps of a test; not a test input"
+    )
 
 
 def test_all_lists_each_activity_in_a_line_of_its_own_among_the_manoeuvres(advisor):
@@ -49,10 +58,10 @@ def test_all_lists_each_activity_in_a_line_of_its_own_among_the_manoeuvres(advis
     lines = everything.splitlines()
     first, second = (next(i for i, line in enumerate(lines) if line.startswith(f" {n}  ")) for n in (1, 2))
     (told,) = lines[first + 1 : second]
-    assert "the elevator moved in CRUISE; not a test input" in told
+    assert "the elevator moved in CRUISE without the sharp steps of a test; not a test input" in told
 
 
 def test_all_lists_activities_even_where_no_manoeuvre_was_found(advisor):
     told = advisor("analyze", SHIPPED / "arduplane-default-rates.tlog", "--all")
     assert told.returncode == 3
-    assert "the elevator moved in CRUISE; not a test input" in told.stdout
+    assert "the elevator moved in CRUISE without the sharp steps of a test; not a test input" in told.stdout

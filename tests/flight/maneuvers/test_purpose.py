@@ -107,7 +107,7 @@ def test_in_a_closed_loop_sharp_steps_are_an_input_and_all_else_is_the_autopilot
     because = not_an_input(flown(slewed(T, INPUT, 0.5), gain=(0.2, 0.3), mode=mode))
     assert because is not None
     assert because.reason == "autopilot"
-    assert because.text == f"the elevator moved in {mode}; not a test input"
+    assert because.text == f"the elevator moved in {mode} without the sharp steps of a test; not a test input"
 
 
 def test_the_error_falls_as_the_input_grows():

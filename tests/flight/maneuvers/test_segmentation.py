@@ -433,3 +433,24 @@ def test_an_hour_of_stream_needs_no_more_memory_than_a_minute():
     for i in range(15_000):
         segmenter.push(i * 0.24, 0.0)
     assert segmenter._samples.capacity <= 8192
+
+
+def test_an_input_that_follows_a_slow_climb_without_a_rest_is_separate_from_the_climb():
+    rng = np.random.default_rng(2)
+    t = np.arange(0.0, 30.0, 0.02)
+    hands = 0.1 * DEG * coloured(rng, t, 0.5) - 1.2 * DEG * np.clip((t - 5.0) / 4.0, 0.0, 1.0)
+    flown = Stream(t, hands + 1.5 * DEG * steps(t, 15.0, 0.4, PATTERNS["3-2-1-1"]))
+    climb, test = found(flown)
+    assert climb.closed_by == "no rest"
+    assert test.kind == "3-2-1-1"
+    assert test.start_s == pytest.approx(15.0, abs=0.1)
+
+
+def test_the_onset_of_an_input_in_a_slow_movement_is_known_within_its_first_step():
+    t = np.arange(0.0, 16.0, 0.02)
+    slow = -1.2 * DEG * np.clip((t - 5.0) / 12.0, 0.0, 1.0)
+    u = slow + 1.5 * DEG * steps(t, 15.0, 0.4, PATTERNS["3-2-1-1"])
+    segmenter = Segmenter()
+    for at_s, moved in zip(t[t < 15.3].tolist(), u.tolist(), strict=False):
+        segmenter.push(at_s, moved)
+    assert segmenter.onset_s == pytest.approx(15.0, abs=0.1)

@@ -61,10 +61,12 @@ def test_a_multicopter_is_told_that_it_has_no_elevator_and_nothing_else():
     assert "SERVO" not in str(problem)
 
 
-def test_a_rotorcraft_whose_elevator_is_given_is_taken_as_it_is():
-    wire = Wire()
-    heartbeat(wire, 1000.0, kind=2)
-    assert "multicopter" not in str(problems(wire, Aircraft(elevator=Elevator(output=2)))[0])
+@pytest.mark.parametrize("aircraft", [Aircraft(), Aircraft(elevator=Elevator(output=2))])
+def test_a_multicopter_flies_no_manoeuvre_whatever_parameters_and_aircraft_file_say(aircraft):
+    wire = flight()
+    heartbeat(wire, 999.0, kind=2)
+    (problem,) = problems(wire, aircraft)
+    assert problem.code == "multicopter"
 
 
 def test_a_missing_elevator_is_told_apart_from_one_that_is_not_sent():

@@ -10,7 +10,7 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.gap import maneuvers_of
 from advisor.analysis.log_series import LogSeries
-from advisor.flight.maneuvers.events import FlightEvent, ManeuverAgain, ManeuverFlown, Notice
+from advisor.flight.maneuvers.events import FlightEvent, ManeuverAgain, ManeuverFlown, Notice, VehicleFound
 from advisor.flight.signals.messages import Columns
 from advisor.flight.stream.flights import Flights
 from advisor.flight.stream.identity import READER_NOTICE
@@ -117,3 +117,28 @@ def test_the_gap_lends_parameters_from_the_campaigns_other_log_too(without: Path
 def test_no_log_lends_what_the_log_itself_states(late: Path) -> None:
     _, events = flown(read_whole_log(late, [BASE]))
     assert not [e for e in events if isinstance(e, Notice) and e.code == READER_NOTICE]
+
+
+def with_an_idle_vehicle(path: Path, idle_mode: int) -> Path:
+    """The base log, armed throughout, after the heartbeats of a vehicle with this base_mode."""
+    idle, flying = Sender(42), Sender(1)
+    every = list(records(BASE.read_bytes()))
+    begin_us = every[0][0]
+    beats: list[Record] = []
+    for sender, mode in ((idle, idle_mode), (flying, 217)):
+        heartbeat = dialect.MAVLink_heartbeat_message(1, 3, mode, 0, 4, 3)
+        beats.append((begin_us, sender.frame(heartbeat)))
+    return written(path, [*beats, *every])
+
+
+def test_the_vehicle_that_flew_is_followed_though_an_idle_one_is_heard_first(tmp_path: Path) -> None:
+    flights, events = flown(read_whole_log(with_an_idle_vehicle(tmp_path / "two.tlog", idle_mode=81)))
+    assert flights.stream.vehicle is not None
+    assert flights.stream.vehicle.system == 1
+    assert len(elevators(events)) == 1
+    assert any("Vehicle 1 is followed" in e.text for e in events if isinstance(e, Notice))
+
+
+def test_of_two_armed_vehicles_a_log_chooses_none(tmp_path: Path) -> None:
+    _, events = flown(read_whole_log(with_an_idle_vehicle(tmp_path / "two.tlog", idle_mode=217)))
+    assert next(e.vehicle.system for e in events if isinstance(e, VehicleFound)) == 42

@@ -3,6 +3,8 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft, Elevator
 from advisor.oem.estimator import estimate
+from advisor.oem.prepare import prepare
+from advisor.oem.solution import solve
 from tests.oem.builders import UAV, maneuver, simulate, trim_alpha, trim_elevator
 
 PERIOD = 0.02
@@ -30,11 +32,21 @@ def test_a_smooth_command_recorded_early_or_late_does_not_pass_for_other_derivat
     assert any("acts" in note for note in found.notes)
 
 
-def test_a_command_on_time_gets_no_offset():
+def test_a_command_on_time_is_not_said_to_act_early_or_late():
     found = estimate(smooth_flight(0.0, False), Aircraft(elevator=Elevator(lag_s=0.0)))
     assert not any("acts" in note for note in found.notes)
 
 
-def test_an_unknown_servo_gets_no_offset_for_a_lag_would_pass_for_one():
+def test_a_late_command_does_not_pass_for_the_lag_of_an_unknown_servo():
     found = estimate(smooth_flight(0.006, False), Aircraft())
-    assert not any("acts" in note for note in found.notes)
+    assert found.instrument("servo_lag_s") is None
+    delay = found.instrument("command_delay_s")
+    assert abs(delay.value + 0.006) < 3.0 * delay.std
+
+
+def test_the_interval_of_every_derivative_contains_the_delay_s_own_error():
+    flight = smooth_flight(0.0, False)
+    found = estimate(flight, Aircraft(elevator=Elevator(lag_s=0.0)))
+    known = solve(prepare([flight], Aircraft(elevator=Elevator(lag_s=0.0))).problem)
+    plain = np.sqrt(np.diag(known.covariance_cr))
+    assert found.std_cr[6] > 1.2 * plain[6]

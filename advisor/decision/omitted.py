@@ -1,0 +1,124 @@
+"""Bias that an omitted pitching moment causes in the derivatives, from the fit of one manoeuvre.
+
+S holds the sensitivities of the fitted outputs with respect to the parameters. s is the response to the
+omitted term with the coefficient one. W is the inverse of the noise's covariance. Near the optimum the
+parameters take up
+
+    Δθ = (SᵀWS)⁻¹·SᵀW·s
+
+for each unit of the coefficient (omitted-variable bias; Greene, Econometric Analysis, 2012, ch. 4). An
+unknown coefficient follows from the residual, by least squares with s as one more column. The residual's
+lag-1 correlation is removed first.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import expm
+
+from advisor.aircraft.aircraft import PARAMETERS
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.messages import FloatArray
+from advisor.oem.estimate import ChannelFit, Estimate
+
+_OUTPUTS = ("alpha", "q", "a_z")
+_LOCAL = 2
+"""Number of initial states, which every manoeuvre has of its own."""
+_FEWEST = 20
+"""Fewest samples of the pitch rate, two for each of the ten parameters."""
+
+
+@dataclass(frozen=True, slots=True)
+class Bias:
+    """Bias of the eight parameters by one omitted term."""
+
+    of_one: FloatArray
+    """Shape (8,). Change of the parameters for a coefficient of one."""
+    coefficient: float
+    """Coefficient of the term, estimated from the residual."""
+    ratio: float
+    """Coefficient over its standard deviation."""
+
+
+def bias_by(maneuver: Maneuver, estimate: Estimate, term: FloatArray) -> Bias | None:
+    """Return the bias by a moment that the model lacks; None for a constant, or where the fit is too short.
+
+    Parameters
+    ----------
+    maneuver
+        Manoeuvre of the estimate.
+    estimate
+        Estimate from this manoeuvre alone.
+    term
+        Shape (n,). Omitted part of q̇ for a coefficient of one, at the stamps of the fitted pitch rate.
+    """
+    fits = estimate.fits[0]
+    t = fits["q"].t
+    if len(t) < _FEWEST or not np.ptp(term) > 0.0:
+        return None
+    elevator = maneuver.channels["elevator"]
+    moved = np.interp(t, elevator.t, elevator.y)
+    columns = _columns(estimate, t, moved - moved[0], term)
+    outputs = [(fits[name], columns[name]) for name in _OUTPUTS if name in fits]
+    taken, _, _ = _regressed([_rows(fit, t, column, 0.0) for fit, column in outputs])
+    # Coloured residuals make a term look significant that only follows their colour.
+    _, coefficient, ratio = _regressed([_rows(fit, t, column, fit.lag1) for fit, column in outputs])
+    return Bias(taken[: len(PARAMETERS)], coefficient, ratio)
+
+
+def _regressed(outputs: list[tuple[FloatArray, FloatArray]]) -> tuple[FloatArray, float, float]:
+    """Return what the known columns take up of the last one, and the last one's coefficient and its ratio to
+    the standard deviation."""
+    rows = np.vstack([rows for rows, _ in outputs])
+    residual = np.concatenate([left for _, left in outputs])
+    size = np.maximum(np.linalg.norm(rows, axis=0), 1e-300)
+    known, omitted = rows[:, :-1] / size[:-1], rows[:, -1] / size[-1]
+    taken = np.linalg.lstsq(known, omitted, rcond=None)[0]
+    rest = omitted - known @ taken
+    power = max(float(rest @ rest), 1e-300)
+    coefficient = float(rest @ residual) / power
+    ratio = coefficient * float(np.sqrt(power)) / max(float(np.std(residual)), 1e-300)
+    return taken / size[:-1] * size[-1], coefficient / float(size[-1]), ratio
+
+
+def _columns(estimate: Estimate, t: FloatArray, moved: FloatArray, term: FloatArray) -> dict[str, FloatArray]:
+    """Return the sensitivities of each output, shape (n, 11): eight parameters, two states, the term."""
+    z_alpha, z_q, z_delta, m_alpha, m_q, m_delta = (
+        estimate.value(name) for name in ("Z_alpha", "Z_q", "Z_delta_e", "M_alpha", "M_q", "M_delta_e")
+    )
+    system = np.array([[z_alpha, 1.0 + z_q], [m_alpha, m_q]])
+    alpha, q = _driven(system, t, np.stack([z_delta * moved, m_delta * moved])[:, :, None])[:, :, 0]
+    regressors = np.stack([np.ones(len(t)), alpha, q, moved], axis=1)
+    inputs = np.zeros((2, len(t), 2 * regressors.shape[1] + _LOCAL + 1))
+    inputs[0, :, :4] = inputs[1, :, 4:8] = regressors
+    inputs[1, :, -1] = term
+    initial = np.zeros((2, inputs.shape[2]))
+    initial[0, 8] = initial[1, 9] = 1.0
+    states = _driven(system, t, inputs, initial)
+    force = z_alpha * states[0] + z_q * states[1] + inputs[0]
+    return {"alpha": states[0], "q": states[1], "a_z": (estimate.airspeed_m_s or 1.0) * force}
+
+
+def _driven(
+    system: FloatArray, t: FloatArray, inputs: FloatArray, initial: FloatArray | None = None
+) -> FloatArray:
+    """Return the states, shape (2, n, m), of the linear system with m pairs of inputs, shape (2, n, m)."""
+    states = np.zeros_like(inputs)
+    if initial is not None:
+        states[:, 0] = initial
+    step_s = float(np.median(np.diff(t)))
+    one = expm(system * step_s)
+    for k in range(1, len(t)):
+        held = states[:, k - 1] + 0.5 * step_s * inputs[:, k - 1]
+        states[:, k] = one @ held + 0.5 * step_s * inputs[:, k]
+    return states
+
+
+def _rows(fit: ChannelFit, t: FloatArray, columns: FloatArray, lag1: float) -> tuple[FloatArray, FloatArray]:
+    """Return the sensitivities and the residual of one output over the residual's standard deviation, without
+    the correlation ``lag1`` of neighbours."""
+    at_fit = np.stack([np.interp(fit.t, t, column) for column in columns.T], axis=1)
+    keep = min(max(lag1, 0.0), 0.99)
+    rows, left = (both[1:] - keep * both[:-1] for both in (at_fit, fit.residual))
+    spread = max(float(np.std(left)), 1e-3 * fit.noise, 1e-300)
+    return rows / spread, left / spread

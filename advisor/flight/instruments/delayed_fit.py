@@ -1,0 +1,150 @@
+"""Least-squares fit of a signal as a sum of delayed signals: the delays, the factors, and their errors."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from advisor.flight.signals.coloured import coloured_covariance
+from advisor.flight.signals.messages import FloatArray
+from advisor.flight.signals.motion import integrated
+
+LONGEST_DELAY_S = 0.3
+"""Longest delay in the search, s. Telemetry that is later shows as a gap or as a clock of its own."""
+_STARTS_S = (0.0, 0.12, -0.12)
+"""Delays, s, at which the search starts. They lie within half a period of the fastest short period of a small
+aircraft (3 Hz) from any delay in the search."""
+_FIRST_ROUNDS, _ROUNDS = 2, 15
+"""Rounds of the search from each start, and from the best of them."""
+_SETTLED_S = 1e-5
+_LARGEST_STEP_S = 0.05
+_FEWEST_SAMPLES = 20
+DRIFT = 2
+"""Degree of the polynomial in time with which biases and slow errors enter an integral."""
+
+
+@dataclass(frozen=True, slots=True)
+class Summand:
+    """Integral of a rate that enters the sum with an unknown delay."""
+
+    t: FloatArray
+    """Shape (n,), s."""
+    rate: FloatArray
+    """Shape (n,). The summand is its integral."""
+    factor: float | None = None
+    """Known factor. None: the factor is fitted."""
+
+
+@dataclass(frozen=True, slots=True)
+class DelayedFit:
+    """Delays and factors of the summands, in their order."""
+
+    delays_s: FloatArray
+    """Shape (k,)."""
+    delay_covariance: FloatArray
+    """Shape (k, k), s². The residual may be coloured, or belong wholly to the delays."""
+    factors: FloatArray
+    """Shape (k,)."""
+    factor_stds: FloatArray
+    """Shape (k,), 0 for a known factor."""
+
+
+class _Point(NamedTuple):
+    """State of the search."""
+
+    delays: FloatArray
+    factors: FloatArray
+    jacobian: FloatArray
+    residual: FloatArray
+
+    @property
+    def cost(self) -> float:
+        return float(self.residual @ self.residual)
+
+
+def fit_delays(
+    t: FloatArray,
+    y: FloatArray,
+    summands: Sequence[Summand],
+    near_s: FloatArray | None = None,
+    drift: int = DRIFT,
+) -> DelayedFit | None:
+    """Fit y(t) = Σ f·S(t − τ) + b_0 + b_1 t + b_2 t² by Gauss-Newton in the delays τ.
+
+    Returns None where samples are too few, or where nothing moved.
+
+    Parameters
+    ----------
+    t, y
+        Shape (n,): stamps in s, and the signal.
+    summands
+        One or two summands, all on one grid of stamps.
+    near_s
+        Shape (k,): delays near the optimum, where they are known.
+    drift
+        Degree of the polynomial b in time.
+    """
+    grid = summands[0].t
+    inside = (t >= grid[0] + LONGEST_DELAY_S) & (t <= grid[-1] - LONGEST_DELAY_S)
+    t, y = t[inside], y[inside]
+    if len(t) < _FEWEST_SAMPLES or np.ptp(y) == 0.0 or any(np.ptp(s.rate) == 0.0 for s in summands):
+        return None
+    slow = np.vander((t - t.mean()) / np.ptp(t), drift + 1)
+    shapes = [integrated(s.t, s.rate) for s in summands]
+    starts = np.stack(np.meshgrid(*[_STARTS_S] * len(summands)), axis=-1).reshape(-1, len(summands))
+    looked = [
+        _descended(t, y, slow, summands, shapes, start, _FIRST_ROUNDS)
+        for start in (starts if near_s is None else near_s[None])
+    ]
+    nearest = min(looked, key=lambda point: point.cost)
+    best = _descended(t, y, slow, summands, shapes, nearest.delays, _ROUNDS)
+    covariance = _covariance(best.jacobian, best.residual)
+    k = len(summands)
+    free = [i for i, s in enumerate(summands) if s.factor is None]
+    stds = np.zeros(k)
+    stds[free] = np.sqrt(np.diag(covariance)[k : k + len(free)])
+    return DelayedFit(best.delays, covariance[:k, :k], best.factors, stds)
+
+
+def _descended(
+    t: FloatArray,
+    y: FloatArray,
+    slow: FloatArray,
+    summands: Sequence[Summand],
+    shapes: Sequence[FloatArray],
+    start: FloatArray,
+    rounds: int,
+) -> _Point:
+    """Return the point that Gauss-Newton reaches from a start within some rounds."""
+    grid, delays = summands[0].t, start.copy()
+    free = [i for i, s in enumerate(summands) if s.factor is None]
+    known = np.array([0.0 if s.factor is None else s.factor for s in summands])
+    while True:
+        shifted = [t - delay for delay in delays]
+        columns = np.column_stack([np.interp(at, grid, s) for at, s in zip(shifted, shapes, strict=True)])
+        rates = np.column_stack(
+            [np.interp(at, grid, s.rate) for at, s in zip(shifted, summands, strict=True)]
+        )
+        linear = np.column_stack([columns[:, free], slow])
+        fitted = np.linalg.lstsq(linear, y - columns @ known, rcond=None)[0]
+        factors = known.copy()
+        factors[free] = fitted[: len(free)]
+        residual = y - columns @ known - linear @ fitted
+        jacobian = np.column_stack([-factors * rates, linear])
+        step = np.linalg.lstsq(jacobian, residual, rcond=None)[0][: len(delays)]
+        step = np.clip(step, -_LARGEST_STEP_S, _LARGEST_STEP_S)
+        if rounds == 0 or np.max(np.abs(step)) < _SETTLED_S:
+            return _Point(delays, factors, jacobian, residual)
+        delays = np.clip(delays + step, -LONGEST_DELAY_S, LONGEST_DELAY_S)
+        rounds -= 1
+
+
+def _covariance(jacobian: FloatArray, residual: FloatArray) -> FloatArray:
+    """Return the covariance for coloured residuals, plus that of a residual that belongs to the parameters.
+
+    An error of an instrument may have the shape of the motion, and a parameter then takes all of the
+    residual. Such a parameter errs by at most ‖r‖·√((JᵀJ)⁻¹). The error is uniform up to this bound.
+    """
+    mistaken = float(residual @ residual) / 3.0 * np.linalg.pinv(jacobian.T @ jacobian)
+    return np.asarray(coloured_covariance(jacobian, residual) + mistaken)

@@ -1,0 +1,238 @@
+"""Evidence on instruments from the motion of one record, without any aerodynamics.
+
+The pitch angle's rate is q cos φ − r sin φ. Over any stretch the mean specific force along the vertical is
+1 g, less the change of the climb rate. The angle of attack follows
+α̇ = q + (a_z cos α − a_x sin α + g cos γ)/V.
+"""
+
+from collections.abc import Mapping
+from math import hypot, radians
+
+import numpy as np
+
+from advisor.aircraft.standard_gravity import GRAVITY_M_S2
+from advisor.flight.instruments.delayed_fit import Summand, fit_delays
+from advisor.flight.instruments.measured import Evidence, Measured
+from advisor.flight.signals.derived_alpha import DERIVED_ALPHA, SLOWEST_FLIGHT_M_S
+from advisor.flight.signals.messages import FloatArray
+from advisor.flight.signals.motion import bank_at, path_turning, speed_rate
+from advisor.flight.signals.record import Channel
+from advisor.flight.signals.renewal import renewed
+
+Channels = Mapping[str, Channel]
+
+MOVED_RAD = radians(2.0)
+"""Least range of the pitch angle, rad, of a record that tells of rates. Every manoeuvre on record moves by
+more, and no parked aircraft does."""
+VANE_WIDTH = 0.15
+"""Standard deviation of a vane's scale, as a share: upwash of wing and fuselage, and position. Vanes on
+record read 0.93 to 1.00 of the motion."""
+_COMPUTED_WIDTH = 0.03
+"""Standard deviation of the scale of an angle of attack that an autopilot computes from attitude and
+velocity, as a share. Wind and magnetic heading err by that much."""
+_LATEST_COMPUTED_S = 0.05
+"""Longest delay, s, of an angle of attack that an autopilot computes. Those on record are 20 to 35 ms late. A
+later one may be a vane's, ahead of the centre of gravity."""
+_LONGEST_GAP_S = 0.5
+"""Longest gap, s, across which a rate is integrated."""
+_FEWEST_SAMPLES = 20
+_SHORTEST_S = 2.0
+"""Shortest record, s, that tells a mean specific force. A change of the climb rate by 1 m/s is 5 % of 1 g
+there."""
+_CLIMB_M_S = 1.0
+"""Error of a change of the climb rate, m/s: lag of its filter in a manoeuvre."""
+_ALIGNMENT = 0.02
+"""Error of the mean vertical force, as a share of 1 g: alignment and attitude of 2 deg each, and bias."""
+_SIDE_FORCE = 0.1
+"""Standard deviation of the specific force along body y, in g: a sideslip of some degrees."""
+_YAW_SHARE = 0.5
+"""Largest share of the yaw rate in the pitch angle's rate, by root mean squares. Above it the yaw rate
+decides the result."""
+_LARGEST_ALPHA_RAD = radians(30.0)
+"""Largest angle of attack, rad, at which a short period is flown. Every wing has stalled there."""
+_STEP = 0.05
+"""Step of the scale of α by which delays and air speed are differentiated, as a share."""
+
+
+def rate_against_attitude(channels: Channels) -> Evidence:
+    """Return ``theta_scale``, the pitch angle's change over the integral of the pitch rate, and ``q_delay``.
+
+    The delay in s is that of the pitch rate relative to the attitude. Empty where the angle hardly moves.
+    """
+    if not _usable(channels, "q", "theta"):
+        return {}
+    q, theta = channels["q"], channels["theta"]
+    bank = bank_at(q.t, channels)
+    pitching, yawing = q.y * np.cos(bank), _at("r", q.t, channels) * np.sin(bank)
+    if np.ptp(theta.y) < MOVED_RAD and np.ptp(np.cumsum(pitching)) / q.rate_hz < MOVED_RAD:
+        return {}
+    if float(np.std(yawing)) > _YAW_SHARE * float(np.std(pitching)):
+        return {}
+    fit = fit_delays(theta.t, theta.y, [Summand(q.t, pitching - yawing)])
+    if fit is None:
+        return {}
+    return {
+        "theta_scale": Measured(float(fit.factors[0]), float(fit.factor_stds[0])),
+        "q_delay": Measured(-float(fit.delays_s[0]), float(np.sqrt(fit.delay_covariance[0, 0]))),
+    }
+
+
+def force_against_climb(channels: Channels) -> Evidence:
+    """Return ``a_z_behind_climb``, the delay of the specific force relative to the climb rate, s.
+
+    The climb rate is the integral of the vertical force less gravity. A climb rate may be late and is never
+    early, so that the force is at least this late.
+    """
+    if not _usable(channels, "a_x", "a_z", "theta", "climb_rate"):
+        return {}
+    force, climb = channels["a_z"], channels["climb_rate"]
+    theta, bank = _at("theta", force.t, channels), bank_at(force.t, channels)
+    along = _at("a_x", force.t, channels)
+    rising = along * np.sin(theta) - force.y * np.cos(theta) * np.cos(bank) - GRAVITY_M_S2
+    fit = fit_delays(climb.t, climb.y, [Summand(force.t, rising)])
+    if fit is None:
+        return {}
+    return {"a_z_behind_climb": Measured(-float(fit.delays_s[0]), float(np.sqrt(fit.delay_covariance[0, 0])))}
+
+
+def force_against_gravity(channels: Channels) -> Evidence:
+    """Return ``a_z_scale``, the mean vertical specific force over that of the motion; empty where unknown."""
+    if not _usable(channels, "a_z", "theta"):
+        return {}
+    force, t = channels["a_z"], channels["a_z"].t
+    length_s = float(t[-1] - t[0])
+    if length_s < _SHORTEST_S:
+        return {}
+    theta, bank = _at("theta", t, channels), bank_at(t, channels)
+    down = force.y * np.cos(theta) * np.cos(bank) - _at("a_x", t, channels) * np.sin(theta)
+    climb = channels.get("climb_rate")
+    gained, unsure = 0.0, _CLIMB_M_S
+    if climb is not None and len(climb) > 1:
+        gained = float(climb.y[-1] - climb.y[0])
+    else:
+        unsure += float(np.max(_at("airspeed", t, channels))) * abs(float(theta[-1] - theta[0]))
+    per_g = 1.0 / (length_s * GRAVITY_M_S2)
+    motion = 1.0 + gained * per_g
+    mean = float(np.sum(np.diff(t) * (down[1:] + down[:-1])) / (2.0 * length_s))
+    scale = -mean / GRAVITY_M_S2 / motion
+    sideways = _SIDE_FORCE * float(np.mean(np.abs(np.sin(bank))))
+    return {"a_z_scale": Measured(scale, abs(scale / motion) * hypot(unsure * per_g, _ALIGNMENT, sideways))}
+
+
+def speed_against_force(channels: Channels) -> Evidence:
+    """Return ``speed_scale``, the change of the air speed over that by the accelerometers.
+
+    V̇ = a_x cos α + a_z sin α − g sin γ holds in steadily moving air. An error of α cancels to first order.
+    """
+    if not _usable(channels, "a_x", "a_z", "theta", "airspeed"):
+        return {}
+    force, speed = channels["a_z"], channels["airspeed"]
+    t, alpha = force.t, np.clip(_at("alpha", force.t, channels), -_LARGEST_ALPHA_RAD, _LARGEST_ALPHA_RAD)
+    theta = _at("theta", t, channels)
+    rate = speed_rate(_at("a_x", t, channels), force.y, theta, alpha, bank_at(t, channels))
+    fit = fit_delays(speed.t, speed.y, [Summand(t, rate)], drift=1)
+    if fit is None:
+        return {}
+    return {"speed_scale": Measured(float(fit.factors[0]), float(fit.factor_stds[0]))}
+
+
+def alpha_against_motion(channels: Channels) -> Evidence:
+    """Return ``alpha_scale``, the reading over the angle of attack by the motion.
+
+    Empty without a measured angle of attack, or where nothing moves.
+    """
+    parts = _parts(channels)
+    if parts is None or channels["alpha"].source == DERIVED_ALPHA:
+        return {}
+    t, pitching, turning, t_alpha, alpha = parts
+    fit = fit_delays(t_alpha, alpha, [Summand(t, pitching + turning)])
+    if fit is None:
+        return {}
+    return {"alpha_scale": Measured(float(fit.factors[0]), float(fit.factor_stds[0]))}
+
+
+def rate_moves_alpha(channels: Channels) -> bool | None:
+    """Return whether a positive pitch rate raises a measured angle of attack; None where that is unknown."""
+    parts = _parts(channels)
+    if parts is None or channels["alpha"].source == DERIVED_ALPHA:
+        return None
+    t, pitching, turning, t_alpha, alpha = parts
+    fit = fit_delays(t_alpha, alpha, [Summand(t, pitching), Summand(t, turning)])
+    return None if fit is None else bool(fit.factors[0] > 0.0)
+
+
+def force_against_alpha(channels: Channels) -> Evidence:
+    """Return the clock of the specific force and the scale of the air speed, by a sound angle of attack.
+
+    The angle of attack is fitted as α(t) = ∫q(t − τ_q) + f·∫n(t − τ_n), where n is the rate of the path's
+    angle. ``airspeed_scale`` is f, the ratio of stated to true air speed. ``a_z_least`` and ``a_z_most``
+    bound the delay of a_z relative to the pitch rate, s. A vane ahead of the centre of gravity delays ∫q
+    alone, and a late climb rate delays ∫n alone. Neither makes ∫n early, so −τ_n bounds the delay from below.
+    """
+    parts = _parts(channels)
+    if parts is None:
+        return {}
+    t, pitching, turning, t_alpha, alpha = parts
+    source = channels["alpha"]
+    fit = fit_delays(t_alpha, alpha, [Summand(t, pitching, 1.0), Summand(t, turning)])
+    if fit is None:
+        return {}
+    steeper = [Summand(t, pitching, 1.0 + _STEP), Summand(t, turning)]
+    other = fit_delays(t_alpha, alpha, steeper, fit.delays_s)
+    assert other is not None
+    of_rate, of_force = (float(delay) for delay in fit.delays_s)
+    computed = source.provenance == "derived" and abs(of_rate) < _LATEST_COMPUTED_S
+    width = _COMPUTED_WIDTH if computed else VANE_WIDTH
+    by_scale = width * (other.delays_s - fit.delays_s) / _STEP
+    covariance = fit.delay_covariance + np.outer(by_scale, by_scale)
+    apart = float(np.sqrt(covariance[0, 0] + covariance[1, 1] - 2.0 * covariance[0, 1]))
+    together = Measured(of_rate - of_force, apart)
+    bound = Measured(-of_force, float(np.sqrt(covariance[1, 1])))
+    if source.source == DERIVED_ALPHA:
+        return {"a_z_least": bound}
+    by_width = width * float(other.factors[1] - fit.factors[1]) / _STEP
+    return {
+        "a_z_least": _lower(bound, together),
+        "a_z_most": together,
+        "airspeed_scale": Measured(float(fit.factors[1]), hypot(float(fit.factor_stds[1]), by_width)),
+    }
+
+
+def _parts(
+    channels: Channels,
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray] | None:
+    """Return stamps, pitch rate and turning rate of the path, then stamps and values of α; None without
+    them."""
+    if not _usable(channels, "q", "theta", "a_z", "alpha", "airspeed"):
+        return None
+    q, source = channels["q"], channels["alpha"]
+    t, speed = q.t, _at("airspeed", q.t, channels)
+    if np.min(speed) < SLOWEST_FLIGHT_M_S or np.ptp(channels["theta"].y) < MOVED_RAD:
+        return None
+    t_alpha, alpha = renewed(source.t, source.y)
+    theta, bank = _at("theta", t, channels), bank_at(t, channels)
+    along = _at("a_x", t, channels) if "a_x" in channels else GRAVITY_M_S2 * np.sin(theta)
+    # A reading in another unit may give any angle; the force's direction takes a possible one.
+    angle = np.clip(np.interp(t, t_alpha, alpha), -_LARGEST_ALPHA_RAD, _LARGEST_ALPHA_RAD)
+    turning = path_turning(along, _at("a_z", t, channels), theta, angle, bank) / speed
+    return t, q.y, turning, t_alpha, alpha
+
+
+def _usable(channels: Channels, *names: str) -> bool:
+    """Return whether all these channels hold enough samples without a long gap."""
+    return all(
+        name in channels
+        and len(channels[name]) >= _FEWEST_SAMPLES
+        and channels[name].largest_gap_s <= _LONGEST_GAP_S
+        for name in names
+    )
+
+
+def _at(name: str, t: FloatArray, channels: Channels) -> FloatArray:
+    """Return a channel at times ``t`` in s, shape (n,); zero where the log has none."""
+    channel = channels.get(name)
+    return np.zeros(len(t)) if channel is None or len(channel) == 0 else np.interp(t, channel.t, channel.y)
+
+
+def _lower(one: Measured, other: Measured) -> Measured:
+    return one if one.value < other.value else other

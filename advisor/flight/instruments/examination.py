@@ -1,0 +1,383 @@
+"""Examination of the instruments of one record: what contradicts, and the channels with known errors removed.
+
+Each check relies on the earlier ones. The order is: attitude and pitch rate, unit of the specific force,
+clocks, angle of attack, air speed.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from math import degrees, pi
+
+import numpy as np
+
+from advisor.aircraft.standard_gravity import GRAVITY_M_S2
+from advisor.flight.instruments.evidence import (
+    VANE_WIDTH,
+    alpha_against_motion,
+    force_against_alpha,
+    force_against_climb,
+    force_against_gravity,
+    rate_against_attitude,
+    rate_moves_alpha,
+    speed_against_force,
+)
+from advisor.flight.instruments.hypotheses import ANY, Weighed, weigh
+from advisor.flight.instruments.measured import Evidence, Measured, pooled
+from advisor.flight.signals.instrument_finding import InstrumentFinding, Quantity
+from advisor.flight.signals.record import Channel
+
+REVERSED = "reversed"
+_GYRO_WIDTH = 0.05
+"""Standard deviation of the ratio of pitch angle and integrated pitch rate, as a share. The manoeuvres on
+record have 0.92 to 1.05."""
+_FORCE_WIDTH = 0.05
+"""Standard deviation of an accelerometer's scale, as a share: calibration of 2 to 3 %, and its mounting."""
+_AIRSPEED_WIDTH, _AIRSPEED_MEAN = 0.12, 0.95
+"""Ratio of a logged to the true air speed: its standard deviation and mean. An indicated air speed is 1.00 of
+the true one at sea level and 0.86 at 3,000 m; position error is some 5 %."""
+FILTER_S = 0.015
+"""Longest delay, s, that an autopilot's filters give a gyro or an accelerometer: 11 ms for ArduPlane's 20 Hz,
+15 ms for 15 Hz."""
+_SIGMAS = 3.0
+"""Distance from the innocent range, in standard deviations, of a delay that contradicts."""
+_FORCE_UNITS_M_S2 = {
+    "m/s^2": 1.0,
+    "g": GRAVITY_M_S2,
+    "mg": GRAVITY_M_S2 / 1000.0,
+    **{f"{n} counts a g": GRAVITY_M_S2 / n for n in (2048, 4096, 8192, 16384)},
+}
+"""Units in which accelerometers are sent, m/s². Counts are those of 16-bit sensors with ranges of 16, 8, 4
+and 2 g."""
+_SPEED_UNITS_M_S = {"knots": 0.514444, "km/h": 1.0 / 3.6, "mph": 0.44704, "ft/s": 0.3048}
+
+
+@dataclass(frozen=True, slots=True)
+class Examined:
+    """Result of an examination."""
+
+    channels: Mapping[str, Channel]
+    """Channels with the errors removed that are marked as used in ``findings``."""
+    evidence: Evidence
+    """Evidence of this record alone."""
+    findings: tuple[InstrumentFinding, ...]
+    """Contradictions of the instruments, by all evidence."""
+
+
+def examine(channels: Mapping[str, Channel], earlier: Evidence | None = None) -> Examined:
+    """Examine the instruments of a record.
+
+    Parameters
+    ----------
+    channels
+        Channel name to its samples.
+    earlier
+        Pooled evidence of earlier records of the same instruments.
+    """
+    work = _Work(dict(channels), earlier or {})
+    if _attitude_and_rate(work) and _force_unit(work):
+        _clock_of_rate(work)
+        if _speed_unit(work):
+            _alpha_and_force(work)
+        _force_behind_climb(work)
+    return Examined(work.channels, work.evidence, tuple(work.findings))
+
+
+class _Work:
+    """Channels so far corrected, with evidence and findings so far."""
+
+    def __init__(self, channels: dict[str, Channel], earlier: Evidence) -> None:
+        self.channels = channels
+        self._earlier = earlier
+        self.evidence: dict[str, Measured] = {}
+        self.findings: list[InstrumentFinding] = []
+
+    def has(self, *names: str) -> bool:
+        """Return whether the record holds these channels."""
+        return all(name in self.channels and len(self.channels[name]) > 1 for name in names)
+
+    def learn(self, new: Evidence) -> Mapping[str, Measured]:
+        """Take evidence; return all evidence, pooled with the earlier."""
+        self.evidence |= new
+        return pooled((self._earlier, self.evidence))
+
+    def shift(self, name: str, by_s: float) -> None:
+        """Set the stamps of a channel earlier."""
+        if name in self.channels:
+            self.channels[name] = replace(self.channels[name], t=self.channels[name].t - by_s)
+
+    def divide(self, name: str, by: float) -> None:
+        """Divide a channel's values."""
+        if name in self.channels:
+            self.channels[name] = replace(self.channels[name], y=self.channels[name].y / by)
+
+    def contradict(
+        self,
+        channel: str,
+        quantity: Quantity,
+        stated: float | str | None,
+        found: float | str,
+        measured: Measured,
+        text: str,
+        fix: str,
+        used: bool = False,
+    ) -> None:
+        """Add a contradiction."""
+        self.findings.append(
+            InstrumentFinding(channel, quantity, stated, found, measured.std, True, text, fix, used)
+        )
+
+
+def _attitude_and_rate(work: _Work) -> bool:
+    """Hold the pitch rate against the attitude; return whether sense and unit agree."""
+    known = work.learn(rate_against_attitude(work.channels)).get("theta_scale")
+    if known is None or not work.has("q", "theta"):
+        return True
+    weighed = weigh(
+        known, {REVERSED: -1.0, "q in deg/s": pi / 180.0, "theta in deg": 180.0 / pi}, _GYRO_WIDTH
+    )
+    if not weighed.contradicts:
+        return True
+    told = f"the pitch angle moves {_with_error(known)} times as far as the pitch rate says"
+    if weighed.best == REVERSED:
+        channel = "theta" if rate_moves_alpha(work.channels) else "q"
+        name = _PLAIN[channel]
+        work.contradict(
+            channel, "sign", "nose up", "nose down", known, f"{name} has the wrong sense: {told}",
+            f"check the sense of {name}, positive nose up",
+        )  # fmt: skip
+    elif weighed.best == ANY:
+        work.contradict(
+            "q", "scale", 1.0, 1.0 / known.value if known.value else 0.0, known, told,
+            "check scale and unit of the pitch rate",
+        )  # fmt: skip
+    else:
+        channel, _, unit = weighed.best.partition(" in ")
+        stated = {"q": "rad/s", "theta": "rad"}[channel]
+        work.contradict(
+            channel, "unit", stated, unit, known, f"{_PLAIN[channel]} is in {unit}: {told}",
+            f"send {_PLAIN[channel]} in {stated}",
+        )  # fmt: skip
+    return False
+
+
+def _force_unit(work: _Work) -> bool:
+    """Hold the mean vertical force against gravity, and correct a known unit or sense; return whether the
+    force has a known unit."""
+    known = work.learn(force_against_gravity(work.channels)).get("a_z_scale")
+    if known is None or not work.has("a_z"):
+        return True
+    source = work.channels["a_z"].source
+    stated = "m/s^2" if source.startswith("HIGHRES_IMU") else "mg"
+    units = {name: _FORCE_UNITS_M_S2[stated] / size for name, size in _FORCE_UNITS_M_S2.items()}
+    factors = {name: factor for name, factor in units.items() if name != stated}
+    factors |= {f"{REVERSED}, {name}": -factor for name, factor in units.items()}
+    weighed = weigh(known, factors, _FORCE_WIDTH)
+    if not weighed.contradicts:
+        return True
+    told = f"in the mean it reads {_with_error(known)} g where the motion is 1 g"
+    if weighed.best == ANY:
+        work.contradict(
+            "a_z", "scale", 1.0, known.value, known, f"a_z has an unknown unit: {told}",
+            f"check unit and calibration of the accelerometer ({source})",
+        )  # fmt: skip
+        return False
+    reverse, unit = weighed.factor < 0.0, weighed.best.removeprefix(f"{REVERSED}, ")
+    other_unit = unit != stated
+    said = " and ".join([*([f"in {unit}"] if other_unit else []), *(["z up"] if reverse else [])])
+    work.contradict(
+        "a_z", *(("unit", stated, unit) if other_unit else ("sign", "z down", "z up")), known,
+        f"a_z is {said}, not in {stated} with z down: {told}; estimates use the right one",
+        f"send {source} in {stated}, z down", used=True,
+    )  # fmt: skip
+    work.divide("a_z", weighed.factor)
+    work.divide("a_x", abs(weighed.factor))
+    return True
+
+
+def _clock_of_rate(work: _Work) -> None:
+    """Hold the clock of the pitch rate against that of the attitude, and set the late one earlier."""
+    late = work.learn({}).get("q_delay")
+    if late is None or not work.has("q", "theta"):
+        return
+    range_s = FILTER_S + _half_intervals(work, "q", "theta")
+    if abs(late.value) - _SIGMAS * late.std <= range_s:
+        return
+    channel, other = ("q", "theta") if late.value > 0.0 else ("theta", "q")
+    measured = Measured(abs(late.value), late.std)
+    # An attitude is integrated from the gyro. Its lateness enters gravity alone, and can be removed.
+    _late(work, channel, _PLAIN[other], measured, used=channel == "theta")
+    work.shift(channel, measured.value)
+
+
+def _alpha_and_force(work: _Work) -> None:
+    """Hold angle of attack, specific force and air speed against each other."""
+    if not work.has("alpha"):
+        return
+    _unwrap_alpha(work)
+    known = work.learn(alpha_against_motion(work.channels)).get("alpha_scale")
+    weighed = _weighed_alpha(known) if known is not None else None
+    if known is not None and weighed is not None and weighed.contradicts and weighed.best != ANY:
+        _name_alpha(work, weighed, known)
+        return
+    told = work.learn(force_against_alpha(work.channels)) if work.has("q", "a_z", "airspeed") else {}
+    if told and (_clock_of_force(work, told) or _airspeed(work, told)):
+        return
+    if known is not None and weighed is not None and weighed.contradicts:
+        _name_alpha(work, weighed, known)
+
+
+def _unwrap_alpha(work: _Work) -> None:
+    """Turn an angle of attack that is counted from 0 to 360 deg into one about zero."""
+    alpha = work.channels["alpha"]
+    near_zero = (alpha.y >= 0.0) & (np.abs(alpha.y - pi) > pi / 2.0) & (alpha.y < 2.01 * pi)
+    if not np.all(near_zero) or np.max(alpha.y) < pi:
+        return
+    turned = (alpha.y + pi) % (2.0 * pi) - pi
+    work.contradict(
+        "alpha", "unit", "-180 to 180 deg", "0 to 360 deg", Measured(degrees(float(np.max(alpha.y))), 0.0),
+        "alpha is counted from 0 to 360 deg; estimates count it about 0",
+        f"send {alpha.source} from -180 to 180 deg", used=True,
+    )  # fmt: skip
+    work.channels["alpha"] = replace(alpha, y=turned)
+
+
+def _weighed_alpha(known: Measured) -> Weighed:
+    factors = {
+        REVERSED: -1.0,
+        "in rad": pi / 180.0,
+        "in deg": 180.0 / pi,
+        "reversed and in rad": -pi / 180.0,
+        "reversed and in deg": -180.0 / pi,
+    }
+    return weigh(known, factors, VANE_WIDTH)
+
+
+def _name_alpha(work: _Work, weighed: Weighed, known: Measured) -> None:
+    source = work.channels["alpha"].source
+    told = f"it moves {_with_error(known)} times as far as pitch rate and specific force say"
+    if weighed.best == ANY:
+        work.contradict(
+            "alpha", "scale", 1.0, known.value, known, f"alpha is no angle of attack: {told}",
+            f"check the vane and its calibration ({source})",
+        )  # fmt: skip
+    elif weighed.best == REVERSED:
+        work.contradict(
+            "alpha", "sign", "nose up", "nose down", known, f"alpha has the wrong sense: {told}",
+            f"turn the sense of {source}: an angle of attack is positive nose up",
+        )  # fmt: skip
+    else:
+        unit = weighed.best[-3:]
+        stated = "deg" if unit == "rad" else "rad"
+        work.contradict(
+            "alpha", "unit", stated, unit, known, f"alpha is {weighed.best} where {stated} is stated: {told}",
+            f"send {source} in {stated}, positive nose up",
+        )  # fmt: skip
+
+
+def _clock_of_force(work: _Work, told: Mapping[str, Measured]) -> bool:
+    """Hold the clock of the specific force against that of the pitch rate; return whether they differ."""
+    least, most = told.get("a_z_least"), told.get("a_z_most")
+    range_s = FILTER_S + _half_intervals(work, "q", "a_z")
+    exact = least is not None and most is not None and most.value - least.value < range_s
+    late_rate = next((f for f in work.findings if f.code == "q_delay_s"), None)
+    if least is not None and least.value - _SIGMAS * least.std > range_s:
+        late = most if exact and most is not None else least
+        _late(work, "a_z", _PLAIN["q" if late_rate is None else "theta"], late, used=exact, bound=not exact)
+        if exact:
+            work.shift("a_z", late.value)
+            work.shift("a_x", late.value)
+        return True
+    if most is not None and most.value + _SIGMAS * most.std < -range_s:
+        _late(work, "q", _PLAIN["a_z"], Measured(-most.value, most.std), used=False)
+        return True
+    # A force as late as the pitch rate would have shown: nothing else but the pitch rate is late.
+    if late_rate is not None and exact and most is not None and _SIGMAS * most.std < FILTER_S + range_s:
+        work.findings[work.findings.index(late_rate)] = _used(late_rate)
+    return False
+
+
+def _force_behind_climb(work: _Work) -> None:
+    """Hold the clock of the specific force against that of the climb rate, where nothing else has told it."""
+    if any(f.code == "a_z_delay_s" for f in work.findings):
+        return
+    least = work.learn(force_against_climb(work.channels)).get("a_z_behind_climb")
+    if least is None or not work.has("a_z", "climb_rate"):
+        return
+    range_s = FILTER_S + _half_intervals(work, "a_z", "climb_rate")
+    if least.value - _SIGMAS * least.std > range_s:
+        _late(work, "a_z", "the climb rate", least, used=False, bound=True)
+
+
+def _speed_unit(work: _Work) -> bool:
+    """Hold the change of the air speed against the accelerometers; return whether its unit is as stated."""
+    known = work.learn(speed_against_force(work.channels)).get("speed_scale")
+    if known is None or not work.has("airspeed"):
+        return True
+    weighed = _weighed_speed(known)
+    # A gust changes the air speed by any amount, which is no unit.
+    if weighed.contradicts and weighed.best != ANY:
+        _name_speed(work, weighed, known, "it changes {} times as much as the accelerometers say")
+        return False
+    return True
+
+
+def _weighed_speed(known: Measured) -> Weighed:
+    factors = {unit: 1.0 / size for unit, size in _SPEED_UNITS_M_S.items()}
+    return weigh(known, factors, _AIRSPEED_WIDTH, _AIRSPEED_MEAN)
+
+
+def _airspeed(work: _Work, told: Mapping[str, Measured]) -> bool:
+    """Hold the air speed against the motion; return whether they contradict."""
+    known = told.get("airspeed_scale")
+    if known is None:
+        return False
+    weighed = _weighed_speed(known)
+    if weighed.contradicts:
+        by = "it reads {} times the speed by pitch rate, specific force and alpha"
+        _name_speed(work, weighed, known, by)
+    return weighed.contradicts
+
+
+def _name_speed(work: _Work, weighed: Weighed, known: Measured, by: str) -> None:
+    told_so = by.format(_with_error(known))
+    if weighed.best == ANY:
+        work.contradict(
+            "airspeed", "scale", 1.0, known.value, known, f"the air speed is wrong: {told_so}",
+            "check the air speed sensor and its calibration",
+        )  # fmt: skip
+    else:
+        work.contradict(
+            "airspeed", "unit", "m/s", weighed.best, known, f"the air speed is in {weighed.best}: {told_so}",
+            "send the air speed in m/s",
+        )  # fmt: skip
+
+
+def _late(
+    work: _Work, channel: str, relative_to: str, late: Measured, *, used: bool, bound: bool = False
+) -> None:
+    name = _PLAIN[channel]
+    ms = f"{'at least ' if bound else ''}{1e3 * late.value:.0f} ± {1e3 * late.std:.0f} ms"
+    work.contradict(
+        channel, "delay_s", None, late.value, late,
+        f"{name} is {ms} late relative to {relative_to}" + (_ALLOWED if used else ""),
+        f"check the stamps of {name} ({work.channels[channel].source})", used,
+    )  # fmt: skip
+
+
+def _used(finding: InstrumentFinding) -> InstrumentFinding:
+    return replace(finding, used=True, text=finding.text + _ALLOWED)
+
+
+def _half_intervals(work: _Work, *names: str) -> float:
+    """Return half of the longest sampling interval, s: a sample may stand for any time within it."""
+    return 0.5 / min(work.channels[name].rate_hz for name in names)
+
+
+def _with_error(measured: Measured) -> str:
+    digits = max(0, int(np.ceil(-np.log10(max(measured.std, 1e-6))))) if measured.std < 1.0 else 0
+    return f"{measured.value:.{digits}f} ± {measured.std:.{digits}f}"
+
+
+_ALLOWED = "; estimates use the shifted stamps"
+_PLAIN = {"q": "the pitch rate", "theta": "the pitch angle", "a_z": "the specific force", "alpha": "alpha"}
+"""Channel to its name in a sentence."""

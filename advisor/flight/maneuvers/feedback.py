@@ -1,0 +1,82 @@
+"""Share of an elevator movement that feedback of the motion explains.
+
+A pilot who brings the aircraft back to steady flight answers what the aircraft did before. The movement obeys
+
+    δe(t) = δ0 + s·[Kq·q(t − τ) + Kθ·θ(t − τ)],   Kq ≥ 0, Kθ ≥ 0,
+
+with s the sign of the steadying side, and with a delay τ of the hand. Such a movement begins where the
+attitude is off, and ends where the attitude is back. A test input begins in steady flight, and moves the
+aircraft away. The coefficients are a non-negative least-squares fit (Lawson & Hanson, Solving Least Squares
+Problems, 1974, ch. 23). The fit begins at the onset, because hands that were still before begin to act there.
+"""
+
+from collections.abc import Mapping
+
+import numpy as np
+from scipy.optimize import nnls
+
+from advisor.flight.maneuvers.maneuver import Span
+from advisor.flight.signals.messages import FloatArray
+from advisor.flight.signals.record import Channel
+
+DELAYS_S = (0.1, 0.2, 0.3)
+"""Delays of a hand between the motion and the answer, s. Pilots have 0.1 to 0.3 (McRuer & Krendel 1974)."""
+HISTORY_S = 15.0
+"""Time before a movement over which the median pitch angle is the angle that the pilot keeps, s. It holds one
+test input with its free response, and more steady flight than that."""
+_FEWEST = 8
+"""Fewest samples of the elevator, for the law with its four unknowns."""
+_AT_S = 0.2
+"""Time over which the pitch angle at the onset and at the end is averaged, s: one delay of a hand."""
+
+
+def explained_by_feedback(
+    span: Span, elevator: Channel, motion: Mapping[str, Channel], effect: float
+) -> float:
+    """Return the share of a movement's variation that feedback of the motion explains, 0 to 1.
+
+    Parameters
+    ----------
+    span
+        Extent of the movement.
+    elevator
+        Elevator, rad.
+    motion
+        Channels ``q`` and ``theta`` from ``HISTORY_S`` before the movement to its end. Without one of them
+        the share is 0.
+    effect
+        Elevator's effect on the pitch rate. Only the sign counts; 0: unknown.
+
+    Returns
+    -------
+    float
+        0 where the movement does not bring the pitch angle back to the angle kept before.
+    """
+    moved = elevator.cut(span.start_s, span.end_s)
+    if not {"q", "theta"} <= motion.keys() or effect == 0.0 or len(moved) < _FEWEST:
+        return 0.0
+    u = -np.sign(effect) * moved.y
+    varying = float(np.sum((u - np.mean(u)) ** 2))
+    if varying == 0.0 or not _comes_back(motion["theta"], span):
+        return 0.0
+    left = min(_left(motion["q"], motion["theta"], moved.t - delay_s, u) for delay_s in DELAYS_S)
+    return max(0.0, 1.0 - left / varying)
+
+
+def _comes_back(theta: Channel, span: Span) -> bool:
+    """Return whether the pitch angle is nearer to the angle kept before at the end than at the onset."""
+    kept = theta.cut(-np.inf, span.start_s).y
+    first, last = (theta.cut(at_s - _AT_S, at_s).y for at_s in (span.start_s, span.end_s))
+    if not (len(kept) and len(first) and len(last)):
+        return False
+    off = [abs(float(np.mean(angles) - np.median(kept))) for angles in (first, last)]
+    return off[1] < off[0]
+
+
+def _left(q: Channel, theta: Channel, t: FloatArray, u: FloatArray) -> float:
+    """Return the sum of squares of a movement that the law with these stamps of the motion leaves."""
+    rate, pitch = np.interp(t, q.t, q.y), np.interp(t, theta.t, theta.y)
+    level = np.ones(len(t))
+    terms = np.column_stack([rate, pitch - np.mean(pitch), level, -level])
+    size = np.maximum(np.abs(terms).max(axis=0), 1e-12)
+    return float(nnls(terms / size, u)[1]) ** 2

@@ -1,0 +1,58 @@
+"""End of a manoeuvre where the air speed leaves the model.
+
+The model holds at one air speed. A step that is held slows the aircraft for many seconds after the short
+period has died down. The part of the record at nearly constant speed is kept.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from advisor.flight.maneuvers.free_response import FREE_S
+from advisor.flight.maneuvers.maneuver import Span
+from advisor.flight.signals.record import Channel
+
+LEFT = "air speed"
+"""Reason of the end of a span where the air speed left the model."""
+
+
+def speed_before(airspeed: Channel, span: Span) -> float:
+    """Return the air speed before the first step, m/s: the median of the lead-in, else the first value."""
+    before = airspeed.cut(span.record_from_s, span.start_s).y
+    return float(np.median(before if len(before) else airspeed.y[:1]))
+
+
+def at_steady_speed(span: Span, airspeed: Channel | None, change_percent: float) -> Span:
+    """Return the span up to the time at which the air speed leaves its value before the first step.
+
+    Parameters
+    ----------
+    span
+        Extent of the movement and its free response.
+    airspeed
+        Air speed over the record, m/s. None where not received.
+    change_percent
+        Largest change of the air speed, % of its value before the first step.
+
+    Returns
+    -------
+    Span
+        The span itself where the speed leaves in the midst of the input. A step that is held for the least
+        free response counts as an input with its response.
+    """
+    if airspeed is None or len(airspeed) < 2 or not (trim := speed_before(airspeed, span)) > 0.0:
+        return span
+    off = np.abs(airspeed.y / trim - 1.0) > 0.01 * change_percent
+    # One wild reading of the air speed is no change of speed.
+    leaving = np.flatnonzero(off[:-1] & off[1:] & (airspeed.t[:-1] > span.start_s))
+    if len(leaving) == 0:
+        return span
+    left_s = float(airspeed.t[max(int(leaving[0]) - 1, 0)])
+    if not span.start_s < left_s < span.end_s:
+        return span
+    if left_s >= span.last_step_s:
+        return replace(span, end_s=left_s, closed_by=LEFT)
+    steps = tuple(step for step in span.steps if step[0] < left_s)
+    if not steps or left_s - steps[-1][0] < FREE_S[0]:
+        return span
+    return replace(span, last_step_s=steps[-1][0], end_s=left_s, kind="other", steps=steps, closed_by=LEFT)

@@ -1,0 +1,72 @@
+"""True air speed: logged, or computed from the logged one and the density of the air.
+
+The equations of motion hold with the true air speed V. An autopilot's pressure sensor gives the speed that
+its pressure would have at sea level: V·√(ρ/ρ_0) with ρ_0 = 1.225 kg/m³. The density ρ comes from the static
+pressure, else from the height above mean sea level. A barometer's temperature is not used, because the board
+warms the sensor. One simulated autopilot reports 30 °C, by which V would be 3.5 % too large.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from advisor.flight.signals.channels import GIVEN_AIRSPEED, TRUE_AIRSPEED
+from advisor.flight.signals.messages import FloatArray
+from advisor.flight.signals.record import Channel
+from advisor.flight.signals.standard_atmosphere import (
+    PLAUSIBLE,
+    SEA_LEVEL_DENSITY_KG_M3,
+    density,
+    standard_pressure,
+)
+
+BY_PRESSURE = ", true by the static pressure"
+"""End of the source of an air speed that the static pressure has made true."""
+AS_REPORTED = ", true as reported"
+"""End of the source of an air speed that a simulator reports as the true one."""
+BY_HEIGHT = ", true by the height"
+"""End of the source of an air speed that the height has made true."""
+
+
+def is_true(airspeed: Channel) -> bool:
+    """Return whether an air speed is true. One that stays as logged may be indicated."""
+    source = airspeed.source
+    return source in (GIVEN_AIRSPEED, TRUE_AIRSPEED) or source.endswith((BY_PRESSURE, BY_HEIGHT, AS_REPORTED))
+
+
+def true_airspeed(
+    logged: Channel, pressure: Channel | None, altitude: Channel | None, temperature_c: float | None
+) -> Channel:
+    """Return the true air speed of a logged one; the logged one where nothing gives the density.
+
+    Parameters
+    ----------
+    logged
+        Air speed, m/s.
+    pressure, altitude
+        Static pressure in Pa, and height above mean sea level in m, around the same time; None without any.
+    temperature_c
+        Temperature of the air by the aircraft file, deg C; None: the standard atmosphere's.
+    """
+    if is_true(logged):
+        return logged
+    measured, high = _plausible(pressure), _plausible(altitude)
+    if measured is not None:
+        at, pressure_pa, by = measured.t, measured.y, BY_PRESSURE
+    elif high is not None:
+        at, pressure_pa, by = high.t, standard_pressure(high.y), BY_HEIGHT
+    else:
+        return logged
+    ratio: FloatArray = np.sqrt(SEA_LEVEL_DENSITY_KG_M3 / density(pressure_pa, temperature_c))
+    return replace(logged, y=logged.y * np.interp(logged.t, at, ratio), source=f"{logged.source}{by}")
+
+
+def _plausible(channel: Channel | None) -> Channel | None:
+    """Return the samples within the range of an atmosphere; None without any."""
+    if channel is None:
+        return None
+    low, high = PLAUSIBLE[channel.name]
+    good = (channel.y >= low) & (channel.y <= high)
+    # A log without the height above sea level has zeros in its place.
+    good &= channel.y != 0.0
+    return replace(channel, t=channel.t[good], y=channel.y[good]) if good.any() else None

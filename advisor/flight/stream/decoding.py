@@ -1,0 +1,65 @@
+"""Quantities in the messages of one vehicle, and everything that was heard in one power-on."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.signals.channels import Decoded, given_airspeed, named_value, of_companion, quantities
+from advisor.flight.signals.messages import Columns, FloatArray
+from advisor.flight.signals.power_on import PowerOn
+from advisor.flight.signals.record import ALL_UNITS
+from advisor.flight.signals.tracks import Tracks
+from advisor.flight.stream.identity import Identity
+from advisor.flight.vehicle.boots import Master
+
+_NAMED = "named_value:"
+"""Beginning of ``alpha.source`` where a NAMED_VALUE_FLOAT brings the angle of attack."""
+
+
+def decoded(columns: Columns, t: FloatArray, aircraft: Aircraft, companion: bool) -> Iterator[Decoded]:
+    """Yield the quantities in messages of one type.
+
+    Parameters
+    ----------
+    columns
+        The messages.
+    t
+        Shape (n,), vehicle time of each message, s since boot.
+    aircraft
+        The aircraft file, for an air speed and an angle of attack that it names.
+    companion
+        Whether another component than the autopilot sent the messages.
+    """
+    found = quantities(columns, t)
+    yield from map(of_companion, found) if companion else found
+    if columns.name == "ATTITUDE" and aircraft.airspeed_m_s is not None:
+        yield given_airspeed(columns, t, aircraft.airspeed_m_s)
+    if columns.name == "NAMED_VALUE_FLOAT" and aircraft.alpha.source.startswith(_NAMED):
+        yield named_value(columns, t, aircraft.alpha.source.removeprefix(_NAMED))
+
+
+def power_on(
+    boot: int, tracks: Tracks, who: Identity, is_backwards: bool, clock: Sequence[Master]
+) -> PowerOn:
+    """Return everything that was heard since the vehicle's clock began.
+
+    Parameters
+    ----------
+    boot
+        Number of the power-on.
+    tracks, who
+        Channels and identity of the vehicle.
+    is_backwards
+        Whether the elevator was found to move opposite to its nominal sign.
+    clock
+        Accepted stamps of the vehicle's clock.
+    """
+    found = {name: tracks.cut(name, -np.inf, np.inf) for name in ALL_UNITS}
+    channels = {name: who.known(c) for name, c in found.items() if c is not None}
+    if is_backwards and "elevator" in channels:
+        channels["elevator"] = replace(channels["elevator"], y=-channels["elevator"].y)
+    heard = [(master.order, master.t) for master in clock if len(master.t)]
+    order, t = map(np.concatenate, zip(*heard, strict=True)) if heard else (np.empty(0, int), np.empty(0))
+    return PowerOn(boot, channels, order, t)

@@ -1,0 +1,66 @@
+"""Examination of the instruments before the first manoeuvre, from whatever the aircraft does."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from advisor.flight.instruments.examination import examine
+from advisor.flight.instruments.measured import Evidence, pooled
+from advisor.flight.signals.instrument_finding import InstrumentFinding
+from advisor.flight.signals.record import UNITS, Channel
+
+_EVERY_S = 10.0
+"""Length of a stretch, s: one to two periods of a slow short period, whose motion tells a scale."""
+_LATE_S = 1.0
+"""Newest stretch that an examination leaves out, s, because its packets may still be on the way."""
+_ENOUGH = 6
+"""Stretches with motion after which the watch ends. Their errors are then well below an instrument's own
+scatter."""
+
+
+class InstrumentWatch:
+    """Examines stretches at fixed vehicle times, independent of batches.
+
+    Parameters
+    ----------
+    cut
+        Gives a stretch of a channel: name, start and end, s.
+    """
+
+    def __init__(self, cut: Callable[[str, float, float], Channel | None]) -> None:
+        self._cut = cut
+        self.begin()
+
+    def begin(self) -> None:
+        """Begin another power-on, or another vehicle."""
+        self.findings: tuple[InstrumentFinding, ...] = ()
+        """Contradictions by all stretches so far. None is used, because nothing is estimated from them."""
+        self._evidence: Evidence = {}
+        self._at_s = -np.inf
+        self._moving = 0
+
+    def advance(self, first_s: float, now_s: float) -> None:
+        """Make every examination that is due; vehicle times of the first and the newest message, s."""
+        while self._moving < _ENOUGH and now_s - _LATE_S >= max(self._at_s, first_s) + _EVERY_S:
+            rate = self._cut("q", max(self._at_s, first_s), now_s - _LATE_S)
+            if rate is None:
+                return
+            end_s = _EVERY_S * (np.floor(rate.t[0] / _EVERY_S) + 1.0)
+            if end_s > now_s - _LATE_S:
+                return
+            self._examine(end_s - _EVERY_S, end_s)
+            self._at_s = end_s
+
+    def finish(self, first_s: float, now_s: float) -> None:
+        """Examine what is left at the end of the stream."""
+        self.advance(first_s, now_s)
+        if np.isfinite(first_s) and self._moving < _ENOUGH:
+            self._examine(max(self._at_s, first_s), now_s)
+
+    def _examine(self, start_s: float, end_s: float) -> None:
+        found = {name: self._cut(name, start_s, end_s) for name in UNITS}
+        examined = examine({name: c for name, c in found.items() if c is not None}, self._evidence)
+        self._moving += "theta_scale" in examined.evidence
+        self._evidence = pooled((self._evidence, examined.evidence))
+        if examined.evidence:
+            self.findings = examined.findings

@@ -1,0 +1,71 @@
+"""Parameters that a problem has in addition to the derivatives, with their priors.
+
+Examples are a servo's lag, the delay of the command, and the time of a step between two stamps. A prior is
+one more measurement of its parameter. The prior adds to the information and pulls the estimate, and its error
+is part of the estimate's covariance.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from advisor.flight.signals.messages import FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class Prior:
+    """Gaussian knowledge of one parameter before the flight, in the parameter's unit."""
+
+    mean: float
+    std: float
+    share: float = 1.0
+    """Standard deviation with which white noise weighs the prior, over ``std``. White noise makes coloured
+    data look more certain than they are, and the prior must look as much more certain."""
+
+
+@dataclass(frozen=True, slots=True)
+class Extra:
+    """Additional parameters at one setting."""
+
+    columns: FloatArray
+    """(N, k) derivatives of the outputs by the parameters."""
+    weight: FloatArray
+    """(k,) inverse standard deviation of each prior; 0 without a prior."""
+    pull: FloatArray
+    """(k,) prior's mean minus the value, over the prior's standard deviation; 0 without a prior."""
+    share: FloatArray
+    """(k,) share of each standard deviation with which the fit weighs the prior (``Prior.share``)."""
+
+    @classmethod
+    def at(cls, columns: FloatArray, values: FloatArray, priors: Sequence[Prior | None]) -> "Extra":
+        """Return parameters at ``values`` (k,) with their priors."""
+        known = [prior or Prior(0.0, np.inf) for prior in priors]
+        mean, std, share = np.array([(p.mean, p.std, p.share) for p in known]).reshape(-1, 3).T
+        return cls(columns, 1.0 / std, (mean - values) / std, share)
+
+    @classmethod
+    def none(cls, rows: int) -> "Extra":
+        """Return no parameter, for a problem with this number of measurements."""
+        return cls(np.empty((rows, 0)), np.empty(0), np.empty(0), np.empty(0))
+
+    def __len__(self) -> int:
+        return len(self.weight)
+
+    @property
+    def penalty(self) -> float:
+        """-2 log of the priors' density, up to a constant."""
+        return float(self.pull @ self.pull)
+
+    def whitened(self, columns: FloatArray) -> "Extra":
+        """Return the parameters with whitened derivatives, to which a prior is as certain as it is."""
+        return Extra(columns, self.weight, self.pull, np.ones(len(self)))
+
+    def joined(self, other: "Extra") -> "Extra":
+        """Return these parameters, and then the other ones."""
+        return Extra(
+            np.column_stack([self.columns, other.columns]),
+            np.concatenate([self.weight, other.weight]),
+            np.concatenate([self.pull, other.pull]),
+            np.concatenate([self.share, other.share]),
+        )

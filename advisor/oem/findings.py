@@ -1,0 +1,99 @@
+"""Instruments of an estimate as findings: what the fit tells of each, next to what is stated.
+
+The findings hold for the estimate that they come from. A contradiction refuses nothing where the estimate
+uses the value of the data. The sign of the elevator cannot be used, for the fit does not know which of two
+signs is wrong.
+"""
+
+from advisor.aircraft.aircraft import PARAMETERS, Aircraft
+from advisor.flight.signals.instrument_finding import InstrumentFinding, Quantity
+from advisor.oem.estimate import Estimate, InstrumentEstimate
+from advisor.oem.instrument_fit import CONTRADICTS
+from advisor.oem.instruments import KNOWN_TO
+
+_PLACES: dict[str, tuple[str, Quantity, str]] = {
+    "servo_lag_s": ("elevator", "lag_s", "elevator: {{lag_s: {:.3f}}}"),
+    "command_delay_s": ("elevator", "delay_s", "elevator: {{delay_s: {:.3f}}}"),
+    "vane_arm_m": ("alpha", "arm_m", "alpha: {{vane_arm_m: {:.2f}}}"),
+    "alpha_delay_s": ("alpha", "delay_s", ""),
+    "accelerometer_arm_m": ("a_z", "arm_m", "accelerometer: {{arm_m: {:.2f}}}"),
+}
+"""Instrument parameter to its channel, its quantity, and the line for the aircraft file."""
+
+
+def findings_of(estimate: Estimate, aircraft: Aircraft) -> tuple[InstrumentFinding, ...]:
+    """Return what an estimate tells of the instruments, also where it agrees with the aircraft file.
+
+    Parameters
+    ----------
+    estimate
+        Estimate from one manoeuvre or from several together.
+    aircraft
+        Aircraft file, with which the estimate was made.
+    """
+    return (*(_finding(x, aircraft) for x in estimate.instruments), *_sign(estimate))
+
+
+def _finding(x: InstrumentEstimate, aircraft: Aircraft) -> InstrumentFinding:
+    channel, quantity, line = _PLACES[x.name]
+    stated = aircraft.elevator.delay_s if x.name == "command_delay_s" else x.stated
+    value, std = (x.value, x.std) if x.stated is None else (x.told, x.told_std)
+    worth = x.contradicts or (x.stated is None and x.clear and std < KNOWN_TO * abs(value))
+    return InstrumentFinding(
+        channel,
+        quantity,
+        stated,
+        value,
+        std,
+        contradicts=x.contradicts,
+        text=_text(x, stated, value, std),
+        fix=line.format(value) if worth else "",
+        used=x.contradicts or x.stated is None,
+    )
+
+
+def _text(x: InstrumentEstimate, stated: float | None, value: float, std: float) -> str:
+    apart = value - (stated or 0.0)
+    later = "later" if apart > 0.0 else "earlier"
+    half = 1.96 * std
+    match x.name:
+        case "servo_lag_s" if x.contradicts:
+            return f"the surface answers {abs(apart):.2f} s {later} than elevator.lag_s says"
+        case "servo_lag_s":
+            agrees = "" if stated is None else ", as elevator.lag_s says"
+            return f"the servo's lag is {value:.3f} ± {half:.3f} s{agrees}"
+        case "command_delay_s" if x.contradicts and stated is not None:
+            return f"the command acts {abs(apart):.3f} s {later} than elevator.delay_s says"
+        case "command_delay_s":
+            return f"the command acts {1e3 * value:+.0f} ± {1e3 * half:.0f} ms after its stamps"
+        case "vane_arm_m" if x.contradicts:
+            return f"alpha reads like a vane {value:.2f} m ahead, and alpha.vane_arm_m says {stated:.2f} m"
+        case "vane_arm_m":
+            return f"alpha reads like a vane {value:.2f} ± {half:.2f} m ahead of the centre of gravity"
+        case "alpha_delay_s":
+            return f"alpha is {1e3 * value:+.0f} ± {1e3 * half:.0f} ms late relative to the motion"
+        case "accelerometer_arm_m":
+            return f"the accelerometer reads as if {value:.2f} ± {half:.2f} m ahead of the centre of gravity"
+
+
+def _sign(estimate: Estimate) -> tuple[InstrumentFinding, ...]:
+    """Return the finding of an elevator whose stated sign turns the aircraft the wrong way, if so.
+
+    The elevator is positive trailing edge down, so that M_δe is negative on every aircraft.
+    """
+    j = PARAMETERS.index("M_delta_e")
+    value, std = float(estimate.theta[j]), float(estimate.std[j])
+    if "M_delta_e" in estimate.not_identifiable or not value > CONTRADICTS * std:
+        return ()
+    return (
+        InstrumentFinding(
+            "elevator",
+            "sign",
+            1.0,
+            -1.0,
+            contradicts=True,
+            text=f"the elevator's sign is wrong: M_delta_e comes out as {value:+.3g}, and it is negative on"
+            " every aircraft",
+            fix="turn the sign of every deflection in elevator.calibration (trailing edge down is positive)",
+        ),
+    )

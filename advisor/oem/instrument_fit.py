@@ -1,0 +1,299 @@
+"""Estimation of instrument parameters together with the derivatives.
+
+Gauss-Newton steps move all instruments of a problem, with everything else refitted. Three kinds of parameter
+differ by what is known before the flight:
+
+- *The delay of the command* is a nuisance of every log. A prior holds it, and every interval contains it.
+- *An open parameter* is kept where the record is clearly likelier with the parameter, for noise of the
+  residuals' colour. The likelihood ratio holds where an error from the curvature does not. On a well damped
+  aircraft a servo's lag is correlated with M_q and M_δe over a long range. An angle of attack whose lateness
+  is not clear keeps the lateness of sound instruments as its prior.
+- *A stated parameter* is estimated next to the statement. Where both agree, the statement is a prior with a
+  width. Where they exclude each other, the data decide alone, and the contradiction is told.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from advisor.aircraft.aircraft import PARAMETERS
+from advisor.flight.signals.messages import FloatArray
+from advisor.oem.between import widened_by_scatter
+from advisor.oem.covariance import influence
+from advisor.oem.estimate import InstrumentEstimate
+from advisor.oem.extra import Prior
+from advisor.oem.gauss_newton import CONVERGED, Optimum
+from advisor.oem.instruments import OF_ALPHA, Instrument, extra_of, moved_by, penalty
+from advisor.oem.problem import Assembly, OutputErrorProblem
+from advisor.oem.solution import Solution, evaluate, search
+from advisor.oem.weighing import Weighing
+
+N = len(PARAMETERS)
+ROUNDS = 12
+SETTLED = 1e-2
+"""Change of -2 log likelihood, per round, below which the search for instrument parameters is done."""
+CLOSE_ENOUGH = 1e-7
+"""Promised change of log J per sample at which an intermediate search ends."""
+CLEARLY = 9.0
+"""Least gain in twice the log likelihood for a parameter: three standard deviations."""
+LEAST_SHARE = 0.01
+"""Least share by which white noise weighs a prior; data without noise have no colour."""
+CONTRADICTS = 3.0
+"""Distance of a stated value from the value that the data tell, in standard deviations of both, beyond which
+they exclude each other."""
+
+
+@dataclass(frozen=True, slots=True)
+class Identified:
+    """An instrument parameter of a fit."""
+
+    instrument: Instrument
+    value: float
+    """Value in the fit, in the parameter's unit."""
+    std: float
+    """Corrected standard deviation of the value in the fit."""
+    told: float
+    """Value that the data tell without the statement."""
+    told_std: float
+    """Corrected standard deviation of ``told``."""
+    contradicts: bool = False
+    """Whether the data exclude the stated value."""
+
+    @property
+    def reported(self) -> InstrumentEstimate:
+        """The parameter for the rest of the program."""
+        x = self.instrument
+        return InstrumentEstimate(
+            x.name,
+            self.value,
+            self.std,
+            x.stated,
+            self.told,
+            self.told_std,
+            self.contradicts,
+            x.prior is None,
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class InstrumentFit:
+    """A solution with its instrument parameters."""
+
+    solution: Solution
+    """Solution whose ``extra`` columns are the derivatives by ``identified``, in that order."""
+    identified: tuple[Identified, ...] = ()
+
+    def misfit(self, weighing: Weighing) -> float:
+        """Return -2 log of the posterior up to a constant, under one noise model."""
+        found = self.solution
+        prior = penalty(found.problem, [x.instrument for x in self.identified])
+        return weighing.misfit(found.residual, found.sensitivities) + prior
+
+
+class _Fit(NamedTuple):
+    """The optimum at one setting of the instruments."""
+
+    problem: OutputErrorProblem
+    assembly: Assembly
+    optimum: Optimum
+
+    def cost(self, names: Sequence[Instrument]) -> float:
+        """Return -2 log of the posterior up to a constant."""
+        return self.optimum.log_likelihood_cost + penalty(self.problem, names)
+
+
+def fit_instruments(plain: Solution, unknown: Sequence[Instrument]) -> InstrumentFit:
+    """Estimate the instrument parameters; ``plain`` is the solution without any.
+
+    Parameters
+    ----------
+    unknown
+        Parameters with a prior, open ones, and stated ones.
+    """
+    begin = _Fit(plain.problem, plain.assembly, plain.optimum)
+    unknown = [_weighed(x, _share(plain)) for x in unknown]
+    common = tuple(x for x in unknown if x.name not in OF_ALPHA)
+    near = _looked_about(begin, common)
+    choices = [(*common, x) for x in unknown if x.name in OF_ALPHA] or [common]
+    fits = [(names, _descend(near, names)) for names in choices if names]
+    names, best = min(fits, key=lambda found: found[1].cost(found[0]), default=((), begin))
+    kept = _clear_ones(names, best, plain)
+    if kept is None:
+        return InstrumentFit(plain)
+    return _with_statements(*kept, plain)
+
+
+def _share(plain: Solution) -> float:
+    """Return the errors by white noise over those by the residuals' colour, the median of the parameters."""
+    ratio = np.sqrt(np.diag(plain.covariance_cr) / np.diag(plain.covariance))
+    return float(np.clip(np.nanmedian(ratio), LEAST_SHARE, 1.0))
+
+
+def _weighed(x: Instrument, share: float) -> Instrument:
+    """Return the instrument with the share by which white noise weighs its prior."""
+    return x if x.prior is None else replace(x, prior=replace(x.prior, share=share))
+
+
+def _clear_ones(
+    names: tuple[Instrument, ...], best: _Fit, plain: Solution
+) -> tuple[tuple[Instrument, ...], _Fit, Solution] | None:
+    """Return the instruments without those open ones that the data do not clearly tell."""
+    while True:
+        solution = _solution(best, names)
+        if solution is None:
+            return None
+        weighing = Weighing.by(solution.noise, solution.assembly)
+        opens = [x for x in names if x.prior is None and x.stated is None]
+        rivals = [(x, _without(x, best, names, plain)) for x in opens]
+        std = {found.instrument.name: found.std for found in identified_at(solution, names)}
+        gains = [
+            0.0 if x.at_end(best.problem, std[x.name]) else _gain(weighing, x, best, rival, names)
+            for x, rival in rivals
+        ]
+        if not gains or min(gains) >= CLEARLY:
+            return names, best, solution
+        weakest, rival = rivals[int(np.argmin(gains))]
+        innocent = weakest.innocent(plain.problem)
+        others = tuple(x for x in names if x is not weakest)
+        names = others if innocent is None else (*others, _weighed(innocent, _share(plain)))
+        best = _descend(rival, names)
+
+
+def _with_statements(
+    names: tuple[Instrument, ...], best: _Fit, solution: Solution, plain: Solution
+) -> InstrumentFit:
+    """Return the fit in which every stated value that the data do not exclude is a prior."""
+    alone = identified_at(solution, names)
+    white = np.sqrt(np.diag(solution.covariance_cr)[N:])
+    if all(x.instrument.stated is None or x.contradicts for x in alone):
+        return InstrumentFit(solution, alone)
+    kept, reset = [], best
+    for found, white_std in zip(alone, white, strict=True):
+        x = found.instrument
+        share = min(1.0, float(white_std) / found.std)
+        if x.prior is not None:
+            kept.append(replace(found, instrument=_weighed(x, share)))
+        elif x.stated is None or found.contradicts:
+            kept.append(found)
+        elif x.known_to * abs(x.stated) > 0.0:
+            # A statement is trusted no better than the data confirm it.
+            width = max(x.known_to * abs(x.stated), abs(found.told - x.stated))
+            kept.append(replace(found, instrument=replace(x, prior=Prior(x.stated, width, share))))
+        else:
+            reset = _at(x.write(reset.problem, x.stated), reset) or reset
+    names = tuple(found.instrument for found in kept)
+    final = _solution(_descend(reset, names), names)
+    return InstrumentFit(plain) if final is None else InstrumentFit(final, refreshed(kept, final))
+
+
+def refreshed(identified: Sequence[Identified], solution: Solution) -> tuple[Identified, ...]:
+    """Return the instruments with the values and errors of another solution. Findings about stated values
+    stay."""
+    now = identified_at(solution, [x.instrument for x in identified])
+    return tuple(
+        there if x.instrument.stated is None else replace(x, value=there.value, std=there.std)
+        for x, there in zip(identified, now, strict=True)
+    )
+
+
+def _without(x: Instrument, best: _Fit, names: Sequence[Instrument], plain: Solution) -> _Fit:
+    """Return the optimum with one instrument set back to the aircraft file's value."""
+    begin = _Fit(plain.problem, plain.assembly, plain.optimum)
+    others = [other for other in names if other is not x]
+    reset = x.write(best.problem, x.read(plain.problem))
+    return _descend(_at(reset, best) or begin, others)
+
+
+def _gain(weighing: Weighing, x: Instrument, fit: _Fit, rival: _Fit, names: Sequence[Instrument]) -> float:
+    """Return twice the log ratio of the posteriors of a fit and of a rival, under one noise model.
+
+    A value that the record cannot show gains nothing.
+    """
+    if abs(x.read(fit.problem)) < x.smallest(fit.problem):
+        return 0.0
+
+    def misfit(of: _Fit) -> float:
+        data = weighing.misfit(of.assembly.z - of.optimum.fitted, of.optimum.sensitivities)
+        return data + penalty(of.problem, names)
+
+    return misfit(rival) - misfit(fit)
+
+
+def _looked_about(begin: _Fit, names: Sequence[Instrument]) -> _Fit:
+    """Return the best of the starts of each instrument, one instrument after the other.
+
+    The posterior of a lag may have a second, lower peak at a third of the lag. A measured surface, whose
+    stated lag is zero, has none."""
+    best = begin
+    for x in names:
+        near, found = best, [best]
+        for start in x.starts if x.stated != 0.0 and x.prior is None else ():
+            near = _at(x.write(best.problem, start), near) or near
+            found.append(near)
+        best = min(found, key=lambda fit: fit.cost(()))
+    return best
+
+
+def _descend(begin: _Fit, names: Sequence[Instrument]) -> _Fit:
+    """Minimise the cost over the instruments by Gauss-Newton, with everything else refitted at each step."""
+    best = begin
+    for _ in range(ROUNDS if names else 0):
+        step = _step(best, names)
+        found = None
+        for _ in range(5):
+            found = _at(moved_by(step, best.problem, names), best)
+            if found is not None and found.cost(names) < best.cost(names):
+                break
+            step, found = step / 4.0, None
+        if found is None:
+            break
+        gain, best = best.cost(names) - found.cost(names), found
+        if gain < SETTLED:
+            break
+    return best
+
+
+def _step(fit: _Fit, names: Sequence[Instrument]) -> FloatArray:
+    """Return the Gauss-Newton step of the instruments with everything else free, shape (k,)."""
+    optimum = fit.optimum
+    extra = extra_of(fit.problem, optimum.shared, optimum.local, names)
+    effect = influence(fit.assembly, optimum.sensitivities, optimum.noise, extra)
+    if effect is None:
+        return np.zeros(len(names))
+    return effect.step(fit.assembly.z - optimum.fitted, extra)[N:]
+
+
+def _at(problem: OutputErrorProblem, near: _Fit) -> _Fit | None:
+    begin = (near.optimum.shared, near.optimum.local)
+    assembly, optimum = search(problem, begin=begin, flat=CLOSE_ENOUGH)
+    return _Fit(problem, assembly, optimum) if optimum.status == CONVERGED else None
+
+
+def identified_at(solution: Solution, names: Sequence[Instrument]) -> tuple[Identified, ...]:
+    """Return values and errors of instruments in a solution whose first extra columns are theirs."""
+    pulls = solution.contributions[:, : len(solution.covariance)]
+    covariance = widened_by_scatter(solution.covariance, pulls)
+    std = np.sqrt(np.diag(covariance)[N : N + len(names)])
+    return tuple(_identified(x, solution.problem, float(s)) for x, s in zip(names, std, strict=True))
+
+
+def _identified(x: Instrument, problem: OutputErrorProblem, std: float) -> Identified:
+    value = x.read(problem)
+    if x.prior is not None:
+        # Sound instruments all lie within the prior; a servo's lag with a prior was told by other manoeuvres.
+        odd = abs(value - x.prior.mean) > CONTRADICTS * float(np.hypot(std, x.prior.std))
+        return Identified(x, value, std, value, std, contradicts=odd and x.name == "command_delay_s")
+    if x.stated is None:
+        return Identified(x, value, std, value, std)
+    apart = abs(value - x.stated)
+    excluded = apart > CONTRADICTS * float(np.hypot(std, x.known_to * x.stated))
+    beyond = excluded and apart > x.smallest(problem) and not x.at_end(problem, std)
+    return Identified(x, value, std, value, std, contradicts=beyond)
+
+
+def _solution(fit: _Fit, names: Sequence[Instrument]) -> Solution | None:
+    extra = extra_of(fit.problem, fit.optimum.shared, fit.optimum.local, names)
+    found = evaluate(*fit, extra)
+    return found if isinstance(found, Solution) else None

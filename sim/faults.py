@@ -1,0 +1,102 @@
+"""Faults of instruments and telemetry, as the section ``faults`` of a scenario names them."""
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+RAD_PER_DEG = 0.017453292519943295
+
+FIELDS: dict[str, tuple[str, tuple[str, ...]]] = {
+    "alpha": ("AOA_SSA", ("AOA",)),
+    "q": ("ATTITUDE", ("pitchspeed",)),
+    "theta": ("ATTITUDE", ("pitch",)),
+    "a_z": ("RAW_IMU", ("zacc",)),
+    "accelerometer": ("RAW_IMU", ("xacc", "yacc", "zacc")),
+    "airspeed": ("VFR_HUD", ("airspeed",)),
+}
+"""Channel to its message and the fields that carry the channel."""
+
+UNITS: dict[str, dict[str, float]] = {
+    "alpha": {"rad": RAD_PER_DEG},
+    "q": {"deg/s": 1.0 / RAD_PER_DEG},
+    "theta": {"deg": 1.0 / RAD_PER_DEG},
+    "accelerometer": {"counts": 2.048, "g": 1.0},
+    "airspeed": {"knots": 3600.0 / 1852.0},
+}
+"""Channel to its wrong units, and the factor from the right one. A count is 1/2048 g. ``g`` needs a message
+with decimals, so that HIGHRES_IMU replaces RAW_IMU."""
+
+STAMPED = (
+    "ATTITUDE",
+    "AOA_SSA",
+    "SERVO_OUTPUT_RAW",
+    "RAW_IMU",
+    "GLOBAL_POSITION_INT",
+    "SYSTEM_TIME",
+    "RC_CHANNELS",
+)
+"""Messages with a stamp of the vehicle's clock."""
+
+TROPOSPHERE_M = 11_000.0
+"""Greatest height of the standard atmosphere's lowest layer, m."""
+
+
+@dataclass(frozen=True)
+class Filters:
+    """Second-order Butterworth low-pass filters of the autopilot. Noise is added after them."""
+
+    gyro_hz: float = 0.0
+    """Cut-off of the gyro's filter, Hz, as INS_GYRO_FILTER. 0: no filter."""
+    accelerometer_hz: float = 0.0
+    """Cut-off of the accelerometer's filter, Hz, as INS_ACCEL_FILTER. 0: no filter."""
+    parameters: Literal["stated", "withheld"] = "stated"
+    """``stated``: the vehicle's parameters name both cut-offs."""
+
+
+@dataclass(frozen=True)
+class Faults:
+    """Faults of one flight. Without any, the log does not change by a byte."""
+
+    units: dict[str, str] = field(default_factory=dict)
+    """Channel to the wrong unit of its messages: alpha rad, q deg/s, theta deg, accelerometer counts or g,
+    airspeed knots."""
+    scale: dict[str, float] = field(default_factory=dict)
+    """Channel to a factor of its values; −1 reverses them. ``a_z: -1`` is an accelerometer with z up."""
+    filters: Filters = field(default_factory=Filters)
+    command_late_s: float = 0.0
+    """Time by which the command acts after the stamp of its SERVO_OUTPUT_RAW, s; −0.010 to 0.010 on real
+    autopilots."""
+    thin_air_m: float = 0.0
+    """Height of the ground above sea level, m. VFR_HUD then shows indicated air speed, and SCALED_PRESSURE
+    goes with every GLOBAL_POSITION_INT (standard atmosphere). 0: true air speed."""
+    repeated_after_s: float = 0.0
+    """Time after which every message comes again with a new stamp, s. 0: each message comes once."""
+    parameters_at_s: float = 0.0
+    """Time at which the parameters are sent, s since the log began. ``.inf``: never."""
+    clock_lag_s: dict[str, float] = field(default_factory=dict)
+    """Message to the time by which its stamps lag behind the vehicle's clock, s."""
+
+    def problems(self, period_s: float) -> list[str]:
+        """Return every mistake with its path. ``period_s`` is that of the autopilot's loop, s."""
+        found = [
+            f"faults.units.{channel}: '{unit}' is no wrong unit known here, choose from "
+            f"{', '.join(UNITS.get(channel, ())) or 'none'}"
+            for channel, unit in self.units.items()
+            if unit not in UNITS.get(channel, ())
+        ]
+        found += [
+            f"faults.scale.{channel}: unknown channel, choose from {', '.join(FIELDS)}"
+            for channel in self.scale
+            if channel not in FIELDS
+        ]
+        found += [
+            f"faults.clock_lag_s.{name}: carries no stamp, choose from {', '.join(STAMPED)}"
+            for name in self.clock_lag_s
+            if name not in STAMPED
+        ]
+        if not 0.0 <= self.repeated_after_s < period_s:
+            found.append("faults.repeated_after_s: must be at least 0 and below one period of loop_hz")
+        if not 0.0 <= self.thin_air_m < TROPOSPHERE_M:
+            found.append(f"faults.thin_air_m: must be at least 0 and below {TROPOSPHERE_M:.0f}")
+        if min(self.filters.gyro_hz, self.filters.accelerometer_hz) < 0.0:
+            found.append("faults.filters: a cut-off must be at least 0 Hz")
+        return found

@@ -1,0 +1,33 @@
+"""Hypotheses on a scale, weighed against a measured one."""
+
+import pytest
+
+from advisor.flight.instruments.hypotheses import ANY, AS_STATED, weigh
+from advisor.flight.instruments.measured import Measured, pooled
+
+FACTORS = {"reversed": -1.0, "in rad": 0.01745}
+
+
+@pytest.mark.parametrize(
+    ("value", "best"),
+    [(1.1, AS_STATED), (0.8, AS_STATED), (-0.95, "reversed"), (0.018, "in rad"), (0.35, ANY)],
+)
+def test_the_likeliest_hypothesis_is_the_one_whose_factor_is_near(value: float, best: str) -> None:
+    weighed = weigh(Measured(value, 0.01 * abs(value)), FACTORS, 0.1)
+    assert weighed.best == best
+    assert weighed.contradicts == (best != AS_STATED)
+
+
+def test_a_scale_within_its_error_of_zero_contradicts_nothing() -> None:
+    assert not weigh(Measured(-0.3, 0.15), FACTORS, 0.1).contradicts
+
+
+def test_a_poorly_measured_scale_contradicts_nothing() -> None:
+    assert not weigh(Measured(0.6, 0.2), FACTORS, 0.1).contradicts
+
+
+def test_records_that_scatter_widen_the_pooled_error() -> None:
+    one, other = {"k": Measured(0.9, 0.01)}, {"k": Measured(1.1, 0.01)}
+    together = pooled((one, other))["k"]
+    assert together.value == pytest.approx(1.0)
+    assert together.std > 0.05

@@ -1,0 +1,49 @@
+"""Two logs joined into one file are two logs, however each numbers its types."""
+
+from pathlib import Path
+
+import numpy as np
+
+from advisor.mavlink.logs.logs import open_log
+from advisor.mavlink.records.dataflash import read_logs, scan_records
+
+BASE = Path(__file__).parents[2] / "cases" / "base.bin"
+FMT = 0x80
+
+
+def renumbered(log: bytes) -> bytes:
+    """The log with the types of its records interchanged."""
+    stream = np.frombuffer(log, dtype=np.uint8).copy()
+    starts = np.empty(len(stream) // 4 + 1, dtype=np.int64)
+    starts = starts[: scan_records(stream, starts)]
+    definitions = starts[stream[starts + 2] == FMT]
+    numbers = sorted({int(n) for n in stream[definitions + 3]} - {FMT})
+    other = dict(zip(numbers, [*numbers[1:], numbers[0]], strict=True)) | {FMT: FMT}
+    for at in starts.tolist():
+        if stream[at + 2] == FMT:
+            stream[at + 3] = other[int(stream[at + 3])]
+        else:
+            stream[at + 2] = other[int(stream[at + 2])]
+    return stream.tobytes()
+
+
+def joined(tmp_path: Path) -> Path:
+    log = BASE.read_bytes()
+    path = tmp_path / "joined.bin"
+    path.write_bytes(log + renumbered(log))
+    return path
+
+
+def test_each_of_two_joined_logs_keeps_its_own_types(tmp_path: Path) -> None:
+    (alone,) = read_logs(BASE, ["ATT", "RCOU"])
+    first, second = read_logs(joined(tmp_path), ["ATT", "RCOU"])
+    for name in ("ATT", "RCOU"):
+        for field, values in alone[name].fields.items():
+            assert first[name].fields[field].tolist() == values.tolist()
+            assert second[name].fields[field].tolist() == values.tolist()
+
+
+def test_the_messages_of_both_joined_logs_arrive_one_log_after_the_other(tmp_path: Path) -> None:
+    first, second = open_log(joined(tmp_path))
+    assert {c.name: len(c) for c in first} == {c.name: len(c) for c in second}
+    assert max(int(c.order[-1]) for c in first) < min(int(c.order[0]) for c in second)
