@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.campaign.hand_decisions import NOTHING, ByHand, Remark
-from advisor.campaign.instruments import as_known_by, together
+from advisor.campaign.instruments import as_known_by, together, with_fit
 from advisor.campaign.joint_estimate import NEWEST, Together
 from advisor.campaign.journal import Journal
 from advisor.campaign.running_estimate import Settling
@@ -150,7 +150,12 @@ class Campaign:
             elevator_guess=stream.guess if isinstance(stream.elevator, Problem) else None,
             other_vehicles=tuple(sorted(stream.other_systems)),
             no_data=stream.no_data,
-            instruments=together(self._maneuvers, stream.instruments),
+            instruments=with_fit(
+                together(self._maneuvers, stream.instruments),
+                model,
+                (flown.estimate for flown in self._history),
+                self._aircraft,
+            ),
             mark_notes=self._mark_notes,
             notices=self._journal.lines,
             flight=flights.flight,

@@ -3,8 +3,11 @@
 from collections.abc import Iterable
 from dataclasses import replace
 
+from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.instrument_finding import InstrumentFinding
+from advisor.oem.estimate import Estimate, NoEstimate
+from advisor.oem.findings import findings_of
 
 
 def as_known_by(maneuver: Maneuver, newest: Maneuver) -> Maneuver:
@@ -26,6 +29,35 @@ def together(
     found = {f.code: f for f in before_flying}
     for maneuver in maneuvers:
         found |= {f.code: f for f in maneuver.findings}
+    return tuple(found.values())
+
+
+def with_fit(
+    by_motion: Iterable[InstrumentFinding],
+    model: Estimate | None,
+    single: Iterable[Estimate | NoEstimate],
+    aircraft: Aircraft,
+) -> tuple[InstrumentFinding, ...]:
+    """Return the findings of the motion, then those of the fit on properties that the motion leaves open.
+
+    Parameters
+    ----------
+    by_motion
+        Findings without aerodynamics.
+    model
+        Joint estimate over the accepted manoeuvres. It tells what estimates use.
+    single
+        Estimates of all manoeuvres. They tell what refuses them.
+    aircraft
+        Aircraft file, with which the estimates were made.
+    """
+    found = {f.code: f for f in by_motion}
+    told = [] if model is None else list(findings_of(model, aircraft))
+    for estimate in single:
+        if isinstance(estimate, Estimate):
+            told += [f for f in findings_of(estimate, aircraft) if f.refuses]
+    for one in told:
+        found.setdefault(one.code, one)
     return tuple(found.values())
 
 

@@ -24,6 +24,7 @@ from advisor.flight.maneuvers.purpose import LEAST_PITCH_RATE_DEG_S
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.messages import FloatArray
 from advisor.oem.estimate import ChannelFit, Estimate, NoEstimate
+from advisor.oem.findings import findings_of
 from advisor.words.digits import distinct_texts
 from advisor.words.quantiles import NORMAL_95
 
@@ -56,7 +57,8 @@ def judge_quality(
     codes = {reason.code for reason in reasons}
     if codes & UNTRUSTED:
         return tuple(reasons)
-    if refused := refusals(maneuver.findings):
+    told = findings_of(estimate, aircraft) if isinstance(estimate, Estimate) else ()
+    if refused := refusals((*maneuver.findings, *told)):
         return refused
     tail = [] if is_informed(estimate) else short_response(maneuver, period_s)
     follows = [*changed_speed(maneuver, aircraft), *tail, *too_quick(maneuver, period_s)]

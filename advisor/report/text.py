@@ -36,7 +36,8 @@ def activity_line(activity: Activity) -> str:
 
 def instrument_lines(found: Iterable[InstrumentFinding]) -> list[str]:
     """Return each contradiction of an instrument with its remedy."""
-    return [f"{'!' if f.used else '✗'} {f.sentence}. -> {f.fix}." for f in found]
+    told = [f for f in found if f.contradicts]
+    return [f"{'!' if f.used else '✗'} {f.sentence}. -> {f.fix}." for f in told]
 
 
 def caution_lines(maneuvers: Sequence[JudgedManeuver]) -> list[str]:

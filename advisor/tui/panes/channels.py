@@ -47,7 +47,7 @@ gusts), or *simulated*. Then every channel with its source, its rate and its lon
         rows += [("", ""), ("", f"{CONDITIONS[health.condition]}: {health.sentence}")]
         rows += [(f"{name:<22}", value) for name, value in health.figures]
         problems = self.query_one("#problems", Lines)
-        corrected = [f"{f.sentence}. {f.fix}." for f in view.state.instruments if f.used]
+        corrected = [f"{f.sentence}. {f.fix}." for f in view.state.instruments if f.contradicts and f.used]
         said = [f"! {sentence}" for sentence in (*view.obstacles, *corrected)]
         problems.display = bool(said)
         problems.write("\n".join(said))

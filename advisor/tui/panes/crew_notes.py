@@ -46,7 +46,11 @@ class CrewNotes(Part, HangingLines):
                 ("in the air  ", flying_in_words(view)),
                 ("α           ", alpha_in_words(view)),
                 ("link        ", _link_in_words(view)),
-                *(("! ", found.sentence) for found in view.state.instruments if found.used),
+                *(
+                    ("! ", found.sentence)
+                    for found in view.state.instruments
+                    if found.contradicts and found.used
+                ),
                 *(("! ", headline(warning)) for warning in verdict.warnings),
             )
         )
