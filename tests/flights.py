@@ -1,14 +1,18 @@
-"""Recorded flights of the bundled aircraft, made once a test run."""
+"""Recorded flights of the bundled aircraft, made once a test run, whichever of its processes asks first."""
 
+import os
 from functools import cache
 from pathlib import Path
-from tempfile import mkdtemp
+from tempfile import gettempdir, mkdtemp
+from zlib import crc32
 
 from sim.flight import Flight
 from sim.record import record
 from sim.scenario import Maneuver, Noise, Scenario
 
 FOLDER = Path(mkdtemp(prefix="flights-"))
+_SHARED = Path(gettempdir()) / f"recorded-{os.environ.get('PYTEST_XDIST_TESTRUNUID', FOLDER.name)}"
+"""What all processes of this run of tests record."""
 TWO = (Maneuver("3211"), Maneuver("rev"))
 """Enough where each manoeuvre is as good as another."""
 FOUR = Scenario().maneuvers[:4]
@@ -23,9 +27,14 @@ def recorded(
     maneuvers: tuple[Maneuver, ...] = Scenario().maneuvers,
 ) -> Path:
     """A log of the paper's seven manoeuvres, or of others."""
-    path = FOLDER / f"{aircraft}-{noise_percent}-{seed}-{len(maneuvers)}.tlog"
     noise = Noise(percent=noise_percent)
-    record(Flight(Scenario(aircraft=aircraft, noise=noise, seed=seed, maneuvers=maneuvers)), path)
+    scenario = Scenario(aircraft=aircraft, noise=noise, seed=seed, maneuvers=maneuvers)
+    flown = f"{crc32(repr(scenario).encode()):08x}"
+    path = _SHARED / f"{aircraft}-{noise_percent}-{seed}-{len(maneuvers)}-{flown}.tlog"
+    if not path.exists():
+        _SHARED.mkdir(exist_ok=True)
+        record(Flight(scenario), FOLDER / path.name)
+        (FOLDER / path.name).replace(path)
     return path
 
 

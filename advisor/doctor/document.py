@@ -54,7 +54,8 @@ def doctor_document(
         "vehicle": picked(findings.vehicle, "system component autopilot firmware"),
         "messages": plain(findings.messages),
         "clocks": plain(findings.clocks),
-        "elevator": elevator and {"output": elevator.outputs[0], **plain(elevator)},
+        "elevator": elevator
+        and {"output": elevator.outputs[0], **picked(elevator, "outputs resolution_deg calibrated")},
         "alpha": plain(findings.alpha),
         "limits": plain(findings.limits),
         "instruments": [instrument_document(found) for found in findings.instruments],

@@ -59,7 +59,7 @@ def test_at_one_percent_noise_the_stop_comes_with_its_criterion_below_the_limit(
 
 @pytest.mark.parametrize("parameter", ["M_alpha", "M_q", "M_delta_e", "Z_alpha"])
 def test_the_nonlinear_aircraft_gives_its_own_linearisation_within_5_percent(parameter: str) -> None:
-    model = analyzed(recorded("uav", 1.0))["model"]
+    model = analyzed(recorded("uav", 1.0, maneuvers=FOUR))["model"]
     assert model[parameter]["value"] == pytest.approx(truth("uav")[parameter], rel=0.05)
 
 

@@ -11,7 +11,7 @@ import pytest
 from advisor.flight.signals.messages import Columns
 from advisor.mavlink.logs.tlog import read_tlog
 from tests.conftest import Advisor
-from tests.flights import TWO, recorded
+from tests.flights import FOUR, TWO, recorded
 
 
 def process(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
@@ -38,9 +38,12 @@ def without(log: Path, name: str, to: Path) -> Path:
 BAD: dict[str, tuple[Callable[[Path], object], str]] = {
     "a file that is no tlog": (lambda p: p.write_text("time,alpha,q\n0,1,2\n" * 100), "no MAVLink"),
     "an empty file": (lambda p: p.write_bytes(b""), "empty"),
-    "a log without a vehicle": (lambda p: without(recorded("linear", 1.0), "HEARTBEAT", p), "HEARTBEAT"),
+    "a log without a vehicle": (
+        lambda p: without(recorded("linear", 1.0, maneuvers=TWO), "HEARTBEAT", p),
+        "HEARTBEAT",
+    ),
     "a log without an elevator": (
-        lambda p: without(recorded("linear", 1.0), "SERVO_OUTPUT_RAW", p),
+        lambda p: without(recorded("linear", 1.0, maneuvers=TWO), "SERVO_OUTPUT_RAW", p),
         "elevator",
     ),
 }
@@ -76,12 +79,12 @@ def test_with_json_the_document_still_comes_and_names_the_problem(
 
 
 def test_a_log_cut_off_inside_a_frame_is_used_up_to_the_cut(advisor: Advisor, tmp_path: Path) -> None:
-    data = recorded("linear", 1.0).read_bytes()
+    data = recorded("linear", 1.0, maneuvers=FOUR).read_bytes()
     cut = tmp_path / "cut.tlog"
     cut.write_bytes(data[: len(data) * 2 // 3 + 5])
     result = advisor("analyze", cut, "--json")
     assert result.returncode == 0
-    assert len(json.loads(result.stdout)["maneuvers"]) >= 4
+    assert len(json.loads(result.stdout)["maneuvers"]) >= 2
 
 
 def test_without_measured_angle_of_attack_it_is_derived_and_said_so(advisor: Advisor, tmp_path: Path) -> None:
@@ -93,7 +96,7 @@ def test_without_measured_angle_of_attack_it_is_derived_and_said_so(advisor: Adv
 
 
 def test_without_any_way_to_an_angle_of_attack_the_mend_is_named(advisor: Advisor, tmp_path: Path) -> None:
-    log = without(recorded("uav", 1.0), "AOA_SSA", tmp_path / "a.tlog")
+    log = without(recorded("uav", 1.0, maneuvers=TWO), "AOA_SSA", tmp_path / "a.tlog")
     log = without(log, "VFR_HUD", tmp_path / "b.tlog")
     result = advisor("analyze", log)
     assert result.returncode == 3
@@ -110,7 +113,7 @@ def test_a_missing_file_is_told(tmp_path: Path) -> None:
 def test_an_unknown_key_in_the_aircraft_file_is_wrong_configuration(tmp_path: Path) -> None:
     aircraft = tmp_path / "aircraft.yaml"
     aircraft.write_text("elevator: {calibrations: []}\nwings: 2\n")
-    result = process("analyze", recorded("linear", 1.0), "--aircraft", aircraft)
+    result = process("analyze", recorded("linear", 1.0, maneuvers=TWO), "--aircraft", aircraft)
     assert result.returncode == 2
     assert "elevator.calibrations" in result.stderr
     assert "wings" in result.stderr
@@ -131,8 +134,8 @@ def test_the_damaged_copies_above_are_otherwise_whole(tmp_path: Path) -> None:
             counts[columns.name] = counts.get(columns.name, 0) + len(columns)
         return counts
 
-    whole = count(recorded("uav", 1.0))
-    less = count(without(recorded("uav", 1.0), "AOA_SSA", tmp_path / "a.tlog"))
+    whole = count(recorded("uav", 1.0, maneuvers=TWO))
+    less = count(without(recorded("uav", 1.0, maneuvers=TWO), "AOA_SSA", tmp_path / "a.tlog"))
     assert less == {name: n for name, n in whole.items() if name != "AOA_SSA"}
 
 

@@ -11,7 +11,7 @@ from advisor.cli import group as cli
 from advisor.simulators.compare import compare
 from advisor.simulators.specification import simulator_of
 from advisor.words.problems import ConfigurationError
-from tests.flights import recorded
+from tests.flights import FOUR, recorded
 from tests.simulators.nonlinear import Nonlinear, flown
 from tests.simulators.test_specification import nothing_read
 
@@ -49,7 +49,7 @@ def test_a_factory_is_a_module_and_a_function(named):
 def test_a_module_that_does_not_exist_is_one_sentence_and_exit_code_2(capsys, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     code, out, err = said(
-        capsys, monkeypatch, recorded("uav", 1.0), "--simulator", "python:nowhere_at_all:make"
+        capsys, monkeypatch, recorded("uav", 1.0, maneuvers=FOUR), "--simulator", "python:nowhere_at_all:make"
     )
     assert (code, out) == (2, "")
     assert "No module named 'nowhere_at_all'" in err
@@ -57,7 +57,7 @@ def test_a_module_that_does_not_exist_is_one_sentence_and_exit_code_2(capsys, mo
 
 def test_the_command_writes_the_document_and_the_improved_aircraft_file(capsys, monkeypatch, tmp_path):
     out = tmp_path / "better.yaml"
-    log: Path = recorded("uav", 1.0)
+    log: Path = recorded("uav", 1.0, maneuvers=FOUR)
     code, text, _ = said(capsys, monkeypatch, log, "--simulator", FACTORY, "--json", "--out", out)
     document = json.loads(text)
     assert code == 0

@@ -29,6 +29,7 @@ def test_what_the_advice_saves_is_told_for_two_aircraft() -> None:
     assert min(row["fewer_percent"] for row in document["rows"]) > 10.0
 
 
+@pytest.mark.study
 def test_a_changed_aircraft_is_noticed_within_two_manoeuvres() -> None:
     document = json.loads(CliRunner().invoke(main, ["change", "--campaigns", "10", "--json", *ALONE]).stdout)
     lost = [row for row in document["rows"] if row["lost"]]

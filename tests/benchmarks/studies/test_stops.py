@@ -20,8 +20,10 @@ def one(case: Case, campaigns: int = 6) -> Stops:
     [
         Case("white", 5.0),
         Case("white, tight", 5.0, tolerance_percent=1.0),
-        Case("coloured", 2.5, tolerance_percent=2.0, correlation_s=0.2),
-        Case("lag", 2.5, lag_s=0.14),
+        pytest.param(
+            Case("coloured", 2.5, tolerance_percent=2.0, correlation_s=0.2), marks=pytest.mark.study
+        ),
+        pytest.param(Case("lag", 2.5, lag_s=0.14), marks=pytest.mark.study),
     ],
     ids=lambda case: case.name,
 )

@@ -144,17 +144,20 @@ def test_a_new_flight_test_on_the_connection_of_a_lost_one_ends_it_and_says_how_
 
 def test_a_full_disk_is_said_and_nothing_is_lost_when_there_is_room_again(advising: Advising):
     flight = until(FLIGHT, 24.0)
+    full, room = (len(until(flight, at_s)) for at_s in (4.0, 14.0))
     advising.start()
 
-    def fill_and_make_room(now_s: float) -> None:
-        if now_s >= 4.0:
-            full = advising.recording.stat().st_size if now_s < 14.0 else resource.RLIM_INFINITY
-            resource.prlimit(advising.keeper, resource.RLIMIT_FSIZE, (full, resource.RLIM_INFINITY))
+    def limit(size: int) -> None:
+        resource.prlimit(advising.keeper, resource.RLIMIT_FSIZE, (size, resource.RLIM_INFINITY))
 
-    fly(flight, advising.port, SPEED, fill_and_make_room)
+    fly(flight[:full], advising.port, SPEED, lambda now_s: None)
+    limit(advising.recording.stat().st_size)
+    fly(flight[full:room], advising.port, SPEED, lambda now_s: None)
+    wait_until(lambda: f"recording to {advising.recording} fails" in advising.warned, 30.0)
+    limit(resource.RLIM_INFINITY)
+    fly(flight[room:], advising.port, SPEED, lambda now_s: None)
     wait_until(lambda: "goes on: nothing is lost" in advising.warned, 10.0)
     wait_until(lambda: len(records_of(advising.recording)) == len(flight), 5.0)
-    assert f"recording to {advising.recording} fails" in advising.warned
     assert advising.end() == 130
 
 
