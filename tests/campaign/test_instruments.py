@@ -44,7 +44,7 @@ def both(log: str, fault: Fault, aircraft: Aircraft | None = None) -> tuple[Camp
 
 
 def told(found: Sequence[InstrumentFinding]) -> list[tuple[str, bool]]:
-    return [(one.code, one.used) for one in found]
+    return [(one.code, one.used) for one in found if one.contradicts]
 
 
 @pytest.mark.parametrize(("factor", "code"), [(-1.0, "alpha_sign"), (np.pi / 180.0, "alpha_unit")])
@@ -141,3 +141,17 @@ def test_an_error_that_was_not_removed_from_an_earlier_record_refuses_it() -> No
 def test_each_contradiction_is_told_once_as_the_newest_manoeuvre_tells_it() -> None:
     newer = replace(REFUSED, text="newer")
     assert together([maneuver(REFUSED), maneuver(newer)], [REFUSED]) == (newer,)
+
+
+def test_what_the_fit_tells_stands_among_the_instruments_without_contradicting() -> None:
+    sound, _ = both("t_base.tlog", lambda columns: columns)
+    assert {"elevator_lag_s", "elevator_delay_s"} <= {one.code for one in sound.instruments}
+
+
+def test_an_elevator_typed_with_the_other_sign_is_refused_on_its_manoeuvre() -> None:
+    typed = Elevator(output=2, calibration=((1000.0, -25.0), (1500.0, 0.0), (2000.0, 25.0)))
+    state, _ = both("t_base.tlog", lambda columns: columns, Aircraft(elevator=typed))
+    (judged,) = state.maneuvers
+    assert judged.verdict.reasons[0].code == "elevator_sign"
+    assert told(state.instruments) == [("elevator_sign", False)]
+    assert "turn the sign of every deflection" in state.flight_test.next.advice

@@ -63,7 +63,10 @@ BAD_FLIGHTS = {
         Aircraft(elevator=AIRCRAFT.elevator, limits=Limits(alpha_deg=4.0)),
     ),
     "amplitude": (Scenario(noise=Noise(percent=15.0), maneuvers=(Maneuver("3211"),)), AIRCRAFT),
-    "fit": (Scenario(effects={"pitch_rate_skew": {"skew_s": 0.3}}, maneuvers=(Maneuver("3211"),)), AIRCRAFT),
+    "q_delay_s": (
+        Scenario(effects={"pitch_rate_skew": {"skew_s": 0.3}}, maneuvers=(Maneuver("3211"),)),
+        AIRCRAFT,
+    ),
 }
 
 
