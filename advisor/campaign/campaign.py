@@ -11,7 +11,7 @@ from advisor.campaign.joint_estimate import NEWEST, Together
 from advisor.campaign.journal import Journal
 from advisor.campaign.running_estimate import Settling
 from advisor.campaign.servo_lag import learnt as learnt_from
-from advisor.campaign.servo_lag import may_learn, reserved, told
+from advisor.campaign.servo_lag import may_learn, of_another_power_on, reserved, told
 from advisor.campaign.single_maneuver import assess
 from advisor.campaign.state import CampaignState, JudgedManeuver
 from advisor.decision.course import CriterionCourse
@@ -81,6 +81,7 @@ class Campaign:
     ) -> None:
         self._aircraft = aircraft
         self._learnt = aircraft
+        self._told_by: set[tuple[int, int]] = set()
         self._method: Method = method
         self._tell = tell
         self._flights = Flights(aircraft, target_system, (*marks, *by_hand.marks), names)
@@ -239,7 +240,7 @@ class Campaign:
     def _judge(self, maneuver: Maneuver) -> ManeuverJudged:
         """Estimate and judge a manoeuvre that has just been flown, and decide anew whether to stop."""
         self._maneuvers.append(maneuver)
-        flown = assess(maneuver, self._learnt, self._method)
+        flown = self._assess(maneuver)
         because = self.by_hand.excluded_because(maneuver)
         self._history.append(replace(flown, excluded_because=because))
         self._blame_instruments(maneuver)
@@ -257,7 +258,7 @@ class Campaign:
             known = as_known_by(maneuver, newest)
             if known is not maneuver:
                 self._maneuvers[i] = known
-                flown = assess(known, self._learnt, self._method)
+                flown = self._assess(known)
                 self._history[i] = replace(flown, excluded_because=self._history[i].excluded_because)
 
     def _note_down(self, notice: Notice) -> None:
@@ -285,7 +286,7 @@ class Campaign:
             return []
         if event.takes_place:
             self._maneuvers[i] = maneuver
-            self._history[i] = assess(maneuver, self._learnt, self._method)
+            self._history[i] = self._assess(maneuver)
         self._history[i] = replace(self._history[i], excluded_because=because)
         self._decide()
         self._learn()
@@ -344,17 +345,24 @@ class Campaign:
         if not may_learn(self._learnt, all_of_them):
             return
         model = self._together.estimate([judged.maneuver for judged in joined])
-        learnt = learnt_from(self._learnt, model, exactly=self._ended)
+        told_by = {judged.maneuver.power_on for judged in joined}
+        learnt = learnt_from(self._learnt, model, one_power_on=len(told_by) == 1, exactly=self._ended)
         if learnt is self._learnt:
             return
-        self._learnt = learnt
-        again = [assess(maneuver, learnt, self._method) for maneuver in self._maneuvers]
+        self._learnt, self._told_by = learnt, told_by
+        again = [self._assess(maneuver) for maneuver in self._maneuvers]
         self._history = [
             replace(flown, excluded_because=before.excluded_because)
             for flown, before in zip(again, self._history, strict=True)
         ]
-        self._journal.write(told(learnt))
+        if sentence := told(learnt):
+            self._journal.write(sentence)
         self._decide()
+
+    def _assess(self, maneuver: Maneuver) -> CandidateManeuver:
+        """Estimate and examine one manoeuvre with what the others have told of the instruments."""
+        known = self._learnt if maneuver.power_on in self._told_by else of_another_power_on(self._learnt)
+        return assess(maneuver, known, self._method)
 
     def _decide_by_hand(self, number: int, because: str | None) -> None:
         i = self._index(number)

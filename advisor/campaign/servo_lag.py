@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.aircraft.aircraft import PARAMETERS, Aircraft
+from advisor.aircraft.aircraft import PARAMETERS, Aircraft, Elevator
 from advisor.decision.verdict import ManeuverVerdict
 from advisor.model.short_period import SPEED_EXPONENTS
 from advisor.oem.estimate import Estimate, NoEstimate
@@ -18,6 +18,9 @@ from advisor.oem.instruments import KNOWN_TO
 CONTRADICTS = 3.0
 """Difference between two estimates of one derivative, in standard deviations, that counts as a
 contradiction."""
+
+MUCH_SURER = 1.5
+"""Ratio of standard deviations above which the surer value replaces the one in use."""
 
 
 def may_learn(aircraft: Aircraft, all_of_them: bool) -> bool:
@@ -34,40 +37,74 @@ def may_learn(aircraft: Aircraft, all_of_them: bool) -> bool:
     return aircraft.elevator.lag_found_s is None or all_of_them
 
 
-def learnt(aircraft: Aircraft, model: Estimate | None, *, exactly: bool = False) -> Aircraft:
-    """Return the aircraft with the servo's lag from the joint estimate; unchanged without news.
+def learnt(
+    aircraft: Aircraft, model: Estimate | None, *, one_power_on: bool = True, exactly: bool = False
+) -> Aircraft:
+    """Return the aircraft with servo and command as the joint estimate tells them; unchanged without news.
 
     Parameters
     ----------
     aircraft
-        The crew's aircraft, with a lag that was identified before.
+        The crew's aircraft, with what was identified before.
     model
         Joint estimate over the accepted manoeuvres, made with the crew's aircraft.
+    one_power_on
+        Whether all these manoeuvres are of one power-on. The delay of the command differs from one to the
+        next.
     exactly
-        Take the newest value even within its standard deviation of the value in use, as at the end of a log.
+        Take the newest values even within their standard deviations of those in use, as at the end of a log.
     """
     if model is None:
         return aircraft
-    elevator, lag = aircraft.elevator, model.instrument("servo_lag_s")
-    if elevator.lag_s is not None and (lag is None or not lag.contradicts):
-        # The manoeuvres together do not exclude the crew's lag (any more).
-        return aircraft if elevator.lag_found_s is None else _using(aircraft, None)
-    if lag is None or not lag.std < KNOWN_TO * lag.value:
+    lag, delay = model.instrument("servo_lag_s"), model.instrument("command_delay_s")
+    known = lag is not None and lag.std < KNOWN_TO * lag.value
+    found = replace(
+        aircraft.elevator,
+        lag_found_s=lag.value if lag is not None and known else None,
+        lag_found_std_s=lag.std if lag is not None and known else None,
+        delay_found_s=delay.value if delay is not None and one_power_on else None,
+        delay_found_std_s=delay.std if delay is not None and one_power_on else None,
+    )
+    if found.lag_found_s is None and aircraft.elevator.lag_s is None:
         return aircraft
-    used = elevator.lag_found_s
-    near = used is not None and abs(lag.value - used) <= (0.0 if exactly else lag.std)
-    return aircraft if near else _using(aircraft, lag.value)
+    return aircraft if not exactly and _is_no_news(aircraft.elevator, found) else _using(aircraft, found)
 
 
-def _using(aircraft: Aircraft, lag_s: float | None) -> Aircraft:
-    return replace(aircraft, elevator=replace(aircraft.elevator, lag_found_s=lag_s))
+def _is_no_news(used: Elevator, found: Elevator) -> bool:
+    """Return whether values in use lie within the new standard deviations, and are about as certain."""
+    pairs = (
+        (used.lag_found_s, used.lag_found_std_s, found.lag_found_s, found.lag_found_std_s),
+        (used.delay_found_s, used.delay_found_std_s, found.delay_found_s, found.delay_found_std_s),
+    )
+    for before, before_std, now, std in pairs:
+        if (before is None) != (now is None):
+            return False
+        if before is None or before_std is None or now is None or std is None:
+            continue
+        if abs(now - before) > std or before_std > MUCH_SURER * std:
+            return False
+    return True
+
+
+def _using(aircraft: Aircraft, elevator: Elevator) -> Aircraft:
+    return aircraft if elevator == aircraft.elevator else replace(aircraft, elevator=elevator)
+
+
+def of_another_power_on(aircraft: Aircraft) -> Aircraft:
+    """Return what is known of an aircraft in a power-on that no manoeuvre has told of: no delay of the
+    command."""
+    return _using(aircraft, replace(aircraft.elevator, delay_found_s=None, delay_found_std_s=None))
 
 
 def told(aircraft: Aircraft) -> str:
-    """Return the sentence for the event log about the lag that every estimate uses now."""
+    """Return the sentence for the event log about the lag that every estimate uses now; empty without a
+    lag."""
     found, stated = aircraft.elevator.lag_found_s, aircraft.elevator.lag_s
+    std = aircraft.elevator.lag_found_std_s or 0.0
     if found is None:
-        return "the manoeuvres together agree with elevator.lag_s again; every estimate uses it now"
+        return ""
+    if stated is not None and abs(found - stated) <= CONTRADICTS * std:
+        return f"the manoeuvres together tell a lag of the servo of {found:.3f} s, as elevator.lag_s says"
     against = "" if stated is None else f", against {stated:.3f} s in elevator.lag_s,"
     return (
         f"the servo's lag is {found:.3f} s{against} by all manoeuvres together; every estimate uses it now;"

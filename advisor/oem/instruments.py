@@ -227,7 +227,7 @@ def unknown_instruments(problem: OutputErrorProblem, aircraft: Aircraft) -> tupl
     A vane and an accelerometer at one place describe the motion of that place. Instruments at the centre of
     gravity describe the aircraft's equally well. One of the two places must be known to determine the other.
     """
-    command = COMMAND_DELAY.innocent(problem)
+    command = _command(aircraft.elevator, problem)
     unknown = [_servo_lag(aircraft.elevator), *([command] if command else [])]
     measured = {name for record in problem.records for name in record.outputs}
     vane_m, imu_m = aircraft.alpha.vane_arm_m, aircraft.accelerometer.arm_m
@@ -246,5 +246,13 @@ def _servo_lag(elevator: Elevator) -> Instrument:
     not."""
     found = elevator.lag_found_s
     if found is not None:
-        return replace(SERVO_LAG, prior=Prior(found, KNOWN_TO * found))
+        return replace(SERVO_LAG, prior=Prior(found, elevator.lag_found_std_s or KNOWN_TO * found))
     return replace(SERVO_LAG, stated=elevator.lag_s)
+
+
+def _command(elevator: Elevator, problem: OutputErrorProblem) -> Instrument | None:
+    """Return the delay of the command as known before this fit: by other manoeuvres of the power-on, or by
+    the prior of sound instruments."""
+    if elevator.delay_found_s is None or elevator.delay_found_std_s is None:
+        return COMMAND_DELAY.innocent(problem)
+    return replace(COMMAND_DELAY, prior=Prior(elevator.delay_found_s, elevator.delay_found_std_s))
