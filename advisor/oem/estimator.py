@@ -198,7 +198,7 @@ def report(
         airspeed_m_s=solution.problem.reference_airspeed_m_s or prepared.airspeed_m_s,
         notes=notes(solution, prepared, aircraft, identified, lagged, best=best, priced=not quick),
         theta_of_lowest_cost=None if best.theta is solution.theta else solution.theta,
-        instruments=tuple(x.reported for x in identified),
+        instruments=tuple(x.reported for x in identified if x.reported is not None),
         gust_rad=air.gust_angle if air is not None and air.present else None,
         filtered=filtered is not None,
         servo_lag_s=best.problem.servo.lag_s,

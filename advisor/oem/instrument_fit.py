@@ -62,9 +62,11 @@ class Identified:
     """Whether the data exclude the stated value."""
 
     @property
-    def reported(self) -> InstrumentEstimate:
-        """The parameter for the rest of the program."""
+    def reported(self) -> InstrumentEstimate | None:
+        """The parameter for the rest of the program; None for a moment of the aircraft."""
         x = self.instrument
+        if x.name == "steady_moment_rad":
+            return None
         return InstrumentEstimate(
             x.name,
             self.value,

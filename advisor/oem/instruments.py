@@ -6,6 +6,10 @@ M_q and M_δe by 7 to 19 %. A vane ahead of the centre of gravity reads α - (x/
 angle of attack is late. Both change Z_α, Z_q, Z_δe and M_q while α and q fit as well as before. With a_z and
 air speed the kinematics distinguish instrument and aircraft.
 
+Not an instrument, but a nuisance of the same kind, is the moment that does not scale with V². Where the air
+speed changes, a thrust that passes the centre of gravity would bias M_α, M_q and M_δe. The simulator of an
+autopilot has such a moment as well.
+
 Each unknown instrument is one more shared parameter of the fit (``instrument_fit``).
 """
 
@@ -24,7 +28,12 @@ from advisor.oem.problem import OutputErrorProblem, assemble
 from advisor.oem.surface import Servo
 
 InstrumentName = Literal[
-    "servo_lag_s", "command_delay_s", "vane_arm_m", "alpha_delay_s", "accelerometer_arm_m"
+    "servo_lag_s",
+    "command_delay_s",
+    "vane_arm_m",
+    "alpha_delay_s",
+    "accelerometer_arm_m",
+    "steady_moment_rad",
 ]
 
 KNOWN_TO = 0.1
@@ -36,6 +45,10 @@ SMALLEST_DELAY_S = 0.004
 """Smallest delay of the angle of attack that matters, s: a fifth of a sample at 50 Hz."""
 SMALLEST_ARM_M = 0.02
 """Smallest distance of an accelerometer from the centre of gravity that matters, m."""
+STEADY_MOMENT_RAD = 0.02
+"""Standard deviation of the elevator deflection that balances the moments which do not scale with V², rad: a
+change of power asks for a degree or so of trim. Set on a business jet, 0.01 rad, and on a jet in turbulence,
+0.02 rad."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,6 +118,10 @@ def _with_delay(problem: OutputErrorProblem, value: float) -> OutputErrorProblem
 
 def _with_imu(problem: OutputErrorProblem, value: float) -> OutputErrorProblem:
     return replace(problem, accelerometer_arm_m=value)
+
+
+def _with_steady_moment(problem: OutputErrorProblem, value: float) -> OutputErrorProblem:
+    return replace(problem, steady_moment_rad=value)
 
 
 def _half_interval(problem: OutputErrorProblem) -> float:
@@ -181,6 +198,17 @@ ACCELEROMETER_ARM = Instrument(
     (),
     lambda _: SMALLEST_ARM_M,
 )
+STEADY_MOMENT = Instrument(
+    "steady_moment_rad",
+    lambda problem: problem.steady_moment_rad,
+    _with_steady_moment,
+    1e-4,
+    -0.5,
+    0.5,
+    (),
+    lambda _: 0.0,
+    usual=lambda _: STEADY_MOMENT_RAD,
+)
 OF_ALPHA = ("vane_arm_m", "alpha_delay_s")
 """Two readings of an angle of attack that contradict the kinematics in nearly equal ways; at most one is
 kept."""
@@ -229,6 +257,9 @@ def unknown_instruments(problem: OutputErrorProblem, aircraft: Aircraft) -> tupl
     """
     command = _command(aircraft.elevator, problem)
     unknown = [_servo_lag(aircraft.elevator), *([command] if command else [])]
+    steady = STEADY_MOMENT.innocent(problem)
+    if steady is not None and problem.reference_airspeed_m_s is not None:
+        unknown.append(steady)
     measured = {name for record in problem.records for name in record.outputs}
     vane_m, imu_m = aircraft.alpha.vane_arm_m, aircraft.accelerometer.arm_m
     if {"alpha", "a_z"} <= measured:

@@ -2,6 +2,8 @@
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from advisor.aircraft.aircraft import PARAMETERS, Aircraft
 from advisor.flight.signals.messages import FloatArray
 from advisor.oem.correlation import HIGH_CORRELATION
@@ -68,7 +70,8 @@ def _is_worth_saying(identified: Identified) -> bool:
     x = identified.instrument
     if x.prior is None:
         return x.stated is None or identified.contradicts
-    return x.name == "command_delay_s" and abs(identified.value - x.prior.mean) > 3.0 * identified.std
+    told = x.name in ("command_delay_s", "steady_moment_rad")
+    return told and abs(identified.value - x.prior.mean) > 3.0 * identified.std
 
 
 def _instrument(identified: Identified, solution: Solution) -> str:
@@ -90,6 +93,11 @@ def _instrument(identified: Identified, solution: Solution) -> str:
         case "command_delay_s":
             return (
                 f"The command acts {1e3 * value:+.1f} ± {1e3 * half:.1f} ms after its stamps, as estimated."
+            )
+        case "steady_moment_rad":
+            return (
+                "A part of the pitching moment, such as the thrust's, does not change with air speed. It"
+                f" equals the moment of {np.degrees(value):+.1f} ± {np.degrees(half):.1f} deg of elevator."
             )
         case "alpha_delay_s":
             return (

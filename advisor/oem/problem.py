@@ -75,6 +75,9 @@ class OutputErrorProblem:
     accelerometer_arm_m: float = 0.0
     alpha_delay_s: float = 0.0
     """Delay of the angle of attack, s."""
+    steady_moment_rad: float = 0.0
+    """Moment that does not scale with the square of the air speed, as the deflection that balances it at the
+    reference speed, rad."""
     airspeed_may_be_off: bool = True
     """Whether a scale error of the air speed in a_z is estimated. Equivalent, ratiometric or derived speeds
     are off by some per cent, which would otherwise bias Z_alpha and M_alpha."""
@@ -224,7 +227,6 @@ class _Piece:
         step = np.diff(t)
         middle = t[:-1] + step / 2.0
         at_event, start, arrival = problem.servo.move(record.elevator.t, record.elevator.y, t, record.held)
-        slope = (arrival - start[:-1]) / step
         ratio, airspeed, acceleration = np.ones(len(step)), np.ones(len(t)), np.zeros(len(t))
         known = np.zeros(len(step))
         if record.airspeed is not None:
@@ -235,6 +237,9 @@ class _Piece:
             if problem.reference_airspeed_m_s is not None:
                 ratio = speed / problem.reference_airspeed_m_s
                 known = pull - ratio * GRAVITY_M_S2 / problem.reference_airspeed_m_s
+                excess = (problem.reference_airspeed_m_s / airspeed) ** 2 - 1.0
+                steady = problem.steady_moment_rad * excess
+                at_event, start, arrival = at_event + steady, start + steady, arrival + steady[1:]
             if record.normal_gravity is not None:
                 known += pull * (record.normal_gravity.at(middle) - 1.0)
         gravity = np.full(len(t), GRAVITY_M_S2) if record.gravity_z is None else record.gravity_z.at(t)
@@ -244,7 +249,7 @@ class _Piece:
             steps=_padded(np.column_stack([np.round(step, STAMP_DIGITS), ratio])),
             elevator=at_event,
             start=start,
-            slope=_padded(slope),
+            slope=_padded((arrival - start[:-1]) / step),
             known=_padded(known),
             airspeed=airspeed,
             acceleration=acceleration,
