@@ -4,7 +4,8 @@
 
 Each log runs as in ``advisor analyze``: once with the servo's lag of the aircraft file, once without it. A
 row holds when the estimate lies within 5 % of the truth, or when the 95 % interval holds the truth. The truth
-is that of the README beside the logs, at the air speed that the estimate states.
+is that of the README beside the logs, at the true air speed of the flight. The aircraft files state their air
+speed as read.
 """
 
 import argparse
@@ -21,6 +22,9 @@ from advisor.library import judge, read
 SHOWN = ("Z_alpha", "M_alpha", "M_q", "M_delta_e")
 POWERS: Mapping[str, int] = {"Z_alpha": 1, "M_alpha": 2, "M_q": 1, "M_delta_e": 2}
 """Power of the air speed by which each derivative grows."""
+TRUE_OVER_STANDARD = 1.018
+"""True air speed in this simulator over that of the standard atmosphere at the static pressure: 1.0509 over
+1.0327 and 1.052 over 1.0354 by the ground speed without wind, 1.0265 over 1.0075 by its README."""
 NEAR = 0.05
 NORMAL_95 = 1.96
 
@@ -32,35 +36,36 @@ class Truth:
     log: str
     lag_s: float
     """True lag of the servo, s."""
+    true_over_read: float = 1.054
+    """True air speed over the one that is read."""
     factors: Mapping[str, float] = field(default_factory=dict)
     """Factor from the file's derivative to the true one."""
     skipped: tuple[str, ...] = ()
     """Derivatives without one value: the flight's moment is not linear."""
     at_one_m_s: Mapping[str, float] = field(default_factory=dict)
-    """Derivatives at an air speed of 1 m/s as read, for a log without a file's model."""
+    """Derivatives at a true air speed of 1 m/s, for a log without a file's model."""
 
 
 TRUTHS = (
     Truth("autopilot-05", 0.14, skipped=("M_q",)),
-    Truth("autopilot-14", 0.14, {"M_alpha": 0.815, "M_q": 0.7}),
+    Truth("autopilot-14", 0.14, factors={"M_alpha": 0.815, "M_q": 0.7}),
     Truth("autopilot-16", 0.22),
     Truth("autopilot-20", 0.14),
-    Truth("autopilot-42", 0.04, skipped=("M_q", "M_alpha", "M_delta_e")),
-    Truth("autopilot-45", 0.04, {"Z_alpha": 1.0 / 0.75, "M_delta_e": 1.0 / 1.2}),
-    Truth("autopilot-54", 0.06),
-    Truth("autopilot-58", 0.04),
+    Truth("autopilot-42", 0.04, 1.0265, skipped=("M_q", "M_alpha", "M_delta_e")),
+    Truth("autopilot-45", 0.04, 1.0265, {"Z_alpha": 1.0 / 0.75, "M_delta_e": 1.0 / 1.2}),
+    Truth("autopilot-54", 0.06, 1.0265),
+    Truth("autopilot-58", 0.04, 1.0265),
     Truth(
         "arduplane-elevon",
         0.14,
-        at_one_m_s={"Z_alpha": -0.3312, "M_alpha": -0.07659, "M_q": -0.16457, "M_delta_e": -0.12994},
+        at_one_m_s={"Z_alpha": -0.320, "M_alpha": -0.0715, "M_q": -0.159, "M_delta_e": -0.1213},
     ),
     Truth(
         "uav-calm-manual",
         0.14,
-        at_one_m_s={"Z_alpha": -0.3161, "M_alpha": -0.07522, "M_q": -0.16693, "M_delta_e": -0.15855},
+        at_one_m_s={"Z_alpha": -0.3069, "M_alpha": -0.0709, "M_q": -0.1621, "M_delta_e": -0.1494},
     ),
 )
-"""The last two at the true air speed, 1.035 and 1.03 times the one that is read."""
 
 
 @dataclass(frozen=True)
@@ -149,10 +154,12 @@ def _compared(truth: Truth, word: str, described: Aircraft, found: CampaignState
         if name in truth.skipped:
             continue
         value, half = model.value(name), NORMAL_95 * float(model.std[PARAMETERS.index(name)])
+        speed = TRUE_OVER_STANDARD * model.airspeed_m_s
         if truth.at_one_m_s:
-            true = truth.at_one_m_s[name] * model.airspeed_m_s ** POWERS[name]
+            true = truth.at_one_m_s[name] * speed ** POWERS[name]
         else:
-            ratio = model.airspeed_m_s / (described.reference_airspeed_m_s or model.airspeed_m_s)
+            stated = truth.true_over_read * (described.reference_airspeed_m_s or model.airspeed_m_s)
+            ratio = speed / stated
             true = truth.factors.get(name, 1.0) * described.model[name] * ratio ** POWERS[name]
         yield Row(truth.log, word, name, value, half, true, model.servo_lag_s, counted)
 

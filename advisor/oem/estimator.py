@@ -61,12 +61,12 @@ def _estimate(maneuvers: Sequence[Maneuver], aircraft: Aircraft, method: Method)
     prepared = prepare(maneuvers, aircraft)
     if isinstance(prepared, NoEstimate):
         return prepared
-    solution = _solved(prepared.problem, method)
-    if isinstance(solution, NoEstimate):
-        return solution
+    plain = _solved(prepared.problem, method)
+    if isinstance(plain, NoEstimate):
+        return plain
     if method != "gauss-newton":
-        return report(solution, prepared, aircraft, lagged=_supposing_a_lag(solution, aircraft))
-    fitted = _with_instruments(solution, aircraft)
+        return report(plain, prepared, aircraft, lagged=_supposing_a_lag(plain, aircraft))
+    fitted = _with_instruments(plain, aircraft)
     solution = with_edges(fitted.solution)
     identified = refreshed(fitted.identified, solution)
     has_lag = any(x.instrument.name == "servo_lag_s" for x in identified)
@@ -74,7 +74,9 @@ def _estimate(maneuvers: Sequence[Maneuver], aircraft: Aircraft, method: Method)
     air = _air(solution, maneuvers, prepared)
     filtered = None
     if air is not None:
-        filtered = filter_error(solution, air.air, [x.instrument for x in identified])
+        names = [x.instrument for x in identified]
+        # Gusts can draw output error's instruments so far that the search from there diverges.
+        filtered = filter_error(solution, air.air, names) or filter_error(plain, air.air, names)
     if filtered is not None:
         identified = refreshed(identified, filtered)
     return report(

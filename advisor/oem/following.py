@@ -2,7 +2,8 @@
 
 Each refresh is complete: all data so far, all parameters, corrected errors. Most refreshes update the last
 solution with the newest samples (``carried``). Twice per second the model is solved anew over all data, from
-the last optimum. The noise model, and the use of the angle of attack, are checked every two seconds.
+the last optimum. The noise model, and the use of the angle of attack, are checked every two seconds. Servo
+lag and delay of the command are allowed for by one more step (``doubt``).
 """
 
 import math
@@ -10,6 +11,7 @@ import math
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.carried import UpdatableSolution
+from advisor.oem.doubt import Doubt
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import report
 from advisor.oem.prepare import prepare
@@ -35,6 +37,7 @@ class Follower:
         self._last: Solution | None = None
         self._carried: UpdatableSolution | None = None
         self._left_out: str | None = None
+        self._doubt: Doubt | None = None
         self._solved_s = self._coloured_s = -math.inf
 
     def refresh(self, maneuver: Maneuver) -> Estimate | NoEstimate:
@@ -44,8 +47,8 @@ class Follower:
         now_s = float(maneuver.channels["q"].t[-1]) if maneuver.channels["q"] else -math.inf
         if self._carried is not None and now_s < self._solved_s + CARRY_S:
             found = self._carried.on(maneuver)
-            if found is not None:
-                return found
+            if found is not None and self._doubt is not None:
+                return self._doubt.on(found)
         return self._complete(maneuver, now_s)
 
     def _complete(self, maneuver: Maneuver, now_s: float) -> Estimate | NoEstimate:
@@ -70,4 +73,5 @@ class Follower:
             return solution
         found = report(solution, prepared, self._aircraft, quick=True)
         self._carried = UpdatableSolution(solution, prepared, found)
-        return found
+        self._doubt = Doubt.about(solution, self._aircraft)
+        return self._doubt.on(found)

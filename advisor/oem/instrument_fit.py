@@ -115,7 +115,7 @@ def fit_instruments(plain: Solution, unknown: Sequence[Instrument]) -> Instrumen
         Parameters with a prior, open ones, and stated ones.
     """
     begin = _Fit(plain.problem, plain.assembly, plain.optimum)
-    unknown = [_weighed(x, _share(plain)) for x in unknown]
+    unknown = [weighed(x, share_of(plain)) for x in unknown]
     common = tuple(x for x in unknown if x.name not in OF_ALPHA)
     near = _looked_about(begin, common)
     choices = [(*common, x) for x in unknown if x.name in OF_ALPHA] or [common]
@@ -127,13 +127,13 @@ def fit_instruments(plain: Solution, unknown: Sequence[Instrument]) -> Instrumen
     return _with_statements(*kept, plain)
 
 
-def _share(plain: Solution) -> float:
+def share_of(plain: Solution) -> float:
     """Return the errors by white noise over those by the residuals' colour, the median of the parameters."""
     ratio = np.sqrt(np.diag(plain.covariance_cr) / np.diag(plain.covariance))
     return float(np.clip(np.nanmedian(ratio), LEAST_SHARE, 1.0))
 
 
-def _weighed(x: Instrument, share: float) -> Instrument:
+def weighed(x: Instrument, share: float) -> Instrument:
     """Return the instrument with the share by which white noise weighs its prior."""
     return x if x.prior is None else replace(x, prior=replace(x.prior, share=share))
 
@@ -159,7 +159,7 @@ def _clear_ones(
         weakest, rival = rivals[int(np.argmin(gains))]
         innocent = weakest.innocent(plain.problem)
         others = tuple(x for x in names if x is not weakest)
-        names = others if innocent is None else (*others, _weighed(innocent, _share(plain)))
+        names = others if innocent is None else (*others, weighed(innocent, share_of(plain)))
         best = _descend(rival, names)
 
 
@@ -176,7 +176,7 @@ def _with_statements(
         x = found.instrument
         share = min(1.0, float(white_std) / found.std)
         if x.prior is not None:
-            kept.append(replace(found, instrument=_weighed(x, share)))
+            kept.append(replace(found, instrument=weighed(x, share)))
         elif x.stated is None or found.contradicts:
             kept.append(found)
         elif x.known_to * abs(x.stated) > 0.0:

@@ -10,11 +10,13 @@ from scipy.linalg import expm
 from advisor.aircraft.aircraft import Aircraft, Elevator
 from advisor.campaign.single_maneuver import assess, cautions_of
 from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.oem import estimator
 from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import estimate
 from advisor.oem.filter_error import filter_error, moving_air
 from advisor.oem.prepare import Prepared, prepare
 from advisor.oem.solution import Solution, solve
+from advisor.oem.surface import Servo
 from advisor.oem.turbulence import Rows, find_turbulence
 from tests.oem.builders import UAV, Array, elevator_3211, maneuver, trim_alpha, trim_elevator
 
@@ -158,3 +160,17 @@ def test_a_model_that_runs_away_gives_no_estimate_instead_of_a_fault(index: int,
     away = replace(first, optimum=first.optimum._replace(shared=shared))
     found = filter_error(away, air, ())
     assert found is None or np.all(np.isfinite(found.theta))
+
+
+def test_a_search_that_diverges_from_the_instruments_starts_again_without_them(monkeypatch):
+    starts = []
+
+    def diverges_once(solution, air, instruments):
+        starts.append(solution)
+        return None if len(starts) == 1 else filter_error(solution, air, instruments)
+
+    monkeypatch.setattr(estimator, "filter_error", diverges_once)
+    found = estimate(flown(0.02, seed=3), KNOWN_SERVO)
+    assert isinstance(found, Estimate)
+    assert found.filtered
+    assert starts[1].problem.servo == Servo(0.0, 0.0)

@@ -1,14 +1,14 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft, Elevator
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.estimate import Estimate, NoEstimate
-from advisor.oem.estimator import estimate, report
+from advisor.oem.estimator import estimate
 from advisor.oem.following import Follower
 from advisor.oem.identifiability import natural_size
-from advisor.oem.prepare import prepare
-from advisor.oem.solution import solve
 from advisor.oem.warm import warm
 from advisor.report.document import identifiability
 from tests.oem.builders import JET, UAV, elevator_3211, flown, maneuver, trim_alpha, trim_elevator
@@ -26,12 +26,21 @@ def test_the_refreshed_estimate_is_the_complete_one():
     follower = Follower(AIRCRAFT)
     for until in np.arange(9.0, 14.0, 0.25):
         followed = follower.refresh(so_far(flight, until))
-    prepared = prepare([so_far(flight, until)], AIRCRAFT)
-    whole = report(solve(prepared.problem), prepared, AIRCRAFT)
+    whole = estimate(so_far(flight, until), AIRCRAFT)
     assert isinstance(followed, Estimate)
     np.testing.assert_allclose(followed.theta, whole.theta, atol=0.01 * whole.std.min(), rtol=1e-3)
     np.testing.assert_allclose(followed.std_cr, whole.std_cr, rtol=1e-3)
     np.testing.assert_allclose(followed.std, whole.std, rtol=0.2)
+
+
+def test_a_refresh_allows_for_a_command_that_acts_late():
+    flight = flown(JET, noise=0.03)
+    command = flight.channels["elevator"]
+    early = replace(command, t=command.t - 0.015)
+    flight = replace(flight, channels={**flight.channels, "elevator": early})
+    followed = Follower(AIRCRAFT).refresh(flight)
+    assert isinstance(followed, Estimate)
+    np.testing.assert_array_less(np.abs(followed.theta - JET)[5:], 3.0 * followed.std[5:])
 
 
 def test_following_begins_anew_with_the_next_manoeuvre():
