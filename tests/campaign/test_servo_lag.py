@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft, Elevator
-from advisor.campaign.servo_lag import learnt, reserved, told
+from advisor.campaign.servo_lag import learnt, of_another_power_on, reserved, told
 from advisor.decision.verdict import ManeuverVerdict
 from advisor.oem.estimate import InstrumentEstimate
 from tests.decision.campaigns import estimate
@@ -39,7 +39,9 @@ GIVEN = Aircraft(elevator=Elevator(lag_s=0.14))
 
 
 def test_a_lag_that_the_crew_gives_stands_while_the_data_do_not_exclude_it():
-    assert learnt(GIVEN, against(0.14, 0.15, 0.01, contradicts=False)) is GIVEN
+    now = learnt(GIVEN, against(0.14, 0.15, 0.01, contradicts=False))
+    assert now.elevator.lag_found_s == pytest.approx(0.14)
+    assert now.elevator.lag_found_std_s == pytest.approx(0.01)
     assert learnt(GIVEN, estimate()) is GIVEN
 
 
@@ -52,8 +54,18 @@ def test_a_lag_that_the_data_tell_takes_the_place_of_an_excluded_one():
 def test_the_crew_s_lag_returns_when_later_manoeuvres_agree_with_it():
     misled = learnt(GIVEN, against(0.14, 0.22, 0.004, contradicts=True))
     back = learnt(misled, against(0.14, 0.15, 0.01, contradicts=False))
-    assert back == GIVEN
-    assert "agree with elevator.lag_s" in told(back)
+    assert back.elevator.lag_found_s == pytest.approx(0.14)
+    assert "as elevator.lag_s says" in told(back)
+
+
+def test_a_surer_value_of_the_same_lag_is_news():
+    used = learnt(Aircraft(), with_lag(0.14, 0.01))
+    assert learnt(used, with_lag(0.14, 0.004)).elevator.lag_found_std_s == 0.004
+
+
+def test_the_delay_of_the_command_holds_within_its_power_on_alone():
+    told_of = replace(Aircraft(), elevator=Elevator(lag_s=0.1, delay_found_s=0.01, delay_found_std_s=0.002))
+    assert of_another_power_on(told_of).elevator == Elevator(lag_s=0.1)
 
 
 def test_a_lag_within_its_own_error_of_the_one_used_changes_nothing_but_at_the_end():
