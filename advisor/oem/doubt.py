@@ -23,7 +23,7 @@ N = len(PARAMETERS)
 
 @dataclass(frozen=True, slots=True)
 class Doubt:
-    """What unknown instruments of the command add to an estimate that takes them as known."""
+    """Doubt that unknown instruments of the command add to an estimate that takes them as known."""
 
     step: FloatArray
     """(8,) step of the derivatives."""

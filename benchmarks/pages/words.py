@@ -19,10 +19,11 @@ _MADE = re.compile(r"<!-- ([a-z-]+): begin -->.*?<!-- \1: end -->", re.DOTALL)
 
 
 def pages(root: Path) -> Iterator[Path]:
-    """Yield the pages that are written by hand."""
+    """Yield the pages that are written by hand. The state of the work is no page of the site."""
     yield root / "README.md"
     docs = root / "docs"
-    yield from (path for path in sorted(docs.rglob("*.md")) if docs / "data" not in path.parents)
+    written = (path for path in sorted(docs.rglob("*.md")) if docs / "data" not in path.parents)
+    yield from (path for path in written if path != docs / "status.md")
 
 
 def words_in(text: str) -> int:

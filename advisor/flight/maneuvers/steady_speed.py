@@ -16,8 +16,8 @@ FOLLOWED_PERCENT = 15.0
 """Change of the air speed that the model follows, %, however much the user allows.
 
 The dynamic pressure falls by 28 %. A trim of 0.02 rad that does not scale with it changes by a fifth of a
-step of 2 deg. Set on one held step of a business jet: M_δe holds within 15 %, and is 12 % too small where the
-speed fell by a third."""
+step of 2 deg. Set on one held step of a business jet. M_δe holds within 15 %, and is 12 % too small where
+the speed fell by a third."""
 LEFT = "air speed"
 """Reason of the end of a span where the air speed left the model."""
 
