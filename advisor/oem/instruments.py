@@ -263,8 +263,10 @@ def unknown_instruments(problem: OutputErrorProblem, aircraft: Aircraft) -> tupl
     measured = {name for record in problem.records for name in record.outputs}
     vane_m, imu_m = aircraft.alpha.vane_arm_m, aircraft.accelerometer.arm_m
     if {"alpha", "a_z"} <= measured:
+        late = ALPHA_DELAY.innocent(problem)
+        unknown += [late] if late is not None else []
         if vane_m is None:
-            unknown += [VANE_ARM, ALPHA_DELAY]
+            unknown.append(VANE_ARM)
         elif imu_m is None:
             unknown.append(ACCELEROMETER_ARM)
         else:
