@@ -157,7 +157,8 @@ def _figures(record: Mapping[str, Any], document: Mapping[str, Any]) -> Iterator
 def _truth(name: str, known: Mapping[str, float], record: Mapping[str, Any], speed_m_s: float) -> float:
     """Return a known figure at the air speed of the estimate, m/s.
 
-    A record's ``at_true_m_s`` is the true air speed of its figures. Derivatives grow with powers of the speed.
+    A record's ``at_true_m_s`` is the true air speed of its figures. A derivative grows with a power of the
+    speed.
     """
     at_m_s = record.get("at_true_m_s")
     if at_m_s is None:
@@ -169,15 +170,14 @@ def _truth(name: str, known: Mapping[str, float], record: Mapping[str, Any], spe
 def _figure(name: str, document: Mapping[str, Any]) -> tuple[float | None, float]:
     """A figure of the joint estimate and the half-width of its 95 % interval."""
     model = document["model"] or {}
-    if name == "vane_lag_s":
-        instruments = model.get("instruments", {})
-        if "alpha_delay_s" in instruments:
-            entry = instruments["alpha_delay_s"]
-        else:
-            speed = model.get("reference_airspeed_m_s") or 1.0
-            entry = {k: v / speed for k, v in instruments.get("vane_arm_m", {}).items()}
-    elif name == "servo_lag_s":
-        entry = model.get("instruments", {}).get("servo_lag_s", {})
+    instruments = model.get("instruments", {})
+    if name == "servo_lateness_s":
+        # A servo's lag and a delay look nearly alike, and fits without a delay give their sum as the lag.
+        parts = [instruments[n] for n in ("servo_lag_s", "command_delay_s") if n in instruments]
+        value = float(sum(part["value"] for part in parts)) if parts else None
+        return value, NORMAL_95 * float(sum(part["std"] ** 2 for part in parts)) ** 0.5
+    if name in ("servo_lag_s", "vane_arm_m"):
+        entry = instruments.get(name, {})
     elif name.startswith("C_"):
         entry = document["coefficients"].get(name, {})
     else:

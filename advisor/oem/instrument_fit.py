@@ -116,6 +116,8 @@ def fit_instruments(plain: Solution, unknown: Sequence[Instrument]) -> Instrumen
     unknown
         Parameters with a prior, open ones, and stated ones.
     """
+    if not unknown:
+        return InstrumentFit(plain)
     begin = _Fit(plain.problem, plain.assembly, plain.optimum)
     names = tuple(weighed(x, share_of(plain)) for x in unknown)
     kept = _clear_ones(names, _descend(_looked_about(begin, names), names), plain)
