@@ -279,7 +279,7 @@ def _step(fit: _Fit, names: Sequence[Instrument]) -> tuple[FloatArray, float]:
     ends = ~np.isclose(allowed, step)
     if ends.any() and not ends.all():
         pulled = slope[~ends] - information[np.ix_(~ends, ends)] @ allowed[ends]
-        allowed[~ends] = np.linalg.solve(information[np.ix_(~ends, ~ends)], pulled)
+        allowed[~ends] = np.linalg.pinv(information[np.ix_(~ends, ~ends)], hermitian=True) @ pulled
     return allowed, float(allowed @ (2.0 * slope - information @ allowed))
 
 
