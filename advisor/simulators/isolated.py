@@ -1,7 +1,6 @@
 """A simulator in a process of its own: foreign code crashes or hangs only there."""
 
 import importlib
-import multiprocessing
 import os
 import signal
 import sys
@@ -13,10 +12,10 @@ from typing import Any, NoReturn
 
 import numpy as np
 
+from advisor.process.children import spawning
 from advisor.simulators.protocol import Condition, Increments, Inputs, Replay, Simulator
 from advisor.words.problems import ConfigurationError, UnusableInputError
 
-_SPAWN = multiprocessing.get_context("spawn")
 _GOODBYE_S = 1.0
 """Time in s that a process has to end after its connection is closed."""
 
@@ -89,9 +88,10 @@ class Isolated:
         self._folder.cleanup()
 
     def _start(self) -> bool:
-        self._connection, theirs = _SPAWN.Pipe()
+        context = spawning()
+        self._connection, theirs = context.Pipe()
         make, arguments = self._call
-        self._process = _SPAWN.Process(
+        self._process = context.Process(
             target=_serve, args=(theirs, self._folder.name, make, arguments), daemon=True
         )
         self._process.start()

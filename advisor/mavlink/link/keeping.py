@@ -128,5 +128,10 @@ class Guard:
 
 
 @dataclass(frozen=True, slots=True)
+class Alive:
+    """Asks for the time since the slowest thread of the link was last at work. The answer is that time, s."""
+
+
+@dataclass(frozen=True, slots=True)
 class Stop:
     """Asks the process to close the link and the recording, and to end."""

@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import cached_property
 from multiprocessing.connection import Connection
 from types import TracebackType
@@ -11,6 +12,7 @@ from advisor.aircraft.aircraft import Elevator
 from advisor.flight.signals.messages import Columns
 from advisor.mavlink.link.health import LinkNotice, LinkStatistics
 from advisor.mavlink.link.keeping import AnnounceVerdict, CallOrder, Door, Heard, Hello, Listen, Told
+from advisor.process.liveness import OLD_AFTER_S
 
 if TYPE_CHECKING:
     from advisor.mavlink.link.decoding import Decoding
@@ -50,6 +52,7 @@ class KeptLink:
         self._notices: list[LinkNotice] = []
         self._broken = False
         self._told = LinkStatistics()
+        self._unanswered_s = 0.0
         self.catching_up = True
         """Whether earlier records are still being read."""
 
@@ -80,7 +83,7 @@ class KeptLink:
     @property
     def statistics(self) -> LinkStatistics:
         """Health of the link, as reported last."""
-        return self._decoding.counted(self._told)
+        return self._decoding.counted(replace(self._told, unanswered_s=self._unanswered_s))
 
     def take_notices(self) -> list[LinkNotice]:
         """Return the notices since the last call, oldest first."""
@@ -114,6 +117,7 @@ class KeptLink:
     def _connect(self, timeout_s: float) -> None:
         if time.monotonic() < self._next_try_s:
             time.sleep(min(timeout_s, RETRY_EVERY_S))
+            self._wait_in_vain(min(timeout_s, RETRY_EVERY_S))
             return
         self._next_try_s = time.monotonic() + RETRY_EVERY_S
         try:
@@ -154,6 +158,7 @@ class KeptLink:
             return b""
         try:
             while self._connection.poll(timeout_s):
+                self._answered()
                 match self._connection.recv():
                     case Heard(at, records) if at + len(records) > self._position:
                         self._position = at + len(records)
@@ -162,9 +167,21 @@ class KeptLink:
                         self._told = statistics
                         self._notices += notices
                         return b""
+            self._wait_in_vain(timeout_s)
         except (OSError, EOFError):
             self._lose()
         return b""
+
+    def _wait_in_vain(self, seconds: float) -> None:
+        """Take note of a wait in which the process has said nothing. It says something every 0.2 s."""
+        before_s, self._unanswered_s = self._unanswered_s, self._unanswered_s + seconds
+        if before_s < OLD_AFTER_S <= self._unanswered_s:
+            self._say(f"the process of the link has not answered for {OLD_AFTER_S:.0f} s")
+
+    def _answered(self) -> None:
+        if self._unanswered_s >= OLD_AFTER_S:
+            self._say("the process of the link answers again")
+        self._unanswered_s = 0.0
 
     def _send(self, message: object) -> None:
         try:

@@ -116,6 +116,8 @@ class Link:
         self._line = Line(self.address, inherited, self._stop)
         self._thread = threading.Thread(target=self._run, name="link", daemon=True)
         self._unix_offset_s = 0.0
+        self.looked_s = time.monotonic()
+        """Monotonic time at which the thread of the link last looked at its connection, s."""
 
     def start(self) -> Self:
         """Open the connection and the recording, and begin to listen.
@@ -253,7 +255,7 @@ class Link:
         since_s = 0.0
         while not self._stop.is_set():
             frames = self._take_frames(wait_s=0.0 if batch else 0.05)
-            now_s = time.monotonic()
+            now_s = self.looked_s = time.monotonic()
             since_s = since_s if batch else now_s
             batch += self._records((frame.raw for frame in frames), now_s, _HEARD)
             batch += self._records(self._obey(), now_s, _SENT_BY_US)

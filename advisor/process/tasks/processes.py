@@ -10,6 +10,7 @@ from multiprocessing import resource_tracker
 from multiprocessing.connection import wait as wait_for
 from typing import TypeVar
 
+from advisor.process.children import spawning
 from advisor.process.tasks.threads import pin_linear_algebra
 
 T = TypeVar("T")
@@ -18,8 +19,8 @@ R = TypeVar("R")
 
 def processes(workers: int) -> Executor:
     """Return fresh processes, which leave signals to this process and end with it."""
+    context = spawning()
     _start_silent_tracker()
-    context = multiprocessing.get_context("spawn")
     return ProcessPoolExecutor(workers, mp_context=context, initializer=_begin_worker)
 
 

@@ -1,11 +1,14 @@
 """A link in a process of its own: every reader hears everything, once and in order."""
 
+import os
+import signal
 import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
+from advisor.mavlink.link import kept_link, link_process
 from advisor.mavlink.link.keeping import Keeping, new_door
 from advisor.mavlink.link.kept_link import KeptLink
 from advisor.mavlink.link.link_process import LinkProcess
@@ -75,6 +78,27 @@ def test_what_arrives_while_the_process_is_dead_is_heard_by_the_next_one(
         assert heard(link, 100) == list(range(100, 200))
         said = " ".join(notice.text for notice in link.take_notices())
     assert "has ended and was started again; the recording goes on" in said
+
+
+def test_a_process_that_hangs_is_told_of_and_replaced(
+    process: LinkProcess, vehicle: UdpVehicle, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(link_process, "HUNG_AFTER_S", 1.5)
+    monkeypatch.setattr(kept_link, "OLD_AFTER_S", 0.5)
+    with process.link() as link:
+        vehicle.send(*(attitude(i) for i in range(100)))
+        assert heard(link, 100) == list(range(100))
+        hung = process.pid
+        assert hung is not None
+        os.kill(hung, signal.SIGSTOP)
+        wait_until(lambda: not link.read(0.05) and link.statistics.unanswered_s >= 0.5)
+        vehicle.send(*(attitude(i) for i in range(100, 200)))
+        assert heard(link, 100) == list(range(100, 200))
+        assert process.pid != hung
+        wait_until(lambda: not link.read(0.05) and link.statistics.unanswered_s < 0.5)
+        said = [notice.text for notice in link.take_notices()]
+    assert "the process of the link has not answered for 0 s" in said
+    assert "the process of the link answers again" in said
 
 
 def test_a_connection_that_cannot_be_opened_is_refused_with_what_to_do(tmp_path: Path) -> None:
