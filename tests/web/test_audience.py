@@ -109,13 +109,12 @@ async def test_a_page_offers_the_keys_that_it_may_use_and_is_left_at_once(
 def test_a_page_says_that_its_server_does_not_answer(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(attached, "OLD_AFTER_S", 0.3)
     ours, theirs = Pipe()
-    with watching(AttachedConductor(ours)) as seen, theirs:
+    with ours, theirs, watching(AttachedConductor(ours)) as seen:
         theirs.send(SessionReport(flights.state(3), HandFedSource().condition, None, ()))
         wait_until(lambda: (report := seen()) is not None and report.health.condition == "stale")
         report = seen()
         assert report is not None
         assert report.health.alarm.startswith("SERVER NOT ANSWERING for 0 s")
-    ours.close()
 
 
 def test_a_page_ends_with_its_server() -> None:
