@@ -63,6 +63,12 @@ def incomplete(maneuver: Maneuver, period_s: float, counted: Collection[str]) ->
     return [*_rate(needed, period_s), *_gap(used, maneuver, period_s)]
 
 
+def not_heard(maneuver: Maneuver) -> Reason:
+    """Return the reason of a record of which the advisor itself has missed a part."""
+    text = f"{maneuver.missed_s:.1f} s are missing: the advisor was down; fly it again"
+    return Reason("advisor_down", text, maneuver.missed_s, 0.0)
+
+
 def outside(maneuver: Maneuver, aircraft: Aircraft) -> list[Reason]:
     """Return reasons for a manoeuvre outside the limits: bank, saturation, angle of attack, throttle, other
     controls."""

@@ -26,6 +26,7 @@ from advisor.flight.signals.repair import repaired
 from advisor.flight.signals.tracks import Tracks
 from advisor.flight.signals.trust import distrusted
 from advisor.flight.stream.identity import Identity
+from advisor.flight.vehicle.downtime import Downtime
 from advisor.flight.vehicle.modes import closes_pitch_loop
 
 
@@ -38,10 +39,12 @@ class Cutting:
         Channels and identity of the vehicle.
     aircraft
         The aircraft file: the elevator's sign, and the limits of the model.
+    down
+        Times in which the advisor did not listen.
     """
 
-    def __init__(self, tracks: Tracks, who: Identity, aircraft: Aircraft) -> None:
-        self._tracks, self._who, self._limits = tracks, who, aircraft.limits
+    def __init__(self, tracks: Tracks, who: Identity, aircraft: Aircraft, down: Downtime) -> None:
+        self._tracks, self._who, self._limits, self._down = tracks, who, aircraft.limits, down
         self._sign = None if aircraft.elevator.is_calibrated else ElevatorSign()
         self._modes = [(-np.inf, who.mode)]
         self._released = (0, -np.inf)
@@ -165,6 +168,7 @@ class Cutting:
             tuple(distrusts),
             examined.findings,
             data_notes=tuple(notes),
+            missed_s=self._down.missed_s(span.record_from_s, span.end_s),
         )
         return maneuver, examined.evidence
 
