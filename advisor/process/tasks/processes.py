@@ -4,6 +4,7 @@ import multiprocessing
 import os
 import sys
 import threading
+import warnings
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
 from multiprocessing import resource_tracker
@@ -108,6 +109,7 @@ def _begin_worker() -> None:
     from advisor.process.interrupt import ignore
 
     ignore()
+    warnings.simplefilter("ignore")  # as in the parent: warnings are for those who develop
     pin_linear_algebra()
     parent = multiprocessing.parent_process()
     if parent is not None:
