@@ -21,6 +21,7 @@ from advisor.decision.envelope import (
     changed_speed,
     flown,
     incomplete,
+    leapt,
     not_heard,
     outside,
     short_response,
@@ -64,6 +65,8 @@ def judge_quality(
     reasons = [*incomplete(maneuver, period_s, fits), *outside(maneuver, aircraft)]
     codes = {reason.code for reason in reasons}
     short = [] if is_informed(estimate) else short_response(maneuver, period_s)
+    if maneuver.leapt_s:
+        return (leapt(maneuver),)
     if maneuver.missed_s and (short or "gap" in codes):
         # Nothing else can be said of a record that the advisor itself has lost.
         return (not_heard(maneuver),)

@@ -39,7 +39,7 @@ from advisor.flight.stream.service import Service
 from advisor.flight.stream.suitability import problems, with_guess
 from advisor.flight.stream.vehicle_texts import VehicleTexts
 from advisor.flight.vehicle.boots import Master, by_boot
-from advisor.flight.vehicle.downtime import Downtime
+from advisor.flight.vehicle.breaks import Breaks
 from advisor.flight.vehicle.modes import closes_pitch_loop
 from advisor.flight.vehicle.pieces import pieces
 from advisor.flight.vehicle.senders import SenderWatch
@@ -93,8 +93,8 @@ class FlightStream:
             aircraft.reference.air_temperature_c,
             lambda: self._who.simulated,
         )
-        self._down = Downtime()
-        self._cutting = Cutting(self._tracks, self._who, aircraft, self._down)
+        self._breaks = Breaks()
+        self._cutting = Cutting(self._tracks, self._who, aircraft, self._breaks)
         self._mixing = Mixing(self._tracks)
         self.marks = Marks(marks)
         """Marks by hand, by a switch and by texts."""
@@ -119,7 +119,7 @@ class FlightStream:
         self._clock_heard.clear()
         self._path.begin(self.boot)
         self._banks = Banks()
-        self._down.begin()
+        self._breaks.begin()
         self._mixing.begin()
         self._cutting.begin(self._who.mode)
         self._first_s = np.nan
@@ -292,7 +292,7 @@ class FlightStream:
         for columns in piece:
             if columns.name == "STATUSTEXT":
                 events += self._texts.heard(columns, self._master_s)
-                self._down.hear(columns)
+                self._breaks.hear(columns)
         events += self._who.learn(piece, self._master_s, flown)
         vehicle = self._who.vehicle
         if vehicle is None:
@@ -332,6 +332,7 @@ class FlightStream:
         if np.isnan(self._first_s) and len(clock) > 1:
             self._first_s = float(clock[1])
             self.marks.start_clock(self._first_s)
+        self._breaks.take_clock(clock)
         self._master_s = float(clock[-1])
         for columns in part:
             if columns.name == "ATTITUDE":
@@ -387,7 +388,7 @@ class FlightStream:
                         elevator.append(moved)
                         arrived_s = arrivals(columns, moved.order)
                         self._service.take(moved.channel, moved.source, arrived_s)
-                        missed += map(_missed, self._down.take(moved.t, arrived_s))
+                        missed += map(_missed, self._breaks.take(moved.t, arrived_s))
                     else:
                         self._tracks.append(moved.combined())
         self._set_clock(part, orders, clock)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from advisor.flight.maneuvers.events import VehicleSaid
 from advisor.flight.signals.messages import Columns
 from advisor.flight.stream.identity import READER
-from advisor.flight.vehicle.downtime import DOWN
+from advisor.flight.vehicle.breaks import DOWN
 from advisor.flight.vehicle.following import FOLLOW, TAKE
 from advisor.words.printable import printable
 

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Self
 
 from advisor.aircraft.aircraft import Elevator
 from advisor.flight.signals.messages import Columns
-from advisor.flight.vehicle.downtime import DOWN
+from advisor.flight.vehicle.breaks import DOWN
 from advisor.flight.vehicle.following import FOLLOW, TAKE
 from advisor.mavlink.link.connection import parse_connection
 from advisor.mavlink.link.conversation import Conversation

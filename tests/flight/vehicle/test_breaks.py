@@ -3,14 +3,18 @@
 from dataclasses import replace
 from functools import cache
 
+import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.decision.quality import judge_quality
 from advisor.flight.maneuvers.events import ManeuverFlown, Notice
 from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.messages import Columns
 from advisor.flight.stream.stream import FlightStream
-from advisor.flight.vehicle.downtime import DOWN
+from advisor.flight.vehicle.breaks import DOWN
 from advisor.mavlink.link.conversation import Conversation
+from advisor.oem.estimate import NoEstimate
 from tests.flights import TWO, recorded
 from tests.mavlink.link.air import Record, batches, records_of
 
@@ -68,3 +72,28 @@ def test_a_gap_of_the_radio_is_not_laid_to_the_advisor() -> None:
     maneuvers, said = flown(with_a_gap(b"a text of the vehicle"))
     assert [maneuver.missed_s for maneuver in maneuvers] == [0.0, 0.0]
     assert said == []
+
+
+def set_forward(by_s: float, from_s: float) -> list[Columns]:
+    """The flight whose stamps since boot are later from a moment on."""
+    changed = []
+    for columns in (c for batch in batches(flight(), len(flight())) for c in batch):
+        fields = dict(columns.fields)
+        for name, unit in (("time_boot_ms", 1_000), ("time_usec", 1_000_000)):
+            if name in fields:
+                stamps = fields[name].astype(np.int64)
+                moved = np.where(stamps >= from_s * unit, stamps + int(by_s * unit), stamps)
+                fields[name] = moved.astype(fields[name].dtype)
+        changed.append(replace(columns, fields=fields))
+    return changed
+
+
+def test_stamps_that_leap_by_hours_inside_a_manoeuvre_reject_both_parts() -> None:
+    first = flown(flight())[0][0].span
+    stream = FlightStream(Aircraft())
+    events = [*stream.feed(set_forward(3.0 * 3600.0, first.last_step_s - 0.3)), *stream.finish()]
+    found = [event.maneuver for event in events if isinstance(event, ManeuverFlown)]
+    assert [round(maneuver.leapt_s / 3600.0, 2) for maneuver in found] == [3.0, 3.0, 0.0]
+    for maneuver in found[:2]:
+        (reason,) = judge_quality(maneuver, NoEstimate("singular", "no fit"), Aircraft())
+        assert reason.text == "the stamps leap by 3.0 h; check the vehicle's clock, fly it again"
