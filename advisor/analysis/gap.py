@@ -55,7 +55,7 @@ def maneuvers_of(
     Raises
     ------
     UnusableInputError
-        A log cannot be read or cannot serve.
+        No log can be read, or a log cannot serve. One that cannot be read is left out, with a note.
     """
     recorded, notes = _recorded(logs, aircraft, target_system, by_hand or [ByHand()] * len(logs))
     maneuvers = _on_one_clock(_each_once(recorded))
@@ -69,13 +69,19 @@ def _recorded(
     found: list[Maneuver] = []
     notes: list[str] = []
     wrong: list[Problem] = []
+    unreadable: list[Problem] = []
     one_aircraft = OneAircraft()
     for flight, (log, decided) in enumerate(zip(logs, by_hand, strict=True)):
         stream = FlightStream(aircraft, target_system, decided.marks)
         others = [*reversed(logs[:flight]), *logs[flight + 1 :]]
-        events = [event for columns in read_whole_log(log, others) for event in stream.feed(columns)]
-        events += stream.finish()
         name = printable(log.name)
+        try:
+            events = [event for columns in read_whole_log(log, others) for event in stream.feed(columns)]
+        except UnusableInputError as error:
+            unreadable.append(error.problem)
+            notes.append(f"Left out: {error.problem.about(name)}")
+            continue
+        events += stream.finish()
         problems = stream.problems()
         if stream.vehicle is not None and (foreign := one_aircraft.refuse(name, stream.vehicle)):
             problems = [foreign]
@@ -94,6 +100,8 @@ def _recorded(
                 notes.append(f"{name}: manoeuvre {maneuver.number} is excluded by hand: {because}.")
     if wrong:
         raise UnusableInputError.of(wrong)
+    if len(unreadable) == len(logs):
+        raise UnusableInputError.of(unreadable)
     return found, tuple(dict.fromkeys(filter(None, notes)))
 
 

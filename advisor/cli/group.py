@@ -160,6 +160,8 @@ def _ended_by(run: Callable[[], int]) -> int:
         _tell(str(error))
         return USAGE
     except UnusableInputError as error:
+        if error.__cause__ is not None and os.environ.get("ADVISOR_TRACEBACK"):
+            raise
         _tell(str(error))
         return UNUSABLE
     except (BrokenPipeError, SystemExit):
