@@ -210,7 +210,8 @@ class Diagnosis:
     """The gap of the user's own simulator; None where no simulator was named."""
     maneuvers: tuple[int, ...] = field(default=())
     height_m: float | None = None
-    """Mean height of the manoeuvres in m; None where the height was not recorded."""
+    """Mean height in the standard atmosphere at which the air has the density flown in, m; None for an
+    unknown density."""
     true_over_read: float = 1.0
     """Factor from the air speed as the aircraft reads it to the true one."""
 

@@ -22,11 +22,11 @@ from advisor.gap.records.prepare import prepare
 from advisor.gap.result import Diagnosis
 from advisor.gap.search.baseline import base_entries
 from advisor.gap.simulator.layout import DERIVATIVES, INDEX, NUISANCES, OUTPUTS
+from advisor.simulators.air import refuse_unknown_air, standard_heights
 from advisor.simulators.around import COMMAND
 from advisor.simulators.by_log import IdentifiedSimulator
 from advisor.simulators.flying import AsGiven, Flying, Progress, added, beyond, refuse_unmoved
 from advisor.simulators.improved import EQUATIONS, in_simulator
-from advisor.simulators.inputs import condition_of
 from advisor.simulators.linear import LinearSimulator
 from advisor.simulators.protocol import Condition, Inputs, Simulator
 from advisor.simulators.surrogate import Surrogate, surrogate_of
@@ -72,7 +72,12 @@ def compare(
     flights = prepare(maneuvers, aircraft)
     if not len(flights) or "alpha" not in flights.channels:
         examine(maneuvers, aircraft, holdout, progress)
-    flying = Flying(simulator, flights, aircraft.reference.mass_kg, lambda w, s: progress(w, _FLIES * s))
+    heights = standard_heights(maneuvers, aircraft)
+    if not isinstance(simulator, LinearSimulator):
+        refuse_unknown_air(simulator.description, heights)
+    heights_m = {number: height or 0.0 for number, height in heights.items()}
+    mass_kg = aircraft.reference.mass_kg
+    flying = Flying(simulator, flights, heights_m, mass_kg, lambda w, s: progress(w, _FLIES * s))
     if isinstance(simulator, LinearSimulator):
         surrogate = Surrogate(simulator.derivatives, simulator.reference_m_s or flights.reference_m_s)
         known = simulator.as_file if isinstance(simulator, IdentifiedSimulator) else aircraft
@@ -118,7 +123,7 @@ def _linear(flying: Flying) -> dict[int, AsGiven]:
     begun = []
     for flight in flying.flights.flights:
         rest = Inputs(np.array([0.5, 1.5]) * flight.h, np.zeros(2))
-        begun.append(flying.simulator.replay(condition_of(flight, flying.flights, flying.mass_kg), rest))
+        begun.append(flying.simulator.replay(flying.condition(flight), rest))
     return {f.number: AsGiven(f, np.zeros((len(OUTPUTS), f.n + 1))) for f in flying.as_flown(begun)}
 
 
@@ -152,8 +157,7 @@ def _without_equations(aircraft: Aircraft) -> Aircraft:
 
 def _usual(flying: Flying) -> Condition:
     """Return the condition in the middle of those at the starts of the manoeuvres."""
-    conditions = [condition_of(f, flying.flights, flying.mass_kg) for f in flying.flights.flights]
-    height = float(np.mean([c.height_m for c in conditions]))
+    height = float(np.mean([flying.condition(f).height_m for f in flying.flights.flights]))
     return Condition(flying.flights.reference_m_s, height, 0.0, flying.mass_kg)
 
 

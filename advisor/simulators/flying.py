@@ -1,6 +1,6 @@
 """A simulator that flies the recorded inputs, and the difference to its linear surrogate."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,11 +9,11 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.records.flights import PreparedManeuver, PreparedManeuvers
 from advisor.gap.records.usable import DEPARTED_RAD
-from advisor.gap.simulator.layout import INDEX, REFERENCE
+from advisor.gap.simulator.layout import HEIGHT, INDEX, REFERENCE
 from advisor.simulators.around import instruments, skewed
 from advisor.simulators.increments import SimulatorIncrements, entries_of
 from advisor.simulators.inputs import as_flight, condition_of, inputs_of, on_grid
-from advisor.simulators.protocol import Increments, Replay, Simulator
+from advisor.simulators.protocol import Condition, Increments, Replay, Simulator
 from advisor.simulators.surrogate import Surrogate, trimmed_at
 from advisor.words.problems import UnusableInputError
 
@@ -26,8 +26,14 @@ class Flying:
 
     simulator: Simulator
     flights: PreparedManeuvers
+    heights_m: Mapping[int, float]
+    """Manoeuvre number to the height in the standard atmosphere with the density of the air, m."""
     mass_kg: float | None
     progress: Progress
+
+    def condition(self, flight: PreparedManeuver) -> Condition:
+        """Return the steady flight at the start of a manoeuvre."""
+        return condition_of(flight, self.heights_m[flight.number], self.mass_kg)
 
     def replays(
         self, command: FloatArray, held: bool, increments: tuple[Increments | None, ...] | None = None
@@ -52,9 +58,9 @@ class Flying:
         many = self.flights.flights
         for i, flight in enumerate(many):
             self.progress(f"{self.simulator.description} flies manoeuvre {flight.number}", i / len(many))
-            condition = condition_of(flight, self.flights, self.mass_kg)
             inputs = inputs_of(flight, self.flights, command[i], held)
-            replay = self.simulator.replay(condition, inputs, None if increments is None else increments[i])
+            added = None if increments is None else increments[i]
+            replay = self.simulator.replay(self.condition(flight), inputs, added)
             _refuse_broken(replay, self.simulator.description, flight)
             found.append(replay)
         return found
@@ -125,7 +131,13 @@ def added(
     for there, with_effects in zip(flown, found, strict=True):
         changed, unchanged = (entries_of(trimmed_at(p, there)) for p in (with_effects, plain))
         increments.append(
-            SimulatorIncrements(changed, unchanged, there.alpha_trim, float(there.trim[REFERENCE]))
+            SimulatorIncrements(
+                changed,
+                unchanged,
+                there.alpha_trim,
+                float(there.trim[REFERENCE]),
+                float(there.slow[HEIGHT, 0]),
+            )
         )
     return tuple(increments)
 

@@ -26,13 +26,15 @@ _RATE_S = 0.02
 """Interval of the stamps at which a replay is read where nothing was measured."""
 
 
-def condition_of(flight: PreparedManeuver, flights: PreparedManeuvers, mass_kg: float | None) -> Condition:
-    """Return the steady flight at the start of a manoeuvre: mean speed and height before the first step."""
+def condition_of(flight: PreparedManeuver, height_m: float, mass_kg: float | None) -> Condition:
+    """Return the steady flight at the start of a manoeuvre: mean speed before the first step.
+
+    ``height_m`` is the height in the standard atmosphere with the density of the air flown in.
+    """
     before = max(int(flight.first_step_s / flight.h), 1)
     speed = float(np.mean(flight.slow[SPEED, :before]))
-    height = float(np.mean(flight.slow[HEIGHT, :before])) if "height" in flights.has else 0.0
     steep = float(flight.trim[THETA_FROM]) - flight.alpha_trim if "theta" in flight.outputs else 0.0
-    return Condition(speed, height, steep, mass_kg)
+    return Condition(speed, height_m, steep, mass_kg)
 
 
 def inputs_of(flight: PreparedManeuver, flights: PreparedManeuvers, p: FloatArray, held: bool) -> Inputs:
@@ -48,7 +50,7 @@ def inputs_of(flight: PreparedManeuver, flights: PreparedManeuvers, p: FloatArra
 def as_flight(flight: PreparedManeuver, replay: Replay, reference_m_s: float) -> PreparedManeuver:
     """Return the manoeuvre as flown by the simulator: equal command, with the simulator's own speed and trim.
 
-    Bank and turn are zero, and thrust equals drag.
+    Bank and turn are zero, and thrust equals drag. The height above the ground changes as the simulator's.
     """
     middles = (np.arange(flight.n) + 0.5) * flight.h
     slow = np.zeros_like(flight.slow)
@@ -56,7 +58,8 @@ def as_flight(flight: PreparedManeuver, replay: Replay, reference_m_s: float) ->
     slow[A_X] = np.interp(middles, replay.t, replay.a_x if replay.a_x is not None else _pull_along(replay))
     slow[BANK], slow[TURN], slow[THRUST] = 0.0, 0.0, 0.0
     slow[THROTTLE] = flight.slow[THROTTLE]
-    slow[HEIGHT] = np.interp(middles, replay.t, replay.height_m)
+    climbed = np.interp(middles, replay.t, replay.height_m - replay.height_m[0])
+    slow[HEIGHT] = flight.slow[HEIGHT, 0] + climbed
     trim = flight.trim.copy()
     trim[ALPHA_TRIM], trim[THETA_FROM] = float(replay.alpha[0]), float(replay.theta[0])
     trim[REFERENCE] = reference_m_s

@@ -72,6 +72,8 @@ def load(path: Path, dt: float) -> Any:
     _equipped(path).write(copy)
     fdm = jsbsim.FGFDMExec(str(root))
     fdm.set_debug_level(0)
+    # A lag or filter computes its coefficients from the step at the time of loading.
+    fdm.set_dt(dt)
     relative = os.path.relpath(copy.with_suffix(""), path.parent)
     try:
         loaded = fdm.load_model_with_paths(relative, str(path.parent), engines, systems, False)
@@ -79,7 +81,6 @@ def load(path: Path, dt: float) -> Any:
         raise _unloadable(path, " ".join(str(error).split())) from error
     if not loaded:
         raise _unloadable(path, "JSBSim does not load the file")
-    fdm.set_dt(dt)
     return fdm
 
 

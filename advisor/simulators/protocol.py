@@ -21,7 +21,7 @@ class Condition:
     airspeed_m_s: float
     """True air speed, m/s."""
     height_m: float = 0.0
-    """Pressure altitude, m."""
+    """Height in the standard atmosphere at which the air has the density flown in, m."""
     flight_path_rad: float = 0.0
     mass_kg: float | None = None
     """Mass of the aircraft; None means the simulator's own."""
@@ -52,7 +52,9 @@ class State:
     elevator: float
     """Departure from trim, rad."""
     airspeed_m_s: float
+    """True air speed, m/s."""
     height_m: float
+    """Height in the standard atmosphere, m."""
     throttle: float
     """Departure from trim."""
 
@@ -79,7 +81,9 @@ class Replay:
     a_z: FloatArray
     """Specific force along body z at the centre of gravity, m/s², about -9.81 in level flight."""
     airspeed_m_s: FloatArray
+    """True air speed, m/s."""
     height_m: FloatArray
+    """Height in the standard atmosphere, m."""
     a_x: FloatArray | None = None
     """Specific force along body x, m/s²; None means that the motion determines it."""
 
