@@ -14,9 +14,10 @@ from advisor.flight.stream.identity import READER_NOTICE
 from advisor.flight.stream.stream import FlightStream
 from advisor.flight.vehicle.one_aircraft import OneAircraft
 from advisor.flight.vehicle.surfaces import Surface
-from advisor.gap.diagnose import diagnose
+from advisor.gap.diagnose import examine
 from advisor.gap.result import Diagnosis
 from advisor.gap.search.baseline import prior_derivatives
+from advisor.gap.unseen import changes_something, unseen_of, with_unseen_shrink
 from advisor.gap.without_simulator import without_simulator
 from advisor.mavlink.logs.whole import read_whole_log
 from advisor.simulators.air import standard_heights
@@ -164,8 +165,14 @@ def compare_logs(
             flown.maneuvers, _simulator_at_true_speed(simulator, gain), at_true_speed, holdout, progress
         )
     else:
-        found = diagnose(flown.maneuvers, at_true_speed, holdout, progress)
-        told = found if prior_derivatives(aircraft) is not None else without_simulator(found)
+        whole = examine(flown.maneuvers, at_true_speed, holdout, progress)
+        told = whole.diagnosis
+        if prior_derivatives(aircraft) is None:
+            told = without_simulator(told)
+        elif changes_something(told):
+            progress("searching again without the manoeuvres kept apart", 0.9)
+            unseen = unseen_of(whole, flown.maneuvers, at_true_speed, holdout)
+            told = told if unseen is None else with_unseen_shrink(whole, unseen, at_true_speed)
         compared = Compared(told, aircraft)
     notes = list(flown.notes)
     if flown.again:

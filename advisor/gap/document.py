@@ -68,7 +68,9 @@ def _cause(c: Cause) -> dict[str, Any]:
 
 
 def _in_simulator(found: InSimulator | None) -> Any:
-    return None if found is None or found.after is None else picked(found, "before after percent on_paper")
+    if found is None or found.after is None:
+        return None
+    return picked(found, "before after percent on_paper maneuvers after_air_and_instruments")
 
 
 def _qualification(q: Qualification) -> dict[str, Any]:

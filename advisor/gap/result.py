@@ -149,14 +149,22 @@ class InSimulator:
 
     simulator: str
     """Description of the simulator for people."""
+    maneuvers: tuple[int, ...]
+    """Numbers of the manoeuvres on which the gap is measured. No search and no fit has used them, where
+    something was found."""
     before: float
     """Gap of the simulator as given."""
     after: float | None
-    """Gap with the effects added to the simulator; None where no effect was added."""
+    """Gap with the effects and numbers of an export in the simulator. Equal to ``before`` where nothing was
+    changed; None where the simulator does not fly with them, or where no manoeuvre could be kept apart."""
     percent: float | None
+    """Shrink by what was changed, in per cent; 0 where nothing was changed."""
     on_paper: tuple[str, ...]
     """Corrections that the simulator cannot take: effects, ``derivatives``, ``its own servo``."""
     qualification: tuple[Qualification, ...]
+    after_air_and_instruments: float | None = None
+    """Gap ``after`` without what the air's course and the instruments' natural errors explain in the same
+    samples. That is no shrink. None where nothing was changed."""
     refused: str = ""
     """Why the simulator does not fly with the effects; empty where it does, or where none was added."""
 

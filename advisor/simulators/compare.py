@@ -22,17 +22,26 @@ from advisor.gap.records.prepare import prepare
 from advisor.gap.result import Diagnosis
 from advisor.gap.search.baseline import base_entries
 from advisor.gap.simulator.layout import DERIVATIVES, INDEX, NUISANCES, OUTPUTS
+from advisor.gap.unseen import (
+    UnseenManeuvers,
+    changes_something,
+    resaid,
+    shrink_on,
+    unseen_of,
+    with_unseen_shrink,
+)
 from advisor.simulators.air import refuse_unknown_air, standard_heights
 from advisor.simulators.around import COMMAND
 from advisor.simulators.by_log import IdentifiedSimulator
 from advisor.simulators.flying import AsGiven, Flying, Progress, added, beyond, refuse_unmoved
-from advisor.simulators.improved import EQUATIONS, in_simulator
+from advisor.simulators.improved import EQUATIONS, Flown, in_simulator
 from advisor.simulators.linear import LinearSimulator
 from advisor.simulators.protocol import Condition, Inputs, Simulator
 from advisor.simulators.surrogate import Surrogate, surrogate_of
 
-_FLIES, _DIAGNOSED = 0.25, 0.8
-"""Shares of the work that are done after the first replays, and after the diagnosis."""
+_FLIES, _DIAGNOSED, _FOUND = 0.2, 0.6, 0.9
+"""Shares of the work that are done after the first replays, after the diagnosis, and after the search without
+the manoeuvres kept apart."""
 
 
 @dataclass(frozen=True)
@@ -86,36 +95,37 @@ def compare(
     else:
         surrogate, as_flown = _surrogate_and_rest(flying, aircraft)
         as_file = replace(surrogate.aircraft(aircraft), simulator=simulator.description)
+    beside = [_without(m, as_flown) for m in maneuvers]
     examined = examine(
-        [_without(m, as_flown) for m in maneuvers],
-        as_file,
-        holdout,
-        lambda what, share: progress(what, _FLIES + (_DIAGNOSED - _FLIES) * share),
+        beside, as_file, holdout, lambda what, share: progress(what, _FLIES + (_DIAGNOSED - _FLIES) * share)
     )
-    again = replace(flying, progress=lambda w, s: progress(w, _DIAGNOSED + (1.0 - _DIAGNOSED) * s))
+    again = replace(flying, progress=lambda w, s: progress(w, _FOUND + (1.0 - _FOUND) * s))
     if isinstance(simulator, LinearSimulator):
         reference = examined.evidence.problem.flights.reference_m_s
         surrogate = replace(surrogate, reference_m_s=reference)
         again = replace(again, simulator=replace(simulator, reference_m_s=reference))
-    found = _measured(examined, again, surrogate, as_flown, holdout)
+    progress("searching again without the manoeuvres kept apart", _DIAGNOSED)
+    unseen = unseen_of(examined, beside, as_file, holdout) if changes_something(examined.diagnosis) else None
+    found = _measured(examined, unseen, as_file, in_simulator(examined, unseen, again, surrogate, as_flown))
     notes = simulator.notes if isinstance(simulator, IdentifiedSimulator) else ()
     return Compared(replace(found, notes=(*notes, *found.notes)), as_file)
 
 
 def _measured(
-    examined: DiagnosisEvidence,
-    flying: Flying,
-    surrogate: Surrogate,
-    as_flown: Mapping[int, AsGiven],
-    holdout: int | None,
+    examined: DiagnosisEvidence, unseen: UnseenManeuvers | None, as_file: Aircraft, flown: Flown
 ) -> Diagnosis:
     """Return the diagnosis with the gap of the simulator itself, before and after the findings."""
-    found = in_simulator(examined, flying, surrogate, as_flown, holdout)
-    found_by_fit = examined.diagnosis
-    notes = found_by_fit.notes
-    if found.refused:
-        notes = (f"The simulator cannot take the effects: {found.refused}", *notes)
-    return replace(found_by_fit, in_simulator=found, notes=notes)
+    diagnosis, gap = examined.diagnosis, flown.gap
+    if unseen is not None and flown.after is not None and not gap.on_paper:
+        diagnosis = resaid(diagnosis, shrink_on(examined, unseen, flown.before, flown.after), as_file)
+    elif unseen is not None:
+        diagnosis = with_unseen_shrink(examined, unseen, as_file)
+    elif changes_something(diagnosis):
+        gap = replace(gap, after=None, percent=None)
+    notes = diagnosis.notes
+    if gap.refused:
+        notes = (f"The simulator cannot take the effects: {gap.refused}", *notes)
+    return replace(diagnosis, in_simulator=gap, notes=notes)
 
 
 def _linear(flying: Flying) -> dict[int, AsGiven]:

@@ -9,7 +9,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.records.flights import PreparedManeuver, PreparedManeuvers
 from advisor.gap.records.usable import DEPARTED_RAD
-from advisor.gap.simulator.layout import HEIGHT, INDEX, REFERENCE
+from advisor.gap.simulator.layout import HEIGHT, INDEX
 from advisor.simulators.around import instruments, skewed
 from advisor.simulators.increments import SimulatorIncrements, entries_of
 from advisor.simulators.inputs import as_flight, condition_of, inputs_of, on_grid
@@ -135,7 +135,7 @@ def added(
                 changed,
                 unchanged,
                 there.alpha_trim,
-                float(there.trim[REFERENCE]),
+                there.reference_m_s,
                 float(there.slow[HEIGHT, 0]),
             )
         )

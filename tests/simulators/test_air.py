@@ -1,7 +1,7 @@
 """The air in which a simulator flies: true air speed, and the height of its density."""
 
 from dataclasses import replace
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import pytest
@@ -27,7 +27,7 @@ AIRCRAFT = Aircraft()
 class Witness(Nonlinear):
     """Remembers the conditions in which it flew."""
 
-    conditions: list[Condition] = []
+    conditions: ClassVar[list[Condition]] = []
 
     def replay(self, condition, inputs, increments=None):
         self.conditions.append(condition)
@@ -77,23 +77,23 @@ def test_air_of_unknown_density_is_refused_with_the_key_that_states_it():
 
 
 def test_the_reference_speed_of_linear_is_made_true_as_the_flights_speed_is(monkeypatch):
-    read = [m for m in flown(maneuvers=2)]
+    read = list(flown(maneuvers=2))
     for i, m in enumerate(read):
         thin = replace(m.channels["airspeed"], gain=1.1)
         read[i] = replace(m, channels={**m.channels, "airspeed": thin})
     asked: dict[str, Any] = {}
 
-    class Told(Exception):
+    class ToldError(Exception):
         pass
 
     def told(maneuvers, simulator, aircraft, holdout, progress):
         asked.update(simulator=simulator, aircraft=aircraft)
-        raise Told
+        raise ToldError
 
     monkeypatch.setattr(gap_of_logs, "maneuvers_of", lambda *_: gap_of_logs.GapFlights(read, 0, ()))
     monkeypatch.setattr(gap_of_logs, "compare", told)
     file = Aircraft(reference_airspeed_m_s=20.0)
-    with pytest.raises(Told):
+    with pytest.raises(ToldError):
         gap_of_logs.compare_logs([], file, LinearSimulator({}, 20.0))
     assert asked["simulator"].reference_m_s == pytest.approx(22.0)
     assert asked["aircraft"].reference_airspeed_m_s == pytest.approx(22.0)
