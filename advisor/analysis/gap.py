@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.analysis.refused import without_refused
 from advisor.campaign.hand_decisions import ByHand
 from advisor.flight.maneuvers.events import ManeuverFlown, Notice
 from advisor.flight.maneuvers.maneuver import Maneuver
@@ -26,6 +27,7 @@ from advisor.simulators.compare import Compared, compare
 from advisor.simulators.linear import LinearSimulator
 from advisor.simulators.protocol import Simulator
 from advisor.simulators.specification import simulator_of
+from advisor.simulators.speed_kind import by_the_motion
 from advisor.words.printable import printable
 from advisor.words.problems import Problem, UnusableInputError
 
@@ -158,29 +160,33 @@ def compare_logs(
     """
     progress("reading", 0.0)
     flown = maneuvers_of(logs, aircraft, target_system, by_hand)
-    gain = true_over_read(m.channels for m in flown.maneuvers)
+    chosen = without_refused(flown.maneuvers, aircraft)
+    if simulator is not None and not isinstance(simulator, LinearSimulator):
+        progress("comparing the air speed with the motion", 0.02)
+        chosen = chosen.with_speed(by_the_motion(chosen.maneuvers, aircraft))
+    gain = true_over_read(m.channels for m in chosen.maneuvers)
     at_true_speed = _at_true_speed(aircraft, gain)
     if simulator is not None:
         compared = compare(
-            flown.maneuvers, _simulator_at_true_speed(simulator, gain), at_true_speed, holdout, progress
+            chosen.maneuvers, _simulator_at_true_speed(simulator, gain), at_true_speed, holdout, progress
         )
     else:
-        whole = examine(flown.maneuvers, at_true_speed, holdout, progress)
+        whole = examine(chosen.maneuvers, at_true_speed, holdout, progress)
         told = whole.diagnosis
         if prior_derivatives(aircraft) is None:
             told = without_simulator(told)
         elif changes_something(told):
             progress("searching again without the manoeuvres kept apart", 0.9)
-            unseen = unseen_of(whole, flown.maneuvers, at_true_speed, holdout)
+            unseen = unseen_of(whole, chosen.maneuvers, at_true_speed, holdout)
             told = told if unseen is None else with_unseen_shrink(whole, unseen, at_true_speed)
         compared = Compared(told, aircraft)
-    notes = list(flown.notes)
+    notes = [*chosen.notes, *flown.notes]
     if flown.again:
         every = len(flown.maneuvers) + flown.again
         twice = f"{flown.again} of {every} manoeuvres came twice, as from the same log or a copy"
         notes.insert(0, f"{twice}: they count once.")
     every_note = (*notes, *compared.diagnosis.notes)
-    height_m = _height_of(flown.maneuvers, aircraft)
+    height_m = _height_of(chosen.maneuvers, aircraft)
     found = replace(compared.diagnosis, notes=every_note, height_m=height_m, true_over_read=gain)
     return replace(compared, diagnosis=found)
 

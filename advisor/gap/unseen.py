@@ -93,8 +93,7 @@ def as_changed(unseen: UnseenManeuvers, whole: DiagnosisEvidence) -> SearchPoint
         for k, effect in enumerate(point.effects)
         if (with_propeller if effect == PROPELLER else not effect.is_nuisance and effect.effect in written)
     ]
-    effects, values = ([of[k] for k in kept] for of in (point.effects, point.values))
-    return replace(everything, derivatives=point.derivatives, effects=tuple(effects), values=tuple(values))
+    return replace(point.keeping(kept), own=everything.own, sides=everything.sides, edges=None)
 
 
 def with_nuisances(point: SearchPoint, unseen: UnseenManeuvers) -> SearchPoint:

@@ -33,7 +33,15 @@ from advisor.gap.unseen import (
 from advisor.simulators.air import refuse_unknown_air, standard_heights
 from advisor.simulators.around import COMMAND
 from advisor.simulators.by_log import IdentifiedSimulator
-from advisor.simulators.flying import AsGiven, Flying, Progress, added, beyond, refuse_unmoved
+from advisor.simulators.flying import (
+    AsGiven,
+    Flying,
+    Progress,
+    added,
+    beyond,
+    refuse_another_elevator,
+    refuse_unmoved,
+)
 from advisor.simulators.improved import EQUATIONS, Flown, in_simulator
 from advisor.simulators.linear import LinearSimulator
 from advisor.simulators.protocol import Condition, Inputs, Simulator
@@ -149,6 +157,7 @@ def _surrogate_and_rest(flying: Flying, aircraft: Aircraft) -> tuple[Surrogate, 
     refuse_unmoved(flying.simulator.description, replays, flights)
     flown = flying.as_flown(replays)
     surrogate = surrogate_of(flights, flown, replays, command, flying.simulator.linearise(_usual(flying)))
+    refuse_another_elevator(flying.simulator.description, surrogate.derivatives["M_delta_e"], flights)
     base = with_known(base_entries(surrogate.aircraft(aircraft)), aircraft.effects, flights, variants)
     derivatives = np.array([surrogate.derivatives[name] for name in DERIVATIVES])
     own = np.zeros((len(flights), len(NUISANCES)))

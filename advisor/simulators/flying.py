@@ -7,12 +7,14 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.problem import EffectProblem
+from advisor.gap.fitting.regression import regressions
 from advisor.gap.records.flights import PreparedManeuver, PreparedManeuvers
 from advisor.gap.records.usable import DEPARTED_RAD
-from advisor.gap.simulator.layout import HEIGHT, INDEX
+from advisor.gap.simulator.layout import DERIVATIVES, HEIGHT, INDEX
 from advisor.simulators.around import instruments, skewed
 from advisor.simulators.increments import SimulatorIncrements, entries_of
 from advisor.simulators.inputs import as_flight, condition_of, inputs_of, on_grid
+from advisor.simulators.interface import elevator_fault, interface_fault
 from advisor.simulators.protocol import Condition, Increments, Replay, Simulator
 from advisor.simulators.surrogate import Surrogate, trimmed_at
 from advisor.words.problems import UnusableInputError
@@ -151,7 +153,7 @@ def without_servo(p: FloatArray, surrogate: Surrogate) -> FloatArray:
 
 
 def _refuse_broken(replay: Replay, description: str, flight: PreparedManeuver) -> None:
-    """Refuse a replay that lacks a number, or that ends long before the manoeuvre does."""
+    """Refuse a replay that lacks a number or ends too early, has a wrong sign or unit, or departs."""
     series = (
         replay.t,
         replay.alpha,
@@ -168,6 +170,9 @@ def _refuse_broken(replay: Replay, description: str, flight: PreparedManeuver) -
             f"{description} does not fly manoeuvre {flight.number} to its end: numbers are missing.",
             "Check that the model flies at the speed and height of the flight.",
         )
+    fault = interface_fault(replay)
+    if fault is not None:
+        raise fault.refuse(description)
     if np.ptp(replay.alpha) >= DEPARTED_RAD:
         raise UnusableInputError(
             "simulator_departs",
@@ -175,6 +180,24 @@ def _refuse_broken(replay: Replay, description: str, flight: PreparedManeuver) -
             f"{np.degrees(np.ptp(replay.alpha)):.0f} deg.",
             "Check the sign and the calibration of the elevator, and that the model is stable at this speed.",
         )
+
+
+def refuse_another_elevator(description: str, m_delta_e: float, flights: PreparedManeuvers) -> None:
+    """Refuse a simulator whose elevator has another sense or unit than the flight's.
+
+    ``m_delta_e`` is M_δe of the simulator at the flights' reference speed, 1/s².
+
+    Raises
+    ------
+    UnusableInputError
+        The simulator answers the elevator with another sign, or with a factor of a unit.
+    """
+    k = DERIVATIVES.index("M_delta_e")
+    flown = [float(guess[k]) for guess in regressions(flights)]
+    # Where a late channel turns the sign of a regression, the flight says nothing.
+    fault = elevator_fault(m_delta_e, flown[0]) if min(flown) * max(flown) > 0.0 else None
+    if fault is not None:
+        raise fault.refuse(description)
 
 
 def refuse_unmoved(description: str, replays: Sequence[Replay], flights: PreparedManeuvers) -> None:

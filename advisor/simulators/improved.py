@@ -142,9 +142,8 @@ def _carried(point: SearchPoint, problem: EffectProblem, surrogate: Surrogate, f
     if not flying.simulator.takes_increments:
         derivatives = np.array([surrogate.derivatives[name] for name in DERIVATIVES])
         outside = [v.effect for v in point.effects if v.block in EQUATIONS]
-        kept = [k for k, v in enumerate(point.effects) if v.effect not in outside]
-        effects, values = ([of[k] for k in kept] for of in (point.effects, point.values))
-        point = replace(point, derivatives=derivatives, effects=tuple(effects), values=tuple(values))
+        inside = [k for k, v in enumerate(point.effects) if v.effect not in outside]
+        point = replace(point.keeping(inside), derivatives=derivatives)
         on_paper += [*outside, DERIVATIVES_OF_IT]
     base = np.atleast_2d(problem.base)[0]
     values = list(point.values)
