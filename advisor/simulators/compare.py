@@ -33,6 +33,7 @@ from advisor.gap.unseen import (
 from advisor.simulators.air import refuse_unknown_air, standard_heights
 from advisor.simulators.around import COMMAND
 from advisor.simulators.by_log import IdentifiedSimulator
+from advisor.simulators.controls import other_controls
 from advisor.simulators.flying import (
     AsGiven,
     Flying,
@@ -94,7 +95,8 @@ def compare(
         refuse_unknown_air(simulator.description, heights)
     heights_m = {number: height or 0.0 for number, height in heights.items()}
     mass_kg = aircraft.reference.mass_kg
-    flying = Flying(simulator, flights, heights_m, mass_kg, lambda w, s: progress(w, _FLIES * s))
+    controls = other_controls(flights.flights, maneuvers)
+    flying = Flying(simulator, flights, heights_m, controls, mass_kg, lambda w, s: progress(w, _FLIES * s))
     if isinstance(simulator, LinearSimulator):
         surrogate = Surrogate(simulator.derivatives, simulator.reference_m_s or flights.reference_m_s)
         known = simulator.as_file if isinstance(simulator, IdentifiedSimulator) else aircraft

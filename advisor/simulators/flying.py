@@ -1,7 +1,7 @@
 """A simulator that flies the recorded inputs, and the difference to its linear surrogate."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -10,16 +10,20 @@ from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.fitting.regression import regressions
 from advisor.gap.records.flights import PreparedManeuver, PreparedManeuvers
 from advisor.gap.records.usable import DEPARTED_RAD
-from advisor.gap.simulator.layout import DERIVATIVES, HEIGHT, INDEX
+from advisor.gap.simulator.layout import BANK, DERIVATIVES, HEIGHT, INDEX
 from advisor.simulators.around import instruments, skewed
 from advisor.simulators.increments import SimulatorIncrements, entries_of
-from advisor.simulators.inputs import as_flight, condition_of, inputs_of, on_grid
+from advisor.simulators.inputs import as_flight, condition_of, inputs_of, on_grid, surface_of
 from advisor.simulators.interface import elevator_fault, interface_fault
-from advisor.simulators.protocol import Condition, Increments, Replay, Simulator
+from advisor.simulators.protocol import Condition, Increments, Inputs, Replay, Simulator
 from advisor.simulators.surrogate import Surrogate, trimmed_at
 from advisor.words.problems import UnusableInputError
 
 Progress = Callable[[str, float], None]
+_LATERAL = ("aileron", "rudder")
+_BANKS_AWAY_RAD = 0.17
+"""Largest difference of the bank angles of simulator and aircraft, rad: at 10 deg the lift's vertical part
+differs by 1.5 %, as much as a good air speed is known."""
 
 
 @dataclass(frozen=True)
@@ -30,6 +34,8 @@ class Flying:
     flights: PreparedManeuvers
     heights_m: Mapping[int, float]
     """Manoeuvre number to the height in the standard atmosphere with the density of the air, m."""
+    controls: Mapping[int, Mapping[str, FloatArray]]
+    """Manoeuvre number to the logged controls (``advisor.simulators.controls.other_controls``)."""
     mass_kg: float | None
     progress: Progress
 
@@ -60,12 +66,19 @@ class Flying:
         many = self.flights.flights
         for i, flight in enumerate(many):
             self.progress(f"{self.simulator.description} flies manoeuvre {flight.number}", i / len(many))
-            inputs = inputs_of(flight, self.flights, command[i], held)
-            added = None if increments is None else increments[i]
-            replay = self.simulator.replay(self.condition(flight), inputs, added)
-            _refuse_broken(replay, self.simulator.description, flight)
+            inputs = inputs_of(flight, self.controls[flight.number], command[i], held)
+            replay = self._flown(flight, inputs, None if increments is None else increments[i])
+            if _rolls_away(replay, flight):
+                # The pilot's corrections of gusts that the simulator does not have.
+                level = {name: y for name, y in inputs.others.items() if name not in _LATERAL}
+                replay = self._flown(flight, replace(inputs, others=level), increments and increments[i])
             found.append(replay)
         return found
+
+    def _flown(self, flight: PreparedManeuver, inputs: Inputs, increments: Increments | None) -> Replay:
+        replay = self.simulator.replay(self.condition(flight), inputs, increments)
+        _refuse_broken(replay, self.simulator.description, flight)
+        return replay
 
     def as_flown(self, replays: Sequence[Replay]) -> list[PreparedManeuver]:
         """Return the manoeuvres with the simulator's own speed and trim."""
@@ -106,7 +119,7 @@ def beyond(flying: Flying, replays: Sequence[Replay], p: FloatArray, held: bool 
     for there, replay, numbers in zip(flying.as_flown(replays), replays, p, strict=True):
         ends = np.arange(there.n + 1) * there.h
         speed = np.interp(ends, replay.t, replay.airspeed_m_s)
-        surface = inputs_of(there, flying.flights, numbers, held).elevator
+        surface = surface_of(there, numbers, held)
         read = instruments(on_grid(replay, there), speed, surface, there.h, numbers)
         linear = problem.fly(there, trimmed_at(numbers, there))
         found.append(skewed(read - linear, there.h, numbers))
@@ -150,6 +163,15 @@ def without_servo(p: FloatArray, surrogate: Surrogate) -> FloatArray:
     for name, own in (("lag_s", surrogate.lag_s), ("delay_s", surrogate.delay_s)):
         out[:, INDEX[name]] = np.maximum(out[:, INDEX[name]] - own, 0.0)
     return out
+
+
+def _rolls_away(replay: Replay, flight: PreparedManeuver) -> bool:
+    """Return whether a simulator with the logged aileron and rudder banks much further than the aircraft."""
+    if replay.bank is None:
+        return False
+    middles = (np.arange(flight.n) + 0.5) * flight.h
+    apart = np.interp(middles, replay.t, replay.bank) - flight.slow[BANK]
+    return bool(np.max(np.abs(apart)) > _BANKS_AWAY_RAD)
 
 
 def _refuse_broken(replay: Replay, description: str, flight: PreparedManeuver) -> None:

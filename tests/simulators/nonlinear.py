@@ -32,6 +32,7 @@ class Nonlinear:
     lag_s: float = 0.0
     delay_s: float = 0.0
     takes_increments: bool = True
+    takes: frozenset[str] = frozenset()
     description: str = "the test's simulator"
     speed_limit_s: float = 20.0
 

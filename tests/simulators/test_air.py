@@ -63,7 +63,7 @@ def test_a_simulator_flies_at_the_height_of_the_density_and_not_at_that_above_ho
     maneuver = at(flown(maneuvers=1)[0], height=50.0, altitude=1250.0)
     flights = prepare([maneuver], AIRCRAFT)
     heights = {1: 1250.0}
-    began = Flying(Witness(), flights, heights, None, lambda *_: None)
+    began = Flying(Witness(), flights, heights, {1: {}}, None, lambda *_: None)
     replays = began.replays(np.zeros((1, 200)), held=False)
     assert Witness.conditions[-1].height_m == 1250.0
     # Ground effect needs the height above the ground, which the simulator does not know.
