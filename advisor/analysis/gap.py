@@ -18,6 +18,7 @@ from advisor.flight.vehicle.surfaces import Surface
 from advisor.gap.diagnose import examine
 from advisor.gap.result import Diagnosis
 from advisor.gap.search.baseline import prior_derivatives
+from advisor.gap.static_errors import with_static_errors
 from advisor.gap.unseen import changes_something, unseen_of, with_unseen_shrink
 from advisor.gap.without_simulator import without_simulator
 from advisor.mavlink.logs.whole import read_whole_log
@@ -179,6 +180,7 @@ def compare_logs(
             progress("searching again without the manoeuvres kept apart", 0.9)
             unseen = unseen_of(whole, chosen.maneuvers, at_true_speed, holdout)
             told = told if unseen is None else with_unseen_shrink(whole, unseen, at_true_speed)
+        told = with_static_errors(told, whole)
         compared = Compared(told, aircraft)
     notes = [*chosen.notes, *flown.notes]
     if flown.again:

@@ -19,9 +19,10 @@ from advisor.gap.candidates.traits import TRAITS
 from advisor.gap.diagnose import DiagnosisEvidence, examine
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.records.prepare import prepare
-from advisor.gap.result import Diagnosis
+from advisor.gap.result import Diagnosis, TrimDifference
 from advisor.gap.search.baseline import base_entries
 from advisor.gap.simulator.layout import DERIVATIVES, INDEX, NUISANCES, OUTPUTS
+from advisor.gap.static_errors import with_static_errors
 from advisor.gap.unseen import (
     UnseenManeuvers,
     changes_something,
@@ -45,8 +46,9 @@ from advisor.simulators.flying import (
 )
 from advisor.simulators.improved import EQUATIONS, Flown, in_simulator
 from advisor.simulators.linear import LinearSimulator
-from advisor.simulators.protocol import Condition, Inputs, Simulator
+from advisor.simulators.protocol import Condition, Inputs, Replay, Simulator
 from advisor.simulators.surrogate import Surrogate, surrogate_of
+from advisor.simulators.trims import trim_differences
 
 _FLIES, _DIAGNOSED, _FOUND = 0.2, 0.6, 0.9
 """Shares of the work that are done after the first replays, after the diagnosis, and after the search without
@@ -95,6 +97,7 @@ def compare(
         refuse_unknown_air(simulator.description, heights)
     heights_m = {number: height or 0.0 for number, height in heights.items()}
     mass_kg = aircraft.reference.mass_kg
+    trims: tuple[TrimDifference, ...] = ()
     controls = other_controls(flights.flights, maneuvers)
     flying = Flying(simulator, flights, heights_m, controls, mass_kg, lambda w, s: progress(w, _FLIES * s))
     if isinstance(simulator, LinearSimulator):
@@ -103,7 +106,8 @@ def compare(
         as_file = replace(known, simulator=None)
         as_flown = _linear(flying)
     else:
-        surrogate, as_flown = _surrogate_and_rest(flying, aircraft)
+        surrogate, as_flown, replays = _surrogate_and_rest(flying, aircraft)
+        trims = trim_differences(flights, maneuvers, replays, aircraft)
         as_file = replace(surrogate.aircraft(aircraft), simulator=simulator.description)
     beside = [_without(m, as_flown) for m in maneuvers]
     examined = examine(
@@ -117,6 +121,7 @@ def compare(
     progress("searching again without the manoeuvres kept apart", _DIAGNOSED)
     unseen = unseen_of(examined, beside, as_file, holdout) if changes_something(examined.diagnosis) else None
     found = _measured(examined, unseen, as_file, in_simulator(examined, unseen, again, surrogate, as_flown))
+    found = with_static_errors(found, examined, trims)
     notes = simulator.notes if isinstance(simulator, IdentifiedSimulator) else ()
     return Compared(replace(found, notes=(*notes, *found.notes)), as_file)
 
@@ -147,8 +152,10 @@ def _linear(flying: Flying) -> dict[int, AsGiven]:
     return {f.number: AsGiven(f, np.zeros((len(OUTPUTS), f.n + 1))) for f in flying.as_flown(begun)}
 
 
-def _surrogate_and_rest(flying: Flying, aircraft: Aircraft) -> tuple[Surrogate, dict[int, AsGiven]]:
-    """Return the surrogate, and every manoeuvre as flown by the simulator."""
+def _surrogate_and_rest(
+    flying: Flying, aircraft: Aircraft
+) -> tuple[Surrogate, dict[int, AsGiven], list[Replay]]:
+    """Return the surrogate, and every manoeuvre as flown by the simulator, with the replays."""
     flights = flying.flights
     variants = variants_for(flights)
     known = with_known(base_entries(aircraft), aircraft.effects, flights, variants)
@@ -167,7 +174,7 @@ def _surrogate_and_rest(flying: Flying, aircraft: Aircraft) -> tuple[Surrogate, 
     if any(TRAITS[effect].block in EQUATIONS for effect in aircraft.effects):
         replays = flying.replays(command, False, added(flown, p, derivatives))
     grids = beyond(flying, replays, p)
-    return surrogate, {f.number: AsGiven(f, grid) for f, grid in zip(flown, grids, strict=True)}
+    return surrogate, {f.number: AsGiven(f, grid) for f, grid in zip(flown, grids, strict=True)}, replays
 
 
 def _without_equations(aircraft: Aircraft) -> Aircraft:
