@@ -64,7 +64,7 @@ def check(simulator: Simulator, condition: Condition) -> CheckedSimulator:
     UnusableInputError
         The simulator does not trim, does not fly, or does not answer the elevator.
     """
-    t = _STEP_S * (np.arange(round(_LASTS_S / _STEP_S)) + 0.5)
+    t: FloatArray = _STEP_S * (np.arange(round(_LASTS_S / _STEP_S), dtype=np.float64) + 0.5)
     rest = t[t < _REST_S]
     still = simulator.replay(condition, Inputs(rest, np.zeros(rest.size)))
     flown = simulator.replay(condition, Inputs(t, _three_two_one_one(t)))
@@ -73,7 +73,7 @@ def check(simulator: Simulator, condition: Condition) -> CheckedSimulator:
     found = CheckedSimulator(
         simulator.description, condition.airspeed_m_s, condition.height_m, float(still.alpha[0]), still.trim,
         float(still.a_z[0]), float(np.max(np.abs(still.q))), tuple(sorted(takes)),
-        tuple(sorted({*offered, "increments"} - takes)),
+        tuple(sorted({*offered, "increments"} - takes)), notes=tuple(getattr(simulator, "notes", ())),
     )  # fmt: skip
     fault = interface_fault(flown)
     if fault is not None:
@@ -96,7 +96,7 @@ def _identified(
     numbers = np.array([surrogate.derivatives[name] for name in DERIVATIVES])
     omega = natural_frequency(numbers)
     damping = -(numbers[0] + numbers[4]) / (2.0 * omega) if omega > 0.0 else nan
-    notes = []
+    notes = [*found.notes]
     if found.rest_q_rad_s > _RESTS_RAD_S:
         notes.append(
             f"With resting controls it turns by {np.degrees(found.rest_q_rad_s):.2f} deg/s: its trim is not "

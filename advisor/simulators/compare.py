@@ -122,7 +122,7 @@ def compare(
     unseen = unseen_of(examined, beside, as_file, holdout) if changes_something(examined.diagnosis) else None
     found = _measured(examined, unseen, as_file, in_simulator(examined, unseen, again, surrogate, as_flown))
     found = with_static_errors(found, examined, trims)
-    notes = simulator.notes if isinstance(simulator, IdentifiedSimulator) else ()
+    notes = getattr(simulator, "notes", ())
     return Compared(replace(found, notes=(*notes, *found.notes)), as_file)
 
 

@@ -67,11 +67,12 @@ class Flying:
         for i, flight in enumerate(many):
             self.progress(f"{self.simulator.description} flies manoeuvre {flight.number}", i / len(many))
             inputs = inputs_of(flight, self.controls[flight.number], command[i], held)
-            replay = self._flown(flight, inputs, None if increments is None else increments[i])
+            increment = None if increments is None else increments[i]
+            replay = self._flown(flight, inputs, increment)
             if _rolls_away(replay, flight):
                 # The pilot's corrections of gusts that the simulator does not have.
                 level = {name: y for name, y in inputs.others.items() if name not in _LATERAL}
-                replay = self._flown(flight, replace(inputs, others=level), increments and increments[i])
+                replay = self._flown(flight, replace(inputs, others=level), increment)
             found.append(replay)
         return found
 

@@ -119,7 +119,9 @@ class FmuSimulator:
             self._fmu.step(float(t[k]), step)
             rows.append(self._motion(condition))
         self._fmu.end()
-        return Replay(t, *np.array(rows).T, trim={name: rest[name] for name in held})
+        alpha, q, theta, a_z, speed, height = np.array(rows).T
+        trim = {name: rest[name] for name in held}
+        return Replay(t, alpha, q, theta, a_z, speed, height, trim=trim)
 
     def linearise(self, condition: Condition) -> Mapping[str, float] | None:
         """Return None: FMUs for co-simulation have no common interface for a linearisation."""

@@ -64,7 +64,7 @@ class Isolated:
         self._process: Any = None
         self._connection: Connection
         try:
-            self.takes_increments, self.takes = self._start()
+            self.takes_increments, self.takes, self.notes = self._start()
         except UnusableInputError as error:
             self.close()
             raise ConfigurationError(str(error)) from None
@@ -88,7 +88,7 @@ class Isolated:
         self._end()
         self._folder.cleanup()
 
-    def _start(self) -> tuple[bool, frozenset[str]]:
+    def _start(self) -> tuple[bool, frozenset[str], tuple[str, ...]]:
         self._connection, theirs = _SPAWN.Pipe()
         make, arguments = self._call
         self._process = _SPAWN.Process(
@@ -96,8 +96,8 @@ class Isolated:
         )
         self._process.start()
         theirs.close()
-        takes_increments, takes = self._answer("its start", self._start_limit_s)
-        return bool(takes_increments), frozenset(map(str, takes))
+        takes_increments, takes, notes = self._answer("its start", self._start_limit_s)
+        return bool(takes_increments), frozenset(map(str, takes)), tuple(map(str, notes))
 
     def _ask(self, method: str, *arguments: Any) -> Any:
         if self._process is None:
@@ -166,10 +166,11 @@ def _serve(connection: Connection, folder: str, make: str, arguments: tuple[Any,
     tempfile.tempdir = folder
     sys.path.append(os.getcwd())
 
-    def build() -> tuple[Simulator, tuple[bool, list[str]]]:
+    def build() -> tuple[Simulator, tuple[bool, list[str], list[str]]]:
         module, name = make.split(":", 1)
         simulator = getattr(importlib.import_module(module), name)(*arguments)
-        return simulator, (bool(simulator.takes_increments), sorted(getattr(simulator, "takes", ())))
+        takes, notes = (sorted(map(str, getattr(simulator, name, ()))) for name in ("takes", "notes"))
+        return simulator, (bool(simulator.takes_increments), takes, notes)
 
     kind, built = _outcome(build)
     if kind != "done":

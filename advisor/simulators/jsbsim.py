@@ -18,6 +18,8 @@ from advisor.words.problems import UnusableInputError
 _THRUST_SHARE = 0.01
 """Largest force along the path that helps the trim, over the weight, with which the throttle counts as
 trimmed."""
+_SHOWN = 6
+"""Most foreign properties that are named."""
 _PROBE = 1e-3
 """Departures for central differences: of α and of the elevator in rad, of q in rad/s."""
 
@@ -58,6 +60,7 @@ class Jsbsim:
         self._path = path
         self._flight = JsbsimFlight(path)
         self._trims: dict[Condition, SteadyState] = {}
+        self.notes = _of_foreign(self._flight.foreign)
 
     def replay(self, condition: Condition, inputs: Inputs, increments: Increments | None = None) -> Replay:
         """Trim at the condition, and fly the inputs as departures from the trimmed controls."""
@@ -99,7 +102,7 @@ class Jsbsim:
         trim = {"elevator": start.elevator}
         if flight.engines and abs(start.axial) < _THRUST_SHARE * flight.fdm["inertia/weight-lbs"]:
             trim["throttle"] = start.throttle
-        return Replay(t, *rows.T, trim=trim)
+        return Replay(t, *rows.T, trim)
 
     def linearise(self, condition: Condition) -> Mapping[str, float] | None:
         """Return central differences of α̇ and q̇ about the trimmed state, at constant speed and flight path.
@@ -213,3 +216,11 @@ class Jsbsim:
         self._flight.freeze()
         self._flight.fdm[f"{FORCE}/magnitude"] = 0.0
         self._flight.fdm[MOMENT] = 0.0
+
+
+def _of_foreign(names: tuple[str, ...]) -> tuple[str, ...]:
+    """Return a sentence on the properties that another program would write; none without any."""
+    if not names:
+        return ()
+    shown = ", ".join(names[:_SHOWN]) + (", ..." if len(names) > _SHOWN else "")
+    return (f"The JSBSim model reads properties that FlightGear writes, and they are 0 here: {shown}.",)

@@ -72,7 +72,8 @@ class JsbsimFlight:
     """
 
     def __init__(self, path: Path) -> None:
-        self.fdm: Any = load(path, STEP_S)
+        self.fdm: Any
+        self.fdm, self.foreign = load(path, STEP_S)
         self.name = path.stem
         self.engines = int(self.fdm.get_propulsion().get_num_engines())
         self._curve: tuple[FloatArray, FloatArray] | None = None

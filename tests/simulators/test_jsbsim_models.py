@@ -129,6 +129,42 @@ def test_a_path_that_is_no_file_is_one_sentence(tmp_path: Path) -> None:
         make_jsbsim(str(tmp_path / "none.xml"), Aircraft())
 
 
+@pytest.mark.parametrize(
+    ("before", "added"),
+    [
+        (
+            '<axis name="LIFT">',
+            '<axis name="LIFT"><function name="aero/x"><product><property>systems/flaps/power</property>'
+            "<property>aero/qbar-psf</property></product></function>",
+        ),
+        (
+            '<channel name="Pitch">',
+            '<channel name="Pitch"><switch name="fcs/zz"><default value="0"/>'
+            '<test value="1">/sim/time/elapsed-sec gt 1</test></switch>',
+        ),
+    ],
+    ids=["in a function", "in a test"],
+)
+def test_properties_that_flightgear_writes_are_0_and_said(tmp_path: Path, before: str, added: str) -> None:
+    path = tmp_path / "mine.xml"
+    path.write_text(find_model("c172p").read_text().replace(before, added, 1))
+    apart = make_jsbsim(str(path), Aircraft())
+    try:
+        flown = apart.replay(LEVEL, step(0.01))
+    finally:
+        apart.close()
+    name = "systems/flaps/power" if "power" in added else "/sim/time/elapsed-sec"
+    assert apart.notes == (
+        f"The JSBSim model reads properties that FlightGear writes, and they are 0 here: {name}.",
+    )
+    assert flown.q.tolist() == Jsbsim(find_model("c172p")).replay(LEVEL, step(0.01)).q.tolist()
+
+
+def test_shipped_models_read_no_foreign_property_that_they_write_themselves() -> None:
+    for model in ("c172p", "c172x", "737", "f16"):
+        assert Jsbsim(find_model(model)).notes == ()
+
+
 def test_a_models_own_output_writes_no_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     text = find_model("c172p").read_text()
