@@ -18,8 +18,6 @@ from advisor.flight.vehicle.surfaces import Surface
 from advisor.gap.diagnose import examine
 from advisor.gap.result import Diagnosis
 from advisor.gap.search.baseline import prior_derivatives
-from advisor.gap.static_errors import with_static_errors
-from advisor.gap.unseen import changes_something, unseen_of, with_unseen_shrink
 from advisor.gap.without_simulator import without_simulator
 from advisor.mavlink.logs.whole import read_whole_log
 from advisor.simulators.air import standard_heights
@@ -29,6 +27,8 @@ from advisor.simulators.linear import LinearSimulator
 from advisor.simulators.protocol import Simulator
 from advisor.simulators.specification import simulator_of
 from advisor.simulators.speed_kind import by_the_motion
+from advisor.simulators.static_errors import with_static_errors
+from advisor.simulators.unseen import changes_something, unseen_of, with_unseen_shrink
 from advisor.words.printable import printable
 from advisor.words.problems import Problem, UnusableInputError
 

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from math import degrees
 from typing import Literal
 
 from advisor.flight.instruments.kinematics import KinematicCheck
@@ -170,18 +169,6 @@ class InSimulator:
     """Why the simulator does not fly with the effects; empty where it does, or where none was added."""
 
 
-TRIM_OFF = {"alpha": 0.0175, "elevator": 0.0175, "throttle": 0.1}
-"""Quantity to the least difference of two trims that is told: 1 deg, twice the error of a vane or a surface
-aligned by hand, and a tenth of the throttle, whose thrust differs as much between engines of a type."""
-_TRIM_SIGMAS = 3.0
-"""Least number of standard deviations of the mean by which two trims differ."""
-_TRIMMED = {
-    "alpha": ("angle of attack", "flaps, incidence, weight or air speed differ, or the vane has an offset"),
-    "elevator": ("elevator", "centre of gravity, flaps or thrust line differ, or the calibration is off"),
-    "throttle": ("throttle", "drag or engine differ"),
-}
-
-
 @dataclass(frozen=True, slots=True)
 class TrimDifference:
     """One quantity of the trimmed flight, in the simulator and in the aircraft: means over the manoeuvres."""
@@ -192,21 +179,6 @@ class TrimDifference:
     aircraft: float
     std: float
     """Standard deviation of the mean difference."""
-
-    @property
-    def is_off(self) -> bool:
-        """Whether the trims differ by more than instruments and scatter explain."""
-        by = abs(self.simulator - self.aircraft)
-        return by > max(TRIM_OFF[self.quantity], _TRIM_SIGMAS * self.std)
-
-    @property
-    def sentence(self) -> str:
-        """Sentence on the difference, for people."""
-        name, because = _TRIMMED[self.quantity]
-        by = self.simulator - self.aircraft
-        size = f"{100.0 * abs(by):.0f} %" if self.quantity == "throttle" else f"{abs(degrees(by)):.1f} deg"
-        more = "more" if by > 0.0 else "less"
-        return f"The simulator trims at {size} {more} {name} than the aircraft: {because}."
 
 
 @dataclass(frozen=True, slots=True)

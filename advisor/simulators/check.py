@@ -44,7 +44,7 @@ class CheckedSimulator:
     """Largest pitch rate with resting controls."""
     takes: tuple[str, ...]
     lacks: tuple[str, ...]
-    """What the simulator does not take: controls, ``mass``, ``increments`` of force and moment."""
+    """Controls, ``mass`` and ``increments`` of force and moment that the simulator does not take."""
     derivatives: Mapping[str, float] = field(default_factory=dict)
     lag_s: float = nan
     """First-order lag between the command and the motion, s."""

@@ -22,15 +22,6 @@ from advisor.gap.records.prepare import prepare
 from advisor.gap.result import Diagnosis, TrimDifference
 from advisor.gap.search.baseline import base_entries
 from advisor.gap.simulator.layout import DERIVATIVES, INDEX, NUISANCES, OUTPUTS
-from advisor.gap.static_errors import with_static_errors
-from advisor.gap.unseen import (
-    UnseenManeuvers,
-    changes_something,
-    resaid,
-    shrink_on,
-    unseen_of,
-    with_unseen_shrink,
-)
 from advisor.simulators.air import refuse_unknown_air, standard_heights
 from advisor.simulators.around import COMMAND
 from advisor.simulators.by_log import IdentifiedSimulator
@@ -47,8 +38,17 @@ from advisor.simulators.flying import (
 from advisor.simulators.improved import EQUATIONS, Flown, in_simulator
 from advisor.simulators.linear import LinearSimulator
 from advisor.simulators.protocol import Condition, Inputs, Replay, Simulator
+from advisor.simulators.static_errors import with_static_errors
 from advisor.simulators.surrogate import Surrogate, surrogate_of
 from advisor.simulators.trims import trim_differences
+from advisor.simulators.unseen import (
+    UnseenManeuvers,
+    changes_something,
+    resaid,
+    shrink_on,
+    unseen_of,
+    with_unseen_shrink,
+)
 
 _FLIES, _DIAGNOSED, _FOUND = 0.2, 0.6, 0.9
 """Shares of the work that are done after the first replays, after the diagnosis, and after the search without

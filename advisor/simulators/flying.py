@@ -22,8 +22,8 @@ from advisor.words.problems import UnusableInputError
 Progress = Callable[[str, float], None]
 _LATERAL = ("aileron", "rudder")
 _BANKS_AWAY_RAD = 0.17
-"""Largest difference of the bank angles of simulator and aircraft, rad: at 10 deg the lift's vertical part
-differs by 1.5 %, as much as a good air speed is known."""
+"""Largest difference of the bank angles of simulator and aircraft, rad. At 10 deg the vertical part of the
+lift differs by 1.5 %."""
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,11 @@ from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.records.flights import Measured
 from advisor.gap.result import InSimulator
 from advisor.gap.simulator.layout import DERIVATIVES, INDEX, OUTPUTS
-from advisor.gap.unseen import (
+from advisor.simulators.flying import AsGiven, Flying, added, beyond, without_servo
+from advisor.simulators.inputs import at_reference
+from advisor.simulators.qualification import qualified
+from advisor.simulators.surrogate import Surrogate
+from advisor.simulators.unseen import (
     UnseenManeuvers,
     as_changed,
     as_given,
@@ -25,10 +29,6 @@ from advisor.gap.unseen import (
     unknown_offset,
     with_nuisances,
 )
-from advisor.simulators.flying import AsGiven, Flying, added, beyond, without_servo
-from advisor.simulators.inputs import at_reference
-from advisor.simulators.qualification import qualified
-from advisor.simulators.surrogate import Surrogate
 from advisor.words.problems import UnusableInputError
 
 DERIVATIVES_OF_IT, SERVO_OF_IT = "derivatives", "its own servo"

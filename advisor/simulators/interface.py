@@ -35,7 +35,7 @@ class InterfaceFault:
 
     quantity: str
     found: str
-    """What the quantity is instead, in words."""
+    """Sign or unit of the quantity, in words."""
     fix: str
 
     def refuse(self, description: str) -> UnusableInputError:

@@ -102,7 +102,8 @@ class Jsbsim:
         trim = {"elevator": start.elevator}
         if flight.engines and abs(start.axial) < _THRUST_SHARE * flight.fdm["inertia/weight-lbs"]:
             trim["throttle"] = start.throttle
-        return Replay(t, *rows.T, trim)
+        alpha, q, theta, a_z, speed, height, a_x, bank, r = rows.T
+        return Replay(t, alpha, q, theta, a_z, speed, height, a_x, bank, r, trim)
 
     def linearise(self, condition: Condition) -> Mapping[str, float] | None:
         """Return central differences of α̇ and q̇ about the trimmed state, at constant speed and flight path.

@@ -9,8 +9,8 @@ from collections.abc import Iterable, Iterator
 
 _OWN = (
     "accelerations", "aero", "ap-internal", "atmosphere", "attitude", "buoyant_forces", "contact",
-    "external_reactions", "fcs", "flight-path", "forces", "gear", "ground", "hydro", "ic", "inertia", "inertial",
-    "metrics", "moments", "orbital", "position", "propulsion", "simulation", "tank", "velocities",
+    "external_reactions", "fcs", "flight-path", "forces", "gear", "ground", "hydro", "ic", "inertia",
+    "inertial", "metrics", "moments", "orbital", "position", "propulsion", "simulation", "tank", "velocities",
 )  # fmt: skip
 """First parts of the names of JSBSim's own properties."""
 _SECTIONS = frozenset({"system", "autopilot", "flight_control", "aerodynamics", "channel", "metrics"})

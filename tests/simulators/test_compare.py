@@ -9,9 +9,9 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.diagnose import diagnose, examine
-from advisor.gap.unseen import unseen_of, with_unseen_shrink
 from advisor.simulators.compare import Compared, compare
 from advisor.simulators.linear import LinearSimulator
+from advisor.simulators.unseen import unseen_of, with_unseen_shrink
 from advisor.words.problems import UnusableInputError
 from tests.simulators.nonlinear import TRIM_RAD, Nonlinear, flown
 

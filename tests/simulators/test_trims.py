@@ -10,6 +10,7 @@ from advisor.flight.signals.record import Channel
 from advisor.gap.records.prepare import prepare
 from advisor.simulators.compare import compare
 from advisor.simulators.protocol import Condition, Inputs
+from advisor.simulators.static_errors import is_off
 from advisor.simulators.trims import trim_differences
 from tests.simulators.nonlinear import TRIM_RAD, Nonlinear, flown
 
@@ -33,9 +34,9 @@ def trimmed(aircraft: Aircraft, elevator: float, throttle: float):
 def test_trims_are_means_before_the_first_step():
     found = trimmed(CALIBRATED, 0.03, 0.7)
     assert found["alpha"].aircraft == pytest.approx(TRIM_RAD, abs=5e-4)
-    assert not found["alpha"].is_off
-    assert found["elevator"].is_off
-    assert found["throttle"].sentence.startswith("The simulator trims at 20 % more throttle")
+    assert not is_off(found["alpha"])
+    assert is_off(found["elevator"])
+    assert found["throttle"].simulator - found["throttle"].aircraft == pytest.approx(0.2)
 
 
 def test_an_elevator_without_a_calibration_tells_no_trim():

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.gap import unseen
 from advisor.gap.fitting import refit
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.records.prepare import prepare
 from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, NUISANCES, SPEED
-from advisor.gap.unseen import changes_something, kept_apart
+from advisor.simulators import unseen
+from advisor.simulators.unseen import changes_something, kept_apart
 from tests.simulators.nonlinear import flown
 
 MODEL = dict(zip(DERIVATIVES, (-2.7, 0.02, -0.15, -23.0, -3.4, -29.0), strict=True))

@@ -6,6 +6,7 @@ density both.
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from math import degrees
 
 import numpy as np
 
@@ -14,9 +15,19 @@ from advisor.gap.result import Diagnosis, TrimDifference
 from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.gap.uncatalogued.airspeed_scale import SIGMAS_IN_GUSTS
 
+_TRIM_OFF = {"alpha": 0.0175, "elevator": 0.0175, "throttle": 0.1}
+"""Quantity to the least difference of two trims that is said. A vane or a surface aligned by hand is right to
+0.5 deg. Thrust at one throttle differs by a tenth between engines of a type."""
+_TRIM_SIGMAS = 3.0
+"""Least number of standard deviations of the mean by which two trims differ."""
+_TRIMMED = {
+    "alpha": ("angle of attack", "flaps, incidence, weight or air speed differ, or the vane has an offset"),
+    "elevator": ("elevator", "centre of gravity, flaps or thrust line differ, or the calibration is off"),
+    "throttle": ("throttle", "drag or engine differ"),
+}
 _READS_WRONG = 0.03
-"""Least relative error of the air speed that is told first: a static port is wrong by 2 % (one standard
-deviation, the prior of the air speed)."""
+"""Least relative error of the air speed that is said first. The prior of a static port's error has a standard
+deviation of 0.02."""
 _SIGMAS = 3.0
 """Least number of standard deviations by which a common factor differs from 1."""
 _TOGETHER = 0.05
@@ -41,10 +52,19 @@ def with_static_errors(
     return replace(diagnosis, trims=tuple(trims), static=told, sentence=" ".join([*told, diagnosis.sentence]))
 
 
+def is_off(trim: TrimDifference) -> bool:
+    """Return whether two trims differ by more than instruments and scatter explain."""
+    by = abs(trim.simulator - trim.aircraft)
+    return by > max(_TRIM_OFF[trim.quantity], _TRIM_SIGMAS * trim.std)
+
+
 def _of_the_trims(trims: Sequence[TrimDifference]) -> Iterator[str]:
-    for one in trims:
-        if one.is_off:
-            yield one.sentence
+    for one in filter(is_off, trims):
+        name, because = _TRIMMED[one.quantity]
+        by = one.simulator - one.aircraft
+        size = f"{100.0 * abs(by):.0f} %" if one.quantity == "throttle" else f"{abs(degrees(by)):.1f} deg"
+        more = "more" if by > 0.0 else "less"
+        yield f"The simulator trims at {size} {more} {name} than the aircraft: {because}."
 
 
 def _of_the_speed(examined: DiagnosisEvidence) -> Iterator[str]:

@@ -1,7 +1,7 @@
 """The gap on manoeuvres that neither the search nor the fit has used.
 
-The whole search is repeated on the other manoeuvres. A cross-validated fit alone would not do: the search
-chose its effects on all manoeuvres, and their share of luck would pass for shrink (Varma and Simon 2006).
+The whole search is repeated on the other manoeuvres. A cross-validated fit alone flatters: a search that has
+seen all manoeuvres passes its luck for shrink (Varma and Simon 2006).
 """
 
 from collections.abc import Sequence
