@@ -13,6 +13,7 @@ _NOTHING: Mapping[str, Any] = {
     "shrink": None, "waterfall": [], "cannot_see": [], "model": None, "reference_airspeed_m_s": None,
     "alpha_check": None, "yardsticks": None, "notes": [], "improved_model": None,
     "share_irreducible": None, "decisions": [], "simulator": None, "qualification": None,
+    "static": [], "trims": [],
 }  # fmt: skip
 """Keys and values of a document without a diagnosis."""
 
@@ -46,6 +47,7 @@ def gap_document(
         "causes": [_cause(c) for c in d.causes],
         "shrink": d.shrink and {**plain(d.shrink), "in_simulator": _in_simulator(in_simulator)},
         "simulator": in_simulator and in_simulator.simulator,
+        **picked(d, "static trims"),
         "qualification": in_simulator and {q.channel: _qualification(q) for q in in_simulator.qualification},
         "waterfall": [{"effect": e, "after": a} for e, a in d.waterfall],
         "alpha_check": {
@@ -68,7 +70,9 @@ def _cause(c: Cause) -> dict[str, Any]:
 
 
 def _in_simulator(found: InSimulator | None) -> Any:
-    return None if found is None or found.after is None else picked(found, "before after percent on_paper")
+    if found is None or found.after is None:
+        return None
+    return picked(found, "before after percent on_paper maneuvers after_air_and_instruments")
 
 
 def _qualification(q: Qualification) -> dict[str, Any]:
