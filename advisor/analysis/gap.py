@@ -15,6 +15,7 @@ from advisor.flight.stream.stream import FlightStream
 from advisor.flight.vehicle.one_aircraft import OneAircraft
 from advisor.flight.vehicle.surfaces import Surface
 from advisor.gap.diagnose import diagnose
+from advisor.gap.judge.prior import FIELD, FieldPrior
 from advisor.gap.result import Diagnosis
 from advisor.gap.search.baseline import prior_derivatives
 from advisor.gap.without_simulator import without_simulator
@@ -144,6 +145,7 @@ def compare_logs(
     target_system: int | None = None,
     progress: Callable[[str, float], None] = lambda *_: None,
     by_hand: Sequence[ByHand] = (),
+    prior: FieldPrior = FIELD,
 ) -> Compared:
     """Read logs and diagnose their gap to a simulator, or to the aircraft file's model where there is none.
 
@@ -156,10 +158,10 @@ def compare_logs(
     flown = maneuvers_of(logs, aircraft, target_system, by_hand)
     gain = true_over_read(m.channels for m in flown.maneuvers)
     if simulator is not None:
-        compared = compare(flown.maneuvers, simulator, aircraft, holdout, progress)
+        compared = compare(flown.maneuvers, simulator, aircraft, holdout, progress, prior)
     else:
         at_true_speed = _at_true_speed(aircraft, gain)
-        found = diagnose(flown.maneuvers, at_true_speed, holdout, progress)
+        found = diagnose(flown.maneuvers, at_true_speed, holdout, progress, prior)
         told = found if prior_derivatives(aircraft) is not None else without_simulator(found)
         compared = Compared(told, aircraft)
     notes = list(flown.notes)

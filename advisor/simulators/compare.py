@@ -18,6 +18,7 @@ from advisor.gap.candidates.known import with_known
 from advisor.gap.candidates.traits import TRAITS
 from advisor.gap.diagnose import DiagnosisEvidence, examine
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
+from advisor.gap.judge.prior import FIELD, FieldPrior
 from advisor.gap.records.prepare import prepare
 from advisor.gap.result import Diagnosis
 from advisor.gap.search.baseline import base_entries
@@ -50,12 +51,13 @@ def compare(
     aircraft: Aircraft,
     holdout: int | None = None,
     progress: Progress = lambda *_: None,
+    prior: FieldPrior = FIELD,
 ) -> Compared:
     """Diagnose the gap between a flight and a simulator.
 
     Parameters
     ----------
-    maneuvers, holdout, progress
+    maneuvers, holdout, progress, prior
         Arguments of ``advisor.gap.diagnose.diagnose``.
     simulator
         The user's own simulator.
@@ -71,7 +73,7 @@ def compare(
         aircraft = _without_equations(aircraft)
     flights = prepare(maneuvers, aircraft)
     if not len(flights) or "alpha" not in flights.channels:
-        examine(maneuvers, aircraft, holdout, progress)
+        examine(maneuvers, aircraft, holdout, progress, prior)
     flying = Flying(simulator, flights, aircraft.reference.mass_kg, lambda w, s: progress(w, _FLIES * s))
     if isinstance(simulator, LinearSimulator):
         surrogate = Surrogate(simulator.derivatives, simulator.reference_m_s or flights.reference_m_s)
@@ -86,6 +88,7 @@ def compare(
         as_file,
         holdout,
         lambda what, share: progress(what, _FLIES + (_DIAGNOSED - _FLIES) * share),
+        prior,
     )
     again = replace(flying, progress=lambda w, s: progress(w, _DIAGNOSED + (1.0 - _DIAGNOSED) * s))
     if isinstance(simulator, LinearSimulator):
