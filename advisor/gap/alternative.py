@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 Kind = Literal["none", "parameters", "effect", "air", "unknown"]
-"""Kind of an alternative: no gap, wrong numbers of the file, an effect of the aircraft or of its telemetry,
-an effect of the air, and something without a name."""
+"""Kind of an alternative. ``air`` is an effect of the air, ``effect`` one of the aircraft or its
+telemetry."""
 KINDS: tuple[Kind, ...] = ("none", "parameters", "effect", "air", "unknown")
 
 
@@ -19,6 +19,11 @@ class Alternative:
     """``none``, ``parameters``, ``unknown``, or the name of an effect."""
     block: str = ""
     """Block of the simulator; empty for ``none`` and ``parameters``."""
+
+    @property
+    def is_effect(self) -> bool:
+        """Whether the alternative is an effect of the catalogue."""
+        return self.name not in ("none", "parameters", "unknown")
 
     @property
     def label(self) -> str:

@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 
 from advisor.gap.alternative import Alternative
-from advisor.gap.candidates.traits import TRAITS
-from advisor.gap.evidence.rows import Row
+from advisor.gap.evidence.rows import Row, stated_as
 
 
 @dataclass(frozen=True)
@@ -61,8 +60,7 @@ def answered(document: Mapping[str, Any]) -> Alternative:
     """Return the first answer of a document as an alternative."""
     verdict = document.get("verdict") or "none"
     if verdict == "effect":
-        effect = document["causes"][0]["effect"]
-        return Alternative("air" if TRAITS[effect].block == "air" else "effect", effect, TRAITS[effect].block)
+        return stated_as(document["causes"][0]["effect"])
     block = document["where"]["block"] if verdict == "unknown" else ""
     return Alternative(verdict, verdict, block)
 

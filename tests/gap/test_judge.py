@@ -132,9 +132,14 @@ def test_without_the_evidence_of_the_first_line_the_log_odds_change_by_just_that
 
 
 def test_two_alternatives_that_share_the_probability_are_both_told():
-    said = doubtful([(LAG, 0.6), (DELAY, 0.35)])
+    said = doubtful([(LAG, 0.6), (DELAY, 0.35)], (LAG, 0.6))
     assert said == "The evidence does not decide between actuator lag (60 %) and transport delay (35 %)."
-    assert doubtful([(LAG, 0.95)]) == ""
+    assert doubtful([(LAG, 0.95)], (LAG, 0.95)) == ""
+
+
+def test_an_answer_that_the_evidence_contradicts_says_so():
+    said = doubtful([(NONE, 0.95)], (LAG, 0.02))
+    assert said == "By the evidence no gap (95 %) is likelier than this answer (2 %)."
 
 
 def test_a_credible_answer_has_the_fewest_alternatives_with_nine_tenths():

@@ -46,7 +46,7 @@ def drift_and_step(
 ) -> dict[str, tuple[float, float]]:
     """Return by block the gain in log likelihood of a drift and of a step, nats; the largest of its courses.
 
-    The scatter of a course is unknown, so that the gain is n/2 ln of the ratio of the sums of squares, less
+    The scatter of a course is unknown. The gain is therefore n/2 ln of the ratio of the sums of squares, less
     the price of the parameters (Schwarz).
     """
     t = np.asarray(times_s, float)

@@ -1,4 +1,4 @@
-"""What a diagnosis measured, as plain numbers: everything that the columns of the evidence are made of."""
+"""The measurements of a diagnosis as plain numbers, from which the columns of the evidence are made."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field

@@ -7,16 +7,18 @@ import numpy as np
 
 from advisor.flight.instruments.kinematics import SMALLEST_LAG_S, SMALLEST_SCALE
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.alternative import Alternative
+from advisor.gap.alternative import Alternative, Kind
 from advisor.gap.candidates.traits import OF_ONE_FLIGHT, TRAITS
 from advisor.gap.evidence.measured import FullFit, Measured, Residual
-from advisor.gap.noise.probes import SENSOR_CHANNELS
+from advisor.gap.noise.probes import DYNAMIC, SENSOR_CHANNELS
 from advisor.gap.search.acceptance import LEAST_OFFSET_RAD
 from advisor.gap.search.air import LEAST_GUST_ANGLE
 
 Values = dict[str, float]
 BLOCKS = (*dict.fromkeys(trait.block for trait in TRAITS.values()), "attitude_sensor")
 """Blocks in which an effect without a name may lie."""
+_KINDS: Mapping[str, Kind] = {"air": "air"}
+"""Kind of the effects of a block, where it is not ``effect``."""
 _SURE = 5.0
 """Gain in log likelihood, nats, of a best alternative below which relative gains say nothing."""
 _WEIGHTY = 20.0
@@ -46,12 +48,11 @@ def rows_of(m: Measured) -> tuple[Row, ...]:
         rows.append(Row(Alternative("parameters", "parameters"), numbers))
     screened = _of_screening(m)
     for effect, trait in TRAITS.items():
-        kind = "air" if trait.block == "air" else "effect"
         values = _of_residual(m, m.base) | probed[_probed_in(effect)] | screened[effect]
         values |= _of_fits(m, effect) | _of_kinematics(m, effect) | _of_air(m, effect)
-        values |= _of_courses(m, trait.block) if effect in OF_ONE_FLIGHT and kind == "effect" else {}
+        values |= _of_courses(m, trait.block) if effect in OF_ONE_FLIGHT else {}
         values["estimated"] = float(trait.channel == "alpha" and m.alpha_is_estimated)
-        rows.append(Row(Alternative(kind, effect, trait.block), values))
+        rows.append(Row(stated_as(effect), values))
     lead = max(m.laws.values(), default=0.0) - m.named_gain
     for block in BLOCKS:
         values = _of_residual(m, m.last) | probed[block] | _of_courses(m, block)
@@ -61,6 +62,12 @@ def rows_of(m: Measured) -> tuple[Row, ...]:
         )
         rows.append(Row(Alternative("unknown", "unknown", block), values))
     return tuple(rows)
+
+
+def stated_as(effect: str) -> Alternative:
+    """Return an effect of the catalogue as an alternative."""
+    block = TRAITS[effect].block
+    return Alternative(_KINDS.get(block, "effect"), effect, block)
 
 
 def _of_residual(m: Measured, residual: Residual) -> Values:
@@ -98,7 +105,7 @@ def _gains(residual: Residual) -> dict[str, float]:
 def _probed_in(effect: str) -> str:
     """Return the block whose free disturbance resembles the effect: a sensor's for a wrong stamp."""
     trait = TRAITS[effect]
-    if trait.block != "timing":
+    if trait.block in DYNAMIC or trait.block in SENSOR_CHANNELS:
         return trait.block
     channel = trait.channel or "q"
     return next(block for block, its in SENSOR_CHANNELS.items() if its == channel)

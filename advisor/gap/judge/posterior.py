@@ -45,9 +45,7 @@ class Posterior:
             none=self.of_effect("none"),
             parameters=self.of_effect("parameters"),
             unknown={r.alternative.block: float(p) for r, p in pairs if r.alternative.kind == "unknown"},
-            effects={
-                r.alternative.name: float(p) for r, p in pairs if r.alternative.kind in ("effect", "air")
-            },
+            effects={r.alternative.name: float(p) for r, p in pairs if r.alternative.is_effect},
         )
 
     @property

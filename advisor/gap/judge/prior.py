@@ -17,7 +17,7 @@ class FieldPrior:
 
     def of(self, kind: Kind) -> float:
         """Return the share of a kind of alternative; effects of the air count as effects."""
-        return float(getattr(self, "effect" if kind == "air" else kind))
+        return float(getattr(self, {"air": "effect"}.get(kind, kind)))
 
 
 FIELD = FieldPrior(none=0.4, parameters=0.2, effect=0.3, unknown=0.1)

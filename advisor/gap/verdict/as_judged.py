@@ -5,6 +5,7 @@ from dataclasses import replace
 
 from advisor.gap.alternative import Alternative
 from advisor.gap.candidates.traits import TRAITS
+from advisor.gap.evidence.rows import stated_as
 from advisor.gap.judge.posterior import Posterior
 from advisor.gap.result import Cause, Diagnosis, spelled
 from advisor.gap.search.indistinguishable import way_to_distinguish
@@ -15,8 +16,8 @@ def as_judged(diagnosis: Diagnosis, told: Posterior) -> Diagnosis:
     """Return the diagnosis with probabilities, evidence and reasons; a doubtful answer says so in a note."""
     answer = answered(diagnosis)
     reasons = told.why(answer)
-    doubt = doubtful(told.credible)
-    alike = [a.name for a, _ in told.credible if a.kind in ("effect", "air")] if doubt else []
+    doubt = doubtful(told.credible, (answer, told.of(answer)))
+    alike = [a.name for a, _ in told.credible if a.is_effect] if doubt else []
     causes = tuple(_with_rivals(c, alike) if n == 0 else c for n, c in enumerate(diagnosis.causes))
     return replace(
         diagnosis,
@@ -32,16 +33,25 @@ def as_judged(diagnosis: Diagnosis, told: Posterior) -> Diagnosis:
 def answered(diagnosis: Diagnosis) -> Alternative:
     """Return the answer of a diagnosis as an alternative."""
     if diagnosis.verdict == "effect":
-        first = diagnosis.causes[0]
-        return Alternative("air" if first.block == "air" else "effect", first.effect, first.block)
+        return stated_as(diagnosis.causes[0].effect)
     if diagnosis.verdict == "unknown":
         return Alternative("unknown", "unknown", diagnosis.where.block)
-    name = "parameters" if diagnosis.verdict == "parameters" else "none"
-    return Alternative("parameters" if name == "parameters" else "none", name)
+    if diagnosis.verdict == "parameters":
+        return Alternative("parameters", "parameters")
+    return Alternative("none", "none")
 
 
-def doubtful(credible: Sequence[tuple[Alternative, float]]) -> str:
-    """Return the sentence about alternatives that the evidence cannot decide between; empty for one alone."""
+def doubtful(credible: Sequence[tuple[Alternative, float]], answer: tuple[Alternative, float]) -> str:
+    """Return the sentence about alternatives that the evidence cannot decide between.
+
+    It is empty where the answer is the only credible one. ``answer`` comes with its probability.
+    """
+    if answer[0] not in [alternative for alternative, _ in credible]:
+        likelier, p = credible[0]
+        return (
+            f"By the evidence {_said(likelier)} ({100.0 * p:.0f} %) is likelier than this answer "
+            f"({100.0 * answer[1]:.0f} %)."
+        )
     if len(credible) < 2:
         return ""
     listed = [f"{_said(a)} ({100.0 * p:.0f} %)" for a, p in credible[:3]]
