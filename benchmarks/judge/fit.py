@@ -26,16 +26,19 @@ COLUMNS: Columns = {
         "at_bound", "model_gain", "model_share", "misfit", "block_share", "kinematics", "kinematic_size",
         "estimated", "drift", "step",
     ),
-    "air": ("fit_gain", "screen_lead", "size", "few_maneuvers", "peak", "block_share", "activity"),
+    "air": ("few_maneuvers", "peak", "activity"),
     "unknown": (
         "block_share", "block_left", "block_left_share", "block_explains", "law_gain", "law_lead", "misfit",
         "of_peak", "activity", "few_maneuvers", "drift", "step", "block_gain",
     ),
 }  # fmt: skip
-"""Columns that the judge weighs, by kind of alternative. With the intercepts there are 60 weights."""
-L2 = 0.03
-"""Weight of the squares of the standardised weights, relative to the mean log likelihood of a flight. Chosen
-on the held-out flights of a prototype; 0.01 to 0.1 differ by less than a flight in a hundred."""
+"""Columns that the judge weighs, by kind of alternative. Effects of the air share the weights of all effects,
+and have some of their own."""
+PRIOR_STD = 0.4
+"""Prior standard deviation of a weight, nats per typical size of its column: no column alone decides. Factors
+of two either way differ by less than one flight in thirty, on flights of a generator that was left out."""
+_FREE = 0.1
+"""Factor on the prior precision of an intercept, which the field prior corrects anyway."""
 FOLDS = 5
 _TEMPERATURES = np.geomspace(0.5, 3.0, 25)
 _SPREAD = 1e-6
@@ -56,6 +59,12 @@ class _Table:
     """Weight of each flight: every generator counts alike."""
 
 
+def weighed(kind: Kind) -> list[tuple[Kind, str]]:
+    """Return the slots of the columns of a kind of alternative."""
+    shared: list[tuple[Kind, str]] = [("effect", name) for name in COLUMNS["effect"]] if kind == "air" else []
+    return [*shared, *((kind, name) for name in COLUMNS[kind])]
+
+
 def slots() -> list[tuple[Kind, str]]:
     """Return kind and column of every weight; an empty column is the intercept of a kind."""
     intercepts: list[tuple[Kind, str]] = [(kind, "") for kind in KINDS if kind != "effect"]
@@ -68,8 +77,8 @@ def matrix(flight: JudgedFlight) -> np.ndarray:
     X = np.zeros((len(flight.rows), len(places)))
     for n, row in enumerate(flight.rows):
         kind = row.alternative.kind
-        for name in COLUMNS[kind]:
-            X[n, places[kind, name]] = SCALES[name](row.values.get(name, 0.0))
+        for slot in weighed(kind):
+            X[n, places[slot]] = SCALES[slot[1]](row.values.get(slot[1], 0.0))
         if (kind, "") in places:
             X[n, places[kind, ""]] = 1.0
     return X
@@ -102,8 +111,8 @@ def _fitted(flights: Sequence[JudgedFlight]) -> Logit:
     table = _table(flights)
     spread = np.array([_std(column[column != 0.0]) for column in table.X.T])
     X, n = table.X / spread, len(table.X.T)
-    penalty = np.full(n, L2)
-    penalty[[not name for _, name in slots()]] = 0.1 * L2
+    penalty = np.full(n, 1.0 / (len(table.share) * PRIOR_STD**2))
+    penalty[[not name for _, name in slots()]] *= _FREE
 
     def loss(w: np.ndarray) -> tuple[float, np.ndarray]:
         u = X @ w
@@ -116,14 +125,12 @@ def _fitted(flights: Sequence[JudgedFlight]) -> Logit:
         return value + 0.5 * float(penalty @ w**2), penalty * w - gradient
 
     w = minimize(loss, np.zeros(n), jac=True, method="L-BFGS-B", options={"maxiter": 1000}).x / spread
-    by_kind: dict[Kind, dict[str, float]] = {kind: {} for kind in KINDS}
-    intercepts: dict[Kind, float] = {"effect": 0.0}
-    for (kind, name), value in zip(slots(), w, strict=True):
-        if name:
-            by_kind[kind][name] = float(value)
-        else:
-            intercepts[kind] = float(value)
-    return Logit(by_kind, intercepts, flown_prior(flights))
+    found = dict(zip(slots(), map(float, w), strict=True))
+    return Logit(
+        {kind: {slot[1]: found[slot] for slot in weighed(kind)} for kind in KINDS},
+        {kind: found.get((kind, ""), 0.0) for kind in KINDS},
+        flown_prior(flights),
+    )
 
 
 def flown_prior(flights: Sequence[JudgedFlight]) -> FieldPrior:

@@ -98,7 +98,12 @@ class Measured:
     """Standard deviation of the gust angle, rad."""
     air_peak: float = 0.0
     """Largest departure of the gust angle, rad; 0 where no air was found."""
-    air_is_gust: bool = False
+    last_gap: float = 0.0
+    """Gap on held-out manoeuvres of the model with all effects that were found."""
+    air_gap: float = 0.0
+    """That gap without the likeliest course of the air; equal to ``last_gap`` where no air was found."""
+    offset_gap: float = 0.0
+    """Gap of the offset of α that the kinematics show, over the channels."""
     laws: Mapping[str, float] = field(default_factory=dict)
     """Gain of the best uncatalogued law of each block."""
     file_gap: float = 0.0
@@ -139,7 +144,11 @@ def measured(e: Evidence, kinematics: KinematicCheck) -> Measured:
         air_gain=e.sought_air.gain,
         air_angle=e.sought_air.angle_std,
         air_peak=0.0 if e.air is None else abs(e.air.gust_angle),
-        air_is_gust=e.air is not None and e.air.gust,
+        last_gap=whole_gap(last.held_out.mean_square, e.floor),
+        air_gap=whole_gap(
+            last.held_out.mean_square if e.air is None else e.air.mean_square_beyond_air, e.floor
+        ),
+        offset_gap=_offset_gap(e, offset.rad if offset.stays else 0.0),
         laws=e.laws,
         file_gap=0.0 if e.file_model is None else float(
             np.mean((e.file_model.mean_square - first.held_out.mean_square) / e.floor**2)
@@ -154,6 +163,14 @@ def measured(e: Evidence, kinematics: KinematicCheck) -> Measured:
         ),
         alpha_is_estimated=problem.flights.alpha_is_derived,
     )  # fmt: skip
+
+
+def _offset_gap(e: Evidence, offset_rad: float) -> float:
+    """Return the mean over the channels of an offset's square over the floor's square; 0 where unknown."""
+    channels = e.problem.channels
+    if not np.isfinite(offset_rad) or "alpha" not in channels:
+        return 0.0
+    return float((offset_rad / e.floor[channels.index("alpha")]) ** 2) / len(channels)
 
 
 def residual_of(problem: EffectProblem, fitted: EffectFit) -> Residual:

@@ -169,7 +169,11 @@ def _held_out_gain(m: Measured, fit: FullFit) -> tuple[float, float]:
 
 
 def _of_kinematics(m: Measured, effect: str) -> Values:
-    """Return the finding of the kinematics that speaks of the effect."""
+    """Return the finding of the kinematics that speaks of the effect.
+
+    An offset shows in the kinematics alone. Its gain is that of a measurement z standard deviations from
+    zero, z²/2.
+    """
     findings = {
         "alpha_bias": (m.offset_rad, LEAST_OFFSET_RAD),
         "alpha_lag": (m.lag_s, SMALLEST_LAG_S),
@@ -179,8 +183,17 @@ def _of_kinematics(m: Measured, effect: str) -> Values:
     if effect not in findings:
         return {}
     (value, std), smallest = findings[effect]
-    found = {"kinematics": abs(value) / max(std, 1e-9), "kinematic_size": abs(value) / smallest}
-    return found | ({"tried": 1.0} if std > 0.0 else {})
+    z, size = abs(value) / max(std, 1e-9), abs(value) / smallest
+    found = {"kinematics": z, "kinematic_size": size}
+    if effect in m.screened or std <= 0.0:
+        return found
+    gain = 0.5 * z**2
+    share = m.offset_gap / max(m.offset_gap + m.base_gap, 1e-9)
+    return found | {
+        "tried": 1.0, "screen_gain": gain, "screen_share": gain / max(gain + m.named_gain, _WEIGHTY),
+        "fit_gain": gain, "fit_share": gain / max(gain + m.named_gain, _WEIGHTY),
+        "size": size, "size_sigmas": z, "gap_removed": share, "model_share": share,
+    }  # fmt: skip
 
 
 def _of_air(m: Measured, effect: str) -> Values:
@@ -188,14 +201,16 @@ def _of_air(m: Measured, effect: str) -> Values:
     if effect not in _ONCE or "alpha" not in m.channels:
         return {}
     peak = np.log(m.air_peak / (_GAUSSIAN_PEAK * m.air_angle)) if m.air_peak > 0.0 < m.air_angle else 0.0
+    share = m.air_gain / max(m.air_gain + m.named_gain, _WEIGHTY)
+    removed = m.last_gap - m.air_gap
     return {
-        "tried": 1.0,
-        "fit_gain": m.air_gain,
-        "screen_lead": (m.air_gain - m.named_gain) / max(m.air_gain, m.named_gain, _WEIGHTY),
-        "size": m.air_angle / LEAST_GUST_ANGLE,
+        "tried": 1.0, "screen_gain": m.air_gain, "screen_share": share,
+        "fit_gain": m.air_gain, "fit_share": share, "size": m.air_angle / LEAST_GUST_ANGLE,
+        "gap_removed": removed / m.base_gap if m.base_gap > 0.0 else 0.0,
+        "model_share": removed / max(m.base_gap - m.air_gap, 1e-9) if removed > 0.0 else 0.0,
         "few_maneuvers": _ONCE[effect] * _concentration(m.last),
         "peak": _ONCE[effect] * float(peak),
-    }
+    }  # fmt: skip
 
 
 def _concentration(residual: Residual) -> float:
