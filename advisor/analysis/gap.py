@@ -16,6 +16,7 @@ from advisor.flight.stream.stream import FlightStream
 from advisor.flight.vehicle.one_aircraft import OneAircraft
 from advisor.flight.vehicle.surfaces import Surface
 from advisor.gap.diagnose import examine
+from advisor.gap.judge.prior import FIELD, FieldPrior
 from advisor.gap.result import Diagnosis
 from advisor.gap.search.baseline import prior_derivatives
 from advisor.gap.without_simulator import without_simulator
@@ -159,6 +160,7 @@ def compare_logs(
     target_system: int | None = None,
     progress: Callable[[str, float], None] = lambda *_: None,
     by_hand: Sequence[ByHand] = (),
+    prior: FieldPrior = FIELD,
 ) -> Compared:
     """Read logs and diagnose their gap to a simulator, or to the aircraft file's model where there is none.
 
@@ -176,11 +178,10 @@ def compare_logs(
     gain = true_over_read(m.channels for m in chosen.maneuvers)
     at_true_speed = _at_true_speed(aircraft, gain)
     if simulator is not None:
-        compared = compare(
-            chosen.maneuvers, _simulator_at_true_speed(simulator, gain), at_true_speed, holdout, progress
-        )
+        as_true = _simulator_at_true_speed(simulator, gain)
+        compared = compare(chosen.maneuvers, as_true, at_true_speed, holdout, progress, prior)
     else:
-        whole = examine(chosen.maneuvers, at_true_speed, holdout, progress)
+        whole = examine(chosen.maneuvers, at_true_speed, holdout, progress, prior)
         told = whole.diagnosis
         if prior_derivatives(aircraft) is None:
             told = without_simulator(told)

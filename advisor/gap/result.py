@@ -6,6 +6,7 @@ from typing import Literal
 
 from advisor.flight.instruments.kinematics import KinematicCheck
 from advisor.flight.signals.messages import FloatArray
+from advisor.gap.alternative import AlternativeEvidence, Contribution, Probabilities
 from advisor.gap.decision import Decision
 
 GapVerdict = Literal["none", "parameters", "effect", "unknown", "untested"]
@@ -237,6 +238,14 @@ class Diagnosis:
     height_m: float | None = None
     """Mean height in the standard atmosphere at which the air has the density flown in, m; None for an
     unknown density."""
+    probabilities: Probabilities | None = None
+    """Probabilities of all alternatives; None for a single manoeuvre, which proves no cause."""
+    evidence: tuple[AlternativeEvidence, ...] = ()
+    """The evidence on every alternative, likeliest first."""
+    why: tuple[Contribution, ...] = ()
+    """The answer against its strongest rival, in nats that add up to the log odds."""
+    rival: str = ""
+    """Label of that rival; empty without ``why``."""
     true_over_read: float = 1.0
     """Factor from the air speed as the aircraft reads it to the true one."""
 
