@@ -1,7 +1,6 @@
 """``advisor gap``: why the real aircraft does not fly like the simulator."""
 
 import json
-import shlex
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -9,6 +8,7 @@ from pathlib import Path
 import click
 from click.core import ParameterSource
 
+from advisor.cli.gap_figure import refuse_figure, write_figure
 from advisor.cli.improvement_export import export_option, listed, orders_of, write_exports
 from advisor.cli.log_options import LogsAsked, log_options
 from advisor.cli.options import (
@@ -25,6 +25,7 @@ from advisor.words.problems import ConfigurationError, UnusableInputError
 _OF_A_FLIGHT = {
     "holdout": "--holdout", "out": "--out", "target_system": "--target-system", "marks": "--maneuver",
     "no_marks": "--no-marks", "why": "--why", "exports": "--export", "specification": "--simulator",
+    "figure": "--figure",
 }  # fmt: skip
 _OF_A_PLAN = {
     "plan": "--plan", "rate_hz": "--rate", "amplitude_deg": "--amplitude-deg", "without": "--without"
@@ -48,6 +49,11 @@ _OF_A_PLAN = {
     "--out",
     type=click.Path(path_type=Path),
     help="File for the improved simulator; without it none is written.",
+)
+@click.option(
+    "--figure",
+    type=click.Path(path_type=Path),
+    help="File for the picture: measured, simulated before and after. Ends in .svg or .png.",
 )
 @export_option
 @click.option(
@@ -75,6 +81,7 @@ def command(
     holdout: int | None,
     specification: str | None,
     out: Path | None,
+    figure: Path | None,
     exports: tuple[str, ...],
     why: bool,
     foresee: bool,
@@ -114,12 +121,15 @@ def command(
         refuse_unwritable("--out", out)
         if asked.aircraft_file is not None and out.resolve() == asked.aircraft_file.resolve():
             raise ConfigurationError(f"--out: {out} is the aircraft file itself; name another file.")
+    refuse_figure(figure, [*asked.inputs, out])
     if specification is not None:
         aircraft = replace(aircraft, simulator=specification)
     orders = orders_of(exports, aircraft, [*asked.inputs, out])
     from advisor.analysis.gap import compare_logs, named_simulator
     from advisor.gap.document import gap_document
-    from advisor.report.improved import improved_name, write_improved
+    from advisor.report.gap_steps import next_steps
+    from advisor.report.improved import write_improved
+    from advisor.words.plain import plain
 
     watched = sys.stderr.isatty()
     progress = _progress if watched else lambda *_: None
@@ -151,18 +161,18 @@ def command(
     # The simulator's own servo is no part of the improvement.
     as_given = replace(compared.aircraft, simulator=aircraft.simulator, elevator=aircraft.elevator)
     outcomes = write_exports(orders, found, as_given)
+    write_figure(figure, found)
+    steps = next_steps(found, list(map(str, asked.logs)), asked.aircraft_text, specification)
     if as_json:
         document = gap_document(found, (), str(out) if out and improvable else None)
-        click.echo(json.dumps(document | {"exports": listed(outcomes)}, allow_nan=False, indent=1))
+        more = {"exports": listed(outcomes), "next": plain(steps)}
+        click.echo(json.dumps(document | more, allow_nan=False, indent=1))
     else:
         from advisor.report.console import PlainConsole
         from advisor.report.gap_screen import GapScreen
 
         written = printable(str(out)) if out and improvable else None
-        PlainConsole().print(GapScreen(found, written, why))
-    if improvable and out is None and not orders:
-        again = ["advisor", *sys.argv[1:], "--out", improved_name(found, asked.aircraft_file)]
-        click.echo(f"To write the improved simulator: {printable(shlex.join(again))}", err=True)
+        PlainConsole().print(GapScreen(found, written, why, steps))
     return USAGE if any(one.problem for one in outcomes) else 0
 
 

@@ -18,7 +18,9 @@ from advisor.cli.log_options import LogsAsked
 from advisor.doctor.document import doctor_document
 from advisor.gap.document import gap_document
 from advisor.report.document import analysis_document
+from advisor.report.gap_steps import next_steps
 from advisor.report.page.content import Content, Document, Origin
+from advisor.words.plain import plain
 from advisor.words.printable import printable
 from advisor.words.problems import UnusableInputError
 
@@ -47,7 +49,7 @@ def gather(asked: LogsAsked, aircraft: Aircraft, with_gap: bool) -> tuple[Conten
         aircraft=aircraft,
         power_ons=flights.power_ons,
         doctor=tuple(_examined(log, aircraft, asked.target_system) for log in flights.logs),
-        gap=_gap(flights, aircraft, asked.target_system) if with_gap else None,
+        gap=_gap(flights, aircraft, asked) if with_gap else None,
         origin=Origin(
             _hashes(flights, asked.aircraft_file),
             dict(_versions()),
@@ -64,7 +66,8 @@ def _examined(log: Path, aircraft: Aircraft, target_system: int | None) -> Docum
         return doctor_document(None, error.problem)
 
 
-def _gap(flights: WholeFlights, aircraft: Aircraft, target_system: int | None) -> Document:
+def _gap(flights: WholeFlights, aircraft: Aircraft, asked: LogsAsked) -> Document:
+    target_system = asked.target_system
     usable = [flight for flight in range(len(flights.logs)) if flight not in flights.left_out]
     logs = [flights.logs[flight] for flight in usable]
     decided = [flights.by_hand.on_flight(flight) for flight in usable]
@@ -77,7 +80,8 @@ def _gap(flights: WholeFlights, aircraft: Aircraft, target_system: int | None) -
     finally:
         if simulator is not None:
             simulator.close()
-    return gap_document(compared.diagnosis)
+    steps = next_steps(compared.diagnosis, list(map(str, logs)), asked.aircraft_text, aircraft.simulator)
+    return {**gap_document(compared.diagnosis), "next": plain(steps)}
 
 
 def _hashes(flights: WholeFlights, aircraft_file: Path | None) -> Mapping[str, str]:
