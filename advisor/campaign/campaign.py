@@ -151,6 +151,7 @@ class Campaign:
             elevator_guess=stream.guess if isinstance(stream.elevator, Problem) else None,
             other_vehicles=tuple(sorted(stream.other_systems)),
             no_data=stream.no_data,
+            serves=stream.serves,
             instruments=with_fit(
                 together(self._maneuvers, stream.instruments),
                 model,
@@ -169,6 +170,11 @@ class Campaign:
     def power_on(self) -> tuple[int, int]:
         """Flight and power-on of the newest message, each counted from 0."""
         return self._flights.flight, self._stream.boot
+
+    @property
+    def serves(self) -> bool:
+        """Whether the present data are known to serve."""
+        return self._stream.serves
 
     @property
     def problems(self) -> list[Problem]:

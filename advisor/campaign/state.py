@@ -68,6 +68,8 @@ class CampaignState:
     """System ids of the other vehicles on the link, rising."""
     no_data: tuple[Problem, ...] = ()
     """Reasons for which the present data cannot serve; empty while they can."""
+    serves: bool = True
+    """Whether the present data are known to serve. False before the first judgement of the stream."""
     instruments: tuple[InstrumentFinding, ...] = ()
     """Contradictions of the instruments."""
     mark_notes: tuple[str, ...] = ()

@@ -47,7 +47,9 @@ if TYPE_CHECKING:
     "--request-rates", is_flag=True, help="Ask the vehicle for streams of 50 Hz and its servo parameters."
 )
 @click.option(
-    "--announce", is_flag=True, help="Send each verdict and STOP to the ground stations (STATUSTEXT)."
+    "--announce",
+    is_flag=True,
+    help="Send each verdict and TEST COMPLETE to the ground stations (STATUSTEXT).",
 )
 @click.option(
     "--announce-to",

@@ -25,7 +25,7 @@ from advisor.flight.signals.messages import Columns
 from advisor.process import interrupt
 from advisor.session.child_process import pause_s, said_of, start_child
 from advisor.session.remote import ConductorTask
-from advisor.session.source import Source
+from advisor.session.source import Playable, Source
 from advisor.words.ascii_output import speak_plainly
 from advisor.words.problems import UnusableInputError
 
@@ -98,7 +98,7 @@ def narrate_here(source: Source, campaign: "Campaign", say: Callable[[str], obje
     from advisor.report.follow import follow
 
     with closing(source):
-        follow(_batches(source), campaign, say)
+        follow(_batches(source), campaign, say, of_log=isinstance(source, Playable))
     if campaign.problems:
         raise UnusableInputError.of(campaign.problems[:1])
 

@@ -13,7 +13,7 @@ from time import monotonic
 from advisor.campaign.hand_decisions import NOTHING, ByHand
 from advisor.session.campaign_like import CampaignLike
 from advisor.session.conducting import SessionReport, Tell
-from advisor.session.goal import Goal
+from advisor.session.goal import DataBegin, Goal
 from advisor.session.hand import HandDecision
 from advisor.session.source import LinkRequest, Playable, Source, Tempo
 
@@ -44,7 +44,7 @@ class Conductor:
         self._by_hand = by_hand
         self._said_where = ""
         self._pending: list[HandDecision] = []
-        self._goal: Goal | None = None
+        self._goal: Goal | DataBegin | None = None
         self._stopped = Event()
         self._rewound = False
         self._told_s = -inf
@@ -99,6 +99,8 @@ class Conductor:
     def _play(self, campaign: CampaignLike) -> None:
         """Feed one campaign until a rewind or the stop."""
         ended = False
+        if self._goal is None and not campaign.state.serves:
+            self._hurry_to(DataBegin())
         while not self._stopped.is_set():
             self._answer(campaign, _READ_TIMEOUT_S if ended else 0.0)
             if self._rewound:
@@ -163,11 +165,16 @@ class Conductor:
         if not isinstance(self._source, Playable):
             return
         known = next((j.maneuver for j in campaign.state.maneuvers if j.maneuver.number == number), None)
-        self._goal = Goal(number, (*known.power_on, known.span.start_s) if known else None)
+        self._hurry_to(Goal(number, (*known.power_on, known.span.start_s) if known else None))
         if known:
             self._source.rewind()
             self._rewound = True
-        self._source.hurry(True)
+
+    def _hurry_to(self, goal: Goal | DataBegin) -> None:
+        """Play a log as fast as possible until the goal is reached. A link cannot hurry."""
+        if isinstance(self._source, Playable):
+            self._goal = goal
+            self._source.hurry(True)
 
     def _arrive(self) -> None:
         """End the jump, at its goal or at the end of the log."""

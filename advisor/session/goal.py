@@ -1,4 +1,4 @@
-"""Goal of a jump in a replay."""
+"""Goals to which a replay hurries: a manoeuvre, or the begin of the data."""
 
 from dataclasses import dataclass
 
@@ -24,3 +24,12 @@ class Goal:
         if self.start is not None:
             return done == self.number - 1 and (state.flight, state.boot, state.now_s + LEAD_S) >= self.start
         return state.flying is not None and state.flying.number >= self.number
+
+
+@dataclass(frozen=True, slots=True)
+class DataBegin:
+    """The moment at which the data of a log can serve. Many logs begin with slow streams or parameters."""
+
+    def reached(self, state: CampaignState) -> bool:
+        """Return whether the present data can serve."""
+        return state.serves

@@ -29,6 +29,7 @@ from advisor.tui.screens.face import Face
 from advisor.tui.screens.pilot import PilotScreen
 from advisor.tui.settings import Settings
 from advisor.tui.sheets import Sheets
+from advisor.tui.sound import Sound, Voice
 from advisor.tui.themes import NAMES, THEMES
 from advisor.words.problems import UnusableInputError
 
@@ -106,6 +107,9 @@ class AdvisorApp(replay_actions.ReplayActions, link_actions.LinkActions, HandAct
         """Newest report, while it waits."""
         self._garbage = Garbage()
         self._sheets = Sheets(THEMES)
+        self._voice = Voice()
+        self._sound = Sound(self.bell, self._speak)
+        self._sound.on = self.settings.sound
         for theme in THEMES:
             self.register_theme(theme)
         self.theme = self.settings.theme
@@ -184,6 +188,7 @@ class AdvisorApp(replay_actions.ReplayActions, link_actions.LinkActions, HandAct
     def show(self, view: View) -> None:
         """Show another moment on the screens."""
         self.view = view
+        self._sound.hear(view)
         for screen in self.screen_stack:
             if isinstance(screen, Face):
                 screen.show(self.view)
@@ -228,6 +233,16 @@ class AdvisorApp(replay_actions.ReplayActions, link_actions.LinkActions, HandAct
         theme = NAMES[(here + 1) % len(NAMES)]
         self.theme = theme
         self.say(f"theme: {theme}")
+
+    def _speak(self, text: str) -> None:
+        """Speak, unless the viewer sits at a browser: the voice would speak at the server."""
+        if not self.is_web:
+            self._voice(text)
+
+    def action_sound(self) -> None:
+        """Turn bell and voice off or on."""
+        self._sound.on = not self._sound.on
+        self.say(f"bell and voice: {'on' if self._sound.on else 'off'}")
 
     def action_explain(self) -> None:
         """Show the help on the focused pane."""

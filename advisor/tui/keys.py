@@ -31,6 +31,7 @@ SELDOM: list[BindingType] = [
     _key("m", "mark", "Mark", id="mark", show=True),
     _key("b", "begin_maneuver", "Begin manoeuvre", id="begin_maneuver", show=True),
     _key("f", "end_maneuver", "Finish manoeuvre", id="end_maneuver", show=True),
+    _key("k", "sound", "Bell and voice", id="sound"),
     _key("v", "follow_another", "Follow another vehicle", id="follow"),
     _key("a", "ask_for_outputs", "Ask for the elevator's output", id="outputs"),
     _key("g", "take_guess", "Take the guessed output", id="guess"),

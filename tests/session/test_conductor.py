@@ -215,3 +215,21 @@ def test_cutting_the_stream_differently_feeds_the_same():
         flight.run()
         fed.append(flight.campaigns[0].fed)
     assert fed[0] == fed[1] == fed[2]
+
+
+def test_a_replay_hurries_through_the_time_before_its_data_and_no_further() -> None:
+    waits: list[float] = []
+    player = LogPlayer("x", log, 1.0, lambda changed, seconds: waits.append(seconds))
+    waited_at_begin: list[int] = []
+
+    class LateCampaign(CountingCampaign):
+        @property
+        def state(self) -> CampaignState:
+            begun = len(self.fed) >= A_MANEUVER
+            if begun and not waited_at_begin:
+                waited_at_begin.append(len(waits))
+            return replace(super().state, serves=begun)
+
+    conductor = Conductor(player, LateCampaign)
+    conductor.run(lambda report: conductor.stop() if len(waits) > 3 else None)
+    assert waited_at_begin == [0]

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from advisor.aircraft.aircraft import PARAMETERS, Aircraft, CampaignPlan
 from advisor.campaign.state import CampaignState, ChannelStatus, JudgedManeuver
+from advisor.decision.inputs import StepInput
 from advisor.decision.verdict import (
     FlightTestVerdict,
     ManeuverVerdict,
@@ -151,19 +152,26 @@ def state(flown: int = 7, bad: tuple[int, ...] = (2,), in_the_air: bool = False)
             "separate": RuleProgress(None, tuple(v and 1.4 * v for v in history)),
             "information": RuleProgress(None, tuple(v and 4.0 * v for v in history), 100.0),
         },
-        next=NextInput("next: reverse 3-2-1-1, 0.4 s steps, 60 % stick", Remaining(2, 4), "Z_delta_e"),
+        next=NextInput(
+            "next: reverse 3-2-1-1, 0.4 s steps, 60 % stick",
+            Remaining(2, 4),
+            "Z_delta_e",
+            StepInput("3-2-1-1", 0.4, np.radians(15.0), nose_up_first=False),
+            np.radians(25.0),
+        ),
         warnings=("Z_q is near zero: the criterion of Eq. (12) cannot fall for it.",),
     )
     flying = _in_the_air(flown + 1) if in_the_air else None
     channels = {
-        name: ChannelStatus(source, provenance, rate, 0.06, now_s)
-        for name, source, provenance, rate in (
-            ("elevator", "SERVO_OUTPUT_RAW.servo2_raw", "commanded", 49.8),
-            ("alpha", "AOA_SSA.AOA", "derived", 20.0),
-            ("q", "ATTITUDE.pitchspeed", "measured", 50.0),
-            ("theta", "ATTITUDE.pitch", "measured", 50.0),
-            ("a_z", "RAW_IMU.zacc", "measured", 50.0),
-            ("airspeed", "VFR_HUD.airspeed", "measured", 10.0),
+        name: ChannelStatus(source, provenance, rate, 0.06, now_s, newest=newest)
+        for name, source, provenance, rate, newest in (
+            ("elevator", "SERVO_OUTPUT_RAW.servo2_raw", "commanded", 49.8, 0.01),
+            ("alpha", "AOA_SSA.AOA", "derived", 20.0, 0.05),
+            ("q", "ATTITUDE.pitchspeed", "measured", 50.0, 0.0),
+            ("theta", "ATTITUDE.pitch", "measured", 50.0, 0.05),
+            ("bank", "ATTITUDE.roll", "measured", 50.0, 0.07),
+            ("a_z", "RAW_IMU.zacc", "measured", 50.0, -9.8),
+            ("airspeed", "VFR_HUD.airspeed", "measured", 10.0, 25.9),
         )
     }
     notices = tuple(

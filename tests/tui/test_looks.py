@@ -87,7 +87,7 @@ async def test_all_tabs_have_room_on_eighty_columns():
 @pytest.mark.parametrize("size", SIZES, ids=str)
 async def test_the_pilot_reads_the_word_in_block_letters_at_any_size(size: tuple[int, int]):
     async with stage(flights.state(7), size=size) as here:
-        await here.until(lambda: here.app.screen.query_one(BigWord).word == "STOP TESTING")
+        await here.until(lambda: here.app.screen.query_one(BigWord).word == "TEST COMPLETE")
         word = here.app.screen.query_one(BigWord)
         assert "█" in str(word.render())
         for part in here.app.screen.query(Lines):

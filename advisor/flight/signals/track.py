@@ -27,6 +27,8 @@ class ChannelStatus:
     """Smallest value since boot, SI."""
     highest: float = np.nan
     """Largest value since boot, SI."""
+    newest: float = np.nan
+    """Value of the newest sample, SI."""
 
     def at_best(self, earlier: "ChannelStatus | None" = None) -> "ChannelStatus":
         """Return the status with the best ten seconds' rate, and the range, of this source over all boots.
@@ -58,6 +60,8 @@ class Track:
         self.source = source
         self.provenance = provenance
         self.newest_s = -np.inf
+        self.newest = np.nan
+        """Value at ``newest_s``."""
         self.largest_gap_s = 0.0
         self._best = BestRate()
         self.lowest, self.highest = np.inf, -np.inf
@@ -75,6 +79,8 @@ class Track:
         before = self.newest_s if self._size else float(t[0])
         newest = np.maximum.accumulate(np.concatenate(([before], t)))
         self.largest_gap_s = max(self.largest_gap_s, float((newest[1:] - newest[:-1]).max()))
+        if newest[-1] >= self.newest_s:
+            self.newest = float(y[int(np.argmax(t))])
         self.newest_s = float(newest[-1])
         self._best.add(t)
         self.lowest = min(self.lowest, float(y.min()))
@@ -114,6 +120,7 @@ class Track:
             self._best.rate_hz,
             self.lowest,
             self.highest,
+            self.newest,
         )
 
     def _make_room(self, n: int) -> None:

@@ -214,6 +214,11 @@ class FlightStream:
         """Reasons for which the present data cannot serve; empty while they can."""
         return self._service.problems
 
+    @property
+    def serves(self) -> bool:
+        """Whether the present data are known to serve."""
+        return self._service.serves
+
     def _wanting(self, channels: Mapping[str, ChannelStatus], now_s: float) -> list[Problem]:
         """Return the problems of a stream with these channels, whatever was flown on it."""
         wrong = self._mixing.contradiction if not self._cutting.maneuvers else None

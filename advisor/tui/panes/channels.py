@@ -4,12 +4,19 @@ from textual.app import ComposeResult
 from textual.containers import VerticalScroll
 
 from advisor.session.view import View
-from advisor.tui.panes.crew_notes import alpha_in_words
 from advisor.tui.panes.hanging import HangingLines, Labelled
 from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.pane import Pane
 from advisor.tui.panes.status_line import CONDITIONS
 from advisor.words.vehicle_time import clock
+
+
+def alpha_in_words(view: View) -> str:
+    """Return source and provenance of the angle of attack in one line."""
+    alpha = view.state.channels.get("alpha")
+    if alpha is None:
+        return "no angle of attack heard yet"
+    return f"{alpha.provenance}, from {alpha.source}, {alpha.rate_hz:.0f} Hz"
 
 
 class Channels(Pane):
