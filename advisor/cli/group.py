@@ -33,6 +33,7 @@ COMMANDS = {
     "report": "Write one self-contained page about a flight, for people who were not there.",
     "doctor": "Check before a flight whether the telemetry is good enough; say what to change.",
     "study": "Repeat the paper's simulated campaign: Table 1, Figure 5, Monte-Carlo.",
+    "mcp": "Let an assistant read logs: doctor, analyze, gap and report as tools.",
     "aircraft": "Write an aircraft file, or say what one lacks and what that costs.",
     "sample": "Put a sample flight and its aircraft file into this folder.",
     "locate": "Print where settings and recordings are kept.",
@@ -44,7 +45,7 @@ command."""
 
 COMPLETION_VARIABLE = "_ADVISOR_COMPLETE"
 """Environment variable by which a shell asks for completions."""
-WITHOUT_KERNELS = frozenset({"locate", "sample", "aircraft", "completion"})
+WITHOUT_KERNELS = frozenset({"locate", "sample", "aircraft", "completion", "mcp"})
 """Commands that need no compiled code, or only sometimes: the first run does not compile for them."""
 
 
