@@ -23,6 +23,7 @@ from advisor.tui import keys, link_actions, replay_actions
 from advisor.tui.explaining import commands, explanation
 from advisor.tui.garbage_collection import Garbage
 from advisor.tui.hand_actions import HandActions
+from advisor.tui.panes.replay_bar import ReplayBar
 from advisor.tui.screens.engineer import EngineerScreen
 from advisor.tui.screens.explain import Explain
 from advisor.tui.screens.face import Face
@@ -180,6 +181,10 @@ class AdvisorApp(replay_actions.ReplayActions, link_actions.LinkActions, HandAct
         if event.state is WorkerState.ERROR:
             self.failure = event.worker.error
             self.exit()
+
+    def on_replay_bar_sought(self, event: ReplayBar.Sought) -> None:
+        """Go to the place on the bar that was clicked."""
+        self.seek(event.position_s)
 
     def on_face_decided(self, event: Face.Decided) -> None:
         """Pass a decision to the campaign."""

@@ -22,6 +22,8 @@ REPLAY: list[BindingType] = [
     _key("plus,equals_sign", "faster", "Faster", id="faster", show=True),
     _key("minus", "slower", "Slower", id="slower", show=True),
     _key("full_stop", "step", "Step", id="step", show=True),
+    _key("left_curly_bracket", "seek_by(-10)", "10 s back", id="back"),
+    _key("right_curly_bracket", "seek_by(10)", "10 s on", id="ahead"),
     _key("right_square_bracket", "jump_by(1)", "Next manoeuvre", id="next_maneuver"),
     _key("left_square_bracket", "jump_by(-1)", "Previous manoeuvre", id="previous_maneuver"),
 ]
