@@ -1,7 +1,6 @@
 """``advisor gap``: why the real aircraft does not fly like the simulator."""
 
 import json
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -19,6 +18,7 @@ from advisor.cli.options import (
     refuse_unwritable,
     writing,
 )
+from advisor.cli.stages import Stages
 from advisor.words.printable import printable
 from advisor.words.problems import ConfigurationError, UnusableInputError
 
@@ -131,14 +131,13 @@ def command(
     from advisor.report.improved import write_improved
     from advisor.words.plain import plain
 
-    watched = sys.stderr.isatty()
-    progress = _progress if watched else lambda *_: None
     simulator = None
     try:
-        simulator = named_simulator(aircraft, asked.target_system)
-        compared = compare_logs(
-            asked.logs, aircraft, simulator, holdout, asked.target_system, progress, by_hand
-        )
+        with Stages() as progress:
+            simulator = named_simulator(aircraft, asked.target_system)
+            compared = compare_logs(
+                asked.logs, aircraft, simulator, holdout, asked.target_system, progress, by_hand
+            )
         found = compared.diagnosis
     except UnusableInputError as error:
         if as_json:
@@ -148,8 +147,6 @@ def command(
     finally:
         if simulator is not None:
             simulator.close()
-        if watched:
-            click.echo("\r\033[K", nl=False, err=True)
     improvable = found.verdict in ("effect", "parameters")
     if out is not None and improvable:
         with writing("--out", out):
@@ -184,7 +181,3 @@ def _refuse_foreign(foresee: bool) -> None:
         if given(name) is ParameterSource.COMMANDLINE:
             where = "without --foresee" if foresee else "with --foresee"
             raise ConfigurationError(f"{option} has a meaning {where} only: leave it out.")
-
-
-def _progress(what: str, share: float) -> None:
-    click.echo(f"\r\033[K{100 * share:3.0f} %  {what}", nl=False, err=True)

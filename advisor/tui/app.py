@@ -23,6 +23,7 @@ from advisor.tui import keys, link_actions, replay_actions
 from advisor.tui.explaining import commands, explanation
 from advisor.tui.garbage_collection import Garbage
 from advisor.tui.hand_actions import HandActions
+from advisor.tui.panes.flight import WholeFlightPane
 from advisor.tui.panes.replay_bar import ReplayBar
 from advisor.tui.screens.engineer import EngineerScreen
 from advisor.tui.screens.explain import Explain
@@ -185,6 +186,14 @@ class AdvisorApp(replay_actions.ReplayActions, link_actions.LinkActions, HandAct
     def on_replay_bar_sought(self, event: ReplayBar.Sought) -> None:
         """Go to the place on the bar that was clicked."""
         self.seek(event.position_s)
+
+    def on_whole_flight_pane_sought(self, event: WholeFlightPane.Sought) -> None:
+        """Jump to the manoeuvre that is pointed at; on a link select it only."""
+        judged = next(
+            (j for j in self.view.state.maneuvers if event.at_s <= j.maneuver.span.end_s), self.view.last
+        )
+        if judged is not None and self.view.tempo is not None:
+            self._jump(judged.maneuver.number)
 
     def on_face_decided(self, event: Face.Decided) -> None:
         """Pass a decision to the campaign."""

@@ -52,6 +52,7 @@ PANES = (
     ("0", "correlation"),
     ("h", "history"),
     ("u", "flying qualities"),
+    ("i", "whole flight"),
 )
 """Key and name of each pane, in the order of their numbers."""
 

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from advisor.aircraft.aircraft import PARAMETERS, Aircraft, CampaignPlan
 from advisor.campaign.state import CampaignState, ChannelStatus, JudgedManeuver
+from advisor.campaign.whole_flight import WholeFlight
 from advisor.decision.inputs import StepInput
 from advisor.decision.verdict import (
     FlightTestVerdict,
@@ -18,6 +19,7 @@ from advisor.decision.verdict import (
     RuleResult,
 )
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
+from advisor.flight.signals.extremes import Course
 from advisor.flight.signals.record import Channel
 from advisor.flight.vehicle.vehicle import Vehicle
 from advisor.oem.estimate import ChannelFit, Estimate, NoEstimate
@@ -190,8 +192,21 @@ def state(flown: int = 7, bad: tuple[int, ...] = (2,), in_the_air: bool = False)
         flying=flying,
         settling=judged(flown + 1).estimate if flying else None,  # type: ignore[arg-type]
         readable=flying is not None,
+        whole_flight=_whole(maneuvers, now_s),
         notices=("      –  following ardupilot 1/1", *notices),
     )
+
+
+def _whole(maneuvers: tuple[JudgedManeuver, ...], now_s: float) -> WholeFlight:
+    """The flight as one picture: every channel at rest but for the manoeuvres."""
+    t = np.arange(40.0, now_s, 0.5)
+    busy = np.zeros(len(t))
+    for judged in maneuvers:
+        span = judged.maneuver.span
+        busy[(t >= span.start_s) & (t < span.end_s)] = 0.1
+    courses = {name: Course(t, -busy, busy) for name in ("elevator", "alpha", "q")}
+    courses["airspeed"] = Course(t, 26.0 - busy, 26.0 + busy)
+    return WholeFlight(courses, ((40.0, "FBWA"), (80.0, "MANUAL")))
 
 
 def _in_the_air(number: int) -> Maneuver:

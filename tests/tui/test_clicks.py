@@ -17,7 +17,7 @@ def hundred_seconds() -> LogPlayer:
 
 async def test_a_click_on_the_name_of_a_pane_shows_it() -> None:
     async with stage(flights.state(3), size=(80, 24), settings=Settings(screen="engineer")) as here:
-        column = str(here.app.screen.query_one(PaneTabs).render()).index("6 Crit") + 2
+        column = str(here.app.screen.query_one(PaneTabs).render()).index("6Cri") + 2
         await here.pilot.click(PaneTabs, offset=(column, 0))
         await here.pilot.pause()
         assert here.app.screen.query_one("Criterion").display

@@ -80,8 +80,8 @@ async def test_all_tabs_have_room_on_eighty_columns():
     async with stage(size=(80, 24), settings=Settings(screen="engineer")) as here:
         await here.press("3")
         tabs = here.page().split("\n")[1]
-        assert tabs.startswith("1 Man 2 Ver [3 Par] 4 Fit")
-        assert tabs.endswith("9 Res 0 Corr h Hist u FQ")
+        assert tabs.startswith("1Man 2Ver [3Par] 4Fit")
+        assert tabs.endswith("9Res 0Cor hHis uFQ iFlt")
 
 
 @pytest.mark.parametrize("size", SIZES, ids=str)

@@ -5,8 +5,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from advisor.flight.signals.best_rate import BestRate
+from advisor.flight.signals.extremes import Extremes
 from advisor.flight.signals.messages import FloatArray, IntArray
 from advisor.flight.signals.record import Channel
+
+SHOWN_WHOLE = ("elevator", "alpha", "q", "airspeed", "height")
+"""Channels that are shown over the whole flight, in this order."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,6 +70,8 @@ class Track:
         self._best = BestRate()
         self.lowest, self.highest = np.inf, -np.inf
         """Smallest and largest value since boot."""
+        self.extremes = Extremes() if name in SHOWN_WHOLE else None
+        """The whole power-on in bounded memory, for the channels that are shown whole."""
         self._t = np.empty(1024)
         self._y = np.empty(1024)
         self._order = np.empty(1024, dtype=np.int64)
@@ -83,6 +89,8 @@ class Track:
             self.newest = float(y[int(np.argmax(t))])
         self.newest_s = float(newest[-1])
         self._best.add(t)
+        if self.extremes is not None:
+            self.extremes.add(t, y)
         self.lowest = min(self.lowest, float(y.min()))
         self.highest = max(self.highest, float(y.max()))
         self._make_room(len(t))

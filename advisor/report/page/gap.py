@@ -12,7 +12,7 @@ from advisor.report.gap_sizes import WORSE
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, listing
 from advisor.report.page.content import Content, Document
 from advisor.report.page.drawing import BLUE, picture
-from advisor.report.page.gap_picture import caption, paint_gap, size_in
+from advisor.report.page.gap_picture import caption, gap_picture
 from advisor.report.table import Table
 from advisor.words.digits import decimals_for, signed, with_half
 from advisor.words.quantiles import NORMAL_95
@@ -41,8 +41,8 @@ def _blocks(found: Document) -> Iterator[Block]:
     yield Paragraph(found["sentence"], "verdict")
     size, shrink = found["gap"], found["shrink"]
     if found["traces"]:
-        svg = picture("gap-picture", *size_in(found), paint_gap, found)
-        yield Gallery((Figure(svg, caption(found)),))
+        close = gap_picture("gap-picture", found)
+        yield Gallery((Figure(close, caption(found), narrow=gap_picture("gap-phone", found, across=1)),))
     if found["parameters_changed"]:
         yield Table(
             "gap-parameters", "Derivatives that differ from the simulator's; the others agree within 95 %.",

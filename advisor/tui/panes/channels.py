@@ -23,7 +23,7 @@ class Channels(Pane):
     """Alpha's provenance, the channels with rate and gaps, link statistics."""
 
     TITLE = "7 Channels and link"
-    SHORT = "7 Chan"
+    SHORT = "7Cha"
     can_focus = False
     HELP = """\
 # Channels and link
