@@ -14,6 +14,7 @@ from advisor.cli.options import (
     UNUSABLE,
     json_option,
 )
+from advisor.cli.stages import Stages
 from advisor.words.printable import printable
 from advisor.words.problems import Problem
 
@@ -69,7 +70,9 @@ def command(
         marks=asked.marks,
         names=series.names,
     )
-    state, left_out = _analyze(series, campaign)
+    with Stages() as tell:
+        tell("reading and judging", 0.0)
+        state, left_out = _analyze(series, campaign)
     usable = len(left_out) < len(asked.logs)
     said = [series.order_said] if series.order_said else []
     for flight, problems in sorted(left_out.items()):

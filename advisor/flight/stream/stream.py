@@ -23,6 +23,7 @@ from advisor.flight.signals.banks import Banks, merged
 from advisor.flight.signals.channels import COMPANIONS, stamps
 from advisor.flight.signals.clocks import BootClock
 from advisor.flight.signals.derived_alpha import DERIVED_ALPHA, promised
+from advisor.flight.signals.extremes import Course
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.messages import Columns, FloatArray, IntArray, arrivals
 from advisor.flight.signals.power_on import PowerOn
@@ -218,6 +219,15 @@ class FlightStream:
     def no_data(self) -> tuple[Problem, ...]:
         """Reasons for which the present data cannot serve; empty while they can."""
         return self._service.problems
+
+    def courses(self) -> dict[str, Course]:
+        """Return the channels that are shown whole, over this power-on."""
+        return self._tracks.courses()
+
+    @property
+    def serves(self) -> bool:
+        """Whether the present data are known to serve."""
+        return self._service.serves
 
     def _wanting(self, channels: Mapping[str, ChannelStatus], now_s: float) -> list[Problem]:
         """Return the problems of a stream with these channels, whatever was flown on it."""
