@@ -31,6 +31,8 @@ class Tracks:
         Temperature of the air by the aircraft file, deg C; None: the standard atmosphere's.
     logs_true_speed
         Returns whether the vehicle reports its true air speed in place of the calibrated one.
+    beta_source
+        Source of the sideslip in the aircraft file: ``named_value:NAME``, or one that AOA_SSA brings.
     """
 
     def __init__(
@@ -39,6 +41,7 @@ class Tracks:
         airspeed_m_s: float | None = None,
         temperature_c: float | None = None,
         logs_true_speed: Callable[[], bool] = lambda: False,
+        beta_source: str = "auto",
     ) -> None:
         self._tracks: dict[tuple[str, str], Track] = {}
         self._derived = DerivedAlpha(self._best, partial(self.cut, "airspeed"), airspeed_m_s)
@@ -55,6 +58,8 @@ class Tracks:
             "aoa_ssa": ["AOA_SSA.AOA", COMPANION_ALPHA],
             "derived": [DERIVED_ALPHA],
         }.get(alpha_source, [f"NAMED_VALUE_FLOAT.{named}"])
+        if beta_source.startswith("named_value:"):
+            self._sources["beta"] = [f"NAMED_VALUE_FLOAT.{beta_source.removeprefix('named_value:')}"]
 
     def clear(self) -> None:
         """Drop all samples before another boot."""

@@ -81,7 +81,7 @@ class FlightStream:
         self._clock_heard: list[Master] = []
         self.power_ons: list[PowerOn] = []
         """Every power-on that is over, whole; empty without ``keep_all``."""
-        self._who = Identity(aircraft.elevator, target_system)
+        self._who = Identity(aircraft, target_system)
         self._texts = VehicleTexts()
         self._attitudes = Attitudes()
         self._clock = BootClock()
@@ -90,6 +90,7 @@ class FlightStream:
             aircraft.airspeed_m_s,
             aircraft.reference.air_temperature_c,
             lambda: self._who.simulated,
+            aircraft.beta.source,
         )
         self._cutting = Cutting(self._tracks, self._who, aircraft)
         self._mixing = Mixing(self._tracks)
