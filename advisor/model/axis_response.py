@@ -1,7 +1,7 @@
 """The model of any axis solved on the union of all stamps, with exact sensitivities.
 
-The classical Runge-Kutta method solves the states, and the variational equations next to them, with steps
-short enough for round-off in the fit. The inputs are linear (or held) between their stamps; speed, attitude
+The classical Runge-Kutta method solves the states. The sensitivities are carried with the exponential of the
+matrix in the middle of each step, and Simpson's rule for their forcing. Both are of fourth order. The inputs are linear (or held) between their stamps; speed, attitude
 and angle of attack are constant over a step. The short period has a closed form of its own (``response``).
 """
 
@@ -94,13 +94,7 @@ def _respond_in(grid: AxisGrid, m: int, theta: FloatArray, y: FloatArray, g: Flo
     n, known = grid.linear.shape[1], len(grid.place)
     width = known + n if g.shape[0] > 0 else 0
     x = theta[known : known + n].copy()
-    # Rows 0 to n-1 of each: sensitivities, those of a stage, their rates, and the weighted rates.
-    by, by_stage, by_rate, by_total = (
-        np.zeros((n, width)),
-        np.zeros((n, width)),
-        np.zeros((n, width)),
-        np.zeros((n, width)),
-    )
+    by, moved = np.zeros((n, width)), np.zeros((n, width))
     for i in range(n if width else 0):
         by[i, known + i] = 1.0
     z = np.empty(n + grid.inputs.shape[1] + 1)
@@ -116,7 +110,9 @@ def _respond_in(grid: AxisGrid, m: int, theta: FloatArray, y: FloatArray, g: Flo
             return False
         h = grid.step_s[e] / parts
         for part in range(parts):
-            _advance(grid, e, part * h, h, matrix, z, x, by, by_stage, by_rate, by_total)
+            x, before, middle, after, jacobian = _advance(grid, e, part * h, h, matrix, x)
+            if width:
+                _carry(grid, e, h, jacobian, before, middle, after, by, moved)
         if not np.sum(np.abs(x)) < LARGEST:
             return False
     return True
@@ -124,43 +120,83 @@ def _respond_in(grid: AxisGrid, m: int, theta: FloatArray, y: FloatArray, g: Flo
 
 @kernel()
 def _advance(
+    grid: AxisGrid, e: int, since_s: float, h: float, matrix: FloatArray, x: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Advance the states ``x`` (n,) by a step of length ``h`` that begins ``since_s`` after event ``e``.
+
+    Returns
+    -------
+    The new states (n,); states, inputs and 1 at the beginning, in the middle and at the end of the step, each
+    (n + u + 1,); and the derivatives (n, n) of the rates by the states in the middle.
+    """
+    n = len(x)
+    width = n + grid.inputs.shape[1] + 1
+    before, middle, after = np.empty(width), np.empty(width), np.empty(width)
+    jacobian, rate, total = np.empty((n, n)), np.empty(n), np.zeros(n)
+    _feature(grid, e, x, since_s, before)
+    _rates(grid, e, matrix, before, rate, jacobian)
+    total += rate
+    for k in range(2):
+        _feature(grid, e, x + 0.5 * h * rate, since_s + 0.5 * h, middle)
+        _rates(grid, e, matrix, middle, rate, jacobian)
+        total += 2.0 * rate
+    in_the_middle = jacobian.copy()
+    _feature(grid, e, x + h * rate, since_s + h, after)
+    _rates(grid, e, matrix, after, rate, jacobian)
+    total += rate
+    moved = x + h / 6.0 * total
+    after[:n] = moved
+    return moved, before, middle, after, in_the_middle
+
+
+@kernel()
+def _carry(
     grid: AxisGrid,
     e: int,
-    since_s: float,
     h: float,
-    matrix: FloatArray,
-    z: FloatArray,
-    x: FloatArray,
+    jacobian: FloatArray,
+    before: FloatArray,
+    middle: FloatArray,
+    after: FloatArray,
     by: FloatArray,
-    by_stage: FloatArray,
-    by_rate: FloatArray,
-    by_total: FloatArray,
+    moved: FloatArray,
 ) -> None:
-    """Advance states ``x`` (n,) and sensitivities ``by`` (n, w) by a step of length ``h`` that begins
-    ``since_s`` after event ``e``; the other arrays are overwritten."""
+    """Advance the sensitivities ``by`` (n, w) over a step, by Simpson's rule for the forcing.
+
+    The derivatives of the rates are those in the middle. ``moved`` (n, w) is overwritten.
+    """
     n, width = by.shape
-    stage, rate, total = np.empty(n), np.zeros(n), np.zeros(n)
-    jacobian = np.empty((n, n))
-    by_total[:] = 0.0
-    for k in range(4):
-        ahead = 0.0 if k == 0 else (h if k == 3 else 0.5 * h)
-        weight = h / 6.0 if k == 0 or k == 3 else h / 3.0
-        for i in range(n):
-            stage[i] = x[i] + ahead * rate[i]
-            for j in range(width):
-                by_stage[i, j] = by[i, j] + ahead * by_rate[i, j]
-        _feature(grid, e, stage, since_s + ahead, z)
-        _rates(grid, e, matrix, z, rate, jacobian)
-        if width:
-            _variation(grid, e, jacobian, z, by_stage, by_rate)
-        for i in range(n):
-            total[i] += weight * rate[i]
-            for j in range(width):
-                by_total[i, j] += weight * by_rate[i, j]
+    whole, half = _exponential(h * jacobian), _exponential(0.5 * h * jacobian)
     for i in range(n):
-        x[i] += total[i]
-        for j in range(width):
-            by[i, j] += by_total[i, j]
+        for k in range(width):
+            moved[i, k] = 0.0
+        for j in range(n):
+            for k in range(width):
+                moved[i, k] += whole[i, j] * by[j, k]
+    s = grid.ratio[e]
+    for k in range(len(grid.place)):
+        row, column = grid.place[k, 0], grid.place[k, 1]
+        size = h / 6.0 * s ** grid.place[k, 2]
+        for i in range(n):
+            moved[i, k] += size * (whole[i, row] * before[column] + 4.0 * half[i, row] * middle[column])
+        moved[row, k] += size * after[column]
+    by[:] = moved
+
+
+@kernel()
+def _exponential(a: FloatArray) -> FloatArray:
+    """Return exp(a) of a small matrix (n, n) by its series to the fifth power."""
+    n = len(a)
+    total, power = np.eye(n), np.eye(n)
+    for order in range(1, 6):
+        product = np.zeros((n, n))
+        for i in range(n):
+            for j in range(n):
+                for k in range(n):
+                    product[i, j] += power[i, k] * a[k, j]
+        power = product / order
+        total += power
+    return total
 
 
 @kernel()
@@ -220,23 +256,6 @@ def _rates(
 
 
 @kernel()
-def _variation(
-    grid: AxisGrid, e: int, jacobian: FloatArray, z: FloatArray, by: FloatArray, rate: FloatArray
-) -> None:
-    """Write the rates (n, w) of the sensitivities ``by`` (n, w)."""
-    n, width = by.shape
-    for i in range(n):
-        for k in range(width):
-            rate[i, k] = 0.0
-        for j in range(n):
-            for k in range(width):
-                rate[i, k] += jacobian[i, j] * by[j, k]
-    s = grid.ratio[e]
-    for k in range(len(grid.place)):
-        rate[grid.place[k, 0], k] += s ** grid.place[k, 2] * z[grid.place[k, 1]]
-
-
-@kernel()
 def _read(
     grid: AxisGrid,
     e: int,
@@ -265,9 +284,10 @@ def _read(
             if bias >= 0:
                 g[row, bias] = 1.0
         for i in range(n):
-            y[row] += grid.seen[e, c, i] * x[i]
-            for k in range(width):
-                g[row, k] += grid.seen[e, c, i] * by[i, k]
+            factor = grid.seen[e, c, i]
+            y[row] += factor * x[i]
+            for k in range(width if factor != 0.0 else 0):
+                g[row, k] += factor * by[i, k]
             if grid.felt[e, c, i] != 0.0:
                 _feel(grid, e, i, grid.felt[e, c, i], by, matrix, z, y[row : row + 1], g[row] if width else z)
 

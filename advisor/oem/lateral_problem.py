@@ -45,14 +45,19 @@ class LateralProblem:
     """Reference speed of the derivatives, m/s; None means that they do not scale with speed."""
     servos: Mapping[str, Servo] = field(default_factory=dict)
     """Servo of each input; an absent one has neither lag nor delay."""
+    command_delay_s: float = 0.0
+    """Delay of all commands behind their stamps, in addition to the servos', s."""
+    delays_s: Mapping[str, float] = field(default_factory=dict)
+    """Delay of an output relative to the rates, s; an absent one is 0."""
     beta_arm_m: float = 0.0
     """Distance of the sideslip vane ahead of the centre of gravity, m."""
     accelerometer_arm_m: float = 0.0
     """Distance of the accelerometer ahead of the centre of gravity, m."""
 
     def servo(self, name: str) -> Servo:
-        """Return the servo of an input."""
-        return self.servos.get(name, Servo())
+        """Return the servo of an input, late by the delay of all commands."""
+        stated = self.servos.get(name, Servo())
+        return Servo(stated.lag_s, stated.delay_s + self.command_delay_s)
 
     def moves(self, name: str) -> bool:
         """Return whether an input moves in any record."""
@@ -121,6 +126,8 @@ def _free(problem: LateralProblem, measured: set[str]) -> Index:
     """
     still = [name for name in LATERAL.inputs if not problem.moves(name)]
     shared = [k for k, term in enumerate(LATERAL.shared) if term.factor not in still]
+    if not {"a_y", "beta"} & measured:
+        shared = [k for k in shared if LATERAL.shared[k].name in _WITHOUT_FORCE]
     fixed = {f"{name}_bias" for name in LATERAL.biases if name not in measured}
     if "beta" not in measured:
         fixed.add("beta_initial")
@@ -129,6 +136,8 @@ def _free(problem: LateralProblem, measured: set[str]) -> Index:
     return np.array([*shared, *local], np.int64)
 
 
+_WITHOUT_FORCE = ("Y_beta", *(term.name for term in LATERAL.shared if term.state != "beta"))
+"""Derivatives that are estimated where neither the side force nor the sideslip is measured."""
 _STACKED = ("step_s", "ratio", "inputs", "start", "slope", "linear", "sine", "turn", "seen", "felt")
 """Fields of a grid that the pieces hold one after another."""
 
@@ -152,7 +161,11 @@ class _Piece:
 
     @classmethod
     def of(cls, record: LateralRecord, problem: LateralProblem) -> "_Piece":
-        outputs = {name: finite(record.outputs[name]) for name in LATERAL.outputs if name in record.outputs}
+        outputs = {
+            name: _earlier(finite(record.outputs[name]), problem.delays_s.get(name, 0.0))
+            for name in LATERAL.outputs
+            if name in record.outputs
+        }
         for name in NEEDED:
             if name not in outputs or len(outputs[name].t) < 2:
                 raise ValueError(f"a record needs at least two samples of {name}")
@@ -174,6 +187,10 @@ class _Piece:
         linear, sine, turn = _known(record, middle, speed)
         seen, felt = _outputs(record.airspeed.at(t), problem)
         return cls(t, outputs, padded(step), ratio, inputs, start, slope, linear, sine, turn, seen, felt)
+
+
+def _earlier(signal: Signal, delay_s: float) -> Signal:
+    return Signal(signal.t - delay_s, signal.y) if delay_s else signal
 
 
 def _moved(
