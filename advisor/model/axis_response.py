@@ -1,8 +1,8 @@
 """The model of any axis solved on the union of all stamps, with exact sensitivities.
 
 The classical Runge-Kutta method solves the states. The sensitivities are carried with the exponential of the
-matrix in the middle of each step, and Simpson's rule for their forcing. Both are of fourth order. The inputs are linear (or held) between their stamps; speed, attitude
-and angle of attack are constant over a step. The short period has a closed form of its own (``response``).
+matrix in the middle of each step, and Simpson's rule for their forcing. Both are of fourth order. The inputs
+are linear (or held) between their stamps; speed, attitude and angle of attack are constant over a step. The short period has a closed form of its own (``response``).
 """
 
 import math
@@ -136,7 +136,7 @@ def _advance(
     _feature(grid, e, x, since_s, before)
     _rates(grid, e, matrix, before, rate, jacobian)
     total += rate
-    for k in range(2):
+    for _ in range(2):
         _feature(grid, e, x + 0.5 * h * rate, since_s + 0.5 * h, middle)
         _rates(grid, e, matrix, middle, rate, jacobian)
         total += 2.0 * rate

@@ -44,6 +44,9 @@ CLOSE_ENOUGH = 1e-7
 LEAST_SHARE = 0.01
 """Least share by which white noise weighs a prior; data without noise have no colour."""
 _PRIOR = np.array([SIDE_FORCE_STD**-2 if name in ("Y_p", "Y_r") else 0.0 for name in LATERAL.names.shared])
+WITHOUT_FORCE = (
+    "neither a lateral acceleration nor a sideslip was recorded, so that only the modes are told; record a_y"
+)
 _FLY = {"aileron": "an aileron doublet", "rudder": "a rudder doublet"}
 _CONTROLS = {"delta_a": "aileron", "delta_r": "rudder"}
 
@@ -206,6 +209,8 @@ def _at_least(bound: FloatArray, covariance: FloatArray) -> FloatArray:
 
 def lateral_not_identifiable(solution: LateralSolution) -> dict[str, str]:
     """Return by derivative the reason why it has no usable value, with the input that would tell it."""
+    if not any({"a_y", "beta"} & record.outputs.keys() for record in solution.problem.records):
+        return dict.fromkeys(LATERAL.names.reported, WITHOUT_FORCE)
     reasons: dict[str, str] = {}
     moved = {name: solution.problem.moves(name) for name in LATERAL.inputs}
     for suffix, name in _CONTROLS.items():
