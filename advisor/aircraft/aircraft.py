@@ -129,6 +129,14 @@ class SideControl:
         within=(0.0, 2.0),
     )] = None  # fmt: skip
 
+    @property
+    def ends_deg(self) -> tuple[float, float] | None:
+        """Lowest and highest deflection of the calibration, deg. None without a calibration."""
+        if self.calibration is None:
+            return None
+        angles = [deg for _, deg in self.calibration]
+        return min(angles), max(angles)
+
 
 @dataclass(frozen=True)
 class Beta:

@@ -2,7 +2,8 @@
 
 The classical Runge-Kutta method solves the states. The sensitivities are carried with the exponential of the
 matrix in the middle of each step, and Simpson's rule for their forcing. Both are of fourth order. The inputs
-are linear (or held) between their stamps; speed, attitude and angle of attack are constant over a step. The short period has a closed form of its own (``response``).
+are linear (or held) between their stamps. Speed, attitude and angle of attack are constant over a step. The
+short period has a closed form of its own (``response``).
 """
 
 import math

@@ -212,12 +212,13 @@ def lateral_not_identifiable(solution: LateralSolution) -> dict[str, str]:
     if not any({"a_y", "beta"} & record.outputs.keys() for record in solution.problem.records):
         return dict.fromkeys(LATERAL.names.reported, WITHOUT_FORCE)
     reasons: dict[str, str] = {}
-    moved = {name: solution.problem.moves(name) for name in LATERAL.inputs}
+    problem = solution.problem
+    missing = [name for name in LATERAL.inputs if not problem.flies(name)]
     for suffix, name in _CONTROLS.items():
-        if not moved[name]:
-            text = f"the {name} did not move; fly {_FLY[name]}"
+        if name in missing:
+            moved = f"moved by {np.degrees(problem.motion(name)):.1f} deg only"
+            text = f"the {name} {moved if problem.moves(name) else 'did not move'}; fly {_FLY[name]}"
             reasons |= {f"{letter}_{suffix}": text for letter in "YLN"}
-    missing = [name for name in LATERAL.inputs if not moved[name]]
     advice = " and ".join(_FLY[name] for name in missing or LATERAL.inputs)
     unresolved = "the record does not depend on it"
     reasons |= {

@@ -14,6 +14,9 @@ from advisor.oem.problem import STAMP_S, Laid, Signal, finite, merged, padded
 from advisor.oem.surface import Servo
 
 _BETA, _P, _R, _BANK = range(len(LATERAL.states))
+LEAST_PART = 0.2
+"""Least range of an input over that of the larger one, for a test of this input. A rudder of 0.9 deg that
+follows the motion in an aileron test of 12 deg would give a control derivative that is wrong by half."""
 NEEDED = ("p", "r", "bank")
 """Outputs that every record has."""
 
@@ -61,7 +64,15 @@ class LateralProblem:
 
     def moves(self, name: str) -> bool:
         """Return whether an input moves in any record."""
-        return any(name in r.inputs and float(np.ptp(r.inputs[name].y)) > 0.0 for r in self.records)
+        return self.motion(name) > 0.0
+
+    def motion(self, name: str) -> float:
+        """Return the largest range of an input over the records, rad."""
+        return max((float(np.ptp(r.inputs[name].y)) for r in self.records if name in r.inputs), default=0.0)
+
+    def flies(self, name: str) -> bool:
+        """Return whether an input is a part of the test, and not hands that hold the wings level."""
+        return self.motion(name) > LEAST_PART * max(self.motion(other) for other in LATERAL.inputs)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

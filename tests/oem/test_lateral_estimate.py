@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -9,6 +11,7 @@ from advisor.oem.lateral_estimate import (
     solve_lateral,
 )
 from advisor.oem.lateral_problem import LateralProblem
+from advisor.oem.problem import Signal
 from tests.oem.lateral_builders import JET, aileron_doublet, both_inputs, flown, rudder_doublet, vector
 
 T = np.arange(0.0, 15.0, 0.025)
@@ -57,8 +60,11 @@ def test_the_rudder_alone_leaves_the_aileron_unknown():
 
 
 def test_a_prior_that_the_data_do_not_sharpen_is_no_knowledge():
-    record = flown(JET, aileron=aileron_doublet(T), measured=("p", "r", "bank"), rng=np.random.default_rng(1))
-    solution = solved(LateralProblem((record,)))
+    rng = np.random.default_rng(1)
+    record = flown(JET, aileron=aileron_doublet(T), measured=WITHOUT_VANE, rng=rng)
+    force = record.outputs["a_y"]
+    useless = Signal(force.t, force.y + rng.normal(0.0, 3.0, len(force.t)))
+    solution = solved(LateralProblem((replace(record, outputs={**record.outputs, "a_y": useless}),)))
     std = np.sqrt(np.diag(solution.covariance))
     assert std[place("Y_p")] > 0.3 * SIDE_FORCE_STD
     assert "Y_r" in lateral_not_identifiable(solution)
@@ -69,3 +75,10 @@ def test_derivatives_are_given_at_the_reference_speed():
     at_half = solved(LateralProblem((record,), reference_airspeed_m_s=65.0))
     assert at_half.theta[place("L_beta")] == pytest.approx(JET["L_beta"] / 4.0, rel=1e-3)
     assert at_half.theta[place("L_p")] == pytest.approx(JET["L_p"] / 2.0, rel=1e-3)
+
+
+def test_without_side_force_and_sideslip_no_derivative_is_told():
+    record = flown(JET, aileron=aileron_doublet(T), measured=("p", "r", "bank"), rng=np.random.default_rng(1))
+    told = lateral_not_identifiable(solved(LateralProblem((record,))))
+    assert set(told) == set(LATERAL.names.reported)
+    assert all("record a_y" in text for text in told.values())

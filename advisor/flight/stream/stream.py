@@ -20,7 +20,7 @@ from advisor.flight.maneuvers.markers import HEARD, MarkerWatch
 from advisor.flight.maneuvers.marks import Mark, Marks
 from advisor.flight.signals.attitude import Attitudes
 from advisor.flight.signals.banks import Banks, merged
-from advisor.flight.signals.channels import COMPANIONS, stamps
+from advisor.flight.signals.channels import COMPANIONS, Decoded, stamps
 from advisor.flight.signals.clocks import BootClock
 from advisor.flight.signals.derived_alpha import DERIVED_ALPHA, promised
 from advisor.flight.signals.instrument_finding import InstrumentFinding
@@ -36,6 +36,7 @@ from advisor.flight.stream.elevator_path import ElevatorPath
 from advisor.flight.stream.identity import Identity
 from advisor.flight.stream.instrument_watch import InstrumentWatch
 from advisor.flight.stream.service import Service
+from advisor.flight.stream.side_path import SidePath
 from advisor.flight.stream.suitability import problems, with_guess
 from advisor.flight.stream.vehicle_texts import VehicleTexts
 from advisor.flight.vehicle.boots import Master, by_boot
@@ -66,6 +67,8 @@ class FlightStream:
         Stretches marked as manoeuvres before the stream begins.
     keep_all
         Whether to keep every sample, for ``power_ons``. Memory then grows with the length of the flight.
+    lateral
+        Whether to find the manoeuvres of aileron and rudder, too.
     """
 
     def __init__(
@@ -75,6 +78,7 @@ class FlightStream:
         marks: Sequence[Mark] = (),
         *,
         keep_all: bool = False,
+        lateral: bool = False,
     ) -> None:
         self._aircraft = aircraft
         self._keep_s = np.inf if keep_all else KEEP_S
@@ -98,6 +102,7 @@ class FlightStream:
         """Marks by hand, by a switch and by texts."""
         self._markers = MarkerWatch(aircraft.markers)
         self._path = ElevatorPath(self._tracks, self._mixing, self.marks, self._cutting)
+        self._side = SidePath(self._tracks, self._cutting) if lateral else None
         self._over = False
         self.boot = 0
         """Number of the power-on, 0 for the first in the stream."""
@@ -116,6 +121,8 @@ class FlightStream:
         self._tracks.clear()
         self._clock_heard.clear()
         self._path.begin(self.boot)
+        if self._side is not None:
+            self._side.begin(self.boot)
         self._banks = Banks()
         self._mixing.begin()
         self._cutting.begin(self._who.mode)
@@ -268,7 +275,8 @@ class FlightStream:
         return events
 
     def _finish_boot(self) -> list[FlightEvent]:
-        events = [*self._path.finish(self._master_s), *self._texts.finish(self._master_s)]
+        lateral = self._side.finish() if self._side is not None else []
+        events = [*self._path.finish(self._master_s), *lateral, *self._texts.finish(self._master_s)]
         self._past = self._at_best()
         if self._keep_s == np.inf:
             self.power_ons.append(
@@ -306,6 +314,8 @@ class FlightStream:
                 order = min(int(c.order[0]) for c in piece)
                 earliest_s = max(self._heartbeat_s, self._master_s - _HEARTBEAT_S)
                 self._path.mode_changed(earliest_s, order)
+                if self._side is not None:
+                    self._side.mode_changed(earliest_s, order)
                 # A pilot who takes over and flies an input at once did so before the heartbeat that reports
                 # the mode.
                 closed = closes_pitch_loop(self._who.mode)
@@ -324,6 +334,18 @@ class FlightStream:
     def _serving(self, piece: Sequence[Columns]) -> list[FlightEvent]:
         """Return the event of a change in the usability of the data; empty without a change."""
         return list(self._service.advance(piece))
+
+    def _take_outputs(
+        self, columns: Columns, t: FloatArray, autopilot: str, elevator: list[Commanded], side: list[Decoded]
+    ) -> None:
+        """Append the samples of the elevator, and those of aileron and rudder, to the two lists."""
+        for moved in commanded(self._who.surfaces, self._banks.together(columns), t, autopilot):
+            if moved.channel == "elevator":
+                elevator.append(moved)
+                self._service.take(moved.channel, moved.source, arrivals(columns, moved.order))
+            else:
+                side.append(moved.combined())
+                self._tracks.append(side[-1])
 
     def _set_clock(self, part: Sequence[Columns], orders: IntArray, clock: FloatArray) -> None:
         """Set the vehicle's clock by a part; readings of the clock have these orders, both of shape (n,)."""
@@ -357,6 +379,7 @@ class FlightStream:
         if self._keep_s == np.inf:
             self._clock_heard.append(replace(master, t=clock[1:]))
         elevator: list[Commanded] = []
+        side: list[Decoded] = []
         for columns in merged(part):
             now = np.searchsorted(orders, columns.order, side="right") - 1
             if columns.name in HEARD:
@@ -378,15 +401,11 @@ class FlightStream:
             if columns.name in _OUTPUTS:
                 if isinstance(self.elevator, Problem):
                     self._guesses.hear(columns, t)
-                pulses = self._banks.together(columns)
-                for moved in commanded(self._who.surfaces, pulses, t, vehicle.autopilot):
-                    if moved.channel == "elevator":
-                        elevator.append(moved)
-                        self._service.take(moved.channel, moved.source, arrivals(columns, moved.order))
-                    else:
-                        self._tracks.append(moved.combined())
+                self._take_outputs(columns, t, vehicle.autopilot, elevator, side)
         self._set_clock(part, orders, clock)
         followed = self._path.feed(elevator, closes_pitch_loop(self._who.mode))
+        if self._side is not None:
+            followed += self._side.feed(side)
         if self._cutting.maneuvers == self._flown_before:
             self._instruments.advance(self._first_s, self._master_s)
         if not isinstance(self.elevator, Problem) or not np.isfinite(self._master_s):
