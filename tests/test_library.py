@@ -34,7 +34,7 @@ def test_the_example_of_the_page_runs_in_the_folder_of_the_project(
     told = capsys.readouterr().out
     assert "at 50 Hz" in told
     assert "7 3-2-1-1" in told or "7 reverse 3-2-1-1" in told
-    assert "STOP TESTING" in told
+    assert "TEST COMPLETE" in told
     assert "effect [('actuator_lag'" in told
 
 
