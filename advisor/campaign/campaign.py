@@ -9,12 +9,9 @@ from advisor.campaign.hand_decisions import NOTHING, ByHand, Remark
 from advisor.campaign.instruments import as_known_by, together, with_fit
 from advisor.campaign.joint_estimate import NEWEST, Together
 from advisor.campaign.journal import Journal
-<<<<<<< HEAD
+from advisor.campaign.lateral import LateralCampaign
 from advisor.campaign.learning import learnt as learnt_from
 from advisor.campaign.learning import may_learn, of_another_power_on, reserved, told
-=======
-from advisor.campaign.lateral import LateralCampaign
->>>>>>> main
 from advisor.campaign.running_estimate import Settling
 from advisor.campaign.single_maneuver import assess
 from advisor.campaign.state import CampaignState, JudgedManeuver

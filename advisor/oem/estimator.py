@@ -13,12 +13,8 @@ from advisor.oem.edges import large_steps, with_edges
 from advisor.oem.efficient import efficient
 from advisor.oem.estimate import ChannelFit, Estimate, InstrumentEstimate, NoEstimate
 from advisor.oem.filter_error import filter_error, moving_air
-<<<<<<< HEAD
 from advisor.oem.found import FoundInstruments, found_of
-from advisor.oem.gauss_newton import CONVERGED
-=======
 from advisor.oem.gauss_newton import CONVERGED, Optimum
->>>>>>> main
 from advisor.oem.identifiability import SUPPOSED_LAG_S, correlated, not_identifiable
 from advisor.oem.instrument_fit import Identified, InstrumentFit, fit_instruments, refreshed
 from advisor.oem.instruments import COMMAND_DELAY, unknown_instruments
