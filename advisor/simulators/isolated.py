@@ -69,7 +69,7 @@ class Isolated:
         self._process: Any = None
         self._connection: Connection
         try:
-            self.takes_increments = self._start()
+            self.takes_increments, self.takes, self.notes = self._start()
         except UnusableInputError as error:
             self.close()
             raise ConfigurationError(str(error)) from None
@@ -79,8 +79,8 @@ class Isolated:
 
     def replay(self, condition: Condition, inputs: Inputs, increments: Increments | None = None) -> Replay:
         """Trim at the condition, and fly the inputs as departures from the trimmed controls."""
-        columns: dict[str, Any] = self._ask("replay", condition, inputs, increments)
-        return Replay(**{name: row and np.array(row) for name, row in columns.items()})
+        columns, trim = self._ask("replay", condition, inputs, increments)
+        return Replay(**{name: row and np.array(row) for name, row in columns.items()}, trim=trim)
 
     def linearise(self, condition: Condition) -> Mapping[str, float] | None:
         """Return dimensional short-period derivatives at the condition, or None where the simulator has
@@ -93,7 +93,7 @@ class Isolated:
         self._end()
         self._folder.cleanup()
 
-    def _start(self) -> bool:
+    def _start(self) -> tuple[bool, frozenset[str], tuple[str, ...]]:
         context = spawning()
         self._connection, theirs = context.Pipe()
         make, arguments = self._call
@@ -102,7 +102,8 @@ class Isolated:
         )
         self._process.start()
         theirs.close()
-        return bool(self._answer("its start", self._start_limit_s))
+        takes_increments, takes, notes = self._answer("its start", self._start_limit_s)
+        return bool(takes_increments), frozenset(map(str, takes)), tuple(map(str, notes))
 
     def _ask(self, method: str, *arguments: Any) -> Any:
         if self._process is None:
@@ -175,19 +176,20 @@ def _serve(connection: Connection, folder: str, make: str, arguments: tuple[Any,
     tempfile.tempdir = folder
     sys.path.append(os.getcwd())
 
-    def build() -> tuple[Simulator, bool]:
+    def build() -> tuple[Simulator, tuple[bool, list[str], list[str]]]:
         module, name = make.split(":", 1)
         simulator = getattr(importlib.import_module(module), name)(*arguments)
-        return simulator, bool(simulator.takes_increments)
+        takes, notes = (sorted(map(str, getattr(simulator, name, ()))) for name in ("takes", "notes"))
+        return simulator, (bool(simulator.takes_increments), takes, notes)
 
     kind, built = _outcome(build)
     if kind != "done":
         connection.send((kind, built))
         return
-    simulator, takes_increments = built
-    connection.send(("done", takes_increments))
+    simulator, abilities = built
+    connection.send(("done", abilities))
     tasks = {
-        "replay": lambda *given: _columns(simulator.replay(*given)),
+        "replay": lambda *given: _plain(simulator.replay(*given)),
         "linearise": lambda *given: _numbers(simulator.linearise(*given)),
     }
     while True:
@@ -234,12 +236,23 @@ def _outcome(task: Any, *given: Any) -> tuple[str, Any]:
         return "raised", " ".join(f"{type(error).__name__}: {error}".split())[:300].rstrip(".: ")
 
 
+_OPTIONAL = ("a_x", "bank", "r")
+"""Series of a replay that may be missing."""
+
+
+def _plain(replay: Any) -> tuple[dict[str, list[float] | None], dict[str, float]]:
+    """Return the series and the trimmed controls of a replay as plain numbers, checked."""
+    return _columns(replay), _numbers(getattr(replay, "trim", None)) or {}
+
+
 def _columns(replay: Any) -> dict[str, list[float] | None]:
-    """Return the replay as plain numbers, checked."""
+    """Return the series of a replay as plain numbers, checked."""
     rows: dict[str, list[float] | None] = {}
     for one in fields(Replay):
+        if one.name == "trim":
+            continue
         row = getattr(replay, one.name, None)
-        if row is None and one.name != "a_x":
+        if row is None and one.name not in _OPTIONAL:
             raise _NoReplayError(f"its replay has no {one.name}")
         rows[one.name] = None if row is None else _finite(row, one.name)
     lengths = {len(row) for row in rows.values() if row is not None}

@@ -5,6 +5,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +22,7 @@ class Level:
 
     description = "level"
     takes_increments = True
+    takes = frozenset({"throttle"})
     speed_limit_s = 5.0
 
     def replay(self, condition: Condition, inputs: Inputs, increments: Increments | None = None) -> Replay:
@@ -43,6 +45,14 @@ class Level:
 
     def close(self) -> None:
         pass
+
+
+class Trimmed(Level):
+    """Says at which controls it is trimmed."""
+
+    def replay(self, condition: Condition, inputs: Inputs, increments: Increments | None = None) -> Replay:
+        flown = super().replay(condition, inputs, increments)
+        return replace(flown, trim={"elevator": -0.02, "throttle": 0.4})
 
 
 class Constant:

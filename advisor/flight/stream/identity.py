@@ -224,9 +224,9 @@ class Identity:
                     continue
             changed = True
         if changed and vehicle and (columns.system, columns.component) in _speakers(vehicle):
-            was = self.elevator
+            before_it = self.elevator
             events += self._settle_surfaces()
-            events += self._heard_late(was, late, now_s)
+            events += self._heard_late(before_it, late, now_s)
         return events
 
     def _heard_late(self, before: Surface | Problem, late: Sequence[str], now_s: float) -> list[FlightEvent]:

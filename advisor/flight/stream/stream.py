@@ -91,6 +91,7 @@ class FlightStream:
             aircraft.alpha.source,
             aircraft.airspeed_m_s,
             aircraft.reference.air_temperature_c,
+            aircraft.reference.height_m,
             lambda: self._who.simulated,
         )
         self._breaks = Breaks()
