@@ -28,7 +28,7 @@ from advisor.process import interrupt
 from advisor.process.liveness import Beat, Watch
 from advisor.session.child_process import pause_s, said_of, start_child
 from advisor.session.remote import ConductorTask
-from advisor.session.source import Source
+from advisor.session.source import Playable, Source
 from advisor.words.ascii_output import speak_plainly
 from advisor.words.problems import UnusableInputError
 
@@ -139,7 +139,7 @@ def narrate_here(
     from advisor.report.follow import follow
 
     with closing(source):
-        follow(_batches(source, beat), campaign, say)
+        follow(_batches(source, beat), campaign, say, of_log=isinstance(source, Playable))
     if campaign.problems:
         raise UnusableInputError.of(campaign.problems[:1])
 

@@ -2,9 +2,13 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Literal
+from math import nan
+from typing import TYPE_CHECKING, Literal
 
 from advisor.aircraft.aircraft import CampaignPlan, Rule
+
+if TYPE_CHECKING:
+    from advisor.decision.inputs import StepInput
 
 INFORMATION_LIMIT_PERCENT = 100.0
 """Limit of the rule ``information``, whose criterion counts in percent of the tolerance."""
@@ -103,6 +107,10 @@ class NextInput:
     """Expected number of further manoeuvres; None while no manoeuvre was usable."""
     holding_back: str | None = None
     """Parameter, or output of a prediction, that delays the stop."""
+    input: "StepInput | None" = None
+    """Input that the advice names; None where the advice names none."""
+    travel_rad: float = nan
+    """Elevator travel of 100 % stick, rad; NaN without an input."""
 
     @property
     def foretold(self) -> str:

@@ -65,6 +65,9 @@ class Conducting(Protocol):
     def jump(self, number: int) -> None:
         """Play on to just before a manoeuvre, or play to it from the beginning."""
 
+    def seek(self, position_s: float) -> None:
+        """Play on to a position of the replay, s, or play to it from the beginning."""
+
     def play(self, tempo: Tempo) -> None:
         """Pause a replay, continue it, or change its speed."""
 

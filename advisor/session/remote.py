@@ -99,6 +99,10 @@ class RemoteConductor:
         """Play on to just before a manoeuvre, or play to it from the beginning."""
         self._requests.put(("jump", (number,)))
 
+    def seek(self, position_s: float) -> None:
+        """Play on to a position of the replay, s, or play to it from the beginning."""
+        self._requests.put(("seek", (position_s,)))
+
     def play(self, tempo: Tempo) -> None:
         """Pause a replay, continue it, or change its speed."""
         self._requests.put(("play", (tempo,)))

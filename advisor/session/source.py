@@ -23,6 +23,8 @@ class LinkHealth:
     """Statistics for the engineer: (name, value with unit)."""
     alarm: str = ""
     """Loss at this moment; empty without one."""
+    recording: str = ""
+    """State of the recording with its size and the free disk; empty for a log."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,7 @@ from typing import Literal
 
 from advisor.session.view import View
 
-Word = Literal["CONTINUE", "REPEAT", "STOP TESTING", "RECOVER", "WAIT", "NO LINK", "NO DATA"]
+Word = Literal["CONTINUE", "REPEAT", "TEST COMPLETE", "RECOVER", "WAIT", "NO LINK", "NO DATA"]
 Tone = Literal["good", "warn", "bad", "quiet"]
 
 
@@ -34,7 +34,7 @@ def advise(view: View) -> Advice:
     if state.enough:
         return Advice("RECOVER", state.enough, "good")
     if verdict.decision == "stop":
-        return Advice("STOP TESTING", verdict.sentence, "good")
+        return Advice("TEST COMPLETE", verdict.sentence, "good")
     if state.vehicle is None:
         return Advice("WAIT", view.health.sentence, "quiet")
     if view.last and not view.last.verdict.accepted:

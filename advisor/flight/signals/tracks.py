@@ -14,8 +14,9 @@ from advisor.flight.signals.channels import (
     Decoded,
 )
 from advisor.flight.signals.derived_alpha import DERIVED_ALPHA, DerivedAlpha
+from advisor.flight.signals.extremes import Course
 from advisor.flight.signals.record import AIR_UNITS, UNITS, Channel
-from advisor.flight.signals.track import ChannelStatus, Track
+from advisor.flight.signals.track import SHOWN_WHOLE, ChannelStatus, Track
 from advisor.flight.signals.true_airspeed import AS_REPORTED, true_airspeed
 
 _AIR_S = 10.0
@@ -39,6 +40,8 @@ class Tracks:
         Pressure altitude of the aircraft file, m, for a log without pressure and height above sea level.
     logs_true_speed
         Returns whether the vehicle reports its true air speed in place of the calibrated one.
+    beta_source
+        Source of the sideslip in the aircraft file: ``named_value:NAME``, or one that AOA_SSA brings.
     """
 
     def __init__(
@@ -48,6 +51,7 @@ class Tracks:
         temperature_c: float | None = None,
         height_m: float | None = None,
         logs_true_speed: Callable[[], bool] = lambda: False,
+        beta_source: str = "auto",
     ) -> None:
         self._tracks: dict[tuple[str, str], Track] = {}
         self._derived = DerivedAlpha(self._best, partial(self.cut, "airspeed"), airspeed_m_s)
@@ -65,6 +69,8 @@ class Tracks:
             "aoa_ssa": ["AOA_SSA.AOA", COMPANION_ALPHA],
             "derived": [DERIVED_ALPHA],
         }.get(alpha_source, [f"NAMED_VALUE_FLOAT.{named}"])
+        if beta_source.startswith("named_value:"):
+            self._sources["beta"] = [f"NAMED_VALUE_FLOAT.{beta_source.removeprefix('named_value:')}"]
 
     def clear(self) -> None:
         """Drop all samples before another boot."""
@@ -137,6 +143,15 @@ class Tracks:
         """Return the arrival of every channel, from its best source."""
         found = {name: next(iter(self._candidates(name)), None) for name in UNITS}
         return {name: track.status for name, track in found.items() if track is not None}
+
+    def courses(self) -> dict[str, Course]:
+        """Return each channel that is shown whole, over this power-on, from its best measured source."""
+        found = {name: next(iter(self._candidates(name)), None) for name in SHOWN_WHOLE}
+        return {
+            name: track.extremes.course
+            for name, track in found.items()
+            if isinstance(track, Track) and track.extremes is not None
+        }
 
     def _candidates(self, name: str) -> list[Track | DerivedAlpha]:
         """Return tracks of a channel, the preferred source first."""
