@@ -6,6 +6,7 @@ from pathlib import Path
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.refused import without_refused
+from advisor.analysis.table_log import SUFFIXES, table_maneuvers
 from advisor.campaign.hand_decisions import ByHand
 from advisor.flight.maneuvers.events import ManeuverFlown, Notice
 from advisor.flight.maneuvers.maneuver import Maneuver
@@ -207,6 +208,8 @@ def named_simulator(aircraft: Aircraft, target_system: int | None = None) -> Sim
         return None
 
     def read(log: Path) -> list[Maneuver]:
+        if log.suffix.lower() in SUFFIXES:
+            return table_maneuvers(log, aircraft)
         return maneuvers_of([log], aircraft, target_system).maneuvers
 
     return simulator_of(aircraft.simulator, aircraft, read)
