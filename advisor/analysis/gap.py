@@ -17,6 +17,7 @@ from advisor.flight.stream.stream import FlightStream
 from advisor.flight.vehicle.one_aircraft import OneAircraft
 from advisor.flight.vehicle.surfaces import Surface
 from advisor.gap.diagnose import examine
+from advisor.gap.judge.prior import FIELD, FieldPrior
 from advisor.gap.result import Diagnosis
 from advisor.gap.search.baseline import prior_derivatives
 from advisor.gap.without_simulator import without_simulator
@@ -63,7 +64,7 @@ def maneuvers_of(
     Raises
     ------
     UnusableInputError
-        A log cannot be read or cannot serve.
+        No log can be read, or a log cannot serve. One that cannot be read is left out, with a note.
     """
     recorded, notes = _recorded(logs, aircraft, target_system, by_hand or [ByHand()] * len(logs))
     maneuvers = _on_one_clock(_each_once(recorded))
@@ -77,13 +78,19 @@ def _recorded(
     found: list[Maneuver] = []
     notes: list[str] = []
     wrong: list[Problem] = []
+    unreadable: list[Problem] = []
     one_aircraft = OneAircraft()
     for flight, (log, decided) in enumerate(zip(logs, by_hand, strict=True)):
         stream = FlightStream(aircraft, target_system, decided.marks)
         others = [*reversed(logs[:flight]), *logs[flight + 1 :]]
-        events = [event for columns in read_whole_log(log, others) for event in stream.feed(columns)]
-        events += stream.finish()
         name = printable(log.name)
+        try:
+            events = [event for columns in read_whole_log(log, others) for event in stream.feed(columns)]
+        except UnusableInputError as error:
+            unreadable.append(error.problem)
+            notes.append(f"Left out: {error.problem.about(name)}")
+            continue
+        events += stream.finish()
         problems = stream.problems()
         if stream.vehicle is not None and (foreign := one_aircraft.refuse(name, stream.vehicle)):
             problems = [foreign]
@@ -102,6 +109,8 @@ def _recorded(
                 notes.append(f"{name}: manoeuvre {maneuver.number} is excluded by hand: {because}.")
     if wrong:
         raise UnusableInputError.of(wrong)
+    if len(unreadable) == len(logs):
+        raise UnusableInputError.of(unreadable)
     return found, tuple(dict.fromkeys(filter(None, notes)))
 
 
@@ -152,6 +161,7 @@ def compare_logs(
     target_system: int | None = None,
     progress: Callable[[str, float], None] = lambda *_: None,
     by_hand: Sequence[ByHand] = (),
+    prior: FieldPrior = FIELD,
 ) -> Compared:
     """Read logs and diagnose their gap to a simulator, or to the aircraft file's model where there is none.
 
@@ -169,11 +179,10 @@ def compare_logs(
     gain = true_over_read(m.channels for m in chosen.maneuvers)
     at_true_speed = _at_true_speed(aircraft, gain)
     if simulator is not None:
-        compared = compare(
-            chosen.maneuvers, _simulator_at_true_speed(simulator, gain), at_true_speed, holdout, progress
-        )
+        as_true = _simulator_at_true_speed(simulator, gain)
+        compared = compare(chosen.maneuvers, as_true, at_true_speed, holdout, progress, prior)
     else:
-        whole = examine(chosen.maneuvers, at_true_speed, holdout, progress)
+        whole = examine(chosen.maneuvers, at_true_speed, holdout, progress, prior)
         told = whole.diagnosis
         if prior_derivatives(aircraft) is None:
             told = without_simulator(told)

@@ -6,7 +6,9 @@ from typing import Literal
 
 from advisor.flight.instruments.kinematics import KinematicCheck
 from advisor.flight.signals.messages import FloatArray
+from advisor.gap.alternative import AlternativeEvidence, Contribution, Probabilities
 from advisor.gap.decision import Decision
+from advisor.words.quantiles import NORMAL_95
 
 GapVerdict = Literal["none", "parameters", "effect", "unknown", "untested"]
 """Verdict of a diagnosis. ``untested``: no simulator was given and no effect was found; JSON writes null."""
@@ -20,6 +22,32 @@ class Value:
 
     value: float
     std: float
+
+
+@dataclass(frozen=True, slots=True)
+class ComparedDerivative:
+    """A derivative of the simulator and of the flight, at the reference speed, SI."""
+
+    name: str
+    given: float
+    """Value of the simulator: the aircraft file's, or that of the simulator's linear surrogate."""
+    found: Value
+    """Value of the final model."""
+
+    @property
+    def half(self) -> float:
+        """Half of the 95 % interval of the flight's value."""
+        return NORMAL_95 * self.found.std
+
+    @property
+    def differs(self) -> bool:
+        """Whether the 95 % interval excludes the simulator's value."""
+        return abs(self.found.value - self.given) > self.half
+
+    @property
+    def percent(self) -> float | None:
+        """Change of the size, per cent of the simulator's; None with another sign, or from zero."""
+        return 100.0 * (self.found.value / self.given - 1.0) if self.given * self.found.value > 0.0 else None
 
 
 @dataclass(frozen=True, slots=True)
@@ -224,6 +252,8 @@ class Diagnosis:
     """Share of the final model's error that is noise and moving air. The rest is model error."""
     decisions: tuple[Decision, ...] = ()
     """Every statistic that was compared with a limit, in the order of the comparisons."""
+    derivatives: tuple[ComparedDerivative, ...] = ()
+    """Derivatives of simulator and flight, those that differ most first; empty without a simulator."""
     traces: tuple[Trace, ...] = ()
     notes: tuple[str, ...] = ()
     static: tuple[str, ...] = ()
@@ -237,6 +267,14 @@ class Diagnosis:
     height_m: float | None = None
     """Mean height in the standard atmosphere at which the air has the density flown in, m; None for an
     unknown density."""
+    probabilities: Probabilities | None = None
+    """Probabilities of all alternatives; None for a single manoeuvre, which proves no cause."""
+    evidence: tuple[AlternativeEvidence, ...] = ()
+    """The evidence on every alternative, likeliest first."""
+    why: tuple[Contribution, ...] = ()
+    """The answer against its strongest rival, in nats that add up to the log odds."""
+    rival: str = ""
+    """Label of that rival; empty without ``why``."""
     true_over_read: float = 1.0
     """Factor from the air speed as the aircraft reads it to the true one."""
 

@@ -18,6 +18,7 @@ from advisor.gap.candidates.known import with_known
 from advisor.gap.candidates.traits import TRAITS
 from advisor.gap.diagnose import DiagnosisEvidence, examine
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
+from advisor.gap.judge.prior import FIELD, FieldPrior
 from advisor.gap.records.prepare import prepare
 from advisor.gap.result import Diagnosis, TrimDifference
 from advisor.gap.search.baseline import base_entries
@@ -70,12 +71,13 @@ def compare(
     aircraft: Aircraft,
     holdout: int | None = None,
     progress: Progress = lambda *_: None,
+    prior: FieldPrior = FIELD,
 ) -> Compared:
     """Diagnose the gap between a flight and a simulator.
 
     Parameters
     ----------
-    maneuvers, holdout, progress
+    maneuvers, holdout, progress, prior
         Arguments of ``advisor.gap.diagnose.diagnose``.
     simulator
         The user's own simulator.
@@ -91,7 +93,7 @@ def compare(
         aircraft = _without_equations(aircraft)
     flights = prepare(maneuvers, aircraft)
     if not len(flights) or "alpha" not in flights.channels:
-        examine(maneuvers, aircraft, holdout, progress)
+        examine(maneuvers, aircraft, holdout, progress, prior)
     heights = standard_heights(maneuvers, aircraft)
     if not isinstance(simulator, LinearSimulator):
         refuse_unknown_air(simulator.description, heights)
@@ -111,7 +113,11 @@ def compare(
         as_file = replace(surrogate.aircraft(aircraft), simulator=simulator.description)
     beside = [_without(m, as_flown) for m in maneuvers]
     examined = examine(
-        beside, as_file, holdout, lambda what, share: progress(what, _FLIES + (_DIAGNOSED - _FLIES) * share)
+        beside,
+        as_file,
+        holdout,
+        lambda what, share: progress(what, _FLIES + (_DIAGNOSED - _FLIES) * share),
+        prior,
     )
     again = replace(flying, progress=lambda w, s: progress(w, _FOUND + (1.0 - _FOUND) * s))
     if isinstance(simulator, LinearSimulator):

@@ -1,31 +1,36 @@
 """A simulator in a process of its own: foreign code crashes or hangs only there."""
 
 import importlib
-import multiprocessing
 import os
 import signal
 import sys
 import tempfile
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import fields
 from multiprocessing.connection import Connection
 from typing import Any, NoReturn
 
 import numpy as np
 
+from advisor.process.children import spawning
 from advisor.simulators.protocol import Condition, Increments, Inputs, Replay, Simulator
 from advisor.words.problems import ConfigurationError, UnusableInputError
 
-_SPAWN = multiprocessing.get_context("spawn")
 _GOODBYE_S = 1.0
 """Time in s that a process has to end after its connection is closed."""
+MOST_MEMORY_BYTES = 8 << 30
+"""Largest address space of a simulator's process, bytes. Python with numerical libraries takes 2 GB of
+addresses, JSBSim and FMUs with tables less than 1 GB more."""
 
 
 class Isolated:
     """A simulator that is built and flown in another process.
 
     The parent imports nothing of the simulator, and receives numbers and text only. The folder in which the
-    parent was started stands last on the child's path of modules. What the child prints goes nowhere.
+    parent was started stands last on the child's path of modules. What the child prints goes nowhere. The
+    child and all that it starts form a process group, which ends with the simulator. The child's memory is
+    limited.
 
     Parameters
     ----------
@@ -89,9 +94,10 @@ class Isolated:
         self._folder.cleanup()
 
     def _start(self) -> tuple[bool, frozenset[str], tuple[str, ...]]:
-        self._connection, theirs = _SPAWN.Pipe()
+        context = spawning()
+        self._connection, theirs = context.Pipe()
         make, arguments = self._call
-        self._process = _SPAWN.Process(
+        self._process = context.Process(
             target=_serve, args=(theirs, self._folder.name, make, arguments), daemon=True
         )
         self._process.start()
@@ -150,6 +156,7 @@ class Isolated:
         self._connection.close()
         if not at_once:
             self._process.join(_GOODBYE_S)
+        _kill_group(self._process.pid)
         if self._process.is_alive():
             self._process.kill()
         self._process.join()
@@ -160,6 +167,9 @@ class Isolated:
 def _serve(connection: Connection, folder: str, make: str, arguments: tuple[Any, ...]) -> None:
     """Build the simulator and answer the parent until the parent hangs up."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if os.name == "posix":
+        os.setpgid(0, 0)
+    _limit_memory()
     nowhere = os.open(os.devnull, os.O_RDWR)
     for descriptor in (0, 1, 2):
         os.dup2(nowhere, descriptor)
@@ -189,6 +199,25 @@ def _serve(connection: Connection, folder: str, make: str, arguments: tuple[Any,
             break
         connection.send(_outcome(tasks[method], *given))
     simulator.close()
+
+
+def _kill_group(leader: int) -> None:
+    """End what the simulator's process has started, and the process itself."""
+    if os.name == "posix":
+        with suppress(OSError):  # nothing of it is left, or it died before it led a group
+            os.killpg(leader, signal.SIGKILL)
+
+
+def _limit_memory() -> None:
+    """Let a simulator that asks for too much memory fail, instead of the advisor or the whole computer."""
+    try:
+        import resource
+    except ImportError:  # Windows
+        return
+    hard = resource.getrlimit(resource.RLIMIT_AS)[1]
+    most = MOST_MEMORY_BYTES if hard == resource.RLIM_INFINITY else min(hard, MOST_MEMORY_BYTES)
+    with suppress(ValueError, OSError):
+        resource.setrlimit(resource.RLIMIT_AS, (most, hard))
 
 
 class _NoReplayError(Exception):

@@ -1,12 +1,16 @@
 """Simulators that other processes build: one that flies, and some that do what foreign code does."""
 
 import os
+import subprocess
+import sys
 import time
 from collections.abc import Mapping
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
+from advisor.simulators.isolated import MOST_MEMORY_BYTES
 from advisor.simulators.protocol import Condition, Increments, Inputs, Replay, State
 from advisor.words.problems import UnusableInputError
 
@@ -91,6 +95,12 @@ class Faulty(Level):
             raise UnusableInputError("simulator_trim", "No trim.", "Fly faster.")
         if self._fault == "nan":
             flown.q[3] = np.nan
+        if self._fault == "devour":
+            np.ones(MOST_MEMORY_BYTES // 8)
+        if self._fault.startswith("helper"):
+            helper = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(3600)"])
+            Path(self._fault.partition(":")[2]).write_text(str(helper.pid))
+            time.sleep(3600.0)
         if self._fault == "print":
             os.write(1, b"noise\n")
             print("more noise", flush=True)

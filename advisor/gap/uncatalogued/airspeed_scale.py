@@ -12,6 +12,7 @@ from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.fitting.uncertainty import effective_samples, shared_std
 from advisor.gap.uncatalogued.weight_check import SIGMAS, WeightReading
+from advisor.words.quantiles import NORMAL_95
 
 _REPORTED, _WRONG = 0.02, 0.06
 """Least relative difference that is reported, and least difference that shows an error."""
@@ -60,7 +61,7 @@ class AirspeedScale:
     def sentence(self) -> str:
         """Sentence for the reader of the diagnosis."""
         too = "too high" if self.scale > 0.0 else "too low"
-        off = f"{100.0 * self.scale:+.1f} ± {100.0 * self.std:.1f} %"
+        off = f"{100.0 * self.scale:+.1f} ± {100.0 * NORMAL_95 * self.std:.1f} %"
         return (
             f"The motion shows a true air speed {off} off the one in use. An accelerometer that reads as "
             f"much {too} looks the same: compare air speed and ground speed on opposite headings."

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from advisor.exports.models.jsbsim.slopes import Request, Slopes
 from advisor.exports.models.jsbsim.source import parse
+from advisor.process.children import python_module
 from advisor.simulators.jsbsim_model import find_model
 from advisor.simulators.jsbsim_properties import foreign_properties
 from advisor.words.problems import ConfigurationError
@@ -79,7 +80,7 @@ def measure(content: bytes, model: Model, asked: Request) -> Slopes:
         request = asdict(asked) | places | {"model": model.name, "foreign": foreign}
         try:
             done = subprocess.run(
-                [sys.executable, "-m", "advisor.exports.models.jsbsim.slopes"],
+                python_module("advisor.exports.models.jsbsim.slopes"),
                 input=json.dumps(request), capture_output=True, text=True, timeout=TIME_LIMIT_S, check=True,
                 cwd=folder, env=os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
             )  # fmt: skip
