@@ -188,7 +188,7 @@ def compare_logs(
             told = without_simulator(told)
         elif changes_something(told):
             progress("searching again without the manoeuvres kept apart", 0.9)
-            unseen = unseen_of(whole, chosen.maneuvers, at_true_speed, holdout)
+            unseen = unseen_of(whole, chosen.maneuvers, at_true_speed, holdout, prior)
             told = told if unseen is None else with_unseen_shrink(whole, unseen, at_true_speed)
         told = with_static_errors(told, whole)
         compared = Compared(told, aircraft)

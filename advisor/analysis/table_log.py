@@ -43,8 +43,8 @@ def table_maneuvers(path: Path, aircraft: Aircraft) -> list[Maneuver]:
     """
     if aircraft.columns is None:
         raise ConfigurationError(
-            f"log:{path}: the aircraft file does not say what {path.name} calls its columns: add a section "
-            "columns: with time, elevator and q, and alpha, theta, a_z and airspeed where it has them."
+            f"log:{path}: the aircraft file names no column of {path.name}: add a section columns: with time,"
+            " elevator and q, better also alpha, theta, a_z and airspeed."
         )
     quantities = _quantities(_read(path), aircraft.columns, path.name)
     calibration = tuple((_CENTRE_US + _US_PER_DEG * deg, deg) for deg in (-90.0, 90.0))
