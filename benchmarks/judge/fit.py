@@ -15,9 +15,12 @@ from advisor.gap.judge.logit import SCALES, Logit
 from advisor.gap.judge.prior import FieldPrior
 from benchmarks.judge.flights import JudgedFlight
 
-Columns = Mapping[Kind, tuple[str, ...]]
-
-COLUMNS: Columns = {
+Slot = tuple[str, str]
+"""A weight: the kind of alternative that it belongs to, or ``_ALL``, and its column."""
+_ALL = "all"
+SHARED = ("answer",)
+"""Columns with one weight for all kinds of alternatives."""
+COLUMNS: Mapping[Kind, tuple[str, ...]] = {
     "none": ("file_gap", "file_distance", "misfit", "of_peak", "activity", "block_gain", "drift"),
     "parameters": ("file_gap", "file_distance", "gap_removed", "misfit", "block_gain"),
     "effect": (
@@ -59,16 +62,17 @@ class _Table:
     """Weight of each flight: every generator counts alike."""
 
 
-def weighed(kind: Kind) -> list[tuple[Kind, str]]:
+def weighed(kind: Kind) -> list[Slot]:
     """Return the slots of the columns of a kind of alternative."""
-    shared: list[tuple[Kind, str]] = [("effect", name) for name in COLUMNS["effect"]] if kind == "air" else []
-    return [*shared, *((kind, name) for name in COLUMNS[kind])]
+    owners = ("effect", kind) if kind == "air" else (kind,)
+    own: list[Slot] = [(owner, name) for owner in owners for name in COLUMNS[owner]]
+    return [*((_ALL, name) for name in SHARED), *own]
 
 
-def slots() -> list[tuple[Kind, str]]:
-    """Return kind and column of every weight; an empty column is the intercept of a kind."""
-    intercepts: list[tuple[Kind, str]] = [(kind, "") for kind in KINDS if kind != "effect"]
-    return [*((kind, name) for kind in KINDS for name in COLUMNS[kind]), *intercepts]
+def slots() -> list[Slot]:
+    """Return owner and column of every weight; an empty column is the intercept of a kind."""
+    every = dict.fromkeys(slot for kind in KINDS for slot in weighed(kind))
+    return [*every, *((kind, "") for kind in KINDS if kind != "effect")]
 
 
 def matrix(flight: JudgedFlight) -> np.ndarray:
