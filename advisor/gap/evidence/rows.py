@@ -34,7 +34,7 @@ class Row:
     """One alternative with the values of its columns; a column that is left out is zero."""
 
     alternative: Alternative
-    values: Mapping[str, float]
+    values: Values
 
 
 def rows_of(m: Measured, answer: Alternative | None = None) -> tuple[Row, ...]:
