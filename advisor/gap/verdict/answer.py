@@ -29,6 +29,7 @@ from advisor.gap.verdict.holdout_numbers import as_read, on_holdout, over_maneuv
 from advisor.gap.verdict.judgement import judgement
 from advisor.gap.verdict.notes import notes_of
 from advisor.gap.verdict.numbers import (
+    compared_derivatives,
     fidelity_of,
     gap_numbers,
     irreducible,
@@ -92,6 +93,7 @@ def answer(
         reference_airspeed_m_s=problem.flights.reference_m_s if _speed_is_known(problem, aircraft) else None,
         effects=effects, share_irreducible=irreducible(with_air, e.floor, gap), decisions=judged.decisions,
         yardsticks=fidelity_of(problem, before, last), traces=traces_of(problem, before, last),
+        derivatives=compared_derivatives(problem, fitted, known),
         notes=notes_of(e, aircraft, holdout, verdict, nuisances),
         maneuvers=tuple(f.number for f in problem.flights.flights),
     )  # fmt: skip
