@@ -1,6 +1,7 @@
 """Reader of the aircraft file: YAML to :class:`advisor.aircraft.aircraft.Aircraft`, with every mistake
 listed at once."""
 
+import re
 from collections.abc import Iterator, Sequence
 from copy import deepcopy
 from dataclasses import fields, replace
@@ -129,17 +130,31 @@ def _sentence(item: Any) -> str:
         ):
             path += f".{step}" if path else str(step)
     if item["type"] in ("unexpected_keyword_argument", "extra_forbidden"):
-        return f"{path or 'file'}: unknown key{_meant(str(item['loc'][-1]))}"
+        return f"{path or 'file'}: unknown key{_meant(path)}"
     if item["type"] == "dataclass_type":
         return f"{path or 'file'}: must hold keys with values"
     return f"{path or 'file'}: {item['msg'][0].lower()}{item['msg'][1:]}"
 
 
-def _meant(key: str) -> str:
-    """Name the known key that an unknown one resembles, as a question; empty where none does."""
-    known = sorted({one.name for part in _PARTS for one in fields(part)})
-    near = get_close_matches(key, known, 1)
-    return f" (did you mean {near[0]}?)" if near else ""
+def _meant(path: str) -> str:
+    """Name the known key that an unknown one resembles, as a question; empty where none does.
+
+    A key of the same section comes first, then the path of a key elsewhere.
+    """
+    section, _, key = path.rpartition(".")
+    by_path = {re.sub(r"\[\]", "", at): kind for at, kind in sections_of(Aircraft)}
+    here = by_path.get(re.sub(r"\[\d+\]", "", section))
+    mine = [one.name for one in fields(here)] if here is not None else []
+    elsewhere = {
+        one.name: f"{at}.{one.name}" if at else one.name
+        for at, kind in reversed(by_path.items())
+        for one in fields(kind)
+    }
+    begun = [name for name in mine if name.startswith(f"{key}_")]
+    near = [*begun, *get_close_matches(key, mine, 1)]
+    far = get_close_matches(key, [name for name in elsewhere if name != key], 1)
+    meant = near[0] if near else elsewhere[key] if key in elsewhere else elsewhere[far[0]] if far else ""
+    return f" (did you mean {meant}?)" if meant else ""
 
 
 _PARTS = tuple(dict.fromkeys(kind for _, kind in sections_of(Aircraft)))[::-1]

@@ -15,6 +15,7 @@ from advisor.campaign.servo_lag import learnt as learnt_from
 from advisor.campaign.servo_lag import may_learn, of_another_power_on, reserved, told
 from advisor.campaign.single_maneuver import assess
 from advisor.campaign.state import CampaignState, JudgedManeuver
+from advisor.campaign.whole_flight import WholeFlights
 from advisor.decision.course import CriterionCourse
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.judge import judge_campaign
@@ -25,6 +26,7 @@ from advisor.flight.maneuvers.events import (
     FlightEvent,
     ManeuverAgain,
     ManeuverFlown,
+    ModeChanged,
     Notice,
     SideManeuverFlown,
 )
@@ -110,6 +112,7 @@ class Campaign:
         self._course = CriterionCourse(aircraft.campaign)
         self._flight_test = flight_test((), aircraft.campaign, aircraft, self._course)
         self._together = Together(aircraft)
+        self._whole_flights = WholeFlights()
         self._ended = False
         self._settling = Settling() if settle else None
 
@@ -164,7 +167,9 @@ class Campaign:
             ),
             elevator_guess=stream.guess if isinstance(stream.elevator, Problem) else None,
             other_vehicles=tuple(sorted(stream.other_systems)),
+            whole_flight=self._whole_flights.now(self.power_on, stream.now_s, stream.courses),
             no_data=stream.no_data,
+            serves=stream.serves,
             instruments=with_fit(
                 together(self._maneuvers, stream.instruments),
                 model,
@@ -184,6 +189,11 @@ class Campaign:
     def power_on(self) -> tuple[int, int]:
         """Flight and power-on of the newest message, each counted from 0."""
         return self._flights.flight, self._stream.boot
+
+    @property
+    def serves(self) -> bool:
+        """Whether the present data are known to serve."""
+        return self._stream.serves
 
     @property
     def problems(self) -> list[Problem]:
@@ -238,6 +248,8 @@ class Campaign:
             told.append(event)
             self._journal.take(event)
             match event:
+                case ModeChanged(mode, at_s):
+                    self._whole_flights.change_mode(self.power_on, at_s, mode)
                 case ManeuverFlown(maneuver):
                     told.append(self._judge(maneuver))
                 case SideManeuverFlown(maneuver):

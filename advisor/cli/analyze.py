@@ -1,6 +1,8 @@
 """``advisor analyze``: verdicts on the manoeuvres of a log, as text or JSON."""
 
 import json
+from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING, Literal
 
 import click
@@ -12,6 +14,7 @@ from advisor.cli.options import (
     UNUSABLE,
     json_option,
 )
+from advisor.cli.stages import Stages
 from advisor.words.printable import printable
 from advisor.words.problems import Problem
 
@@ -70,7 +73,8 @@ def command(
     by_hand = NOTHING if asked.no_marks else series.read_by_hand()
     from advisor.campaign.campaign import Campaign
 
-    campaign = Campaign(
+    campaign = partial(
+        Campaign,
         aircraft,
         asked.target_system,
         method=method,
@@ -79,7 +83,9 @@ def command(
         names=series.names,
         lateral=axis != "pitch",
     )
-    state, left_out = _analyze(series, campaign, axis)
+    with Stages() as tell:
+        tell("reading and judging", 0.0)
+        state, left_out = _analyze(series, campaign, axis)
     usable = len(left_out) < len(asked.logs)
     said = [series.order_said] if series.order_said else []
     for flight, problems in sorted(left_out.items()):
@@ -109,12 +115,11 @@ def command(
 
 
 def _analyze(
-    series: "LogSeries", campaign: "Campaign", axis: Axis
+    series: "LogSeries", make_campaign: "Callable[[], Campaign]", axis: Axis
 ) -> "tuple[CampaignState | None, dict[int, tuple[Problem, ...]]]":
     """Return the campaign at the end of its logs and, by flight, the reasons for which logs do not count. The
     campaign is None without a readable log."""
-    for columns in series.batches():
-        campaign.feed(columns)
+    campaign = series.fed_to(make_campaign, lambda campaign, columns: campaign.feed(columns))
     unreadable: dict[int, tuple[Problem, ...]] = {
         flight: (problem,) for flight, problem in series.unreadable.items()
     }

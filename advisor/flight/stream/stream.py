@@ -14,7 +14,7 @@ from advisor.flight.elevator.commanded import Commanded, commanded
 from advisor.flight.elevator.elevator_guess import ElevatorGuesses, Guess
 from advisor.flight.elevator.elevator_sign import SAID
 from advisor.flight.elevator.mixing import Mixing
-from advisor.flight.maneuvers.events import FlightEvent, ModeChanged, Rebooted
+from advisor.flight.maneuvers.events import FlightEvent, ModeChanged, Notice, Rebooted
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.markers import HEARD, MarkerWatch
 from advisor.flight.maneuvers.marks import Mark, Marks
@@ -23,6 +23,7 @@ from advisor.flight.signals.banks import Banks, merged
 from advisor.flight.signals.channels import COMPANIONS, Decoded, stamps
 from advisor.flight.signals.clocks import BootClock
 from advisor.flight.signals.derived_alpha import DERIVED_ALPHA, promised
+from advisor.flight.signals.extremes import Course
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.messages import Columns, FloatArray, IntArray, arrivals
 from advisor.flight.signals.power_on import PowerOn
@@ -40,12 +41,14 @@ from advisor.flight.stream.side_path import SidePath
 from advisor.flight.stream.suitability import problems, with_guess
 from advisor.flight.stream.vehicle_texts import VehicleTexts
 from advisor.flight.vehicle.boots import Master, by_boot
+from advisor.flight.vehicle.breaks import Breaks
 from advisor.flight.vehicle.modes import closes_pitch_loop
 from advisor.flight.vehicle.pieces import pieces
 from advisor.flight.vehicle.senders import SenderWatch
 from advisor.flight.vehicle.surfaces import Surface
 from advisor.flight.vehicle.vehicle import Vehicle
 from advisor.words.problems import Problem
+from advisor.words.vehicle_time import clock
 
 KEEP_S = 120.0
 """Time for which channels are kept, s: longer than any manoeuvre with its lead-in."""
@@ -93,10 +96,12 @@ class FlightStream:
             aircraft.alpha.source,
             aircraft.airspeed_m_s,
             aircraft.reference.air_temperature_c,
+            aircraft.reference.height_m,
             lambda: self._who.simulated,
             aircraft.beta.source,
         )
-        self._cutting = Cutting(self._tracks, self._who, aircraft)
+        self._breaks = Breaks()
+        self._cutting = Cutting(self._tracks, self._who, aircraft, self._breaks)
         self._mixing = Mixing(self._tracks)
         self.marks = Marks(marks)
         """Marks by hand, by a switch and by texts."""
@@ -124,6 +129,7 @@ class FlightStream:
         if self._side is not None:
             self._side.begin(self.boot)
         self._banks = Banks()
+        self._breaks.begin()
         self._mixing.begin()
         self._cutting.begin(self._who.mode)
         self._first_s = np.nan
@@ -222,6 +228,15 @@ class FlightStream:
         """Reasons for which the present data cannot serve; empty while they can."""
         return self._service.problems
 
+    def courses(self) -> dict[str, Course]:
+        """Return the channels that are shown whole, over this power-on."""
+        return self._tracks.courses()
+
+    @property
+    def serves(self) -> bool:
+        """Whether the present data are known to serve."""
+        return self._service.serves
+
     def _wanting(self, channels: Mapping[str, ChannelStatus], now_s: float) -> list[Problem]:
         """Return the problems of a stream with these channels, whatever was flown on it."""
         wrong = self._mixing.contradiction if not self._cutting.maneuvers else None
@@ -293,12 +308,11 @@ class FlightStream:
         """Take columns within which neither vehicle nor parameters nor mode change."""
         mode = self._who.mode
         flown = self._cutting.maneuvers > self._flown_before
-        events: list[FlightEvent] = [
-            said
-            for columns in piece
-            if columns.name == "STATUSTEXT"
-            for said in self._texts.heard(columns, self._master_s)
-        ]
+        events: list[FlightEvent] = []
+        for columns in piece:
+            if columns.name == "STATUSTEXT":
+                events += self._texts.heard(columns, self._master_s)
+                self._breaks.hear(columns)
         events += self._who.learn(piece, self._master_s, flown)
         vehicle = self._who.vehicle
         if vehicle is None:
@@ -337,21 +351,29 @@ class FlightStream:
 
     def _take_outputs(
         self, columns: Columns, t: FloatArray, autopilot: str, elevator: list[Commanded], side: list[Decoded]
-    ) -> None:
-        """Append the samples of the elevator, and those of aileron and rudder, to the two lists."""
+    ) -> list[Notice]:
+        """Append the samples of the elevator, and those of aileron and rudder, to the two lists.
+
+        Return a notice for each time that the advisor missed.
+        """
+        missed: list[Notice] = []
         for moved in commanded(self._who.surfaces, self._banks.together(columns), t, autopilot):
             if moved.channel == "elevator":
                 elevator.append(moved)
-                self._service.take(moved.channel, moved.source, arrivals(columns, moved.order))
+                arrived_s = arrivals(columns, moved.order)
+                self._service.take(moved.channel, moved.source, arrived_s)
+                missed += map(_missed, self._breaks.take(moved.t, arrived_s))
             else:
                 side.append(moved.combined())
                 self._tracks.append(side[-1])
+        return missed
 
     def _set_clock(self, part: Sequence[Columns], orders: IntArray, clock: FloatArray) -> None:
         """Set the vehicle's clock by a part; readings of the clock have these orders, both of shape (n,)."""
         if np.isnan(self._first_s) and len(clock) > 1:
             self._first_s = float(clock[1])
             self.marks.start_clock(self._first_s)
+        self._breaks.take_clock(clock)
         self._master_s = float(clock[-1])
         for columns in part:
             if columns.name == "ATTITUDE":
@@ -380,6 +402,7 @@ class FlightStream:
             self._clock_heard.append(replace(master, t=clock[1:]))
         elevator: list[Commanded] = []
         side: list[Decoded] = []
+        missed: list[FlightEvent] = []
         for columns in merged(part):
             now = np.searchsorted(orders, columns.order, side="right") - 1
             if columns.name in HEARD:
@@ -401,9 +424,9 @@ class FlightStream:
             if columns.name in _OUTPUTS:
                 if isinstance(self.elevator, Problem):
                     self._guesses.hear(columns, t)
-                self._take_outputs(columns, t, vehicle.autopilot, elevator, side)
+                missed += self._take_outputs(columns, t, vehicle.autopilot, elevator, side)
         self._set_clock(part, orders, clock)
-        followed = self._path.feed(elevator, closes_pitch_loop(self._who.mode))
+        followed = [*missed, *self._path.feed(elevator, closes_pitch_loop(self._who.mode))]
         if self._side is not None:
             followed += self._side.feed(side)
         if self._cutting.maneuvers == self._flown_before:
@@ -411,3 +434,9 @@ class FlightStream:
         if not isinstance(self.elevator, Problem) or not np.isfinite(self._master_s):
             return followed
         return [*followed, *self._guesses.advance(self._first_s, self._master_s, self._tracks.cut)]
+
+
+def _missed(gap: tuple[float, float]) -> Notice:
+    begin_s, end_s = gap
+    text = f"{end_s - begin_s:.1f} s are missing since {clock(begin_s)}: the advisor was down."
+    return Notice("advisor_down", text)
