@@ -49,7 +49,7 @@ def wired(*, rudder=True):
             zacc=-1000.0 + 0.1 * (k % 2),
         )  # fmt: skip
         wire.send("AOA_SSA", now + 2e-4, time_usec=round(boot * 1e6), AOA=4.0 + 0.01 * (k % 2), SSA=0.0)
-        pulses = {n: 0 for n in range(1, 17)} | {3: 1600, 2: 1500}
+        pulses = dict.fromkeys(range(1, 17), 0) | {3: 1600, 2: 1500}
         for output, command in ((1, aileron), (4, feet)):
             moved = command.y[k] if output == 1 or rudder else 0.0
             pulses[output] = round(1500.0 - 400.0 * np.degrees(moved) / 25.0, 2)
