@@ -211,6 +211,10 @@ class Reference:
         "Air temperature of the flight, deg C. None: the standard atmosphere's.",
         within=(-80.0, 60.0),
     )] = None  # fmt: skip
+    height_m: Annotated[float | None, Key(
+        "Pressure altitude of the flight, m, for a log with neither pressure nor height above sea level.",
+        within=(-500.0, 11000.0),
+    )] = None  # fmt: skip
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,8 @@
 """``advisor analyze``: verdicts on the manoeuvres of a log, as text or JSON."""
 
 import json
+from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING, Literal
 
 import click
@@ -59,8 +61,14 @@ def command(
     by_hand = NOTHING if asked.no_marks else series.read_by_hand()
     from advisor.campaign.campaign import Campaign
 
-    campaign = Campaign(
-        aircraft, asked.target_system, method=method, by_hand=by_hand, marks=asked.marks, names=series.names
+    campaign = partial(
+        Campaign,
+        aircraft,
+        asked.target_system,
+        method=method,
+        by_hand=by_hand,
+        marks=asked.marks,
+        names=series.names,
     )
     with Stages() as tell:
         tell("reading and judging", 0.0)
@@ -92,12 +100,11 @@ def command(
 
 
 def _analyze(
-    series: "LogSeries", campaign: "Campaign"
+    series: "LogSeries", make_campaign: "Callable[[], Campaign]"
 ) -> "tuple[CampaignState | None, dict[int, tuple[Problem, ...]]]":
     """Return the campaign at the end of its logs and, by flight, the reasons for which logs do not count. The
     campaign is None without a readable log."""
-    for columns in series.batches():
-        campaign.feed(columns)
+    campaign = series.fed_to(make_campaign, lambda campaign, columns: campaign.feed(columns))
     unreadable: dict[int, tuple[Problem, ...]] = {
         flight: (problem,) for flight, problem in series.unreadable.items()
     }

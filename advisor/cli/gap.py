@@ -24,8 +24,8 @@ from advisor.words.problems import ConfigurationError, UnusableInputError
 
 _OF_A_FLIGHT = {
     "holdout": "--holdout", "out": "--out", "target_system": "--target-system", "marks": "--maneuver",
-    "no_marks": "--no-marks", "why": "--why", "exports": "--export", "specification": "--simulator",
-    "figure": "--figure",
+    "no_marks": "--no-marks", "why": "--why", "prior": "--prior", "exports": "--export",
+    "specification": "--simulator", "figure": "--figure",
 }  # fmt: skip
 _OF_A_PLAN = {
     "plan": "--plan", "rate_hz": "--rate", "amplitude_deg": "--amplitude-deg", "without": "--without"
@@ -56,8 +56,11 @@ _OF_A_PLAN = {
     help="File for the picture: measured, simulated before and after. Ends in .svg or .png.",
 )
 @export_option
+@click.option("--why", is_flag=True, help="Print what speaks for the answer, and every decision on the way.")
 @click.option(
-    "--why", is_flag=True, help="Print every decision on the way: its number, its limit, the margin."
+    "--prior",
+    metavar="SHARES",
+    help="How often each answer is right before the flight: none=40,parameters=20,effect=30,unknown=10.",
 )
 @click.option(
     "--foresee", is_flag=True, help="Read no log; say what a planned flight would show. Needs --aircraft."
@@ -84,6 +87,7 @@ def command(
     figure: Path | None,
     exports: tuple[str, ...],
     why: bool,
+    prior: str | None,
     foresee: bool,
     plan: str,
     rate_hz: float,
@@ -127,6 +131,7 @@ def command(
     orders = orders_of(exports, aircraft, [*asked.inputs, out])
     from advisor.analysis.gap import compare_logs, named_simulator
     from advisor.gap.document import gap_document
+    from advisor.gap.judge.prior import FIELD, field_prior
     from advisor.report.gap_steps import next_steps
     from advisor.report.improved import write_improved
     from advisor.words.plain import plain
@@ -136,8 +141,9 @@ def command(
         with Stages() as progress:
             simulator = named_simulator(aircraft, asked.target_system)
             compared = compare_logs(
-                asked.logs, aircraft, simulator, holdout, asked.target_system, progress, by_hand
-            )
+                asked.logs, aircraft, simulator, holdout, asked.target_system, progress, by_hand,
+                FIELD if prior is None else field_prior(prior),
+            )  # fmt: skip
         found = compared.diagnosis
     except UnusableInputError as error:
         if as_json:

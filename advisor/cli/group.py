@@ -29,6 +29,7 @@ COMMANDS = {
     "serve": "Show the screens of live and replay in a browser, for several viewers.",
     "analyze": "Print every manoeuvre's verdict, the estimates, and stop or continue.",
     "gap": "Diagnose why the real aircraft does not fly like the simulator.",
+    "simulator": "Check your own simulator: signs, units, trim, and what it answers.",
     "export": "Write channels, manoeuvres, estimates and residuals for other tools.",
     "batch": "Analyze many logs: one table of flights, one of manoeuvres, changes over time.",
     "report": "Write one self-contained page about a flight, for people who were not there.",
@@ -177,6 +178,8 @@ def _ended_by(run: Callable[[], int]) -> int:
         _tell(str(error))
         return USAGE
     except UnusableInputError as error:
+        if error.__cause__ is not None and os.environ.get("ADVISOR_TRACEBACK"):
+            raise
         _tell(str(error))
         return UNUSABLE
     except (BrokenPipeError, SystemExit):

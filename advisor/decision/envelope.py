@@ -63,6 +63,18 @@ def incomplete(maneuver: Maneuver, period_s: float, counted: Collection[str]) ->
     return [*_rate(needed, period_s), *_gap(used, maneuver, period_s)]
 
 
+def not_heard(maneuver: Maneuver) -> Reason:
+    """Return the reason of a record of which the advisor itself has missed a part."""
+    text = f"{maneuver.missed_s:.1f} s are missing: the advisor was down; fly it again"
+    return Reason("advisor_down", text, maneuver.missed_s, 0.0)
+
+
+def leapt(maneuver: Maneuver) -> Reason:
+    """Return the reason of a record in which the vehicle's stamps leap."""
+    text = f"the stamps leap by {maneuver.leapt_s / 3600.0:.1f} h; check the vehicle's clock, fly it again"
+    return Reason("clock", text, maneuver.leapt_s, 0.0)
+
+
 def outside(maneuver: Maneuver, aircraft: Aircraft) -> list[Reason]:
     """Return reasons for a manoeuvre outside the limits: bank, saturation, angle of attack, throttle, other
     controls."""

@@ -21,7 +21,7 @@ def limit_percent(rule: Rule, plan: CampaignPlan) -> float:
 
 UNTRUSTED = frozenset({"missing", "frozen"})
 """Codes of reasons for a faulty channel. No other finding from such data is reported."""
-NO_CURE_BY_INPUT = UNTRUSTED | {"rate", "gap"}
+NO_CURE_BY_INPUT = UNTRUSTED | {"rate", "gap", "advisor_down", "clock"}
 """Codes of reasons that no input remedies. With them, no larger or other input is advised."""
 
 

@@ -6,8 +6,10 @@ from dataclasses import dataclass, replace
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.instruments.kinematics import KinematicCheck, check_alpha, combine
 from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.gap.evidence.found import Evidence
 from advisor.gap.explain import evidence_of_one_maneuver, explain
 from advisor.gap.fitting.prior_speed import prior_speed
+from advisor.gap.judge.prior import FIELD, FieldPrior
 from advisor.gap.records.airspeed import measures_speed
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.records.prepare import prepare
@@ -23,7 +25,6 @@ from advisor.gap.uncatalogued.unexplained import Unexplained, as_wind
 from advisor.gap.uncatalogued.weight_check import WeightReading, weight_reading
 from advisor.gap.uncatalogued.wind_shear import moves_along_path, wind_shear
 from advisor.gap.verdict.answer import answer
-from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.notes import left_out
 from advisor.words.problems import UnusableInputError
 
@@ -41,6 +42,7 @@ def diagnose(
     aircraft: Aircraft,
     holdout: int | None = None,
     progress: Progress = lambda *_: None,
+    prior: FieldPrior = FIELD,
 ) -> Diagnosis:
     """Diagnose the sim-to-real gap from flown manoeuvres.
 
@@ -56,13 +58,15 @@ def diagnose(
         them; which effects are present is judged on all. None: every manoeuvre is held out in turn.
     progress
         Function that receives a sentence and the share of the work that is done, 0 to 1.
+    prior
+        How often each kind of answer is right before a flight is looked at.
 
     Raises
     ------
     UnusableInputError
         No usable manoeuvre, or no angle of attack.
     """
-    return examine(maneuvers, aircraft, holdout, progress).diagnosis
+    return examine(maneuvers, aircraft, holdout, progress, prior).diagnosis
 
 
 def examine(
@@ -70,6 +74,7 @@ def examine(
     aircraft: Aircraft,
     holdout: int | None = None,
     progress: Progress = lambda *_: None,
+    prior: FieldPrior = FIELD,
 ) -> DiagnosisEvidence:
     """Diagnose like ``diagnose``, and return the evidence too, so that a user's simulator can fly the result.
 
@@ -84,7 +89,7 @@ def examine(
     maneuvers = [_without_offset(m, offset) for m in maneuvers]
     evidence, kinematics = _explained(maneuvers, aircraft, progress)
     progress("measuring the gap", 0.9)
-    diagnosis = answer(evidence, aircraft, kinematics, holdout)
+    diagnosis = answer(evidence, aircraft, kinematics, holdout, prior)
     used = {flight.number for flight in evidence.problem.flights.flights}
     missing = left_out([m for m in maneuvers if m.number not in used])
     return DiagnosisEvidence(replace(diagnosis, notes=(*diagnosis.notes, *missing)), evidence)

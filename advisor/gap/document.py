@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
+from advisor.gap.alternative import AlternativeEvidence
 from advisor.gap.result import Cause, ComparedDerivative, Diagnosis, InSimulator, Qualification
 from advisor.words.plain import picked, plain
 from advisor.words.problems import Problem
@@ -17,6 +18,7 @@ _NOTHING: Mapping[str, Any] = {
     "alpha_check": None, "yardsticks": None, "notes": [], "improved_model": None,
     "parameters_changed": [], "traces": [], "share_irreducible": None, "decisions": [], "simulator": None,
     "qualification": None,
+    "static": [], "trims": [], "probabilities": None, "evidence": [], "why": [], "rival": None,
 }  # fmt: skip
 """Keys and values of a document without a diagnosis."""
 
@@ -51,6 +53,7 @@ def gap_document(
         "causes": [_cause(c) for c in d.causes],
         "shrink": d.shrink and {**plain(d.shrink), "in_simulator": _in_simulator(in_simulator)},
         "simulator": in_simulator and in_simulator.simulator,
+        **picked(d, "static trims"),
         "qualification": in_simulator and {q.channel: _qualification(q) for q in in_simulator.qualification},
         "waterfall": [{"effect": e, "after": a} for e, a in d.waterfall],
         "alpha_check": {
@@ -71,6 +74,10 @@ def gap_document(
             {"name": f"{one.about} {one.name}", **picked(one, "about statistic limit margin unit holds")}
             for one in d.decisions
         ],
+        "probabilities": d.probabilities,
+        "evidence": [_evidence(one) for one in d.evidence],
+        "why": [{"name": c.name, "nats": c.nats, "text": c.sentence} for c in d.why],
+        "rival": d.rival or None,
     })  # fmt: skip
     return document
 
@@ -95,8 +102,18 @@ def _cause(c: Cause) -> dict[str, Any]:
     return {**said, "in_model": c.present}
 
 
+def _evidence(one: AlternativeEvidence) -> dict[str, Any]:
+    return {
+        "alternative": one.alternative.label, **picked(one.alternative, "kind name block"),
+        "probability": one.probability,
+        "columns": [picked(column, "name value unit") for column in one.columns],
+    }  # fmt: skip
+
+
 def _in_simulator(found: InSimulator | None) -> Any:
-    return None if found is None or found.after is None else picked(found, "before after percent on_paper")
+    if found is None or found.after is None:
+        return None
+    return picked(found, "before after percent on_paper maneuvers after_air_and_instruments")
 
 
 def _qualification(q: Qualification) -> dict[str, Any]:

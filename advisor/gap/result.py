@@ -6,6 +6,7 @@ from typing import Literal
 
 from advisor.flight.instruments.kinematics import KinematicCheck
 from advisor.flight.signals.messages import FloatArray
+from advisor.gap.alternative import AlternativeEvidence, Contribution, Probabilities
 from advisor.gap.decision import Decision
 from advisor.words.quantiles import NORMAL_95
 
@@ -176,16 +177,36 @@ class InSimulator:
 
     simulator: str
     """Description of the simulator for people."""
+    maneuvers: tuple[int, ...]
+    """Numbers of the manoeuvres on which the gap is measured. No search and no fit has used them, where
+    something was found."""
     before: float
     """Gap of the simulator as given."""
     after: float | None
-    """Gap with the effects added to the simulator; None where no effect was added."""
+    """Gap with the effects and numbers of an export in the simulator. Equal to ``before`` where nothing was
+    changed; None where the simulator does not fly with them, or where no manoeuvre could be kept apart."""
     percent: float | None
+    """Shrink by what was changed, in per cent; 0 where nothing was changed."""
     on_paper: tuple[str, ...]
     """Corrections that the simulator cannot take: effects, ``derivatives``, ``its own servo``."""
     qualification: tuple[Qualification, ...]
+    after_air_and_instruments: float | None = None
+    """Gap ``after`` without what the air's course and the instruments' natural errors explain in the same
+    samples. That is no shrink. None where nothing was changed."""
     refused: str = ""
     """Why the simulator does not fly with the effects; empty where it does, or where none was added."""
+
+
+@dataclass(frozen=True, slots=True)
+class TrimDifference:
+    """One quantity of the trimmed flight, in the simulator and in the aircraft: means over the manoeuvres."""
+
+    quantity: str
+    """``alpha`` and ``elevator`` in rad, ``throttle`` from 0 to 1."""
+    simulator: float
+    aircraft: float
+    std: float
+    """Standard deviation of the mean difference."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -235,11 +256,25 @@ class Diagnosis:
     """Derivatives of simulator and flight, those that differ most first; empty without a simulator."""
     traces: tuple[Trace, ...] = ()
     notes: tuple[str, ...] = ()
+    static: tuple[str, ...] = ()
+    """Sentences on errors that no motion shows, which the sentence tells first: trim, air speed, numbers that
+    differ together."""
+    trims: tuple[TrimDifference, ...] = ()
+    """Trimmed flight of the user's own simulator and of the aircraft."""
     in_simulator: InSimulator | None = None
     """The gap of the user's own simulator; None where no simulator was named."""
     maneuvers: tuple[int, ...] = field(default=())
     height_m: float | None = None
-    """Mean height of the manoeuvres in m; None where the height was not recorded."""
+    """Mean height in the standard atmosphere at which the air has the density flown in, m; None for an
+    unknown density."""
+    probabilities: Probabilities | None = None
+    """Probabilities of all alternatives; None for a single manoeuvre, which proves no cause."""
+    evidence: tuple[AlternativeEvidence, ...] = ()
+    """The evidence on every alternative, likeliest first."""
+    why: tuple[Contribution, ...] = ()
+    """The answer against its strongest rival, in nats that add up to the log odds."""
+    rival: str = ""
+    """Label of that rival; empty without ``why``."""
     true_over_read: float = 1.0
     """Factor from the air speed as the aircraft reads it to the true one."""
 

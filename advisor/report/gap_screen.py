@@ -10,7 +10,6 @@ from rich.table import Table
 from rich.text import Text
 
 from advisor.gap.result import Diagnosis, spelled
-from advisor.gap.verdict.ledger import in_words
 from advisor.gap.verdict.text import place
 from advisor.process.installed import SIMULATOR
 from advisor.report.gap_causes import PRESENT, ranking, unseen
@@ -20,6 +19,7 @@ from advisor.report.gap_simulator import simulated
 from advisor.report.gap_sizes import WORSE, before_after, short
 from advisor.report.gap_steps import GapStep
 from advisor.report.gap_where import whereabouts
+from advisor.report.gap_why import why_of
 
 WIDEST = 120
 """Columns beyond which lines become harder to read."""
@@ -80,9 +80,8 @@ class GapScreen:
         if d.causes:
             yield ""
             yield from ranking(d.causes)
-        if self.why and d.decisions:
-            lines = [Text(in_words(decision)) for decision in d.decisions]
-            yield Panel(Group(*lines), title="why: every decision on the way", title_align="left")
+        if self.why:
+            yield from why_of(d)
         title = f"error in manoeuvre {worst_maneuver(d)}, the one with the largest gap (its size, no sign)"
         yield ""
         yield Panel(errors(d, width), title=title, title_align="left")

@@ -9,6 +9,7 @@ from advisor.analysis.marks_file import keep_by_hand
 from advisor.campaign.hand_decisions import ByHand
 from advisor.flight.signals.messages import Columns
 from advisor.mavlink.link.health import LinkNotice, LinkStatistics
+from advisor.process.liveness import OLD_AFTER_S
 from advisor.session.source import Condition, LinkHealth, LinkRequest
 
 SILENT_S = 2.0
@@ -79,17 +80,12 @@ class LinkSource:
             return LinkHealth("waiting", "Opening the connection.")
         statistics = self._link.statistics
         condition, sentence = _glance(statistics)
+        alarm = statistics.recording_problem or (sentence if condition == "stale" else "")
         if self._over():
             condition, sentence = "ended", "The flight is over."
         elif self._link.catching_up:
             condition, sentence = "waiting", "The recording so far is being read."
-        return LinkHealth(
-            condition,
-            sentence,
-            _figures(statistics),
-            statistics.recording_problem or "",
-            recording_line(statistics),
-        )
+        return LinkHealth(condition, sentence, _figures(statistics), alarm, recording_line(statistics))
 
     def take_notices(self) -> Sequence[str]:
         """Return the notices of the link since the last call."""
@@ -120,6 +116,8 @@ class LinkSource:
 
 
 def _glance(link: LinkStatistics) -> tuple[Condition, str]:
+    if link.unanswered_s >= OLD_AFTER_S:
+        return "stale", f"LINK NOT ANSWERING for {link.unanswered_s:.0f} s: what stands below is old"
     if not link.connected:
         return "lost", "The connection is cut; it is opened again as soon as it can be."
     if link.vehicle is None:

@@ -25,6 +25,8 @@ def advise(view: View) -> Advice:
     Once the flight test says stop, no further data are needed.
     """
     state, verdict = view.state, view.state.flight_test
+    if view.health.condition == "stale":
+        return Advice("WAIT", view.health.sentence, "bad")
     if view.health.condition == "lost":
         return Advice("NO LINK", f"{view.health.sentence}{_another(view)}", "bad")
     if view.obstacles and verdict.decision != "stop":

@@ -3,6 +3,7 @@
 from multiprocessing.connection import Connection
 from threading import Event
 
+from advisor.process.liveness import OLD_AFTER_S
 from advisor.session.changes import Changes
 from advisor.session.conducting import SessionReport, Tell
 from advisor.session.hand import HandDecision
@@ -40,8 +41,13 @@ class AttachedConductor:
             The error that ended the campaign.
         """
         last: SessionReport | None = None
+        silent_s = 0.0
         while not self._stopped.is_set():
-            match self._hear():
+            news = self._hear()
+            silent_s = silent_s + LOOK_EVERY_S if news is None else 0.0
+            match news:
+                case None if silent_s >= OLD_AFTER_S and last and last.health.condition != "ended":
+                    tell(last.grown_old("SERVER", silent_s))
                 case SessionReport() as first:
                     tell(last := first)
                 case Changes() as changes if last is not None:

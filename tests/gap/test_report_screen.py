@@ -8,6 +8,7 @@ import pytest
 from rich.console import Console
 
 from advisor.flight.instruments.kinematics import KinematicCheck
+from advisor.gap.alternative import Contribution
 from advisor.gap.result import Cause, Diagnosis, Gap, Shrink, Trace, Unseen, Value, Where, Yardsticks
 from advisor.report.gap_causes import confusion_sentence
 from advisor.report.gap_screen import GapScreen
@@ -54,13 +55,24 @@ def diagnosis(**changes: object) -> Diagnosis:
     return Diagnosis(**{**content, **changes})  # type: ignore[arg-type]
 
 
-def printed(found: Diagnosis, columns: int) -> list[str]:
+def printed(found: Diagnosis, columns: int, why: bool = False) -> list[str]:
     """Return the screen as plain text, line by line."""
     out = io.StringIO()
     Console(file=out, width=columns, color_system=None, highlight=False).print(
-        GapScreen(found, "better.yaml")
+        GapScreen(found, "better.yaml", why)
     )
     return out.getvalue().splitlines()
+
+
+def test_why_sets_the_answer_against_its_rival_with_the_odds_of_the_sum():
+    reasons = (
+        Contribution("fit_gain", 2.0, "gain in the fit: 9 against 4"),
+        Contribution("rest", -0.5, "rest"),
+    )
+    lines = printed(diagnosis(why=reasons, rival="actuator_lag"), 100, why=True)
+    assert any("transport delay against actuator lag" in line for line in lines)
+    assert any("+2.0  gain in the fit: 9 against 4" in line for line in lines)
+    assert any("+1.5  together: 4.5 to 1 for the answer" in line for line in lines)
 
 
 @pytest.mark.parametrize("columns", [80, 140])

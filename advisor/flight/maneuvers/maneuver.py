@@ -59,6 +59,10 @@ class Maneuver:
     """Number of the campaign's log or link, 0 for the first."""
     data_notes: tuple[str, ...] = ()
     """Sentences on samples that no aircraft can have flown, and on an air speed that no sensor measured."""
+    missed_s: float = 0.0
+    """Time within the record, or at its end, in which the advisor itself did not listen, s."""
+    leapt_s: float = 0.0
+    """Leap of the vehicle's stamps within the record, or at its begin or end, s."""
 
     @property
     def power_on(self) -> tuple[int, int]:

@@ -67,6 +67,7 @@ READINGS = (
     ),
     Reading("height", "GLOBAL_POSITION_INT", "relative_alt", _scaled(1e-3)),
     Reading("altitude", "GLOBAL_POSITION_INT", "alt", _scaled(1e-3)),
+    Reading("altitude", "VFR_HUD", "alt", _scaled(1.0)),
     Reading("static_pressure", "SCALED_PRESSURE", "press_abs", _scaled(100.0)),
     Reading("static_pressure", "HIGHRES_IMU", "abs_pressure", _scaled(100.0)),
     Reading("groundspeed", "VFR_HUD", "groundspeed", _scaled(1.0)),
@@ -102,6 +103,8 @@ Autopilots' own logs stamp VFR_HUD."""
 
 GIVEN_AIRSPEED = "airspeed_m_s of the aircraft file"
 """Source of an air speed of the aircraft file."""
+GIVEN_HEIGHT = "reference.height_m of the aircraft file"
+"""Source of a pressure altitude of the aircraft file."""
 TRUE_AIRSPEED = "VFR_HUD.true_airspeed"
 """Source of a true air speed that the autopilot has logged next to the calibrated one. No link carries it."""
 

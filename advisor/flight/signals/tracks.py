@@ -6,7 +6,13 @@ from functools import partial
 
 import numpy as np
 
-from advisor.flight.signals.channels import COMPANION_ALPHA, GIVEN_AIRSPEED, READINGS, Decoded
+from advisor.flight.signals.channels import (
+    COMPANION_ALPHA,
+    GIVEN_AIRSPEED,
+    GIVEN_HEIGHT,
+    READINGS,
+    Decoded,
+)
 from advisor.flight.signals.derived_alpha import DERIVED_ALPHA, DerivedAlpha
 from advisor.flight.signals.extremes import Course
 from advisor.flight.signals.record import AIR_UNITS, UNITS, Channel
@@ -30,6 +36,8 @@ class Tracks:
         Air speed of the aircraft file, for a log without air speed.
     temperature_c
         Temperature of the air by the aircraft file, deg C; None: the standard atmosphere's.
+    height_m
+        Pressure altitude of the aircraft file, m, for a log without pressure and height above sea level.
     logs_true_speed
         Returns whether the vehicle reports its true air speed in place of the calibrated one.
     """
@@ -39,11 +47,13 @@ class Tracks:
         alpha_source: str,
         airspeed_m_s: float | None = None,
         temperature_c: float | None = None,
+        height_m: float | None = None,
         logs_true_speed: Callable[[], bool] = lambda: False,
     ) -> None:
         self._tracks: dict[tuple[str, str], Track] = {}
         self._derived = DerivedAlpha(self._best, partial(self.cut, "airspeed"), airspeed_m_s)
         self._temperature_c = temperature_c
+        self._height_m = height_m
         self._logs_true_speed = logs_true_speed
         self._sources: dict[str, list[str]] = {}
         for reading in READINGS:
@@ -107,6 +117,9 @@ class Tracks:
             if np.ptp(channel.y) > 0.0:
                 return _in_radians(channel)
             spare = spare or channel
+        if spare is None and name == "altitude" and self._height_m is not None:
+            ends = np.array([start_s, end_s])
+            return Channel(name, ends, np.full(2, self._height_m), GIVEN_HEIGHT, "given")
         return spare
 
     def speeds_are_one(self, start_s: float, end_s: float, up_to_order: int | None) -> bool:

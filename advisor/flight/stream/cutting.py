@@ -26,6 +26,7 @@ from advisor.flight.signals.repair import repaired
 from advisor.flight.signals.tracks import Tracks
 from advisor.flight.signals.trust import distrusted
 from advisor.flight.stream.identity import Identity
+from advisor.flight.vehicle.breaks import Breaks
 from advisor.flight.vehicle.modes import closes_pitch_loop
 
 
@@ -38,10 +39,12 @@ class Cutting:
         Channels and identity of the vehicle.
     aircraft
         The aircraft file: the elevator's sign, and the limits of the model.
+    breaks
+        Breaks in the stamps.
     """
 
-    def __init__(self, tracks: Tracks, who: Identity, aircraft: Aircraft) -> None:
-        self._tracks, self._who, self._limits = tracks, who, aircraft.limits
+    def __init__(self, tracks: Tracks, who: Identity, aircraft: Aircraft, breaks: Breaks) -> None:
+        self._tracks, self._who, self._limits, self._breaks = tracks, who, aircraft.limits, breaks
         self._sign = None if aircraft.elevator.is_calibrated else ElevatorSign()
         self._modes = [(-np.inf, who.mode)]
         self._released = (0, -np.inf)
@@ -165,6 +168,8 @@ class Cutting:
             tuple(distrusts),
             examined.findings,
             data_notes=tuple(notes),
+            missed_s=self._breaks.missed_s(span.record_from_s, span.end_s),
+            leapt_s=self._breaks.leapt_s(span.record_from_s, span.end_s),
         )
         return maneuver, examined.evidence
 

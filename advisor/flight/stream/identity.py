@@ -14,7 +14,7 @@ from advisor.flight.vehicle.following import FOLLOW, TAKE, Following, chosen
 from advisor.flight.vehicle.imu_filters import filter_delay_s
 from advisor.flight.vehicle.modes import in_hover, mode_name
 from advisor.flight.vehicle.parameters import AIRSPEED_SENSOR, Parameters, read_by
-from advisor.flight.vehicle.surfaces import Surface
+from advisor.flight.vehicle.surfaces import Surface, listed
 from advisor.flight.vehicle.vehicle import Vehicle, VehicleFinder
 from advisor.flight.vehicle.wiring import AILERON, RUDDER, Wiring
 from advisor.words.printable import printable
@@ -211,8 +211,11 @@ class Identity:
         autopilot = vehicle.autopilot if vehicle else ""
         events: list[FlightEvent] = []
         changed = False
+        late: list[str] = []
         for name, before, stated in self._parameters.news(columns):
             self._parameters.keep(sender, name, stated)
+            if before is None and flown:
+                late.append(f"{name} {read_by(autopilot, stated):g}")
             if before is not None and self._scales_elevator():
                 was, is_ = read_by(autopilot, before), read_by(autopilot, stated)
                 events += self._rescaled(name, was, is_, now_s, flown)
@@ -221,8 +224,25 @@ class Identity:
                     continue
             changed = True
         if changed and vehicle and (columns.system, columns.component) in _speakers(vehicle):
+            before_it = self.elevator
             events += self._settle_surfaces()
+            events += self._heard_late(before_it, late, now_s)
         return events
+
+    def _heard_late(self, before: Surface | Problem, late: Sequence[str], now_s: float) -> list[FlightEvent]:
+        """Return a notice on limits that stood in for parameters while manoeuvres were flown."""
+        now = self.elevator
+        if not late or not isinstance(before, Surface) or not isinstance(now, Surface):
+            return []
+        if before.parts == now.parts:
+            return []
+        at = f" at {clock(now_s)}" if isfinite(now_s) else ""
+        text = (
+            f"{listed(late)} {'is' if len(late) == 1 else 'are'} heard only{at}: another value was assumed "
+            "in the manoeuvres before, so their Z_delta_e and M_delta_e have another scale. Exclude these "
+            "manoeuvres by hand; advisor analyze counts the whole recording with the value heard."
+        )
+        return [Notice(READER_NOTICE, text)]
 
     def _wiring(self) -> Wiring:
         vehicle = self._finder.vehicle

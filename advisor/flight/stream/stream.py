@@ -14,7 +14,7 @@ from advisor.flight.elevator.commanded import Commanded, commanded
 from advisor.flight.elevator.elevator_guess import ElevatorGuesses, Guess
 from advisor.flight.elevator.elevator_sign import SAID
 from advisor.flight.elevator.mixing import Mixing
-from advisor.flight.maneuvers.events import FlightEvent, ModeChanged, Rebooted
+from advisor.flight.maneuvers.events import FlightEvent, ModeChanged, Notice, Rebooted
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.markers import HEARD, MarkerWatch
 from advisor.flight.maneuvers.marks import Mark, Marks
@@ -40,12 +40,14 @@ from advisor.flight.stream.service import Service
 from advisor.flight.stream.suitability import problems, with_guess
 from advisor.flight.stream.vehicle_texts import VehicleTexts
 from advisor.flight.vehicle.boots import Master, by_boot
+from advisor.flight.vehicle.breaks import Breaks
 from advisor.flight.vehicle.modes import closes_pitch_loop
 from advisor.flight.vehicle.pieces import pieces
 from advisor.flight.vehicle.senders import SenderWatch
 from advisor.flight.vehicle.surfaces import Surface
 from advisor.flight.vehicle.vehicle import Vehicle
 from advisor.words.problems import Problem
+from advisor.words.vehicle_time import clock
 
 KEEP_S = 120.0
 """Time for which channels are kept, s: longer than any manoeuvre with its lead-in."""
@@ -90,9 +92,11 @@ class FlightStream:
             aircraft.alpha.source,
             aircraft.airspeed_m_s,
             aircraft.reference.air_temperature_c,
+            aircraft.reference.height_m,
             lambda: self._who.simulated,
         )
-        self._cutting = Cutting(self._tracks, self._who, aircraft)
+        self._breaks = Breaks()
+        self._cutting = Cutting(self._tracks, self._who, aircraft, self._breaks)
         self._mixing = Mixing(self._tracks)
         self.marks = Marks(marks)
         """Marks by hand, by a switch and by texts."""
@@ -117,6 +121,7 @@ class FlightStream:
         self._clock_heard.clear()
         self._path.begin(self.boot)
         self._banks = Banks()
+        self._breaks.begin()
         self._mixing.begin()
         self._cutting.begin(self._who.mode)
         self._first_s = np.nan
@@ -294,12 +299,11 @@ class FlightStream:
         """Take columns within which neither vehicle nor parameters nor mode change."""
         mode = self._who.mode
         flown = self._cutting.maneuvers > self._flown_before
-        events: list[FlightEvent] = [
-            said
-            for columns in piece
-            if columns.name == "STATUSTEXT"
-            for said in self._texts.heard(columns, self._master_s)
-        ]
+        events: list[FlightEvent] = []
+        for columns in piece:
+            if columns.name == "STATUSTEXT":
+                events += self._texts.heard(columns, self._master_s)
+                self._breaks.hear(columns)
         events += self._who.learn(piece, self._master_s, flown)
         vehicle = self._who.vehicle
         if vehicle is None:
@@ -339,6 +343,7 @@ class FlightStream:
         if np.isnan(self._first_s) and len(clock) > 1:
             self._first_s = float(clock[1])
             self.marks.start_clock(self._first_s)
+        self._breaks.take_clock(clock)
         self._master_s = float(clock[-1])
         for columns in part:
             if columns.name == "ATTITUDE":
@@ -366,6 +371,7 @@ class FlightStream:
         if self._keep_s == np.inf:
             self._clock_heard.append(replace(master, t=clock[1:]))
         elevator: list[Commanded] = []
+        missed: list[FlightEvent] = []
         for columns in merged(part):
             now = np.searchsorted(orders, columns.order, side="right") - 1
             if columns.name in HEARD:
@@ -391,13 +397,21 @@ class FlightStream:
                 for moved in commanded(self._who.surfaces, pulses, t, vehicle.autopilot):
                     if moved.channel == "elevator":
                         elevator.append(moved)
-                        self._service.take(moved.channel, moved.source, arrivals(columns, moved.order))
+                        arrived_s = arrivals(columns, moved.order)
+                        self._service.take(moved.channel, moved.source, arrived_s)
+                        missed += map(_missed, self._breaks.take(moved.t, arrived_s))
                     else:
                         self._tracks.append(moved.combined())
         self._set_clock(part, orders, clock)
-        followed = self._path.feed(elevator, closes_pitch_loop(self._who.mode))
+        followed = [*missed, *self._path.feed(elevator, closes_pitch_loop(self._who.mode))]
         if self._cutting.maneuvers == self._flown_before:
             self._instruments.advance(self._first_s, self._master_s)
         if not isinstance(self.elevator, Problem) or not np.isfinite(self._master_s):
             return followed
         return [*followed, *self._guesses.advance(self._first_s, self._master_s, self._tracks.cut)]
+
+
+def _missed(gap: tuple[float, float]) -> Notice:
+    begin_s, end_s = gap
+    text = f"{end_s - begin_s:.1f} s are missing since {clock(begin_s)}: the advisor was down."
+    return Notice("advisor_down", text)

@@ -7,10 +7,9 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.fit import EffectFit
-from advisor.gap.fitting.holdout import HeldOut, held_out
-from advisor.gap.fitting.linear import linearise
-from advisor.gap.fitting.problem import EffectProblem, SearchPoint
-from advisor.gap.fitting.step import solve_blocks
+from advisor.gap.fitting.holdout import HeldOut
+from advisor.gap.fitting.problem import EffectProblem
+from advisor.gap.fitting.refit import own_refitted
 from advisor.gap.records.flights import PreparedManeuver
 
 _BANDS_HZ = ((0.0, 0.5), (0.5, 1.0), (1.0, 2.0), (2.0, 4.0), (4.0, 10.0))
@@ -111,18 +110,3 @@ def file_model_of(problem: EffectProblem, fitted: EffectFit) -> HeldOut | None:
     if problem.prior_derivatives is None:
         return None
     return own_refitted(problem, replace(fitted.point, derivatives=problem.prior_derivatives), fitted.noise)
-
-
-def own_refitted(problem: EffectProblem, point: SearchPoint, noise: FloatArray) -> HeldOut:
-    """Return the residuals of a model with given shared parameters, with only nuisance parameters refitted.
-
-    ``noise``, shape (channels,), weighs the channels.
-    """
-    residuals: list[FloatArray] = []
-    for _ in range(3):
-        linear = linearise(problem, point)
-        owns = solve_blocks(problem, linear, 1.0 / noise, point).free
-        still = np.zeros(len(point.shared))
-        residuals = [block.measured.after(still, own) for block, own in zip(linear, owns, strict=True)]
-        point = replace(point, own=point.own + np.array([o[:4] for o in owns]))
-    return held_out(problem, residuals)

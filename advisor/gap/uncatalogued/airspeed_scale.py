@@ -27,7 +27,7 @@ air speed."""
 _AS_MUCH = 0.05
 """Largest difference between the errors of curvature and weight for which both are the accelerometer's. An
 offset of the accelerometer contributes to one of them."""
-_SIGMAS_IN_GUSTS = 8.0
+SIGMAS_IN_GUSTS = 8.0
 """Least number of standard deviations of a difference that shows an error in moving air. A wave in every
 manoeuvre looks like a wrong air speed."""
 
@@ -46,7 +46,7 @@ class AirspeedScale:
         ``weight`` is the accelerometer's reading of the weight, where that is known.
         """
         least = _INDICATED if self.is_indicated(weight) else _WRONG
-        return abs(self.scale) > max(least, _SIGMAS_IN_GUSTS * self.std if moving_air else 0.0)
+        return abs(self.scale) > max(least, SIGMAS_IN_GUSTS * self.std if moving_air else 0.0)
 
     def is_indicated(self, weight: WeightReading | None) -> bool:
         """Return whether the air speed may be an indicated one in thin air: the accelerometer reads the

@@ -7,13 +7,13 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.candidates.known import left_aside
+from advisor.gap.evidence.found import Evidence
 from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.records.usable import why_left_out
 from advisor.gap.result import GapVerdict, spelled
 from advisor.gap.search.path_energy import mean_speed
 from advisor.gap.search.stage import added_in
-from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.text import place
 from advisor.words.quantiles import NORMAL_95
 

@@ -8,6 +8,7 @@ import numpy as np
 from advisor.aircraft.aircraft import PARAMETERS
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.signals.messages import FloatArray
+from advisor.gap.evidence.found import Evidence
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.measure import by_band, by_phase, gap_of, shrink_interval, whole_gap
@@ -18,7 +19,6 @@ from advisor.gap.result import Cause, ComparedDerivative, Gap, Shrink, Trace, Va
 from advisor.gap.search.stage import Stage
 from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.gap.uncatalogued.beyond_air import removed_beyond_air
-from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.yardsticks import yardsticks
 
 _UNCHANGED = 0.1

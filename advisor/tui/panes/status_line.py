@@ -9,6 +9,7 @@ CONDITIONS = {
     "poor": "! link poor",
     "waiting": "… waiting",
     "lost": "✗ LINK LOST",
+    "stale": "✗ NOT ANSWERING",
     "ended": "■ end of log",
 }
 

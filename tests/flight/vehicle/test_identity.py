@@ -70,6 +70,27 @@ def test_a_change_after_a_test_input_moves_no_linkage_and_is_said(name, value):
     assert "all the same" in told[0]
 
 
+def test_a_limit_that_is_heard_after_a_manoeuvre_is_not_pooled_with_the_assumed_one_in_silence():
+    surface, told = after_a_change("SERVO2_MIN", 1000.0, flown=True)
+    assert surface == elevator(*BEFORE, (1, "SERVO2_MIN", 1000.0))
+    (sentence,) = told
+    assert sentence.startswith("SERVO2_MIN 1000 is heard only at 0:10.0: another value was assumed")
+    assert "Exclude these manoeuvres by hand" in sentence
+
+
+@pytest.mark.parametrize("flown", [False, True])
+def test_a_limit_that_is_heard_as_it_was_assumed_changes_nothing(flown):
+    assert after_a_change("SERVO2_MIN", 1100.0, flown)[1] == []
+
+
+def test_every_assumed_limit_is_called_so_by_its_name():
+    surface = elevator((1, "SERVO2_FUNCTION", 19.0), (1, "SERVO2_MIN", 1000.0))
+    assert isinstance(surface, Surface)
+    assert "is scaled by assumed limits" in surface.said
+    assert "SERVO2_TRIM 1500 and SERVO2_MAX 1900 are assumed" in surface.said
+    assert "SERVO2_MIN 1000" not in surface.said
+
+
 @pytest.mark.parametrize(("name", "value"), [("SERVO2_TRIM", 1500.0), ("SERVO5_TRIM", 1400.0)])
 def test_a_parameter_that_does_not_change_the_elevator_is_passed_over_in_silence(name, value):
     assert after_a_change(name, value, flown=True)[1] == []
