@@ -17,8 +17,8 @@ _NOTHING: Mapping[str, Any] = {
     "shrink": None, "waterfall": [], "cannot_see": [], "model": None, "reference_airspeed_m_s": None,
     "alpha_check": None, "yardsticks": None, "notes": [], "improved_model": None,
     "parameters_changed": [], "traces": [], "share_irreducible": None, "decisions": [], "simulator": None,
-    "qualification": None,
-    "static": [], "trims": [], "probabilities": None, "evidence": [], "why": [], "rival": None,
+    "qualification": None, "static": [], "trims": [], "probabilities": None, "evidence": [], "why": [],
+    "rival": None,
 }  # fmt: skip
 """Keys and values of a document without a diagnosis."""
 

@@ -40,6 +40,8 @@ class Tracks:
         Pressure altitude of the aircraft file, m, for a log without pressure and height above sea level.
     logs_true_speed
         Returns whether the vehicle reports its true air speed in place of the calibrated one.
+    beta_source
+        Source of the sideslip in the aircraft file: ``named_value:NAME``, or one that AOA_SSA brings.
     """
 
     def __init__(
@@ -49,6 +51,7 @@ class Tracks:
         temperature_c: float | None = None,
         height_m: float | None = None,
         logs_true_speed: Callable[[], bool] = lambda: False,
+        beta_source: str = "auto",
     ) -> None:
         self._tracks: dict[tuple[str, str], Track] = {}
         self._derived = DerivedAlpha(self._best, partial(self.cut, "airspeed"), airspeed_m_s)
@@ -66,6 +69,8 @@ class Tracks:
             "aoa_ssa": ["AOA_SSA.AOA", COMPANION_ALPHA],
             "derived": [DERIVED_ALPHA],
         }.get(alpha_source, [f"NAMED_VALUE_FLOAT.{named}"])
+        if beta_source.startswith("named_value:"):
+            self._sources["beta"] = [f"NAMED_VALUE_FLOAT.{beta_source.removeprefix('named_value:')}"]
 
     def clear(self) -> None:
         """Drop all samples before another boot."""
