@@ -142,14 +142,8 @@ def command(
             simulator = named_simulator(aircraft, asked.target_system)
             shares = FIELD if prior is None else field_prior(prior)
             compared = compare_logs(
-<<<<<<< HEAD
-                asked.logs, aircraft, simulator, holdout, asked.target_system, progress, by_hand,
-                FIELD if prior is None else field_prior(prior),
-            )  # fmt: skip
-=======
                 asked.logs, aircraft, simulator, holdout, asked.target_system, progress, by_hand, shares
             )
->>>>>>> main
         found = compared.diagnosis
     except UnusableInputError as error:
         if as_json:
