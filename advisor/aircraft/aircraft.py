@@ -80,14 +80,6 @@ class Elevator:
         mend="film a step of the servo on the ground; the delay ends when the arm begins to move",
         within=(0.0, 2.0),
     )] = None  # fmt: skip
-    lag_found_s: float | None = None
-    """Lag that all manoeuvres together tell, s. The file has no such key."""
-    lag_found_std_s: float | None = None
-    """Standard deviation of ``lag_found_s``, s. None: a tenth of it."""
-    delay_found_s: float | None = None
-    """Delay of the command that all manoeuvres of one power-on tell together, s. The file has no such key."""
-    delay_found_std_s: float | None = None
-    """Standard deviation of ``delay_found_s``, s."""
 
     @property
     def is_calibrated(self) -> bool:
