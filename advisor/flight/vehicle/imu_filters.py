@@ -12,6 +12,13 @@ _USUAL_HZ = 20.0
 """Cut-off of ArduPlane's gyro and accelerometer filters, Hz, where no parameter states another."""
 _RATES = ("p", "q", "r")
 _FORCES = ("a_x", "a_y", "a_z")
+_PARAMETER = {
+    ("ardupilot", True): "INS_GYRO_FILTER",
+    ("ardupilot", False): "INS_ACCEL_FILTER",
+    ("px4", True): "IMU_GYRO_CUTOFF",
+    ("px4", False): "IMU_ACCEL_CUTOFF",
+}
+"""Autopilot, and whether the channel is a rate, to the parameter that states the filter's cut-off, Hz."""
 _UNFILTERED_ON_PX4 = "HIGHRES_IMU"
 """Message of PX4 that comes from the integrals of the sensors, without a filter."""
 
@@ -33,13 +40,17 @@ def filter_delay_s(channel: str, source: str, autopilot: str, stated: Mapping[st
     if autopilot == "px4":
         if source.startswith(_UNFILTERED_ON_PX4):
             return 0.0
-        cutoff = stated.get("IMU_GYRO_CUTOFF" if channel in _RATES else "IMU_ACCEL_CUTOFF", 0.0)
-        return _low_pass_s(cutoff)
+        return _low_pass_s(stated.get(_PARAMETER[autopilot, channel in _RATES], 0.0))
     if autopilot != "ardupilot":
         return 0.0
-    if channel in _FORCES:
-        return _low_pass_s(stated.get("INS_ACCEL_FILTER", _USUAL_HZ))
-    return _low_pass_s(stated.get("INS_GYRO_FILTER", _USUAL_HZ)) + _notch_s(stated)
+    low_pass_s = _low_pass_s(stated.get(_PARAMETER[autopilot, channel in _RATES], _USUAL_HZ))
+    return low_pass_s + (_notch_s(stated) if channel in _RATES else 0.0)
+
+
+def states_filter(channel: str, autopilot: str, stated: Mapping[str, float]) -> bool:
+    """Return whether a parameter states the filter of a channel; the arguments are those of
+    ``filter_delay_s``."""
+    return channel in _RATES + _FORCES and _PARAMETER.get((autopilot, channel in _RATES)) in stated
 
 
 def _low_pass_s(cutoff_hz: float) -> float:
