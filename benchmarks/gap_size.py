@@ -24,7 +24,7 @@ EFFECTS = (ROOM / "candidates", ROOM / "simulator")
 """Folders that describe effects: their table, and their equations."""
 BLOCKS = frozenset(trait.block for trait in TRAITS.values()) | {"attitude_sensor"}
 NAMES = frozenset(TRAITS) | BLOCKS
-LIMITS = {"lines of code": 6100, "constants": 291, "names compared": 20, "complex functions": 0}
+LIMITS = {"lines of code": 6200, "constants": 298, "names compared": 20, "complex functions": 0}
 """Upper bound of each count. Lines have 2 % to spare, so that a mend needs no cut elsewhere."""
 MOST_COMPLEX = 15
 _LAYOUT = frozenset(

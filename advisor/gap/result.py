@@ -94,6 +94,25 @@ class Shrink:
 
 
 @dataclass(frozen=True, slots=True)
+class Course:
+    """Slope of one quantity in time, over the manoeuvres of a flight."""
+
+    quantity: str
+    """``elevator_trim`` (rad): elevator that balances the moment at zero angle of attack. ``zero_lift_alpha``
+    (rad). ``attitude`` (rad): zero of the attitude relative to angle of attack and climb. ``a_z_offset``
+    (m/s²)."""
+    slope_per_s: float
+    std_per_s: float
+    """Standard deviation of the slope, by the scatter of the manoeuvres about the line."""
+    maneuvers: int
+
+    @property
+    def sigmas(self) -> float:
+        """Slope in its standard deviations."""
+        return abs(self.slope_per_s) / max(self.std_per_s, 1e-300)
+
+
+@dataclass(frozen=True, slots=True)
 class Unseen:
     """An effect that this log cannot show, and the channel or manoeuvre that would show it."""
 
@@ -202,6 +221,8 @@ class Diagnosis:
     """Channel to the measures of the simulator as given and of the final model."""
     share_irreducible: float
     """Share of the final model's error that is noise and moving air. The rest is model error."""
+    courses: tuple[Course, ...] = ()
+    """Slopes of trims and offsets over the flight: what creeps between manoeuvres."""
     decisions: tuple[Decision, ...] = ()
     """Every statistic that was compared with a limit, in the order of the comparisons."""
     traces: tuple[Trace, ...] = ()

@@ -18,7 +18,9 @@ from advisor.gap.candidates.known import with_known
 from advisor.gap.candidates.traits import TRAITS
 from advisor.gap.diagnose import DiagnosisEvidence, examine
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
+from advisor.gap.records.as_stamped import as_stamped
 from advisor.gap.records.prepare import prepare
+from advisor.gap.records.unmeasured_alpha import by_the_motion, is_known
 from advisor.gap.result import Diagnosis
 from advisor.gap.search.baseline import base_entries
 from advisor.gap.simulator.layout import DERIVATIVES, INDEX, NUISANCES, OUTPUTS
@@ -69,8 +71,9 @@ def compare(
     """
     if not simulator.takes_increments:
         aircraft = _without_equations(aircraft)
+    maneuvers = by_the_motion([as_stamped(m) for m in maneuvers], aircraft)
     flights = prepare(maneuvers, aircraft)
-    if not len(flights) or "alpha" not in flights.channels:
+    if not len(flights) or not is_known(maneuvers):
         examine(maneuvers, aircraft, holdout, progress)
     flying = Flying(simulator, flights, aircraft.reference.mass_kg, lambda w, s: progress(w, _FLIES * s))
     if isinstance(simulator, LinearSimulator):

@@ -84,10 +84,10 @@ def test_own_numbers_are_eliminated_as_least_squares_of_the_rows_would(settled):
     weights, block = 1.0 / fitted.noise, fitted.linear[0]
     w = row_weights(problem, 0, weights)
     rows = np.vstack([block.own * w[:, None], np.diag(np.sqrt(block.prior))])
-    left = np.concatenate([block.residual * w, np.zeros(len(block.prior))])
+    left = np.concatenate([block.residual * w, np.sqrt(block.prior) * block.departure])
     least = np.linalg.lstsq(rows, left)[1]
     inner, follow = own_eliminated(block, weights)
-    assert inner[-1, -1] == pytest.approx(least, rel=1e-6)
+    assert inner[-1, -1] + block.prior @ block.departure**2 == pytest.approx(least, rel=1e-6)
     assert np.sum((left - rows @ follow[:, -1]) ** 2) == pytest.approx(least, rel=1e-6)
 
 

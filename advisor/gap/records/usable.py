@@ -9,6 +9,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.renewal import renewed
 from advisor.gap.records.edges import step_unseen
 from advisor.gap.records.flights import Measured
+from advisor.gap.records.unmeasured_alpha import is_output
 from advisor.gap.simulator.layout import OUTPUTS
 
 LEAST_SAMPLES = 15
@@ -65,10 +66,12 @@ def outputs_of(m: Maneuver) -> dict[str, Measured]:
     outputs = {}
     for name in OUTPUTS:
         channel = m.channels.get(name)
-        if channel is None or len(channel) < LEAST_SAMPLES:
+        if channel is None or len(channel) < LEAST_SAMPLES or not is_output(channel):
             continue
         cut = channel.cut(start, end)
-        t, y = condensed(*renewed(cut.t - start, cut.y, _LEAST_RENEWED))
+        # A default that no parameter states may be wrong. A nuisance parameter allows for such a filter.
+        late_s = channel.delay_s if channel.delay_is_stated else 0.0
+        t, y = condensed(*renewed(cut.t - start - late_s, cut.y, _LEAST_RENEWED))
         if len(t) >= LEAST_SAMPLES:
             outputs[name] = Measured(t, y)
     return outputs
@@ -108,4 +111,5 @@ def _steps_seen(m: Maneuver) -> bool:
 
 
 def _has_alpha(m: Maneuver) -> bool:
-    return "alpha" in outputs_of(m)
+    alpha = m.channels.get("alpha")
+    return "alpha" in outputs_of(m) or (alpha is not None and not is_output(alpha))

@@ -86,7 +86,7 @@ def answer(
         effects=effects, share_irreducible=irreducible(with_air, e.floor, gap), decisions=judged.decisions,
         yardsticks=fidelity_of(problem, before, last), traces=traces_of(problem, before, last),
         notes=notes_of(e, aircraft, holdout, verdict, nuisances),
-        maneuvers=tuple(f.number for f in problem.flights.flights),
+        maneuvers=tuple(f.number for f in problem.flights.flights), courses=e.courses,
     )  # fmt: skip
 
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.problem import EffectProblem
+from advisor.gap.result import Course
 from advisor.gap.search.air import MovingAir
 from advisor.gap.search.stage import Stage
 from advisor.gap.uncatalogued.airspeed_scale import AirspeedScale
@@ -36,3 +37,5 @@ class Evidence:
     """Wind that changes with height, which is outside the catalogue."""
     weight: WeightReading | None = None
     """The accelerometer's reading of the weight, where it is wrong."""
+    courses: tuple[Course, ...] = ()
+    """Slopes of trims and offsets over the flight, with the baseline model."""

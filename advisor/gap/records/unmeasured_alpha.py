@@ -1,0 +1,37 @@
+"""An angle of attack that no instrument measures: the motion gives its trim, and no output is compared.
+
+Estimate and diagnosis leave out the same angle of attack. One derived from the climb rate says less than
+pitch rate and specific force, and in moving air it is wrong.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.record import Channel
+from advisor.oem.alpha_use import can_do_without, infer, why_not_measured
+
+_INFERRED = "inferred"
+"""Provenance of an angle of attack that the motion implies."""
+
+
+def is_output(channel: Channel) -> bool:
+    """Return whether a channel was measured, so that a simulation is compared with it."""
+    return channel.provenance != _INFERRED
+
+
+def is_known(maneuvers: Sequence[Maneuver]) -> bool:
+    """Return whether every manoeuvre has an angle of attack, measured or by the motion."""
+    return all("alpha" in m.channels for m in maneuvers)
+
+
+def by_the_motion(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> list[Maneuver]:
+    """Return the manoeuvres with the angle of attack that the motion implies, where none was measured.
+
+    They are unchanged where the motion lacks a channel to imply one.
+    """
+    replaceable = [m for m in maneuvers if can_do_without(m, aircraft)]
+    if not replaceable or not why_not_measured(maneuvers, aircraft):
+        return list(maneuvers)
+    return [replace(m, channels={**m.channels, "alpha": infer(m, aircraft)}) for m in replaceable]
