@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.analysis.usable_for_gap import usable_for_gap
 from advisor.campaign.hand_decisions import ByHand
 from advisor.flight.maneuvers.events import ManeuverFlown, Notice
 from advisor.flight.maneuvers.maneuver import Maneuver
@@ -154,12 +155,13 @@ def compare_logs(
     """
     progress("reading", 0.0)
     flown = maneuvers_of(logs, aircraft, target_system, by_hand)
-    gain = true_over_read(m.channels for m in flown.maneuvers)
+    usable, refused = usable_for_gap(flown.maneuvers, aircraft)
+    gain = true_over_read(m.channels for m in usable)
     if simulator is not None:
-        compared = compare(flown.maneuvers, simulator, aircraft, holdout, progress)
+        compared = compare(usable, simulator, aircraft, holdout, progress)
     else:
         at_true_speed = _at_true_speed(aircraft, gain)
-        found = diagnose(flown.maneuvers, at_true_speed, holdout, progress)
+        found = diagnose(usable, at_true_speed, holdout, progress)
         told = found if prior_derivatives(aircraft) is not None else without_simulator(found)
         compared = Compared(told, aircraft)
     notes = list(flown.notes)
@@ -167,8 +169,8 @@ def compare_logs(
         every = len(flown.maneuvers) + flown.again
         twice = f"{flown.again} of {every} manoeuvres came twice, as from the same log or a copy"
         notes.insert(0, f"{twice}: they count once.")
-    every_note = (*notes, *compared.diagnosis.notes)
-    height_m = _height_of(flown.maneuvers)
+    every_note = (*notes, *refused, *compared.diagnosis.notes)
+    height_m = _height_of(usable)
     found = replace(compared.diagnosis, notes=every_note, height_m=height_m, true_over_read=gain)
     return replace(compared, diagnosis=found)
 
