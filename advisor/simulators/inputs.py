@@ -31,7 +31,7 @@ def condition_of(flight: PreparedManeuver, flights: PreparedManeuvers, mass_kg: 
     before = max(int(flight.first_step_s / flight.h), 1)
     speed = float(np.mean(flight.slow[SPEED, :before]))
     height = float(np.mean(flight.slow[HEIGHT, :before])) if "height" in flights.has else 0.0
-    steep = float(flight.trim[THETA_FROM]) - flight.alpha_trim if "theta" in flight.outputs else 0.0
+    steep = float(flight.trim[THETA_FROM]) - flight.alpha_trim
     return Condition(speed, height, steep, mass_kg)
 
 

@@ -190,6 +190,8 @@ def _ready(m: Maneuver, reference: float, level: float | None, true_over_read: f
     trim = np.array([alpha, alpha, reference, 1.0])
     if "theta" in outputs:
         trim[THETA_FROM] = float(np.mean(outputs["theta"].y[:3]))
+    elif "theta" in m.channels:
+        trim[THETA_FROM] = float(theta_at[0])
     return PreparedManeuver(
         m.number, start, first, m.span.last_step_s - start, STEP_S, n, t_u, held_from(t_u), u, u_trim,
         slow, trim, outputs, edges_of(t_u, u),

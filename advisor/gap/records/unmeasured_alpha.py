@@ -9,16 +9,26 @@ from dataclasses import replace
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.record import Channel
+from advisor.gap.simulator.layout import OUTPUTS
 from advisor.oem.alpha_use import can_do_without, infer, why_not_measured
 
 _INFERRED = "inferred"
 """Provenance of an angle of attack that the motion implies."""
 
 
-def is_output(channel: Channel) -> bool:
-    """Return whether a channel was measured, so that a simulation is compared with it."""
-    return channel.provenance != _INFERRED
+def is_known_by_motion(maneuver: Maneuver) -> bool:
+    """Return whether the motion gives the angle of attack, which no instrument measures."""
+    alpha = maneuver.channels.get("alpha")
+    return alpha is not None and alpha.provenance == _INFERRED
+
+
+def outputs_with(maneuver: Maneuver) -> tuple[str, ...]:
+    """Return the outputs that a simulation of the manoeuvre is compared with, as far as they were recorded.
+
+    Without a measured angle of attack these are those of the estimate. The residual of the attitude is the
+    integral of every gust, and nothing but the angle of attack shows gusts.
+    """
+    return ("q", "a_z") if is_known_by_motion(maneuver) else OUTPUTS
 
 
 def is_known(maneuvers: Sequence[Maneuver]) -> bool:

@@ -9,8 +9,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.renewal import renewed
 from advisor.gap.records.edges import step_unseen
 from advisor.gap.records.flights import Measured
-from advisor.gap.records.unmeasured_alpha import is_output
-from advisor.gap.simulator.layout import OUTPUTS
+from advisor.gap.records.unmeasured_alpha import is_known_by_motion, outputs_with
 
 LEAST_SAMPLES = 15
 """Least number of samples of a channel in a manoeuvre. A derived α at 8 Hz has as many in the shortest
@@ -64,9 +63,9 @@ def outputs_of(m: Maneuver) -> dict[str, Measured]:
     """Return the compared channels with their renewed samples, in seconds since the manoeuvre's beginning."""
     start, end = recorded(m)
     outputs = {}
-    for name in OUTPUTS:
+    for name in outputs_with(m):
         channel = m.channels.get(name)
-        if channel is None or len(channel) < LEAST_SAMPLES or not is_output(channel):
+        if channel is None or len(channel) < LEAST_SAMPLES:
             continue
         cut = channel.cut(start, end)
         # A default that no parameter states may be wrong. A nuisance parameter allows for such a filter.
@@ -111,5 +110,4 @@ def _steps_seen(m: Maneuver) -> bool:
 
 
 def _has_alpha(m: Maneuver) -> bool:
-    alpha = m.channels.get("alpha")
-    return "alpha" in outputs_of(m) or (alpha is not None and not is_output(alpha))
+    return "alpha" in outputs_of(m) or is_known_by_motion(m)
