@@ -113,6 +113,11 @@ study-third: .venv/.developed ## the diagnosis on 240 flights of the third gener
 corpus: .venv/.developed ## 160 flights whose keys are open: at most 2 % of the verdicts may flip (about ten minutes)
 	$(BIN)/python -m benchmarks.corpus
 
+.PHONY: judge
+judge: .venv/.developed ## fit the probabilities of the gap diagnosis on flights with known causes (EACH=100 a generator; an hour)
+	$(BIN)/python -m benchmarks.judge --each $(EACH)
+
+EACH ?= 100
 FLIGHTS ?= ../shared/flights
 real: .venv/.developed ## records of real aircraft against what is known of them (FLIGHTS=folder)
 	$(BIN)/python -m benchmarks.real $(FLIGHTS) --write docs/data/real.json

@@ -16,7 +16,7 @@ import click
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft_file.read import load_aircraft
 from advisor.analysis.gap import maneuvers_of, named_simulator
-from advisor.analysis.usable_for_gap import usable_for_gap
+from advisor.analysis.refused import without_refused
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.diagnose import diagnose
 from advisor.gap.result import Diagnosis
@@ -68,7 +68,7 @@ def halves_of(maneuvers: list[Maneuver]) -> tuple[list[Maneuver], list[Maneuver]
 
 def answers(log: Path, aircraft: Aircraft) -> list[Answer]:
     """Return the answers of both halves of a log; none where its manoeuvres are too few."""
-    usable, _ = usable_for_gap(maneuvers_of([log], aircraft).maneuvers, aircraft)
+    usable = without_refused(maneuvers_of([log], aircraft).maneuvers, aircraft).maneuvers
     if len(usable) < FEWEST:
         return []
     simulator = named_simulator(aircraft)

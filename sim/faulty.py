@@ -8,7 +8,8 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from .airframe import AIR_DENSITY_KG_M3
 from .faults import FIELDS, STAMPED, UNITS, Faults, Filters
-from .mavlink import HOME_HEIGHT_M, Message
+from .mavlink import Message
+from .motion import HOME_HEIGHT_M
 
 SEA_LEVEL_HPA, SEA_LEVEL_K, LAPSE_K_M, PRESSURE_EXPONENT = 1013.25, 288.15, 0.0065, 5.25588
 """Standard atmosphere (ICAO): pressure and temperature at sea level, lapse rate, exponent of the pressure."""

@@ -9,7 +9,7 @@ import numpy as np
 from .linear import ShortPeriod
 from .loading import ScenarioError
 from .maneuvers import elevator_input
-from .motion import Controls, Motion
+from .motion import HOME_HEIGHT_M, Controls, Motion
 from .servo import Calibration
 
 FOOT_M = 0.3048
@@ -41,6 +41,7 @@ class JsbsimAircraft:
 
     def _trimmed(self) -> Controls:
         fdm = self._fdm
+        fdm["ic/terrain-elevation-ft"] = HOME_HEIGHT_M / FOOT_M
         fdm["ic/h-agl-ft"] = self._height / FOOT_M
         fdm["ic/vt-fps"] = self._airspeed / FOOT_M
         fdm["ic/gamma-deg"] = 0.0
@@ -170,6 +171,7 @@ def _load(name: str, dt: float) -> Any:
         raise ScenarioError([f"aircraft: JSBSim has no '{name}'; c172p is one it has"])
     fdm = jsbsim.FGFDMExec(root)
     fdm.set_debug_level(0)
-    fdm.load_model(name)
+    # A lag or filter computes its coefficients from the step at the time of loading.
     fdm.set_dt(dt)
+    fdm.load_model(name)
     return fdm

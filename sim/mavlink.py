@@ -9,12 +9,13 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from .airframe import GRAVITY_M_S2
 from .autopilot import MANUAL
 from .flight import Sample
+from .motion import HOME_HEIGHT_M
 from .parameters import STREAM_GROUPS, STREAM_OF_ID, parameter_table, parameter_type
 from .scenario import Clock
 from .servo import Calibration
 
 SYSTEM, COMPONENT = 1, 1
-HOME_LATITUDE, HOME_LONGITUDE, HOME_HEIGHT_M = 47.0, 11.0, 600.0
+HOME_LATITUDE, HOME_LONGITUDE = 47.0, 11.0
 METRES_PER_DEGREE = 111_319.5
 
 VERSION = (4, 5, 6)

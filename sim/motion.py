@@ -2,6 +2,9 @@
 
 from typing import NamedTuple, Protocol
 
+HOME_HEIGHT_M = 600.0
+"""Height of the ground above sea level, m."""
+
 
 class Motion(NamedTuple):
     """True motion at one instant, SI units, and the air around the aircraft."""

@@ -2,6 +2,7 @@
 
 import signal
 from collections.abc import Callable, Iterator
+from functools import _lru_cache_wrapper
 from pathlib import Path
 from subprocess import CompletedProcess
 from typing import Any
@@ -28,6 +29,17 @@ def pytest_sessionstart(session: pytest.Session) -> None:
     if not hasattr(session.config, "workerinput"):
         compile_once(print)
         compile_once(print, {"bundled aircraft": Demonstration.fly_once})
+
+
+def pytest_itemcollected(item: pytest.Item) -> None:
+    """Keep the tests of one module in one process where the module keeps results between its tests."""
+    if item.get_closest_marker("xdist_group") or not isinstance(item, pytest.Function):
+        return
+    name = item.module.__name__
+    values = [value for value in vars(item.module).values() if isinstance(value, _lru_cache_wrapper)]
+    fixtures = [found[-1].scope for found in item._fixtureinfo.name2fixturedefs.values()]
+    if "module" in fixtures or any(value.__module__ == name for value in values):
+        item.add_marker(pytest.mark.xdist_group(name))
 
 
 @pytest.fixture

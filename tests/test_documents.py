@@ -20,12 +20,15 @@ KEPT = {
     },
     "gap": {
         "": "schema usable problems verdict gap where causes shrink waterfall cannot_see "
-        "improved_model decisions",
+        "improved_model decisions probabilities evidence why",
         "gap": "before floor by_channel by_maneuver by_phase by_band_hz",
         "where": "block share ranking",
         "causes": "effect probability parameters cannot_be_told_from tell_apart_by gap_after",
         "shrink": "holdout before after percent ci95_percent in_simulator",
         "cannot_see": "effect because would_need",
+        "probabilities": "none parameters unknown effects",
+        "evidence": "alternative probability columns",
+        "why": "name nats text",
     },
     "doctor": {
         "": "schema usable verdict vehicle messages elevator alpha limits expected_std",

@@ -33,7 +33,7 @@ def test_the_example_of_the_page_runs_in_the_folder_of_the_project(
     told = capsys.readouterr().out
     assert "at 50 Hz" in told
     assert "7 3-2-1-1" in told or "7 reverse 3-2-1-1" in told
-    assert re.search(r"^(STOP TESTING|CONTINUE): ", told, re.MULTILINE | re.IGNORECASE)
+    assert re.search(r"^(TEST COMPLETE|CONTINUE): ", told, re.MULTILINE | re.IGNORECASE)
     assert "effect [('actuator_lag'" in told
 
 

@@ -1,6 +1,7 @@
 """Reader of the aircraft file: YAML to :class:`advisor.aircraft.aircraft.Aircraft`, with every mistake
 listed at once."""
 
+import re
 from collections.abc import Iterator, Sequence
 from copy import deepcopy
 from dataclasses import fields, replace
@@ -11,7 +12,15 @@ from typing import Any
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError, with_config
 
-from advisor.aircraft.aircraft import PARAMETERS, Aircraft, Elevator, FmuVariables, Markers, Pairs
+from advisor.aircraft.aircraft import (
+    PARAMETERS,
+    Aircraft,
+    Elevator,
+    FmuVariables,
+    Markers,
+    Pairs,
+    SideControl,
+)
 from advisor.aircraft.aircraft_effects import mistakes_in
 from advisor.aircraft.key import keys_of, sections_of
 from advisor.process.yaml_file import read_yaml
@@ -121,17 +130,31 @@ def _sentence(item: Any) -> str:
         ):
             path += f".{step}" if path else str(step)
     if item["type"] in ("unexpected_keyword_argument", "extra_forbidden"):
-        return f"{path or 'file'}: unknown key{_meant(str(item['loc'][-1]))}"
+        return f"{path or 'file'}: unknown key{_meant(path)}"
     if item["type"] == "dataclass_type":
         return f"{path or 'file'}: must hold keys with values"
     return f"{path or 'file'}: {item['msg'][0].lower()}{item['msg'][1:]}"
 
 
-def _meant(key: str) -> str:
-    """Name the known key that an unknown one resembles, as a question; empty where none does."""
-    known = sorted({one.name for part in _PARTS for one in fields(part)})
-    near = get_close_matches(key, known, 1)
-    return f" (did you mean {near[0]}?)" if near else ""
+def _meant(path: str) -> str:
+    """Name the known key that an unknown one resembles, as a question; empty where none does.
+
+    A key of the same section comes first, then the path of a key elsewhere.
+    """
+    section, _, key = path.rpartition(".")
+    by_path = {re.sub(r"\[\]", "", at): kind for at, kind in sections_of(Aircraft)}
+    here = by_path.get(re.sub(r"\[\d+\]", "", section))
+    mine = [one.name for one in fields(here)] if here is not None else []
+    elsewhere = {
+        one.name: f"{at}.{one.name}" if at else one.name
+        for at, kind in reversed(by_path.items())
+        for one in fields(kind)
+    }
+    begun = [name for name in mine if name.startswith(f"{key}_")]
+    near = [*begun, *get_close_matches(key, mine, 1)]
+    far = get_close_matches(key, [name for name in elsewhere if name != key], 1)
+    meant = near[0] if near else elsewhere[key] if key in elsewhere else elsewhere[far[0]] if far else ""
+    return f" (did you mean {meant}?)" if meant else ""
 
 
 _PARTS = tuple(dict.fromkeys(kind for _, kind in sections_of(Aircraft)))[::-1]
@@ -154,11 +177,10 @@ _UNION_TAGS = frozenset({"int", "str", "float", "none"})
 def _beyond_types(aircraft: Aircraft) -> Iterator[str]:
     """Yield mistakes that types do not show, as ``path: description``."""
     yield from _elevator_mistakes(aircraft.elevator)
-    source = aircraft.alpha.source
-    if source not in ("auto", "aoa_ssa", "derived", "none") and not (
-        source.startswith("named_value:") and 1 <= len(source.split(":", 1)[1]) <= 10
-    ):
-        yield f"alpha.source: {source!r} is none of auto, aoa_ssa, derived, none, named_value:NAME"
+    for name in ("aileron", "rudder"):
+        yield from _side_control_mistakes(name, getattr(aircraft, name))
+    yield from _source_mistakes("alpha.source", aircraft.alpha.source, ("auto", "aoa_ssa", "derived", "none"))
+    yield from _source_mistakes("beta.source", aircraft.beta.source, ("auto", "aoa_ssa", "none"))
     yield from _out_of_bounds(aircraft)
     for name in aircraft.model:
         if name not in PARAMETERS:
@@ -193,6 +215,12 @@ def _out_of_bounds(aircraft: Aircraft) -> Iterator[str]:
             yield f"{key.path}: {mistake}"
 
 
+def _source_mistakes(path: str, source: str, known: Sequence[str]) -> Iterator[str]:
+    named = source.startswith("named_value:") and 1 <= len(source.split(":", 1)[1]) <= 10
+    if source not in known and not named:
+        yield f"{path}: {source!r} is none of {', '.join(known)}, named_value:NAME"
+
+
 def _elevator_mistakes(elevator: Elevator) -> Iterator[str]:
     if isinstance(elevator.output, int) and not 1 <= elevator.output <= _OUTPUTS:
         yield f"elevator.output: {elevator.output} is not a servo output 1..{_OUTPUTS} (or auto)"
@@ -218,6 +246,13 @@ def _elevator_mistakes(elevator: Elevator) -> Iterator[str]:
             yield from _calibration_mistakes(f"{path}.calibration", one.calibration)
         elif elevator.is_calibrated:
             yield f"{path}.calibration: give one for every output, or for none"
+
+
+def _side_control_mistakes(name: str, control: SideControl) -> Iterator[str]:
+    if isinstance(control.output, int) and not 1 <= control.output <= _OUTPUTS:
+        yield f"{name}.output: {control.output} is not a servo output 1..{_OUTPUTS} (or auto)"
+    if control.calibration is not None:
+        yield from _calibration_mistakes(f"{name}.calibration", control.calibration)
 
 
 def _calibration_mistakes(path: str, points: Pairs) -> Iterator[str]:

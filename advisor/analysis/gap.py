@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.analysis.usable_for_gap import usable_for_gap
+from advisor.analysis.refused import without_refused
 from advisor.campaign.hand_decisions import ByHand
 from advisor.flight.maneuvers.events import ManeuverFlown, Notice
 from advisor.flight.maneuvers.maneuver import Maneuver
@@ -15,14 +15,21 @@ from advisor.flight.stream.identity import READER_NOTICE
 from advisor.flight.stream.stream import FlightStream
 from advisor.flight.vehicle.one_aircraft import OneAircraft
 from advisor.flight.vehicle.surfaces import Surface
-from advisor.gap.diagnose import diagnose
+from advisor.gap.diagnose import examine
+from advisor.gap.judge.prior import FIELD, FieldPrior
 from advisor.gap.result import Diagnosis
 from advisor.gap.search.baseline import prior_derivatives
 from advisor.gap.without_simulator import without_simulator
 from advisor.mavlink.logs.whole import read_whole_log
+from advisor.simulators.air import standard_heights
+from advisor.simulators.by_log import IdentifiedSimulator
 from advisor.simulators.compare import Compared, compare
+from advisor.simulators.linear import LinearSimulator
 from advisor.simulators.protocol import Simulator
 from advisor.simulators.specification import simulator_of
+from advisor.simulators.speed_kind import by_the_motion
+from advisor.simulators.static_errors import with_static_errors
+from advisor.simulators.unseen import changes_something, unseen_of, with_unseen_shrink
 from advisor.words.printable import printable
 from advisor.words.problems import Problem, UnusableInputError
 
@@ -56,7 +63,7 @@ def maneuvers_of(
     Raises
     ------
     UnusableInputError
-        A log cannot be read or cannot serve.
+        No log can be read, or a log cannot serve. One that cannot be read is left out, with a note.
     """
     recorded, notes = _recorded(logs, aircraft, target_system, by_hand or [ByHand()] * len(logs))
     maneuvers = _on_one_clock(_each_once(recorded))
@@ -70,13 +77,19 @@ def _recorded(
     found: list[Maneuver] = []
     notes: list[str] = []
     wrong: list[Problem] = []
+    unreadable: list[Problem] = []
     one_aircraft = OneAircraft()
     for flight, (log, decided) in enumerate(zip(logs, by_hand, strict=True)):
         stream = FlightStream(aircraft, target_system, decided.marks)
         others = [*reversed(logs[:flight]), *logs[flight + 1 :]]
-        events = [event for columns in read_whole_log(log, others) for event in stream.feed(columns)]
-        events += stream.finish()
         name = printable(log.name)
+        try:
+            events = [event for columns in read_whole_log(log, others) for event in stream.feed(columns)]
+        except UnusableInputError as error:
+            unreadable.append(error.problem)
+            notes.append(f"Left out: {error.problem.about(name)}")
+            continue
+        events += stream.finish()
         problems = stream.problems()
         if stream.vehicle is not None and (foreign := one_aircraft.refuse(name, stream.vehicle)):
             problems = [foreign]
@@ -95,6 +108,8 @@ def _recorded(
                 notes.append(f"{name}: manoeuvre {maneuver.number} is excluded by hand: {because}.")
     if wrong:
         raise UnusableInputError.of(wrong)
+    if len(unreadable) == len(logs):
+        raise UnusableInputError.of(unreadable)
     return found, tuple(dict.fromkeys(filter(None, notes)))
 
 
@@ -145,6 +160,7 @@ def compare_logs(
     target_system: int | None = None,
     progress: Callable[[str, float], None] = lambda *_: None,
     by_hand: Sequence[ByHand] = (),
+    prior: FieldPrior = FIELD,
 ) -> Compared:
     """Read logs and diagnose their gap to a simulator, or to the aircraft file's model where there is none.
 
@@ -155,22 +171,33 @@ def compare_logs(
     """
     progress("reading", 0.0)
     flown = maneuvers_of(logs, aircraft, target_system, by_hand)
-    usable, refused = usable_for_gap(flown.maneuvers, aircraft)
-    gain = true_over_read(m.channels for m in usable)
+    chosen = without_refused(flown.maneuvers, aircraft)
+    if simulator is not None and not isinstance(simulator, LinearSimulator):
+        progress("comparing the air speed with the motion", 0.02)
+        chosen = chosen.with_speed(by_the_motion(chosen.maneuvers, aircraft))
+    gain = true_over_read(m.channels for m in chosen.maneuvers)
+    at_true_speed = _at_true_speed(aircraft, gain)
     if simulator is not None:
-        compared = compare(usable, simulator, aircraft, holdout, progress)
+        as_true = _simulator_at_true_speed(simulator, gain)
+        compared = compare(chosen.maneuvers, as_true, at_true_speed, holdout, progress, prior)
     else:
-        at_true_speed = _at_true_speed(aircraft, gain)
-        found = diagnose(usable, at_true_speed, holdout, progress)
-        told = found if prior_derivatives(aircraft) is not None else without_simulator(found)
+        whole = examine(chosen.maneuvers, at_true_speed, holdout, progress, prior)
+        told = whole.diagnosis
+        if prior_derivatives(aircraft) is None:
+            told = without_simulator(told)
+        elif changes_something(told):
+            progress("searching again without the manoeuvres kept apart", 0.9)
+            unseen = unseen_of(whole, chosen.maneuvers, at_true_speed, holdout)
+            told = told if unseen is None else with_unseen_shrink(whole, unseen, at_true_speed)
+        told = with_static_errors(told, whole)
         compared = Compared(told, aircraft)
-    notes = list(flown.notes)
+    notes = [*chosen.notes, *flown.notes]
     if flown.again:
         every = len(flown.maneuvers) + flown.again
         twice = f"{flown.again} of {every} manoeuvres came twice, as from the same log or a copy"
         notes.insert(0, f"{twice}: they count once.")
-    every_note = (*notes, *refused, *compared.diagnosis.notes)
-    height_m = _height_of(usable)
+    every_note = (*notes, *compared.diagnosis.notes)
+    height_m = _height_of(chosen.maneuvers, aircraft)
     found = replace(compared.diagnosis, notes=every_note, height_m=height_m, true_over_read=gain)
     return replace(compared, diagnosis=found)
 
@@ -200,7 +227,16 @@ def _at_true_speed(aircraft: Aircraft, true_over_read: float) -> Aircraft:
     return aircraft if read is None else replace(aircraft, reference_airspeed_m_s=read * true_over_read)
 
 
-def _height_of(maneuvers: Sequence[Maneuver]) -> float | None:
-    """Return the mean height of all manoeuvres that have one, m."""
-    heights = [m.channels["height"].y.mean() for m in maneuvers if "height" in m.channels]
-    return float(sum(heights) / len(heights)) if heights else None
+def _simulator_at_true_speed(simulator: Simulator, true_over_read: float) -> Simulator:
+    """Return the simulator with a true reference speed. That of ``linear`` is the aircraft file's, as
+    read."""
+    if isinstance(simulator, IdentifiedSimulator) or not isinstance(simulator, LinearSimulator):
+        return simulator
+    read = simulator.reference_m_s
+    return simulator if read is None else replace(simulator, reference_m_s=read * true_over_read)
+
+
+def _height_of(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> float | None:
+    """Return the mean height in the standard atmosphere, m, of all manoeuvres in air of known density."""
+    heights = [h for h in standard_heights(maneuvers, aircraft).values() if h is not None]
+    return sum(heights) / len(heights) if heights else None

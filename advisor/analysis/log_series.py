@@ -4,16 +4,20 @@ flight.
 ``Campaign.feed`` takes the columns of a series unchanged. A link that follows the logs is the next flight.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 
 from advisor.analysis.marks_file import read_by_hand
 from advisor.campaign.hand_decisions import ByHand, on_all
 from advisor.flight.signals.messages import Columns
+from advisor.words.printable import printable
 from advisor.words.problems import Problem, UnusableInputError
+
+T = TypeVar("T")
 
 SINCE_1970_S = 1e9
 """Least time of arrival that is a date, s since 1970 (a day in 2001). A log without a date counts from its
@@ -37,6 +41,7 @@ class LogSeries:
         self.unreadable: dict[int, Problem] = {}
         """Flight number to the reason for which its log could not be read to the end. Filled while
         reading."""
+        self._left_out: set[int] = set()
 
     @property
     def names(self) -> list[str]:
@@ -53,12 +58,37 @@ class LogSeries:
     def batches(self) -> Iterator[list[Columns]]:
         """Yield the messages of all logs. A log that cannot be read is left out and listed in
         ``unreadable``."""
-        for flight in range(len(self.logs)):
+        for flight in sorted(set(range(len(self.logs))) - self._left_out):
             try:
                 for columns in self._read(flight):
                     yield of_flight(columns, flight)
             except UnusableInputError as error:
                 self.unreadable[flight] = error.problem
+
+    def fed_to(self, make: Callable[[], T], feed: Callable[[T, list[Columns]], object]) -> T:
+        """Feed all logs to a new consumer, and return the consumer.
+
+        Of several logs, one whose messages break the consumer is left out and listed in ``unreadable``. The
+        others are then fed to another new consumer. A single log has no others to protect, so that its error
+        is raised.
+        """
+        while True:
+            consumer, flight = make(), 0
+            try:
+                for columns in self.batches():
+                    flight = columns[0].flight if columns else flight
+                    feed(consumer, columns)
+            except Exception as error:
+                if len(self.logs) == 1:
+                    raise
+                self._left_out.add(flight)
+                self.unreadable[flight] = Problem(
+                    "fault",
+                    f"Its messages break the analysis ({type(error).__name__}: {printable(str(error))}).",
+                    "Leave this log out, and please report it.",
+                )
+            else:
+                return consumer
 
     def _read(self, flight: int) -> Iterator[list[Columns]]:
         """Stream one log as a whole. The nearest other log lends parameters to a log without any."""

@@ -10,6 +10,7 @@ from advisor.campaign.campaign import Campaign
 from advisor.campaign.hand_decisions import NOTHING, ByHand
 from advisor.campaign.state import CampaignState
 from advisor.flight.maneuvers.marks import Mark
+from advisor.flight.signals.messages import Columns
 from advisor.flight.signals.power_on import PowerOn
 from advisor.flight.stream.stream import FlightStream
 from advisor.words.problems import Problem, UnusableInputError
@@ -78,15 +79,20 @@ def read_whole(
     """
     series = LogSeries(logs)
     by_hand = NOTHING if no_marks else series.read_by_hand()
-    campaign = Campaign(aircraft, target_system, by_hand=by_hand, marks=marks, names=series.names)
-    streams: dict[int, FlightStream] = {}
-    for columns in series.batches():
+
+    def begin() -> tuple[Campaign, dict[int, FlightStream]]:
+        return Campaign(aircraft, target_system, by_hand=by_hand, marks=marks, names=series.names), {}
+
+    def feed(heard: tuple[Campaign, dict[int, FlightStream]], columns: list[Columns]) -> None:
+        campaign, streams = heard
         campaign.feed(columns)
         flight = columns[0].flight if columns else 0
         if flight not in streams:
             marked = [mark for mark in (*marks, *by_hand.marks) if mark.flight == flight]
             streams[flight] = FlightStream(aircraft, target_system, marked, keep_all=True)
         streams[flight].feed(columns)
+
+    campaign, streams = series.fed_to(begin, feed)
     left_out: dict[int, tuple[Problem, ...]] = {
         flight: (problem,) for flight, problem in series.unreadable.items()
     }

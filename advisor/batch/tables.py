@@ -72,6 +72,17 @@ def tables_of(flights: Sequence[Analyzed]) -> Dataset:
     return Dataset((), (_flights(flights), _maneuvers(flights), _changes(changes_of(flights))), about)
 
 
+def is_whole(result: Analyzed) -> bool:
+    """Return whether a stored result has everything that the tables show. Another advisor may have written
+    another shape."""
+    try:
+        tables_of([result])
+        estimates_of([result])
+    except (AttributeError, IndexError, KeyError, TypeError, ValueError):
+        return False
+    return True
+
+
 def _flights(flights: Sequence[Analyzed]) -> FlightTable:
     documents = [flight.document for flight in flights]
     tests = [document["flight_test"] or {} for document in documents]

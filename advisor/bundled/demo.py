@@ -5,12 +5,12 @@ packets on a socket.
 """
 
 import subprocess
-import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from types import TracebackType
 from typing import TYPE_CHECKING
 
+from advisor.process.children import python_module
 from advisor.process.installed import SIMULATOR
 from advisor.words.problems import UnusableInputError
 
@@ -47,7 +47,7 @@ class Demonstration:
         from advisor.mavlink.link.link import Link
 
         self._link = Link("udpin:127.0.0.1:0", record_to=self._record_to).start()
-        command = [sys.executable, "-m", SIMULATOR, "fly", "--master", f"udpout:127.0.0.1:{self._link.port}"]
+        command = [*python_module(SIMULATOR), "fly", "--master", f"udpout:127.0.0.1:{self._link.port}"]
         self._process = subprocess.Popen(
             [*command, *self._options],
             stdin=subprocess.DEVNULL,
@@ -72,7 +72,7 @@ class Demonstration:
             scenario = Path(folder) / "one.yaml"
             scenario.write_text('aircraft: linear\nmaneuvers: ["3211"]\n')
             out = Path(folder) / "one.tlog"
-            command = [sys.executable, "-m", SIMULATOR, "record", "--scenario", str(scenario)]
+            command = [*python_module(SIMULATOR), "record", "--scenario", str(scenario)]
             subprocess.run(
                 [*command, "--out", str(out)], stdin=subprocess.DEVNULL, capture_output=True, check=False
             )

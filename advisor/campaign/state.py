@@ -1,9 +1,11 @@
 """State of a campaign at one moment, frozen, for screens, texts and documents."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from statistics import median
 
+from advisor.campaign.lateral import LateralState
+from advisor.campaign.whole_flight import WholeFlight
 from advisor.decision.verdict import FlightTestVerdict, ManeuverVerdict
 from advisor.flight.elevator.elevator_guess import Guess
 from advisor.flight.maneuvers.events import Activity
@@ -68,6 +70,10 @@ class CampaignState:
     """System ids of the other vehicles on the link, rising."""
     no_data: tuple[Problem, ...] = ()
     """Reasons for which the present data cannot serve; empty while they can."""
+    whole_flight: WholeFlight = field(default_factory=WholeFlight)
+    """The power-on being heard, as one picture."""
+    serves: bool = True
+    """Whether the present data are known to serve. False before the first judgement of the stream."""
     instruments: tuple[InstrumentFinding, ...] = ()
     """Contradictions of the instruments."""
     mark_notes: tuple[str, ...] = ()
@@ -80,6 +86,8 @@ class CampaignState:
     """Number of the vehicle's power-on in this log or link, 0 for the first."""
     flights: tuple[FlightHeard, ...] = ()
     """Every log and link so far. The one being heard is the last."""
+    lateral: LateralState | None = None
+    """Lateral half of the campaign. None where it was not asked for."""
     activity: tuple[Activity, ...] = ()
     """Movements of the elevator that were no test inputs, oldest first. Similar neighbours are one entry."""
 

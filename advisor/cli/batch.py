@@ -122,9 +122,10 @@ def _tasks(
 def _analyzed(tasks: "Sequence[BatchTask]", out: Path, run: "Run") -> "dict[Path, Analyzed]":
     """Return the result of every task: kept from an earlier run, or made now and kept."""
     from advisor.batch.flight import failed, keep, kept
+    from advisor.batch.tables import is_whole
 
     places = {task.log: out / KEPT / f"{task.key}.json" for task in tasks}
-    results = {task.log: known for task in tasks if (known := kept(places[task.log]))}
+    results = {task.log: known for task in tasks if (known := kept(places[task.log])) and is_whole(known)}
     to_do = [task for task in tasks if task.log not in results]
     if results:
         click.echo(f"{len(results)} of {len(tasks)} logs were analyzed before.", err=True)

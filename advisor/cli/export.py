@@ -10,6 +10,7 @@ from advisor.cli.options import (
     refuse_unwritable,
     refuse_unwritable_folder,
 )
+from advisor.cli.stages import Stages
 from advisor.exports.flights.formats import WRITERS, parse_formats, write_formats
 from advisor.exports.flights.staging import refuse_inputs, staged
 from advisor.words.printable import printable
@@ -64,7 +65,9 @@ def command(
     from advisor.analysis.whole_flights import read_whole
     from advisor.exports.flights.reading import dataset
 
-    flights = read_whole(asked.logs, aircraft, asked.target_system, asked.marks, no_marks=asked.no_marks)
+    with Stages() as tell:
+        tell("reading and judging", 0.0)
+        flights = read_whole(asked.logs, aircraft, asked.target_system, asked.marks, no_marks=asked.no_marks)
     for note in flights.notes:
         click.echo(printable(note), err=True)
     if cut is not None:
@@ -73,12 +76,13 @@ def command(
         data = log_of_maneuver(flights, cut, aircraft, asked.target_system)
         with staged(out.parent, inputs) as stage:
             (stage / out.name).write_bytes(data)
-        click.echo(f"{printable(str(out))}: manoeuvre {cut}, {len(data)} bytes.")
+        click.echo(f"Wrote {printable(str(out))}: manoeuvre {cut}, {len(data)} bytes.")
         return 0
     with staged(out, inputs) as stage:
         write_formats(dataset(flights), stage, chosen)
     click.echo(
-        f"{printable(str(out))}: manoeuvres: {len(flights.state.maneuvers)}; formats: {', '.join(chosen)}."
+        f"Wrote {printable(str(out))}; manoeuvres: {len(flights.state.maneuvers)}; "
+        f"formats: {', '.join(chosen)}."
     )
     return 0
 

@@ -10,7 +10,7 @@ import click
 from advisor.cli.options import NEWEST
 from advisor.mavlink.link.keeping import Keeping, new_door
 from advisor.mavlink.link.link_process import LinkProcess, end
-from advisor.mavlink.link.recording_file import default_recording, recordings_folder
+from advisor.mavlink.link.recording_file import default_recording, recordings_folder, writable_folder
 from advisor.mavlink.link.running_links import RunningLink, running_alone
 from advisor.session.campaign_file import CampaignFile, read_campaign, write_campaign
 from advisor.words.problems import ConfigurationError
@@ -73,7 +73,12 @@ def start_of(
                 "Missing option '--master': say where the vehicle is heard, e.g. "
                 "--master udpin:0.0.0.0:14550."
             )
-        return Start(asked, (place or default_recording()) if recorded else None)
+        if place is None and recorded:
+            folder, said = writable_folder()
+            place = default_recording(folder)
+            if said:
+                click.echo(said, err=True)
+        return Start(asked, place)
     logs = [_newest(place.parent if place else None) if resume == NEWEST else Path(resume), *further]
     for log in logs:
         if not log.is_file():

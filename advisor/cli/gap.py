@@ -1,14 +1,13 @@
 """``advisor gap``: why the real aircraft does not fly like the simulator."""
 
 import json
-import shlex
-import sys
 from dataclasses import replace
 from pathlib import Path
 
 import click
 from click.core import ParameterSource
 
+from advisor.cli.gap_figure import refuse_figure, write_figure
 from advisor.cli.improvement_export import export_option, listed, orders_of, write_exports
 from advisor.cli.log_options import LogsAsked, log_options
 from advisor.cli.options import (
@@ -19,12 +18,14 @@ from advisor.cli.options import (
     refuse_unwritable,
     writing,
 )
+from advisor.cli.stages import Stages
 from advisor.words.printable import printable
 from advisor.words.problems import ConfigurationError, UnusableInputError
 
 _OF_A_FLIGHT = {
     "holdout": "--holdout", "out": "--out", "target_system": "--target-system", "marks": "--maneuver",
-    "no_marks": "--no-marks", "why": "--why", "exports": "--export", "specification": "--simulator",
+    "no_marks": "--no-marks", "why": "--why", "prior": "--prior", "exports": "--export",
+    "specification": "--simulator", "figure": "--figure",
 }  # fmt: skip
 _OF_A_PLAN = {
     "plan": "--plan", "rate_hz": "--rate", "amplitude_deg": "--amplitude-deg", "without": "--without"
@@ -49,9 +50,17 @@ _OF_A_PLAN = {
     type=click.Path(path_type=Path),
     help="File for the improved simulator; without it none is written.",
 )
-@export_option
 @click.option(
-    "--why", is_flag=True, help="Print every decision on the way: its number, its limit, the margin."
+    "--figure",
+    type=click.Path(path_type=Path),
+    help="File for the picture: measured, simulated before and after. Ends in .svg or .png.",
+)
+@export_option
+@click.option("--why", is_flag=True, help="Print what speaks for the answer, and every decision on the way.")
+@click.option(
+    "--prior",
+    metavar="SHARES",
+    help="How often each answer is right before the flight: none=40,parameters=20,effect=30,unknown=10.",
 )
 @click.option(
     "--foresee", is_flag=True, help="Read no log; say what a planned flight would show. Needs --aircraft."
@@ -75,8 +84,10 @@ def command(
     holdout: int | None,
     specification: str | None,
     out: Path | None,
+    figure: Path | None,
     exports: tuple[str, ...],
     why: bool,
+    prior: str | None,
     foresee: bool,
     plan: str,
     rate_hz: float,
@@ -114,21 +125,25 @@ def command(
         refuse_unwritable("--out", out)
         if asked.aircraft_file is not None and out.resolve() == asked.aircraft_file.resolve():
             raise ConfigurationError(f"--out: {out} is the aircraft file itself; name another file.")
+    refuse_figure(figure, [*asked.inputs, out])
     if specification is not None:
         aircraft = replace(aircraft, simulator=specification)
     orders = orders_of(exports, aircraft, [*asked.inputs, out])
     from advisor.analysis.gap import compare_logs, named_simulator
     from advisor.gap.document import gap_document
-    from advisor.report.improved import improved_name, write_improved
+    from advisor.gap.judge.prior import FIELD, field_prior
+    from advisor.report.gap_steps import next_steps
+    from advisor.report.improved import write_improved
+    from advisor.words.plain import plain
 
-    watched = sys.stderr.isatty()
-    progress = _progress if watched else lambda *_: None
     simulator = None
     try:
-        simulator = named_simulator(aircraft, asked.target_system)
-        compared = compare_logs(
-            asked.logs, aircraft, simulator, holdout, asked.target_system, progress, by_hand
-        )
+        with Stages() as progress:
+            simulator = named_simulator(aircraft, asked.target_system)
+            shares = FIELD if prior is None else field_prior(prior)
+            compared = compare_logs(
+                asked.logs, aircraft, simulator, holdout, asked.target_system, progress, by_hand, shares
+            )
         found = compared.diagnosis
     except UnusableInputError as error:
         if as_json:
@@ -138,8 +153,6 @@ def command(
     finally:
         if simulator is not None:
             simulator.close()
-        if watched:
-            click.echo("\r\033[K", nl=False, err=True)
     improvable = found.verdict in ("effect", "parameters")
     if out is not None and improvable:
         with writing("--out", out):
@@ -151,18 +164,18 @@ def command(
     # The simulator's own servo is no part of the improvement.
     as_given = replace(compared.aircraft, simulator=aircraft.simulator, elevator=aircraft.elevator)
     outcomes = write_exports(orders, found, as_given)
+    write_figure(figure, found)
+    steps = next_steps(found, list(map(str, asked.logs)), asked.aircraft_text, specification)
     if as_json:
         document = gap_document(found, (), str(out) if out and improvable else None)
-        click.echo(json.dumps(document | {"exports": listed(outcomes)}, allow_nan=False, indent=1))
+        more = {"exports": listed(outcomes), "next": plain(steps)}
+        click.echo(json.dumps(document | more, allow_nan=False, indent=1))
     else:
         from advisor.report.console import PlainConsole
         from advisor.report.gap_screen import GapScreen
 
         written = printable(str(out)) if out and improvable else None
-        PlainConsole().print(GapScreen(found, written, why))
-    if improvable and out is None and not orders:
-        again = ["advisor", *sys.argv[1:], "--out", improved_name(found, asked.aircraft_file)]
-        click.echo(f"To write the improved simulator: {printable(shlex.join(again))}", err=True)
+        PlainConsole().print(GapScreen(found, written, why, steps))
     return USAGE if any(one.problem for one in outcomes) else 0
 
 
@@ -174,7 +187,3 @@ def _refuse_foreign(foresee: bool) -> None:
         if given(name) is ParameterSource.COMMANDLINE:
             where = "without --foresee" if foresee else "with --foresee"
             raise ConfigurationError(f"{option} has a meaning {where} only: leave it out.")
-
-
-def _progress(what: str, share: float) -> None:
-    click.echo(f"\r\033[K{100 * share:3.0f} %  {what}", nl=False, err=True)

@@ -5,6 +5,7 @@ import os
 import sys
 from collections.abc import Callable
 from contextlib import suppress
+from difflib import get_close_matches
 from functools import cache, partial, wraps
 from importlib import import_module
 from signal import SIGINT
@@ -28,11 +29,13 @@ COMMANDS = {
     "serve": "Show the screens of live and replay in a browser, for several viewers.",
     "analyze": "Print every manoeuvre's verdict, the estimates, and stop or continue.",
     "gap": "Diagnose why the real aircraft does not fly like the simulator.",
+    "simulator": "Check your own simulator: signs, units, trim, and what it answers.",
     "export": "Write channels, manoeuvres, estimates and residuals for other tools.",
     "batch": "Analyze many logs: one table of flights, one of manoeuvres, changes over time.",
     "report": "Write one self-contained page about a flight, for people who were not there.",
     "doctor": "Check before a flight whether the telemetry is good enough; say what to change.",
     "study": "Repeat the paper's simulated campaign: Table 1, Figure 5, Monte-Carlo.",
+    "mcp": "Let an assistant read logs: doctor, analyze, gap and report as tools.",
     "aircraft": "Write an aircraft file, or say what one lacks and what that costs.",
     "sample": "Put a sample flight and its aircraft file into this folder.",
     "locate": "Print where settings and recordings are kept.",
@@ -44,7 +47,7 @@ command."""
 
 COMPLETION_VARIABLE = "_ADVISOR_COMPLETE"
 """Environment variable by which a shell asks for completions."""
-WITHOUT_KERNELS = frozenset({"locate", "sample", "aircraft", "completion"})
+WITHOUT_KERNELS = frozenset({"locate", "sample", "aircraft", "completion", "mcp"})
 """Commands that need no compiled code, or only sometimes: the first run does not compile for them."""
 
 
@@ -58,6 +61,21 @@ class LazyCommands(click.Group):
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
         """Import one command; None for an unknown name."""
         return _command(name) if name in COMMANDS else None
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Return the command that the first word names; refuse another word with a guess.
+
+        Raises
+        ------
+        UsageError
+            There is no such command.
+        """
+        near = get_close_matches(args[0], COMMANDS, 1)
+        if args[0] not in COMMANDS and near and not ctx.resilient_parsing:
+            ctx.fail(f"No such command {args[0]!r}: did you mean {near[0]}?")
+        return super().resolve_command(ctx, args)
 
     def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
         """Complete the name of a command, or an option, without importing any command."""
@@ -160,6 +178,8 @@ def _ended_by(run: Callable[[], int]) -> int:
         _tell(str(error))
         return USAGE
     except UnusableInputError as error:
+        if error.__cause__ is not None and os.environ.get("ADVISOR_TRACEBACK"):
+            raise
         _tell(str(error))
         return UNUSABLE
     except (BrokenPipeError, SystemExit):

@@ -1,5 +1,6 @@
 """``advisor live``: advice on a live link."""
 
+import shlex
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
@@ -11,7 +12,7 @@ from advisor.cli.log_options import LogsAsked, log_options
 from advisor.cli.options import (
     NEWEST,
 )
-from advisor.cli.screen import Show, advise
+from advisor.cli.screen import Show, advise, headless
 from advisor.process.interrupt import STOPPED, in_order
 from advisor.words.printable import printable
 from advisor.words.problems import ConfigurationError
@@ -47,7 +48,9 @@ if TYPE_CHECKING:
     "--request-rates", is_flag=True, help="Ask the vehicle for streams of 50 Hz and its servo parameters."
 )
 @click.option(
-    "--announce", is_flag=True, help="Send each verdict and STOP to the ground stations (STATUSTEXT)."
+    "--announce",
+    is_flag=True,
+    help="Send each verdict and TEST COMPLETE to the ground stations (STATUSTEXT).",
 )
 @click.option(
     "--announce-to",
@@ -133,6 +136,11 @@ def command(
             logs=[*start.earlier, *recordings],
             show=show,
         )
+    if recordings and show is None and not headless():
+        command = ["advisor", "report", *map(str, (*start.earlier, *recordings)), "-o", "flight.html"]
+        if asked.aircraft_file:
+            command += ["--aircraft", str(asked.aircraft_file)]
+        click.echo(f"The page of the flight: {printable(shlex.join(command))}", err=True)
 
 
 def _recorded(recordings: Sequence[Path]) -> str:

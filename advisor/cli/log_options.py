@@ -40,6 +40,11 @@ class LogsAsked:
     """Whether earlier decisions by hand are ignored."""
 
     @property
+    def aircraft_text(self) -> str | None:
+        """Aircraft file as given; None without one."""
+        return str(self.aircraft_file) if self.aircraft_file else None
+
+    @property
     def inputs(self) -> list[Path]:
         """Every file that the command reads."""
         return [*self.logs, *([self.aircraft_file] if self.aircraft_file else [])]

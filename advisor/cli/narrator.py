@@ -15,17 +15,20 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing, suppress
 from dataclasses import replace
+from functools import partial
+from math import inf
 from threading import Thread
-from time import sleep
+from time import monotonic, sleep
 from typing import IO, TYPE_CHECKING
 
 import click
 
 from advisor.flight.signals.messages import Columns
 from advisor.process import interrupt
+from advisor.process.liveness import Beat, Watch
 from advisor.session.child_process import pause_s, said_of, start_child
 from advisor.session.remote import ConductorTask
-from advisor.session.source import Source
+from advisor.session.source import Playable, Source
 from advisor.words.ascii_output import speak_plainly
 from advisor.words.problems import UnusableInputError
 
@@ -33,6 +36,8 @@ if TYPE_CHECKING:
     from advisor.campaign.campaign import Campaign
 
 READ_S = 0.2
+BEAT_S = 0.5
+"""Shortest time between two beats of the process that estimates, s."""
 
 
 def narrate(task: ConductorTask, say: Callable[[str], object], warn: Callable[[str], object]) -> None:
@@ -53,18 +58,36 @@ def narrate(task: ConductorTask, say: Callable[[str], object], warn: Callable[[s
         The source can never serve, or has ended without anything to judge.
     """
     said: Counter[str] = Counter()
-    deaths = 0
-    while code := _narrate_once(task, say, said):
+    deaths = hangs = 0
+    while (ended := _narrate_once(task, say, said, warn, hangs))[0]:
         deaths += 1
-        warn(f"the estimating process {said_of(code)}; it is started again")
+        hangs += ended[1].ended_after_s is not None
+        warn(f"the estimating process {said_of(*ended)}; it is started again")
         sleep(pause_s(deaths))
         if task.kept is not None:
             task = replace(task, by_hand=task.kept())
 
 
-def _narrate_once(task: ConductorTask, say: Callable[[str], object], said: "Counter[str]") -> int:
+def _narrate_once(
+    task: ConductorTask,
+    say: Callable[[str], object],
+    said: "Counter[str]",
+    warn: Callable[[str], object],
+    hangs: int,
+) -> tuple[int, Watch]:
+    """Run one process from its start to its end; return its exit code and its watch."""
     repeated = said.copy()
-    with start_child("advisor.cli.narrator", shows_errors=True) as process:
+    old: list[float] = []
+
+    def grow_old(age_s: float) -> None:
+        if not old:
+            warn(f"ESTIMATOR NOT ANSWERING for {age_s:.0f} s: what stands above is old")
+        old.append(age_s)
+
+    with (
+        start_child("advisor.cli.narrator", shows_errors=True) as process,
+        Watch(process, grow_old, hangs) as watch,
+    ):
         assert process.stdin is not None
         assert process.stdout is not None
         try:
@@ -76,19 +99,37 @@ def _narrate_once(task: ConductorTask, say: Callable[[str], object], said: "Coun
                     message = pickle.load(process.stdout)
                     if isinstance(message, BaseException):
                         raise message
+                    watch.heard(patient=message is Beat.READING)
+                    old.clear()
+                    if isinstance(message, Beat):
+                        continue
                     if repeated[message] > 0:
                         repeated[message] -= 1
                         continue
                     said[message] += 1
                     say(message)
-            return process.wait()
+            return process.wait(), watch
         finally:
             with suppress(BrokenPipeError):
                 process.stdin.close()  # upon which the other process ends, if it lives still
+            watch.hurry()
+            process.wait()
 
 
-def narrate_here(source: Source, campaign: "Campaign", say: Callable[[str], object]) -> None:
+def narrate_here(
+    source: Source,
+    campaign: "Campaign",
+    say: Callable[[str], object],
+    beat: Callable[[Beat], object] = lambda beat: None,
+) -> None:
     """Conduct a campaign in this process, to the end of its source.
+
+    Parameters
+    ----------
+    say
+        Takes one line of text.
+    beat
+        Called before each wait for data, at most every ``BEAT_S``.
 
     Raises
     ------
@@ -98,13 +139,17 @@ def narrate_here(source: Source, campaign: "Campaign", say: Callable[[str], obje
     from advisor.report.follow import follow
 
     with closing(source):
-        follow(_batches(source), campaign, say)
+        follow(_batches(source, beat), campaign, say, of_log=isinstance(source, Playable))
     if campaign.problems:
         raise UnusableInputError.of(campaign.problems[:1])
 
 
-def _batches(source: Source) -> Iterator[Sequence[Columns]]:
+def _batches(source: Source, beat: Callable[[Beat], object]) -> Iterator[Sequence[Columns]]:
+    told_s = -inf
     while (columns := source.read(READ_S)) is not None:
+        if monotonic() - told_s >= BEAT_S:
+            told_s = monotonic()
+            beat(Beat.READING if source.health().condition == "waiting" else Beat.LISTENING)
         for notice in source.take_notices():
             click.echo(f"link: {notice}", err=True)
         yield columns
@@ -135,7 +180,8 @@ def main() -> None:
             Thread(target=_end_with, args=(sys.stdin.buffer,), daemon=True).start()
             campaign = task.make_campaign(task.by_hand)
             assert isinstance(campaign, Campaign)
-            narrate_here(task.open_source(), campaign, lambda line: _send(messages, line))
+            tell = partial(_send, messages)
+            narrate_here(task.open_source(), campaign, tell, tell)
         except Exception as failure:
             failure.add_note(traceback.format_exc())
             _send(messages, failure)

@@ -6,19 +6,25 @@ import platform
 import shlex
 import sys
 from collections.abc import Iterator, Mapping
+from datetime import UTC, datetime
 from importlib.metadata import version
+from math import inf
 from pathlib import Path
 
 from advisor import __version__
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.gap import compare_logs, named_simulator
+from advisor.analysis.log_series import SINCE_1970_S, began_s
 from advisor.analysis.whole_flights import WholeFlights, read_whole
 from advisor.cli.doctor import examine_log
 from advisor.cli.log_options import LogsAsked
 from advisor.doctor.document import doctor_document
 from advisor.gap.document import gap_document
+from advisor.gap.search.waterfall import Progress
 from advisor.report.document import analysis_document
+from advisor.report.gap_steps import next_steps
 from advisor.report.page.content import Content, Document, Origin
+from advisor.words.plain import plain
 from advisor.words.printable import printable
 from advisor.words.problems import UnusableInputError
 
@@ -26,8 +32,15 @@ _COUNTED = ("numpy", "scipy", "matplotlib", "jinja2", "pymavlink")
 """Libraries that numbers and pictures depend on; the page lists their versions."""
 
 
-def gather(asked: LogsAsked, aircraft: Aircraft, with_gap: bool) -> tuple[Content, list[str]]:
+def gather(
+    asked: LogsAsked, aircraft: Aircraft, with_gap: bool, tell: Progress = lambda *_: None
+) -> tuple[Content, list[str]]:
     """Return the content of the page, and sentences on logs that do not count.
+
+    Parameters
+    ----------
+    tell
+        Receives each stage of the work as a sentence.
 
     Raises
     ------
@@ -36,8 +49,11 @@ def gather(asked: LogsAsked, aircraft: Aircraft, with_gap: bool) -> tuple[Conten
     ConfigurationError
         As :func:`advisor.analysis.marks_file.read_by_hand`.
     """
+    tell("reading and judging", 0.0)
     flights = read_whole(asked.logs, aircraft, asked.target_system, no_marks=asked.no_marks)
     said = flights.said
+    tell("examining the telemetry", 0.5)
+    doctor = tuple(_examined(log, aircraft, asked.target_system) for log in flights.logs)
     content = Content(
         state=flights.state,
         analysis=analysis_document(
@@ -46,8 +62,9 @@ def gather(asked: LogsAsked, aircraft: Aircraft, with_gap: bool) -> tuple[Conten
         names=tuple(map(printable, flights.names)),
         aircraft=aircraft,
         power_ons=flights.power_ons,
-        doctor=tuple(_examined(log, aircraft, asked.target_system) for log in flights.logs),
-        gap=_gap(flights, aircraft, asked.target_system) if with_gap else None,
+        doctor=doctor,
+        gap=_gap(flights, aircraft, asked, tell) if with_gap else None,
+        begun=tuple(map(_date, flights.logs)),
         origin=Origin(
             _hashes(flights, asked.aircraft_file),
             dict(_versions()),
@@ -64,20 +81,30 @@ def _examined(log: Path, aircraft: Aircraft, target_system: int | None) -> Docum
         return doctor_document(None, error.problem)
 
 
-def _gap(flights: WholeFlights, aircraft: Aircraft, target_system: int | None) -> Document:
+def _gap(flights: WholeFlights, aircraft: Aircraft, asked: LogsAsked, tell: Progress) -> Document:
+    target_system = asked.target_system
     usable = [flight for flight in range(len(flights.logs)) if flight not in flights.left_out]
     logs = [flights.logs[flight] for flight in usable]
     decided = [flights.by_hand.on_flight(flight) for flight in usable]
     simulator = None
     try:
         simulator = named_simulator(aircraft, target_system)
-        compared = compare_logs(logs, aircraft, simulator, target_system=target_system, by_hand=decided)
+        compared = compare_logs(logs, aircraft, simulator, None, target_system, tell, decided)
     except UnusableInputError as error:
         return gap_document(None, error.problems)
     finally:
         if simulator is not None:
             simulator.close()
-    return gap_document(compared.diagnosis)
+    steps = next_steps(compared.diagnosis, list(map(str, logs)), asked.aircraft_text, aircraft.simulator)
+    return {**gap_document(compared.diagnosis), "next": plain(steps)}
+
+
+def _date(log: Path) -> str:
+    """Return the date and time at which a log began; a sentence where the log has no date."""
+    at_s = began_s(log)
+    if not SINCE_1970_S <= at_s < inf:
+        return "no date in the log"
+    return f"{datetime.fromtimestamp(at_s, UTC):%Y-%m-%d %H:%M} UTC"
 
 
 def _hashes(flights: WholeFlights, aircraft_file: Path | None) -> Mapping[str, str]:

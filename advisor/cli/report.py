@@ -11,6 +11,8 @@ from advisor.cli.options import (
     refuse_unwritable,
     writing,
 )
+from advisor.cli.stages import Stages
+from advisor.words.printable import printable
 from advisor.words.problems import ConfigurationError
 
 _NEEDED = ("jinja2", "matplotlib")
@@ -48,12 +50,15 @@ def command(
     from advisor.process.atomic_file import write_atomically
     from advisor.report.page.render import page
 
-    content, said = gather(asked, aircraft, with_gap)
-    markdown = form == "md" or (form is None and out.suffix.lower() == ".md")
-    with writing("-o", out):
-        write_atomically(out, page(content, "md" if markdown else "html"))
+    with Stages() as tell:
+        content, said = gather(asked, aircraft, with_gap, tell)
+        tell("drawing the page", 0.9)
+        markdown = form == "md" or (form is None and out.suffix.lower() == ".md")
+        with writing("-o", out):
+            write_atomically(out, page(content, "md" if markdown else "html"))
     for sentence in said:
         click.echo(sentence, err=True)
+    click.echo(f"Wrote {printable(str(out))}.", err=True)
     return 0
 
 

@@ -2,7 +2,7 @@
 
 import os
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -11,6 +11,7 @@ import click
 from advisor.aircraft.aircraft import Aircraft
 from advisor.process.interrupt import in_order
 from advisor.session.source import Source, Tempo
+from advisor.words.printable import printable
 from advisor.words.problems import UnusableInputError
 
 if TYPE_CHECKING:
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 
     from advisor.campaign.campaign import Campaign
     from advisor.campaign.hand_decisions import ByHand
+    from advisor.campaign.state import CampaignState
     from advisor.flight.maneuvers.marks import Mark
     from advisor.session.remote import ConductorTask
 
@@ -27,9 +29,14 @@ Show = Callable[["ConductorTask", Aircraft, str, Tempo | None], object]
 
 
 def headless() -> bool:
-    """Return whether the campaign is printed as lines: without a terminal on stdout, or with
-    ``HEADLESS=1``."""
-    return os.environ.get("HEADLESS", "") not in ("", "0") or not sys.stdout.isatty()
+    """Return whether the campaign is printed as lines.
+
+    A screen needs a terminal on standard output and on standard error, which paints it, and a terminal that
+    can place a cursor. ``HEADLESS=1`` asks for lines.
+    """
+    asked = os.environ.get("HEADLESS", "") not in ("", "0")
+    dumb = os.environ.get("TERM", "") == "dumb"
+    return asked or dumb or not (sys.stdout.isatty() and sys.stderr.isatty())
 
 
 def advise(
@@ -119,5 +126,17 @@ def _show(
         app.run()
     if app.failure is not None:
         raise app.failure
+    for line in so_far(app.view.state):
+        click.echo(printable(line))
     if tempo is not None and app.view.problems:
         raise UnusableInputError.of(app.view.problems[:1])
+
+
+def so_far(state: "CampaignState") -> Iterator[str]:
+    """Yield each verdict of a flight test that was left, and stop or continue; nothing before the first."""
+    from advisor.report.text import maneuver_line, next_line, stop_line
+
+    if state.maneuvers:
+        yield from map(maneuver_line, state.maneuvers)
+        yield stop_line(state.flight_test)
+        yield next_line(state.flight_test)

@@ -6,7 +6,7 @@ import numpy as np
 
 from advisor.aircraft.aircraft import PARAMETERS, Aircraft, CampaignPlan
 from advisor.decision.choice import Choice, best_input
-from advisor.decision.conditions import Conditions, find_conditions
+from advisor.decision.conditions import Conditions, find_conditions, travel_of
 from advisor.decision.course import CriterionCourse
 from advisor.decision.history import CandidateManeuver, usable_ones
 from advisor.decision.information import Knowledge
@@ -18,6 +18,9 @@ from advisor.decision.verdict import NO_CURE_BY_INPUT, NextInput, Remaining
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.short_period import ShortPeriod
 
+_GENTLE = 0.1
+"""Amplitude of the first input, as a share of the elevator's travel. Nothing is known of the aircraft yet.
+Larger inputs follow step by step (``conditions.BOLDER``)."""
 PASSING = {"separate": 0.5}
 """Share of equally good manoeuvres that pass the rule. Eq. (11) rejects half, Eq. (10) hardly any."""
 
@@ -39,14 +42,16 @@ def next_input(
     course = course or CriterionCourse(plan)
     conditions = find_conditions(history, aircraft, course)
     mend = _mend(history[-1]) if history else ""
+    if conditions is None and not history:
+        return _first_input(aircraft)
     if conditions is None:
-        spoken = mend or (_same_but_better(history[-1]) if history else _first_input(aircraft))
-        return NextInput(f"next: {spoken}", None)
+        return NextInput(f"next: {mend or _same_but_better(history[-1])}", None)
     known = course.known(usable_ones(history))
     choice = None if mend else _choose(conditions, known, plan)
-    spoken = choice[0].spoken(conditions.travel_rad) if choice else mend or "the same again"
-    remaining = forecast(history, course)
-    return NextInput(f"next: {spoken}", remaining, _held_by(history, plan, known))
+    chosen = choice[0] if choice else None
+    spoken = chosen.spoken(conditions.travel_rad) if chosen else mend or "the same again"
+    remaining, held_by = forecast(history, course), _held_by(history, plan, known)
+    return NextInput(f"next: {spoken}", remaining, held_by, chosen, conditions.travel_rad)
 
 
 def recommended(history: Sequence[CandidateManeuver], aircraft: Aircraft) -> StepInput | None:
@@ -97,7 +102,7 @@ def _held_by(history: Sequence[CandidateManeuver], plan: CampaignPlan, known: Kn
     return known.holding_back
 
 
-def _first_input(aircraft: Aircraft) -> str:
+def _first_input(aircraft: Aircraft) -> NextInput:
     """Return the advice before any estimate: the textbook's 3-2-1-1, small, timed by the prior model if there
     is one."""
     unit = 0.5
@@ -105,7 +110,9 @@ def _first_input(aircraft: Aircraft) -> str:
         frequency = ShortPeriod.from_mapping(aircraft.model).natural_frequency
         if np.isfinite(frequency) and frequency > 0.0:
             unit = max(round(0.5 * np.pi / frequency, 1), 0.2)
-    return f"3-2-1-1, {unit:.1f} s steps, 10 % stick, to begin gently"
+    travel = travel_of(aircraft, 0.0)
+    gentle = StepInput("3-2-1-1", unit, _GENTLE * travel, nose_up_first=True)
+    return NextInput(f"next: {gentle.spoken(travel)}, to begin gently", None, None, gentle, travel)
 
 
 def _same_but_better(flown: CandidateManeuver) -> str:

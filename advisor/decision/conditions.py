@@ -65,7 +65,7 @@ def find_conditions(
     span, elevator = last.span, last.channels["elevator"]
     theta = course.known(usable_ones(history)).posterior.theta
     trim = trim_of(last)
-    travel = _travel(aircraft, trim)
+    travel = travel_of(aircraft, trim)
     largest_seen = max(_excursion(m, e) for m, e, _ in flown)
     alpha = max(largest_seen, min(BOLDER * largest_seen, LINEAR_RAD))
     if aircraft.limits.alpha_deg is not None:
@@ -125,7 +125,8 @@ def _step(t: FloatArray) -> float:
     return float(np.median(np.diff(t)))
 
 
-def _travel(aircraft: Aircraft, trim_rad: float) -> float:
+def travel_of(aircraft: Aircraft, trim_rad: float) -> float:
+    """Return the elevator's travel from trim to the nearer stop, rad: 100 % stick."""
     ends_deg = aircraft.elevator.ends_deg
     ends = np.radians(ends_deg) if ends_deg else [-FULL_TRAVEL_RAD, FULL_TRAVEL_RAD]
     return float(max(min(max(ends) - trim_rad, trim_rad - min(ends)), 0.1 * FULL_TRAVEL_RAD))

@@ -34,7 +34,7 @@ def _stop(known: Knowledge) -> str:
     within = [f"the response is known to {max(bands.values()):.1f} % of its peak"] if bands else []
     if known.named:
         within.append("each named derivative to its tolerance")
-    return f"STOP TESTING: {', '.join(within)}, and the newest manoeuvre was predicted."
+    return f"TEST COMPLETE: {', '.join(within)}, and the newest manoeuvre was predicted."
 
 
 def _held_back(known: Knowledge) -> str:

@@ -46,6 +46,14 @@ class StepInput:
         """Time from the first step to the return to trim."""
         return self.unit_s * sum(ORDERS[self.order])
 
+    @property
+    def steps(self) -> tuple[tuple[bool, float], ...]:
+        """Steps in order: whether the step is nose up, and its duration, s."""
+        return tuple(
+            (self.nose_up_first == (k % 2 == 0), units * self.unit_s)
+            for k, units in enumerate(ORDERS[self.order])
+        )
+
     def elevator(self, trim_rad: float, lead_s: float, length_s: float) -> Signal:
         """Return the elevator in rad, trailing edge down positive; the input begins after ``lead_s``."""
         side = -1.0 if self.nose_up_first else 1.0
@@ -61,13 +69,13 @@ class StepInput:
     def spoken(self, travel_rad: float) -> str:
         """Return the input as a pilot hears it: ``reverse 3-2-1-1, 0.4 s steps, 60 % stick``."""
         reverse = "" if self.nose_up_first else "reverse "
-        return f"{reverse}{self.order}, {self.unit_s:.1f} s steps, {self._stick(travel_rad)} % stick"
+        return f"{reverse}{self.order}, {self.unit_s:.1f} s steps, {self.stick_percent(travel_rad)} % stick"
 
     def rounded(self, travel_rad: float) -> "StepInput":
         """Return the input with an amplitude that can be spoken, rounded down unless that gave zero."""
-        return replace(self, amplitude_rad=0.01 * self._stick(travel_rad) * travel_rad)
+        return replace(self, amplitude_rad=0.01 * self.stick_percent(travel_rad) * travel_rad)
 
-    def _stick(self, travel_rad: float) -> int:
+    def stick_percent(self, travel_rad: float) -> int:
         """Return the amplitude in percent of the travel, in steps of five above 20 %."""
         percent = 100.0 * self.amplitude_rad / travel_rad + 1e-9
         return 5 * int(percent / 5.0) if percent > 20.0 else max(1, int(percent))

@@ -17,7 +17,16 @@ import numpy as np
 
 from advisor.aircraft.aircraft import PARAMETERS, Aircraft
 from advisor.decision.coupling import coupled
-from advisor.decision.envelope import changed_speed, flown, incomplete, outside, short_response, too_quick
+from advisor.decision.envelope import (
+    changed_speed,
+    flown,
+    incomplete,
+    leapt,
+    not_heard,
+    outside,
+    short_response,
+    too_quick,
+)
 from advisor.decision.verdict import NO_CURE_BY_INPUT, UNTRUSTED, Reason
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.purpose import LEAST_PITCH_RATE_DEG_S
@@ -55,13 +64,18 @@ def judge_quality(
     fits = estimate.fits[0] if isinstance(estimate, Estimate) else {}
     reasons = [*incomplete(maneuver, period_s, fits), *outside(maneuver, aircraft)]
     codes = {reason.code for reason in reasons}
+    short = [] if is_informed(estimate) else short_response(maneuver, period_s)
+    if maneuver.leapt_s:
+        return (leapt(maneuver),)
+    if maneuver.missed_s and (short or "gap" in codes):
+        # Nothing else can be said of a record that the advisor itself has lost.
+        return (not_heard(maneuver),)
     if codes & UNTRUSTED:
         return tuple(reasons)
     told = findings_of(estimate, aircraft) if isinstance(estimate, Estimate) else ()
     if refused := refusals((*maneuver.findings, *told)):
         return refused
-    tail = [] if is_informed(estimate) else short_response(maneuver, period_s)
-    follows = [*changed_speed(maneuver, aircraft), *tail, *too_quick(maneuver, period_s)]
+    follows = [*changed_speed(maneuver, aircraft), *short, *too_quick(maneuver, period_s)]
     if codes & NO_CURE_BY_INPUT:
         # A larger input remedies no faulty record: reasons that ask for one would mislead.
         return (*reasons, *follows)

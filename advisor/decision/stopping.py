@@ -129,7 +129,7 @@ def _scatter_sentence(
     accepted = accepted_estimates(history, plan.rule)
     if criterion is None:
         return f"CONTINUE: {len(accepted)} of {plan.window} accepted manoeuvres."
-    verb = "STOP TESTING" if stop else "CONTINUE"
+    verb = "TEST COMPLETE" if stop else "CONTINUE"
     held = "" if stop else f"; {_scattered_most(accepted, plan)} scatters most"
     # For a parameter near zero the relative scatter has no scale; its digits would pretend one.
     scatter, limit = distinct_texts(criterion, plan.limit_percent)

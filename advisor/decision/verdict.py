@@ -2,9 +2,13 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Literal
+from math import nan
+from typing import TYPE_CHECKING, Literal
 
 from advisor.aircraft.aircraft import CampaignPlan, Rule
+
+if TYPE_CHECKING:
+    from advisor.decision.inputs import StepInput
 
 INFORMATION_LIMIT_PERCENT = 100.0
 """Limit of the rule ``information``, whose criterion counts in percent of the tolerance."""
@@ -17,7 +21,7 @@ def limit_percent(rule: Rule, plan: CampaignPlan) -> float:
 
 UNTRUSTED = frozenset({"missing", "frozen"})
 """Codes of reasons for a faulty channel. No other finding from such data is reported."""
-NO_CURE_BY_INPUT = UNTRUSTED | {"rate", "gap"}
+NO_CURE_BY_INPUT = UNTRUSTED | {"rate", "gap", "advisor_down", "clock"}
 """Codes of reasons that no input remedies. With them, no larger or other input is advised."""
 
 
@@ -103,6 +107,10 @@ class NextInput:
     """Expected number of further manoeuvres; None while no manoeuvre was usable."""
     holding_back: str | None = None
     """Parameter, or output of a prediction, that delays the stop."""
+    input: "StepInput | None" = None
+    """Input that the advice names; None where the advice names none."""
+    travel_rad: float = nan
+    """Elevator travel of 100 % stick, rad; NaN without an input."""
 
     @property
     def foretold(self) -> str:

@@ -81,8 +81,8 @@ def elevator_limits(found: ElevatorFound, elevator: Elevator) -> list[Limit]:
         limits.append(
             Limit(
                 "servo_unknown",
-                "The servo's lag and delay are not given: M_alpha and M_delta_e come out too small (by about "
-                "half for a lag of 0.14 s)",
+                "The servo's lag and delay are not given: the fit estimates the lag, and the intervals of "
+                "M_alpha and M_delta_e are wider",
                 "measure the servo on the ground and give elevator.lag_s and elevator.delay_s",
             )
         )

@@ -173,7 +173,7 @@ class Survey:
         strayed = {
             name: sender.strayed / sum(map(len, sender.t))
             for name, sender in self._senders.items()
-            if sender.strayed
+            if sender.strayed and any(map(len, sender.t))
         }
         drift, jitter = _against_the_host(pairs)
         return Clocks(self._clock.boot + 1, drift, jitter, strayed)

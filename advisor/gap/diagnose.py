@@ -3,18 +3,18 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.instruments.kinematics import KinematicCheck, check_alpha, combine
 from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.gap.evidence.found import Evidence
 from advisor.gap.explain import evidence_of_one_maneuver, explain
 from advisor.gap.fitting.prior_speed import prior_speed
+from advisor.gap.judge.prior import FIELD, FieldPrior
 from advisor.gap.records.airspeed import measures_speed
 from advisor.gap.records.as_stamped import as_stamped
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.records.prepare import prepare
-from advisor.gap.records.unmeasured_alpha import by_the_motion, is_known
+from advisor.gap.records.unmeasured_alpha import alpha_by_motion, is_known
 from advisor.gap.records.unmeasured_speed import speed_of_the_motion
 from advisor.gap.records.usable import usable_of
 from advisor.gap.result import Diagnosis
@@ -23,12 +23,10 @@ from advisor.gap.search.baseline import at_another_speed, fit_baseline
 from advisor.gap.search.stage import added_in
 from advisor.gap.search.waterfall import Progress
 from advisor.gap.uncatalogued.airspeed_scale import airspeed_scale_of, true_over_read
-from advisor.gap.uncatalogued.trim_course import course_of, trim_courses
 from advisor.gap.uncatalogued.unexplained import Unexplained, as_wind
 from advisor.gap.uncatalogued.weight_check import WeightReading, weight_reading
 from advisor.gap.uncatalogued.wind_shear import moves_along_path, wind_shear
 from advisor.gap.verdict.answer import answer
-from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.notes import left_out
 from advisor.words.problems import UnusableInputError
 
@@ -46,6 +44,7 @@ def diagnose(
     aircraft: Aircraft,
     holdout: int | None = None,
     progress: Progress = lambda *_: None,
+    prior: FieldPrior = FIELD,
 ) -> Diagnosis:
     """Diagnose the sim-to-real gap from flown manoeuvres.
 
@@ -61,13 +60,15 @@ def diagnose(
         them; which effects are present is judged on all. None: every manoeuvre is held out in turn.
     progress
         Function that receives a sentence and the share of the work that is done, 0 to 1.
+    prior
+        How often each kind of answer is right before a flight is looked at.
 
     Raises
     ------
     UnusableInputError
         No usable manoeuvre, or no angle of attack.
     """
-    return examine(maneuvers, aircraft, holdout, progress).diagnosis
+    return examine(maneuvers, aircraft, holdout, progress, prior).diagnosis
 
 
 def examine(
@@ -75,6 +76,7 @@ def examine(
     aircraft: Aircraft,
     holdout: int | None = None,
     progress: Progress = lambda *_: None,
+    prior: FieldPrior = FIELD,
 ) -> DiagnosisEvidence:
     """Diagnose like ``diagnose``, and return the evidence too, so that a user's simulator can fly the result.
 
@@ -87,10 +89,10 @@ def examine(
     maneuvers = [as_stamped(m) for m in maneuvers]
     aircraft = _with_speed(usable_of(maneuvers), aircraft)
     offset = aircraft.effects.get("alpha_bias", {}).get("bias_rad", 0.0)
-    maneuvers = by_the_motion([_without_offset(m, offset) for m in maneuvers], aircraft)
+    maneuvers = alpha_by_motion([_without_offset(m, offset) for m in maneuvers], aircraft)
     evidence, kinematics = _explained(maneuvers, aircraft, progress)
     progress("measuring the gap", 0.9)
-    diagnosis = answer(evidence, aircraft, kinematics, holdout)
+    diagnosis = answer(evidence, aircraft, kinematics, holdout, prior)
     used = {flight.number for flight in evidence.problem.flights.flights}
     missing = left_out([m for m in maneuvers if m.number not in used])
     return DiagnosisEvidence(replace(diagnosis, notes=(*diagnosis.notes, *missing)), evidence)
@@ -129,10 +131,6 @@ def _explained(
     if len(flights) == 1:
         return evidence_of_one_maneuver(problem, baseline), kinematics
     explained = explain(problem, baseline, aircraft, progress)
-    offsets = np.array([-check.offset.rad for check in checks])
-    attitude = course_of("attitude", [m.span.start_s for m in flown], offsets)
-    courses = tuple(c for c in (*trim_courses(problem, baseline), attitude) if c is not None)
-    explained = replace(explained, courses=courses)
     return (_checked_against_path(explained, flown, weight) if measured else explained), kinematics
 
 

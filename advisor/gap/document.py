@@ -3,7 +3,11 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from advisor.gap.result import Cause, Diagnosis, InSimulator, Qualification
+import numpy as np
+
+from advisor.flight.signals.messages import FloatArray
+from advisor.gap.alternative import AlternativeEvidence
+from advisor.gap.result import Cause, ComparedDerivative, Diagnosis, InSimulator, Qualification
 from advisor.words.plain import picked, plain
 from advisor.words.problems import Problem
 
@@ -12,7 +16,9 @@ _NOTHING: Mapping[str, Any] = {
     "verdict": None, "sentence": None, "maneuvers": [], "gap": None, "where": None, "causes": [],
     "shrink": None, "waterfall": [], "cannot_see": [], "model": None, "reference_airspeed_m_s": None,
     "alpha_check": None, "yardsticks": None, "notes": [], "improved_model": None,
-    "share_irreducible": None, "decisions": [], "simulator": None, "qualification": None,
+    "parameters_changed": [], "traces": [], "share_irreducible": None, "decisions": [], "simulator": None,
+    "qualification": None, "static": [], "trims": [], "probabilities": None, "evidence": [], "why": [],
+    "rival": None,
 }  # fmt: skip
 """Keys and values of a document without a diagnosis."""
 
@@ -26,6 +32,7 @@ def gap_document(
         "usable": diagnosis is not None and not problems,
         "problems": plain(problems),
         "exports": [],
+        "next": [],
     }
     if diagnosis is None:
         return {**document, **_NOTHING}
@@ -46,20 +53,48 @@ def gap_document(
         "causes": [_cause(c) for c in d.causes],
         "shrink": d.shrink and {**plain(d.shrink), "in_simulator": _in_simulator(in_simulator)},
         "simulator": in_simulator and in_simulator.simulator,
+        **picked(d, "static trims"),
         "qualification": in_simulator and {q.channel: _qualification(q) for q in in_simulator.qualification},
         "waterfall": [{"effect": e, "after": a} for e, a in d.waterfall],
         "alpha_check": {
             **picked(d.kinematics, "finding lag_s lag_std_s scale"),
             "text": d.kinematics.sentence, "bias_rad": d.kinematics.offset.rad,
         },
+        "parameters_changed": [_changed(one) for one in d.derivatives if one.differs],
+        "traces": [
+            {
+                **picked(trace, "number channel t"),
+                **{name: _as_logged(getattr(trace, name)) for name in ("measured", "before", "after")},
+            }
+            for trace in d.traces
+        ],
         "yardsticks": {c: {"before": a, "after": b} for c, (a, b) in d.yardsticks.items()},
         "improved_model": improved_model,
         "decisions": [
             {"name": f"{one.about} {one.name}", **picked(one, "about statistic limit margin unit holds")}
             for one in d.decisions
         ],
+        "probabilities": d.probabilities,
+        "evidence": [_evidence(one) for one in d.evidence],
+        "why": [{"name": c.name, "nats": c.nats, "text": c.sentence} for c in d.why],
+        "rival": d.rival or None,
     })  # fmt: skip
     return document
+
+
+def _changed(one: ComparedDerivative) -> dict[str, Any]:
+    return {
+        "derivative": one.name,
+        "simulator": one.given,
+        "found": one.found.value,
+        "ci95": [one.found.value - one.half, one.found.value + one.half],
+        "percent": one.percent,
+    }
+
+
+def _as_logged(samples: FloatArray) -> list[float]:
+    """Return samples with the digits that a log keeps."""
+    return [float(str(value)) for value in samples.astype(np.float32)]
 
 
 def _cause(c: Cause) -> dict[str, Any]:
@@ -67,8 +102,18 @@ def _cause(c: Cause) -> dict[str, Any]:
     return {**said, "in_model": c.present}
 
 
+def _evidence(one: AlternativeEvidence) -> dict[str, Any]:
+    return {
+        "alternative": one.alternative.label, **picked(one.alternative, "kind name block"),
+        "probability": one.probability,
+        "columns": [picked(column, "name value unit") for column in one.columns],
+    }  # fmt: skip
+
+
 def _in_simulator(found: InSimulator | None) -> Any:
-    return None if found is None or found.after is None else picked(found, "before after percent on_paper")
+    if found is None or found.after is None:
+        return None
+    return picked(found, "before after percent on_paper maneuvers after_air_and_instruments")
 
 
 def _qualification(q: Qualification) -> dict[str, Any]:

@@ -10,6 +10,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import beyond_known, beyond_servo
 from advisor.gap.candidates.variant import Variant
+from advisor.gap.evidence.found import Evidence
 from advisor.gap.fitting.fit import EffectFit, fit
 from advisor.gap.fitting.holdout import hold_out
 from advisor.gap.fitting.measure import file_model_of, whole_gap
@@ -19,7 +20,7 @@ from advisor.gap.noise.quiet import quiet_rms
 from advisor.gap.noise.stamps import stamp_power
 from advisor.gap.records.floor import stated_floor, tolerance_of
 from advisor.gap.result import VISIBLE
-from advisor.gap.search.air import MovingAir, moving_air, one_maneuver_stands_out
+from advisor.gap.search.air import SoughtAir, moving_air, one_maneuver_stands_out
 from advisor.gap.search.speed import at_constant_speed
 from advisor.gap.search.stage import Stage
 from advisor.gap.search.waterfall import (
@@ -32,11 +33,10 @@ from advisor.gap.search.waterfall import (
 )
 from advisor.gap.uncatalogued.airspeed_scale import airspeed_scale_of
 from advisor.gap.uncatalogued.beyond_air import explain_little_beyond_air
-from advisor.gap.uncatalogued.law_search import Law, search_law
+from advisor.gap.uncatalogued.law_search import Law, LawSearch, search_law
 from advisor.gap.uncatalogued.spectral_line import ringing_hz
 from advisor.gap.uncatalogued.sustained_oscillation import sustained_oscillation
 from advisor.gap.uncatalogued.unexplained import Unexplained, located, unexplained_residual
-from advisor.gap.verdict.evidence import Evidence
 
 _HARDLY_DAMPED = 0.02
 """Damping ratio at which the search for a structural mode starts, of bare metal or a boom. A start far from
@@ -58,14 +58,16 @@ def explain(problem: EffectProblem, baseline: EffectFit, aircraft: Aircraft, pro
     variants = beyond_servo(aircraft, variants_for(problem.flights))
     variants = beyond_known(aircraft.effects, variants)
     variants = [_begun_where_it_rings(v, problem, baseline) for v in variants]
-    stages, law = _with_effects(problem, baseline, variants, progress)
+    stages, laws = _with_effects(problem, baseline, variants, progress)
+    law = laws.law
     progress("looking at the air", 0.7)
-    stages, air = _with_the_air(problem, stages, law)
+    stages, sought = _with_the_air(problem, stages, law)
     progress("looking for what has no name", 0.8)
     stages = as_measured(problem, stages)
-    if air is not None and explain_little_beyond_air(stages):
+    if sought.found is not None and explain_little_beyond_air(stages):
         stages = reduced_to(problem, stages, [])
-        air = moving_air(problem, stages[0].fitted)
+        sought = moving_air(problem, stages[0].fitted)
+    air = sought.found
     first, last, tolerance = stages[0].fitted, stages[-1].fitted, tolerance_of(problem.flights)
     unexplained = None if law is None else law.unexplained
     if unexplained is None:
@@ -79,7 +81,10 @@ def explain(problem: EffectProblem, baseline: EffectFit, aircraft: Aircraft, pro
     file_model = file_model_of(problem, first)
     with_effects = file_model_of(problem, last) if len(stages) > 1 else None
     speed = at_constant_speed(problem, last)
-    return Evidence(problem, stages, unexplained, air, floor, file_model, with_effects, speed, airspeed_scale)
+    return Evidence(
+        problem, stages, unexplained, air, floor, file_model, with_effects, speed, airspeed_scale,
+        sought_air=sought, laws=laws.gains,
+    )  # fmt: skip
 
 
 def _unexplained(
@@ -146,17 +151,16 @@ def _begun_where_it_rings(variant: Variant, problem: EffectProblem, baseline: Ef
 
 def _with_effects(
     problem: EffectProblem, baseline: EffectFit, variants: Sequence[Variant], progress: Progress
-) -> tuple[list[Stage], Law | None]:
-    """Return the stages of the search, and the uncatalogued law that explains more than all effects, if
-    any."""
+) -> tuple[list[Stage], LawSearch]:
+    """Return the stages of the search, and what the search for an uncatalogued law found."""
     stages = one_after_another(problem, baseline, variants, progress)
-    law = search_law(problem, stages)
-    return (in_full(problem, settled(problem, stages)) if law is None else stages), law
+    laws = search_law(problem, stages)
+    return (in_full(problem, settled(problem, stages)) if laws.law is None else stages), laws
 
 
 def _with_the_air(
     problem: EffectProblem, stages: list[Stage], law: Law | None
-) -> tuple[list[Stage], MovingAir | None]:
+) -> tuple[list[Stage], SoughtAir]:
     """Return the stages and the moving air. With a law, only the air that the law leaves unexplained
     counts."""
     if law is None:
@@ -164,14 +168,14 @@ def _with_the_air(
     baseline = reduced_to(problem, stages, [])
     air = _air_with(problem, baseline[-1].fitted)
     # Motion of the law is no moving air: with the law in the model the air may be still.
-    still = air is None or moving_air(problem, law.fitted) is None
-    return baseline, None if still else air
+    still = air.found is None or moving_air(problem, law.fitted).found is None
+    return baseline, SoughtAir() if still else air
 
 
-def _air_with(problem: EffectProblem, last: EffectFit) -> MovingAir | None:
-    """Return the moving air that a model leaves, or None. A white residual without a loud manoeuvre is not
+def _air_with(problem: EffectProblem, last: EffectFit) -> SoughtAir:
+    """Return the moving air that a model leaves. A white residual without a loud manoeuvre is not
     searched."""
     nearly_white = np.all(effective_samples(problem, last.innovations) >= 0.5 * counts(problem))
     if not problem.knows_the_noise and nearly_white and not one_maneuver_stands_out(problem, last):
-        return None
+        return SoughtAir()
     return moving_air(problem, last)

@@ -6,7 +6,9 @@ from typing import Literal
 
 from advisor.flight.instruments.kinematics import KinematicCheck
 from advisor.flight.signals.messages import FloatArray
+from advisor.gap.alternative import AlternativeEvidence, Contribution, Probabilities
 from advisor.gap.decision import Decision
+from advisor.words.quantiles import NORMAL_95
 
 GapVerdict = Literal["none", "parameters", "effect", "unknown", "untested"]
 """Verdict of a diagnosis. ``untested``: no simulator was given and no effect was found; JSON writes null."""
@@ -20,6 +22,32 @@ class Value:
 
     value: float
     std: float
+
+
+@dataclass(frozen=True, slots=True)
+class ComparedDerivative:
+    """A derivative of the simulator and of the flight, at the reference speed, SI."""
+
+    name: str
+    given: float
+    """Value of the simulator: the aircraft file's, or that of the simulator's linear surrogate."""
+    found: Value
+    """Value of the final model."""
+
+    @property
+    def half(self) -> float:
+        """Half of the 95 % interval of the flight's value."""
+        return NORMAL_95 * self.found.std
+
+    @property
+    def differs(self) -> bool:
+        """Whether the 95 % interval excludes the simulator's value."""
+        return abs(self.found.value - self.given) > self.half
+
+    @property
+    def percent(self) -> float | None:
+        """Change of the size, per cent of the simulator's; None with another sign, or from zero."""
+        return 100.0 * (self.found.value / self.given - 1.0) if self.given * self.found.value > 0.0 else None
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,25 +122,6 @@ class Shrink:
 
 
 @dataclass(frozen=True, slots=True)
-class Course:
-    """Slope of one quantity in time, over the manoeuvres of a flight."""
-
-    quantity: str
-    """``elevator_trim`` (rad): elevator that balances the moment at zero angle of attack. ``zero_lift_alpha``
-    (rad). ``attitude`` (rad): zero of the attitude relative to angle of attack and climb. ``a_z_offset``
-    (m/s²)."""
-    slope_per_s: float
-    std_per_s: float
-    """Standard deviation of the slope, by the scatter of the manoeuvres about the line."""
-    maneuvers: int
-
-    @property
-    def sigmas(self) -> float:
-        """Slope in its standard deviations."""
-        return abs(self.slope_per_s) / max(self.std_per_s, 1e-300)
-
-
-@dataclass(frozen=True, slots=True)
 class Unseen:
     """An effect that this log cannot show, and the channel or manoeuvre that would show it."""
 
@@ -168,16 +177,36 @@ class InSimulator:
 
     simulator: str
     """Description of the simulator for people."""
+    maneuvers: tuple[int, ...]
+    """Numbers of the manoeuvres on which the gap is measured. No search and no fit has used them, where
+    something was found."""
     before: float
     """Gap of the simulator as given."""
     after: float | None
-    """Gap with the effects added to the simulator; None where no effect was added."""
+    """Gap with the effects and numbers of an export in the simulator. Equal to ``before`` where nothing was
+    changed; None where the simulator does not fly with them, or where no manoeuvre could be kept apart."""
     percent: float | None
+    """Shrink by what was changed, in per cent; 0 where nothing was changed."""
     on_paper: tuple[str, ...]
     """Corrections that the simulator cannot take: effects, ``derivatives``, ``its own servo``."""
     qualification: tuple[Qualification, ...]
+    after_air_and_instruments: float | None = None
+    """Gap ``after`` without what the air's course and the instruments' natural errors explain in the same
+    samples. That is no shrink. None where nothing was changed."""
     refused: str = ""
     """Why the simulator does not fly with the effects; empty where it does, or where none was added."""
+
+
+@dataclass(frozen=True, slots=True)
+class TrimDifference:
+    """One quantity of the trimmed flight, in the simulator and in the aircraft: means over the manoeuvres."""
+
+    quantity: str
+    """``alpha`` and ``elevator`` in rad, ``throttle`` from 0 to 1."""
+    simulator: float
+    aircraft: float
+    std: float
+    """Standard deviation of the mean difference."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -221,17 +250,31 @@ class Diagnosis:
     """Channel to the measures of the simulator as given and of the final model."""
     share_irreducible: float
     """Share of the final model's error that is noise and moving air. The rest is model error."""
-    courses: tuple[Course, ...] = ()
-    """Slopes of trims and offsets over the flight: what creeps between manoeuvres."""
     decisions: tuple[Decision, ...] = ()
     """Every statistic that was compared with a limit, in the order of the comparisons."""
+    derivatives: tuple[ComparedDerivative, ...] = ()
+    """Derivatives of simulator and flight, those that differ most first; empty without a simulator."""
     traces: tuple[Trace, ...] = ()
     notes: tuple[str, ...] = ()
+    static: tuple[str, ...] = ()
+    """Sentences on errors that no motion shows, which the sentence tells first: trim, air speed, numbers that
+    differ together."""
+    trims: tuple[TrimDifference, ...] = ()
+    """Trimmed flight of the user's own simulator and of the aircraft."""
     in_simulator: InSimulator | None = None
     """The gap of the user's own simulator; None where no simulator was named."""
     maneuvers: tuple[int, ...] = field(default=())
     height_m: float | None = None
-    """Mean height of the manoeuvres in m; None where the height was not recorded."""
+    """Mean height in the standard atmosphere at which the air has the density flown in, m; None for an
+    unknown density."""
+    probabilities: Probabilities | None = None
+    """Probabilities of all alternatives; None for a single manoeuvre, which proves no cause."""
+    evidence: tuple[AlternativeEvidence, ...] = ()
+    """The evidence on every alternative, likeliest first."""
+    why: tuple[Contribution, ...] = ()
+    """The answer against its strongest rival, in nats that add up to the log odds."""
+    rival: str = ""
+    """Label of that rival; empty without ``why``."""
     true_over_read: float = 1.0
     """Factor from the air speed as the aircraft reads it to the true one."""
 

@@ -75,10 +75,11 @@ class InstrumentEstimate:
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
-    """The eight parameters of Eq. (3) from one manoeuvre, or from several together."""
+    """The parameters of one axis from one manoeuvre, or from several together: by default the eight of
+    Eq. (3)."""
 
     theta: FloatArray
-    """Shape (8,), in the order of ``PARAMETERS``. In a joint estimate Z_0 and M_0 are means over the
+    """Shape (8,), in the order of ``names``. In a joint estimate Z_0 and M_0 are means over the
     manoeuvres."""
     covariance_cr: FloatArray
     """Shape (8, 8). Cramér-Rao bound, which holds for white residuals."""
@@ -114,6 +115,8 @@ class Estimate:
     prediction: Mapping[str, float] = field(default_factory=dict)
     """Output name to the largest half-width of the 95 % band of the predicted response, over the peak of that
     response. Empty while a manoeuvre is still being flown."""
+    names: tuple[str, ...] = PARAMETERS
+    """Names of the parameters."""
 
     @property
     def outputs(self) -> tuple[str, ...]:
@@ -136,7 +139,7 @@ class Estimate:
 
     def value(self, parameter: str) -> float:
         """Return one parameter by name."""
-        return float(self.theta[PARAMETERS.index(parameter)])
+        return float(self.theta[self.names.index(parameter)])
 
 
 @dataclass(frozen=True, slots=True)

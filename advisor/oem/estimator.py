@@ -6,20 +6,19 @@ from dataclasses import replace
 from advisor.aircraft.aircraft import PARAMETERS, Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import FloatArray
-from advisor.model.response import OUTPUTS
 from advisor.oem.between import widened_by_scatter
 from advisor.oem.edges import large_steps, with_edges
 from advisor.oem.efficient import efficient
 from advisor.oem.estimate import ChannelFit, Estimate, NoEstimate
 from advisor.oem.filter_error import filter_error, moving_air
-from advisor.oem.gauss_newton import CONVERGED
+from advisor.oem.gauss_newton import CONVERGED, Optimum
 from advisor.oem.identifiability import SUPPOSED_LAG_S, correlated, not_identifiable
 from advisor.oem.instrument_fit import Identified, InstrumentFit, fit_instruments, refreshed
 from advisor.oem.instruments import COMMAND_DELAY, unknown_instruments
 from advisor.oem.notes import notes
 from advisor.oem.prediction import prediction_band
 from advisor.oem.prepare import Prepared, prepare
-from advisor.oem.problem import OutputErrorProblem
+from advisor.oem.problem import Laid, OutputErrorProblem
 from advisor.oem.solution import Method, Solution, evaluate, reported, search, solve
 from advisor.oem.surface import Servo
 from advisor.oem.turbulence import Turbulence
@@ -112,7 +111,7 @@ def _air(solution: Solution, maneuvers: Sequence[Maneuver], prepared: Prepared) 
     if prepared.alpha_left_out:
         found = moving_air(solution, seen_by_alpha=False)
         return found if found.is_air else None
-    fits = [fit["q"] for fit in channel_fits(solution)]
+    fits = [fit["q"] for fit in channel_fits(solution.assembly, solution.optimum)]
     if all(fit.lag1 < COLOURED or 1.0 - fit.r2 < UNEXPLAINED for fit in fits):
         return None
     found = moving_air(solution, seen_by_alpha=not _derives_alpha(maneuvers))
@@ -192,7 +191,7 @@ def report(
         covariance_cr=best.covariance_cr[:N, :N],
         covariance=best.covariance[:N, :N],
         cost=solution.cost,
-        fits=channel_fits(solution),
+        fits=channel_fits(solution.assembly, solution.optimum),
         iterations=solution.optimum.iterations,
         not_identifiable=not_identifiable(best if filtered else solution, lagged),
         correlated=correlated(best.covariance_cr[:N, :N]),
@@ -219,17 +218,17 @@ def _supposing_a_lag(solution: Solution, aircraft: Aircraft) -> FloatArray | Non
     return reported(moved.shared, moved.local) if moved.status == CONVERGED else None
 
 
-def channel_fits(solution: Solution) -> tuple[dict[str, ChannelFit], ...]:
+def channel_fits(assembly: Laid, optimum: Optimum) -> tuple[dict[str, ChannelFit], ...]:
     """Return measured and fitted values for every manoeuvre and output."""
-    assembly = solution.assembly
+    outputs = assembly.names.outputs
     return tuple(
         {
             name: ChannelFit(
                 name=name,
                 t=assembly.t[rows],
                 measured=assembly.z[rows],
-                fitted=solution.fitted[rows],
-                noise=float(solution.optimum.noise[OUTPUTS.index(name)]),
+                fitted=optimum.fitted[rows],
+                noise=float(optimum.noise[outputs.index(name)]),
             )
             for name, rows in named.items()
         }

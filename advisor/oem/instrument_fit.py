@@ -33,7 +33,8 @@ from advisor.oem.weighing import Weighing
 N = len(PARAMETERS)
 ROUNDS = 12
 SETTLED = 1e-2
-"""Change of -2 log likelihood, per round, below which the search for instrument parameters is done."""
+"""Change of -2 log likelihood, promised or found in a round, below which the search for instrument parameters
+is done."""
 CLOSE_ENOUGH = 1e-7
 """Promised change of log J per sample at which an intermediate search ends."""
 CLEARLY = 9.0
@@ -242,7 +243,9 @@ def _descend(begin: _Fit, names: Sequence[Instrument]) -> _Fit:
     """Minimise the cost over the instruments by Gauss-Newton, with everything else refitted at each step."""
     best = begin
     for _ in range(ROUNDS if names else 0):
-        step = _step(best, names)
+        step, promised = _step(best, names)
+        if promised < SETTLED:
+            break
         found = None
         for _ in range(5):
             found = _at(moved_by(step, best.problem, names), best)
@@ -257,14 +260,27 @@ def _descend(begin: _Fit, names: Sequence[Instrument]) -> _Fit:
     return best
 
 
-def _step(fit: _Fit, names: Sequence[Instrument]) -> FloatArray:
-    """Return the Gauss-Newton step of the instruments with everything else free, shape (k,)."""
+def _step(fit: _Fit, names: Sequence[Instrument]) -> tuple[FloatArray, float]:
+    """Return the Gauss-Newton step of the instruments with everything else free, shape (k,).
+
+    Instruments that the step would move out of their ranges go to the end of them, and the others follow. The
+    second value is the change of -2 log of the posterior that the quadratic model promises.
+    """
     optimum = fit.optimum
     extra = extra_of(fit.problem, optimum.shared, optimum.local, names)
     effect = influence(fit.assembly, optimum.sensitivities, optimum.noise, extra)
     if effect is None:
-        return np.zeros(len(names))
-    return effect.step(fit.assembly.z - optimum.fitted, extra)[N:]
+        return np.zeros(len(names)), 0.0
+    step = effect.step(fit.assembly.z - optimum.fitted, extra)[N:]
+    information = np.linalg.pinv(effect.extra_covariance, hermitian=True)
+    slope = information @ step
+    after = moved_by(step, fit.problem, names)
+    allowed = np.array([x.read(after) - x.read(fit.problem) for x in names])
+    ends = ~np.isclose(allowed, step)
+    if ends.any() and not ends.all():
+        pulled = slope[~ends] - information[np.ix_(~ends, ends)] @ allowed[ends]
+        allowed[~ends] = np.linalg.pinv(information[np.ix_(~ends, ~ends)], hermitian=True) @ pulled
+    return allowed, float(allowed @ (2.0 * slope - information @ allowed))
 
 
 def _at(problem: OutputErrorProblem, near: _Fit) -> _Fit | None:

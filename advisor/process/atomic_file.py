@@ -1,20 +1,28 @@
 """Files that are always whole, old or new, even where power fails or the disk is full."""
 
 import os
+import secrets
 from pathlib import Path
+
+_ONLY_NEW = os.O_WRONLY | os.O_CREAT | os.O_EXCL
+# Windows knows no links of this kind, and would translate the ends of lines.
+_ONLY_NEW |= getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
 
 
 def write_atomically(path: Path, content: str | bytes) -> None:
     """Write a file under a temporary name, then give the file its name; a text in UTF-8.
+
+    In a folder that others can write to, nobody can foresee the temporary name, and a link that lies there
+    is not followed. A link of the final name is replaced, and its target stays as it is.
 
     Raises
     ------
     OSError
         The file cannot be written. The earlier file is unchanged.
     """
-    beside = path.with_name(f".{path.name}.{os.getpid()}")
+    beside = path.with_name(f".{path.name}.{secrets.token_hex(8)}")
     try:
-        with beside.open("wb") as file:
+        with open(os.open(beside, _ONLY_NEW, 0o666), "wb") as file:
             file.write(content.encode() if isinstance(content, str) else content)
             file.flush()
             os.fsync(file.fileno())

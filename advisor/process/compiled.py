@@ -16,7 +16,17 @@ from importlib.util import resolve_name
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
-import numba
+# numba takes settings from a file .numba_config.yaml of the current folder, among them the folder from which
+# machine code is loaded. Without PyYAML in sight numba leaves that file alone, now and at every compilation.
+_yaml = sys.modules.get("yaml")
+sys.modules["yaml"] = None  # type: ignore[assignment]
+try:
+    import numba
+finally:
+    if _yaml is None:
+        del sys.modules["yaml"]
+    else:
+        sys.modules["yaml"] = _yaml
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 

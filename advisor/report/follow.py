@@ -19,9 +19,15 @@ from advisor.words.vehicle_time import CLOCK, clock
 
 
 def follow(
-    batches: Iterator[Sequence[Columns]], campaign: Campaign, say: Callable[[str], object]
+    batches: Iterator[Sequence[Columns]],
+    campaign: Campaign,
+    say: Callable[[str], object],
+    of_log: bool = False,
 ) -> CampaignState:
     """Feed a campaign to the end of a stream and print every verdict.
+
+    A log often begins with slow streams, which the crew has mended before the flight. An alarm about a log
+    is therefore printed only after its data have served once.
 
     Parameters
     ----------
@@ -29,10 +35,15 @@ def follow(
         Messages in order of arrival. Empty batches are pauses.
     say
         Takes one line of text.
+    of_log
+        Whether the stream is a log, in which nothing can be mended any more.
     """
+    begun = not of_log
     for columns in batches:
         for event in campaign.feed(columns):
-            _say(event, say)
+            if begun or not isinstance(event, NoData | DataAgain):
+                _say(event, say)
+        begun = begun or campaign.serves
     for event in campaign.finish():
         _say(event, say)
     return campaign.state

@@ -22,7 +22,7 @@ def ranking(causes: Sequence[Cause]) -> Iterator[RenderableType]:
     if likely:
         yield _table(likely)
         kept = f"{PRESENT} part of the improved simulator; " if any(c.present for c in likely) else ""
-        yield Text(f"{kept}prob.: that it is the main cause; ±: one standard deviation", style="dim")
+        yield Text(f"{kept}prob.: that it is the main cause; ±: 95 %", style="dim")
     unlikely = [spelled(c.effect) for c in causes if c not in likely]
     if unlikely:
         yield Text(f"Below 1 %: {', '.join(unlikely)}.", style="dim")

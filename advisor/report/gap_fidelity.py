@@ -1,7 +1,7 @@
 """Size of the gap: the error along the worst manoeuvre, and standard measures of fidelity, before and
 after."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from rich import box
@@ -11,7 +11,7 @@ from rich.text import Text
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.result import Diagnosis, Trace
-from advisor.report.gap_sizes import short
+from advisor.report.gap_sizes import before_after
 from advisor.words.quantities import CHANNELS
 
 _TICKS = "▁▂▃▄▅▆▇█"
@@ -35,6 +35,22 @@ def worst_maneuver(d: Diagnosis) -> int:
     return max(d.gap.by_maneuver, key=lambda row: row[1])[0]
 
 
+def peaks(traces: Sequence[Trace]) -> str:
+    """Return the largest errors in an engineer's units: ``peak error of q 10 → 0.7 deg/s, of α 3 → 0.4 deg``.
+
+    Every held-out manoeuvre counts.
+    """
+    said = []
+    for channel in dict.fromkeys(t.channel for t in traces):
+        quantity, mine = CHANNELS[channel], [t for t in traces if t.channel == channel]
+        before, after = (
+            quantity.factor * max(float(np.max(np.abs(t.measured - getattr(t, name)))) for t in mine)
+            for name in ("before", "after")
+        )
+        said.append(f"{quantity.symbol} {before:.2g} → {after:.2g} {quantity.unit}")
+    return f"peak error of {', of '.join(said)}" if said else ""
+
+
 def yardsticks(d: Diagnosis) -> Iterator[RenderableType]:
     """Yield gap, Theil's coefficient with its parts, R² and the share inside the qualification's band."""
     yield Text("fidelity on held-out manoeuvres, before → after", style="bold")
@@ -54,7 +70,7 @@ def _yardsticks(d: Diagnosis) -> Table:
         split = "/".join(f"{100 * share:.0f}" for share in (after.bias, after.variance, after.covariance))
         table.add_row(
             CHANNELS[channel].symbol,
-            f"{short(d.gap.by_channel[channel])} → {short(d.gap.by_channel_after[channel])}",
+            before_after(d.gap.by_channel[channel], d.gap.by_channel_after[channel]),
             f"{before.theil:.3f} → {after.theil:.3f}", split, f"{before.r2:.4f} → {after.r2:.4f}", inside,
         )  # fmt: skip
     return table

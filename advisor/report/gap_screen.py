@@ -10,14 +10,16 @@ from rich.table import Table
 from rich.text import Text
 
 from advisor.gap.result import Diagnosis, spelled
-from advisor.gap.verdict.ledger import in_words
 from advisor.gap.verdict.text import place
 from advisor.process.installed import SIMULATOR
 from advisor.report.gap_causes import PRESENT, ranking, unseen
-from advisor.report.gap_fidelity import errors, worst_maneuver, yardsticks
+from advisor.report.gap_fidelity import errors, peaks, worst_maneuver, yardsticks
+from advisor.report.gap_parameters import changes, limits_of
 from advisor.report.gap_simulator import simulated
-from advisor.report.gap_sizes import short
+from advisor.report.gap_sizes import WORSE, before_after, short
+from advisor.report.gap_steps import GapStep
 from advisor.report.gap_where import whereabouts
+from advisor.report.gap_why import why_of
 
 WIDEST = 120
 """Columns beyond which lines become harder to read."""
@@ -50,8 +52,14 @@ _WORTH_SAYING = 0.005
 class GapScreen:
     """Diagnosis for an engineer, readable without colour and at 80 columns."""
 
-    def __init__(self, diagnosis: Diagnosis, improved: str | None = None, why: bool = False) -> None:
-        self.diagnosis, self.improved, self.why = diagnosis, improved, why
+    def __init__(
+        self,
+        diagnosis: Diagnosis,
+        improved: str | None = None,
+        why: bool = False,
+        steps: Sequence[GapStep] = (),
+    ) -> None:
+        self.diagnosis, self.improved, self.why, self.steps = diagnosis, improved, why, steps
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
         """Yield the parts from the verdict to the notes."""
@@ -60,7 +68,7 @@ class GapScreen:
 
     def _parts(self, width: int) -> Iterator[RenderableType]:
         d = self.diagnosis
-        yield Panel(Text(d.sentence), title=_VERDICTS[d.verdict], title_align="left")
+        yield Panel(Group(*_answer(d)), title=_VERDICTS[d.verdict], title_align="left")
         yield _numbers(d)
         if d.verdict not in ("none", "untested"):
             yield Panel(Group(*_picture(d)), title=_where(d), title_align="left")
@@ -72,9 +80,8 @@ class GapScreen:
         if d.causes:
             yield ""
             yield from ranking(d.causes)
-        if self.why and d.decisions:
-            lines = [Text(in_words(decision)) for decision in d.decisions]
-            yield Panel(Group(*lines), title="why: every decision on the way", title_align="left")
+        if self.why:
+            yield from why_of(d)
         title = f"error in manoeuvre {worst_maneuver(d)}, the one with the largest gap (its size, no sign)"
         yield ""
         yield Panel(errors(d, width), title=title, title_align="left")
@@ -92,11 +99,34 @@ class GapScreen:
             yield ""
             yield Text("This flight could not show (→ what would):", style="bold")
             yield unseen(d.cannot_see)
+        if self.steps:
+            yield ""
+            yield Text("Next:", style="bold")
+            yield from _numbered(self.steps)
 
     def _written(self) -> str:
         if self.improved is None:
             return ""
         return f"The improved simulator is {self.improved}; python -m {SIMULATOR} flies it with --aircraft."
+
+
+def _answer(d: Diagnosis) -> Iterator[Text]:
+    """Yield the sentence, the numbers that differ, the errors in an engineer's units, and the limits."""
+    yield Text(d.sentence)
+    if d.verdict == "parameters":
+        yield from (Text(f"  {line}") for line in changes(d.derivatives))
+    if d.verdict not in ("none", "untested") and (told := peaks(d.traces)):
+        yield Text(told)
+    yield from (Text(f"! {limit}") for limit in limits_of(d))
+
+
+def _numbered(steps: Sequence[GapStep]) -> Iterator[RenderableType]:
+    for number, step in enumerate(steps, start=1):
+        table = Table.grid(padding=(0, 1))
+        table.add_row(f"{number}.", Text(step.text))
+        if step.command:
+            table.add_row("", Text(step.command, style="bold"))
+        yield table
 
 
 def _note(text: str) -> Table:
@@ -108,7 +138,7 @@ def _note(text: str) -> Table:
 
 def _numbers(d: Diagnosis) -> Text:
     before, after = short(d.gap.before), short(d.gap.after)
-    lines = [f"gap {before} → {after} times the noise floor's power"]
+    lines = [f"gap {before_after(d.gap.before, d.gap.after)} times the noise floor's power"]
     if d.verdict == "untested":
         lines = [f"what the fitted model leaves: {after} times the noise floor's power"]
     elif d.verdict == "none":
@@ -121,6 +151,8 @@ def _numbers(d: Diagnosis) -> Text:
         )
         if d.shrink.beyond_air_percent is not None:
             lines.append(f"without the air's own course: {d.shrink.beyond_air_percent:.0f} % less")
+    if any(after > before for _, before, after in d.gap.by_maneuver):
+        lines.append(f"{WORSE} worse than before")
     return Text("\n".join(lines))
 
 

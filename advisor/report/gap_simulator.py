@@ -28,13 +28,21 @@ def simulated(found: InSimulator) -> Iterator[RenderableType]:
 
 
 def _shrunk(found: InSimulator) -> Iterator[str]:
+    numbers = ", ".join(map(str, found.maneuvers))
     if found.after is None or found.percent is None:
-        yield f"gap {short(found.before)} times the noise floor's power; nothing was added"
+        yield f"gap {short(found.before)} times the noise floor's power; nothing was flown with the effects"
         return
-    yield (
-        f"gap {short(found.before)} → {short(found.after)} with the effects added to it, "
-        f"{found.percent:.1f} % less, on held-out manoeuvres"
-    )
+    if found.after_air_and_instruments is None:
+        yield f"gap {short(found.before)} times the noise floor's power; nothing was changed, so 0 % less"
+    else:
+        yield (
+            f"gap {short(found.before)} → {short(found.after)} with the findings in it, {found.percent:.1f} %"
+            f" less, flown in manoeuvres that no search has used ({numbers})"
+        )
+        yield (
+            f"gap {short(found.after_air_and_instruments)} without what this flight's air and instruments "
+            "explain there, which is no shrink"
+        )
     if found.on_paper:
         names = ", ".join(spelled(name) for name in found.on_paper)
         yield f"on paper only, because this simulator cannot take it: {names}"

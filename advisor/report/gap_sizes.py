@@ -3,6 +3,8 @@
 import math
 
 from advisor.gap.result import Cause, Value
+from advisor.words.digits import with_half
+from advisor.words.quantiles import NORMAL_95
 
 _DEG = math.degrees(1.0)
 _ENDINGS = {
@@ -46,6 +48,16 @@ def short(x: float) -> str:
     return f"{x:,.0f}" if 1e3 <= abs(x) < 1e7 else f"{x:.3g}"
 
 
+WORSE = "▲"
+"""Mark of a gap that is larger than before."""
+
+
+def before_after(before: float, after: float) -> str:
+    """Return ``6.1 → 0.09``; with a mark where the gap has grown."""
+    worse = f" {WORSE}" if after > before else ""
+    return f"{short(before)} → {short(after)}{worse}"
+
+
 def in_units(parameter: str) -> tuple[float, str]:
     """Return the factor from SI and the displayed unit of a parameter."""
     if parameter in _SHARES or parameter in _ICE:
@@ -61,16 +73,13 @@ def in_units(parameter: str) -> tuple[float, str]:
 
 
 def with_error(parameter: str, value: Value) -> str:
-    """Return ``30 ± 6 ms``, with no more digits than the error justifies."""
+    """Return ``30 ± 12 ms``: the size with half its 95 % interval, with digits by the interval."""
     factor, unit = in_units(parameter)
-    number, error = factor * value.value, abs(factor * value.std)
-    sign = "+" if parameter in _SIGNED else ""
-    if not math.isfinite(error) or error == 0.0:
-        return f"{number:{sign}.3g} {unit}".rstrip()
-    # One digit of the error; two where the error begins with a one.
-    first = math.floor(math.log10(error))
-    decimals = -first + (1 if error < 2.0 * 10.0**first else 0)
-    return f"{_rounded(number, decimals, sign)} ± {_rounded(error, decimals)} {unit}".rstrip()
+    number, half = factor * value.value, abs(factor * NORMAL_95 * value.std)
+    plus = "+" if parameter in _SIGNED and number > 0.0 else ""
+    if not math.isfinite(half) or half == 0.0:
+        return f"{plus}{number:.3g} {unit}".replace("-", "−").rstrip()
+    return f"{plus}{with_half(number, half)} {unit}".rstrip()
 
 
 def sizes_of(cause: Cause) -> list[str]:
@@ -82,10 +91,6 @@ def sizes_of(cause: Cause) -> list[str]:
     if len(shown) == 1:
         return [*shown.values(), *words]
     return [*(f"{_named(name)} {text}" for name, text in shown.items()), *words]
-
-
-def _rounded(x: float, decimals: int, sign: str = "") -> str:
-    return f"{round(x, decimals):{sign}.{max(decimals, 0)}f}"
 
 
 def _named(parameter: str) -> str:

@@ -6,7 +6,7 @@ from itertools import zip_longest
 from rich.text import Text
 
 from advisor.gap.result import Gap
-from advisor.report.gap_sizes import short
+from advisor.report.gap_sizes import before_after, short
 
 _BAR = 12
 _EIGHTHS = "▏▎▍▌▋▊▉"
@@ -40,7 +40,7 @@ def _maneuvers(gap: Gap) -> Iterator[str]:
     yield "gap by manoeuvre, before → after"
     largest = max((before for _, before, _ in gap.by_maneuver), default=0.0)
     cells = [
-        f"{number:3d} {_gap_bar(before, largest):{_BAR}s} {short(before)} → {short(after)}"
+        f"{number:3d} {_gap_bar(before, largest):{_BAR}s} {before_after(before, after)}"
         for number, before, after in gap.by_maneuver
     ]
     half = (len(cells) + 1) // 2

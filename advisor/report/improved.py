@@ -49,9 +49,9 @@ def write_improved(diagnosis: Diagnosis, aircraft: Aircraft, path: Path) -> Path
     return path
 
 
-def improved_name(diagnosis: Diagnosis, aircraft_file: Path | None) -> str:
+def improved_name(diagnosis: Diagnosis, aircraft_file: str | None) -> str:
     """Return the name ``<aircraft>-with-<effect>.yaml``."""
-    stem = aircraft_file.stem if aircraft_file is not None else "aircraft"
+    stem = Path(aircraft_file).stem if aircraft_file is not None else "aircraft"
     first = next(iter(diagnosis.effects), "fitted-model")
     return f"{stem}-with-{first.replace('_', '-')}.yaml"
 

@@ -11,8 +11,8 @@ from advisor.oem.estimate import Estimate
 from advisor.report.table import Table, digits
 from advisor.words.digits import decimals_for, signed, with_half
 from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import DEG, Quantity
 from advisor.words.quantities import PARAMETERS as QUANTITIES
-from advisor.words.quantities import Quantity
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,6 +67,43 @@ def parameter_row(name: str, estimate: object, prior: Mapping[str, float]) -> Pa
     return ParameterRow(
         quantity, value, half * float(estimate.std[k]), half * float(estimate.std_cr[k]), known
     )
+
+
+@dataclass(frozen=True, slots=True)
+class InstrumentRow:
+    """One parameter of the instruments that was estimated with the derivatives, in the unit for people."""
+
+    name: str
+    """Name in words."""
+    cell: str
+    """Value with half its 95 % interval."""
+    stated: str
+    """Value of the aircraft file; a dash without one."""
+    unit: str
+
+
+def instrument_rows(estimate: object) -> list[InstrumentRow]:
+    """Return the parameters of the instruments, such as the servo's lag and a vane's place."""
+    if not isinstance(estimate, Estimate):
+        return []
+    rows = []
+    for one in estimate.instruments:
+        name, unit, factor = _INSTRUMENTS.get(one.name, (one.name.replace("_", " "), "SI", 1.0))
+        half = NORMAL_95 * factor * one.std
+        stated = "–" if one.stated is None else signed(factor * one.stated, decimals_for(half))
+        rows.append(InstrumentRow(name, with_half(factor * one.value, half), stated, unit))
+    return rows
+
+
+_INSTRUMENTS: Mapping[str, tuple[str, str, float]] = {
+    "servo_lag_s": ("servo lag", "ms", 1e3),
+    "command_delay_s": ("delay of the command", "ms", 1e3),
+    "vane_arm_m": ("vane ahead of the centre of gravity", "m", 1.0),
+    "alpha_delay_s": ("delay of α", "ms", 1e3),
+    "accelerometer_arm_m": ("accelerometer ahead of the centre of gravity", "m", 1.0),
+    "steady_moment_rad": ("steady moment, as elevator", "deg", DEG),
+}
+"""Instrument parameter to its name, unit and factor from SI."""
 
 
 def channel_table(name: str, caption: str, channels: Mapping[str, ChannelStatus]) -> Table:

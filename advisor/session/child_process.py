@@ -1,8 +1,10 @@
 """Child processes of a screen: their start, and sentences on their end."""
 
 import signal
-import sys
 from subprocess import DEVNULL, PIPE, Popen
+
+from advisor.process.children import python_module
+from advisor.process.liveness import Watch
 
 _LONGEST_PAUSE_S = 10.0
 
@@ -17,13 +19,13 @@ def start_child(module: str, shows_errors: bool = False) -> "Popen[bytes]":
     shows_errors
         Whether the process shares this process's standard error.
     """
-    return Popen(
-        [sys.executable, "-m", module], stdin=PIPE, stdout=PIPE, stderr=None if shows_errors else DEVNULL
-    )
+    return Popen(python_module(module), stdin=PIPE, stdout=PIPE, stderr=None if shows_errors else DEVNULL)
 
 
-def said_of(code: int) -> str:
-    """Return a clause on the end of a process, from its exit code."""
+def said_of(code: int, watch: Watch) -> str:
+    """Return a clause on the end of a process, from its exit code and from its watch."""
+    if watch.ended_after_s is not None:
+        return f"did not answer for {watch.ended_after_s:.0f} s and was ended"
     if code >= 0:
         return f"ended with exit code {code}"
     try:

@@ -1,7 +1,7 @@
 """Interface between the screens and the conductor of the campaign, in this process or another."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 from advisor.campaign.state import CampaignState
@@ -21,6 +21,20 @@ class SessionReport:
     """Sentences of the event log, oldest first."""
     problems: tuple[Problem, ...] = ()
     """Reasons for which nothing can be judged, while nothing has been judged."""
+
+    def grown_old(self, who: str, age_s: float) -> "SessionReport":
+        """Return the report with a warning of its age.
+
+        Parameters
+        ----------
+        who
+            Process that does not answer.
+        age_s
+            Age of the report, s.
+        """
+        sentence = f"{who} NOT ANSWERING for {age_s:.0f} s: what stands below is old"
+        health = replace(self.health, condition="stale", sentence=sentence, alarm=sentence)
+        return replace(self, health=health)
 
 
 Tell = Callable[[SessionReport], object]
@@ -50,6 +64,9 @@ class Conducting(Protocol):
 
     def jump(self, number: int) -> None:
         """Play on to just before a manoeuvre, or play to it from the beginning."""
+
+    def seek(self, position_s: float) -> None:
+        """Play on to a position of the replay, s, or play to it from the beginning."""
 
     def play(self, tempo: Tempo) -> None:
         """Pause a replay, continue it, or change its speed."""

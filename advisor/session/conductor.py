@@ -13,7 +13,7 @@ from time import monotonic
 from advisor.campaign.hand_decisions import NOTHING, ByHand
 from advisor.session.campaign_like import CampaignLike
 from advisor.session.conducting import SessionReport, Tell
-from advisor.session.goal import Goal
+from advisor.session.goal import DataBegin, Goal, Position
 from advisor.session.hand import HandDecision
 from advisor.session.source import LinkRequest, Playable, Source, Tempo
 
@@ -44,7 +44,7 @@ class Conductor:
         self._by_hand = by_hand
         self._said_where = ""
         self._pending: list[HandDecision] = []
-        self._goal: Goal | None = None
+        self._goal: Goal | DataBegin | Position | None = None
         self._stopped = Event()
         self._rewound = False
         self._told_s = -inf
@@ -86,6 +86,10 @@ class Conductor:
         """Play on to just before a manoeuvre, or play to it from the beginning."""
         self._requests.put(lambda campaign: self._jump(campaign, number))
 
+    def seek(self, position_s: float) -> None:
+        """Play on to a position of the replay, s, or play to it from the beginning."""
+        self._requests.put(lambda campaign: self._seek(position_s))
+
     def play(self, tempo: Tempo) -> None:
         """Pause a replay, continue it, or change its speed."""
         if isinstance(self._source, Playable):
@@ -99,6 +103,8 @@ class Conductor:
     def _play(self, campaign: CampaignLike) -> None:
         """Feed one campaign until a rewind or the stop."""
         ended = False
+        if self._goal is None and not campaign.state.serves:
+            self._hurry_to(DataBegin())
         while not self._stopped.is_set():
             self._answer(campaign, _READ_TIMEOUT_S if ended else 0.0)
             if self._rewound:
@@ -116,7 +122,7 @@ class Conductor:
                 campaign.feed(batch)
             if self._pending:
                 self._decide_what_is_due(campaign)
-            if self._goal and self._goal.reached(campaign.state):
+            if self._goal and self._goal.reached(campaign.state, self._position_s()):
                 self._arrive()
             if ended or monotonic() - self._told_s >= REPORT_EVERY_S:
                 self._report(campaign)
@@ -163,11 +169,28 @@ class Conductor:
         if not isinstance(self._source, Playable):
             return
         known = next((j.maneuver for j in campaign.state.maneuvers if j.maneuver.number == number), None)
-        self._goal = Goal(number, (*known.power_on, known.span.start_s) if known else None)
+        self._hurry_to(Goal(number, (*known.power_on, known.span.start_s) if known else None))
         if known:
             self._source.rewind()
             self._rewound = True
-        self._source.hurry(True)
+
+    def _seek(self, position_s: float) -> None:
+        if not isinstance(self._source, Playable):
+            return
+        self._hurry_to(Position(position_s))
+        if position_s < self._source.playback().position_s:
+            self._source.rewind()
+            self._rewound = True
+
+    def _hurry_to(self, goal: Goal | DataBegin | Position) -> None:
+        """Play a log as fast as possible until the goal is reached. A link cannot hurry."""
+        if isinstance(self._source, Playable):
+            self._goal = goal
+            self._source.hurry(True)
+
+    def _position_s(self) -> float:
+        """Return the position of the replay, s; 0 on a link."""
+        return self._source.playback().position_s if isinstance(self._source, Playable) else 0.0
 
     def _arrive(self) -> None:
         """End the jump, at its goal or at the end of the log."""

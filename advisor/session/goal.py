@@ -1,4 +1,4 @@
-"""Goal of a jump in a replay."""
+"""Goals to which a replay hurries: a manoeuvre, a position, or the begin of the data."""
 
 from dataclasses import dataclass
 
@@ -16,7 +16,7 @@ class Goal:
     """Flight, power-on and vehicle time of the first step, where the manoeuvre was judged before. None: it
     lies ahead."""
 
-    def reached(self, state: CampaignState) -> bool:
+    def reached(self, state: CampaignState, position_s: float = 0.0) -> bool:
         """Return whether the replay has reached the goal, or passed it."""
         done = len(state.maneuvers)
         if done >= self.number:
@@ -24,3 +24,23 @@ class Goal:
         if self.start is not None:
             return done == self.number - 1 and (state.flight, state.boot, state.now_s + LEAD_S) >= self.start
         return state.flying is not None and state.flying.number >= self.number
+
+
+@dataclass(frozen=True, slots=True)
+class DataBegin:
+    """The moment at which the data of a log can serve. Many logs begin with slow streams or parameters."""
+
+    def reached(self, state: CampaignState, position_s: float = 0.0) -> bool:
+        """Return whether the present data can serve."""
+        return state.serves
+
+
+@dataclass(frozen=True, slots=True)
+class Position:
+    """A position of the replay, s since the first record with silences shortened."""
+
+    position_s: float
+
+    def reached(self, state: CampaignState, position_s: float) -> bool:
+        """Return whether the replay has reached the position, or passed it."""
+        return position_s >= self.position_s

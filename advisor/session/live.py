@@ -2,12 +2,14 @@
 
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
+from shutil import disk_usage
 from typing import Protocol
 
 from advisor.analysis.marks_file import keep_by_hand
 from advisor.campaign.hand_decisions import ByHand
 from advisor.flight.signals.messages import Columns
 from advisor.mavlink.link.health import LinkNotice, LinkStatistics
+from advisor.process.liveness import OLD_AFTER_S
 from advisor.session.source import Condition, LinkHealth, LinkRequest
 
 SILENT_S = 2.0
@@ -78,11 +80,12 @@ class LinkSource:
             return LinkHealth("waiting", "Opening the connection.")
         statistics = self._link.statistics
         condition, sentence = _glance(statistics)
+        alarm = statistics.recording_problem or (sentence if condition == "stale" else "")
         if self._over():
             condition, sentence = "ended", "The flight is over."
         elif self._link.catching_up:
             condition, sentence = "waiting", "The recording so far is being read."
-        return LinkHealth(condition, sentence, _figures(statistics), statistics.recording_problem or "")
+        return LinkHealth(condition, sentence, _figures(statistics), alarm, recording_line(statistics))
 
     def take_notices(self) -> Sequence[str]:
         """Return the notices of the link since the last call."""
@@ -113,6 +116,8 @@ class LinkSource:
 
 
 def _glance(link: LinkStatistics) -> tuple[Condition, str]:
+    if link.unanswered_s >= OLD_AFTER_S:
+        return "stale", f"LINK NOT ANSWERING for {link.unanswered_s:.0f} s: what stands below is old"
     if not link.connected:
         return "lost", "The connection is cut; it is opened again as soon as it can be."
     if link.vehicle is None:
@@ -137,3 +142,18 @@ def _figures(link: LinkStatistics) -> tuple[tuple[str, str], ...]:
     if link.recording is not None:
         figures.append(("recording", f"{link.recording} ({link.recorded_bytes / 1e6:.1f} MB)"))
     return tuple(figures)
+
+
+def recording_line(link: LinkStatistics) -> str:
+    """Return the size of the recording and the free disk: ``REC 3.2 MB, 41 GB free``."""
+    if link.recording is None:
+        return "NOT RECORDED"
+    size = f"{link.recorded_bytes / 1e6:.1f} MB"
+    if link.recording_problem:
+        return f"REC STOPPED at {size}"
+    try:
+        free_bytes = disk_usage(link.recording.parent).free
+    except OSError:
+        return f"REC {size}"
+    free_gb = free_bytes / 1e9
+    return f"REC {size}, {free_gb:.{0 if free_gb >= 10.0 else 1}f} GB free"

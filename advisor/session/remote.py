@@ -4,11 +4,13 @@ import pickle
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import partial
 from queue import Empty, SimpleQueue
 from threading import Event, Thread
 from typing import IO
 
 from advisor.campaign.hand_decisions import NOTHING, ByHand
+from advisor.process.liveness import Watch
 from advisor.session.campaign_like import CampaignLike
 from advisor.session.changes import Changes
 from advisor.session.child_process import pause_s, said_of, start_child
@@ -40,7 +42,8 @@ class RemoteConductor:
     """A `Conducting` that passes requests to another process, and reports back from it.
 
     Where the source can be read again from its beginning, the death of the other process ends nothing. The
-    process is restarted, and the last report stands until the new process has caught up.
+    process is restarted, and the last report stands until the new process has caught up. A process that hangs
+    is ended and restarted likewise, and meanwhile the last report is passed on with its age.
 
     Parameters
     ----------
@@ -53,6 +56,8 @@ class RemoteConductor:
         self._requests: SimpleQueue[Request] = SimpleQueue()
         self._last: SessionReport | None = None
         self._deaths: list[str] = []
+        self._hangs = 0
+        self._watch: Watch | None = None
         self._stopped = Event()
 
     def run(self, tell: Tell) -> None:
@@ -65,12 +70,12 @@ class RemoteConductor:
         RuntimeError
             The process was ended from outside, and the source cannot be read again.
         """
-        while code := self._conduct(tell):
+        while (ended := self._conduct(tell))[0]:
             if self._stopped.is_set():
                 return
             if self._task.kept is None:
-                raise RuntimeError(f"The estimating process ended with exit code {code}.")
-            self._deaths.append(f"the estimating process {said_of(code)}; it is started again")
+                raise RuntimeError(f"The estimating process ended with exit code {ended[0]}.")
+            self._deaths.append(f"the estimating process {said_of(*ended)}; it is started again")
             self._tell_of_death(tell)
             self._stopped.wait(pause_s(len(self._deaths)))
             self._task = replace(self._task, by_hand=self._task.kept())
@@ -79,6 +84,8 @@ class RemoteConductor:
         """End ``run`` at the next opportunity."""
         self._stopped.set()
         self._requests.put(("stop", ()))
+        if self._watch is not None:
+            self._watch.hurry()
 
     def decide(self, decision: HandDecision) -> None:
         """Exclude, include, note, mark, begin or end a marked manoeuvre."""
@@ -92,6 +99,10 @@ class RemoteConductor:
         """Play on to just before a manoeuvre, or play to it from the beginning."""
         self._requests.put(("jump", (number,)))
 
+    def seek(self, position_s: float) -> None:
+        """Play on to a position of the replay, s, or play to it from the beginning."""
+        self._requests.put(("seek", (position_s,)))
+
     def play(self, tempo: Tempo) -> None:
         """Pause a replay, continue it, or change its speed."""
         self._requests.put(("play", (tempo,)))
@@ -100,21 +111,30 @@ class RemoteConductor:
         """Play the next tenth of a second of a paused replay."""
         self._requests.put(("step", ()))
 
-    def _conduct(self, tell: Tell) -> int:
-        """Run one process from its start to its end; return the exit code."""
-        with start_child("advisor.session.worker") as process:
+    def _conduct(self, tell: Tell) -> tuple[int, Watch]:
+        """Run one process from its start to its end; return its exit code and its watch."""
+        may_end = self._task.kept is not None
+        with (
+            start_child("advisor.session.worker") as process,
+            Watch(process, partial(self._tell_of_age, tell), self._hangs if may_end else None) as watch,
+        ):
+            self._watch = watch
+            if self._stopped.is_set():
+                watch.hurry()
             assert process.stdin is not None
             assert process.stdout is not None
             asking = Thread(target=self._pass_on, args=(process.stdin,), daemon=True)
             asking.start()
             with suppress(EOFError, pickle.UnpicklingError):
-                self._pass_back(process.stdout, tell)
+                self._pass_back(process.stdout, tell, watch)
             self._requests.put(_ENOUGH)
             asking.join()
             self._keep_what_is_asked()
             with suppress(BrokenPipeError):
                 process.stdin.close()  # upon which a process that has finished ends
-            return process.wait()
+            code = process.wait()
+        self._hangs += watch.ended_after_s is not None
+        return code, watch
 
     def _pass_on(self, pipe: IO[bytes]) -> None:
         """Send the task, then every request. A request that a process has not taken waits for the next
@@ -139,7 +159,7 @@ class RemoteConductor:
             if request is not _ENOUGH:
                 self._requests.put(request)
 
-    def _pass_back(self, pipe: IO[bytes], tell: Tell) -> None:
+    def _pass_back(self, pipe: IO[bytes], tell: Tell, watch: Watch) -> None:
         last: SessionReport | None = None
         while True:
             match pickle.load(pipe):
@@ -150,7 +170,10 @@ class RemoteConductor:
                 case BaseException() as failure:
                     raise failure
             if last is not None:
+                watch.heard(patient=last.health.condition == "waiting")
                 self._tell(last, tell)
+                if last.health.condition == "ended":
+                    watch.rest()
 
     def _tell(self, report: SessionReport, tell: Tell) -> None:
         """Pass on a report. While a process catches up, pass on only the health of the link."""
@@ -160,6 +183,10 @@ class RemoteConductor:
                 report = replace(self._last, health=report.health, log=report.log)
         self._last = report
         tell(report)
+
+    def _tell_of_age(self, tell: Tell, age_s: float) -> None:
+        if self._last is not None:
+            tell(self._last.grown_old("ESTIMATOR", age_s))
 
     def _tell_of_death(self, tell: Tell) -> None:
         if self._last is not None:

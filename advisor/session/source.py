@@ -7,7 +7,9 @@ from typing import Literal, Protocol, runtime_checkable
 from advisor.campaign.hand_decisions import ByHand
 from advisor.flight.signals.messages import Columns
 
-Condition = Literal["good", "poor", "waiting", "lost", "ended"]
+Condition = Literal["good", "poor", "waiting", "lost", "stale", "ended"]
+"""State of the data's arrival. Stale: a process of the advisor does not answer, and all that is shown is
+old."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,6 +23,8 @@ class LinkHealth:
     """Statistics for the engineer: (name, value with unit)."""
     alarm: str = ""
     """Loss at this moment; empty without one."""
+    recording: str = ""
+    """State of the recording with its size and the free disk; empty for a log."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,6 +11,7 @@ from advisor.gap.result import Diagnosis, spelled
 from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.simulators.linear import LinearSimulator
 from advisor.words.problems import ConfigurationError, UnusableInputError
+from advisor.words.quantiles import NORMAL_95
 
 _LEAST = 2
 """Least number of manoeuvres in a simulator's log. A single one names no effect, for lack of a hold-out."""
@@ -73,9 +74,11 @@ def from_log(
 
 
 def _identified(name: str, found: Diagnosis, maneuvers: Sequence[Maneuver]) -> tuple[str, ...]:
-    numbers = ", ".join(f"{n} {found.model[n].value:.3g} ± {found.model[n].std:.2g}" for n in DERIVATIVES)
+    numbers = ", ".join(
+        f"{n} {found.model[n].value:.3g} ± {NORMAL_95 * found.model[n].std:.2g}" for n in DERIVATIVES
+    )
     notes = [f"Of the simulator, {len(maneuvers)} manoeuvres in {name} show {numbers}."]
     for cause in (c for c in found.causes if c.present):
-        sizes = ", ".join(f"{n} {v.value:.3g} ± {v.std:.2g}" for n, v in cause.parameters.items())
+        sizes = ", ".join(f"{n} {v.value:.3g} ± {NORMAL_95 * v.std:.2g}" for n, v in cause.parameters.items())
         notes.append(f"The simulator has {spelled(cause.effect)} of its own: {sizes}.")
     return tuple(notes)

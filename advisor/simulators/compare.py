@@ -18,23 +18,44 @@ from advisor.gap.candidates.known import with_known
 from advisor.gap.candidates.traits import TRAITS
 from advisor.gap.diagnose import DiagnosisEvidence, examine
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
+from advisor.gap.judge.prior import FIELD, FieldPrior
 from advisor.gap.records.as_stamped import as_stamped
 from advisor.gap.records.prepare import prepare
-from advisor.gap.records.unmeasured_alpha import by_the_motion, is_known
-from advisor.gap.result import Diagnosis
+from advisor.gap.records.unmeasured_alpha import alpha_by_motion, is_known
+from advisor.gap.result import Diagnosis, TrimDifference
 from advisor.gap.search.baseline import base_entries
 from advisor.gap.simulator.layout import DERIVATIVES, INDEX, NUISANCES, OUTPUTS
+from advisor.simulators.air import refuse_unknown_air, standard_heights
 from advisor.simulators.around import COMMAND
 from advisor.simulators.by_log import IdentifiedSimulator
-from advisor.simulators.flying import AsGiven, Flying, Progress, added, beyond, refuse_unmoved
-from advisor.simulators.improved import EQUATIONS, in_simulator
-from advisor.simulators.inputs import condition_of
+from advisor.simulators.controls import other_controls
+from advisor.simulators.flying import (
+    AsGiven,
+    Flying,
+    Progress,
+    added,
+    beyond,
+    refuse_another_elevator,
+    refuse_unmoved,
+)
+from advisor.simulators.improved import EQUATIONS, Flown, in_simulator
 from advisor.simulators.linear import LinearSimulator
-from advisor.simulators.protocol import Condition, Inputs, Simulator
+from advisor.simulators.protocol import Condition, Inputs, Replay, Simulator
+from advisor.simulators.static_errors import with_static_errors
 from advisor.simulators.surrogate import Surrogate, surrogate_of
+from advisor.simulators.trims import trim_differences
+from advisor.simulators.unseen import (
+    UnseenManeuvers,
+    changes_something,
+    resaid,
+    shrink_on,
+    unseen_of,
+    with_unseen_shrink,
+)
 
-_FLIES, _DIAGNOSED = 0.25, 0.8
-"""Shares of the work that are done after the first replays, and after the diagnosis."""
+_FLIES, _DIAGNOSED, _FOUND = 0.2, 0.6, 0.9
+"""Shares of the work that are done after the first replays, after the diagnosis, and after the search without
+the manoeuvres kept apart."""
 
 
 @dataclass(frozen=True)
@@ -52,12 +73,13 @@ def compare(
     aircraft: Aircraft,
     holdout: int | None = None,
     progress: Progress = lambda *_: None,
+    prior: FieldPrior = FIELD,
 ) -> Compared:
     """Diagnose the gap between a flight and a simulator.
 
     Parameters
     ----------
-    maneuvers, holdout, progress
+    maneuvers, holdout, progress, prior
         Arguments of ``advisor.gap.diagnose.diagnose``.
     simulator
         The user's own simulator.
@@ -71,49 +93,63 @@ def compare(
     """
     if not simulator.takes_increments:
         aircraft = _without_equations(aircraft)
-    maneuvers = by_the_motion([as_stamped(m) for m in maneuvers], aircraft)
+    maneuvers = alpha_by_motion([as_stamped(m) for m in maneuvers], aircraft)
     flights = prepare(maneuvers, aircraft)
     if not len(flights) or not is_known(maneuvers):
-        examine(maneuvers, aircraft, holdout, progress)
-    flying = Flying(simulator, flights, aircraft.reference.mass_kg, lambda w, s: progress(w, _FLIES * s))
+        examine(maneuvers, aircraft, holdout, progress, prior)
+    heights = standard_heights(maneuvers, aircraft)
+    if not isinstance(simulator, LinearSimulator):
+        refuse_unknown_air(simulator.description, heights)
+    heights_m = {number: height or 0.0 for number, height in heights.items()}
+    mass_kg = aircraft.reference.mass_kg
+    trims: tuple[TrimDifference, ...] = ()
+    controls = other_controls(flights.flights, maneuvers)
+    flying = Flying(simulator, flights, heights_m, controls, mass_kg, lambda w, s: progress(w, _FLIES * s))
     if isinstance(simulator, LinearSimulator):
         surrogate = Surrogate(simulator.derivatives, simulator.reference_m_s or flights.reference_m_s)
         known = simulator.as_file if isinstance(simulator, IdentifiedSimulator) else aircraft
         as_file = replace(known, simulator=None)
         as_flown = _linear(flying)
     else:
-        surrogate, as_flown = _surrogate_and_rest(flying, aircraft)
+        surrogate, as_flown, replays = _surrogate_and_rest(flying, aircraft)
+        trims = trim_differences(flights, maneuvers, replays, aircraft)
         as_file = replace(surrogate.aircraft(aircraft), simulator=simulator.description)
+    beside = [_without(m, as_flown) for m in maneuvers]
     examined = examine(
-        [_without(m, as_flown) for m in maneuvers],
+        beside,
         as_file,
         holdout,
         lambda what, share: progress(what, _FLIES + (_DIAGNOSED - _FLIES) * share),
+        prior,
     )
-    again = replace(flying, progress=lambda w, s: progress(w, _DIAGNOSED + (1.0 - _DIAGNOSED) * s))
+    again = replace(flying, progress=lambda w, s: progress(w, _FOUND + (1.0 - _FOUND) * s))
     if isinstance(simulator, LinearSimulator):
         reference = examined.evidence.problem.flights.reference_m_s
         surrogate = replace(surrogate, reference_m_s=reference)
         again = replace(again, simulator=replace(simulator, reference_m_s=reference))
-    found = _measured(examined, again, surrogate, as_flown, holdout)
-    notes = simulator.notes if isinstance(simulator, IdentifiedSimulator) else ()
+    progress("searching again without the manoeuvres kept apart", _DIAGNOSED)
+    unseen = unseen_of(examined, beside, as_file, holdout) if changes_something(examined.diagnosis) else None
+    found = _measured(examined, unseen, as_file, in_simulator(examined, unseen, again, surrogate, as_flown))
+    found = with_static_errors(found, examined, trims)
+    notes = getattr(simulator, "notes", ())
     return Compared(replace(found, notes=(*notes, *found.notes)), as_file)
 
 
 def _measured(
-    examined: DiagnosisEvidence,
-    flying: Flying,
-    surrogate: Surrogate,
-    as_flown: Mapping[int, AsGiven],
-    holdout: int | None,
+    examined: DiagnosisEvidence, unseen: UnseenManeuvers | None, as_file: Aircraft, flown: Flown
 ) -> Diagnosis:
     """Return the diagnosis with the gap of the simulator itself, before and after the findings."""
-    found = in_simulator(examined, flying, surrogate, as_flown, holdout)
-    found_by_fit = examined.diagnosis
-    notes = found_by_fit.notes
-    if found.refused:
-        notes = (f"The simulator cannot take the effects: {found.refused}", *notes)
-    return replace(found_by_fit, in_simulator=found, notes=notes)
+    diagnosis, gap = examined.diagnosis, flown.gap
+    if unseen is not None and flown.after is not None and not gap.on_paper:
+        diagnosis = resaid(diagnosis, shrink_on(examined, unseen, flown.before, flown.after), as_file)
+    elif unseen is not None:
+        diagnosis = with_unseen_shrink(examined, unseen, as_file)
+    elif changes_something(diagnosis):
+        gap = replace(gap, after=None, percent=None)
+    notes = diagnosis.notes
+    if gap.refused:
+        notes = (f"The simulator cannot take the effects: {gap.refused}", *notes)
+    return replace(diagnosis, in_simulator=gap, notes=notes)
 
 
 def _linear(flying: Flying) -> dict[int, AsGiven]:
@@ -121,12 +157,14 @@ def _linear(flying: Flying) -> dict[int, AsGiven]:
     begun = []
     for flight in flying.flights.flights:
         rest = Inputs(np.array([0.5, 1.5]) * flight.h, np.zeros(2))
-        begun.append(flying.simulator.replay(condition_of(flight, flying.flights, flying.mass_kg), rest))
+        begun.append(flying.simulator.replay(flying.condition(flight), rest))
     return {f.number: AsGiven(f, np.zeros((len(OUTPUTS), f.n + 1))) for f in flying.as_flown(begun)}
 
 
-def _surrogate_and_rest(flying: Flying, aircraft: Aircraft) -> tuple[Surrogate, dict[int, AsGiven]]:
-    """Return the surrogate, and every manoeuvre as flown by the simulator."""
+def _surrogate_and_rest(
+    flying: Flying, aircraft: Aircraft
+) -> tuple[Surrogate, dict[int, AsGiven], list[Replay]]:
+    """Return the surrogate, and every manoeuvre as flown by the simulator, with the replays."""
     flights = flying.flights
     variants = variants_for(flights)
     known = with_known(base_entries(aircraft), aircraft.effects, flights, variants)
@@ -137,6 +175,7 @@ def _surrogate_and_rest(flying: Flying, aircraft: Aircraft) -> tuple[Surrogate, 
     refuse_unmoved(flying.simulator.description, replays, flights)
     flown = flying.as_flown(replays)
     surrogate = surrogate_of(flights, flown, replays, command, flying.simulator.linearise(_usual(flying)))
+    refuse_another_elevator(flying.simulator.description, surrogate.derivatives["M_delta_e"], flights)
     base = with_known(base_entries(surrogate.aircraft(aircraft)), aircraft.effects, flights, variants)
     derivatives = np.array([surrogate.derivatives[name] for name in DERIVATIVES])
     own = np.zeros((len(flights), len(NUISANCES)))
@@ -144,7 +183,7 @@ def _surrogate_and_rest(flying: Flying, aircraft: Aircraft) -> tuple[Surrogate, 
     if any(TRAITS[effect].block in EQUATIONS for effect in aircraft.effects):
         replays = flying.replays(command, False, added(flown, p, derivatives))
     grids = beyond(flying, replays, p)
-    return surrogate, {f.number: AsGiven(f, grid) for f, grid in zip(flown, grids, strict=True)}
+    return surrogate, {f.number: AsGiven(f, grid) for f, grid in zip(flown, grids, strict=True)}, replays
 
 
 def _without_equations(aircraft: Aircraft) -> Aircraft:
@@ -155,8 +194,7 @@ def _without_equations(aircraft: Aircraft) -> Aircraft:
 
 def _usual(flying: Flying) -> Condition:
     """Return the condition in the middle of those at the starts of the manoeuvres."""
-    conditions = [condition_of(f, flying.flights, flying.mass_kg) for f in flying.flights.flights]
-    height = float(np.mean([c.height_m for c in conditions]))
+    height = float(np.mean([flying.condition(f).height_m for f in flying.flights.flights]))
     return Condition(flying.flights.reference_m_s, height, 0.0, flying.mass_kg)
 
 

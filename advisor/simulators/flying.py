@@ -1,23 +1,29 @@
 """A simulator that flies the recorded inputs, and the difference to its linear surrogate."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.problem import EffectProblem
+from advisor.gap.fitting.regression import regressions
 from advisor.gap.records.flights import PreparedManeuver, PreparedManeuvers
 from advisor.gap.records.usable import DEPARTED_RAD
-from advisor.gap.simulator.layout import INDEX, REFERENCE
+from advisor.gap.simulator.layout import BANK, DERIVATIVES, HEIGHT, INDEX
 from advisor.simulators.around import instruments, skewed
 from advisor.simulators.increments import SimulatorIncrements, entries_of
-from advisor.simulators.inputs import as_flight, condition_of, inputs_of, on_grid
-from advisor.simulators.protocol import Increments, Replay, Simulator
+from advisor.simulators.inputs import as_flight, condition_of, inputs_of, on_grid, surface_of
+from advisor.simulators.interface import elevator_fault, interface_fault
+from advisor.simulators.protocol import Condition, Increments, Inputs, Replay, Simulator
 from advisor.simulators.surrogate import Surrogate, trimmed_at
 from advisor.words.problems import UnusableInputError
 
 Progress = Callable[[str, float], None]
+_LATERAL = ("aileron", "rudder")
+_BANKS_AWAY_RAD = 0.17
+"""Largest difference of the bank angles of simulator and aircraft, rad. At 10 deg the vertical part of the
+lift differs by 1.5 %."""
 
 
 @dataclass(frozen=True)
@@ -26,8 +32,16 @@ class Flying:
 
     simulator: Simulator
     flights: PreparedManeuvers
+    heights_m: Mapping[int, float]
+    """Manoeuvre number to the height in the standard atmosphere with the density of the air, m."""
+    controls: Mapping[int, Mapping[str, FloatArray]]
+    """Manoeuvre number to the logged controls (``advisor.simulators.controls.other_controls``)."""
     mass_kg: float | None
     progress: Progress
+
+    def condition(self, flight: PreparedManeuver) -> Condition:
+        """Return the steady flight at the start of a manoeuvre."""
+        return condition_of(flight, self.heights_m[flight.number], self.mass_kg)
 
     def replays(
         self, command: FloatArray, held: bool, increments: tuple[Increments | None, ...] | None = None
@@ -52,12 +66,20 @@ class Flying:
         many = self.flights.flights
         for i, flight in enumerate(many):
             self.progress(f"{self.simulator.description} flies manoeuvre {flight.number}", i / len(many))
-            condition = condition_of(flight, self.flights, self.mass_kg)
-            inputs = inputs_of(flight, self.flights, command[i], held)
-            replay = self.simulator.replay(condition, inputs, None if increments is None else increments[i])
-            _refuse_broken(replay, self.simulator.description, flight)
+            inputs = inputs_of(flight, self.controls[flight.number], command[i], held)
+            increment = None if increments is None else increments[i]
+            replay = self._flown(flight, inputs, increment)
+            if _rolls_away(replay, flight):
+                # The pilot's corrections of gusts that the simulator does not have.
+                level = {name: y for name, y in inputs.others.items() if name not in _LATERAL}
+                replay = self._flown(flight, replace(inputs, others=level), increment)
             found.append(replay)
         return found
+
+    def _flown(self, flight: PreparedManeuver, inputs: Inputs, increments: Increments | None) -> Replay:
+        replay = self.simulator.replay(self.condition(flight), inputs, increments)
+        _refuse_broken(replay, self.simulator.description, flight)
+        return replay
 
     def as_flown(self, replays: Sequence[Replay]) -> list[PreparedManeuver]:
         """Return the manoeuvres with the simulator's own speed and trim."""
@@ -98,7 +120,7 @@ def beyond(flying: Flying, replays: Sequence[Replay], p: FloatArray, held: bool 
     for there, replay, numbers in zip(flying.as_flown(replays), replays, p, strict=True):
         ends = np.arange(there.n + 1) * there.h
         speed = np.interp(ends, replay.t, replay.airspeed_m_s)
-        surface = inputs_of(there, flying.flights, numbers, held).elevator
+        surface = surface_of(there, numbers, held)
         read = instruments(on_grid(replay, there), speed, surface, there.h, numbers)
         linear = problem.fly(there, trimmed_at(numbers, there))
         found.append(skewed(read - linear, there.h, numbers))
@@ -125,7 +147,13 @@ def added(
     for there, with_effects in zip(flown, found, strict=True):
         changed, unchanged = (entries_of(trimmed_at(p, there)) for p in (with_effects, plain))
         increments.append(
-            SimulatorIncrements(changed, unchanged, there.alpha_trim, float(there.trim[REFERENCE]))
+            SimulatorIncrements(
+                changed,
+                unchanged,
+                there.alpha_trim,
+                there.reference_m_s,
+                float(there.slow[HEIGHT, 0]),
+            )
         )
     return tuple(increments)
 
@@ -138,8 +166,17 @@ def without_servo(p: FloatArray, surrogate: Surrogate) -> FloatArray:
     return out
 
 
+def _rolls_away(replay: Replay, flight: PreparedManeuver) -> bool:
+    """Return whether a simulator with the logged aileron and rudder banks much further than the aircraft."""
+    if replay.bank is None:
+        return False
+    middles = (np.arange(flight.n) + 0.5) * flight.h
+    apart = np.interp(middles, replay.t, replay.bank) - flight.slow[BANK]
+    return bool(np.max(np.abs(apart)) > _BANKS_AWAY_RAD)
+
+
 def _refuse_broken(replay: Replay, description: str, flight: PreparedManeuver) -> None:
-    """Refuse a replay that lacks a number, or that ends long before the manoeuvre does."""
+    """Refuse a replay that lacks a number or ends too early, has a wrong sign or unit, or departs."""
     series = (
         replay.t,
         replay.alpha,
@@ -156,6 +193,9 @@ def _refuse_broken(replay: Replay, description: str, flight: PreparedManeuver) -
             f"{description} does not fly manoeuvre {flight.number} to its end: numbers are missing.",
             "Check that the model flies at the speed and height of the flight.",
         )
+    fault = interface_fault(replay)
+    if fault is not None:
+        raise fault.refuse(description)
     if np.ptp(replay.alpha) >= DEPARTED_RAD:
         raise UnusableInputError(
             "simulator_departs",
@@ -163,6 +203,24 @@ def _refuse_broken(replay: Replay, description: str, flight: PreparedManeuver) -
             f"{np.degrees(np.ptp(replay.alpha)):.0f} deg.",
             "Check the sign and the calibration of the elevator, and that the model is stable at this speed.",
         )
+
+
+def refuse_another_elevator(description: str, m_delta_e: float, flights: PreparedManeuvers) -> None:
+    """Refuse a simulator whose elevator has another sense or unit than the flight's.
+
+    ``m_delta_e`` is M_δe of the simulator at the flights' reference speed, 1/s².
+
+    Raises
+    ------
+    UnusableInputError
+        The simulator answers the elevator with another sign, or with a factor of a unit.
+    """
+    k = DERIVATIVES.index("M_delta_e")
+    flown = [float(guess[k]) for guess in regressions(flights)]
+    # Where a late channel turns the sign of a regression, the flight says nothing.
+    fault = elevator_fault(m_delta_e, flown[0]) if min(flown) * max(flown) > 0.0 else None
+    if fault is not None:
+        raise fault.refuse(description)
 
 
 def refuse_unmoved(description: str, replays: Sequence[Replay], flights: PreparedManeuvers) -> None:

@@ -14,7 +14,7 @@ from advisor.aircraft.aircraft import Aircraft, FmuVariables
 from advisor.flight.signals.messages import FloatArray
 from advisor.simulators.fmu_instance import Fmu, Use
 from advisor.simulators.isolated import Isolated
-from advisor.simulators.protocol import Condition, Increments, Inputs, Replay, State
+from advisor.simulators.protocol import CONTROLS, Condition, Increments, Inputs, Replay, State
 from advisor.words.problems import ConfigurationError, UnusableInputError
 
 _STEP_S = 0.01
@@ -92,6 +92,8 @@ class FmuSimulator:
         self._angle = angle
         self._step_s = variables.step_s or self._fmu.default_step_s or _STEP_S
         self.takes_increments = variables.force_increment is not None
+        mass = {"mass"} if "mass" in self._trim else set()
+        self.takes = frozenset({*self._inputs} & {*CONTROLS} | mass)
 
     def replay(self, condition: Condition, inputs: Inputs, increments: Increments | None = None) -> Replay:
         """Start at the condition, and fly the inputs as departures from their start values."""
@@ -117,7 +119,9 @@ class FmuSimulator:
             self._fmu.step(float(t[k]), step)
             rows.append(self._motion(condition))
         self._fmu.end()
-        return Replay(t, *np.array(rows).T)
+        alpha, q, theta, a_z, speed, height = np.array(rows).T
+        trim = {name: rest[name] for name in held}
+        return Replay(t, alpha, q, theta, a_z, speed, height, trim=trim)
 
     def linearise(self, condition: Condition) -> Mapping[str, float] | None:
         """Return None: FMUs for co-simulation have no common interface for a linearisation."""

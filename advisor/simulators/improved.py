@@ -1,4 +1,5 @@
-"""The gap in the user's own simulator: the effects are added, and it flies the manoeuvres again."""
+"""The gap in the user's own simulator: the effects are added, and it flies manoeuvres that no search has
+used."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -7,17 +8,27 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.diagnose import DiagnosisEvidence
-from advisor.gap.fitting.holdout import HeldOut, held_out, points_without
-from advisor.gap.fitting.measure import own_refitted, whole_gap
+from advisor.gap.fitting.holdout import HeldOut
+from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.records.flights import Measured
 from advisor.gap.result import InSimulator
 from advisor.gap.simulator.layout import DERIVATIVES, INDEX, OUTPUTS
-from advisor.gap.verdict.holdout_numbers import kept_and_folds, over_maneuvers, with_offset
 from advisor.simulators.flying import AsGiven, Flying, added, beyond, without_servo
 from advisor.simulators.inputs import at_reference
 from advisor.simulators.qualification import qualified
 from advisor.simulators.surrogate import Surrogate
+from advisor.simulators.unseen import (
+    UnseenManeuvers,
+    as_changed,
+    as_given,
+    changes_something,
+    floor_of,
+    percent_of,
+    predicted,
+    unknown_offset,
+    with_nuisances,
+)
 from advisor.words.problems import UnusableInputError
 
 DERIVATIVES_OF_IT, SERVO_OF_IT = "derivatives", "its own servo"
@@ -33,69 +44,96 @@ class CarriedPart:
     on_paper: tuple[str, ...]
 
 
+@dataclass(frozen=True)
+class Flown:
+    """The gap in the simulator, and the residuals behind it."""
+
+    gap: InSimulator
+    before: HeldOut
+    after: HeldOut | None
+    """Residuals with the effects in the simulator; None where nothing was added, or where it did not fly."""
+
+
 def in_simulator(
-    examined: DiagnosisEvidence,
+    whole: DiagnosisEvidence,
+    unseen: UnseenManeuvers | None,
     flying: Flying,
     surrogate: Surrogate,
     as_flown: Mapping[int, AsGiven],
-    holdout: int | None,
-) -> InSimulator:
-    """Measure the gap in the simulator as given, and with the effects added to it.
+) -> Flown:
+    """Measure the gap in the simulator as given, and with the effects and numbers that an export writes.
 
     Parameters
     ----------
-    examined
-        Diagnosis of the manoeuvres, with the simulator's difference to its surrogate subtracted.
+    whole
+        Diagnosis of all manoeuvres, with the simulator's difference to its surrogate subtracted.
+    unseen
+        Manoeuvres kept apart, with the diagnosis of the others; None where nothing was found.
     flying
         The simulator with the manoeuvres.
     surrogate
         Linear surrogate of the simulator.
     as_flown
         Manoeuvre number to the manoeuvre as flown by the simulator.
-    holdout
-        Argument of ``advisor.gap.diagnose.diagnose``.
     """
-    diagnosis, e = examined.diagnosis, examined.evidence
-    problem, last = e.problem, e.stages[-1]
-    kept, folds = kept_and_folds(problem, holdout)
-    floor = np.array([diagnosis.gap.floor[c] for c in problem.channels])
-    as_given = np.array([surrogate.derivatives[name] for name in DERIVATIVES])
-    first = e.stages[0].fitted
-    before = own_refitted(problem, replace(first.point, derivatives=as_given), first.noise)
-    if "alpha_bias" in diagnosis.effects:
-        before = with_offset(problem, before, diagnosis.effects["alpha_bias"]["bias_rad"])
-    before = over_maneuvers(problem, before, kept)
+    problem, floor = whole.evidence.problem, floor_of(whole)
+    flights = problem.flights.flights
+    kept = tuple(range(len(flights))) if unseen is None else unseen.kept
+    derivatives = np.array([surrogate.derivatives[name] for name in DERIVATIVES])
+    given = as_given(derivatives, whole.evidence.stages[-1].fitted.point)
+    before = predicted(problem, given, floor, kept, unknown_offset(whole.diagnosis, None))
     was = whole_gap(before.mean_square, floor)
-    measured = replace(flying, flights=problem.flights)
-    given = [as_flown[f.number] for f in problem.flights.flights]
-    original = _with(problem, [one.beyond for one in given], 1.0)
-    name = flying.simulator.description
-    if diagnosis.shrink is None:
-        table = qualified(original, before, None, kept)
-        return InSimulator(name, was, None, None, (), table)
-    parts = [_carried(p, problem, surrogate, flying) for p in points_without(problem, last.fitted, folds)]
-    began = [at_reference(one.flight, problem.flights.reference_m_s) for one in given]
-    found = _found(problem, [part.point for part in parts])
-    increments = added(began, found, as_given) if flying.simulator.takes_increments else None
+    original = _with(problem, [as_flown[f.number].beyond for f in flights], 1.0)
+    unchanged = InSimulator(
+        flying.simulator.description, tuple(flights[i].number for i in kept), was, was, 0.0, (),
+        qualified(original, before, None, kept),
+    )  # fmt: skip
+    if unseen is None or not changes_something(unseen.found.diagnosis):
+        return Flown(unchanged, before, None)
+    part = _carried(as_changed(unseen, whole), problem, surrogate, flying)
+    unchanged = replace(unchanged, on_paper=part.on_paper)
+    if not part.point.effects and np.array_equal(part.point.derivatives, derivatives):
+        return Flown(unchanged, before, None)
     try:
-        replays = measured.replays(without_servo(found, surrogate), problem.held, increments)
+        now = _flown_with(part, problem, kept, flying, as_flown, surrogate)
     except UnusableInputError as error:
         # The diagnosis stands, even if the simulator does not fly with the effects.
-        table = qualified(original, before, None, kept)
-        return InSimulator(name, was, None, None, parts[0].on_paper, table, str(error.problem))
-    grids = beyond(measured, replays, found, problem.held)
-    now_problem = _with(original, grids, -1.0)
-    residuals: list[FloatArray] = [np.empty(0)] * len(problem.flights)
-    for fold in folds:
-        refitted = own_refitted(now_problem, parts[fold[0]].point, last.fitted.noise) if fold else None
-        for i in fold:
-            assert refitted is not None
-            residuals[i] = refitted.residuals[i]
-    after = over_maneuvers(problem, held_out(problem, residuals), kept)
-    after = _without_the_air(examined, after)
-    now = whole_gap(after.mean_square, floor)
-    percent = 100.0 * (1.0 - now / was) if was > 1e-9 else 0.0
-    return InSimulator(name, was, now, percent, parts[0].on_paper, qualified(original, before, after, kept))
+        refused = replace(unchanged, after=None, percent=None, refused=str(error.problem))
+        return Flown(refused, before, None)
+    offset = unknown_offset(whole.diagnosis, unseen.found.diagnosis)
+    after = predicted(now, part.point, floor, kept, offset)
+    here = whole_gap(after.mean_square, floor)
+    found = replace(
+        unchanged,
+        after=here,
+        percent=percent_of(was, here),
+        after_air_and_instruments=_without_air(whole, now, with_nuisances(part.point, unseen), kept, offset),
+        qualification=qualified(original, before, after, kept),
+    )
+    return Flown(found, before, after)
+
+
+def _flown_with(
+    part: CarriedPart,
+    problem: EffectProblem,
+    kept: Sequence[int],
+    flying: Flying,
+    as_flown: Mapping[int, AsGiven],
+    surrogate: Surrogate,
+) -> EffectProblem:
+    """Return the problem without the difference between surrogate and simulator, both with the effects."""
+    flights = problem.flights.flights
+    given = [as_flown[f.number] for f in flights]
+    still = replace(part.point, own=np.zeros_like(part.point.own))
+    found = problem.driving(still)[list(kept)]
+    began = [at_reference(given[i].flight, problem.flights.reference_m_s) for i in kept]
+    as_it_is = np.array([surrogate.derivatives[name] for name in DERIVATIVES])
+    increments = added(began, found, as_it_is) if flying.simulator.takes_increments else None
+    measured = replace(flying, flights=replace(problem.flights, flights=tuple(flights[i] for i in kept)))
+    replays = measured.replays(without_servo(found, surrogate), problem.held, increments)
+    grids = dict(zip(kept, beyond(measured, replays, found, problem.held), strict=True))
+    differs = [grids.get(i, one.beyond) - one.beyond for i, one in enumerate(given)]
+    return _with(problem, differs, -1.0)
 
 
 def _carried(point: SearchPoint, problem: EffectProblem, surrogate: Surrogate, flying: Flying) -> CarriedPart:
@@ -103,9 +141,9 @@ def _carried(point: SearchPoint, problem: EffectProblem, surrogate: Surrogate, f
     on_paper: list[str] = []
     if not flying.simulator.takes_increments:
         derivatives = np.array([surrogate.derivatives[name] for name in DERIVATIVES])
-        outside = [v.effect for v in point.effects if v.block in EQUATIONS and not v.is_nuisance]
-        inside = [v.effect for v in point.effects if v.effect not in outside]
-        point = replace(point.with_only(inside), derivatives=derivatives)
+        outside = [v.effect for v in point.effects if v.block in EQUATIONS]
+        inside = [k for k, v in enumerate(point.effects) if v.effect not in outside]
+        point = replace(point.keeping(inside), derivatives=derivatives)
         on_paper += [*outside, DERIVATIVES_OF_IT]
     base = np.atleast_2d(problem.base)[0]
     values = list(point.values)
@@ -118,23 +156,6 @@ def _carried(point: SearchPoint, problem: EffectProblem, surrogate: Surrogate, f
                     values[k] = np.where(np.arange(len(values[k])) == at, least, values[k])
                     on_paper.append(SERVO_OF_IT)
     return CarriedPart(replace(point, values=tuple(values)), tuple(dict.fromkeys(on_paper)))
-
-
-def _found(problem: EffectProblem, points: Sequence[SearchPoint]) -> FloatArray:
-    """Return each manoeuvre's model with the effects, without initial states, shape (manoeuvres, entries)."""
-    still = np.zeros_like(points[0].own)
-    rows = [problem.driving(replace(_named(point), own=still))[i] for i, point in enumerate(points)]
-    return np.array(rows)
-
-
-def _named(point: SearchPoint) -> SearchPoint:
-    """Return the model without nuisance parameters, which belong to the flight instead of the simulator."""
-    keep = [k for k, effect in enumerate(point.effects) if not effect.is_nuisance]
-    return replace(
-        point,
-        effects=tuple(point.effects[k] for k in keep),
-        values=tuple(point.values[k] for k in keep),
-    )
 
 
 def _with(problem: EffectProblem, grids: Sequence[FloatArray], sign: float) -> EffectProblem:
@@ -150,10 +171,17 @@ def _with(problem: EffectProblem, grids: Sequence[FloatArray], sign: float) -> E
     return replace(problem, flights=replace(problem.flights, flights=tuple(flights)))
 
 
-def _without_the_air(examined: DiagnosisEvidence, after: HeldOut) -> HeldOut:
-    """Return the errors without the share that the air's likeliest course removes from the model's."""
-    air, last = examined.evidence.air, examined.evidence.stages[-1].held_out
-    if air is None:
-        return after
-    share = np.minimum(air.mean_square_beyond_air / last.mean_square, 1.0)
-    return replace(after, mean_square=after.mean_square * share, by_maneuver=after.by_maneuver * share)
+def _without_air(
+    whole: DiagnosisEvidence,
+    problem: EffectProblem,
+    point: SearchPoint,
+    kept: Sequence[int],
+    offset_rad: float,
+) -> float:
+    """Return the gap without what the air and the instruments' natural errors explain in the same samples."""
+    floor = floor_of(whole)
+    left = predicted(problem, point, floor, kept, offset_rad).mean_square
+    air, last = whole.evidence.air, whole.evidence.stages[-1].held_out
+    if air is not None:
+        left = left * np.minimum(air.mean_square_beyond_air / last.mean_square, 1.0)
+    return whole_gap(left, floor)

@@ -5,7 +5,7 @@ simulator as in the model in which the diagnosis found the effect.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import cos, exp, sqrt
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
@@ -35,11 +35,14 @@ class SimulatorIncrements:
     alpha_trim: float
     """Angle of attack at which the simulator is trimmed, rad."""
     reference_m_s: float
+    ground_m: float
+    """Height above the ground at the start of the manoeuvre, m. A simulator's own height is a density's."""
     _memory: dict[str, float] = field(default_factory=dict, compare=False, repr=False)
 
     def __call__(self, state: State) -> tuple[float, float]:
         """Return increments of α̇ in rad/s and of q̇ in rad/s²."""
         lagging, engine = self._remembered(state)
+        state = replace(state, height_m=self.ground_m + state.height_m - self._memory["began_m"])
         z, m = self._right_side(self.found, state, lagging, engine)
         z_plain, m_plain = self._right_side(self.plain, state, state.alpha, state.throttle)
         return z - z_plain, m - m_plain
@@ -49,7 +52,7 @@ class SimulatorIncrements:
         the last call."""
         seen = self._memory
         if not seen or state.t < seen["t"]:
-            seen.update(t=state.t, lift=self.alpha_trim, engine=0.0)
+            seen.update(t=state.t, lift=self.alpha_trim, engine=0.0, began_m=state.height_m)
         passed = state.t - seen["t"]
         for name, lag, towards in (
             ("lift", self.found["lift_lag_s"], state.alpha),

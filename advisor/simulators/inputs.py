@@ -1,12 +1,13 @@
 """Inputs of a simulator from a flown manoeuvre, and the replay as a manoeuvre on the gap's own grid."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.records.flights import Measured, PreparedManeuver, PreparedManeuvers
+from advisor.gap.records.flights import Measured, PreparedManeuver
 from advisor.gap.simulator.layout import (
     A_X,
     ALPHA_TRIM,
@@ -26,37 +27,53 @@ _RATE_S = 0.02
 """Interval of the stamps at which a replay is read where nothing was measured."""
 
 
-def condition_of(flight: PreparedManeuver, flights: PreparedManeuvers, mass_kg: float | None) -> Condition:
-    """Return the steady flight at the start of a manoeuvre: mean speed and height before the first step."""
+def condition_of(flight: PreparedManeuver, height_m: float, mass_kg: float | None) -> Condition:
+    """Return the steady flight at the start of a manoeuvre: mean speed before the first step.
+
+    ``height_m`` is the height in the standard atmosphere with the density of the air flown in.
+    """
     before = max(int(flight.first_step_s / flight.h), 1)
     speed = float(np.mean(flight.slow[SPEED, :before]))
-    height = float(np.mean(flight.slow[HEIGHT, :before])) if "height" in flights.has else 0.0
     steep = float(flight.trim[THETA_FROM]) - flight.alpha_trim
-    return Condition(speed, height, steep, mass_kg)
+    return Condition(speed, height_m, steep, mass_kg)
 
 
-def inputs_of(flight: PreparedManeuver, flights: PreparedManeuvers, p: FloatArray, held: bool) -> Inputs:
-    """Return the recorded command behind the effects between command and surface in ``p``, shape
-    (entries,)."""
+def surface_of(flight: PreparedManeuver, p: FloatArray, held: bool) -> FloatArray:
+    """Return the surface's departure from trim, rad, shape (n,): the mean over each step.
+
+    ``p``, shape (entries,), has the effects between the recorded command and the surface.
+    """
     stamps = flight.t_held if held else flight.t_u
-    elevator = surface(flight.h, flight.n, stamps, flight.u, held, flight.u_trim, p)
-    others = {"throttle": flight.slow[THROTTLE]} if "throttle" in flights.has else {}
+    return surface(flight.h, flight.n, stamps, flight.u, held, flight.u_trim, p)
+
+
+def inputs_of(
+    flight: PreparedManeuver, others: Mapping[str, FloatArray], p: FloatArray, held: bool
+) -> Inputs:
+    """Return the recorded inputs, with the effects of ``p`` between command and surface."""
     t: FloatArray = (np.arange(flight.n, dtype=np.float64) + 0.5) * flight.h
-    return Inputs(t, elevator, others)
+    return Inputs(t, surface_of(flight, p, held), others)
 
 
 def as_flight(flight: PreparedManeuver, replay: Replay, reference_m_s: float) -> PreparedManeuver:
     """Return the manoeuvre as flown by the simulator: equal command, with the simulator's own speed and trim.
 
-    Bank and turn are zero, and thrust equals drag.
+    Bank and turn are those of the simulator, zero in the vertical plane, and thrust equals drag. The height
+    above the ground changes as the simulator's.
     """
     middles = (np.arange(flight.n) + 0.5) * flight.h
     slow = np.zeros_like(flight.slow)
     slow[SPEED] = np.interp(middles, replay.t, replay.airspeed_m_s)
     slow[A_X] = np.interp(middles, replay.t, replay.a_x if replay.a_x is not None else _pull_along(replay))
     slow[BANK], slow[TURN], slow[THRUST] = 0.0, 0.0, 0.0
+    if replay.bank is not None:
+        bank = np.interp(middles, replay.t, replay.bank)
+        coordinated = GRAVITY_M_S2 / slow[SPEED] * np.sin(bank)
+        yaw_rate = coordinated if replay.r is None else np.interp(middles, replay.t, replay.r)
+        slow[BANK], slow[TURN] = bank, yaw_rate * np.sin(bank)
     slow[THROTTLE] = flight.slow[THROTTLE]
-    slow[HEIGHT] = np.interp(middles, replay.t, replay.height_m)
+    climbed = np.interp(middles, replay.t, replay.height_m - replay.height_m[0])
+    slow[HEIGHT] = flight.slow[HEIGHT, 0] + climbed
     trim = flight.trim.copy()
     trim[ALPHA_TRIM], trim[THETA_FROM] = float(replay.alpha[0]), float(replay.theta[0])
     trim[REFERENCE] = reference_m_s

@@ -1,31 +1,36 @@
 """A simulator in a process of its own: foreign code crashes or hangs only there."""
 
 import importlib
-import multiprocessing
 import os
 import signal
 import sys
 import tempfile
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import fields
 from multiprocessing.connection import Connection
 from typing import Any, NoReturn
 
 import numpy as np
 
+from advisor.process.children import spawning
 from advisor.simulators.protocol import Condition, Increments, Inputs, Replay, Simulator
 from advisor.words.problems import ConfigurationError, UnusableInputError
 
-_SPAWN = multiprocessing.get_context("spawn")
 _GOODBYE_S = 1.0
 """Time in s that a process has to end after its connection is closed."""
+MOST_MEMORY_BYTES = 8 << 30
+"""Largest address space of a simulator's process, bytes. Python with numerical libraries takes 2 GB of
+addresses, JSBSim and FMUs with tables less than 1 GB more."""
 
 
 class Isolated:
     """A simulator that is built and flown in another process.
 
     The parent imports nothing of the simulator, and receives numbers and text only. The folder in which the
-    parent was started stands last on the child's path of modules. What the child prints goes nowhere.
+    parent was started stands last on the child's path of modules. What the child prints goes nowhere. The
+    child and all that it starts form a process group, which ends with the simulator. The child's memory is
+    limited.
 
     Parameters
     ----------
@@ -64,7 +69,7 @@ class Isolated:
         self._process: Any = None
         self._connection: Connection
         try:
-            self.takes_increments = self._start()
+            self.takes_increments, self.takes, self.notes = self._start()
         except UnusableInputError as error:
             self.close()
             raise ConfigurationError(str(error)) from None
@@ -74,8 +79,8 @@ class Isolated:
 
     def replay(self, condition: Condition, inputs: Inputs, increments: Increments | None = None) -> Replay:
         """Trim at the condition, and fly the inputs as departures from the trimmed controls."""
-        columns: dict[str, Any] = self._ask("replay", condition, inputs, increments)
-        return Replay(**{name: row and np.array(row) for name, row in columns.items()})
+        columns, trim = self._ask("replay", condition, inputs, increments)
+        return Replay(**{name: row and np.array(row) for name, row in columns.items()}, trim=trim)
 
     def linearise(self, condition: Condition) -> Mapping[str, float] | None:
         """Return dimensional short-period derivatives at the condition, or None where the simulator has
@@ -88,15 +93,17 @@ class Isolated:
         self._end()
         self._folder.cleanup()
 
-    def _start(self) -> bool:
-        self._connection, theirs = _SPAWN.Pipe()
+    def _start(self) -> tuple[bool, frozenset[str], tuple[str, ...]]:
+        context = spawning()
+        self._connection, theirs = context.Pipe()
         make, arguments = self._call
-        self._process = _SPAWN.Process(
+        self._process = context.Process(
             target=_serve, args=(theirs, self._folder.name, make, arguments), daemon=True
         )
         self._process.start()
         theirs.close()
-        return bool(self._answer("its start", self._start_limit_s))
+        takes_increments, takes, notes = self._answer("its start", self._start_limit_s)
+        return bool(takes_increments), frozenset(map(str, takes)), tuple(map(str, notes))
 
     def _ask(self, method: str, *arguments: Any) -> Any:
         if self._process is None:
@@ -149,6 +156,7 @@ class Isolated:
         self._connection.close()
         if not at_once:
             self._process.join(_GOODBYE_S)
+        _kill_group(self._process.pid)
         if self._process.is_alive():
             self._process.kill()
         self._process.join()
@@ -159,25 +167,29 @@ class Isolated:
 def _serve(connection: Connection, folder: str, make: str, arguments: tuple[Any, ...]) -> None:
     """Build the simulator and answer the parent until the parent hangs up."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if os.name == "posix":
+        os.setpgid(0, 0)
+    _limit_memory()
     nowhere = os.open(os.devnull, os.O_RDWR)
     for descriptor in (0, 1, 2):
         os.dup2(nowhere, descriptor)
     tempfile.tempdir = folder
     sys.path.append(os.getcwd())
 
-    def build() -> tuple[Simulator, bool]:
+    def build() -> tuple[Simulator, tuple[bool, list[str], list[str]]]:
         module, name = make.split(":", 1)
         simulator = getattr(importlib.import_module(module), name)(*arguments)
-        return simulator, bool(simulator.takes_increments)
+        takes, notes = (sorted(map(str, getattr(simulator, name, ()))) for name in ("takes", "notes"))
+        return simulator, (bool(simulator.takes_increments), takes, notes)
 
     kind, built = _outcome(build)
     if kind != "done":
         connection.send((kind, built))
         return
-    simulator, takes_increments = built
-    connection.send(("done", takes_increments))
+    simulator, abilities = built
+    connection.send(("done", abilities))
     tasks = {
-        "replay": lambda *given: _columns(simulator.replay(*given)),
+        "replay": lambda *given: _plain(simulator.replay(*given)),
         "linearise": lambda *given: _numbers(simulator.linearise(*given)),
     }
     while True:
@@ -187,6 +199,25 @@ def _serve(connection: Connection, folder: str, make: str, arguments: tuple[Any,
             break
         connection.send(_outcome(tasks[method], *given))
     simulator.close()
+
+
+def _kill_group(leader: int) -> None:
+    """End what the simulator's process has started, and the process itself."""
+    if os.name == "posix":
+        with suppress(OSError):  # nothing of it is left, or it died before it led a group
+            os.killpg(leader, signal.SIGKILL)
+
+
+def _limit_memory() -> None:
+    """Let a simulator that asks for too much memory fail, instead of the advisor or the whole computer."""
+    try:
+        import resource
+    except ImportError:  # Windows
+        return
+    hard = resource.getrlimit(resource.RLIMIT_AS)[1]
+    most = MOST_MEMORY_BYTES if hard == resource.RLIM_INFINITY else min(hard, MOST_MEMORY_BYTES)
+    with suppress(ValueError, OSError):
+        resource.setrlimit(resource.RLIMIT_AS, (most, hard))
 
 
 class _NoReplayError(Exception):
@@ -205,12 +236,23 @@ def _outcome(task: Any, *given: Any) -> tuple[str, Any]:
         return "raised", " ".join(f"{type(error).__name__}: {error}".split())[:300].rstrip(".: ")
 
 
+_OPTIONAL = ("a_x", "bank", "r")
+"""Series of a replay that may be missing."""
+
+
+def _plain(replay: Any) -> tuple[dict[str, list[float] | None], dict[str, float]]:
+    """Return the series and the trimmed controls of a replay as plain numbers, checked."""
+    return _columns(replay), _numbers(getattr(replay, "trim", None)) or {}
+
+
 def _columns(replay: Any) -> dict[str, list[float] | None]:
-    """Return the replay as plain numbers, checked."""
+    """Return the series of a replay as plain numbers, checked."""
     rows: dict[str, list[float] | None] = {}
     for one in fields(Replay):
+        if one.name == "trim":
+            continue
         row = getattr(replay, one.name, None)
-        if row is None and one.name != "a_x":
+        if row is None and one.name not in _OPTIONAL:
             raise _NoReplayError(f"its replay has no {one.name}")
         rows[one.name] = None if row is None else _finite(row, one.name)
     lengths = {len(row) for row in rows.values() if row is not None}

@@ -11,10 +11,15 @@ from advisor.simulators.isolated import Isolated
 from advisor.simulators.jsbsim_flight import FOOT_M, STEP_S, JsbsimFlight, SteadyState
 from advisor.simulators.jsbsim_model import FORCE, MOMENT, find_model
 from advisor.simulators.jsbsim_trim import trim
-from advisor.simulators.protocol import Condition, Increments, Inputs, Replay
+from advisor.simulators.protocol import CONTROLS, Condition, Increments, Inputs, Replay
 from advisor.simulators.protocol import State as Motion
 from advisor.words.problems import UnusableInputError
 
+_THRUST_SHARE = 0.01
+"""Largest force along the path that helps the trim, over the weight, with which the throttle counts as
+trimmed."""
+_SHOWN = 6
+"""Most foreign properties that are named."""
 _PROBE = 1e-3
 """Departures for central differences: of α and of the elevator in rad, of q in rad/s."""
 
@@ -47,6 +52,7 @@ class Jsbsim:
     """
 
     takes_increments = True
+    takes = frozenset({*CONTROLS, "mass"})
     speed_limit_s = 20.0
 
     def __init__(self, path: Path) -> None:
@@ -54,6 +60,7 @@ class Jsbsim:
         self._path = path
         self._flight = JsbsimFlight(path)
         self._trims: dict[Condition, SteadyState] = {}
+        self.notes = _of_foreign(self._flight.foreign)
 
     def replay(self, condition: Condition, inputs: Inputs, increments: Increments | None = None) -> Replay:
         """Trim at the condition, and fly the inputs as departures from the trimmed controls."""
@@ -72,7 +79,7 @@ class Jsbsim:
         lateral = {name: self._throw(name) for name in ("aileron", "rudder") if name in others}
         throttle = others.get("throttle", np.zeros(t.size))
         flight.release()
-        rows = np.empty((t.size, 7))
+        rows = np.empty((t.size, len(self._motion())))
         rows[0] = self._motion()
         for k in range(1, t.size):
             flight.elevator(start.elevator + elevator[k])
@@ -92,8 +99,11 @@ class Jsbsim:
                 f"{self.description} leaves all bounds in a replay of {t[-1]:.3g} s.",
                 "Shorten the manoeuvre, or check the model at the flown condition.",
             )
-        alpha, q, theta, a_z, speed, height, a_x = rows.T
-        return Replay(t, alpha, q, theta, a_z, speed, height, a_x)
+        trim = {"elevator": start.elevator}
+        if flight.engines and abs(start.axial) < _THRUST_SHARE * flight.fdm["inertia/weight-lbs"]:
+            trim["throttle"] = start.throttle
+        alpha, q, theta, a_z, speed, height, a_x, bank, r = rows.T
+        return Replay(t, alpha, q, theta, a_z, speed, height, a_x, bank, r, trim)
 
     def linearise(self, condition: Condition) -> Mapping[str, float] | None:
         """Return central differences of α̇ and q̇ about the trimmed state, at constant speed and flight path.
@@ -168,7 +178,8 @@ class Jsbsim:
             return 0.0
         return math.copysign(1.0 / throw, seen[-1.0][1] - seen[1.0][1])
 
-    def _motion(self) -> tuple[float, float, float, float, float, float, float]:
+    def _motion(self) -> tuple[float, ...]:
+        """Return the motion in the order of ``Replay``'s series."""
         fdm = self._flight.fdm
         acceleration = FOOT_M / fdm["inertia/mass-slugs"]
         return (
@@ -179,6 +190,8 @@ class Jsbsim:
             FOOT_M * fdm["velocities/vt-fps"],
             FOOT_M * fdm["position/h-sl-ft"],
             acceleration * fdm["forces/fbx-total-lbs"],
+            fdm["attitude/phi-rad"],
+            fdm["velocities/r-rad_sec"],
         )
 
     def _add(self, increments: Increments, t: float, elevator: float, throttle: float) -> None:
@@ -204,3 +217,11 @@ class Jsbsim:
         self._flight.freeze()
         self._flight.fdm[f"{FORCE}/magnitude"] = 0.0
         self._flight.fdm[MOMENT] = 0.0
+
+
+def _of_foreign(names: tuple[str, ...]) -> tuple[str, ...]:
+    """Return a sentence on the properties that another program would write; none without any."""
+    if not names:
+        return ()
+    shown = ", ".join(names[:_SHOWN]) + (", ..." if len(names) > _SHOWN else "")
+    return (f"The JSBSim model reads properties that FlightGear writes, and they are 0 here: {shown}.",)

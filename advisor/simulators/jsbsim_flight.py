@@ -32,7 +32,10 @@ _INTEGRATORS = {
 _COMMANDS = np.linspace(-1.0, 1.0, 81)
 _PROBE = 0.02
 """Departures of α (rad) and of q (rad/s) that show whether the flight control feeds motion back."""
-_ROUNDING = 1e-9
+_SETTLED_RAD = 1e-7
+"""Change of the surface in one step, rad, below which filters between command and surface rest."""
+_LONGEST_SETTLING_STEPS = 600
+"""Most steps for which such filters are awaited: three seconds."""
 _SETTLE_STEPS = 3
 """Number of calls until all values follow: forces trail the state, and the rate of α trails the forces, by
 one call each."""
@@ -59,7 +62,8 @@ class JsbsimFlight:
 
     The elevator takes the model's own path from command to surface, with its actuator, where that path is one
     curve. Where the flight control feeds motion back, the surface itself is written, and actuator and flight
-    control are bypassed.
+    control are bypassed. Filters in the path rest only after some steps of frozen flight. A steady state is
+    sought with the surface written, and the filters settle before the flight begins.
 
     Raises
     ------
@@ -68,10 +72,14 @@ class JsbsimFlight:
     """
 
     def __init__(self, path: Path) -> None:
-        self.fdm: Any = load(path, STEP_S)
+        self.fdm: Any
+        self.fdm, self.foreign = load(path, STEP_S)
         self.name = path.stem
         self.engines = int(self.fdm.get_propulsion().get_num_engines())
         self._curve: tuple[FloatArray, FloatArray] | None = None
+        self._curves: dict[Condition, tuple[FloatArray, FloatArray] | None] = {}
+        self._settling = 0
+        self._resting = 0.0
         self.fdm["propulsion/fuel_freeze"] = 1.0
         self.fdm["gear/gear-cmd-norm"] = 0.0
         self._started = False
@@ -89,7 +97,10 @@ class JsbsimFlight:
             fdm["propulsion/set-running"] = -1
             self._started = True
         self._weigh(condition.mass_kg)
-        self._curve = self._elevator_curve(condition)
+        if condition not in self._curves:
+            self._curves[condition] = self._elevator_curve(condition)
+        self._curve = self._curves[condition]
+        self.fdm[WRITES] = float(self._writes)
 
     def freeze(self) -> None:
         """Hold position and velocity."""
@@ -99,6 +110,11 @@ class JsbsimFlight:
 
     def release(self) -> None:
         """Let the aircraft fly from the state that it was put into."""
+        if self._writes and self._curve is not None:
+            self._command(self._resting)
+            for _ in range(self._settling):
+                self.fdm.run()
+            self.fdm[WRITES] = 0.0
         for integrator, method in _INTEGRATORS.items():
             self.fdm[integrator] = method
         self.fdm.set_trim_status(False)
@@ -106,11 +122,21 @@ class JsbsimFlight:
 
     def elevator(self, surface: float) -> None:
         """Move the elevator to ``surface``, rad."""
-        if self._curve is None:
-            self.fdm[WRITTEN] = surface
+        if self.fdm[WRITES]:
+            self.fdm[WRITTEN] = self._resting = surface
         else:
-            surfaces, commands = self._curve
-            self.fdm["fcs/elevator-cmd-norm"] = float(np.interp(surface, surfaces, commands))
+            self._command(surface)
+
+    @property
+    def _writes(self) -> bool:
+        """Whether the surface is written in a steady state."""
+        return self._curve is None or self._settling > 0
+
+    def _command(self, surface: float) -> None:
+        """Give the command by which the surface comes to rest at ``surface``, rad."""
+        assert self._curve is not None
+        surfaces, commands = self._curve
+        self.fdm["fcs/elevator-cmd-norm"] = float(np.interp(surface, surfaces, commands))
 
     def throttle(self, setting: float) -> None:
         """Set all engines to ``setting``, 0 to 1."""
@@ -183,8 +209,7 @@ class JsbsimFlight:
                 f"No elevator command moves the surface fcs/elevator-pos-rad of JSBSim {self.name}.",
                 "Let the model's flight control and its aerodynamics use fcs/elevator-pos-rad.",
             )
-        if fed_back > _ROUNDING or turns.min() < 0.0 < turns.max():
-            fdm[WRITES] = 1.0
+        if fed_back > 10.0 * _SETTLED_RAD or turns.min() < 0.0 < turns.max():
             return None
         ascending, first = np.unique(surfaces, return_index=True)
         return ascending, _COMMANDS[first]
@@ -196,4 +221,11 @@ class JsbsimFlight:
         fdm["ic/q-rad_sec"] = q
         fdm["fcs/elevator-cmd-norm"] = command
         fdm.run_ic()
-        return float(fdm["fcs/elevator-pos-rad"])
+        now = float(fdm["fcs/elevator-pos-rad"])
+        for step in range(_LONGEST_SETTLING_STEPS):
+            fdm.run()
+            before, now = now, float(fdm["fcs/elevator-pos-rad"])
+            if abs(now - before) < _SETTLED_RAD:
+                self._settling = max(self._settling, step)
+                break
+        return now

@@ -9,10 +9,13 @@ import importlib.util
 import os
 import tempfile
 import xml.etree.ElementTree as ET
+from collections.abc import Sequence
+from contextlib import suppress
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
+from advisor.simulators.jsbsim_properties import foreign_properties
 from advisor.words.problems import ConfigurationError, UnusableInputError
 
 FORCE = "external_reactions/advisor-force"
@@ -51,8 +54,10 @@ def find_model(name: str) -> Path:
     return path
 
 
-def load(path: Path, dt: float) -> Any:
-    """Return JSBSim with the model, and its step set to ``dt`` seconds.
+def load(path: Path, dt: float) -> tuple[Any, tuple[str, ...]]:
+    """Return JSBSim with the model, and the properties of other programs that are 0 there.
+
+    ``dt`` is the step in seconds.
 
     Raises
     ------
@@ -69,9 +74,15 @@ def load(path: Path, dt: float) -> Any:
         str(folder if folder.is_dir() else root / folder.name) for folder in (own / "engine", own / "systems")
     )
     copy = Path(tempfile.mkdtemp()) / f"{path.stem}.xml"
-    _equipped(path).write(copy)
+    tree = _equipped(path)
+    foreign = foreign_properties(_files(tree, [path.parent, path.parent / "Systems", Path(systems)]))
+    tree.write(copy)
     fdm = jsbsim.FGFDMExec(str(root))
     fdm.set_debug_level(0)
+    # A lag or filter computes its coefficients from the step at the time of loading.
+    fdm.set_dt(dt)
+    for name in foreign:
+        fdm[name] = 0.0
     relative = os.path.relpath(copy.with_suffix(""), path.parent)
     try:
         loaded = fdm.load_model_with_paths(relative, str(path.parent), engines, systems, False)
@@ -79,8 +90,7 @@ def load(path: Path, dt: float) -> Any:
         raise _unloadable(path, " ".join(str(error).split())) from error
     if not loaded:
         raise _unloadable(path, "JSBSim does not load the file")
-    fdm.set_dt(dt)
-    return fdm
+    return fdm, foreign
 
 
 def _unloadable(path: Path, why: str) -> UnusableInputError:
@@ -107,6 +117,23 @@ def _equipped(path: Path) -> "ET.ElementTree[ET.Element]":
     _section(root, "flight_control", path.parent).extend(ET.fromstring(_CHANNEL))
     _section(root, "external_reactions").extend(ET.fromstring(_REACTIONS))
     return tree
+
+
+def _files(tree: "ET.ElementTree[ET.Element]", folders: Sequence[Path]) -> list[ET.Element]:
+    """Return the outermost elements of a model and of the systems that it includes, as far as they are
+    found."""
+    root = tree.getroot()
+    assert root is not None
+    found = [root]
+    for element in root.iter():
+        name = element.get("file", "").removesuffix(".xml")
+        file = (
+            next((f for folder in folders if (f := folder / f"{name}.xml").is_file()), None) if name else None
+        )
+        if file is not None and element.tag in ("system", "autopilot", "flight_control", "aerodynamics"):
+            with suppress(ET.ParseError):
+                found.append(ET.parse(file).getroot())
+    return found
 
 
 def _section(root: ET.Element, tag: str, folder: Path | None = None) -> ET.Element:

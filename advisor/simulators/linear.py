@@ -28,6 +28,7 @@ class LinearSimulator:
     """Reference speed of the derivatives, m/s; None means the speed that is flown."""
     description: str = "the aircraft file's model"
     takes_increments: bool = True
+    takes: frozenset[str] = frozenset()
     speed_limit_s: float = np.inf
 
     def replay(self, condition: Condition, inputs: Inputs, increments: Increments | None = None) -> Replay:

@@ -13,6 +13,10 @@ from typing import Protocol
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.signals.messages import FloatArray
 
+CONTROLS = ("aileron", "rudder", "throttle")
+"""Inputs next to the elevator: ``aileron`` (positive rolls left) and ``rudder`` (positive yaws left) in rad,
+``throttle`` from 0 to 1."""
+
 
 @dataclass(frozen=True, slots=True)
 class Condition:
@@ -21,7 +25,7 @@ class Condition:
     airspeed_m_s: float
     """True air speed, m/s."""
     height_m: float = 0.0
-    """Pressure altitude, m."""
+    """Height in the standard atmosphere at which the air has the density flown in, m."""
     flight_path_rad: float = 0.0
     mass_kg: float | None = None
     """Mass of the aircraft; None means the simulator's own."""
@@ -37,7 +41,7 @@ class Inputs:
     """Shape (n,). Surface deflection, rad, positive trailing edge down, mean over each step. The aircraft
     file's effects between command and surface are included."""
     others: Mapping[str, FloatArray] = field(default_factory=dict)
-    """Logged inputs of shape (n,): ``aileron`` and ``rudder`` in rad, ``throttle`` from 0 to 1."""
+    """Logged inputs of ``CONTROLS``, each of shape (n,). A simulator flies those that it takes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +56,9 @@ class State:
     elevator: float
     """Departure from trim, rad."""
     airspeed_m_s: float
+    """True air speed, m/s."""
     height_m: float
+    """Height in the standard atmosphere, m."""
     throttle: float
     """Departure from trim."""
 
@@ -79,9 +85,18 @@ class Replay:
     a_z: FloatArray
     """Specific force along body z at the centre of gravity, m/s², about -9.81 in level flight."""
     airspeed_m_s: FloatArray
+    """True air speed, m/s."""
     height_m: FloatArray
+    """Height in the standard atmosphere, m."""
     a_x: FloatArray | None = None
     """Specific force along body x, m/s²; None means that the motion determines it."""
+    bank: FloatArray | None = None
+    """Bank angle, rad; None means that the simulator flies in the vertical plane."""
+    r: FloatArray | None = None
+    """Yaw rate, rad/s; None means that of a coordinated turn."""
+    trim: Mapping[str, float] = field(default_factory=dict)
+    """Controls of the trimmed flight: ``elevator`` in rad and those of ``CONTROLS``, as far as they are
+    known."""
 
 
 class Simulator(Protocol):
@@ -100,6 +115,10 @@ class Simulator(Protocol):
     @property
     def takes_increments(self) -> bool:
         """Whether the simulator takes effects of the force and of the pitching moment."""
+
+    @property
+    def takes(self) -> frozenset[str]:
+        """Inputs of ``CONTROLS`` that the simulator flies, and ``mass`` where it flies at the flown mass."""
 
     @property
     def speed_limit_s(self) -> float:

@@ -5,7 +5,7 @@ from typing import Literal
 
 from advisor.session.view import View
 
-Word = Literal["CONTINUE", "REPEAT", "STOP TESTING", "RECOVER", "WAIT", "NO LINK", "NO DATA"]
+Word = Literal["CONTINUE", "REPEAT", "TEST COMPLETE", "RECOVER", "WAIT", "NO LINK", "NO DATA"]
 Tone = Literal["good", "warn", "bad", "quiet"]
 
 
@@ -25,6 +25,8 @@ def advise(view: View) -> Advice:
     Once the flight test says stop, no further data are needed.
     """
     state, verdict = view.state, view.state.flight_test
+    if view.health.condition == "stale":
+        return Advice("WAIT", view.health.sentence, "bad")
     if view.health.condition == "lost":
         return Advice("NO LINK", f"{view.health.sentence}{_another(view)}", "bad")
     if view.obstacles and verdict.decision != "stop":
@@ -32,7 +34,7 @@ def advise(view: View) -> Advice:
     if state.enough:
         return Advice("RECOVER", state.enough, "good")
     if verdict.decision == "stop":
-        return Advice("STOP TESTING", verdict.sentence, "good")
+        return Advice("TEST COMPLETE", verdict.sentence, "good")
     if state.vehicle is None:
         return Advice("WAIT", view.health.sentence, "quiet")
     if view.last and not view.last.verdict.accepted:

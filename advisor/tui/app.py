@@ -23,12 +23,15 @@ from advisor.tui import keys, link_actions, replay_actions
 from advisor.tui.explaining import commands, explanation
 from advisor.tui.garbage_collection import Garbage
 from advisor.tui.hand_actions import HandActions
+from advisor.tui.panes.flight import WholeFlightPane
+from advisor.tui.panes.replay_bar import ReplayBar
 from advisor.tui.screens.engineer import EngineerScreen
 from advisor.tui.screens.explain import Explain
 from advisor.tui.screens.face import Face
 from advisor.tui.screens.pilot import PilotScreen
 from advisor.tui.settings import Settings
 from advisor.tui.sheets import Sheets
+from advisor.tui.sound import Sound, Voice
 from advisor.tui.themes import NAMES, THEMES
 from advisor.words.problems import UnusableInputError
 
@@ -106,6 +109,9 @@ class AdvisorApp(replay_actions.ReplayActions, link_actions.LinkActions, HandAct
         """Newest report, while it waits."""
         self._garbage = Garbage()
         self._sheets = Sheets(THEMES)
+        self._voice = Voice()
+        self._sound = Sound(self.bell, self._speak)
+        self._sound.on = self.settings.sound
         for theme in THEMES:
             self.register_theme(theme)
         self.theme = self.settings.theme
@@ -177,6 +183,18 @@ class AdvisorApp(replay_actions.ReplayActions, link_actions.LinkActions, HandAct
             self.failure = event.worker.error
             self.exit()
 
+    def on_replay_bar_sought(self, event: ReplayBar.Sought) -> None:
+        """Go to the place on the bar that was clicked."""
+        self.seek(event.position_s)
+
+    def on_whole_flight_pane_sought(self, event: WholeFlightPane.Sought) -> None:
+        """Jump to the manoeuvre that is pointed at; on a link select it only."""
+        judged = next(
+            (j for j in self.view.state.maneuvers if event.at_s <= j.maneuver.span.end_s), self.view.last
+        )
+        if judged is not None and self.view.tempo is not None:
+            self._jump(judged.maneuver.number)
+
     def on_face_decided(self, event: Face.Decided) -> None:
         """Pass a decision to the campaign."""
         self.conductor.decide(event.decision)
@@ -184,6 +202,7 @@ class AdvisorApp(replay_actions.ReplayActions, link_actions.LinkActions, HandAct
     def show(self, view: View) -> None:
         """Show another moment on the screens."""
         self.view = view
+        self._sound.hear(view)
         for screen in self.screen_stack:
             if isinstance(screen, Face):
                 screen.show(self.view)
@@ -228,6 +247,16 @@ class AdvisorApp(replay_actions.ReplayActions, link_actions.LinkActions, HandAct
         theme = NAMES[(here + 1) % len(NAMES)]
         self.theme = theme
         self.say(f"theme: {theme}")
+
+    def _speak(self, text: str) -> None:
+        """Speak, unless the viewer sits at a browser: the voice would speak at the server."""
+        if not self.is_web:
+            self._voice(text)
+
+    def action_sound(self) -> None:
+        """Turn bell and voice off or on."""
+        self._sound.on = not self._sound.on
+        self.say(f"bell and voice: {'on' if self._sound.on else 'off'}")
 
     def action_explain(self) -> None:
         """Show the help on the focused pane."""

@@ -22,6 +22,8 @@ REPLAY: list[BindingType] = [
     _key("plus,equals_sign", "faster", "Faster", id="faster", show=True),
     _key("minus", "slower", "Slower", id="slower", show=True),
     _key("full_stop", "step", "Step", id="step", show=True),
+    _key("left_curly_bracket", "seek_by(-10)", "10 s back", id="back"),
+    _key("right_curly_bracket", "seek_by(10)", "10 s on", id="ahead"),
     _key("right_square_bracket", "jump_by(1)", "Next manoeuvre", id="next_maneuver"),
     _key("left_square_bracket", "jump_by(-1)", "Previous manoeuvre", id="previous_maneuver"),
 ]
@@ -31,6 +33,7 @@ SELDOM: list[BindingType] = [
     _key("m", "mark", "Mark", id="mark", show=True),
     _key("b", "begin_maneuver", "Begin manoeuvre", id="begin_maneuver", show=True),
     _key("f", "end_maneuver", "Finish manoeuvre", id="end_maneuver", show=True),
+    _key("k", "sound", "Bell and voice", id="sound"),
     _key("v", "follow_another", "Follow another vehicle", id="follow"),
     _key("a", "ask_for_outputs", "Ask for the elevator's output", id="outputs"),
     _key("g", "take_guess", "Take the guessed output", id="guess"),
@@ -49,6 +52,7 @@ PANES = (
     ("0", "correlation"),
     ("h", "history"),
     ("u", "flying qualities"),
+    ("i", "whole flight"),
 )
 """Key and name of each pane, in the order of their numbers."""
 

@@ -18,7 +18,7 @@ else:
     Base = object
 
 SPEEDS = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, inf)
-ACTIONS = ("pause", "step", "faster", "slower", "jump", "jump_by")
+ACTIONS = ("pause", "step", "faster", "slower", "jump", "jump_by", "seek_by")
 
 
 class ReplayActions(Base):
@@ -55,6 +55,17 @@ class ReplayActions(Base):
         """Go to the next manoeuvre, or back to the begin of the last one."""
         flown = len(self.view.state.maneuvers)
         self._jump(flown + step if step > 0 else flown)
+
+    def action_seek_by(self, seconds: int) -> None:
+        """Go some seconds on or back."""
+        playback = self.view.playback
+        if playback is not None:
+            self.seek(playback.position_s + seconds)
+
+    def seek(self, position_s: float) -> None:
+        """Go to a position of the replay, s. A position beyond an end is that end."""
+        duration_s = self.view.playback.duration_s if self.view.playback is not None else 0.0
+        self.conductor.seek(min(max(position_s, 0.0), duration_s))
 
     @abstractmethod
     def show(self, view: View) -> None:

@@ -25,6 +25,8 @@ class Settings:
     """``dark``, ``light`` (cockpit sun), ``high contrast`` or ``colour-blind safe``."""
     screen: Face = "pilot"
     """Screen at the start."""
+    sound: bool = True
+    """Whether a bell rings and the system's voice speaks at each verdict."""
     keys: Mapping[str, str] = field(default_factory=dict)
     """Action to its key, or to keys with commas between. ``?`` on a screen lists the actions."""
 
@@ -73,6 +75,8 @@ def _wrong(data: dict[str, Any]) -> list[str]:
     for key, allowed in (("theme", NAMES), ("screen", get_args(Face))):
         if key in data and data[key] not in allowed:
             mistakes.append(f"{key}: {data[key]!r} is none of {', '.join(allowed)}")
+    if not isinstance(data.get("sound", True), bool):
+        mistakes.append(f"sound: {data['sound']!r} is neither true nor false")
     keys = data.get("keys", {})
     if not isinstance(keys, dict):
         return [*mistakes, "keys: must map actions to keys, as in `keys: {quit: ctrl+q}`"]

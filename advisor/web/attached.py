@@ -3,6 +3,7 @@
 from multiprocessing.connection import Connection
 from threading import Event
 
+from advisor.process.liveness import OLD_AFTER_S
 from advisor.session.changes import Changes
 from advisor.session.conducting import SessionReport, Tell
 from advisor.session.hand import HandDecision
@@ -40,8 +41,13 @@ class AttachedConductor:
             The error that ended the campaign.
         """
         last: SessionReport | None = None
+        silent_s = 0.0
         while not self._stopped.is_set():
-            match self._hear():
+            news = self._hear()
+            silent_s = silent_s + LOOK_EVERY_S if news is None else 0.0
+            match news:
+                case None if silent_s >= OLD_AFTER_S and last and last.health.condition != "ended":
+                    tell(last.grown_old("SERVER", silent_s))
                 case SessionReport() as first:
                     tell(last := first)
                 case Changes() as changes if last is not None:
@@ -64,6 +70,10 @@ class AttachedConductor:
     def jump(self, number: int) -> None:
         """Play on to just before a manoeuvre, or play to it from the beginning."""
         self._ask("jump", number)
+
+    def seek(self, position_s: float) -> None:
+        """Play on to a position of the replay, s, or play to it from the beginning."""
+        self._ask("seek", position_s)
 
     def play(self, tempo: Tempo) -> None:
         """Pause a replay, continue it, or change its speed."""

@@ -1,6 +1,7 @@
 """The page that asks for the password, and the cookie of a browser."""
 
 import asyncio
+from collections import defaultdict
 
 from aiohttp import web
 
@@ -8,10 +9,28 @@ from advisor.web.access import Access
 from advisor.web.rendering import page
 
 AFTER_WRONG_S = 1.0
-"""Pause after a wrong password, s. Guesses are checked one after another, one a second."""
+"""Pause after a wrong password, s. The wrong guesses from one address wait one after another."""
 MOST_WAITING = 20
-"""Most guesses that may wait for their turn. Further ones are refused at once."""
+"""Most wrong guesses from one address that may wait. Further guesses from there are refused unseen, so that
+an address has one guess a second in the long run."""
 _BUSY = "Too many passwords are being tried at this moment. Try again in a minute."
+
+
+class _Turn:
+    """Pauses of the wrong guesses from one address, one after another."""
+
+    def __init__(self) -> None:
+        self._lock = asyncio.Lock()
+        self.waiting = 0
+
+    async def pause(self) -> None:
+        """Wait for the turn, and then for the pause."""
+        self.waiting += 1
+        try:
+            async with self._lock:
+                await asyncio.sleep(AFTER_WRONG_S)
+        finally:
+            self.waiting -= 1
 
 
 class Login:
@@ -25,28 +44,26 @@ class Login:
 
     def __init__(self, access: Access) -> None:
         self._access = access
-        self._turn = asyncio.Lock()
-        self._waiting = 0
+        self._turns: dict[str, _Turn] = defaultdict(_Turn)
 
     async def show(self, request: web.Request) -> web.Response:
         """Ask for the password."""
         return page("login", wrong=False)
 
     async def check(self, request: web.Request) -> web.Response:
-        """Let a browser with the right password in. A wrong password costs a second."""
+        """Let a browser with the right password in at once. A wrong password costs a second."""
         if not self._access.is_own_page(request.headers.get("Origin"), request.scheme, request.host):
             raise web.HTTPForbidden(text="This form belongs to another page.")
-        if self._waiting >= MOST_WAITING:
-            raise web.HTTPTooManyRequests(text=_BUSY)
         given = str((await request.post()).get("password", ""))
-        self._waiting += 1
-        try:
-            async with self._turn:
-                if not self._access.is_password(given):
-                    await asyncio.sleep(AFTER_WRONG_S)
-                    return page("login", status=403, wrong=True)
-        finally:
-            self._waiting -= 1
+        address = request.remote or ""
+        turn = self._turns[address]
+        if turn.waiting >= MOST_WAITING:
+            raise web.HTTPTooManyRequests(text=_BUSY)
+        if not self._access.is_password(given):
+            await turn.pause()
+            if not turn.waiting:
+                self._turns.pop(address, None)
+            return page("login", status=403, wrong=True)
         response = web.Response(status=303, headers={"Location": "/"})
         response.set_cookie(
             self._access.cookie,

@@ -2,7 +2,6 @@
 
 import asyncio
 import os
-import sys
 from asyncio.subprocess import PIPE, Process
 from contextlib import suppress
 
@@ -11,6 +10,7 @@ from textual_serve.app_service import AppService
 from textual_serve.download_manager import DownloadManager
 
 from advisor.mavlink.link.keeping import Door
+from advisor.process.children import python_module
 from advisor.web.viewing import ADDRESS, KEY
 
 
@@ -61,9 +61,7 @@ class PageProcess(AppService):
     async def _open_app_process(self, width: int = 80, height: int = 24) -> Process:
         environment = self._build_environment(width, height)
         self._process = await asyncio.create_subprocess_exec(
-            sys.executable,
-            "-m",
-            "advisor.web.viewer",
+            *python_module("advisor.web.viewer"),
             stdin=PIPE,
             stdout=PIPE,
             stderr=PIPE,

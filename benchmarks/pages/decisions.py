@@ -25,7 +25,9 @@ _FOLDERS = {
     "noise": "the noise of the flight",
     "search": "which effects are added",
     "uncatalogued": "what no effect of the catalogue explains",
-    "verdict": "the answer and its probabilities",
+    "evidence": "the evidence on every alternative",
+    "judge": "the probabilities of the alternatives",
+    "verdict": "the answer",
     "foresight": "what a planned flight could show",
     "simulator": "the simulator under diagnosis",
 }

@@ -13,10 +13,11 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.log_series import LogSeries
 from advisor.analysis.marks_file import write_by_hand
-from advisor.campaign.campaign import Campaign
+from advisor.campaign.campaign import Campaign, CampaignEvent
 from advisor.campaign.hand_decisions import ByHand, Remark
 from advisor.cli.group import main
 from advisor.flight.maneuvers.repeated_maneuver import are_one
+from advisor.flight.signals.messages import Columns
 from tests.flights import TWO, recorded
 from tests.mavlink.paths import Way, heard_over, records
 from tests.schemas import breaches
@@ -222,6 +223,23 @@ def test_a_log_that_cannot_serve_is_named_and_the_others_count(
     assert [p["code"] for p in document["problems"]] == ["not_a_tlog", "no_such_file"]
     assert "broken.tlog" in result.stderr
     assert "missing.tlog" in result.stderr
+
+
+def test_a_log_whose_messages_break_the_analysis_is_left_out_and_the_others_count(
+    first: Path, second: Path, run: Callable[..., Ended], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sound = Campaign.feed
+
+    def feed(campaign: Campaign, columns: list[Columns]) -> list[CampaignEvent]:
+        if columns[0].flight == 0:
+            raise ZeroDivisionError("two records with one stamp")
+        return sound(campaign, columns)
+
+    monkeypatch.setattr(Campaign, "feed", feed)
+    result = run("analyze", first, second, "--json")
+    assert result.exit_code == 0
+    assert len(result.document["maneuvers"]) > 0
+    assert "first.tlog: Its messages break the analysis (ZeroDivisionError" in result.stderr
 
 
 def test_when_no_log_can_serve_all_problems_are_told(tmp_path: Path, run: Callable[..., Ended]) -> None:

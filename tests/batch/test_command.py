@@ -3,16 +3,17 @@
 import json
 import resource
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import pyarrow.parquet as pq
 import pytest
 
 from advisor.aircraft.aircraft import PARAMETERS, Aircraft
-from advisor.batch.flight import Analyzed, BatchTask, kept, sha256_of
+from advisor.batch.flight import Analyzed, BatchTask, failed, kept, sha256_of
 from advisor.batch.logs import AircraftMap, find_logs, read_map
-from advisor.batch.tables import aircraft_of, mixed_up
-from advisor.words.problems import ConfigurationError, UnusableInputError
+from advisor.batch.tables import aircraft_of, is_whole, mixed_up
+from advisor.words.problems import ConfigurationError, Problem, UnusableInputError
 from sim.effects.fitting import flight_of
 from sim.record import record
 from sim.scenario import Noise, Scenario
@@ -34,6 +35,32 @@ def folder(tmp_path: Path) -> Path:
     (place / "empty.bin").write_bytes(b"")
     (place / "notes.txt").write_text("no log")
     return place
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"document": {"usable": True, "problems": []}},
+        {"document": []},
+        {"joint": {"theta": [1.0]}},
+        {"began_s": "yesterday"},
+    ],
+)
+def test_a_result_of_another_shape_is_no_result(change: dict[str, object]) -> None:
+    task = BatchTask(CASES / "t_base.tlog", Aircraft(), "", "0" * 64)
+    sound = failed(task, [Problem("no_vehicle", "No vehicle.", "Record one.")])
+    assert is_whole(sound)
+    assert not is_whole(replace(sound, **change))
+
+
+def test_a_stored_result_of_another_shape_is_computed_again(advisor: Advisor, tmp_path: Path) -> None:
+    log, out = SHIPPED / "arduplane-default-rates.tlog", tmp_path / "out"
+    advisor("batch", log, "-o", out, "--workers", 1)
+    (stored,) = (out / "flights").glob("*.json")
+    sound = stored.read_text()
+    stored.write_text(json.dumps({**json.loads(sound), "document": {"usable": True, "problems": []}}))
+    assert advisor("batch", log, "-o", out, "--workers", 1).returncode in (0, 3)
+    assert stored.read_text() == sound
 
 
 def test_rows_have_the_numbers_of_analyze_and_failures_their_reason(

@@ -119,5 +119,5 @@ def test_people_get_the_same_verdicts_as_text() -> None:
     result = CliRunner().invoke(advisor, words, standalone_mode=False, env={"COLUMNS": "100"})
     assert result.exception is None
     assert result.stdout.count("ACCEPTED:") + result.stdout.count("REPEAT:") == 4
-    assert "STOP TESTING" in result.stdout
+    assert "TEST COMPLETE" in result.stdout
     assert "M_δe" in result.stdout

@@ -127,6 +127,15 @@ def test_a_record_that_breaks_off_in_its_last_step_is_good_where_it_tells_enough
     assert judge_quality(cut, uncertain(estimated), AIRCRAFT)[0].code == "aborted"
 
 
+def test_a_record_that_the_advisor_itself_has_cut_is_not_laid_to_the_pilots_hands():
+    maneuver, estimated, _ = bad_flight()[0]
+    cut = cut_short(maneuver, 0.3, "gap")
+    assert judge_quality(cut, uncertain(estimated), AIRCRAFT)[0].code != "advisor_down"
+    (reason,) = judge_quality(replace(cut, missed_s=5.2), uncertain(estimated), AIRCRAFT)
+    assert reason.code == "advisor_down"
+    assert reason.text == "5.2 s are missing: the advisor was down; fly it again"
+
+
 def test_an_estimate_whose_damping_may_be_zero_needs_a_free_response():
     maneuver, estimated, _ = bad_flight()[0]
     covariance = estimated.covariance.copy()

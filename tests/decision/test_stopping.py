@@ -29,7 +29,7 @@ def test_three_agreeing_manoeuvres_stop_the_test() -> None:
     assert verdict.stopped_at == 3
     assert verdict.criterion_percent == pytest.approx(5.0 * np.sqrt(8.0))
     assert verdict.by_rule["continuous"].history_percent == (None, None, verdict.criterion_percent)
-    assert verdict.sentence.startswith("STOP TESTING: the last 3 accepted manoeuvres agree within 14 %")
+    assert verdict.sentence.startswith("TEST COMPLETE: the last 3 accepted manoeuvres agree within 14 %")
 
 
 def test_scattering_manoeuvres_continue_and_the_worst_parameter_is_named() -> None:

@@ -122,7 +122,7 @@ def test_a_jump_of_a_held_command_is_where_it_is_and_not_spread_over_the_grid(se
 
 def test_a_simulator_without_the_delay_pays_for_the_edges_it_shifts():
     problem, plain = fit_baseline(
-        prepare(fly(Setup(maneuvers=4, switches={"delay": 0.03}, seed=41)), Aircraft()), Aircraft()
+        prepare(fly(Setup(maneuvers=4, switches={"delay": 0.05}, seed=41)), Aircraft()), Aircraft()
     )
     delay = next(v for v in variants_for(problem.flights) if v.effect == "transport_delay")
     [late] = Screen(problem, plain).quick_fits([delay])

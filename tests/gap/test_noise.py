@@ -162,8 +162,8 @@ def gain_of_moving_air(late_s):
     flown = fly(Setup(maneuvers=5, gust_std=0.2, skew={"alpha": late_s}, seed=3))
     problem, plain = fit_baseline(prepare(flown, Aircraft()), Aircraft())
     skew = next(v for v in variants_for(problem.flights) if v.effect == "alpha_skew")
-    air = moving_air(problem, fit(problem, plain.point.with_effect(skew, (late_s,)), plain.noise, 20))
-    return 0.0 if air is None else air.gain
+    late = plain.point.with_effect(skew, (late_s,))
+    return moving_air(problem, fit(problem, late, plain.noise, 20)).gain
 
 
 def test_gusts_are_as_plain_to_a_vane_whose_stamps_are_late_or_early_as_to_any():

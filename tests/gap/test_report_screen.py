@@ -8,6 +8,7 @@ import pytest
 from rich.console import Console
 
 from advisor.flight.instruments.kinematics import KinematicCheck
+from advisor.gap.alternative import Contribution
 from advisor.gap.result import Cause, Diagnosis, Gap, Shrink, Trace, Unseen, Value, Where, Yardsticks
 from advisor.report.gap_causes import confusion_sentence
 from advisor.report.gap_screen import GapScreen
@@ -54,13 +55,24 @@ def diagnosis(**changes: object) -> Diagnosis:
     return Diagnosis(**{**content, **changes})  # type: ignore[arg-type]
 
 
-def printed(found: Diagnosis, columns: int) -> list[str]:
+def printed(found: Diagnosis, columns: int, why: bool = False) -> list[str]:
     """Return the screen as plain text, line by line."""
     out = io.StringIO()
     Console(file=out, width=columns, color_system=None, highlight=False).print(
-        GapScreen(found, "better.yaml")
+        GapScreen(found, "better.yaml", why)
     )
     return out.getvalue().splitlines()
+
+
+def test_why_sets_the_answer_against_its_rival_with_the_odds_of_the_sum():
+    reasons = (
+        Contribution("fit_gain", 2.0, "gain in the fit: 9 against 4"),
+        Contribution("rest", -0.5, "rest"),
+    )
+    lines = printed(diagnosis(why=reasons, rival="actuator_lag"), 100, why=True)
+    assert any("transport delay against actuator lag" in line for line in lines)
+    assert any("+2.0  gain in the fit: 9 against 4" in line for line in lines)
+    assert any("+1.5  together: 4.5 to 1 for the answer" in line for line in lines)
 
 
 @pytest.mark.parametrize("columns", [80, 140])
@@ -122,16 +134,16 @@ def test_the_interval_of_the_shrink_encloses_it_as_printed():
     assert line.startswith("99.9 % less (95 %: 99.9 to 99.9)")
 
 
-def test_the_error_says_that_its_size_is_shown_and_a_standard_deviation_that_it_is_one():
+def test_the_error_says_that_its_size_is_shown_and_an_interval_that_it_holds_95_percent():
     text = " ".join(printed(diagnosis(), 140))
     assert "the one with the largest gap (its size, no sign)" in text
-    assert text.count("±: one standard deviation") == 1
+    assert text.count("±: 95 %") == 1
 
 
 def test_a_cause_takes_a_line_with_its_size_in_units_people_use():
     (line,) = [line for line in printed(diagnosis(), 80) if "transport delay" in line and "93 %" in line]
     assert line.startswith("●")
-    assert "30 ± 6 ms" in line
+    assert "30 ± 12 ms" in line
     assert line.endswith("0.21")
 
 
@@ -184,17 +196,17 @@ def test_what_the_flight_could_not_show_takes_a_line_an_effect():
 @pytest.mark.parametrize(
     ("parameter", "value", "std", "text"),
     [
-        ("delay_s", 0.03035, 0.006, "30 ± 6 ms"),
-        ("lag_s", 0.10374, 0.0113, "104 ± 11 ms"),
-        ("half_width_rad", 0.00873, 0.00035, "0.50 ± 0.02 deg"),
-        ("bias_rad_s", -0.01553, 0.0023, "-0.89 ± 0.13 deg/s"),
-        ("scale", 0.117, 0.004, "+11.7 ± 0.4 %"),
-        ("arm_m", 0.31, 0.02, "0.31 ± 0.02 m"),
-        ("M_alpha3", -3891.0, 131.0, "-3890 ± 130 s⁻²rad⁻²"),
+        ("delay_s", 0.03035, 0.006, "30 ± 12 ms"),
+        ("lag_s", 0.10374, 0.0113, "104 ± 22 ms"),
+        ("half_width_rad", 0.00873, 0.00035, "0.500 ± 0.039 deg"),
+        ("bias_rad_s", -0.01553, 0.0023, "−0.89 ± 0.26 deg/s"),
+        ("scale", 0.117, 0.004, "+11.70 ± 0.78 %"),
+        ("arm_m", 0.31, 0.02, "0.310 ± 0.039 m"),
+        ("M_alpha3", -3891.0, 131.0, "−3891 ± 257 s⁻²rad⁻²"),
         ("at_s", 327.0, 0.0, "327 s"),
     ],
 )
-def test_sizes_have_units_and_no_more_digits_than_their_error_allows(parameter, value, std, text):
+def test_sizes_have_units_and_the_digits_of_their_interval(parameter, value, std, text):
     assert with_error(parameter, Value(value, std)) == text
 
 
@@ -205,7 +217,7 @@ def test_several_sizes_of_one_cause_are_named():
 def test_a_parameter_that_only_says_that_something_is_so_is_put_in_words():
     sizes = {"skew_s": Value(0.06, 0.002), "with_pitch_rate": Value(1.0, 0.0)}
     late = Cause("attitude_skew", "timing", 0.9, sizes, (), "", 0.1)
-    assert sizes_of(late) == ["+60 ± 2 ms", "the pitch rate, too"]
+    assert sizes_of(late) == ["+60.0 ± 3.9 ms", "the pitch rate, too"]
 
 
 @pytest.mark.parametrize(

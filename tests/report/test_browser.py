@@ -5,11 +5,14 @@ import json
 import re
 import shutil
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from advisor.report.page.content import Content
+from advisor.report.page.render import page
 from tests.report.conftest import Reported
 
 BROWSER = shutil.which("chromium") or shutil.which("chromium-browser")
@@ -78,4 +81,41 @@ def test_the_page_asks_for_nothing_and_overflows_nowhere(reported: Reported, tmp
         assert one["cut"] == []
         assert one["figures"] > 10
         assert one["least_height"] > 60.0
-    assert [one["seen"] for one in seen] == [["broad"], ["narrow"]]
+    assert [set(one["seen"]) for one in seen] == [{"broad"}, {"narrow"}]
+
+
+def printed_pages(page: str, folder: Path) -> int:
+    """Count the pages that a browser prints on A4."""
+    assert BROWSER is not None
+    (folder / "page.html").write_text(page, encoding="utf-8")
+    words = [
+        BROWSER, "--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking",
+        f"--user-data-dir={folder / 'profile'}", "--no-pdf-header-footer",
+        f"--print-to-pdf={folder / 'page.pdf'}", (folder / "page.html").as_uri(),
+    ]  # fmt: skip
+    subprocess.run(words, capture_output=True, check=True, timeout=60)
+    return len(re.findall(rb"/Type\s*/Page[^s]", (folder / "page.pdf").read_bytes()))
+
+
+def repeated(content: Content, count: int) -> Content:
+    """The flight with its manoeuvres flown again until there are so many."""
+    judged, written = content.state.maneuvers, content.analysis["maneuvers"]
+    again = [judged[k % len(judged)] for k in range(count)]
+    numbered = [
+        replace(one, maneuver=replace(one.maneuver, number=k)) for k, one in enumerate(again, start=1)
+    ]
+    maneuvers = [{**written[k % len(written)], "number": k + 1} for k in range(count)]
+    verdict = content.analysis["flight_test"]
+    by_rule = {
+        rule: {**one, "history_percent": (list(one["history_percent"]) * count)[:count]}
+        for rule, one in verdict["by_rule"].items()
+    }
+    analysis = {
+        **content.analysis, "maneuvers": maneuvers, "flight_test": {**verdict, "by_rule": by_rule}
+    }  # fmt: skip
+    return replace(content, analysis=analysis, state=replace(content.state, maneuvers=tuple(numbered)))
+
+
+@pytest.mark.skipif(BROWSER is None, reason="Debian's chromium is not installed")
+def test_thirty_manoeuvres_print_on_at_most_twelve_pages(reported: Reported, tmp_path: Path) -> None:
+    assert printed_pages(page(repeated(reported.content, 30), "html"), tmp_path) <= 12

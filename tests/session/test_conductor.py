@@ -215,3 +215,39 @@ def test_cutting_the_stream_differently_feeds_the_same():
         flight.run()
         fed.append(flight.campaigns[0].fed)
     assert fed[0] == fed[1] == fed[2]
+
+
+def test_a_replay_hurries_through_the_time_before_its_data_and_no_further() -> None:
+    waits: list[float] = []
+    player = LogPlayer("x", log, 1.0, lambda changed, seconds: waits.append(seconds))
+    waited_at_begin: list[int] = []
+
+    class LateCampaign(CountingCampaign):
+        @property
+        def state(self) -> CampaignState:
+            begun = len(self.fed) >= A_MANEUVER
+            if begun and not waited_at_begin:
+                waited_at_begin.append(len(waits))
+            return replace(super().state, serves=begun)
+
+    conductor = Conductor(player, LateCampaign)
+    conductor.run(lambda report: conductor.stop() if len(waits) > 3 else None)
+    assert waited_at_begin == [0]
+
+
+def test_going_back_some_seconds_starts_a_new_campaign_and_stops_there():
+    flight = Flown(speed=2.0)
+    flight.when(over, lambda: flight.conductor.seek(12.0))
+    flight.run(campaigns=2)
+    before = next(k for k, report in enumerate(flight.reports) if over(report))
+    landed = next(r for r in flight.reports[before:] if not over(r) and not r.playback.hurrying)
+    assert 12.0 <= landed.playback.position_s <= 12.6
+
+
+def test_going_on_some_seconds_keeps_the_campaign():
+    flight = Flown(speed=1.0)
+    flight.when(always, lambda: flight.conductor.seek(20.0))
+    flight.run()
+    landed = next(r for r in flight.reports if not r.playback.hurrying and r.playback.position_s >= 20.0)
+    assert landed.playback.position_s <= 20.6
+    assert len(flight.campaigns) == 1

@@ -1,11 +1,16 @@
 """Simulators that other processes build: one that flies, and some that do what foreign code does."""
 
 import os
+import subprocess
+import sys
 import time
 from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
+from advisor.simulators.isolated import MOST_MEMORY_BYTES
 from advisor.simulators.protocol import Condition, Increments, Inputs, Replay, State
 from advisor.words.problems import UnusableInputError
 
@@ -17,6 +22,7 @@ class Level:
 
     description = "level"
     takes_increments = True
+    takes = frozenset({"throttle"})
     speed_limit_s = 5.0
 
     def replay(self, condition: Condition, inputs: Inputs, increments: Increments | None = None) -> Replay:
@@ -39,6 +45,14 @@ class Level:
 
     def close(self) -> None:
         pass
+
+
+class Trimmed(Level):
+    """Says at which controls it is trimmed."""
+
+    def replay(self, condition: Condition, inputs: Inputs, increments: Increments | None = None) -> Replay:
+        flown = super().replay(condition, inputs, increments)
+        return replace(flown, trim={"elevator": -0.02, "throttle": 0.4})
 
 
 class Constant:
@@ -81,6 +95,12 @@ class Faulty(Level):
             raise UnusableInputError("simulator_trim", "No trim.", "Fly faster.")
         if self._fault == "nan":
             flown.q[3] = np.nan
+        if self._fault == "devour":
+            np.ones(MOST_MEMORY_BYTES // 8)
+        if self._fault.startswith("helper"):
+            helper = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(3600)"])
+            Path(self._fault.partition(":")[2]).write_text(str(helper.pid))
+            time.sleep(3600.0)
         if self._fault == "print":
             os.write(1, b"noise\n")
             print("more noise", flush=True)

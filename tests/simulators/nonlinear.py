@@ -21,6 +21,7 @@ NOISE = {
     "a_x": 0.08,
     "airspeed": 0.1,
     "height": 0.3,
+    "altitude": 0.3,
 }
 
 
@@ -31,6 +32,7 @@ class Nonlinear:
     lag_s: float = 0.0
     delay_s: float = 0.0
     takes_increments: bool = True
+    takes: frozenset[str] = frozenset()
     description: str = "the test's simulator"
     speed_limit_s: float = 20.0
 
@@ -79,6 +81,11 @@ def make() -> Nonlinear:
     return Nonlinear()
 
 
+def make_slow() -> Nonlinear:
+    """Make the simulator with a servo that lags by a tenth of a second."""
+    return Nonlinear(lag_s=0.1)
+
+
 def _lagging(y: FloatArray, lag_s: float) -> FloatArray:
     out, keep = y.copy(), np.exp(-STEP_S / lag_s) if lag_s > 0.0 else 0.0
     for i in range(1, len(y)):
@@ -112,6 +119,7 @@ def _recorded(aircraft: Nonlinear, number: int, reads: Callable[[str, FloatArray
     series = {
         "alpha": motion.alpha, "q": motion.q, "theta": motion.theta, "a_z": motion.a_z,
         "a_x": motion.a_x, "airspeed": motion.airspeed_m_s, "height": motion.height_m,
+        "altitude": motion.height_m,
     }  # fmt: skip
     channels = {"elevator": Channel("elevator", zero + t, command, "SERVO", "commanded")}
     for name, y in series.items():

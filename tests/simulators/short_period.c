@@ -2,6 +2,7 @@
 
    alpha' = q + g/V - L V (alpha + c delta) + force
    q'     = V^2 (m0 + ma alpha + md delta) + mq V q + moment
+   With LAG defined the surface follows the command with that time constant in s.
    With FAULT defined a step crashes (1), hangs (2) or is refused (3) after 0.05 s. */
 #include <stdlib.h>
 #ifdef FMI3
@@ -27,6 +28,7 @@ static const double G = 9.80665, L = 0.04, C = 0.1, M0 = 0.0004, MA = -0.01, MD 
 
 typedef struct {
     double value[COUNT];
+    double surface;
 } Model;
 
 static Model *make(void) {
@@ -39,12 +41,13 @@ static Model *make(void) {
 
 static void outputs(Model *m) {
     double *v = m->value;
-    v[LOAD_FACTOR] = L * v[V] * v[V] * (v[ALPHA] + C * v[DELTA]) / G;
+    v[LOAD_FACTOR] = L * v[V] * v[V] * (v[ALPHA] + C * m->surface) / G;
 }
 
 static void start(Model *m) {
     m->value[ALPHA] = m->value[ALPHA_START];
     m->value[THETA] = m->value[THETA_START];
+    m->surface = m->value[DELTA];
     outputs(m);
 }
 
@@ -60,9 +63,14 @@ static STATUS fly(Model *m, double t, double width) {
 #endif
     (void)t;
     for (i = 0; i < n; i++) {
-        double dt = width / n;
-        double alpha_dot = v[Q] + G / v[V] - L * v[V] * (v[ALPHA] + C * v[DELTA]) + v[FORCE];
-        double q_dot = v[V] * v[V] * (M0 + MA * v[ALPHA] + MD * v[DELTA]) + MQ * v[V] * v[Q] + v[MOMENT];
+        double dt = width / n, alpha_dot, q_dot;
+#ifdef LAG
+        m->surface += dt * (v[DELTA] - m->surface) / LAG;
+#else
+        m->surface = v[DELTA];
+#endif
+        alpha_dot = v[Q] + G / v[V] - L * v[V] * (v[ALPHA] + C * m->surface) + v[FORCE];
+        q_dot = v[V] * v[V] * (M0 + MA * v[ALPHA] + MD * m->surface) + MQ * v[V] * v[Q] + v[MOMENT];
         v[THETA] += dt * v[Q];
         v[ALPHA] += dt * alpha_dot;
         v[Q] += dt * q_dot;

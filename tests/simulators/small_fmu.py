@@ -15,12 +15,15 @@ INPUTS, PARAMETERS = NAMES[:3], NAMES[3:7]
 STARTS = {"V": 30.0, "h": 500.0, "delta_e": -0.11}
 
 
-def build(folder: Path, fmi: int, fault: int | None = None, platform: str | None = None) -> Path:
+def build(
+    folder: Path, fmi: int, fault: int | None = None, platform: str | None = None, lag_s: float | None = None
+) -> Path:
     """Return an FMU in ``folder``; ``platform`` names another folder of binaries than this computer's."""
     library = folder / f"ShortPeriod{fmpy.sharedLibraryExtension}"
     source, rest = HERE / "short_period.c", folder / "rest.c"
     rest.write_text(_rest(fmi, source.read_text()))
     flags = [*(["-DFMI3"] if fmi == 3 else []), *([] if fault is None else [f"-DFAULT={fault}"])]
+    flags += [] if lag_s is None else [f"-DLAG={lag_s}"]
     subprocess.run(
         ["cc", "-shared", "-fPIC", "-O1", *flags, f"-I{HEADERS}", source, rest, "-o", library], check=True
     )

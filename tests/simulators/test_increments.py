@@ -15,6 +15,7 @@ from advisor.simulators.surrogate import Surrogate
 from tests.simulators.nonlinear import flown
 
 MODEL = dict(zip(DERIVATIVES, (-2.7, 0.02, -0.15, -23.0, -3.4, -29.0), strict=True))
+HEIGHTS, NO_CONTROLS = {1: 300.0, 2: 300.0}, {1: {}, 2: {}}
 
 
 @pytest.mark.parametrize(
@@ -40,7 +41,7 @@ MODEL = dict(zip(DERIVATIVES, (-2.7, 0.02, -0.15, -23.0, -3.4, -29.0), strict=Tr
 def test_an_effect_added_to_the_linear_simulator_is_that_of_the_diagnosis(changes):
     flights = prepare(flown(maneuvers=2), Aircraft())
     simulator = LinearSimulator(MODEL, flights.reference_m_s)
-    flying = Flying(simulator, flights, None, lambda *_: None)
+    flying = Flying(simulator, flights, HEIGHTS, NO_CONTROLS, None, lambda *_: None)
     p = np.zeros((len(flights), len(ENTRIES)))
     p[:, : len(MODEL)] = list(MODEL.values())
     as_given = p[0, : len(MODEL)].copy()
@@ -57,7 +58,9 @@ def test_an_effect_added_to_the_linear_simulator_is_that_of_the_diagnosis(change
 
 def test_without_an_effect_the_linear_simulator_and_its_surrogate_are_one():
     flights = prepare(flown(maneuvers=2), Aircraft())
-    flying = Flying(LinearSimulator(MODEL, flights.reference_m_s), flights, None, lambda *_: None)
+    flying = Flying(
+        LinearSimulator(MODEL, flights.reference_m_s), flights, HEIGHTS, NO_CONTROLS, None, lambda *_: None
+    )
     p = np.zeros((len(flights), len(ENTRIES)))
     p[:, : len(MODEL)] = list(MODEL.values())
     assert np.max(np.abs(beyond(flying, flying.replays(p, held=False), p))) < 1e-9

@@ -11,6 +11,7 @@ import pytest
 from advisor.simulators.isolated import Isolated
 from advisor.simulators.protocol import Condition, Inputs
 from advisor.words.problems import ConfigurationError, UnusableInputError
+from tests.mavlink.link.builders import wait_until
 from tests.simulators.makeshift import Constant
 
 HERE = "tests.simulators.makeshift"
@@ -51,6 +52,20 @@ def test_a_hang_is_ended_at_the_time_limit_and_the_process_with_it() -> None:
     assert str(complaint(simulator)).startswith("makeshift does not finish a replay within 0.5 s.")
     with pytest.raises(ProcessLookupError):
         os.kill(process, 0)
+
+
+def test_what_a_simulator_has_started_ends_with_it(tmp_path: Path) -> None:
+    note = tmp_path / "pid"
+    simulator = faulty(f"helper:{note}", limit_s=2.0)
+    complaint(simulator)
+    helper = Path(f"/proc/{note.read_text()}/stat")
+    wait_until(lambda: not helper.exists() or helper.read_text().rpartition(")")[2].split()[0] == "Z")
+
+
+@pytest.mark.skipif(os.name != "posix", reason="the system knows no limit of a process's memory")
+def test_a_simulator_that_asks_for_too_much_memory_fails_alone() -> None:
+    assert "makeshift fails in a replay: " in str(told := complaint(faulty("devour")))
+    assert "MemoryError" in str(told)
 
 
 def test_a_crash_is_told_with_its_signal() -> None:

@@ -2,6 +2,7 @@
 
 import re
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ from advisor.simulators.jsbsim_model import find_model
 from advisor.simulators.protocol import Condition, Inputs
 from advisor.words.problems import ConfigurationError, UnusableInputError
 from sim.jsbsim_aircraft import JsbsimAircraft
+from sim.motion import HOME_HEIGHT_M
 from tests.simulators.makeshift import Damping
 
 T = 0.005 * (np.arange(400) + 0.5)
@@ -33,7 +35,8 @@ def test_the_bundled_simulators_coding_of_jsbsim_flies_the_same(model: str, cond
     flown = [other.motion()]
     flown += [other.step(trim._replace(elevator=trim.elevator + now), dt) for now in moved[1:]]
     middles = 0.005 * (np.arange(round(seconds / 0.005)) + 0.5)
-    ours = Jsbsim(find_model(model)).replay(condition, Inputs(middles, np.interp(middles, t, moved)))
+    high = replace(condition, height_m=condition.height_m + HOME_HEIGHT_M)
+    ours = Jsbsim(find_model(model)).replay(high, Inputs(middles, np.interp(middles, t, moved)))
     q = np.interp(t, ours.t, ours.q) - np.array([one.q for one in flown])
     alpha = np.interp(t, ours.t, ours.alpha) - np.array([one.alpha for one in flown])
     assert np.std(q) < 0.02 * np.std(ours.q)
@@ -124,6 +127,42 @@ def test_a_file_that_is_no_model_is_one_sentence(tmp_path: Path, content: bytes,
 def test_a_path_that_is_no_file_is_one_sentence(tmp_path: Path) -> None:
     with pytest.raises(ConfigurationError, match="is no file: give the path of the model's XML"):
         make_jsbsim(str(tmp_path / "none.xml"), Aircraft())
+
+
+@pytest.mark.parametrize(
+    ("before", "added"),
+    [
+        (
+            '<axis name="LIFT">',
+            '<axis name="LIFT"><function name="aero/x"><product><property>systems/flaps/power</property>'
+            "<property>aero/qbar-psf</property></product></function>",
+        ),
+        (
+            '<channel name="Pitch">',
+            '<channel name="Pitch"><switch name="fcs/zz"><default value="0"/>'
+            '<test value="1">/sim/time/elapsed-sec gt 1</test></switch>',
+        ),
+    ],
+    ids=["in a function", "in a test"],
+)
+def test_properties_that_flightgear_writes_are_0_and_said(tmp_path: Path, before: str, added: str) -> None:
+    path = tmp_path / "mine.xml"
+    path.write_text(find_model("c172p").read_text().replace(before, added, 1))
+    apart = make_jsbsim(str(path), Aircraft())
+    try:
+        flown = apart.replay(LEVEL, step(0.01))
+    finally:
+        apart.close()
+    name = "systems/flaps/power" if "power" in added else "/sim/time/elapsed-sec"
+    assert apart.notes == (
+        f"The JSBSim model reads properties that FlightGear writes, and they are 0 here: {name}.",
+    )
+    assert flown.q.tolist() == Jsbsim(find_model("c172p")).replay(LEVEL, step(0.01)).q.tolist()
+
+
+def test_shipped_models_read_no_foreign_property_that_they_write_themselves() -> None:
+    for model in ("c172p", "c172x", "737", "f16"):
+        assert Jsbsim(find_model(model)).notes == ()
 
 
 def test_a_models_own_output_writes_no_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,7 +1,9 @@
 """What the tests let run in a process of its own, where it must be found by its name."""
 
 import os
+import signal
 import time
+from collections.abc import Sequence
 from dataclasses import replace
 from math import inf
 from pathlib import Path
@@ -89,6 +91,23 @@ def polite() -> HandFedSource:
     source = talking()
     source.condition = LinkHealth("good", str(os.nice(0)))
     return source
+
+
+class Stopping(HandFedSource):
+    """Stops its own process, like a debugger or a full memory does, in the first process that reads it."""
+
+    def __init__(self, note: Path) -> None:
+        super().__init__()
+        self._note = note
+        self.deliver()
+
+    def read(self, timeout_s: float) -> Sequence[Columns] | None:
+        """Read, or hang."""
+        if self.batches.empty() and not self._note.exists():
+            self._note.touch()
+            time.sleep(0.3)
+            os.kill(os.getpid(), signal.SIGSTOP)
+        return super().read(timeout_s)
 
 
 def unusable() -> HandFedSource:

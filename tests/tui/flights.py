@@ -7,6 +7,8 @@ from numpy.typing import NDArray
 
 from advisor.aircraft.aircraft import PARAMETERS, Aircraft, CampaignPlan
 from advisor.campaign.state import CampaignState, ChannelStatus, JudgedManeuver
+from advisor.campaign.whole_flight import WholeFlight
+from advisor.decision.inputs import StepInput
 from advisor.decision.verdict import (
     FlightTestVerdict,
     ManeuverVerdict,
@@ -17,6 +19,7 @@ from advisor.decision.verdict import (
     RuleResult,
 )
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
+from advisor.flight.signals.extremes import Course
 from advisor.flight.signals.record import Channel
 from advisor.flight.vehicle.vehicle import Vehicle
 from advisor.oem.estimate import ChannelFit, Estimate, NoEstimate
@@ -151,19 +154,26 @@ def state(flown: int = 7, bad: tuple[int, ...] = (2,), in_the_air: bool = False)
             "separate": RuleProgress(None, tuple(v and 1.4 * v for v in history)),
             "information": RuleProgress(None, tuple(v and 4.0 * v for v in history), 100.0),
         },
-        next=NextInput("next: reverse 3-2-1-1, 0.4 s steps, 60 % stick", Remaining(2, 4), "Z_delta_e"),
+        next=NextInput(
+            "next: reverse 3-2-1-1, 0.4 s steps, 60 % stick",
+            Remaining(2, 4),
+            "Z_delta_e",
+            StepInput("3-2-1-1", 0.4, np.radians(15.0), nose_up_first=False),
+            np.radians(25.0),
+        ),
         warnings=("Z_q is near zero: the criterion of Eq. (12) cannot fall for it.",),
     )
     flying = _in_the_air(flown + 1) if in_the_air else None
     channels = {
-        name: ChannelStatus(source, provenance, rate, 0.06, now_s)
-        for name, source, provenance, rate in (
-            ("elevator", "SERVO_OUTPUT_RAW.servo2_raw", "commanded", 49.8),
-            ("alpha", "AOA_SSA.AOA", "derived", 20.0),
-            ("q", "ATTITUDE.pitchspeed", "measured", 50.0),
-            ("theta", "ATTITUDE.pitch", "measured", 50.0),
-            ("a_z", "RAW_IMU.zacc", "measured", 50.0),
-            ("airspeed", "VFR_HUD.airspeed", "measured", 10.0),
+        name: ChannelStatus(source, provenance, rate, 0.06, now_s, newest=newest)
+        for name, source, provenance, rate, newest in (
+            ("elevator", "SERVO_OUTPUT_RAW.servo2_raw", "commanded", 49.8, 0.01),
+            ("alpha", "AOA_SSA.AOA", "derived", 20.0, 0.05),
+            ("q", "ATTITUDE.pitchspeed", "measured", 50.0, 0.0),
+            ("theta", "ATTITUDE.pitch", "measured", 50.0, 0.05),
+            ("bank", "ATTITUDE.roll", "measured", 50.0, 0.07),
+            ("a_z", "RAW_IMU.zacc", "measured", 50.0, -9.8),
+            ("airspeed", "VFR_HUD.airspeed", "measured", 10.0, 25.9),
         )
     }
     notices = tuple(
@@ -182,8 +192,21 @@ def state(flown: int = 7, bad: tuple[int, ...] = (2,), in_the_air: bool = False)
         flying=flying,
         settling=judged(flown + 1).estimate if flying else None,  # type: ignore[arg-type]
         readable=flying is not None,
+        whole_flight=_whole(maneuvers, now_s),
         notices=("      –  following ardupilot 1/1", *notices),
     )
+
+
+def _whole(maneuvers: tuple[JudgedManeuver, ...], now_s: float) -> WholeFlight:
+    """The flight as one picture: every channel at rest but for the manoeuvres."""
+    t = np.arange(40.0, now_s, 0.5)
+    busy = np.zeros(len(t))
+    for judged in maneuvers:
+        span = judged.maneuver.span
+        busy[(t >= span.start_s) & (t < span.end_s)] = 0.1
+    courses = {name: Course(t, -busy, busy) for name in ("elevator", "alpha", "q")}
+    courses["airspeed"] = Course(t, 26.0 - busy, 26.0 + busy)
+    return WholeFlight(courses, ((40.0, "FBWA"), (80.0, "MANUAL")))
 
 
 def _in_the_air(number: int) -> Maneuver:

@@ -34,8 +34,8 @@ async def test_the_table_shows_each_manoeuvre_with_what_every_rule_says():
     async with stage(flights.state(4), settings=ENGINEER, size=(80, 24)) as here:
         await filled(here, 4)
         rows = table(here, "Maneuvers")
-        assert rows[0][:4] == ["1", "1:45.0", "3-2-1-1", "✓ GOOD"]
-        assert (rows[1][3], rows[1][5]) == ("✗ REPEAT", "amplitude, bank")
+        assert rows[0][:4] == ["1", "1:45.0", "3-2-1-1", "✓ ACCEPTED"]
+        assert (rows[1][3], rows[1][5]) == ("✗ REJECTED", "amplitude, bank")
         assert rows[3][4] == "✓✗✓"
 
 

@@ -4,11 +4,16 @@ from dataclasses import replace
 
 import pytest
 
+from advisor.decision.inputs import StepInput
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.session.source import LinkHealth
 from advisor.session.view import View
 from advisor.tui.advice import advise
 from advisor.tui.panes.big_word import BigWord
+from advisor.tui.panes.gauge import how_far
+from advisor.tui.panes.last_verdict import for_the_pilot
+from advisor.tui.panes.limits_now import limits_now
+from advisor.tui.stick_drawing import stick_drawing, stick_line
 from advisor.words.problems import Problem
 from tests.tui import flights
 from tests.tui.stage import stage
@@ -28,7 +33,7 @@ def view(state=None, health: LinkHealth = GOOD) -> View:
         (flights.state(0), "CONTINUE"),
         (flights.state(3), "CONTINUE"),
         (flights.state(3, bad=(3,)), "REPEAT"),
-        (flights.state(7), "STOP TESTING"),
+        (flights.state(7), "TEST COMPLETE"),
         (replace(flights.state(3), enough="Enough: recover."), "RECOVER"),
         (replace(flights.state(0), vehicle=None), "WAIT"),
     ],
@@ -52,7 +57,7 @@ def test_data_that_cannot_serve_are_told_at_any_time_with_their_mend(flown: int)
 
 
 def test_after_the_stop_no_data_are_wanted():
-    assert advise(view(replace(flights.state(7), no_data=(SLOW,)))).word == "STOP TESTING"
+    assert advise(view(replace(flights.state(7), no_data=(SLOW,)))).word == "TEST COMPLETE"
 
 
 REVERSED = InstrumentFinding(
@@ -70,11 +75,11 @@ def test_a_contradicted_instrument_asks_for_its_mend_and_not_for_another_manoeuv
     assert (advice.word, advice.sentence) == ("NO DATA", "Alpha has the wrong sense. Mend: turn the vane.")
 
 
-async def test_both_screens_say_the_same_of_the_instruments():
+async def test_the_pilot_sees_what_stops_the_test_and_the_engineer_every_instrument():
     async with stage(replace(flights.state(3), instruments=(IN_COUNTS, REVERSED))) as here:
         await here.until(lambda: here.app.screen.query_one(BigWord).word == "NO DATA")
         assert "Alpha has the wrong sense." in here.page()
-        assert "A_z is in counts" in here.page()
+        assert "! 2 warnings for the engineer" in here.page()
         await here.press("e", "7")
         await here.until(lambda: "! Alpha has the wrong sense." in here.words("Channels Lines"))
         assert "! A_z is in counts." in here.words("Channels Lines")
@@ -104,14 +109,14 @@ async def test_the_last_verdict_is_symbol_and_word_and_sentence():
 
 async def test_the_screen_tells_all_a_pilot_needs():
     async with stage(flights.state(5)) as here:
-        await here.until(lambda: "31 %" in here.words())
+        await here.until(lambda: "accepted of 5" in here.words())
         for said in (
-            "✓ ✗ ✓ ✓ ✓   4 good of 5; about 2 more, 9 times in 10 at most 4",
-            "above the limit 25 %",
-            "reverse 3-2-1-1, 0.4 s steps, 60 % stick",
-            "derived, from AOA_SSA.AOA, 20 Hz",
+            "✓ ✗ ✓ ✓ ✓   4 accepted of 5",
+            "about 2 more, 9 times in 10 at most 4",
+            "reverse 3-2-1-1, 0.4 s steps, 60 % stick, ±15.0 deg of elevator",
+            "✓ bank 4 deg (≤ 30)    ✓ V 26 m/s (22 to 30)    α 3 deg",
             "✓ link good",
-            "! Z_q is near zero",
+            "! 1 warning for the engineer",
         ):
             assert said in here.words()
 
@@ -121,13 +126,13 @@ async def test_a_new_verdict_changes_the_word():
     async with stage(flights.state(6), flights.state(7), source=source) as here:
         await here.until(lambda: here.app.screen.query_one(BigWord).word == "CONTINUE")
         source.deliver()
-        await here.until(lambda: here.app.screen.query_one(BigWord).word == "STOP TESTING")
+        await here.until(lambda: here.app.screen.query_one(BigWord).word == "TEST COMPLETE")
 
 
 async def test_nothing_is_repainted_while_nothing_matters():
     source = HandFedSource()
     async with stage(flights.state(5), source=source) as here:
-        await here.until(lambda: "31 %" in here.words())
+        await here.until(lambda: "accepted of 5" in here.words())
         painted: list[str] = []
         for widget in here.app.screen.query("*"):
             widget.refresh = lambda *a, w=widget, **k: painted.append(type(w).__name__) or w  # type: ignore[method-assign]
@@ -144,16 +149,46 @@ async def test_before_the_first_heartbeat_the_screen_says_what_it_waits_for():
     async with stage(nothing, source=source) as here:
         await here.until(lambda: "check that it sends to this address" in here.words("Why"))
         assert here.app.screen.query_one(BigWord).word == "WAIT"
-        assert "no angle of attack heard yet" in here.words()
+        assert "bank, air speed and angle of attack are not received" in here.words()
 
 
-async def test_the_estimate_is_seen_to_settle_while_the_manoeuvre_is_flown():
+async def test_the_pilot_sees_how_long_the_manoeuvre_lasts_and_no_number_of_the_engineer():
     async with stage(flights.state(3, in_the_air=True)) as here:
-        await here.until(lambda: "M_α" in here.words("CrewNotes"))
-        assert "flown 4 s of 8; M_α −" in here.words("CrewNotes")
-
-
-async def test_a_number_that_is_none_yet_is_not_on_the_pilots_screen():
-    async with stage(replace(flights.state(3, in_the_air=True), readable=False)) as here:
         await here.until(lambda: "flown 4 s of 8" in here.words("CrewNotes"))
-        assert "M_α" not in here.words("CrewNotes")
+        for engineers in ("M_α", "criterion", "AOA_SSA", "Z_q"):
+            assert engineers not in here.words()
+
+
+def test_after_the_end_a_rejected_manoeuvre_is_not_used_and_needs_no_mend():
+    rejected = flights.judged(8, accepted=False)
+    assert for_the_pilot(rejected, test_is_complete=False)[:2] == ("✗", "REPEAT")
+    assert for_the_pilot(rejected, test_is_complete=True) == (
+        "✗",
+        "NOT USED",
+        "too gentle, pitch rate 3 deg/s",
+    )
+
+
+def test_the_way_to_the_end_is_the_share_of_the_manoeuvres_flown():
+    assert how_far(view(flights.state(6))) == f"{'█' * 15}{'·' * 5}  about 2 more, 9 times in 10 at most 4"
+    assert how_far(view(flights.state(7))) == f"{'█' * 20}  complete"
+
+
+def test_a_value_outside_its_limit_has_a_cross_before_the_step():
+    state = flights.state(3)
+    banked = replace(state.channels["bank"], newest=0.6)
+    slow = replace(state.channels["airspeed"], newest=20.0)
+    here = view(replace(state, channels={**state.channels, "bank": banked, "airspeed": slow}))
+    assert "✗ bank 34 deg (≤ 30)    ✗ V 20 m/s" in limits_now(here)
+
+
+def test_the_stick_is_drawn_step_by_step_with_seconds():
+    flown = StepInput("3-2-1-1", 0.4, 0.1, nose_up_first=False)
+    assert stick_drawing(flown.steps, 70).split("\n") == [
+        "pull                       ┌───────────┐     ┌─────┐",
+        "      ───┐                 │           │     │     └──",
+        "push     └─────────────────┘           └─────┘",
+        "               1.2 s          0.8 s    0.4 s 0.4 s",
+    ]
+    assert stick_drawing(flown.steps, 40) == ""
+    assert stick_line(flown.steps) == "▁▁▁▁▁▁▔▔▔▔▁▁▔▔"

@@ -30,6 +30,6 @@ async def test_a_flight_over_a_real_link_is_followed_to_the_stop():
         assert app.screen.query_one("Maneuvers DataTable").row_count >= 1
         await here.press("p")
         await here.until(lambda: app.view.state.flight_test.decision == "stop", patience_s=60.0)
-        await here.until(lambda: app.screen.query_one(BigWord).word in ("STOP TESTING", "RECOVER"))
+        await here.until(lambda: app.screen.query_one(BigWord).word in ("TEST COMPLETE", "RECOVER"))
         assert "✓ GOOD" in here.words("#verdict-word")
         assert campaigns[0].problems == []

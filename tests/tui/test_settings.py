@@ -23,15 +23,23 @@ def test_an_empty_file_changes_nothing(tmp_path: Path):
 
 
 def test_what_the_file_says_holds(tmp_path: Path):
-    settings = load_settings(written(tmp_path, "theme: light\nscreen: engineer\nkeys: {quit: ctrl+q}\n"))
-    assert settings == Settings("light", "engineer", {"quit": "ctrl+q"})
+    settings = load_settings(
+        written(tmp_path, "theme: light\nscreen: engineer\nsound: false\nkeys: {quit: ctrl+q}\n")
+    )
+    assert settings == Settings("light", "engineer", sound=False, keys={"quit": "ctrl+q"})
 
 
 def test_every_mistake_is_listed_at_once(tmp_path: Path):
-    text = "theme: pink\nscren: pilot\nkeys: {quit: 7, fly: f}\n"
+    text = "theme: pink\nscren: pilot\nsound: loud\nkeys: {quit: 7, fly: f}\n"
     with pytest.raises(ConfigurationError) as caught:
         load_settings(written(tmp_path, text))
-    for part in ("theme: 'pink'", "unknown key 'scren'", "keys.quit: 7", "keys.fly: no such action"):
+    for part in (
+        "theme: 'pink'",
+        "unknown key 'scren'",
+        "sound: 'loud'",
+        "keys.quit: 7",
+        "keys.fly: no such action",
+    ):
         assert part in str(caught.value)
 
 

@@ -59,8 +59,8 @@ async def test_every_pane_can_be_copied():
         for key in "1234567890hu":
             await here.press(key, "c")
             copied[key] = here.app.clipboard
-        assert table(copied["1"])[1]["verdict"] == "✗ REPEAT"
-        assert copied["2"].startswith("✓ GOOD  manoeuvre 4")
+        assert table(copied["1"])[1]["verdict"] == "✗ REJECTED"
+        assert copied["2"].startswith("✓ ACCEPTED  manoeuvre 4")
         assert table(copied["3"])[5]["parameter"] == "M_α 1/s²"
         assert {row["channel"] for row in table(copied["4"])} == {"elevator", "alpha", "q", "a_z", "theta"}
         assert "Nothing is being flown" in copied["5"]

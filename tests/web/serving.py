@@ -43,7 +43,7 @@ class Serving:
         for task in Path(f"/proc/{pid}/task").iterdir():
             for child in (task / "children").read_text().split():
                 words = Path(f"/proc/{child}/cmdline").read_bytes().split(b"\0")
-                found.append((int(child), words[2].decode() if len(words) > 2 else ""))
+                found.append((int(child), words[words.index(b"-m") + 1].decode() if b"-m" in words else ""))
         return found
 
     def interrupt(self) -> int:

@@ -3,6 +3,7 @@
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from multiprocessing import Pipe
 from threading import Thread
 
 import pytest
@@ -13,6 +14,7 @@ from advisor.session.hand import HandDecision
 from advisor.session.source import LinkRequest
 from advisor.tui.explaining import keys_at_hand
 from advisor.tui.settings import Settings
+from advisor.web import attached
 from advisor.web.attached import AttachedConductor, ServerGoneError
 from advisor.web.audience import Audience
 from advisor.web.showing import Showing
@@ -102,6 +104,17 @@ async def test_a_page_offers_the_keys_that_it_may_use_and_is_left_at_once(
             await here.press("q")
             await here.until(lambda: not app.is_running)
         assert server.showing.at_work
+
+
+def test_a_page_says_that_its_server_does_not_answer(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(attached, "OLD_AFTER_S", 0.3)
+    ours, theirs = Pipe()
+    with ours, theirs, watching(AttachedConductor(ours)) as seen:
+        theirs.send(SessionReport(flights.state(3), HandFedSource().condition, None, ()))
+        wait_until(lambda: (report := seen()) is not None and report.health.condition == "stale")
+        report = seen()
+        assert report is not None
+        assert report.health.alarm.startswith("SERVER NOT ANSWERING for 0 s")
 
 
 def test_a_page_ends_with_its_server() -> None:

@@ -1,12 +1,15 @@
 """Who is let in, and what a server that nobody has opened a page of yet answers."""
 
 import http.client
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from threading import Thread
 
 import pytest
 
 from advisor.mavlink.link.keeping import Door
+from advisor.web import login
 from advisor.web.access import Access, checked_origin
 from advisor.web.server import WebServer, listening
 from advisor.web.site import Site
@@ -88,6 +91,30 @@ def test_a_wrong_password_is_refused_and_the_right_one_lets_in(guarded: Caller) 
     status, text, _ = guarded.call("GET", "/")
     assert status == 200
     assert "a &lt;flight&gt;" in text
+
+
+def test_the_right_password_passes_ahead_of_the_guesses_that_wait(guarded: Caller) -> None:
+    guesses = [Thread(target=Caller(guarded.port).log_in, args=(f"guess {k}",)) for k in range(4)]
+    for guess in guesses:
+        guess.start()
+    time.sleep(0.2)
+    began_s = time.monotonic()
+    assert guarded.log_in(PASSWORD) == 303
+    assert time.monotonic() - began_s < 0.6
+    for guess in guesses:
+        guess.join()
+    assert time.monotonic() - began_s > 3.0
+
+
+def test_further_guesses_than_may_wait_are_refused_unseen(
+    guarded: Caller, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(login, "MOST_WAITING", 1)
+    guess = Thread(target=Caller(guarded.port).log_in, args=("guess",))
+    guess.start()
+    time.sleep(0.2)
+    assert guarded.log_in("another guess") == 429
+    guess.join()
 
 
 def test_a_form_of_another_page_cannot_log_in(guarded: Caller) -> None:

@@ -1,13 +1,12 @@
 """Basis of every format: the model found, the prior model, the servo, and other effects."""
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from advisor.aircraft.aircraft import Aircraft, Elevator, Reference
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.exports.models.servo import OF_THE_SERVO, ExportedServo, servo_of
-from advisor.flight.signals.standard_atmosphere import SEA_LEVEL_DENSITY_KG_M3
+from advisor.flight.signals.standard_atmosphere import standard_density, standard_pressure
 from advisor.gap.candidates.known import less_of_the_servo, together
 from advisor.gap.result import Diagnosis, Value
 from advisor.oem.coefficients import Coefficient, scales
@@ -36,20 +35,19 @@ class Improvement:
     reference: Reference = field(default_factory=Reference)
     elevator: Elevator = field(default_factory=Elevator)
     height_m: float | None = None
-    """Recorded height of the manoeuvres, m. None: unknown."""
+    """Height in the standard atmosphere with the density of the air flown in, m. None: unknown."""
 
     @property
     def density_note(self) -> str:
         """Sentence on the air density of the coefficients."""
         unknown = "sea level, as the log has no height"
-        where = unknown if self.height_m is None else f"{self.height_m:.0f} m, the height recorded"
+        where = unknown if self.height_m is None else f"{self.height_m:.0f} m, by the air flown in"
         return f"Air density {self.density_kg_m3:.4f} kg/m3, of the standard atmosphere at {where}."
 
     @property
     def density_kg_m3(self) -> float:
         """Air density of the International Standard Atmosphere's troposphere, kg/m³."""
-        warmth = 1.0 - 0.0065 * (self.height_m or 0.0) / 288.15
-        return SEA_LEVEL_DENSITY_KG_M3 * math.pow(warmth, 4.2559)
+        return float(standard_density(standard_pressure(self.height_m or 0.0)))
 
     def interval95(self, parameter: str) -> tuple[float, float]:
         """Return the 95 % interval of one of the eight parameters."""

@@ -25,6 +25,7 @@ from advisor.flight.instruments.hypotheses import ANY, Weighed, weigh
 from advisor.flight.instruments.measured import Evidence, Measured, pooled
 from advisor.flight.signals.instrument_finding import InstrumentFinding, Quantity
 from advisor.flight.signals.record import Channel
+from advisor.words.quantiles import NORMAL_95
 
 REVERSED = "reversed"
 _GYRO_WIDTH = 0.05
@@ -386,8 +387,10 @@ def _half_intervals(work: _Work, *names: str) -> float:
 
 
 def _with_error(measured: Measured) -> str:
-    digits = max(0, int(np.ceil(-np.log10(max(measured.std, 1e-6))))) if measured.std < 1.0 else 0
-    return f"{measured.value:.{digits}f} ± {measured.std:.{digits}f}"
+    """Return the value with half its 95 % interval."""
+    half = NORMAL_95 * measured.std
+    digits = max(0, int(np.ceil(-np.log10(max(half, 1e-6))))) if half < 1.0 else 0
+    return f"{measured.value:.{digits}f} ± {half:.{digits}f}"
 
 
 _ALLOWED = "; estimates use the shifted stamps"

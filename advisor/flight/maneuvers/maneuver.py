@@ -8,7 +8,22 @@ from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.record import Channel
 from advisor.flight.signals.trust import Distrust
 
-InputKind = Literal["3-2-1-1", "reverse 3-2-1-1", "doublet", "pulse", "multisine", "other"]
+InputKind = Literal[
+    "3-2-1-1",
+    "reverse 3-2-1-1",
+    "doublet",
+    "pulse",
+    "multisine",
+    "other",
+    "aileron doublet",
+    "aileron 1-2-1",
+    "bank to bank",
+    "aileron 3-2-1-1",
+    "rudder doublet",
+    "rudder 3-2-1-1",
+    "dutch roll release",
+]
+"""Names of inputs, of the elevator and then of aileron and rudder."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,6 +74,10 @@ class Maneuver:
     """Number of the campaign's log or link, 0 for the first."""
     data_notes: tuple[str, ...] = ()
     """Sentences on samples that no aircraft can have flown, and on an air speed that no sensor measured."""
+    missed_s: float = 0.0
+    """Time within the record, or at its end, in which the advisor itself did not listen, s."""
+    leapt_s: float = 0.0
+    """Leap of the vehicle's stamps within the record, or at its begin or end, s."""
 
     @property
     def power_on(self) -> tuple[int, int]:

@@ -30,6 +30,12 @@ def standard_density(pressure_pa: float | FloatArray) -> FloatArray:
     )
 
 
+def standard_height(density_kg_m3: float | FloatArray) -> FloatArray:
+    """Return the height in m, below 11 km, at which the standard atmosphere has a density in kg/m³."""
+    ratio = np.asarray(density_kg_m3) / SEA_LEVEL_DENSITY_KG_M3
+    return np.asarray(_SEA_LEVEL_K / _LAPSE_K_M * (1.0 - ratio ** (1.0 / _EXPONENT)))
+
+
 def density(pressure_pa: float | FloatArray, temperature_c: float | None) -> FloatArray:
     """Return the density in kg/m³ of dry air; at the standard atmosphere's temperature where none is
     known."""

@@ -5,8 +5,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from advisor.flight.signals.best_rate import BestRate
+from advisor.flight.signals.extremes import Extremes
 from advisor.flight.signals.messages import FloatArray, IntArray
 from advisor.flight.signals.record import Channel
+
+SHOWN_WHOLE = ("elevator", "alpha", "q", "airspeed", "height")
+"""Channels that are shown over the whole flight, in this order."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,6 +31,8 @@ class ChannelStatus:
     """Smallest value since boot, SI."""
     highest: float = np.nan
     """Largest value since boot, SI."""
+    newest: float = np.nan
+    """Value of the newest sample, SI."""
 
     def at_best(self, earlier: "ChannelStatus | None" = None) -> "ChannelStatus":
         """Return the status with the best ten seconds' rate, and the range, of this source over all boots.
@@ -58,10 +64,14 @@ class Track:
         self.source = source
         self.provenance = provenance
         self.newest_s = -np.inf
+        self.newest = np.nan
+        """Value at ``newest_s``."""
         self.largest_gap_s = 0.0
         self._best = BestRate()
         self.lowest, self.highest = np.inf, -np.inf
         """Smallest and largest value since boot."""
+        self.extremes = Extremes() if name in SHOWN_WHOLE else None
+        """The whole power-on in bounded memory, for the channels that are shown whole."""
         self._t = np.empty(1024)
         self._y = np.empty(1024)
         self._order = np.empty(1024, dtype=np.int64)
@@ -75,8 +85,12 @@ class Track:
         before = self.newest_s if self._size else float(t[0])
         newest = np.maximum.accumulate(np.concatenate(([before], t)))
         self.largest_gap_s = max(self.largest_gap_s, float((newest[1:] - newest[:-1]).max()))
+        if newest[-1] >= self.newest_s:
+            self.newest = float(y[int(np.argmax(t))])
         self.newest_s = float(newest[-1])
         self._best.add(t)
+        if self.extremes is not None:
+            self.extremes.add(t, y)
         self.lowest = min(self.lowest, float(y.min()))
         self.highest = max(self.highest, float(y.max()))
         self._make_room(len(t))
@@ -114,6 +128,7 @@ class Track:
             self._best.rate_hz,
             self.lowest,
             self.highest,
+            self.newest,
         )
 
     def _make_room(self, n: int) -> None:

@@ -6,10 +6,17 @@ from functools import partial
 
 import numpy as np
 
-from advisor.flight.signals.channels import COMPANION_ALPHA, GIVEN_AIRSPEED, READINGS, Decoded
+from advisor.flight.signals.channels import (
+    COMPANION_ALPHA,
+    GIVEN_AIRSPEED,
+    GIVEN_HEIGHT,
+    READINGS,
+    Decoded,
+)
 from advisor.flight.signals.derived_alpha import DERIVED_ALPHA, DerivedAlpha
+from advisor.flight.signals.extremes import Course
 from advisor.flight.signals.record import AIR_UNITS, UNITS, Channel
-from advisor.flight.signals.track import ChannelStatus, Track
+from advisor.flight.signals.track import SHOWN_WHOLE, ChannelStatus, Track
 from advisor.flight.signals.true_airspeed import AS_REPORTED, true_airspeed
 
 _AIR_S = 10.0
@@ -29,8 +36,12 @@ class Tracks:
         Air speed of the aircraft file, for a log without air speed.
     temperature_c
         Temperature of the air by the aircraft file, deg C; None: the standard atmosphere's.
+    height_m
+        Pressure altitude of the aircraft file, m, for a log without pressure and height above sea level.
     logs_true_speed
         Returns whether the vehicle reports its true air speed in place of the calibrated one.
+    beta_source
+        Source of the sideslip in the aircraft file: ``named_value:NAME``, or one that AOA_SSA brings.
     """
 
     def __init__(
@@ -38,11 +49,14 @@ class Tracks:
         alpha_source: str,
         airspeed_m_s: float | None = None,
         temperature_c: float | None = None,
+        height_m: float | None = None,
         logs_true_speed: Callable[[], bool] = lambda: False,
+        beta_source: str = "auto",
     ) -> None:
         self._tracks: dict[tuple[str, str], Track] = {}
         self._derived = DerivedAlpha(self._best, partial(self.cut, "airspeed"), airspeed_m_s)
         self._temperature_c = temperature_c
+        self._height_m = height_m
         self._logs_true_speed = logs_true_speed
         self._sources: dict[str, list[str]] = {}
         for reading in READINGS:
@@ -55,6 +69,8 @@ class Tracks:
             "aoa_ssa": ["AOA_SSA.AOA", COMPANION_ALPHA],
             "derived": [DERIVED_ALPHA],
         }.get(alpha_source, [f"NAMED_VALUE_FLOAT.{named}"])
+        if beta_source.startswith("named_value:"):
+            self._sources["beta"] = [f"NAMED_VALUE_FLOAT.{beta_source.removeprefix('named_value:')}"]
 
     def clear(self) -> None:
         """Drop all samples before another boot."""
@@ -106,6 +122,9 @@ class Tracks:
             if np.ptp(channel.y) > 0.0:
                 return _in_radians(channel)
             spare = spare or channel
+        if spare is None and name == "altitude" and self._height_m is not None:
+            ends = np.array([start_s, end_s])
+            return Channel(name, ends, np.full(2, self._height_m), GIVEN_HEIGHT, "given")
         return spare
 
     def speeds_are_one(self, start_s: float, end_s: float, up_to_order: int | None) -> bool:
@@ -124,6 +143,15 @@ class Tracks:
         """Return the arrival of every channel, from its best source."""
         found = {name: next(iter(self._candidates(name)), None) for name in UNITS}
         return {name: track.status for name, track in found.items() if track is not None}
+
+    def courses(self) -> dict[str, Course]:
+        """Return each channel that is shown whole, over this power-on, from its best measured source."""
+        found = {name: next(iter(self._candidates(name)), None) for name in SHOWN_WHOLE}
+        return {
+            name: track.extremes.course
+            for name, track in found.items()
+            if isinstance(track, Track) and track.extremes is not None
+        }
 
     def _candidates(self, name: str) -> list[Track | DerivedAlpha]:
         """Return tracks of a channel, the preferred source first."""

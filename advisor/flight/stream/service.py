@@ -51,6 +51,8 @@ class Service:
         self._standing: frozenset[str] = frozenset()
         self.problems: tuple[Problem, ...] = ()
         """Reasons for which the stream cannot serve now; empty when it can, or is not yet known."""
+        self.serves = False
+        """Whether the newest judgement found no problem, and none is reported. False before the first."""
 
     def begin(self) -> None:
         """Begin another vehicle or another power-on, and forget the earlier messages."""
@@ -106,8 +108,9 @@ class Service:
             self._standing, self._since_s = standing, now_s
         stood_s = now_s - self._since_s
         told = {problem.code for problem in self.problems}
+        self.serves = not found and not told
         if told and not found and stood_s >= SERVED_AFTER_S:
-            self.problems = ()
+            self.problems, self.serves = (), True
             return [DataAgain(self._vehicle_s(now_s))]
         if standing == told or not found or stood_s < LAPSED_AFTER_S:
             return []

@@ -14,15 +14,16 @@ from advisor.flight.elevator.commanded import Commanded, commanded
 from advisor.flight.elevator.elevator_guess import ElevatorGuesses, Guess
 from advisor.flight.elevator.elevator_sign import SAID
 from advisor.flight.elevator.mixing import Mixing
-from advisor.flight.maneuvers.events import FlightEvent, ModeChanged, Rebooted
+from advisor.flight.maneuvers.events import FlightEvent, ModeChanged, Notice, Rebooted
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.markers import HEARD, MarkerWatch
 from advisor.flight.maneuvers.marks import Mark, Marks
 from advisor.flight.signals.attitude import Attitudes
 from advisor.flight.signals.banks import Banks, merged
-from advisor.flight.signals.channels import COMPANIONS, stamps
+from advisor.flight.signals.channels import COMPANIONS, Decoded, stamps
 from advisor.flight.signals.clocks import BootClock
 from advisor.flight.signals.derived_alpha import DERIVED_ALPHA, promised
+from advisor.flight.signals.extremes import Course
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.messages import Columns, FloatArray, IntArray, arrivals
 from advisor.flight.signals.power_on import PowerOn
@@ -36,15 +37,18 @@ from advisor.flight.stream.elevator_path import ElevatorPath
 from advisor.flight.stream.identity import Identity
 from advisor.flight.stream.instrument_watch import InstrumentWatch
 from advisor.flight.stream.service import Service
+from advisor.flight.stream.side_path import SidePath
 from advisor.flight.stream.suitability import problems, with_guess
 from advisor.flight.stream.vehicle_texts import VehicleTexts
 from advisor.flight.vehicle.boots import Master, by_boot
+from advisor.flight.vehicle.breaks import Breaks
 from advisor.flight.vehicle.modes import closes_pitch_loop
 from advisor.flight.vehicle.pieces import pieces
 from advisor.flight.vehicle.senders import SenderWatch
 from advisor.flight.vehicle.surfaces import Surface
 from advisor.flight.vehicle.vehicle import Vehicle
 from advisor.words.problems import Problem
+from advisor.words.vehicle_time import clock
 
 KEEP_S = 120.0
 """Time for which channels are kept, s: longer than any manoeuvre with its lead-in."""
@@ -66,6 +70,8 @@ class FlightStream:
         Stretches marked as manoeuvres before the stream begins.
     keep_all
         Whether to keep every sample, for ``power_ons``. Memory then grows with the length of the flight.
+    lateral
+        Whether to find the manoeuvres of aileron and rudder, too.
     """
 
     def __init__(
@@ -75,13 +81,14 @@ class FlightStream:
         marks: Sequence[Mark] = (),
         *,
         keep_all: bool = False,
+        lateral: bool = False,
     ) -> None:
         self._aircraft = aircraft
         self._keep_s = np.inf if keep_all else KEEP_S
         self._clock_heard: list[Master] = []
         self.power_ons: list[PowerOn] = []
         """Every power-on that is over, whole; empty without ``keep_all``."""
-        self._who = Identity(aircraft.elevator, target_system)
+        self._who = Identity(aircraft, target_system)
         self._texts = VehicleTexts()
         self._attitudes = Attitudes()
         self._clock = BootClock()
@@ -89,14 +96,18 @@ class FlightStream:
             aircraft.alpha.source,
             aircraft.airspeed_m_s,
             aircraft.reference.air_temperature_c,
+            aircraft.reference.height_m,
             lambda: self._who.simulated,
+            aircraft.beta.source,
         )
-        self._cutting = Cutting(self._tracks, self._who, aircraft)
+        self._breaks = Breaks()
+        self._cutting = Cutting(self._tracks, self._who, aircraft, self._breaks)
         self._mixing = Mixing(self._tracks)
         self.marks = Marks(marks)
         """Marks by hand, by a switch and by texts."""
         self._markers = MarkerWatch(aircraft.markers)
         self._path = ElevatorPath(self._tracks, self._mixing, self.marks, self._cutting)
+        self._side = SidePath(self._tracks, self._cutting) if lateral else None
         self._over = False
         self.boot = 0
         """Number of the power-on, 0 for the first in the stream."""
@@ -115,7 +126,10 @@ class FlightStream:
         self._tracks.clear()
         self._clock_heard.clear()
         self._path.begin(self.boot)
+        if self._side is not None:
+            self._side.begin(self.boot)
         self._banks = Banks()
+        self._breaks.begin()
         self._mixing.begin()
         self._cutting.begin(self._who.mode)
         self._first_s = np.nan
@@ -214,6 +228,15 @@ class FlightStream:
         """Reasons for which the present data cannot serve; empty while they can."""
         return self._service.problems
 
+    def courses(self) -> dict[str, Course]:
+        """Return the channels that are shown whole, over this power-on."""
+        return self._tracks.courses()
+
+    @property
+    def serves(self) -> bool:
+        """Whether the present data are known to serve."""
+        return self._service.serves
+
     def _wanting(self, channels: Mapping[str, ChannelStatus], now_s: float) -> list[Problem]:
         """Return the problems of a stream with these channels, whatever was flown on it."""
         wrong = self._mixing.contradiction if not self._cutting.maneuvers else None
@@ -267,7 +290,8 @@ class FlightStream:
         return events
 
     def _finish_boot(self) -> list[FlightEvent]:
-        events = [*self._path.finish(self._master_s), *self._texts.finish(self._master_s)]
+        lateral = self._side.finish() if self._side is not None else []
+        events = [*self._path.finish(self._master_s), *lateral, *self._texts.finish(self._master_s)]
         self._past = self._at_best()
         if self._keep_s == np.inf:
             self.power_ons.append(
@@ -284,12 +308,11 @@ class FlightStream:
         """Take columns within which neither vehicle nor parameters nor mode change."""
         mode = self._who.mode
         flown = self._cutting.maneuvers > self._flown_before
-        events: list[FlightEvent] = [
-            said
-            for columns in piece
-            if columns.name == "STATUSTEXT"
-            for said in self._texts.heard(columns, self._master_s)
-        ]
+        events: list[FlightEvent] = []
+        for columns in piece:
+            if columns.name == "STATUSTEXT":
+                events += self._texts.heard(columns, self._master_s)
+                self._breaks.hear(columns)
         events += self._who.learn(piece, self._master_s, flown)
         vehicle = self._who.vehicle
         if vehicle is None:
@@ -305,6 +328,8 @@ class FlightStream:
                 order = min(int(c.order[0]) for c in piece)
                 earliest_s = max(self._heartbeat_s, self._master_s - _HEARTBEAT_S)
                 self._path.mode_changed(earliest_s, order)
+                if self._side is not None:
+                    self._side.mode_changed(earliest_s, order)
                 # A pilot who takes over and flies an input at once did so before the heartbeat that reports
                 # the mode.
                 closed = closes_pitch_loop(self._who.mode)
@@ -324,11 +349,31 @@ class FlightStream:
         """Return the event of a change in the usability of the data; empty without a change."""
         return list(self._service.advance(piece))
 
+    def _take_outputs(
+        self, columns: Columns, t: FloatArray, autopilot: str, elevator: list[Commanded], side: list[Decoded]
+    ) -> list[Notice]:
+        """Append the samples of the elevator, and those of aileron and rudder, to the two lists.
+
+        Return a notice for each time that the advisor missed.
+        """
+        missed: list[Notice] = []
+        for moved in commanded(self._who.surfaces, self._banks.together(columns), t, autopilot):
+            if moved.channel == "elevator":
+                elevator.append(moved)
+                arrived_s = arrivals(columns, moved.order)
+                self._service.take(moved.channel, moved.source, arrived_s)
+                missed += map(_missed, self._breaks.take(moved.t, arrived_s))
+            else:
+                side.append(moved.combined())
+                self._tracks.append(side[-1])
+        return missed
+
     def _set_clock(self, part: Sequence[Columns], orders: IntArray, clock: FloatArray) -> None:
         """Set the vehicle's clock by a part; readings of the clock have these orders, both of shape (n,)."""
         if np.isnan(self._first_s) and len(clock) > 1:
             self._first_s = float(clock[1])
             self.marks.start_clock(self._first_s)
+        self._breaks.take_clock(clock)
         self._master_s = float(clock[-1])
         for columns in part:
             if columns.name == "ATTITUDE":
@@ -356,6 +401,8 @@ class FlightStream:
         if self._keep_s == np.inf:
             self._clock_heard.append(replace(master, t=clock[1:]))
         elevator: list[Commanded] = []
+        side: list[Decoded] = []
+        missed: list[FlightEvent] = []
         for columns in merged(part):
             now = np.searchsorted(orders, columns.order, side="right") - 1
             if columns.name in HEARD:
@@ -377,17 +424,19 @@ class FlightStream:
             if columns.name in _OUTPUTS:
                 if isinstance(self.elevator, Problem):
                     self._guesses.hear(columns, t)
-                pulses = self._banks.together(columns)
-                for moved in commanded(self._who.surfaces, pulses, t, vehicle.autopilot):
-                    if moved.channel == "elevator":
-                        elevator.append(moved)
-                        self._service.take(moved.channel, moved.source, arrivals(columns, moved.order))
-                    else:
-                        self._tracks.append(moved.combined())
+                missed += self._take_outputs(columns, t, vehicle.autopilot, elevator, side)
         self._set_clock(part, orders, clock)
-        followed = self._path.feed(elevator, closes_pitch_loop(self._who.mode))
+        followed = [*missed, *self._path.feed(elevator, closes_pitch_loop(self._who.mode))]
+        if self._side is not None:
+            followed += self._side.feed(side)
         if self._cutting.maneuvers == self._flown_before:
             self._instruments.advance(self._first_s, self._master_s)
         if not isinstance(self.elevator, Problem) or not np.isfinite(self._master_s):
             return followed
         return [*followed, *self._guesses.advance(self._first_s, self._master_s, self._tracks.cut)]
+
+
+def _missed(gap: tuple[float, float]) -> Notice:
+    begin_s, end_s = gap
+    text = f"{end_s - begin_s:.1f} s are missing since {clock(begin_s)}: the advisor was down."
+    return Notice("advisor_down", text)

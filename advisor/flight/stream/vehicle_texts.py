@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from advisor.flight.maneuvers.events import VehicleSaid
 from advisor.flight.signals.messages import Columns
 from advisor.flight.stream.identity import READER
+from advisor.flight.vehicle.breaks import DOWN
 from advisor.flight.vehicle.following import FOLLOW, TAKE
 from advisor.words.printable import printable
 
@@ -16,7 +17,7 @@ _LONGEST = 250
 """Characters of a text that are kept: five chunks, and the longest message of an ArduPilot log."""
 _CHUNK = 50
 """Bytes of STATUSTEXT.text; a chunk that is shorter ends its text (MAVLink common.xml)."""
-_OWN = (READER, FOLLOW, TAKE)
+_OWN = (READER, FOLLOW, TAKE, DOWN)
 """Beginnings of the texts that the advisor writes into its own stream."""
 
 

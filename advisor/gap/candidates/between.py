@@ -56,30 +56,30 @@ def starts_of(flights: PreparedManeuvers) -> FloatArray:
     return np.array([f.started_s for f in flights.flights])
 
 
-def breaks(flights: PreparedManeuvers) -> list[tuple[int, float]]:
-    """Return every possible place of a step: index of the next manoeuvre, and a time in s between the two."""
+def breaks(flights: PreparedManeuvers) -> list[float]:
+    """Return every possible time of a step, in s: the middle between two manoeuvres."""
     t = starts_of(flights)
     ends = t + np.array([f.duration_s for f in flights.flights])
-    return [(j, float((ends[j - 1] + t[j]) / 2.0)) for j in range(1, len(t))]
+    return [float(at_s) for at_s in (ends[:-1] + t[1:]) / 2.0]
 
 
 def ramps_and_steps(effect: str, block: str, flights: PreparedManeuvers, change: Change) -> list[Variant]:
     """Return one variant for a steady drift, and one for a step at each place between two manoeuvres."""
     if len(flights) < 3:
         return []
-    t, span = starts_of(flights), _span_of(flights)
+    began_s, span = float(starts_of(flights)[0]), _span_of(flights)
     step = Variant(effect, block, ("step",), ((0.0,),), (0.005,), ((-0.9, 3.0),), 0.01)
 
     def course(p: FloatArray, values: Values, share: FloatArray) -> None:
         change(p, values[0] * share)
 
-    def drift(p: FloatArray, values: Values, _: PreparedManeuvers) -> None:
-        change(p, values[0] * (t - t[0]))
+    def drift(p: FloatArray, values: Values, flown: PreparedManeuvers) -> None:
+        change(p, values[0] * (starts_of(flown) - began_s))
 
     steady = Variant(
         effect, block, ("rate_per_s",), ((0.0,),), (0.005 / span,), ((-0.9 / span, 3.0 / span),),
         0.01 / span, apply_with=drift,
-        likewise=_longer(flights, step, course, lambda rate: (rate[0] * span, float(t[0]), span)),
+        likewise=_longer(flights, step, course, lambda rate: (rate[0] * span, began_s, span)),
     )  # fmt: skip
     return [steady, *steps_in(flights, step, course)]
 
@@ -92,16 +92,15 @@ def steps_in(flights: PreparedManeuvers, one: Variant, course: Course) -> list[V
     """
     lasts_s = _span_of(flights) / 3.0
 
-    def at(j: int, at_s: float) -> Variant:
-        later = (np.arange(len(flights)) >= j).astype(float)
+    def at(at_s: float) -> Variant:
         return replace(
             one,
-            apply_with=lambda p, values, _: course(p, values, later),
+            apply_with=lambda p, values, flown: course(p, values, (starts_of(flown) > at_s).astype(float)),
             fixed={"at_s": at_s},
             likewise=_longer(flights, one, course, lambda v: (*map(float, v), at_s - 0.5 * lasts_s, lasts_s)),
         )
 
-    return [at(j, at_s) for j, at_s in breaks(flights)]
+    return [at(at_s) for at_s in breaks(flights)]
 
 
 def _longer(
@@ -117,7 +116,9 @@ def _longer(
         starts=(),
         steps=(*one.steps, _TIME_STEP * span, _TIME_STEP * span),
         bounds=(*one.bounds, (float(t[0] - span), float(t[-1])), (0.05 * span, 2.0 * span)),
-        apply_with=lambda p, v, _: course(p, v[:-2], np.clip((t - v[-2]) / v[-1], 0.0, 1.0)),
+        apply_with=lambda p, v, flown: course(
+            p, v[:-2], np.clip((starts_of(flown) - v[-2]) / v[-1], 0.0, 1.0)
+        ),
         carried=carried,
         places=("at_s", "over_s"),
         # A change that outlasts the flight is determined by its rate alone, whatever its size and duration.

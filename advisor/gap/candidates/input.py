@@ -25,9 +25,6 @@ _LEAST_S = 0.004
 """Least delay or lag that is named, s: a fifth of a sample at 50 Hz."""
 
 
-REACH = 2.0
-"""Largest natural delay in standard deviations of its prior, which is 95 % of all flights. A motor glider's
-command acts 1.5 standard deviations late."""
 LOOP = Variant(
     "latency", BLOCK, ("latency_s",), ((0.001,),), (5e-4,), ((-0.004, 0.005),), 0.0,
     entries=("latency_s",), is_nuisance=True,
@@ -40,12 +37,12 @@ def latency(flights: PreparedManeuvers) -> Variant:
     """Return the delay of the command behind its stamps, a nuisance parameter of every model.
 
     An autopilot renews the command at one rate and a stream samples it at another, with a phase that differs
-    from flight to flight. The prior is that of the estimate (``lateness``). A delay beyond ``REACH`` of its
-    standard deviations is not natural.
+    from flight to flight. The prior is that of the estimate (``lateness``). Its standard deviation is also
+    the largest such delay, because the 28 flights behind it stay within.
     """
     std = lateness_std([flight.t_u for flight in flights.flights])
     return Variant(
-        "latency", BLOCK, ("latency_s",), ((0.001,),), (5e-4,), ((-REACH * std, REACH * std),), 0.0,
+        "latency", BLOCK, ("latency_s",), ((0.001,),), (5e-4,), ((-std, std),), 0.0,
         entries=LOOP.entries, prior_std=(std,), is_nuisance=True,
     )  # fmt: skip
 

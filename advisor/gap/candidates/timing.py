@@ -7,7 +7,6 @@ import numpy as np
 
 from advisor.flight.instruments.lateness import lateness_std
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.candidates.input import REACH
 from advisor.gap.candidates.variant import Values, Variant
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX, OUTPUTS, SKEWS
@@ -25,6 +24,9 @@ _FILTERS_S = {"a_z": 0.01, "theta": 0.01}
 """Prior standard deviation, by channel, of the delay of an autopilot's filters relative to the pitch rate,
 s."""
 
+_REACH = 2.0
+"""Largest delay of an autopilot's own channel, in standard deviations of its prior."""
+
 
 def filters(flights: PreparedManeuvers) -> Variant:
     """Return the delays of an autopilot's own channels relative to its pitch rate, as nuisance parameters.
@@ -38,7 +40,7 @@ def filters(flights: PreparedManeuvers) -> Variant:
     channels = [c for c in flights.channels if c in std]
     return Variant(
         "filters", BLOCK, tuple(f"{c}_late_s" for c in channels), ((0.0,) * len(channels),),
-        (1e-3,) * len(channels), tuple((-REACH * std[c], REACH * std[c]) for c in channels), 0.0,
+        (1e-3,) * len(channels), tuple((-_REACH * std[c], _REACH * std[c]) for c in channels), 0.0,
         entries=tuple(SKEWS[OUTPUTS.index(c)] for c in channels),
         prior_std=tuple(std[c] for c in channels), is_nuisance=True,
     )  # fmt: skip

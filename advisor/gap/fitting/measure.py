@@ -7,11 +7,9 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.fit import EffectFit
-from advisor.gap.fitting.holdout import HeldOut, held_out
-from advisor.gap.fitting.linear import linearise
-from advisor.gap.fitting.own_prior import own_mean
-from advisor.gap.fitting.problem import EffectProblem, SearchPoint, row_weights
-from advisor.gap.fitting.step import own_within
+from advisor.gap.fitting.holdout import HeldOut
+from advisor.gap.fitting.problem import EffectProblem
+from advisor.gap.fitting.refit import own_refitted
 from advisor.gap.records.flights import PreparedManeuver
 
 _BANDS_HZ = ((0.0, 0.5), (0.5, 1.0), (1.0, 2.0), (2.0, 4.0), (4.0, 10.0))
@@ -112,34 +110,3 @@ def file_model_of(problem: EffectProblem, fitted: EffectFit) -> HeldOut | None:
     if problem.prior_derivatives is None:
         return None
     return own_refitted(problem, replace(fitted.point, derivatives=problem.prior_derivatives), fitted.noise)
-
-
-def own_refitted(problem: EffectProblem, point: SearchPoint, noise: FloatArray) -> HeldOut:
-    """Return the residuals of a model with given shared parameters, with only nuisance parameters refitted.
-
-    ``noise``, shape (channels,), weighs the channels. Each manoeuvre starts at the point's nuisance
-    parameters and at their prior means. The start with the smaller residual counts.
-    """
-    means = np.array([own_mean(flight) for flight in problem.flights.flights])
-    ended = [_refitted_from(problem, replace(point, own=own), noise) for own in (point.own, means)]
-    powers = np.array([_power(problem, residuals, noise) for residuals in ended])
-    best = np.argmin(np.where(np.isfinite(powers), powers, np.inf), axis=0)
-    return held_out(problem, [ended[k][i] for i, k in enumerate(best)])
-
-
-def _power(problem: EffectProblem, residuals: Sequence[FloatArray], noise: FloatArray) -> list[float]:
-    """Return the weighted power of each manoeuvre's residual."""
-    weights = 1.0 / noise
-    return [float(np.sum((r * row_weights(problem, i, weights)) ** 2)) for i, r in enumerate(residuals)]
-
-
-def _refitted_from(problem: EffectProblem, point: SearchPoint, noise: FloatArray) -> list[FloatArray]:
-    """Return the residuals after a search for the nuisance parameters alone."""
-    residuals: list[FloatArray] = []
-    for _ in range(3):
-        linear = linearise(problem, point)
-        owns = [own_within(block, 1.0 / noise) for block in linear]
-        still = np.zeros(len(point.shared))
-        residuals = [block.measured.after(still, own) for block, own in zip(linear, owns, strict=True)]
-        point = replace(point, own=point.own + np.array([o[:4] for o in owns]))
-    return residuals

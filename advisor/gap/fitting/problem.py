@@ -90,9 +90,12 @@ class SearchPoint:
 
     def with_only(self, names: Collection[str]) -> "SearchPoint":
         """Return the model with some of its effects and with all nuisance parameters."""
-        keep = [k for k, v in enumerate(self.effects) if v.is_nuisance or v.effect in names]
+        return self.keeping([k for k, v in enumerate(self.effects) if v.is_nuisance or v.effect in names])
+
+    def keeping(self, which: Sequence[int]) -> "SearchPoint":
+        """Return the model with the effects of these indices."""
         return replace(
-            self, effects=tuple(self.effects[k] for k in keep), values=tuple(self.values[k] for k in keep)
+            self, effects=tuple(self.effects[k] for k in which), values=tuple(self.values[k] for k in which)
         )
 
 

@@ -17,9 +17,6 @@ from advisor.gap.simulator.layout import DERIVATIVES
 _FASTEST_GROWTH = 5.0
 """Largest growth rate of an unstable motion, 1/s: the amplitude doubles in 0.14 s, as on the most unstable
 aircraft with computer control. A fit with faster growth has lost the motion."""
-_REACH = 3.0
-"""Largest departure of a nuisance parameter from its prior mean, in standard deviations, next to a model that
-is not fitted."""
 _GROWS = {"Z_alpha": _FASTEST_GROWTH, "M_q": _FASTEST_GROWTH, "M_alpha": _FASTEST_GROWTH**2}
 _MOST = np.array([_GROWS.get(name, np.inf) for name in DERIVATIVES])
 """Shape (6,): largest derivatives with which the motion grows no faster, by any of them alone."""
@@ -86,19 +83,6 @@ def own_eliminated(block: Linear, weights: FloatArray) -> tuple[FloatArray, Floa
     eliminated = solved(factor_of(normal[:m, :m].copy(), block.prior), AX)
     inner: FloatArray = normal[m:, m:] - AX.T @ eliminated
     return inner, eliminated
-
-
-def own_within(block: Linear, weights: FloatArray) -> FloatArray:
-    """Return the nuisance parameters of one manoeuvre within ``_REACH`` of their priors, shape (m,).
-
-    A model that is wrong would move them to any value.
-    """
-    m = len(block.prior)
-    normal = np.tensordot(weights**2, block.products[:, :m], axes=1)
-    free = np.where(block.prior > 0.0, _REACH / np.sqrt(np.maximum(block.prior, 1e-300)), np.inf)
-    H = normal[:, :m] + np.diag(block.prior)
-    g = normal[:, -1] + block.prior * block.departure
-    return solved_within(H, g, block.departure - free, block.departure + free)
 
 
 def solve_blocks(

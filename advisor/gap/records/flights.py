@@ -69,9 +69,14 @@ class PreparedManeuver:
         return float(self.trim[ALPHA_TRIM])
 
     @property
+    def reference_m_s(self) -> float:
+        """Speed of the derivatives, m/s."""
+        return float(self.trim[REFERENCE])
+
+    @property
     def level_lift(self) -> float:
         """Trim term of Eq. (1) that carries the weight at the mean speed, given at the reference speed."""
-        return -GRAVITY_M_S2 * float(self.trim[REFERENCE]) / float(np.mean(self.slow[SPEED])) ** 2
+        return -GRAVITY_M_S2 * self.reference_m_s / float(np.mean(self.slow[SPEED])) ** 2
 
     def at_constant_speed(self) -> "PreparedManeuver":
         """Return the manoeuvre with derivatives that do not scale with the air speed."""

@@ -36,7 +36,7 @@ def is_known(maneuvers: Sequence[Maneuver]) -> bool:
     return all("alpha" in m.channels for m in maneuvers)
 
 
-def by_the_motion(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> list[Maneuver]:
+def alpha_by_motion(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> list[Maneuver]:
     """Return the manoeuvres with the angle of attack that the motion implies, where none was measured.
 
     They are unchanged where the motion lacks a channel to imply one.

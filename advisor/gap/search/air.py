@@ -5,7 +5,7 @@ likelihood of ``advisor.oem.turbulence`` decides. The probe of the air gives the
 """
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -71,10 +71,21 @@ class MovingAir:
         return not self.gust and self.angle_std < NATURAL_GUST_ANGLE
 
 
-def moving_air(problem: EffectProblem, fitted: EffectFit) -> MovingAir | None:
-    """Return the moving air; None where noise of the instruments explains the residual equally well."""
+@dataclass(frozen=True)
+class SoughtAir:
+    """The result of a search for moving air, whether or not air was found."""
+
+    gain: float = 0.0
+    """Gain in log likelihood over coloured instruments."""
+    angle_std: float = 0.0
+    """Standard deviation of the likeliest gust angle, rad."""
+    found: MovingAir | None = None
+
+
+def moving_air(problem: EffectProblem, fitted: EffectFit) -> SoughtAir:
+    """Seek moving air; none is found where noise of the instruments explains the residual equally well."""
     if not problem.flights.shows_air:
-        return None
+        return SoughtAir()
     floor = 1.0 if problem.instruments is None else problem.instruments
     before = mean_squares(problem, fitted.residuals)
     power = np.mean(before / floor**2, axis=1)
@@ -83,8 +94,9 @@ def moving_air(problem: EffectProblem, fitted: EffectFit) -> MovingAir | None:
     if found.gain < AIR_GAIN and _stands_out(power):
         found = _moving_in(problem, fitted, loudest[:1])
     # A gain that coloured instruments bring alone gives a gust angle of zero, and is no moving air.
+    nothing = SoughtAir(found.gain, found.gust_angle)
     if found.gain < AIR_GAIN or found.gust_angle <= 0.0:
-        return None
+        return nothing
     model = with_floor(problem, found.air)
     instruments = np.hypot(model.white, model.coloured)[[OUTPUTS.index(c) for c in problem.channels]]
     course = disturbance_courses(problem, fitted, instruments, "air", [found.gust_angle])[0]
@@ -94,7 +106,7 @@ def moving_air(problem: EffectProblem, fitted: EffectFit) -> MovingAir | None:
     highest = float(np.max(np.abs(joined)))
     gust = highest > 6.0 * typical
     if found.gust_angle < LEAST_GUST_ANGLE and not (gust and highest > _LEAST_GUST_PEAK):
-        return None
+        return nothing
     if gust:
         course = _of_a_gust(problem, fitted, instruments, found.gust_angle)
     # Without a gust, a course may wander far and change little, or hardly move and explain a slow drift.
@@ -103,13 +115,14 @@ def moving_air(problem: EffectProblem, fitted: EffectFit) -> MovingAir | None:
     number = int(np.argmax(peaks**2 * np.maximum(changed, 0.0)))
     at = int(np.argmax(np.abs(course.knots[number])))
     flight = problem.flights.flights[number]
-    return MovingAir(
+    air = MovingAir(
         angle_std=found.gust_angle, gain=found.gain,
         gust=gust, gust_number=flight.number,
         gust_angle=float(course.knots[number][at]), gust_at_s=float(flight.started_s + KNOTS_S * (at + 1)),
         mean_square_beyond_air=_mean_square(problem, course.residuals), residuals=course.residuals,
         instruments=instruments,
     )  # fmt: skip
+    return replace(nothing, found=air)
 
 
 def one_maneuver_stands_out(problem: EffectProblem, fitted: EffectFit) -> bool:

@@ -62,15 +62,14 @@ def with_telemetry(point: SearchPoint, flights: PreparedManeuvers) -> SearchPoin
 
 
 def fit_telemetry(problem: EffectProblem, fitted: EffectFit, noise: FloatArray) -> EffectFit:
-    """Return the fit with that delay, from the present one and from others a standard deviation apart.
+    """Return the fit with that delay, from the present one and from both ends of the prior.
 
     Edges of the command follow a delay, so that the cost has local minima in between.
     """
     point = with_telemetry(fitted.point, problem.flights)
     k = point.index_of(input.LOOP.effect)
     best = fit(problem, point, noise)
-    (std,), (_, most) = point.effects[k].prior_std, point.effects[k].bounds[0]
-    for start in np.arange(-std, most + 0.5 * std, std):
+    for start in point.effects[k].bounds[0]:
         values = (*point.values[:k], np.array([start]), *point.values[k + 1 :])
         other = fit(problem, replace(point, values=values), noise, beaten_by=best.cost)
         best = min(best, other, key=_finite_cost)

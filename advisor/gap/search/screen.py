@@ -137,6 +137,14 @@ def likeliest_first(found: Sequence[Screened], samples: float) -> list[Screened]
     return sorted(found, key=lambda s: s.cost - 2.0 * s.prior_gain + penalty(s.variant, samples))
 
 
+def one_each(found: Sequence[Screened]) -> tuple[Screened, ...]:
+    """Return the first quick fit of each effect; ``found`` comes likeliest first."""
+    first: dict[str, Screened] = {}
+    for screened in found:
+        first.setdefault(screened.variant.effect, screened)
+    return tuple(first.values())
+
+
 def penalty(variant: Variant, samples: float) -> float:
     """Return k ln N, the decrease of the cost that a description with k parameters must bring (Schwarz)."""
     steps = 1 if variant.fixed else 0

@@ -9,6 +9,7 @@ from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.fitting.uncertainty import effective_samples
 from advisor.gap.search.acceptance import BEYOND_DOUBT, JudgedAddition
 from advisor.gap.search.score import addition
+from advisor.gap.search.screen import Screened
 
 
 @dataclass(frozen=True)
@@ -22,6 +23,8 @@ class Stage:
     of ``MOST_EFFECTS`` stages has none."""
     added: JudgedAddition | None
     """Effect whose addition leads to the next stage; None at the last stage."""
+    screened: tuple[Screened, ...] = ()
+    """Quick fits of all effects in the first stage, one for each effect; empty in the others."""
 
     @property
     def disputed(self) -> JudgedAddition | None:
@@ -55,7 +58,7 @@ def rebuilt(
     for n, name in enumerate(names, 1):
         fitted = full if n == len(names) else fit_with_effects(problem, full, names[:n])
         added = addition(problem, before, held, fitted, name, effective)
-        stages.append(Stage(before, held, considered[name], added))
+        stages.append(Stage(before, held, considered[name], added, first.screened if n == 1 else ()))
         before, held = fitted, added.held_out
     return [*stages, Stage(before, held, last, None)]
 

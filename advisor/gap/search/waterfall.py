@@ -6,12 +6,13 @@ from dataclasses import replace
 from advisor.gap.candidates.traits import LEFT_OPEN
 from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.fit import EffectFit
-from advisor.gap.fitting.holdout import HeldOut, hold_out, measured_in
+from advisor.gap.fitting.holdout import hold_out, measured_in
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.fitting.uncertainty import effective_samples, shared_std
 from advisor.gap.search.acceptance import BEYOND_DOUBT, LEAST_PRIOR_GAIN, MOST_EFFECTS, JudgedAddition
 from advisor.gap.search.ranking import candidates_for, judge
 from advisor.gap.search.score import addition
+from advisor.gap.search.screen import one_each
 from advisor.gap.search.stage import Stage, added_in, fit_with_effects, rebuilt
 
 _OPEN = 0.1
@@ -36,11 +37,12 @@ def one_after_another(
         if n == MOST_EFFECTS:
             stages.append(Stage(fitted, held, (), None))
             break
-        considered = ahead or _judged(problem, fitted, held, variants)
+        screened = [] if ahead else candidates_for(problem, fitted, variants)
+        considered = ahead or judge(problem, fitted, held, screened)
         added, ahead = next((j for j in considered if j.is_accepted), None), None
         if added is None and n < MOST_EFFECTS - 1:
             added, ahead = _leading_on(problem, considered, variants)
-        stages.append(Stage(fitted, held, tuple(considered), added))
+        stages.append(Stage(fitted, held, tuple(considered), added, () if n else one_each(screened)))
         if added is None:
             break
         fitted, held = added.fitted, added.held_out
@@ -59,15 +61,9 @@ def _leading_on(
     if not considered or considered[0].gain < BEYOND_DOUBT:
         return None, None
     first = considered[0]
-    with_it = _judged(problem, first.fitted, first.held_out, variants)
+    screened = candidates_for(problem, first.fitted, variants)
+    with_it = judge(problem, first.fitted, first.held_out, screened)
     return (first, with_it) if any(j.is_accepted for j in with_it) else (None, None)
-
-
-def _judged(
-    problem: EffectProblem, fitted: EffectFit, held: HeldOut, variants: Sequence[Variant]
-) -> list[JudgedAddition]:
-    """Return the candidates for an addition to a model, best first."""
-    return judge(problem, fitted, held, candidates_for(problem, fitted, variants))
 
 
 def as_measured(problem: EffectProblem, stages: Sequence[Stage]) -> list[Stage]:

@@ -12,6 +12,7 @@ from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.fitting.uncertainty import effective_samples, shared_std
 from advisor.gap.uncatalogued.weight_check import SIGMAS, WeightReading
+from advisor.words.quantiles import NORMAL_95
 
 _REPORTED, _WRONG = 0.02, 0.06
 """Least relative difference that is reported, and least difference that shows an error."""
@@ -26,7 +27,7 @@ air speed."""
 _AS_MUCH = 0.05
 """Largest difference between the errors of curvature and weight for which both are the accelerometer's. An
 offset of the accelerometer contributes to one of them."""
-_SIGMAS_IN_GUSTS = 8.0
+SIGMAS_IN_GUSTS = 8.0
 """Least number of standard deviations of a difference that shows an error in moving air. A wave in every
 manoeuvre looks like a wrong air speed."""
 
@@ -45,7 +46,7 @@ class AirspeedScale:
         ``weight`` is the accelerometer's reading of the weight, where that is known.
         """
         least = _INDICATED if self.is_indicated(weight) else _WRONG
-        return abs(self.scale) > max(least, _SIGMAS_IN_GUSTS * self.std if moving_air else 0.0)
+        return abs(self.scale) > max(least, SIGMAS_IN_GUSTS * self.std if moving_air else 0.0)
 
     def is_indicated(self, weight: WeightReading | None) -> bool:
         """Return whether the air speed may be an indicated one in thin air: the accelerometer reads the
@@ -60,7 +61,7 @@ class AirspeedScale:
     def sentence(self) -> str:
         """Sentence for the reader of the diagnosis."""
         too = "too high" if self.scale > 0.0 else "too low"
-        off = f"{100.0 * self.scale:+.1f} ± {100.0 * self.std:.1f} %"
+        off = f"{100.0 * self.scale:+.1f} ± {100.0 * NORMAL_95 * self.std:.1f} %"
         return (
             f"The motion shows a true air speed {off} off the one in use. An accelerometer that reads as "
             f"much {too} looks the same: compare air speed and ground speed on opposite headings."

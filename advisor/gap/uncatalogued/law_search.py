@@ -4,6 +4,7 @@ Two or three effects together imitate such a law well. A single law that explain
 likelier.
 """
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +13,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.fit import EffectFit, fit
 from advisor.gap.fitting.holdout import HeldOut, hold_out, mean_squares
-from advisor.gap.fitting.problem import EffectProblem
+from advisor.gap.fitting.problem import EffectProblem, counts
 from advisor.gap.fitting.uncertainty import effective_samples, log_prior_of
 from advisor.gap.search.acceptance import CERTAIN, JudgedAddition
 from advisor.gap.search.score import (
@@ -64,12 +65,31 @@ class Law:
     """The baseline model with the law."""
 
 
-def search_law(problem: EffectProblem, stages: list[Stage]) -> Law | None:
-    """Return the law that explains more than all named effects; None where there is none."""
-    baseline, held = stages[0].fitted, stages[0].held_out
+@dataclass(frozen=True)
+class LawSearch:
+    """The result of a search for a law, whether or not one explains more than all named effects."""
+
+    law: Law | None
+    gains: Mapping[str, float]
+    """Gain in log likelihood of the best law of each block, minus the price of its parameters."""
+
+
+def search_law(problem: EffectProblem, stages: list[Stage]) -> LawSearch:
+    """Seek the law that explains more than all named effects."""
     fits = _fits(problem, stages)
-    if not fits:
-        return None
+    samples = float(np.sum(counts(problem)))
+    gains: dict[str, float] = {}
+    for law, fitted in fits:
+        gain = 0.5 * (stages[0].fitted.cost - fitted.cost - penalty(law, samples))
+        gains[law.block] = max(gain, gains.get(law.block, 0.0))
+    return LawSearch(_likeliest(problem, stages, fits) if fits else None, gains)
+
+
+def _likeliest(
+    problem: EffectProblem, stages: list[Stage], fits: Sequence[tuple[Variant, EffectFit]]
+) -> Law | None:
+    """Return the likeliest law if it explains more than all named effects, otherwise None."""
+    baseline, held = stages[0].fitted, stages[0].held_out
     samples = float(np.sum(effective_samples(problem, baseline.innovations)))
     law, fitted = min(fits, key=lambda pair: pair[1].cost + penalty(pair[0], samples))
     effective = effective_samples(problem, fitted.innovations)

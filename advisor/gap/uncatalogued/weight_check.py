@@ -13,6 +13,7 @@ import numpy as np
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import FloatArray
+from advisor.words.quantiles import NORMAL_95
 
 _NEEDED = ("a_z", "alpha", "theta")
 _LEAST_MANEUVERS = 3
@@ -44,8 +45,8 @@ class WeightReading:
     def sentence(self) -> str:
         """Sentence for the reader of the diagnosis."""
         return (
-            f"The accelerometer reads {self.share:.2f} ± {self.std:.2f} of what weight and path demand: "
-            "its scale or its zero is off."
+            f"The accelerometer reads {self.share:.2f} ± {NORMAL_95 * self.std:.2f} of what weight and path "
+            "demand: its scale or its zero is off."
         )
 
 

@@ -9,21 +9,27 @@ from advisor.flight.instruments.kinematics import KinematicCheck
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.moment import PROPELLER
+from advisor.gap.evidence.found import Evidence
+from advisor.gap.evidence.measured import measured
+from advisor.gap.evidence.rows import rows_of
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.fitting.uncertainty import covariance, effective_samples
 from advisor.gap.foresight.foresee import unseen_effects
+from advisor.gap.judge.posterior import posterior
+from advisor.gap.judge.prior import FIELD, FieldPrior
 from advisor.gap.records.floor import tolerance_of
 from advisor.gap.result import Cause, Diagnosis, Gap, GapVerdict, Where
 from advisor.gap.search.acceptance import LEAST_SIGMA
 from advisor.gap.simulator.layout import DERIVATIVES
+from advisor.gap.verdict.as_judged import as_judged
 from advisor.gap.verdict.causes import block_ranking
-from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.holdout_numbers import as_read, on_holdout, over_maneuvers, with_offset, without_air
 from advisor.gap.verdict.judgement import judgement
 from advisor.gap.verdict.notes import notes_of
 from advisor.gap.verdict.numbers import (
+    compared_derivatives,
     fidelity_of,
     gap_numbers,
     irreducible,
@@ -41,11 +47,14 @@ def answer(
     aircraft: Aircraft,
     kinematics: KinematicCheck,
     holdout: int | None,
+    prior: FieldPrior = FIELD,
 ) -> Diagnosis:
-    """Return the diagnosis that follows from the evidence."""
+    """Return the diagnosis that follows from the evidence, at a field prior of the answers."""
+    # A single manoeuvre proves no cause, and the judge was fitted on none.
+    told = None if len(e.problem.flights) == 1 else posterior(rows_of(measured(e, kinematics)), prior)
     e, kept = on_holdout(e, holdout)
     problem, stages = e.problem, e.stages
-    judged = judgement(e, kinematics)
+    judged = judgement(e, kinematics, told.of_effect if told is not None else lambda _: 0.0)
     verdict, causes = judged.verdict, judged.causes
     before, last = judged.before, stages[-1].held_out
     if judged.bias is not None:
@@ -75,7 +84,7 @@ def answer(
     nuisances = effects.keys() - present if shrink is not None else ()
     is_single = len(problem.flights) == 1 and verdict == "unknown"
     sentence = sentence_of(verdict, gap, where, causes, shrink, in_simulator(aircraft))
-    return Diagnosis(
+    diagnosis = Diagnosis(
         verdict=verdict,
         sentence=sentence_of_one_maneuver(where) if is_single else sentence,
         gap=gap, where=where,
@@ -85,9 +94,11 @@ def answer(
         reference_airspeed_m_s=problem.flights.reference_m_s if _speed_is_known(problem, aircraft) else None,
         effects=effects, share_irreducible=irreducible(with_air, e.floor, gap), decisions=judged.decisions,
         yardsticks=fidelity_of(problem, before, last), traces=traces_of(problem, before, last),
+        derivatives=compared_derivatives(problem, fitted, known),
         notes=notes_of(e, aircraft, holdout, verdict, nuisances),
-        maneuvers=tuple(f.number for f in problem.flights.flights), courses=e.courses,
+        maneuvers=tuple(f.number for f in problem.flights.flights),
     )  # fmt: skip
+    return diagnosis if told is None else as_judged(diagnosis, told)
 
 
 def _speed_is_known(problem: EffectProblem, aircraft: Aircraft) -> bool:

@@ -1,6 +1,6 @@
-"""From judged candidates to readable causes: probability, parameters, and indistinguishable effects."""
+"""From judged candidates to readable causes: parameters, and indistinguishable effects."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -13,58 +13,30 @@ from advisor.gap.result import Cause, Value
 from advisor.gap.search.acceptance import JudgedAddition
 from advisor.gap.search.indistinguishable import indistinguishable_from
 from advisor.gap.search.score import TIME_ERROR_S, TIMES
-from advisor.gap.search.stage import Stage, added_in
+from advisor.gap.search.stage import Stage
 
-TEMPERATURE = 3.0
-"""Divisor of log likelihoods before they become probabilities, because the model is an approximation. Set on
-development flights, so that stated probabilities equal observed frequencies."""
 _SHAPE_ERROR = 0.03
 """Relative error of a size for the low-order description of its effect."""
 _TIMING = {"transport_delay": "delay_s", "actuator_lag": "lag_s"}
 """Effects that a common shift of all steps of the command would imitate, and their parameter."""
-_TOLD_LATER = 0.5
-"""Probability of an effect that was accepted only after another was found."""
-_THE_FIRST = 0.5
-"""Share of the probability that the first effect has in advance; all effects share the rest by their
-change."""
 
 
 def causes_of(
-    stages: Sequence[Stage], floor: FloatArray, unexplained: float, channels: Sequence[str]
+    stages: Sequence[Stage], floor: FloatArray, channels: Sequence[str], probability: Callable[[str], float]
 ) -> tuple[Cause, ...]:
-    """Return the added effects in their order, then the alternatives to the first one."""
-    added = added_in(stages)
+    """Return the added effects in their order, then the alternatives to the first one, likeliest first.
+
+    ``probability`` returns the probability of an effect.
+    """
     first = stages[0].considered
-    shares = probabilities(first, unexplained)
-    causes = []
-    removed = [max(j.removed, 1e-6) for j in added]
-    for n, (stage, judged) in enumerate(zip(stages, added, strict=False)):
-        confidence = probabilities(stage.considered, unexplained).get(judged.effect, _TOLD_LATER)
-        if any(j.effect == judged.effect and not j.is_accepted for j in stage.considered):
-            confidence = _TOLD_LATER
-        share = _THE_FIRST * (n == 0) + (1.0 - _THE_FIRST) * removed[n] / sum(removed)
-        causes.append(_cause(judged, stage.considered, confidence * share, floor, channels, True))
-    taken = {c.effect for c in causes}
-    rest = max(1.0 - sum(c.probability for c in causes), 0.0)
-    others = [j for j in first if j.effect not in taken and j.gain > 0.0]
-    total = sum(shares[j.effect] for j in others)
-    for j in others:
-        p = min(shares[j.effect], rest * shares[j.effect] / total) if total > 0.0 else 0.0
-        causes.append(_cause(j, first, p, floor, channels, False))
-    return tuple(causes[:5])
 
+    def cause(judged: JudgedAddition, considered: Sequence[JudgedAddition], present: bool) -> Cause:
+        return _cause(judged, considered, probability(judged.effect), floor, channels, present)
 
-def probabilities(considered: Sequence[JudgedAddition], unexplained: float) -> dict[str, float]:
-    """Return the probability of each effect; the rest to 1 is for no effect, or for one outside the
-    catalogue."""
-    if not considered:
-        return {}
-    # An effect that is not accepted is no rival, whatever its gain.
-    gains = [(j.gain if j.is_accepted else min(j.gain, 0.0)) - j.least_gain for j in considered]
-    scores = np.array([*gains, 0.0]) / TEMPERATURE
-    weights = np.exp(scores - np.max(scores))
-    weights = (1.0 - 0.9 * unexplained) * weights / np.sum(weights)
-    return {j.effect: float(w) for j, w in zip(considered, weights, strict=False)}
+    named = [cause(stage.added, stage.considered, True) for stage in stages if stage.added is not None]
+    taken = {c.effect for c in named}
+    others = [cause(j, first, False) for j in first if j.effect not in taken and j.gain > 0.0]
+    return (*named, *sorted(others, key=lambda c: -c.probability))
 
 
 def parameters_of(v: Variant, values: FloatArray, std: FloatArray) -> dict[str, Value]:

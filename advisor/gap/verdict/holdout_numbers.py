@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from advisor.gap.evidence.found import Evidence
 from advisor.gap.fitting.holdout import HeldOut, folds_for, held_out, hold_out, mean_squares
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.records.flights import Measured
@@ -14,7 +15,6 @@ from advisor.gap.search.air import MovingAir
 from advisor.gap.search.speed import at_constant_speed
 from advisor.gap.search.stage import Stage
 from advisor.gap.search.waterfall import as_measured
-from advisor.gap.verdict.evidence import Evidence
 
 
 def on_holdout(e: Evidence, holdout: int | None) -> tuple[Evidence, list[int]]:
@@ -36,7 +36,7 @@ def on_holdout(e: Evidence, holdout: int | None) -> tuple[Evidence, list[int]]:
     stages = [
         Stage(
             s.fitted, over_maneuvers(e.problem, s.held_out, kept),
-            tuple(map(judged, s.considered)), s.added and judged(s.added),
+            tuple(map(judged, s.considered)), s.added and judged(s.added), s.screened,
         )
         for s in predicted
     ]  # fmt: skip

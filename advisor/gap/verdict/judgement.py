@@ -1,12 +1,13 @@
 """The judgement of the evidence: the verdict and its causes, before the numbers of the gap."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from advisor.flight.instruments.kinematics import KinematicCheck
 from advisor.gap.decision import Decision
+from advisor.gap.evidence.found import Evidence
 from advisor.gap.fitting.holdout import HeldOut, held_out
 from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.fitting.problem import EffectProblem
@@ -15,31 +16,17 @@ from advisor.gap.search.acceptance import JudgedAddition
 from advisor.gap.search.speed import airspeed_cause, speed_costs, speed_is_a_cause, thrust_is_uncommanded
 from advisor.gap.search.stage import added_in
 from advisor.gap.verdict.causes import causes_of, with_model_errors
-from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.ledger import decisions_of
 from advisor.gap.verdict.outside_fit import air_cause, alpha_bias_cause
 from advisor.gap.verdict.wrong_derivatives import WrongDerivatives, wrong_derivatives
 
-_ALONE = 0.95
-"""Probability of a cause outside the fits (the air, an offset, the air speed) where it is the only one."""
-_FIRST, _OTHERS = 0.9, 0.05
-"""Probability of the first of several causes outside the fits, and of all others together."""
-_KEPT, _IN_ADDITION = 0.96, 0.03
-"""Share of its probability that a fitted cause keeps next to causes outside the fits, and the probability
-that these get together. All these values were calibrated on development flights against the share of right
-answers (page "Gap results")."""
-_REFUTED, _RIVAL = 0.05, 0.2
-"""Factor on the probability of an alternative: next to an answer that makes it needless, and next to a
-secondary cause."""
-_BEHIND = 0.08
-"""Factor on all other probabilities where an offset or wrong derivatives make the larger part of the gap."""
 _MOUNTED_RAD = 0.02
 """Largest offset of α, rad, behind which named effects come first: that of an instrument's mounting."""
 _MOSTLY = 0.98
 """Share of the gap from wrong derivatives above which they are the answer, whatever else is present. Other
 derivatives imitate an effect by nine tenths at most, except for one that they imitate exactly."""
-_HALF = 0.5
-"""Factor on the probability of all named effects in the presence of an unexplained residual."""
+MOST_CAUSES = 5
+"""Most causes that are stated, so that a reader sees the likely ones."""
 
 
 @dataclass(frozen=True)
@@ -84,18 +71,24 @@ class _Found:
         return max(self.removed, 0.0)
 
 
-def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
-    """Return the verdict and the causes that follow from the evidence."""
+def judgement(
+    e: Evidence, kinematics: KinematicCheck, probability: Callable[[str], float] = lambda _: 0.0
+) -> Judgement:
+    """Return the verdict and the causes that follow from the evidence.
+
+    ``probability`` returns the probability of an effect.
+    """
     found = _found(e, kinematics)
-    causes = _ordered(e, found)
+    causes = _ordered(e, found, probability)
     verdict = _verdict(found, causes)
     before = e.file_model if e.file_model is not None else e.stages[0].held_out
     if e.constant_speed is not None and found.speed in found.outside_fit:
         before = _at_constant_speed(e.problem, before, e.constant_speed, e.stages[-1].held_out)
-    causes = _as_left_by(verdict, causes, bool(found.named))
+    if verdict not in ("effect", "unknown"):
+        causes = tuple(sorted(causes, key=lambda c: -c.probability))
     return Judgement(
-        verdict, causes, found.outside_fit, found.speed, found.bias, before, found.derivatives.are_wrong,
-        decisions_of(e, found.derivatives),
+        verdict, causes[:MOST_CAUSES], found.outside_fit, found.speed, found.bias, before,
+        found.derivatives.are_wrong, decisions_of(e, found.derivatives),
     )  # fmt: skip
 
 
@@ -123,20 +116,23 @@ def _found(e: Evidence, kinematics: KinematicCheck) -> _Found:
     return _Found(named, removed, derivatives, bias, speed, outweighs, outside_fit, e.unexplained is not None)
 
 
-def _ordered(e: Evidence, found: _Found) -> tuple[Cause, ...]:
+def _ordered(e: Evidence, found: _Found, probability: Callable[[str], float]) -> tuple[Cause, ...]:
     """Return fitted causes and those outside the fits, the largest part of the gap first."""
     channels = e.problem.channels
-    unexplained = e.unexplained.share if e.unexplained is not None else 0.0
-    fitted = causes_of(e.stages, e.floor, unexplained, channels)
-    causes = _merge(tuple(with_model_errors(cause, e.problem) for cause in fitted), found.outside_fit)
+    fitted = [with_model_errors(c, e.problem) for c in causes_of(e.stages, e.floor, channels, probability)]
+    outside_fit = [replace(c, probability=probability(c.effect)) for c in found.outside_fit]
+    named = {c.effect for c in outside_fit}
+    present = [c for c in fitted if c.present]
+    others = [c for c in fitted if not c.present and c.effect not in named]
+    causes = (*present, *outside_fit, *others)
     bias, speed = found.bias, found.speed
     derived = e.problem.flights.alpha_is_derived
     if bias is not None and not found.unknown and not derived and _exceeds_mounting(bias, found.named):
         offset = (bias.parameters["bias_rad"].value / e.floor[channels.index("alpha")]) ** 2
         if float(offset) / len(e.floor) > found.names:
-            causes = _put_first(causes, bias)
+            causes = _with_first(causes, bias)
     if speed is not None and speed in found.outside_fit and found.speed_outweighs:
-        causes = _put_first(causes, speed)
+        causes = _with_first(causes, speed)
     return causes
 
 
@@ -151,15 +147,6 @@ def _verdict(found: _Found, causes: Sequence[Cause]) -> GapVerdict:
     if wrong and not (found.bias or found.speed in found.outside_fit):
         return "parameters"
     return "effect" if any(c.present for c in causes) else "none"
-
-
-def _as_left_by(verdict: GapVerdict, causes: tuple[Cause, ...], named: bool) -> tuple[Cause, ...]:
-    """Return the causes with probabilities that agree with the verdict."""
-    if verdict == "effect":
-        return causes
-    keeps = _HALF if verdict == "unknown" else _BEHIND if named else _REFUTED
-    kept = tuple(replace(c, probability=keeps * c.probability) for c in causes)
-    return kept if verdict == "unknown" else tuple(sorted(kept, key=lambda c: -c.probability))
 
 
 def _exceeds_mounting(bias: Cause, named: Sequence[JudgedAddition]) -> bool:
@@ -182,24 +169,6 @@ def _speed_outweighs(e: Evidence, others: float) -> bool:
     return speed_costs(e.constant_speed, e.stages[-1].held_out, e.floor) > others
 
 
-def _merge(causes: tuple[Cause, ...], extra: Sequence[Cause]) -> tuple[Cause, ...]:
-    """Return the causes outside the fits merged with the fitted ones."""
-    present, other = [c for c in causes if c.present], [c for c in causes if not c.present]
-    if extra and not present:
-        # The first is the larger one; a single one has no rival.
-        rest = len(extra) - 1
-        shares = [_ALONE] if not rest else [_FIRST, *[_OTHERS / rest] * rest]
-        other = [replace(c, probability=_REFUTED * c.probability) for c in other]
-        named = (replace(c, probability=p) for c, p in zip(extra, shares, strict=True))
-        return (*named, *other)[:5]
-    if extra:
-        present = [replace(c, probability=_KEPT * c.probability) for c in present]
-        extra = [replace(c, probability=_IN_ADDITION / len(extra)) for c in extra]
-        other = [replace(c, probability=_RIVAL * c.probability) for c in other]
-    return (*present, *extra, *other)[:5]
-
-
-def _put_first(causes: tuple[Cause, ...], first: Cause) -> tuple[Cause, ...]:
+def _with_first(causes: tuple[Cause, ...], first: Cause) -> tuple[Cause, ...]:
     """Return the causes with the one that makes the larger part of the gap ahead of all others."""
-    rest = tuple(replace(c, probability=_BEHIND * c.probability) for c in causes if c.effect != first.effect)
-    return (replace(first, probability=_FIRST), *rest)[:5]
+    return tuple(sorted(causes, key=lambda c: c.effect != first.effect))

@@ -1,12 +1,12 @@
 """The ledger: every statistic that was compared with a limit on the way to a verdict, in order."""
 
 from advisor.gap.decision import Decision
+from advisor.gap.evidence.found import Evidence
 from advisor.gap.fitting.uncertainty import CLEAR_GAP
 from advisor.gap.result import VISIBLE
 from advisor.gap.search.acceptance import JudgedAddition
 from advisor.gap.search.air import AIR_GAIN
 from advisor.gap.search.stage import Stage
-from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.wrong_derivatives import WrongDerivatives
 
 

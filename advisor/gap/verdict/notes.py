@@ -7,14 +7,15 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.candidates.known import left_aside
+from advisor.gap.evidence.found import Evidence
 from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.records.usable import why_left_out
 from advisor.gap.result import GapVerdict, spelled
 from advisor.gap.search.path_energy import mean_speed
 from advisor.gap.search.stage import added_in
-from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.text import place
+from advisor.words.quantiles import NORMAL_95
 
 _ANOTHER_SPEED = 0.005
 """Least relative difference between two means of the air speed that is reported."""
@@ -65,7 +66,7 @@ def _of_the_speed(e: Evidence, aircraft: Aircraft) -> Iterator[str]:
             f"is {flown:.1f} m/s: state reference_airspeed_m_s."
         )
     if e.shear is not None:
-        per_metre = f"{abs(e.shear.gradient_per_s):.2f} ± {e.shear.std:.2f} m/s"
+        per_metre = f"{abs(e.shear.gradient_per_s):.2f} ± {NORMAL_95 * e.shear.std:.2f} m/s"
         if e.shear.is_implausible:
             yield f"The air speed's error grows by {per_metre} per metre climbed, which no wind explains."
         else:

@@ -8,17 +8,17 @@ import numpy as np
 from advisor.aircraft.aircraft import PARAMETERS
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.signals.messages import FloatArray
+from advisor.gap.evidence.found import Evidence
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.measure import by_band, by_phase, gap_of, shrink_interval, whole_gap
 from advisor.gap.fitting.prior import derivative_scale
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.records.floor import prefiltered
-from advisor.gap.result import Cause, Gap, Shrink, Trace, Value, Yardsticks
+from advisor.gap.result import Cause, ComparedDerivative, Gap, Shrink, Trace, Value, Yardsticks
 from advisor.gap.search.stage import Stage
 from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.gap.uncatalogued.beyond_air import removed_beyond_air
-from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.yardsticks import yardsticks
 
 _UNCHANGED = 0.1
@@ -140,6 +140,25 @@ def model_of(problem: EffectProblem, fitted: EffectFit, known: FloatArray) -> di
     for k, name in enumerate(DERIVATIVES):
         values[name] = Value(float(d[k]), float(np.sqrt(max(known[k, k], 0.0))))
     return {name: values[name] for name in PARAMETERS}
+
+
+def compared_derivatives(
+    problem: EffectProblem, fitted: EffectFit, known: FloatArray
+) -> tuple[ComparedDerivative, ...]:
+    """Return the simulator's derivatives with the flight's, those that differ by most intervals first.
+
+    ``known``, shape (k, k), is the covariance of the shared parameters. Without a simulator there are none.
+    """
+    if problem.prior_derivatives is None:
+        return ()
+    std = np.sqrt(np.maximum(np.diag(known), 0.0))
+    pairs = [
+        ComparedDerivative(name, float(given), Value(float(found), float(std[k])))
+        for k, (name, given, found) in enumerate(
+            zip(DERIVATIVES, problem.prior_derivatives, fitted.point.derivatives, strict=False)
+        )
+    ]
+    return tuple(sorted(pairs, key=lambda d: -abs(d.found.value - d.given) / max(d.half, 1e-300)))
 
 
 def _as_it_began(problem: EffectProblem, fitted: EffectFit) -> FloatArray:

@@ -5,12 +5,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from advisor.flight.instruments.kinematics import KinematicCheck
+from advisor.gap.evidence.found import Evidence
 from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.result import Cause, Value
 from advisor.gap.search.acceptance import JudgedAddition, least_offset_rad
 from advisor.gap.search.indistinguishable import way_to_distinguish
-from advisor.gap.verdict.evidence import Evidence
 from advisor.gap.verdict.holdout_numbers import without_air
 
 _SCALED_BY = 0.2

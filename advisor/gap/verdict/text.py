@@ -75,7 +75,7 @@ def _of_wrong_parameters(present: Sequence[Cause], shrink: Shrink | None) -> str
 
 
 def _of_unknown(where: Where, causes: Sequence[Cause], present: Sequence[Cause]) -> str:
-    tried = next((c for c in causes if c.probability > 0.02), None)
+    tried = next(iter(causes), None)
     near = f"; the closest, {spelled(tried.effect)}, is not enough" if tried is not None else ""
     if present:
         near = f", in addition to what looks like {_listed(present)}"

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
+from advisor.gap.evidence.found import Evidence
 from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.fitting.prior import Distance
 from advisor.gap.fitting.uncertainty import CLEAR_GAP, distance_from_file
 from advisor.gap.result import VISIBLE
 from advisor.gap.search.acceptance import JudgedAddition
-from advisor.gap.verdict.evidence import Evidence
 
 _BY_NAMES = 0.8
 """Least share of the gap that named effects must explain with the file's own derivatives, for these to be

@@ -48,6 +48,8 @@ class LinkStatistics:
     silent_s: float = 0.0
     """Time since the vehicle was last heard."""
     reconnects: int = 0
+    unanswered_s: float = 0.0
+    """Time for which the process of the link has not answered its reader, s."""
     recording: Path | None = None
     recorded_bytes: int = 0
     recording_problem: str | None = None

@@ -10,6 +10,8 @@ from advisor.mavlink.wire.framing import Frame
 
 ANSWER_WITHIN_S = 1.0
 MOST_TRIES = 3
+LONGEST_PAUSE_S = 10.0
+"""Longest time between two requests for a parameter that the vehicle is known to have, s."""
 AT_ONCE = 10
 
 _HEARTBEAT, _PARAM_VALUE = dialect.MAVLINK_MSG_ID_HEARTBEAT, dialect.MAVLINK_MSG_ID_PARAM_VALUE
@@ -20,7 +22,8 @@ class Inquiry(Talker):
 
     ArduPilot's questions are asked until a heartbeat shows PX4. A few questions are open at a time. An
     unanswered one is repeated and then given up, because a vehicle does not answer for a parameter that it
-    lacks. The answers reach the advisor like every other message of the link. Here they only decide on the
+    lacks. The limits of an output that the vehicle has named exist, and are asked for until they are heard.
+    The answers reach the advisor like every other message of the link. Here they only decide on the
     next question. Another vehicle is asked anew.
 
     Parameters
@@ -38,6 +41,7 @@ class Inquiry(Talker):
         self._questions: Questions = ArduPilotQuestions()
         self._to_ask = self._first_questions()
         self._standing: dict[str, tuple[float, int]] = {}
+        self._existing: set[str] = set()
         self._firmware_asked = self._outputs_only
         self._told = False
         self.parameters: dict[str, float] = {}
@@ -49,7 +53,7 @@ class Inquiry(Talker):
     @property
     def done(self) -> bool:
         """Whether every question was answered or given up."""
-        return not self._to_ask and not self._standing
+        return not self._to_ask and all(tries >= MOST_TRIES for _, tries in self._standing.values())
 
     def hear(self, frame: Frame, now_s: float) -> None:
         """Take an answer, or the autopilot's heartbeat."""
@@ -71,6 +75,7 @@ class Inquiry(Talker):
         if not known:
             details = self._questions.follow(name, value)
             self._to_ask += [detail for detail in details if detail not in self.parameters]
+            self._existing.update(details)
 
     def speak(self, vehicle: tuple[int, int] | None, now_s: float) -> list[Any]:
         """Return the questions that are due."""
@@ -84,9 +89,11 @@ class Inquiry(Talker):
             self._firmware_asked = True
             questions.append(_ask_for_firmware(vehicle))
         for name, (asked_s, tries) in list(self._standing.items()):
-            if now_s - asked_s < ANSWER_WITHIN_S:
+            exists = name in self._existing
+            pause_s = LONGEST_PAUSE_S if exists and tries >= MOST_TRIES else ANSWER_WITHIN_S
+            if now_s - asked_s < pause_s:
                 continue
-            if tries == MOST_TRIES:
+            if tries >= MOST_TRIES and not exists:
                 del self._standing[name]
             else:
                 self._standing[name] = (now_s, tries + 1)

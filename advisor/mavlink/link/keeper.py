@@ -23,6 +23,7 @@ from advisor.mavlink.link.announce import Announcer
 from advisor.mavlink.link.health import LinkNotice
 from advisor.mavlink.link.inquiry import Inquiry
 from advisor.mavlink.link.keeping import (
+    Alive,
     AnnounceVerdict,
     CallOrder,
     Guard,
@@ -105,6 +106,7 @@ class Keeper:
         self._arrived: SimpleQueue[Connection] = SimpleQueue()
         self._readers: list[Reader] = []
         self._passed_on = 0
+        self._looked_s = time.monotonic()
         self._guards = 0
         self._alone_since_s: float | None = None
         self._lock = threading.Lock()
@@ -138,6 +140,7 @@ class Keeper:
                 if records:
                     self._send(Heard(self._passed_on, records))
                     self._passed_on += len(records)
+                self._looked_s = time.monotonic()
                 self._admit()
                 if time.monotonic() - told_s >= TELL_EVERY_S:
                     told_s = time.monotonic()
@@ -203,6 +206,9 @@ class Keeper:
                         guards = True
                         self._lend_socket(connection)
                         self._guarded(+1)
+                    case Alive():
+                        at_work_s = min(self._looked_s, self._link.looked_s)
+                        connection.send(time.monotonic() - at_work_s)
                     case AnnounceVerdict(maneuver, sentence, stop) if self._announcer:
                         self._announcer.judged(maneuver, sentence, stop)
                     case CallOrder(method, arguments):

@@ -76,7 +76,9 @@ class Hello:
     unsaved: bytes
     """Records that follow and are not in the file yet."""
     before: int
-    """Bytes at the start of the recording from an earlier flight."""
+    """Bytes at the start of the recording from an earlier flight, or from an earlier process."""
+    process: int = field(default_factory=os.getpid)
+    """Id of the answering process."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,6 +127,11 @@ class Guard:
 
     The answer says whether the descriptor of a UDP socket follows.
     """
+
+
+@dataclass(frozen=True, slots=True)
+class Alive:
+    """Asks for the time since the slowest thread of the link was last at work. The answer is that time, s."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,7 +2,9 @@
 
 import time
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import cached_property
+from math import inf
 from multiprocessing.connection import Connection
 from types import TracebackType
 from typing import TYPE_CHECKING, Self
@@ -11,6 +13,7 @@ from advisor.aircraft.aircraft import Elevator
 from advisor.flight.signals.messages import Columns
 from advisor.mavlink.link.health import LinkNotice, LinkStatistics
 from advisor.mavlink.link.keeping import AnnounceVerdict, CallOrder, Door, Heard, Hello, Listen, Told
+from advisor.process.liveness import OLD_AFTER_S
 
 if TYPE_CHECKING:
     from advisor.mavlink.link.decoding import Decoding
@@ -18,6 +21,8 @@ if TYPE_CHECKING:
 PIECE_BYTES = 262_144
 """Bytes of the recording that one ``read`` decodes: some 5,000 messages."""
 RETRY_EVERY_S = 0.1
+STARTED_WITHIN_S = 0.5
+"""Time before the first connection to a new process, s, at most, within which that process began."""
 
 
 class KeptLink:
@@ -45,11 +50,13 @@ class KeptLink:
         self._past: Iterator[bytes] = iter(())
         self._position = 0
         """Bytes of the recording read so far."""
-        self._before = 0
+        self._before = self._process = 0
         self._next_try_s = 0.0
         self._notices: list[LinkNotice] = []
         self._broken = False
         self._told = LinkStatistics()
+        self._connected_s = self._vehicle_heard_s = -inf
+        self._unanswered_s = 0.0
         self.catching_up = True
         """Whether earlier records are still being read."""
 
@@ -70,17 +77,16 @@ class KeptLink:
         if piece is None:
             self.catching_up = False
             piece = self._hear(timeout_s)
-        if not piece:
-            return []
-        columns = self._decoding.feed(piece)
-        if (vehicle := self._decoding.newly_followed()) is not None:
+        columns = self._decoding.feed(piece) if piece else []
+        # A process that was started again knows no vehicle, and a silent one would stay unknown.
+        if self._connection is not None and (vehicle := self._decoding.newly_followed()) is not None:
             self._send(CallOrder("listen_to", (vehicle,)))
         return columns
 
     @property
     def statistics(self) -> LinkStatistics:
         """Health of the link, as reported last."""
-        return self._decoding.counted(self._told)
+        return self._decoding.counted(replace(self._told, unanswered_s=self._unanswered_s))
 
     def take_notices(self) -> list[LinkNotice]:
         """Return the notices since the last call, oldest first."""
@@ -114,6 +120,7 @@ class KeptLink:
     def _connect(self, timeout_s: float) -> None:
         if time.monotonic() < self._next_try_s:
             time.sleep(min(timeout_s, RETRY_EVERY_S))
+            self._wait_in_vain(min(timeout_s, RETRY_EVERY_S))
             return
         self._next_try_s = time.monotonic() + RETRY_EVERY_S
         try:
@@ -125,8 +132,12 @@ class KeptLink:
         assert isinstance(hello, Hello)
         if self._broken:
             self._say("the process of the link has ended and was started again; the recording goes on")
+            self._connected_s = time.monotonic()
         self._connection, self._broken = connection, False
-        self._before = hello.before
+        if hello.process != self._process:
+            # The recording may lack what the last process passed on in its last moment: what follows is new.
+            self._position = min(self._position, hello.before)
+        self._before, self._process = hello.before, hello.process
         self._past = self._records_of(hello)
         self.catching_up = True
         self._decoding.forget_followed()
@@ -142,7 +153,7 @@ class KeptLink:
                         break
                     self._position += len(piece)
                     yield piece
-        # A process that was killed may have passed on more than the disk holds.
+        # A reader that was cut off from the same process has heard a part of it.
         unread = hello.unsaved[max(0, self._position - hello.written) :]
         self._position = hello.written + len(hello.unsaved)
         if unread:
@@ -154,17 +165,40 @@ class KeptLink:
             return b""
         try:
             while self._connection.poll(timeout_s):
+                self._answered()
                 match self._connection.recv():
                     case Heard(at, records) if at + len(records) > self._position:
                         self._position = at + len(records)
                         return records
                     case Told(statistics, notices):
-                        self._told = statistics
+                        self._told = self._remembering(statistics)
                         self._notices += notices
                         return b""
+            self._wait_in_vain(timeout_s)
         except (OSError, EOFError):
             self._lose()
         return b""
+
+    def _remembering(self, statistics: LinkStatistics) -> LinkStatistics:
+        """Return statistics with the vehicle and the silence that an earlier process knew of."""
+        now_s = time.monotonic()
+        heard_s = now_s - statistics.silent_s
+        # A process counts the silence from its own start.
+        if heard_s > self._connected_s + STARTED_WITHIN_S:
+            self._vehicle_heard_s = heard_s
+        vehicle = statistics.vehicle or self._told.vehicle
+        return replace(statistics, vehicle=vehicle, silent_s=now_s - self._vehicle_heard_s)
+
+    def _wait_in_vain(self, seconds: float) -> None:
+        """Take note of a wait in which the process has said nothing. It says something every 0.2 s."""
+        before_s, self._unanswered_s = self._unanswered_s, self._unanswered_s + seconds
+        if before_s < OLD_AFTER_S <= self._unanswered_s:
+            self._say(f"the process of the link has not answered for {OLD_AFTER_S:.0f} s")
+
+    def _answered(self) -> None:
+        if self._unanswered_s >= OLD_AFTER_S:
+            self._say("the process of the link answers again")
+        self._unanswered_s = 0.0
 
     def _send(self, message: object) -> None:
         try:

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Self
 
 from advisor.aircraft.aircraft import Elevator
 from advisor.flight.signals.messages import Columns
+from advisor.flight.vehicle.breaks import DOWN
 from advisor.flight.vehicle.following import FOLLOW, TAKE
 from advisor.mavlink.link.connection import parse_connection
 from advisor.mavlink.link.conversation import Conversation
@@ -44,6 +45,9 @@ UNREACHABLE_S = 3.0
 """Silence of the vehicle after which nothing is sent to it, s: three heartbeats."""
 FAREWELL_S = 0.7
 """Longest time that the end of a link may take to restore settings of the vehicle, s."""
+STOOD_STILL_S = 1.0
+"""Time between two looks at the connection, s, above which packets may be lost: the socket keeps about a
+second of them."""
 QUEUE_LENGTH = 12_000  # batches: more than a minute behind at full load
 
 _HEARD, _SENT_BY_US = 0, 3  # link numbers, the low two bits of a tlog's time stamps
@@ -116,6 +120,8 @@ class Link:
         self._line = Line(self.address, inherited, self._stop)
         self._thread = threading.Thread(target=self._run, name="link", daemon=True)
         self._unix_offset_s = 0.0
+        self.looked_s = time.monotonic()
+        """Monotonic time at which the thread of the link last looked at its connection, s."""
 
     def start(self) -> Self:
         """Open the connection and the recording, and begin to listen.
@@ -130,7 +136,10 @@ class Link:
             self._recorder = Recorder(self._record_to, self._goes_on)
         # Stamps run on the monotonic clock, so that setting the host's clock does not tear the recording.
         self._unix_offset_s = time.time() - time.monotonic()
-        self._watch.begin(time.monotonic())
+        self.looked_s = time.monotonic()
+        self._watch.begin(self.looked_s)
+        if self._goes_on:
+            self._orders.append(DOWN)
         if self.address.speaks_first:
             text = f"{self.address.text} is told our address by a heartbeat once a second"
             self._say([text], time.monotonic())
@@ -253,7 +262,10 @@ class Link:
         since_s = 0.0
         while not self._stop.is_set():
             frames = self._take_frames(wait_s=0.0 if batch else 0.05)
-            now_s = time.monotonic()
+            before_s, now_s = self.looked_s, time.monotonic()
+            if now_s - before_s > STOOD_STILL_S:
+                self._orders.append(DOWN)
+            self.looked_s = now_s
             since_s = since_s if batch else now_s
             batch += self._records((frame.raw for frame in frames), now_s, _HEARD)
             batch += self._records(self._obey(), now_s, _SENT_BY_US)

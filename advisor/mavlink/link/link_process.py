@@ -3,8 +3,8 @@
 import contextlib
 import os
 import pickle
+import signal
 import subprocess
-import sys
 import threading
 from dataclasses import replace
 from multiprocessing.connection import Connection
@@ -14,12 +14,18 @@ from types import TracebackType
 from typing import Self
 
 from advisor.aircraft.aircraft import Elevator
-from advisor.mavlink.link.keeping import Guard, Keeping, Stop
+from advisor.mavlink.link.keeping import Alive, Guard, Keeping, Stop
 from advisor.mavlink.link.kept_link import KeptLink
 from advisor.mavlink.link.running_links import RunningLink
+from advisor.process.children import python_module
 from advisor.process.interrupt import hung_up
 
 RETRY_EVERY_S = 1.0
+ASK_EVERY_S = 0.5
+"""Time between two questions whether the process is at work, s."""
+HUNG_AFTER_S = 5.0
+"""Time without work, s, after which the process is ended and started again. Nothing that it does takes a
+second. Meanwhile the packets of 1 s wait in the socket's buffer, and later ones are lost."""
 PATIENCE_S = 10.0
 """Longest time that a process may take to close its recording, s."""
 
@@ -102,7 +108,7 @@ class LinkProcess:
 
     def _start(self) -> None:
         process = subprocess.Popen(
-            [sys.executable, "-m", "advisor.mavlink.link.keeper"],
+            python_module("advisor.mavlink.link.keeper"),
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
@@ -139,16 +145,43 @@ class LinkProcess:
             os.close(self._socket)
             self._socket = None
 
+    def _hangs(self, guard: Connection) -> bool:
+        """Wait until the process ends, or does no work for ``HUNG_AFTER_S``; return whether it hangs.
+
+        Raises
+        ------
+        OSError, EOFError
+            The process has ended.
+        """
+        while True:
+            guard.send(Alive())
+            if not guard.poll(HUNG_AFTER_S):
+                return True
+            if guard.recv() >= HUNG_AFTER_S:
+                return True
+            guard.poll(ASK_EVERY_S)  # nothing is sent: this returns early when the process ends
+
+    def _kill(self) -> None:
+        running = self._running.pid if self._running is not None else None
+        pid = self._process.pid if self._process is not None else running
+        if pid is not None:
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(pid, signal.SIGKILL)
+
+    def _await_end(self) -> None:
+        if self._process is not None:
+            with contextlib.suppress(subprocess.TimeoutExpired):  # the system itself waits, for a disk
+                self._process.wait(PATIENCE_S)
+
     def _look_after(self) -> None:
-        """Wait for the end of the process, and restart the process after an unwanted end."""
+        """Restart the process after an unwanted end."""
         while not self._stopping.is_set():
             with contextlib.suppress(OSError, EOFError):
-                if self._guard is not None:
-                    self._guard.recv()  # nothing is sent: this returns when the process has ended
+                if self._guard is not None and self._hangs(self._guard):
+                    self._kill()
             if self._stopping.is_set():
                 return
-            if self._process is not None:
-                self._process.wait()
+            self._await_end()
             try:
                 self._start()
                 self._guard = self._stand_guard()

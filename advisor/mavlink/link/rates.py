@@ -79,7 +79,7 @@ class RateRequest(Talker):
             if is_ground_station(frame):
                 self._stations.add(frame.system)
             return
-        self._delivery.hear(frame.message_id, now_s)
+        self._delivery.hear(frame, now_s)
         if self._reboots.hear(frame):
             self._begin_anew(now_s)
         elif frame.message_id == _COMMAND_ACK:

@@ -50,7 +50,7 @@ class RateWatch:
         if not from_vehicle:
             return []
         for frame in from_vehicle:
-            self._delivery.hear(frame.message_id, now_s)
+            self._delivery.hear(frame, now_s)
         fell, back = [], []
         for message, rate_hz in (self._delivery.look(now_s) or {}).items():
             best_hz = self._best_hz[message] = max(rate_hz, self._best_hz.get(message, 0.0))

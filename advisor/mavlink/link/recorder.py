@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from advisor.mavlink.link.recording_file import create, take_up
+from advisor.process.liveness import OLD_AFTER_S
 
 WRITE_EVERY_S = 0.05
 """Time between two writes to the operating system, s. The death of this process loses at most the records of
@@ -58,8 +59,9 @@ class Recorder:
         self._written = self._file.tell()
         self.before = self._written
         """Bytes of the recording from an earlier flight."""
-        self.problem: str | None = None
-        """Reason for which records wait in memory at this moment; None while all is well."""
+        self._problem: str | None = None
+        self._busy_since_s: float | None = None
+        self._stuck_told = False
         self._notices: list[str] = []
         self._pending = bytearray()
         self._dropped = 0
@@ -76,6 +78,19 @@ class Recorder:
         """Bytes added to the file since it was opened."""
         return self._written - self.before
 
+    @property
+    def problem(self) -> str | None:
+        """Reason for which records wait in memory at this moment; None while all is well."""
+        return self._stuck or self._problem
+
+    @property
+    def _stuck(self) -> str | None:
+        """Clause on a disk that does not answer at this moment; None while the disk answers."""
+        since_s = self._busy_since_s
+        if since_s is None or (waits_s := time.monotonic() - since_s) < OLD_AFTER_S:
+            return None
+        return f"the disk has not answered for {waits_s:.0f} s; what is heard waits in memory"
+
     def write(self, records: bytes) -> None:
         """Queue whole records."""
         with self._lock:
@@ -91,6 +106,10 @@ class Recorder:
 
     def take_notices(self) -> list[str]:
         """Return sentences on the disk for the crew, since the last call."""
+        stuck = self._stuck
+        if (stuck is not None) != self._stuck_told:
+            self._stuck_told = stuck is not None
+            self._say(f"recording to {self.path}: {stuck or 'the disk answers again'}")
         with self._lock:
             notices, self._notices = self._notices, []
         return notices
@@ -113,6 +132,7 @@ class Recorder:
         now_s = time.monotonic()
         if now_s - self._failed_s < RETRY_EVERY_S:
             return
+        self._busy_since_s = now_s
         try:
             self._append()
             if self._dirty and now_s - self._synced_s >= SYNC_EVERY_S:
@@ -123,6 +143,8 @@ class Recorder:
             self._fail(error, now_s)
         else:
             self._recover()
+        finally:
+            self._busy_since_s = None
 
     def _append(self) -> None:
         with self._lock:
@@ -146,17 +168,17 @@ class Recorder:
 
     def _fail(self, error: OSError, now_s: float) -> None:
         self._failed_s = now_s
-        if self.problem is None:
+        if self._problem is None:
             self._say(
                 f"recording to {self.path} fails: {error.strerror or error}. What is heard waits in memory; "
                 "make room on the disk"
             )
-        self.problem = f"the disk takes no recording: {error.strerror or error}"
+        self._problem = f"the disk takes no recording: {error.strerror or error}"
 
     def _recover(self) -> None:
-        if self.problem is None:
+        if self._problem is None:
             return
-        self.problem = None
+        self._problem = None
         with self._lock:
             lost, self._dropped = self._dropped, 0
         what = f"{lost / 1e6:.1f} MB are lost" if lost else "nothing is lost"

@@ -2,6 +2,7 @@
 
 import contextlib
 import os
+import tempfile
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import BinaryIO
@@ -37,6 +38,24 @@ def default_recording(folder: Path | None = None, now: datetime | None = None) -
 def recordings_folder() -> Path:
     """Return the user's own folder of recordings."""
     return Path(platformdirs.user_data_dir("inflight-advisor")) / "recordings"
+
+
+def writable_folder() -> tuple[Path, str]:
+    """Return a folder for a recording that the user does not name, and a sentence where that is another one.
+
+    A home that is full, read-only or missing keeps nobody from advising.
+    """
+    own = recordings_folder()
+    try:
+        own.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=own):
+            return own, ""
+    except OSError as error:
+        other = Path(tempfile.mkdtemp(prefix="advisor-recordings-"))
+        return other, (
+            f"{own} takes no recording ({error.strerror or error}). The system may clear {other}: "
+            "copy the recording after landing"
+        )
 
 
 def create(path: Path) -> tuple[Path, BinaryIO]:

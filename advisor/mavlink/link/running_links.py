@@ -40,7 +40,8 @@ def note(link: RunningLink) -> None:
 
 def forget(pid: int) -> None:
     """Remove the note of a link that has ended."""
-    _path(pid).unlink(missing_ok=True)
+    with contextlib.suppress(OSError):
+        _path(pid).unlink(missing_ok=True)
 
 
 def running_alone() -> Iterator[RunningLink]:

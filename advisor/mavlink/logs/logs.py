@@ -49,6 +49,26 @@ def open_log(
 def _read(
     path: Path, beginning: bytes, wanted: Iterable[str] | None, scanner: FrameScanner
 ) -> Iterator[list[Columns]]:
+    """Yield the messages of one log. Whatever breaks its reader ends this log only, with a sentence."""
+    try:
+        yield from _messages(path, beginning, wanted, scanner)
+    except UnusableInputError:
+        raise
+    except MemoryError as error:
+        raise UnusableInputError(
+            "too_large", f"{path.name} needs more memory than is free.", "Cut out the flight, or free memory."
+        ) from error
+    except Exception as error:
+        raise UnusableInputError(
+            "damaged",
+            f"{path.name} cannot be read: its bytes break the reader ({type(error).__name__}: {error}).",
+            "Copy the log from the vehicle once more, or leave it out; and please report it.",
+        ) from error
+
+
+def _messages(
+    path: Path, beginning: bytes, wanted: Iterable[str] | None, scanner: FrameScanner
+) -> Iterator[list[Columns]]:
     with unpacked(path, beginning) as log:
         if log is not path:
             beginning = beginning_of(log)

@@ -4,7 +4,6 @@ import gzip
 import stat
 import tempfile
 import zipfile
-import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -93,8 +92,12 @@ def unpacked(path: Path, beginning: bytes) -> Iterator[Path]:
                 f"{path.name} cannot be unpacked: {error.strerror}.",
                 "Unpack it by hand where there is room and give the log inside it.",
             ) from None
-        except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError):
-            raise _damaged(path) from None
+        except UnusableInputError:
+            raise
+        except (
+            Exception
+        ) as error:  # whatever an unpacker meets in damaged bytes; each format has errors of its own
+            raise _damaged(path) from error
         yield log
 
 

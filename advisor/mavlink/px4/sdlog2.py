@@ -104,7 +104,6 @@ class Sdlog2Messages:
                 {
                     "airspeed": air.fields["IndSpeed"],
                     "climb": -self._known(air, "LPOS", "VZ"),
-                    "alt": -self._known(air, "LPOS", "Z"),
                     "throttle": 100.0 * self._known(air, "ATTC", "Thrust"),
                 },
             )

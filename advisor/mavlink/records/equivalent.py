@@ -2,7 +2,8 @@
 
 Autopilots log angles, rates, outputs and air data as separate records, each at its own time. Here they become
 the messages of a telemetry link, so that all later code has one path. A message holds only values of its
-record. Missing values are NaN in a floating-point field, and zero otherwise. Nothing is interpolated.
+record. Missing and infinite values are NaN in a floating-point field, and zero otherwise. Nothing is
+interpolated.
 """
 
 from collections.abc import Mapping
@@ -58,6 +59,8 @@ def message(
         values = np.asarray(fields[field])
         if wire.base.kind in "iu" and values.dtype.kind != "f":
             values = values.astype(wire.base)
+        if values.dtype.kind == "f" and np.isinf(values).any():
+            values = np.where(np.isinf(values), np.nan, values)
         columns[field] = np.broadcast_to(values, (n, *wire.shape))[rows]
     for field in fields.keys() - columns.keys():
         columns[field] = np.asarray(fields[field])[rows]

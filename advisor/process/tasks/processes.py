@@ -4,12 +4,14 @@ import multiprocessing
 import os
 import sys
 import threading
+import warnings
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
 from multiprocessing import resource_tracker
 from multiprocessing.connection import wait as wait_for
 from typing import TypeVar
 
+from advisor.process.children import spawning
 from advisor.process.tasks.threads import pin_linear_algebra
 
 T = TypeVar("T")
@@ -18,8 +20,8 @@ R = TypeVar("R")
 
 def processes(workers: int) -> Executor:
     """Return fresh processes, which leave signals to this process and end with it."""
+    context = spawning()
     _start_silent_tracker()
-    context = multiprocessing.get_context("spawn")
     return ProcessPoolExecutor(workers, mp_context=context, initializer=_begin_worker)
 
 
@@ -107,6 +109,7 @@ def _begin_worker() -> None:
     from advisor.process.interrupt import ignore
 
     ignore()
+    warnings.simplefilter("ignore")  # as in the parent: warnings are for those who develop
     pin_linear_algebra()
     parent = multiprocessing.parent_process()
     if parent is not None:

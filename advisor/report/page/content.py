@@ -41,3 +41,5 @@ class Content:
     gap: Document | None
     """``advisor.gap/1``, where requested."""
     origin: Origin
+    begun: tuple[str, ...] = ()
+    """Date and time at which each log began."""

@@ -14,6 +14,8 @@ from advisor.report.page.drawing import BLACK, BLUE, picture
 from advisor.report.table import Table
 
 _MOST_TICKS = 8
+_NEWEST = 12
+"""Most rows of the table of values. The figures show the whole course."""
 _EXPLAINED = (
     "The rules continuous and separate compare the scatter of the newest estimates with a limit (Eq. 12). "
     "The rule information compares errors with the tolerances of the aircraft file (100 %: met). "
@@ -35,12 +37,15 @@ def _blocks(content: Content) -> Iterator[Block]:
     yield Paragraph(_EXPLAINED)
     yield Gallery(tuple(_figure(rule, one, limits[rule]) for rule, one in by_rule.items()))
     flown = max((len(one["history_percent"]) for one in by_rule.values()), default=0)
+    first = max(flown - _NEWEST, 0)
+    newest = f", the newest {_NEWEST}" if first else ""
     yield Table(
-        "criterion-values", "Criterion in percent after each manoeuvre; – where it has no value yet.",
+        "criterion-values",
+        f"Criterion in percent after each manoeuvre{newest}; – where it has no value yet.",
         ("flown", *(f"{rule} (limit {limits[rule]:g})" for rule in by_rule)),
         tuple(
             (str(i + 1), *(_value(one["history_percent"], i) for one in by_rule.values()))
-            for i in range(flown)
+            for i in range(first, flown)
         ),
         frozenset(range(len(by_rule) + 1)),
     )  # fmt: skip

@@ -3,11 +3,14 @@
 import io
 import re
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, TypeVarTuple
 
 import matplotlib as mpl
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure as Drawing
+
+from advisor.process.atomic_file import write_atomically
 
 BLUE, ORANGE, GREY, BLACK = "#0b5394", "#b45f06", "#9a9a9a", "#222222"
 """Colours that also differ in lightness. Lines that differ in colour also differ in style."""
@@ -33,6 +36,8 @@ _STYLE: Any = {
     "path.simplify": True,
     "path.simplify_threshold": 0.2,
 }
+_DPI = 150
+"""Dots per inch of a picture in dots: sharp on a screen of twice the usual density."""
 Shown = TypeVarTuple("Shown")
 _NO_METADATA = dict.fromkeys(("Creator", "Date", "Format", "Type"))
 
@@ -46,6 +51,29 @@ def picture(
 ) -> Callable[[], str]:
     """Return a picture that is drawn on demand, with the parameters of :func:`draw`."""
     return lambda: draw(name, width_in, height_in, paint, *shown)
+
+
+def save(
+    path: Path,
+    width_in: float,
+    height_in: float,
+    paint: Callable[[Drawing, *Shown], None],
+    *shown: *Shown,
+) -> None:
+    """Draw a figure into a file, whose ending names the format: svg or png.
+
+    Raises
+    ------
+    OSError
+        The file cannot be written.
+    """
+    form = path.suffix.lower().removeprefix(".")
+    with mpl.rc_context(_STYLE), mpl.rc_context({"svg.hashsalt": path.name}):
+        figure = Drawing(figsize=(width_in, height_in), layout="constrained")
+        paint(figure, *shown)
+        out = io.BytesIO()
+        figure.savefig(out, format=form, dpi=_DPI, metadata=_NO_METADATA if form == "svg" else None)
+    write_atomically(path, out.getvalue())
 
 
 def draw(

@@ -9,10 +9,14 @@ from advisor.oem.estimate import Estimate
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section
 from advisor.report.page.content import Content
 from advisor.report.page.drawing import BLACK, BLUE, ORANGE, picture
-from advisor.report.result_rows import ParameterRow, parameter_row
+from advisor.report.result_rows import ParameterRow, instrument_rows, parameter_row
 from advisor.report.table import Table
 from advisor.words.quantities import PARAMETERS as QUANTITIES
 
+_MOST_LABELS = 16
+"""Most labels of a forest plot. With more manoeuvres every second one is named, or fewer."""
+_TALLEST_IN = 3.2
+"""Greatest height of a forest plot, inches, so that thirty manoeuvres fill no page."""
 Rows = Mapping[str, ParameterRow]
 """Parameter to its row."""
 
@@ -28,14 +32,13 @@ def _blocks(content: Content) -> Iterator[Block]:
     if model is None:
         yield Paragraph("No manoeuvre is accepted, so there is no joint estimate.")
         return
-    numbers = ", ".join(map(str, content.state.estimate_from))
-    at = "" if model.airspeed_m_s is None else f" at {model.airspeed_m_s:.1f} m/s"
     joint = {name: parameter_row(name, model, prior) for name in PARAMETERS}
-    yield Table(
-        "joint", f"Joint estimate from manoeuvres {numbers}{at}; ± is half the 95 % interval.",
-        ("parameter", "estimate ± 95 %", "± 95 % if white", "file's model", "unit"),
-        tuple(map(_joint, joint.values())), frozenset({1, 2, 3}),
-    )  # fmt: skip
+    if rows := instrument_rows(model):
+        yield Table(
+            "instruments", "Instruments, estimated with the derivatives; ± is half the 95 % interval.",
+            ("instrument", "estimate ± 95 %", "aircraft file", "unit"),
+            tuple((row.name, row.cell, row.stated, row.unit) for row in rows), frozenset({1, 2}),
+        )  # fmt: skip
     alone = {
         str(one.maneuver.number): {name: parameter_row(name, one.estimate, prior) for name in PARAMETERS}
         for one in content.state.maneuvers
@@ -47,6 +50,21 @@ def _blocks(content: Content) -> Iterator[Block]:
         ("no.", *(QUANTITIES[name].label for name in PARAMETERS)),
         tuple((number, *(_narrow(row.cell) for row in rows.values())) for number, rows in alone.items()),
         frozenset(range(len(PARAMETERS) + 1)),
+    )  # fmt: skip
+
+
+def joint_table(content: Content) -> Table | None:
+    """Return the joint estimate against the simulator's model; None where nothing is accepted."""
+    model = content.state.model
+    if model is None:
+        return None
+    numbers = ", ".join(map(str, content.state.estimate_from))
+    at = "" if model.airspeed_m_s is None else f" at {model.airspeed_m_s:.1f} m/s"
+    rows = (parameter_row(name, model, content.aircraft.model) for name in PARAMETERS)
+    return Table(
+        "joint", f"Joint estimate from manoeuvres {numbers}{at}; ± is half the 95 % interval.",
+        ("parameter", "estimate ± 95 %", "± 95 % if white", "simulator", "unit"),
+        tuple(map(_joint, rows)), frozenset({1, 2, 3}),
     )  # fmt: skip
 
 
@@ -66,7 +84,7 @@ def _forest(
 ) -> Figure:
     rows = [*((number, found[name]) for number, found in alone.items()), ("joint", joint[name])]
     known = [(label, row) for label, row in rows if row.is_known]
-    svg = picture(f"forest-{name}", 2.4, 0.9 + 0.15 * len(rows), _paint, joint[name], known)
+    svg = picture(f"forest-{name}", 2.4, min(0.9 + 0.15 * len(rows), _TALLEST_IN), _paint, joint[name], known)
     told = "" if joint[name].prior is None else " Dashes: the file's model."
     symbol = joint[name].quantity.symbol
     return Figure(
@@ -85,7 +103,9 @@ def _paint(drawing: Drawing, joint: ParameterRow, known: Sequence[tuple[str, Par
         )  # fmt: skip
     if joint.prior is not None:
         axes.axvline(joint.prior, color=ORANGE, linestyle="--", linewidth=1.0)
-    axes.set_yticks(range(len(known)), [label for label, _ in known])
+    every = -(-len(known) // _MOST_LABELS)
+    named = [(at, label) for at, (label, _) in enumerate(known) if at % every == 0 or label == "joint"]
+    axes.set_yticks([at for at, _ in named], [label for _, label in named])
     axes.invert_yaxis()
     axes.set_xlabel(joint.quantity.label)
     axes.locator_params(axis="x", nbins=5)

@@ -1,7 +1,9 @@
-"""Measured and fitted response of each accepted manoeuvre, with the residual and its 95 % band."""
+"""Measured and fitted response of each accepted manoeuvre: input and outputs over one time axis."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from statistics import fmean
 
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 
 from advisor.campaign.state import JudgedManeuver
@@ -15,69 +17,119 @@ from advisor.words.quantities import CHANNELS
 
 _EXPLAINED = (
     "Grey: measured. Dark dashes: the short-period model fitted to this manoeuvre alone. "
-    "Below: the residual, measured minus fitted. "
+    "Below each output: the residual, measured minus fitted. "
     "The band of ±1.96 σ holds 95 % of the residuals if they are white noise. "
     "A pattern in the residual shows an effect that the model lacks."
 )
+_SMALL = ("alpha", "q")
+"""Outputs of a small picture."""
+
+Fitted = tuple[JudgedManeuver, Estimate]
 
 
 def fits(content: Content) -> Section:
-    """Return a gallery for each accepted manoeuvre."""
+    """Return the best and the worst fit large, then all others small."""
     return Section("fits", "Measured against fitted", tuple(_blocks(content)))
 
 
 def _blocks(content: Content) -> Iterator[Block]:
-    accepted = [j for j in content.state.maneuvers if j.verdict.accepted]
-    yield Paragraph(_EXPLAINED if accepted else "No manoeuvre is accepted.")
-    for judged in accepted:
-        if isinstance(judged.estimate, Estimate):
-            yield Gallery(tuple(_figures(judged, judged.estimate)))
+    accepted: list[Fitted] = [
+        (j, j.estimate)
+        for j in content.state.maneuvers
+        if j.verdict.accepted and isinstance(j.estimate, Estimate)
+    ]
+    if not accepted:
+        yield Paragraph("No manoeuvre is accepted.")
+        return
+    yield Paragraph(_EXPLAINED)
+    in_order = sorted(accepted, key=_explained)
+    large = [("worst", in_order[0]), ("best", in_order[-1])] if len(in_order) > 1 else [("only", in_order[0])]
+    yield Gallery(tuple(_large(rank, *one) for rank, one in large))
+    shown = {one.maneuver.number for _, (one, _) in large}
+    if small := [one for one in accepted if one[0].maneuver.number not in shown]:
+        yield Gallery(tuple(_small(*one) for one in small))
 
 
-def _figures(judged: JudgedManeuver, estimate: Estimate) -> Iterator[Figure]:
-    number, span = judged.maneuver.number, judged.maneuver.span
-    elevator = judged.maneuver.channels["elevator"]
-    svg = picture(f"input-{number}", 4.4, 2.7, _paint_input, elevator, span.start_s)
-    yield Figure(svg, f"Manoeuvre {number}, {span.kind}: elevator command δe.", "half")
-    for name, fit in estimate.fits[0].items():
-        quantity = CHANNELS[name]
-        rms = f"{fit.rms * quantity.factor:.3g} {quantity.unit}"
-        svg = picture(f"fit-{number}-{name}", 4.4, 2.7, _paint, fit, span.start_s)
-        yield Figure(
-            svg,
-            f"Manoeuvre {number}, {quantity.symbol}: R² {fit.r2:.3f}, Theil {fit.tic:.3f}, "
-            f"rms of the residual {rms}.{_prediction(estimate, name)}",
-            "half",
-        )
+def _explained(fitted: Fitted) -> float:
+    """Return the mean share of the motion that the fit explains."""
+    return fmean(fit.r2 for fit in fitted[1].fits[0].values())
 
 
-def _prediction(estimate: Estimate, name: str) -> str:
-    band = estimate.prediction.get(name)
-    return (
-        ""
-        if band is None
-        else f" The predicted response is known to {100.0 * band:.1f} % of its peak (95 %)."
-    )
+def _large(rank: str, judged: JudgedManeuver, estimate: Estimate) -> Figure:
+    number, outputs = judged.maneuver.number, tuple(estimate.fits[0].values())
+    height = 0.9 + 1.45 * len(outputs)
+    svg = picture(f"fit-{number}", 3.6, height, _paint_large, _elevator(judged), outputs, _start(judged))
+    told = "; ".join(_measures(fit, estimate) for fit in outputs)
+    caption = f"Manoeuvre {number}, {judged.maneuver.span.kind}, the {rank} fit. {told}."
+    return Figure(svg, caption, "half")
 
 
-def _paint_input(drawing: Drawing, elevator: Channel, start_s: float) -> None:
-    axes = drawing.subplots()
+def _small(judged: JudgedManeuver, estimate: Estimate) -> Figure:
+    number, all_of_them = judged.maneuver.number, estimate.fits[0]
+    outputs = tuple(all_of_them[name] for name in _SMALL if name in all_of_them)
+    svg = picture(
+        f"fit-{number}", 2.0, 0.75 + 0.65 * len(outputs), _paint_small, _elevator(judged), outputs,
+        _start(judged),
+    )  # fmt: skip
+    told = ", ".join(f"{CHANNELS[fit.name].symbol} R² {fit.r2:.3f}" for fit in all_of_them.values())
+    return Figure(svg, f"Manoeuvre {number}, {judged.maneuver.span.kind}: {told}.", "quarter")
+
+
+def _measures(fit: ChannelFit, estimate: Estimate) -> str:
+    quantity, band = CHANNELS[fit.name], estimate.prediction.get(fit.name)
+    known = "" if band is None else f", known to {100.0 * band:.1f} % of its peak (95 %)"
+    rms = f"{fit.rms * quantity.factor:.3g} {quantity.unit}"
+    return f"{quantity.symbol}: R² {fit.r2:.3f}, Theil {fit.tic:.3f}, residual {rms} rms{known}"
+
+
+def _elevator(judged: JudgedManeuver) -> Channel:
+    return judged.maneuver.channels["elevator"]
+
+
+def _start(judged: JudgedManeuver) -> float:
+    return judged.maneuver.span.start_s
+
+
+def _paint_large(drawing: Drawing, elevator: Channel, outputs: Sequence[ChannelFit], start_s: float) -> None:
+    heights = [1.0, *(h for _ in outputs for h in (1.5, 0.8))]
+    rows = drawing.subplots(len(heights), 1, sharex=True, height_ratios=heights)
+    _paint_input(rows[0], elevator, start_s)
+    for k, fit in enumerate(outputs):
+        curves, below = rows[1 + 2 * k], rows[2 + 2 * k]
+        _paint_output(curves, fit, start_s)
+        quantity = CHANNELS[fit.name]
+        half = NORMAL_95 * fit.noise * quantity.factor
+        below.axhspan(-half, half, facecolor="#cfe0ef", edgecolor=BLUE, linewidth=0.5, linestyle=":")
+        below.plot(fit.t - start_s, fit.residual * quantity.factor, color=ORANGE, linewidth=0.7)
+        below.set_ylabel("residual")
+        below.locator_params(axis="y", nbins=3)
+    rows[1].legend(loc="lower right", bbox_to_anchor=(1.0, 0.97), ncols=2)
+    rows[-1].set_xlabel("time since the first step [s]")
+    drawing.align_ylabels(list(rows))
+
+
+def _paint_small(drawing: Drawing, elevator: Channel, outputs: Sequence[ChannelFit], start_s: float) -> None:
+    rows = drawing.subplots(1 + len(outputs), 1, sharex=True, squeeze=False)[:, 0]
+    _paint_input(rows[0], elevator, start_s)
+    for axes, fit in zip(rows[1:], outputs, strict=True):
+        _paint_output(axes, fit, start_s)
+    for axes in rows:
+        axes.tick_params(labelsize=6)
+        axes.yaxis.label.set_size(6)
+        axes.locator_params(axis="y", nbins=3)
+    drawing.align_ylabels(list(rows))
+
+
+def _paint_input(axes: Axes, elevator: Channel, start_s: float) -> None:
     quantity = CHANNELS["elevator"]
-    axes.plot(elevator.t - start_s, elevator.y * quantity.factor, color=BLACK)
-    axes.set(xlabel="time since the first step [s]", ylabel=quantity.label)
+    axes.plot(elevator.t - start_s, elevator.y * quantity.factor, color=BLACK, linewidth=0.9)
+    axes.set_ylabel(quantity.label)
 
 
-def _paint(drawing: Drawing, fit: ChannelFit, start_s: float) -> None:
-    quantity = CHANNELS[fit.name]
-    factor, unit = quantity.factor, quantity.unit
-    above, below = drawing.subplots(2, 1, sharex=True, height_ratios=[2.2, 1.0])
-    t = fit.t - start_s
-    above.plot(t, fit.measured * factor, color=GREY, linewidth=1.8, label="measured")
-    above.plot(t, fit.fitted * factor, color=BLUE, linestyle=(0, (4, 1.5)), label="fitted")
-    above.set_ylabel(quantity.label)
-    above.legend(loc="lower right", bbox_to_anchor=(1.0, 0.97), ncols=2)
-    half = NORMAL_95 * fit.noise * factor
-    below.axhspan(-half, half, facecolor="#cfe0ef", edgecolor=BLUE, linewidth=0.5, linestyle=":")
-    below.plot(t, fit.residual * factor, color=ORANGE, linewidth=0.7)
-    below.set(xlabel="time since the first step [s]", ylabel=f"residual [{unit}]")
-    drawing.align_ylabels([above, below])
+def _paint_output(axes: Axes, fit: ChannelFit, start_s: float) -> None:
+    quantity, t = CHANNELS[fit.name], fit.t - start_s
+    axes.plot(t, fit.measured * quantity.factor, color=GREY, linewidth=1.8, label="measured")
+    axes.plot(
+        t, fit.fitted * quantity.factor, color=BLUE, linestyle=(0, (4, 1.5)), linewidth=1.0, label="fitted"
+    )
+    axes.set_ylabel(quantity.label)

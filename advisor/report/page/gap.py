@@ -8,16 +8,20 @@ from matplotlib.ticker import FuncFormatter
 
 from advisor.gap.result import spelled
 from advisor.gap.verdict.text import place
+from advisor.report.gap_sizes import WORSE
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, listing
 from advisor.report.page.content import Content, Document
 from advisor.report.page.drawing import BLUE, picture
+from advisor.report.page.gap_picture import caption, gap_picture
 from advisor.report.table import Table
-from advisor.words.digits import with_half
+from advisor.words.digits import decimals_for, signed, with_half
 from advisor.words.quantiles import NORMAL_95
-from advisor.words.quantities import CHANNELS
+from advisor.words.quantities import CHANNELS, PARAMETERS
 
 _ROUNDING = 1e-9
 """Gap below which a number is only rounding and is shown as 0."""
+_NOTHING = 0.005
+"""Probability that rounds to nothing with two decimals, so that its row says nothing."""
 _LINEAR = 10.0
 """Largest gap on a linear axis."""
 
@@ -36,6 +40,15 @@ def _blocks(found: Document) -> Iterator[Block]:
         return
     yield Paragraph(found["sentence"], "verdict")
     size, shrink = found["gap"], found["shrink"]
+    if found["traces"]:
+        close = gap_picture("gap-picture", found)
+        yield Gallery((Figure(close, caption(found), narrow=gap_picture("gap-phone", found, across=1)),))
+    if found["parameters_changed"]:
+        yield Table(
+            "gap-parameters", "Derivatives that differ from the simulator's; the others agree within 95 %.",
+            ("derivative", "simulator", "flight ± 95 %", "change", "unit"),
+            tuple(map(_changed, found["parameters_changed"])), frozenset({1, 2, 3}),
+        )  # fmt: skip
     yield Paragraph(_size(size, untested=found["verdict"] is None) + _shrink(shrink))
     yield Table(
         "gap-channels", "Gap by channel.", ("channel", "before", "after", "noise floor"),
@@ -49,16 +62,32 @@ def _blocks(found: Document) -> Iterator[Block]:
         rows = [("as it is", size["before"]), *((f"+ {name}", after) for name, after in steps)]
         svg = picture("waterfall", 4.4, 0.8 + 0.28 * len(rows), _paint, rows)
         yield Gallery((Figure(svg, "Gap left as effects are added, one after another.", "half"),))
-    if found["causes"]:
+    causes = shown_causes(found)
+    if causes:
         yield Table(
             "causes", "Causes, the most probable first.",
             ("effect", "probability", "values ± 95 %", "gap after", "cannot be told from"),
-            tuple(_cause(cause) for cause in found["causes"]), frozenset({1, 3}),
+            tuple(map(_cause, causes)), frozenset({1, 3}),
         )  # fmt: skip
     yield from listing(
         [f"Cannot be seen: {spelled(u['effect'])}, {u['because']}." for u in found["cannot_see"]]
     )
     yield from listing(list(found["notes"]))
+    yield from listing([" ".join(filter(None, step.values())) for step in found["next"]])
+
+
+def shown_causes(found: Document) -> list[Mapping[str, Any]]:
+    """Return the causes with a row: part of the improved simulator, or of a probability above 0.00."""
+    return [cause for cause in found["causes"] if cause["in_model"] or cause["probability"] >= _NOTHING]
+
+
+def _changed(one: Mapping[str, Any]) -> tuple[str, ...]:
+    quantity = PARAMETERS[one["derivative"]]
+    low, high = one["ci95"]
+    half, found = 0.5 * (high - low) * quantity.factor, one["found"] * quantity.factor
+    share = "–" if one["percent"] is None else f"{signed(one['percent'], 0)} %"
+    given = signed(one["simulator"] * quantity.factor, decimals_for(half))
+    return quantity.symbol, given, with_half(found, half), share, quantity.unit
 
 
 def _size(size: Mapping[str, Any], untested: bool) -> str:
@@ -76,7 +105,9 @@ def _short(value: float) -> str:
 def _channel(name: str, size: Mapping[str, Any]) -> tuple[str, ...]:
     after, quantity = size["by_channel_after"].get(name), CHANNELS[name]
     floor = f"{size['floor'][name] * quantity.factor:.2g} {quantity.unit}"
-    return quantity.symbol, _short(size["by_channel"][name]), "–" if after is None else _short(after), floor
+    before = size["by_channel"][name]
+    worse = f" {WORSE}" if after is not None and after > before else ""
+    return quantity.symbol, _short(before), "–" if after is None else f"{_short(after)}{worse}", floor
 
 
 def _shrink(shrink: Mapping[str, Any] | None) -> str:

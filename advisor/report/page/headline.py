@@ -1,13 +1,19 @@
-"""The first lines of the page: stop or continue, and the evidence."""
+"""The first page: what was flown, the verdict, the eight numbers, and the gap in one sentence and picture."""
 
 from collections.abc import Iterator
 
-from advisor.report.page.blocks import Block, Paragraph, Section, listing
+from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, listing
 from advisor.report.page.content import Content
+from advisor.report.page.estimates import joint_table
+from advisor.report.page.gap_picture import caption, gap_picture
+from advisor.report.table import Table
+
+_GLANCE = 4
+"""Channels side by side, so that the picture has room on the first page of A4."""
 
 
 def headline(content: Content) -> Section:
-    """Return decision, counts, next input, warnings."""
+    """Return what was flown, the decision with its evidence, the estimates, and the gap."""
     return Section("verdict", "Verdict", tuple(_blocks(content)))
 
 
@@ -15,6 +21,7 @@ def _blocks(content: Content) -> Iterator[Block]:
     verdict, maneuvers = content.analysis["flight_test"], content.analysis["maneuvers"]
     accepted = [m["number"] for m in maneuvers if m["verdict"] == "accepted"]
     mark = "■" if verdict["decision"] == "stop" else "▶"
+    yield _flown(content)
     yield Paragraph(f"{mark} {verdict['sentence']}", "verdict")
     yield Paragraph(
         f"{len(accepted)} of {len(maneuvers)} manoeuvres are accepted. The rule {verdict['rule']} decides: "
@@ -24,6 +31,36 @@ def _blocks(content: Content) -> Iterator[Block]:
     if following is not None:
         yield Paragraph(f"Next: {following['advice'].removeprefix('next: ')}.".replace("..", "."))
     yield from listing([f"Warning: {warning}" for warning in verdict["warnings"]])
+    joint = joint_table(content)
+    if joint is not None:
+        yield joint
+    found = content.gap
+    if found is not None and found["usable"]:
+        yield Paragraph(found["sentence"], "verdict")
+        glance = gap_picture("gap-glance", found, across=_GLANCE)
+        yield Gallery((Figure(glance, caption(found), narrow=gap_picture("gap-narrow", found, across=1)),))
+
+
+def _flown(content: Content) -> Table:
+    """Return the flights with date, duration, vehicle and firmware, the aircraft and its mass."""
+    mass = content.aircraft.reference.mass_kg
+    weighs = "mass not given" if mass is None else f"{mass:g} kg"
+    rows = []
+    for flight, name in enumerate(content.names):
+        heard = next((one for one in content.state.flights if one.flight == flight), None)
+        vehicle = heard.vehicle if heard is not None else None
+        minutes, seconds = divmod(round(heard.duration_s), 60) if heard is not None else (0, 0)
+        rows.append(
+            (
+                name,
+                content.begun[flight] if flight < len(content.begun) else "–",
+                f"{minutes} min {seconds} s",
+                str(vehicle) if vehicle is not None else "–",
+                (vehicle.firmware if vehicle is not None else None) or "–",
+            )
+        )
+    head = ("log", "began", "duration", "vehicle", "firmware")
+    return Table("flown", f"{content.aircraft.name}, {weighs}.", head, tuple(rows))
 
 
 def _criterion(value: float | None, limit: float) -> str:

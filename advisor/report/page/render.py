@@ -23,7 +23,7 @@ from advisor.report.page.telemetry import telemetry
 
 PageFormat = Literal["html", "md"]
 _PARTS = (
-    headline, flight_picture, maneuvers, fits, prediction, estimates, criterion, flying, gap, telemetry,
+    headline, gap, estimates, criterion, flying, flight_picture, maneuvers, fits, prediction, telemetry,
     assumptions, provenance,
 )  # fmt: skip
 

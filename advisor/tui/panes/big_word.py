@@ -1,4 +1,4 @@
-"""CONTINUE, REPEAT or STOP TESTING, readable at arm's length."""
+"""CONTINUE, REPEAT or TEST COMPLETE, readable at arm's length."""
 
 from textual.events import Resize
 

@@ -4,7 +4,6 @@ from textual.app import ComposeResult
 from textual.containers import VerticalScroll
 
 from advisor.session.view import View
-from advisor.tui.panes.crew_notes import alpha_in_words
 from advisor.tui.panes.hanging import HangingLines, Labelled
 from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.pane import Pane
@@ -12,11 +11,19 @@ from advisor.tui.panes.status_line import CONDITIONS
 from advisor.words.vehicle_time import clock
 
 
+def alpha_in_words(view: View) -> str:
+    """Return source and provenance of the angle of attack in one line."""
+    alpha = view.state.channels.get("alpha")
+    if alpha is None:
+        return "no angle of attack heard yet"
+    return f"{alpha.provenance}, from {alpha.source}, {alpha.rate_hz:.0f} Hz"
+
+
 class Channels(Pane):
     """Alpha's provenance, the channels with rate and gaps, link statistics."""
 
     TITLE = "7 Channels and link"
-    SHORT = "7 Chan"
+    SHORT = "7Cha"
     can_focus = False
     HELP = """\
 # Channels and link

@@ -28,7 +28,7 @@ class Correlation(Pane):
     """One matrix: the joint estimate above the diagonal, the selected manoeuvre below."""
 
     TITLE = "0 Correlation"
-    SHORT = "0 Corr"
+    SHORT = "0Cor"
     OF_SELECTED = True
     can_focus = False
     HELP = f"""\

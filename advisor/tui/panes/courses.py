@@ -22,7 +22,7 @@ class Courses(Pane):
     """Eight small plots: each manoeuvre's estimate with its interval against the manoeuvre's number."""
 
     TITLE = "h History"
-    SHORT = "h Hist"
+    SHORT = "hHis"
     HELP = """\
 # History
 

@@ -20,7 +20,7 @@ class Criterion(TextPane):
     """One curve for each rule against the limit, and each rule's decision."""
 
     TITLE = "6 Criterion"
-    SHORT = "6 Crit"
+    SHORT = "6Cri"
     HELP = """\
 # Criterion
 

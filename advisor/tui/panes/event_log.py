@@ -14,7 +14,7 @@ class EventLogPane(TextPane):
     """The newest notices, the last one at the bottom."""
 
     TITLE = "8 Log"
-    SHORT = "8 Log"
+    SHORT = "8Log"
     EMPTY = "Nothing has happened yet."
     HELP = """\
 # Log

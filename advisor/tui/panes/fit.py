@@ -42,7 +42,7 @@ class Fit(Pane):
 
     BINDINGS = keys.FIT
     TITLE = "4 Fit"
-    SHORT = "4 Fit"
+    SHORT = "4Fit"
     OF_SELECTED = True
     HELP = """\
 # Fit

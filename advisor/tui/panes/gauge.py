@@ -1,45 +1,39 @@
-"""The stop criterion against its limit, and the expected number of further manoeuvres."""
+"""How far the flight test is: manoeuvres flown, of those that are expected in all."""
 
-from advisor.decision.verdict import FlightTestVerdict
 from advisor.session.view import View
 from advisor.tui.panes.hanging import HangingLines
 from advisor.tui.panes.last_verdict import symbol_and_word
 from advisor.tui.panes.part import Part
-from advisor.words.digits import distinct_texts, percent
 
 _LAST_SHOWN = 16
+_BAR = 20
 
 
-def bar(value: float, limit: float, width: int) -> str:
-    """Return a bar from 0 to twice the limit, with the limit marked in its middle. A longer bar ends in an
-    arrow."""
-    middle = width // 2
-    filled = min(round(value / (2.0 * limit) * width), width)
-    cells = ["█" if k < filled else "·" for k in range(width)]
-    cells[middle] = "┃"
-    if value > 2.0 * limit:
-        cells[-1] = "►"
-    return "".join(cells)
+def bar(share: float, width: int) -> str:
+    """Return a bar of which a share, 0 to 1, is filled."""
+    filled = min(max(round(share * width), 0), width)
+    return "█" * filled + "·" * (width - filled)
 
 
 class Gauge(Part, HangingLines):
-    """Criterion, manoeuvres so far, and the expected number of further ones."""
+    """The bar of the way to the end, and the manoeuvres so far."""
 
     def show(self, view: View) -> None:
         """Write the two lines."""
-        self.write_rows((("criterion   ", _criterion(view)), ("manoeuvres  ", _flown(view))))
+        self.write_rows((("how far     ", how_far(view)), ("manoeuvres  ", _flown(view))))
 
 
-def _criterion(view: View) -> str:
-    verdict = view.state.flight_test
-    value, limit = verdict.criterion_percent, verdict.limit_percent
-    if value is None:
-        least = 1 if verdict.rule == "information" else view.aircraft.campaign.window
-        good = "a good manoeuvre" if least == 1 else f"{least} good manoeuvres"
-        return f"none yet: it takes {good} (limit {percent(limit)})"
-    side = "below" if value < limit else "above"
-    now, most = distinct_texts(value, limit)
-    return f"{now:>4} %  {bar(value, limit, 24)}  {side} the limit {most} %"
+def how_far(view: View) -> str:
+    """Return the bar with the manoeuvres flown, and how many more are expected."""
+    verdict, flown = view.state.flight_test, len(view.state.maneuvers)
+    if verdict.decision == "stop":
+        return f"{bar(1.0, _BAR)}  complete"
+    remaining = verdict.next.remaining if verdict.next is not None else None
+    if remaining is None:
+        return f"{bar(0.0, _BAR)}  known after the first good manoeuvre"
+    if remaining.median is None:
+        return f"{bar(0.0, _BAR)}  no end in sight"
+    return f"{bar(flown / (flown + remaining.median), _BAR)}  {remaining.spoken}"
 
 
 def _flown(view: View) -> str:
@@ -48,10 +42,4 @@ def _flown(view: View) -> str:
         return "none flown yet"
     accepted = sum(j.verdict.accepted and j.excluded_because is None for j in maneuvers)
     marks = " ".join(symbol_and_word(j)[0] for j in maneuvers[-_LAST_SHOWN:])
-    return f"{marks}   {accepted} good of {len(maneuvers)}{_remaining(view.state.flight_test)}"
-
-
-def _remaining(verdict: FlightTestVerdict) -> str:
-    if verdict.decision == "stop" or verdict.next is None or not verdict.next.foretold:
-        return ""
-    return f"; {verdict.next.foretold}"
+    return f"{marks}   {accepted} accepted of {len(maneuvers)}"

@@ -15,7 +15,23 @@ def symbol_and_word(judged: JudgedManeuver) -> tuple[str, str]:
     """Return the symbol and the word of a verdict, readable without colour."""
     if judged.excluded_because is not None:
         return "∅", "EXCLUDED"
-    return ("✓", "GOOD") if judged.verdict.accepted else ("✗", "REPEAT")
+    return ("✓", "ACCEPTED") if judged.verdict.accepted else ("✗", "REJECTED")
+
+
+def for_the_pilot(judged: JudgedManeuver, test_is_complete: bool) -> tuple[str, str, str]:
+    """Return symbol, word and sentence of the newest verdict: GOOD, or REPEAT while the test goes on.
+
+    After the end of the test nothing is repeated, so a rejected manoeuvre is NOT USED.
+    """
+    symbol, word = symbol_and_word(judged)
+    sentence = without_word(judged.verdict.sentence)
+    if judged.excluded_because is not None:
+        return symbol, word, judged.excluded_because
+    if judged.verdict.accepted:
+        return symbol, "GOOD", sentence
+    if test_is_complete:
+        return symbol, "NOT USED", sentence.partition("; ")[0]
+    return symbol, "REPEAT", sentence
 
 
 class LastVerdict(Part, Vertical):
@@ -32,9 +48,8 @@ class LastVerdict(Part, Vertical):
         if not view.state.maneuvers:
             return
         judged = view.state.maneuvers[-1]
-        symbol, name = symbol_and_word(judged)
+        symbol, name, sentence = for_the_pilot(judged, view.state.flight_test.decision == "stop")
         title = f"{symbol} {name}   manoeuvre {judged.maneuver.number}: {judged.maneuver.span.kind}"
-        sentence = judged.excluded_because or without_word(judged.verdict.sentence)
         self.query_one("#verdict-block", Lines).write(block_letters(name, self.size.width, HEIGHT))
         self.query_one("#verdict-word", Lines).write(title)
         self.query_one("#verdict-sentence", Lines).write(sentence)

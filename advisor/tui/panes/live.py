@@ -22,7 +22,7 @@ class Live(Pane):
     """Angle of attack, pitch rate and elevator of the manoeuvre in the air."""
 
     TITLE = "5 Live"
-    SHORT = "5 Live"
+    SHORT = "5Liv"
     HELP = """\
 # Live
 

@@ -34,7 +34,7 @@ class Maneuvers(Pane):
     """Table of manoeuvres. The other panes show the manoeuvre under the cursor."""
 
     TITLE = "1 Manoeuvres"
-    SHORT = "1 Man"
+    SHORT = "1Man"
     can_focus = False
     HELP = """\
 # Manoeuvres

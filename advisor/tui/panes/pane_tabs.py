@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from rich.style import Style
 from rich.text import Text
 from textual.widgets import Static
 
@@ -9,7 +10,7 @@ _BRACKETS = 2
 
 
 class PaneTabs(Static):
-    """Numbered names of the panes on one line, with the chosen one in brackets.
+    """Numbered names of the panes on one line, with the chosen one in brackets. A click chooses a pane.
 
     Parameters
     ----------
@@ -36,5 +37,9 @@ class PaneTabs(Static):
     def _write(self) -> None:
         room = self.size.width - _BRACKETS
         titles = self._titles if len(" ".join(self._titles)) <= room else self._short
-        marked = (f"[{title}]" if k == self._chosen else title for k, title in enumerate(titles, 1))
-        self.update(Text(" ".join(marked)), layout=False)
+        line = Text()
+        for k, title in enumerate(titles, 1):
+            press = Style(meta={"@click": f"screen.choose({k})"})
+            line.append(f"[{title}]" if k == self._chosen else title, press)
+            line.append(" " if k < len(titles) else "")
+        self.update(line, layout=False)

@@ -25,7 +25,7 @@ class ParametersPane(Pane):
     """Table of the joint estimate, and the history of the parameter under the cursor."""
 
     TITLE = "3 Parameters"
-    SHORT = "3 Par"
+    SHORT = "3Par"
     can_focus = False
     HELP = """\
 # Parameters

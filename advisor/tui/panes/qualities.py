@@ -12,7 +12,7 @@ class Qualities(TextPane):
     """Natural frequency, damping, n/α, CAP, T_θ2 and level, each with its 95 % interval."""
 
     TITLE = "u Flying qualities"
-    SHORT = "u FQ"
+    SHORT = "uFQ"
     EMPTY = _NONE_YET
     HELP = """\
 # Flying qualities

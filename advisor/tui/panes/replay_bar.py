@@ -2,6 +2,9 @@
 
 from math import isinf
 
+from textual.events import Click
+from textual.message import Message
+
 from advisor.session.source import Playback
 from advisor.session.view import View
 from advisor.tui.panes.lines import Lines
@@ -12,7 +15,19 @@ _WIDTH = 24
 
 
 class ReplayBar(Part, Lines):
-    """Playing or paused, speed, position in the log, and the vehicle's time there."""
+    """Playing or paused, speed, position in the log, and the vehicle's time there. A click on the bar goes
+    there."""
+
+    class Sought(Message):
+        """A place on the bar was clicked."""
+
+        def __init__(self, position_s: float) -> None:
+            super().__init__()
+            self.position_s = position_s
+
+    _begins = 0
+    """Column at which the bar begins."""
+    _duration_s = 0.0
 
     def show(self, view: View) -> None:
         """Write the line when the source is a replay."""
@@ -26,7 +41,15 @@ class ReplayBar(Part, Lines):
         over = 0.0 < playback.duration_s <= playback.position_s
         state = "❚❚ paused" if tempo.paused else "■ at the end" if over else "► replay"
         jump = "  ►► jumping" if playback.hurrying else ""
-        self.write(f"{state}  {speed}  {place}  {100.0 * share:3.0f} %  at {_now(view)}{jump}")
+        before = f"{state}  {speed}  "
+        self._begins, self._duration_s = len(before), playback.duration_s
+        self.write(f"{before}{place}  {100.0 * share:3.0f} %  at {_now(view)}{jump}")
+
+    def on_click(self, event: Click) -> None:
+        """Tell the place on the bar."""
+        column = event.x - self.styles.padding.left - self._begins
+        if 0 <= column < _WIDTH:
+            self.post_message(self.Sought(column / _WIDTH * self._duration_s))
 
 
 def _now(view: View) -> str:

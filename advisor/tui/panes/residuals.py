@@ -49,7 +49,7 @@ class Residuals(Pane):
     """Autocorrelation of each output's residual with the 95 % bounds of white noise."""
 
     TITLE = "9 Residuals"
-    SHORT = "9 Res"
+    SHORT = "9Res"
     OF_SELECTED = True
     HELP = """\
 # Residuals

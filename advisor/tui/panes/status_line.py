@@ -9,18 +9,26 @@ CONDITIONS = {
     "poor": "! link poor",
     "waiting": "… waiting",
     "lost": "✗ LINK LOST",
+    "stale": "✗ NOT ANSWERING",
     "ended": "■ end of log",
 }
 
 
 class StatusLine(Part, Lines):
-    """Aircraft, vehicle, mode and source at the left, and the link's condition by symbol and word."""
+    """Condition of the link by symbol and word, recording, aircraft, vehicle, mode and source."""
 
     def show(self, view: View) -> None:
         """Write the line. Its colour follows the link's condition."""
         state = view.state
         vehicle = str(state.vehicle) if state.vehicle else "no vehicle yet"
-        parts = [CONDITIONS[view.health.condition], view.aircraft.name, vehicle, state.mode, view.title]
+        parts = [
+            CONDITIONS[view.health.condition],
+            view.health.recording,
+            view.aircraft.name,
+            vehicle,
+            state.mode,
+            view.title,
+        ]
         self.write("  ·  ".join(part for part in parts if part))
         for condition in CONDITIONS:
             self.set_class(condition == view.health.condition, f"-{condition}")

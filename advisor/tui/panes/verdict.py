@@ -17,7 +17,7 @@ class VerdictPane(TextPane):
     """Sentence, reasons with numbers and limits, quality of the fit, cautions."""
 
     TITLE = "2 Verdict"
-    SHORT = "2 Ver"
+    SHORT = "2Ver"
     OF_SELECTED = True
     HELP = """\
 # Verdict

@@ -17,6 +17,7 @@ from advisor.tui.panes.courses import Courses
 from advisor.tui.panes.criterion import Criterion
 from advisor.tui.panes.event_log import EventLogPane
 from advisor.tui.panes.fit import Fit
+from advisor.tui.panes.flight import WholeFlightPane
 from advisor.tui.panes.keys_line import KeysLine
 from advisor.tui.panes.live import Live
 from advisor.tui.panes.maneuvers import Maneuvers
@@ -34,11 +35,11 @@ from advisor.tui.screens.pane_actions import PaneActions
 # In the order of their numbers.
 PANES: tuple[type[Pane], ...] = (
     Maneuvers, VerdictPane, ParametersPane, Fit, Live, Criterion, Channels, EventLogPane, Residuals,
-    Correlation, Courses, Qualities,
+    Correlation, Courses, Qualities, WholeFlightPane,
 )  # fmt: skip
 _COLUMNS: dict[str, tuple[type[Pane], ...]] = {
     "left": (Maneuvers, VerdictPane, ParametersPane),
-    "middle": (Fit, Residuals, Correlation, Courses, Qualities),
+    "middle": (Fit, Residuals, Correlation, Courses, Qualities, WholeFlightPane),
     "right": (Live, Criterion, Channels, EventLogPane),
 }
 _WIDE, _MEDIUM = (160, 42), (110, 30)
@@ -49,9 +50,9 @@ _LOW_TABLE = 38
 
 
 class EngineerScreen(Face, PaneActions):
-    """Eleven panes: eight at once on a wide terminal, one next to or below the manoeuvres on a small one.
+    """Thirteen panes: eight at once on a wide terminal, one next to or below the manoeuvres on a small one.
 
-    The panes of the middle column share one place: fit, residuals, correlation, history.
+    The panes of the middle column share one place: fit, residuals, correlation, history, whole flight.
     """
 
     BINDINGS = keys.ENGINEER

@@ -10,11 +10,16 @@ from advisor.tui.panes.crew_notes import CrewNotes
 from advisor.tui.panes.gauge import Gauge
 from advisor.tui.panes.keys_line import KeysLine
 from advisor.tui.panes.last_verdict import LastVerdict
+from advisor.tui.panes.limits_now import LimitsNow
+from advisor.tui.panes.next_input import NextInput
 from advisor.tui.panes.replay_bar import ReplayBar
 from advisor.tui.panes.status_line import StatusLine
 from advisor.tui.screens.face import Face
 
-_TALL = 38
+_TALL = 44
+"""Rows of a terminal with room for the verdict in block letters."""
+_LARGE = 32
+"""Rows of a terminal with room for the drawing of the stick in five lines."""
 
 
 class PilotScreen(Face):
@@ -28,11 +33,15 @@ The large word is what to do now:
 - **CONTINUE**: fly the next manoeuvre.
 - **REPEAT**: the last manoeuvre is rejected; the line below gives the reason and the remedy.
 - **RECOVER**: further response of the manoeuvre in the air adds nothing.
-- **STOP TESTING**: the criterion fell below its limit.
+- **TEST COMPLETE**: the criterion fell below its limit. A later rejected manoeuvre is **NOT USED**.
 - **WAIT**, **NO LINK**: no vehicle is heard (any more).
 - **NO DATA**: the vehicle does not send what is needed; the line below says what to change.
 
-✓ a good manoeuvre, ✗ one to repeat, ∅ one excluded by hand.
+✓ accepted, ✗ rejected, ∅ excluded by hand.
+
+*next*: the stick over time, pull above, push below, with the seconds of each step; per cent of the stick's
+travel, and degrees of elevator. *before it*: bank, air speed and angle of attack now, against their limits.
+*how far*: manoeuvres flown, of those expected in all. **k** turns bell and voice off and on.
 """
 
     def compose(self) -> ComposeResult:
@@ -42,6 +51,8 @@ The large word is what to do now:
         yield BigWord()
         yield Why()
         yield LastVerdict()
+        yield NextInput()
+        yield LimitsNow()
         yield Gauge()
         yield CrewNotes()
         yield ReplayBar()
@@ -49,5 +60,6 @@ The large word is what to do now:
         yield KeysLine()
 
     def on_resize(self, event: Resize) -> None:
-        """Write the verdict large as well on a tall terminal."""
+        """Draw the stick large where there is room, and the verdict as well on a tall terminal."""
+        self.set_class(event.size.height >= _LARGE, "-large")
         self.set_class(event.size.height >= _TALL, "-tall")

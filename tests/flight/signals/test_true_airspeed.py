@@ -82,3 +82,24 @@ def test_a_vehicle_that_reports_its_true_air_speed_is_believed() -> None:
     speed = filled(true=True).cut("airspeed", 0.0, 5.0)
     assert speed is not None
     assert speed.y.tolist() == [20.0] * len(T)
+
+
+def test_the_altitude_of_the_hud_serves_where_no_position_is_logged() -> None:
+    found = Tracks("auto")
+    for channel, source, value in (
+        ("airspeed", "VFR_HUD.airspeed", 20.0), ("altitude", "VFR_HUD.alt", 3000.0),
+    ):  # fmt: skip
+        found.append(Decoded(channel, source, "measured", T, np.full(len(T), value), np.arange(len(T))))
+    speed = found.cut("airspeed", 0.0, 5.0)
+    assert speed is not None
+    assert speed.y == pytest.approx(AT_3000_M, rel=1e-3)
+
+
+def test_the_aircraft_files_height_serves_where_the_log_has_none() -> None:
+    found = Tracks("auto", height_m=3000.0)
+    found.append(Decoded("airspeed", "VFR_HUD.airspeed", "measured", T, np.full(len(T), 20.0), np.arange(50)))
+    speed, altitude = found.cut("airspeed", 0.0, 5.0), found.cut("altitude", 0.0, 5.0)
+    assert speed is not None
+    assert altitude is not None
+    assert speed.y == pytest.approx(AT_3000_M, rel=1e-3)
+    assert altitude.provenance == "given"

@@ -2,7 +2,7 @@
 
 import pytest
 
-from advisor.aircraft.aircraft import Elevator
+from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.stream.identity import READER_NOTICE, Identity
 from advisor.flight.vehicle.surfaces import Surface
 from tests.flight.columns import Wire, heartbeat, parameter
@@ -12,7 +12,7 @@ GROUND_STATION, GIMBAL = 190, 154
 
 def elevator(*parameters):
     """Elevator after a heartbeat of 1/1 and PARAM_VALUEs given as (component, name, value)."""
-    identity = Identity(Elevator(), None)
+    identity = Identity(Aircraft(), None)
     wire = Wire()
     heartbeat(wire, 0.0)
     for at_s, (component, name, value) in enumerate(parameters, start=1):
@@ -44,7 +44,7 @@ BEFORE = ((1, "SERVO2_FUNCTION", 19.0), (1, "SERVO2_TRIM", 1500.0), (1, "SERVO2_
 
 def after_a_change(name, value, flown):
     """The elevator after one of its parameters changes, and what is said of that."""
-    identity, wire = Identity(Elevator(), None), Wire()
+    identity, wire = Identity(Aircraft(), None), Wire()
     heartbeat(wire, 0.0)
     for at_s, (_, key, number) in enumerate((*BEFORE, (1, name, value)), start=1):
         parameter(wire, float(at_s), key, number)
@@ -70,6 +70,27 @@ def test_a_change_after_a_test_input_moves_no_linkage_and_is_said(name, value):
     assert "all the same" in told[0]
 
 
+def test_a_limit_that_is_heard_after_a_manoeuvre_is_not_pooled_with_the_assumed_one_in_silence():
+    surface, told = after_a_change("SERVO2_MIN", 1000.0, flown=True)
+    assert surface == elevator(*BEFORE, (1, "SERVO2_MIN", 1000.0))
+    (sentence,) = told
+    assert sentence.startswith("SERVO2_MIN 1000 is heard only at 0:10.0: another value was assumed")
+    assert "Exclude these manoeuvres by hand" in sentence
+
+
+@pytest.mark.parametrize("flown", [False, True])
+def test_a_limit_that_is_heard_as_it_was_assumed_changes_nothing(flown):
+    assert after_a_change("SERVO2_MIN", 1100.0, flown)[1] == []
+
+
+def test_every_assumed_limit_is_called_so_by_its_name():
+    surface = elevator((1, "SERVO2_FUNCTION", 19.0), (1, "SERVO2_MIN", 1000.0))
+    assert isinstance(surface, Surface)
+    assert "is scaled by assumed limits" in surface.said
+    assert "SERVO2_TRIM 1500 and SERVO2_MAX 1900 are assumed" in surface.said
+    assert "SERVO2_MIN 1000" not in surface.said
+
+
 @pytest.mark.parametrize(("name", "value"), [("SERVO2_TRIM", 1500.0), ("SERVO5_TRIM", 1400.0)])
 def test_a_parameter_that_does_not_change_the_elevator_is_passed_over_in_silence(name, value):
     assert after_a_change(name, value, flown=True)[1] == []
@@ -88,7 +109,7 @@ def test_a_parameter_that_does_not_change_the_elevator_is_passed_over_in_silence
 def test_the_version_of_a_development_build_is_told_as_such(kind, text, expected, text_first):
     version = expected.partition("-")[0].split(".")
     packed = sum(int(part) << shift for part, shift in zip(version, (24, 16, 8), strict=True)) | kind
-    identity, wire = Identity(Elevator(), None), Wire()
+    identity, wire = Identity(Aircraft(), None), Wire()
     heartbeat(wire, 0.0)
     wire.send("AUTOPILOT_VERSION", 2.0, flight_sw_version=packed)
     wire.send("STATUSTEXT", 1.0 if text_first else 3.0, text=text.encode())

@@ -9,6 +9,7 @@ from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 from advisor.flight.signals.messages import Columns
 from advisor.mavlink.link.link import Link
+from advisor.mavlink.wire.framing import CRC_EXTRA, Frame, FrameCutter
 
 
 def wait_until(condition: Callable[[], bool], timeout_s: float = 10.0) -> None:
@@ -23,6 +24,11 @@ def attitude(milliseconds: int, pitch: float = 0.1) -> Any:
     return dialect.MAVLink_attitude_message(
         milliseconds, 0.0, pitch, 0.0, 0.0, 0.01 * (milliseconds % 7), 0.0
     )
+
+
+def attitude_at(boot_s: float) -> list[Frame]:
+    """An ATTITUDE with this time since boot, as received."""
+    return FrameCutter(CRC_EXTRA).feed(Sender().pack(attitude(round(1000.0 * boot_s))))
 
 
 def heartbeat(

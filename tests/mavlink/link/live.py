@@ -24,7 +24,7 @@ class Advising:
         self.folder = folder
         self.port = free_port()
         self._options = options
-        self._environment = {**os.environ, "HEADLESS": "1", "XDG_DATA_HOME": str(folder / "data")}
+        self.environment = {**os.environ, "HEADLESS": "1", "XDG_DATA_HOME": str(folder / "data")}
         self._starts = 0
         self.process: subprocess.Popen[bytes] | None = None
 
@@ -42,7 +42,7 @@ class Advising:
                 [sys.executable, "-m", "advisor", "live", *words, *self._options],
                 stdout=out,
                 stderr=err,
-                env=self._environment,
+                env=self.environment,
             )
         wait_until(lambda: "record" in self.warned or self.process.poll() is not None, 30.0)
 

@@ -46,10 +46,10 @@ def test_each_manoeuvre_is_announced_once_and_stop_with_the_verdict_that_brought
     announcer = Announcer()
     announcer.judged(1, "ACCEPTED")
     announcer.judged(1, "ACCEPTED after all")
-    announcer.judged(2, "ACCEPTED", stop="STOP TESTING")
-    announcer.judged(3, "ACCEPTED", stop="STOP TESTING")
+    announcer.judged(2, "ACCEPTED", stop="TEST COMPLETE")
+    announcer.judged(3, "ACCEPTED", stop="TEST COMPLETE")
     assert announcer.speak(None, 0.0) == []
-    assert joined(announcer) == ["@1 ACCEPTED", "@STOP TESTING (2 ACCEPTED)", "@3 ACCEPTED"]
+    assert joined(announcer) == ["@1 ACCEPTED", "@TEST COMPLETE (2 ACCEPTED)", "@3 ACCEPTED"]
 
 
 def test_the_crew_hears_it_as_of_a_computer_on_board_and_the_recording_keeps_it(tmp_path: Path) -> None:

@@ -90,6 +90,15 @@ def test_lost_questions_are_repeated_and_what_does_not_exist_is_given_up() -> No
     assert inquiry.report() == []
 
 
+def test_the_limits_of_the_elevator_are_asked_for_until_they_are_heard() -> None:
+    inquiry = Inquiry(outputs_only=True)
+    silent = {name: value for name, value in PLANE.items() if name.endswith("_FUNCTION")}
+    converse(inquiry, silent)
+    later = [question for second in range(60) for question in inquiry.speak(VEHICLE, 60.0 + second)]
+    assert {"SERVO2_MIN", "SERVO2_TRIM", "SERVO2_MAX", "SERVO2_REVERSED"} == set(names(later))
+    assert len(later) == 4 * 6
+
+
 def test_elevons_and_v_tails_are_asked_on_every_output_they_have() -> None:
     elevons = {"SERVO1_FUNCTION": 77.0, "SERVO4_FUNCTION": 78.0, "SERVO1_MIN": 1000.0, "SERVO4_MIN": 1010.0}
     inquiry = Inquiry()

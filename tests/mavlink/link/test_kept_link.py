@@ -1,16 +1,21 @@
 """A link in a process of its own: every reader hears everything, once and in order."""
 
+import os
+import signal
 import time
 from collections.abc import Iterator
+from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
 
+from advisor.mavlink.link import kept_link, link_process
 from advisor.mavlink.link.keeping import Keeping, new_door
 from advisor.mavlink.link.kept_link import KeptLink
 from advisor.mavlink.link.link_process import LinkProcess
 from advisor.mavlink.link.recorder import WRITE_EVERY_S
 from advisor.mavlink.wire.frames import FrameScanner
+from advisor.session.live import SILENT_S, LinkSource
 from advisor.words.problems import UnusableInputError
 from tests.mavlink.link.builders import UdpVehicle, attitude, free_port, heartbeat, values, wait_until
 from tests.mavlink.link.live import kill
@@ -75,6 +80,47 @@ def test_what_arrives_while_the_process_is_dead_is_heard_by_the_next_one(
         assert heard(link, 100) == list(range(100, 200))
         said = " ".join(notice.text for notice in link.take_notices())
     assert "has ended and was started again; the recording goes on" in said
+
+
+def test_after_a_restart_a_silent_vehicle_is_lost_and_not_unheard_of(
+    process: LinkProcess, vehicle: UdpVehicle
+) -> None:
+    with process.link() as link:
+        vehicle.send(*(attitude(i) for i in range(100)))
+        heard(link, 100)
+        wait_until(lambda: not link.read(0.05) and link.statistics.vehicle is not None)
+        silent_from_s = time.monotonic()
+        time.sleep(1.5)
+        kill(process.pid)
+        wait_until(lambda: not link.read(0.05) and "was started again" in str(link.take_notices()))
+        wait_until(lambda: not link.read(0.05) and link.statistics.silent_s > SILENT_S)
+        assert link.statistics.vehicle == (1, 1)
+        assert time.monotonic() - silent_from_s == pytest.approx(link.statistics.silent_s, abs=0.6)
+        source = LinkSource(nullcontext(link))
+        source.read(0.0)
+        assert source.health().condition == "lost"
+        assert source.health().sentence.startswith("Nothing heard for ")
+
+
+def test_a_process_that_hangs_is_told_of_and_replaced(
+    process: LinkProcess, vehicle: UdpVehicle, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(link_process, "HUNG_AFTER_S", 1.5)
+    monkeypatch.setattr(kept_link, "OLD_AFTER_S", 0.5)
+    with process.link() as link:
+        vehicle.send(*(attitude(i) for i in range(100)))
+        assert heard(link, 100) == list(range(100))
+        hung = process.pid
+        assert hung is not None
+        os.kill(hung, signal.SIGSTOP)
+        wait_until(lambda: not link.read(0.05) and link.statistics.unanswered_s >= 0.5)
+        vehicle.send(*(attitude(i) for i in range(100, 200)))
+        assert heard(link, 100) == list(range(100, 200))
+        assert process.pid != hung
+        wait_until(lambda: not link.read(0.05) and link.statistics.unanswered_s < 0.5)
+        said = [notice.text for notice in link.take_notices()]
+    assert "the process of the link has not answered for 0 s" in said
+    assert "the process of the link answers again" in said
 
 
 def test_a_connection_that_cannot_be_opened_is_refused_with_what_to_do(tmp_path: Path) -> None:

@@ -22,6 +22,7 @@ from tests.mavlink.link.builders import (
     Sender,
     UdpVehicle,
     attitude,
+    attitude_at,
     free_port,
     heartbeat,
     read_all,
@@ -217,7 +218,7 @@ def test_a_stream_cut_by_another_station_is_noticed_and_so_is_its_return() -> No
     for tick in range(60 * 50):
         now_s = tick / 50
         if now_s < 20.0 or now_s > 40.0 or tick % 12 == 0:
-            said += [(now_s, text) for text in watch.look([Frame(b"", 30, 0, 1, 1, False)], now_s)]
+            said += [(now_s, text) for text in watch.look(attitude_at(now_s), now_s)]
         if tick % 50 == 0:
             said += [(now_s, text) for text in watch.look([Frame(b"", 0, 0, 1, 1, False)], now_s)]
     (fell_s, fell), (back_s, back) = said
@@ -232,7 +233,7 @@ def test_a_silence_is_not_mistaken_for_a_slower_stream() -> None:
     for tick in range(60 * 50):
         now_s = tick / 50
         if not 20.0 < now_s < 31.0:
-            assert watch.look([Frame(b"", 30, 0, 1, 1, False)], now_s) == []
+            assert watch.look(attitude_at(now_s), now_s) == []
 
 
 def test_a_process_killed_without_warning_leaves_whole_records_up_to_its_last_second(

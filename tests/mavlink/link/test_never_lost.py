@@ -130,6 +130,21 @@ def test_what_a_power_cut_leaves_of_a_recording_ends_less_than_a_second_before_i
     assert cut_s[0] - last_s < 1.0
 
 
+def test_a_home_that_takes_no_file_keeps_nobody_from_advising(advising: Advising):
+    advising.environment |= {"XDG_DATA_HOME": "/dev/null/data", "TMPDIR": str(advising.folder)}
+    advising.start("--master", f"udpin:127.0.0.1:{advising.port}")
+    wait_until(lambda: "recording to" in advising.warned)
+    assert (
+        "/dev/null/data/inflight-advisor/recordings takes no recording (Not a directory)" in advising.warned
+    )
+    flight = until(FLIGHT, 4.0)
+    fly(flight, advising.port, SPEED, lambda now_s: None)
+    wait_until(lambda: any("following" in line for line in advising.said), 30.0)
+    assert advising.end() == 130
+    (recording,) = advising.folder.glob("advisor-recordings-*/*.tlog")
+    assert len(records_of(recording)) == len(flight)
+
+
 def test_a_new_flight_test_on_the_connection_of_a_lost_one_ends_it_and_says_how_to_take_it_up(
     advising: Advising,
 ):

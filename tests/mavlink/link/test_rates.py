@@ -10,8 +10,16 @@ from advisor.mavlink.link.link import UNREACHABLE_S, Link
 from advisor.mavlink.link.message_request import AT_ONCE, LONGEST_REST_S, MOST_TRIES, SHORTEST_REST_S
 from advisor.mavlink.link.rates import ANSWER_WITHIN_S, MEASURE_S, RateRequest
 from advisor.mavlink.link.ratewatch import RateWatch
-from advisor.mavlink.wire.framing import Frame, FrameCutter
-from tests.mavlink.link.builders import Sender, UdpVehicle, attitude, free_port, heartbeat, wait_until
+from advisor.mavlink.wire.framing import FrameCutter
+from tests.mavlink.link.builders import (
+    Sender,
+    UdpVehicle,
+    attitude,
+    attitude_at,
+    free_port,
+    heartbeat,
+    wait_until,
+)
 
 VEHICLE = (1, 1)
 SET_INTERVAL = dialect.MAV_CMD_SET_MESSAGE_INTERVAL
@@ -147,7 +155,7 @@ def test_what_is_delivered_is_measured_not_believed() -> None:
     answer(request, dialect.MAV_RESULT_ACCEPTED, 0.1)
     request.speak(VEHICLE, 0.1)
     for i in range(75):
-        hear(request, attitude(i), 0.1 + i * MEASURE_S / 75)
+        hear(request, attitude(40 * i), 0.1 + i * MEASURE_S / 75)
     request.speak(VEHICLE, 0.1 + MEASURE_S)
     assert request.delivered_hz == {"ATTITUDE": 25.0}
     assert request.report() == ["delivered: ATTITUDE 25.0 Hz of 50 asked"]
@@ -194,15 +202,27 @@ def test_a_ground_station_at_work_is_named_with_its_cure() -> None:
 
 def test_a_stream_below_2_hz_a_pause_and_a_reboot_raise_no_alarm_of_rates() -> None:
     watch, said = RateWatch(), []
-    frames = [Frame(b"", 30, 0, 1, 1, False)]
     for k, at_s in enumerate(np.cumsum(np.random.default_rng(0).uniform(0.4, 1.4, 200)).tolist()):
-        said += watch.look(frames, at_s if k < 100 else at_s + 30.0)
+        said += watch.look(attitude_at(at_s), at_s if k < 100 else at_s + 30.0)
     assert said == []
     for tick in range(20 * 50):
         if tick == 500:
             watch.restart()
         if tick < 500 or tick % 12 == 0:
-            said += watch.look(frames, 1000.0 + tick / 50)
+            said += watch.look(attitude_at(tick / 50), 1000.0 + tick / 50)
+    assert said == []
+
+
+@pytest.mark.parametrize("hang_s", [1.2, 2.0, 7.0])
+def test_packets_that_waited_while_the_computer_slept_are_no_faster_stream(hang_s: float) -> None:
+    """The socket keeps a second of packets; those of the rest of a hang are lost."""
+    watch, sender, said = RateWatch(), Sender(), []
+    for tick in range(40 * 50):
+        sent_s = tick / 50
+        if 10.0 + min(hang_s, 1.0) < sent_s < 10.0 + hang_s:
+            continue
+        (frame,) = FrameCutter(CRC_EXTRA).feed(sender.pack(attitude(20 * tick)))
+        said += watch.look([frame], max(sent_s, 10.0 + hang_s) if sent_s >= 10.0 else sent_s)
     assert said == []
 
 

@@ -2,6 +2,7 @@ import errno
 import os
 import shutil
 import struct
+import threading
 import time
 from datetime import UTC, datetime
 from itertools import accumulate
@@ -9,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from advisor.mavlink.link import recorder as recorder_module
 from advisor.mavlink.link.recorder import Recorder
 from advisor.mavlink.link.recording_file import default_recording
 from advisor.words.problems import UnusableInputError
@@ -71,6 +73,25 @@ def test_what_a_full_disk_does_not_take_waits_and_is_written_when_there_is_room(
     assert recorder.path.read_bytes() == b"one whole record, and another"
     assert "nothing is lost" in " ".join(recorder.take_notices())
     recorder.close()
+
+
+def test_a_disk_that_does_not_answer_is_told_of_while_it_hangs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    free = threading.Event()
+    monkeypatch.setattr(recorder_module, "OLD_AFTER_S", 0.2)
+    monkeypatch.setattr(os, "fsync", lambda handle: free.wait(10.0))
+    recorder = Recorder(tmp_path / "a.tlog")
+    recorder.write(b"one whole record")
+    wait_until(lambda: recorder.problem is not None, timeout_s=5.0)
+    assert "the disk has not answered for 0 s; what is heard waits in memory" in recorder.take_notices()[0]
+    recorder.write(b", and another")
+    assert recorder.recorded().unsaved == b", and another"
+    free.set()
+    wait_until(lambda: recorder.problem is None, timeout_s=5.0)
+    assert recorder.take_notices() == [f"recording to {recorder.path}: the disk answers again"]
+    recorder.close()
+    assert recorder.path.read_bytes() == b"one whole record, and another"
 
 
 def test_little_space_is_said_at_the_start(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

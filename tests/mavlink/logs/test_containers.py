@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from advisor.mavlink.logs import logs
 from advisor.mavlink.logs.logs import open_log
 from advisor.words.problems import UnusableInputError
 from tests.conftest import Advisor
@@ -129,6 +130,36 @@ def test_a_damaged_or_empty_archive_is_told_in_one_sentence(tmp_path: Path, cont
     path = tmp_path / "flight.zip"
     path.write_bytes(content)
     assert refused(path).code == "packed"
+
+
+def test_a_corrupt_lzma_stream_is_told_like_any_other_damage(tmp_path: Path) -> None:
+    file = io.BytesIO()
+    with zipfile.ZipFile(file, "w", zipfile.ZIP_LZMA) as archive:
+        archive.writestr("flight.bin", dataflash_flight(2.0))
+    content = bytearray(file.getvalue())
+    for at in (60, 100, 200):
+        content[at] ^= 0xFF
+    path = tmp_path / "flight.zip"
+    path.write_bytes(content)
+    with pytest.raises(UnusableInputError, match=r"flight.zip cannot be unpacked: it is damaged"):
+        list(open_log(path))
+
+
+@pytest.mark.parametrize(
+    "error", [ZeroDivisionError("float division by zero"), IndexError("19"), MemoryError()]
+)
+def test_whatever_breaks_a_reader_is_one_sentence_about_that_log(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: Exception
+) -> None:
+    def broken(*arguments: object) -> None:
+        raise error
+
+    path = tmp_path / "flight.bin"
+    path.write_bytes(dataflash_flight(2.0))
+    monkeypatch.setattr(logs, "read_dataflash", broken)
+    with pytest.raises(UnusableInputError, match=r"^flight.bin ") as caught:
+        list(open_log(path))
+    assert caught.value.__cause__ is error
 
 
 def test_neither_a_folder_nor_a_pipe_nor_a_device_is_waited_for(tmp_path: Path) -> None:

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft, Elevator
+from advisor.flight.stream.stream import FlightStream
 from advisor.flight.vehicle.surfaces import Surface
+from advisor.mavlink.logs.logs import open_log
 from tests.mavlink.px4_logs import PX4Log, every, flight, flown, pulses, stick
 
 PLANE = {
@@ -191,3 +193,19 @@ def test_a_log_that_tells_nothing_of_the_elevator_is_mended_in_words_of_px4(tmp_
     assert "CA_SV_CSn_TYPE" in said
     assert "SERVO" not in said
     assert "ArduP" not in said
+
+
+@pytest.mark.parametrize("row", [slice(300, 301), slice(None)])
+def test_an_infinite_output_counts_as_no_pulse_and_breaks_no_guess(tmp_path: Path, row: slice) -> None:
+    def infinite(t):
+        values = up(t)
+        values[row] = np.inf
+        return values
+
+    path = with_outputs(flight(), {2: infinite, 3: up}).write(tmp_path)
+    (outputs,) = (c for batch in open_log(path) for c in batch if c.name == "SERVO_OUTPUT_RAW")
+    assert not np.isinf(outputs.fields["servo2_raw"]).any()
+    stream = FlightStream(Aircraft())
+    for batch in open_log(path):
+        stream.feed(batch)
+    stream.finish()

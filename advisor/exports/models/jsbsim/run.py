@@ -11,7 +11,9 @@ from pathlib import Path
 
 from advisor.exports.models.jsbsim.slopes import Request, Slopes
 from advisor.exports.models.jsbsim.source import parse
+from advisor.process.children import python_module
 from advisor.simulators.jsbsim_model import find_model
+from advisor.simulators.jsbsim_properties import foreign_properties
 from advisor.words.problems import ConfigurationError
 
 TIME_LIMIT_S = 60.0
@@ -74,10 +76,11 @@ def measure(content: bytes, model: Model, asked: Request) -> Slopes:
                 (place / entry.name).symlink_to(entry)
         ET.ElementTree(root).write(place / f"{model.name}.xml", encoding="utf-8")
         places = {"aircraft": folder, "engine": str(model.engine), "systems": str(model.systems)}
-        request = asdict(asked) | places | {"model": model.name}
+        foreign = list(foreign_properties([root]))
+        request = asdict(asked) | places | {"model": model.name, "foreign": foreign}
         try:
             done = subprocess.run(
-                [sys.executable, "-m", "advisor.exports.models.jsbsim.slopes"],
+                python_module("advisor.exports.models.jsbsim.slopes"),
                 input=json.dumps(request), capture_output=True, text=True, timeout=TIME_LIMIT_S, check=True,
                 cwd=folder, env=os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
             )  # fmt: skip

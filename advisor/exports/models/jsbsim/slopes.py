@@ -157,12 +157,15 @@ def _finds_its_throttle(fdm: Any) -> bool:
 def main() -> None:
     """Read one request as JSON from stdin, and answer with one line of JSON, the last on stdout."""
     told = json.load(sys.stdin)
+    foreign = told.pop("foreign")
     model, *places = (told.pop(key) for key in ("model", "aircraft", "engine", "systems"))
     os.environ["JSBSIM_DEBUG"] = "0"
     import jsbsim
 
     fdm = jsbsim.FGFDMExec(None)
     fdm.set_debug_level(0)
+    for name in foreign:
+        fdm[name] = 0.0
     aircraft, engine, systems = places
     fdm.load_model_with_paths(model, aircraft, engine, systems, True)
     print("\n" + json.dumps(asdict(measured(fdm, Request(**told))), allow_nan=False))

@@ -1,12 +1,12 @@
 """The evidence of a diagnosis: stages, unexplained residual, moving air and noise floor."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.problem import EffectProblem
-from advisor.gap.result import Course
-from advisor.gap.search.air import MovingAir
+from advisor.gap.search.air import MovingAir, SoughtAir
 from advisor.gap.search.stage import Stage
 from advisor.gap.uncatalogued.airspeed_scale import AirspeedScale
 from advisor.gap.uncatalogued.unexplained import Unexplained
@@ -37,5 +37,7 @@ class Evidence:
     """Wind that changes with height, which is outside the catalogue."""
     weight: WeightReading | None = None
     """The accelerometer's reading of the weight, where it is wrong."""
-    courses: tuple[Course, ...] = ()
-    """Slopes of trims and offsets over the flight, with the baseline model."""
+    sought_air: SoughtAir = field(default_factory=SoughtAir)
+    """The search for moving air, whether or not air was found."""
+    laws: Mapping[str, float] = field(default_factory=dict)
+    """Gain of the best uncatalogued law of each block; log likelihood minus the price of its parameters."""

@@ -1,0 +1,1 @@
+"""Read-only tools for an assistant that speaks the Model Context Protocol."""

@@ -1,0 +1,78 @@
+"""Commands of the advisor, called for an assistant: each in a process of its own, for a limited time."""
+
+import json
+import sys
+from collections.abc import Sequence
+from subprocess import DEVNULL
+from typing import Any
+
+from anyio import CapacityLimiter, fail_after, run_process
+
+from advisor.assistant.folders import RefusedError
+
+_MOST_BYTES = 1_000_000
+"""Longest answer, bytes. A longer one would fill the context of an assistant."""
+
+
+class Calls:
+    """Calls of the advisor's commands, one at a time.
+
+    Parameters
+    ----------
+    limit_s
+        Time after which a command is ended, s.
+    """
+
+    def __init__(self, limit_s: float) -> None:
+        self._limit_s = limit_s
+        self._one = CapacityLimiter(1)
+
+    async def document(self, arguments: Sequence[str]) -> dict[str, Any]:
+        """Return the document that a command prints with ``--json``, also that of an unusable log.
+
+        Raises
+        ------
+        RefusedError
+            The command fails, takes too long, or prints too much.
+        """
+        code, printed, said = await self._run([*arguments, "--json"])
+        if not printed:
+            raise RefusedError(said or f"advisor {arguments[0]} ended with exit code {code}.")
+        document: dict[str, Any] = json.loads(printed)
+        return document
+
+    async def done(self, arguments: Sequence[str]) -> None:
+        """Run a command that writes a file.
+
+        Raises
+        ------
+        RefusedError
+            The command fails or takes too long.
+        """
+        code, _, said = await self._run(arguments)
+        if code:
+            raise RefusedError(said or f"advisor {arguments[0]} ended with exit code {code}.")
+
+    async def _run(self, arguments: Sequence[str]) -> tuple[int, bytes, str]:
+        """Return exit code, standard output and standard error of a command."""
+        words = [sys.executable, "-m", "advisor", *arguments]
+        try:
+            async with self._one:
+                with fail_after(self._limit_s):
+                    done = await run_process(words, stdin=DEVNULL, check=False)
+        except TimeoutError:
+            limit = f"{self._limit_s:.0f} s"
+            raise RefusedError(f"advisor {arguments[0]} was ended after {limit}, the limit here.") from None
+        return done.returncode, done.stdout, done.stderr.decode(errors="replace").strip()
+
+
+def refuse_long(text: str) -> None:
+    """Refuse an answer that is too long for an assistant.
+
+    Raises
+    ------
+    RefusedError
+        The answer is longer than 1 MB.
+    """
+    if len(text.encode()) > _MOST_BYTES:
+        raise RefusedError("The answer is longer than 1 MB: ask for fewer logs at a time.")

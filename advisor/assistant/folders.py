@@ -1,0 +1,64 @@
+"""Files that an assistant may read: those inside the folders of the command line, up to a size."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+LOGS = (".tlog", ".bin", ".ulg", ".zip", ".gz", ".log", ".raw")
+"""Endings of the files that are listed as logs."""
+
+
+class RefusedError(Exception):
+    """A file that the assistant may not read. The message is for the assistant."""
+
+
+@dataclass(frozen=True, slots=True)
+class Folders:
+    """Folders of an assistant."""
+
+    roots: tuple[Path, ...]
+    """Folders with links resolved."""
+    most_bytes: int
+    """Largest file."""
+
+    def file(self, name: str) -> Path:
+        """Return a file inside the folders, with links resolved.
+
+        Parameters
+        ----------
+        name
+            Absolute path, or path relative to one of the folders.
+
+        Raises
+        ------
+        RefusedError
+            The path leaves the folders, names no file, or the file is too large.
+        """
+        candidates = [(root / name).resolve() for root in self.roots]
+        inside = [path for path in candidates if any(path.is_relative_to(root) for root in self.roots)]
+        if not inside:
+            raise RefusedError(f"{name} lies outside the folders of this server: {self.listed}.")
+        found = next((path for path in inside if path.is_file()), None)
+        if found is None:
+            raise RefusedError(f"There is no file {name} in {self.listed}.")
+        size = found.stat().st_size
+        if size > self.most_bytes:
+            most = f"{self.most_bytes / 1e6:.3g} MB"
+            raise RefusedError(f"{name} has {size / 1e6:.3g} MB, and this server reads at most {most}.")
+        return found
+
+    @property
+    def listed(self) -> str:
+        """Folders in one line."""
+        return ", ".join(map(str, self.roots))
+
+    def logs(self) -> Iterator[Path]:
+        """Yield the files in the folders that look like logs, in the order of their names."""
+        for root in self.roots:
+            found = (path for path in root.rglob("*") if path.suffix.lower() in LOGS and path.is_file())
+            yield from sorted(path for path in found if path.resolve().is_relative_to(root))
+
+
+def folders_of(roots: Sequence[Path], most_bytes: int) -> Folders:
+    """Return the folders of a command line, with links resolved."""
+    return Folders(tuple(root.resolve() for root in roots), most_bytes)

@@ -1,0 +1,57 @@
+"""``advisor gap --figure``: the picture of a diagnosis as a file."""
+
+from collections.abc import Sequence
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from advisor.cli.options import refuse_unwritable, writing
+from advisor.words.problems import ConfigurationError
+
+if TYPE_CHECKING:
+    from advisor.gap.result import Diagnosis
+
+_FORMATS = (".svg", ".png")
+
+
+def refuse_figure(figure: Path | None, others: Sequence[Path | None]) -> None:
+    """Refuse, before any work, a picture that could not be drawn or written.
+
+    Parameters
+    ----------
+    figure
+        File of the picture. None: no picture is wanted.
+    others
+        Files that the command reads or writes.
+
+    Raises
+    ------
+    ConfigurationError
+        The ending names no picture, matplotlib is missing, or the file is one of the others.
+    """
+    if figure is None:
+        return
+    if figure.suffix.lower() not in _FORMATS:
+        raise ConfigurationError(f"--figure: {figure} ends in neither .svg nor .png; name such a file.")
+    if find_spec("matplotlib") is None:
+        raise ConfigurationError("--figure needs matplotlib: pip install 'inflight-advisor[report]'.")
+    refuse_unwritable("--figure", figure)
+    if any(other is not None and other.resolve() == figure.resolve() for other in others):
+        raise ConfigurationError(f"--figure: {figure} is another file of this command; name a new one.")
+
+
+def write_figure(figure: Path | None, found: "Diagnosis") -> None:
+    """Write the picture, if one is wanted.
+
+    Raises
+    ------
+    ConfigurationError
+        The file cannot be written.
+    """
+    if figure is None:
+        return
+    from advisor.gap.document import gap_document
+    from advisor.report.page.gap_picture import write_gap_picture
+
+    with writing("--figure", figure):
+        write_gap_picture(gap_document(found), figure)

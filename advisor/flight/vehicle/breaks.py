@@ -1,0 +1,79 @@
+"""Breaks in the stamps of one power-on: times in which the advisor did not listen, and leaps of the clock.
+
+The process of the link writes a text into its own stream when it listens again. So a log and a link agree on
+who is to blame for a gap: the advisor, and neither the radio nor the pilot.
+"""
+
+import numpy as np
+
+from advisor.flight.signals.messages import Columns, FloatArray
+
+DOWN = b"Advisor listens again"
+"""Text that the advisor writes into its own stream after it was down."""
+LEAP_S = 600.0
+"""Least step of the stamps that is a leap of the clock, s. No silence of ten minutes divides one movement of
+the elevator."""
+_READ_WITHIN_S = 2.0
+"""Time of arrival after the text, s, within which a gap of the stamps belongs to it. Packets that have waited
+in the socket come first, within milliseconds."""
+_LEAST_S = 0.5
+"""Least gap of the elevator's stamps that counts, s: two samples of the slowest usable stream of 4 Hz."""
+
+Stretch = tuple[float, float]
+"""Begin and end, s since boot."""
+
+
+class Breaks:
+    """Breaks in the stamps of the elevator and of the vehicle's clock."""
+
+    def __init__(self) -> None:
+        self._until_s = -np.inf
+        self.begin()
+
+    def begin(self) -> None:
+        """Begin another power-on."""
+        self._last_s = np.nan
+        self._missed: list[Stretch] = []
+        self._leaps: list[Stretch] = []
+
+    def hear(self, columns: Columns) -> None:
+        """Take STATUSTEXT messages."""
+        for text, arrival_s in zip(columns.fields["text"].tolist(), columns.arrival_s.tolist(), strict=True):
+            if bytes(text).startswith(DOWN):
+                self._until_s = arrival_s + _READ_WITHIN_S
+
+    def take(self, t: FloatArray, arrival_s: FloatArray) -> list[Stretch]:
+        """Take samples of the elevator; return the gaps that the advisor has caused.
+
+        Parameters
+        ----------
+        t, arrival_s : shape (n,)
+            Vehicle times and host times of arrival, s.
+        """
+        stamps = np.concatenate(([self._last_s], t))
+        newest = np.fmax.accumulate(stamps)
+        steps = stamps[1:] - newest[:-1]
+        self._last_s = float(newest[-1])
+        self.take_clock(stamps)
+        rows = np.flatnonzero((steps >= _LEAST_S) & (arrival_s <= self._until_s))
+        found = [(float(newest[row]), float(stamps[row + 1])) for row in rows]
+        self._missed += found
+        return found
+
+    def take_clock(self, clock: FloatArray) -> None:
+        """Take readings of one of the vehicle's clocks, shape (n,), s since boot; the first is the last one
+        before."""
+        for row in np.flatnonzero(np.diff(clock) >= LEAP_S):
+            self._leaps.append((float(clock[row]), float(clock[row + 1])))
+
+    def missed_s(self, from_s: float, to_s: float) -> float:
+        """Return the length of the gaps by the advisor that touch a stretch of vehicle time, s."""
+        return sum(_lengths(self._missed, from_s, to_s))
+
+    def leapt_s(self, from_s: float, to_s: float) -> float:
+        """Return the longest leap of a clock that touches a stretch of vehicle time, s; 0 for none."""
+        return max(_lengths(self._leaps, from_s, to_s), default=0.0)
+
+
+def _lengths(stretches: list[Stretch], from_s: float, to_s: float) -> list[float]:
+    return [end - begin for begin, end in stretches if begin <= to_s and end >= from_s]

@@ -1,0 +1,1 @@
+"""The evidence of a diagnosis: one row for each alternative, with the same columns in every row."""

@@ -1,0 +1,239 @@
+"""The rows of the evidence: what was measured, arranged as the same columns for every alternative."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from advisor.flight.instruments.kinematics import SMALLEST_LAG_S, SMALLEST_SCALE
+from advisor.flight.signals.messages import FloatArray
+from advisor.gap.alternative import Alternative, Kind
+from advisor.gap.candidates.traits import OF_ONE_FLIGHT, TRAITS
+from advisor.gap.evidence.measured import FullFit, Measured, Residual
+from advisor.gap.noise.probes import DYNAMIC, SENSOR_CHANNELS
+from advisor.gap.search.acceptance import LEAST_OFFSET_RAD
+from advisor.gap.search.air import LEAST_GUST_ANGLE
+
+Values = dict[str, float]
+BLOCKS = (*dict.fromkeys(trait.block for trait in TRAITS.values()), "attitude_sensor")
+"""Blocks in which an effect without a name may lie."""
+_KINDS: Mapping[str, Kind] = {"air": "air"}
+"""Kind of the effects of a block, where it is not ``effect``."""
+_SURE = 5.0
+"""Gain in log likelihood, nats, of a best alternative below which relative gains say nothing."""
+_WEIGHTY = 20.0
+"""Least gain, nats, to which a lead over other alternatives is relative."""
+_GAUSSIAN_PEAK = 4.0
+"""Standard deviations that Gaussian air reaches in a record of this length."""
+_ONCE = {"gust": 1.0, "turbulence": -1.0}
+"""Effects that are expected in a few manoeuvres (1), or in all (-1)."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """One alternative with the values of its columns; a column that is left out is zero."""
+
+    alternative: Alternative
+    values: Mapping[str, float]
+
+
+def rows_of(m: Measured) -> tuple[Row, ...]:
+    """Return one row for each alternative: none, parameters, every effect, and every block without a name."""
+    probed = _of_blocks(m)
+    strongest = max(probed.values(), key=lambda values: values["block_gain"])
+    together = _of_residual(m, m.base) | _of_courses(m, *m.courses) | strongest
+    rows = [Row(Alternative("none", "none"), together | _of_the_file(m))]
+    if m.has_file:
+        numbers = together | _of_the_file(m) | _of_fitted_numbers(m)
+        rows.append(Row(Alternative("parameters", "parameters"), numbers))
+    screened = _of_screening(m)
+    for effect, trait in TRAITS.items():
+        values = _of_residual(m, m.base) | probed[_probed_in(effect)] | screened[effect]
+        values |= _of_fits(m, effect) | _of_kinematics(m, effect) | _of_air(m, effect)
+        values |= _of_courses(m, trait.block) if effect in OF_ONE_FLIGHT else {}
+        values["estimated"] = float(trait.channel == "alpha" and m.alpha_is_estimated)
+        rows.append(Row(stated_as(effect), values))
+    lead = max(m.laws.values(), default=0.0) - m.named_gain
+    for block in BLOCKS:
+        values = _of_residual(m, m.last) | probed[block] | _of_courses(m, block)
+        values |= {"law_gain": m.laws.get(block, 0.0), "few_maneuvers": _concentration(m.last), "tried": 1.0}
+        values |= (
+            {"law_lead": lead} if m.laws.get(block, 0.0) == max(m.laws.values(), default=0.0) > 0 else {}
+        )
+        rows.append(Row(Alternative("unknown", "unknown", block), values))
+    return tuple(rows)
+
+
+def stated_as(effect: str) -> Alternative:
+    """Return an effect of the catalogue as an alternative."""
+    block = TRAITS[effect].block
+    return Alternative(_KINDS.get(block, "effect"), effect, block)
+
+
+def _of_residual(m: Measured, residual: Residual) -> Values:
+    """Return the misfit that a model leaves, by channel and altogether."""
+    misfit = np.maximum(residual.power - 1.0, 0.0)
+    by_channel = {f"misfit_{name}": float(x) for name, x in zip(m.channels, misfit, strict=True)}
+    return by_channel | {
+        "misfit": float(np.max(misfit)),
+        "of_peak": 100.0 * float(np.max(residual.of_peak)),
+        "activity": float(np.max(residual.activity)),
+    }
+
+
+def _of_blocks(m: Measured) -> dict[str, Values]:
+    """Return the free disturbances by block; timing has those of the sensor whose stamps may be off."""
+    first, last = (_gains(residual) for residual in (m.base, m.last))
+    best, best_left = max(*first.values(), 0.0), max(*last.values(), 0.0)
+    return {
+        block: {
+            "block_gain": first.get(block, 0.0),
+            "block_share": max(first.get(block, 0.0), 0.0) / best if best > _SURE else 0.0,
+            "block_left": last.get(block, 0.0),
+            "block_left_share": max(last.get(block, 0.0), 0.0) / best_left if best_left > _SURE else 0.0,
+            "block_explains": m.last.probes.get(block, (0.0, 0.0))[1],
+        }
+        for block in BLOCKS
+    }
+
+
+def _gains(residual: Residual) -> dict[str, float]:
+    gains = {block: gain for block, (gain, _) in residual.probes.items()}
+    return gains | {"timing": max((gains.get(block, 0.0) for block in SENSOR_CHANNELS), default=0.0)}
+
+
+def _probed_in(effect: str) -> str:
+    """Return the block whose free disturbance resembles the effect: a sensor's for a wrong stamp."""
+    trait = TRAITS[effect]
+    if trait.block in DYNAMIC or trait.block in SENSOR_CHANNELS:
+        return trait.block
+    channel = trait.channel or "q"
+    return next(block for block, its in SENSOR_CHANNELS.items() if its == channel)
+
+
+def _of_screening(m: Measured) -> dict[str, Values]:
+    """Return the gains of the screening, absolute and relative to those of other effects."""
+    gains = {effect: found.gain for effect, found in m.screened.items()}
+    best = max(gains.values(), default=0.0)
+    values: dict[str, Values] = {}
+    for effect in TRAITS:
+        if effect not in m.screened:
+            values[effect] = {}
+            continue
+        found = m.screened[effect]
+        other = max((gain for name, gain in gains.items() if name != effect), default=0.0)
+        values[effect] = {
+            "tried": 1.0,
+            "screen_gain": found.gain,
+            "screen_share": max(found.gain, 0.0) / best if best > _SURE else 0.0,
+            "screen_lead": (found.gain - max(other, 0.0)) / max(best, _WEIGHTY),
+            "file_agreement": found.file_agreement,
+            "size": found.size,
+        }
+    return values
+
+
+def _of_fits(m: Measured, effect: str) -> Values:
+    """Return the full fit of an effect, and its part in the final model."""
+    values: Values = {}
+    best = max((fit.gain for fit in m.fitted.values()), default=0.0)
+    if (fit := m.fitted.get(effect, m.added.get(effect))) is not None:
+        gain, error = _held_out_gain(m, fit)
+        misfit = np.maximum(fit.power - 1.0, 0.0)
+        values = {
+            "fit_gain": fit.gain,
+            "fit_share": max(fit.gain, 0.0) / max(best, _SURE),
+            "heldout_gain": gain,
+            "heldout_sigmas": gain / max(error, 1e-9),
+            "support": float(np.clip(fit.support, -1e3, 1e3)),
+            "gap_removed": float(np.clip(1.0 - fit.gap / m.base_gap, -1.0, 1.0)) if m.base_gap > 0 else 0.0,
+            "change": fit.change,
+            "size_sigmas": fit.sigmas,
+            "size": fit.size,
+            "at_bound": float(fit.at_bound),
+            "misfit": float(np.max(misfit)),
+        } | {f"misfit_{name}": float(x) for name, x in zip(m.channels, misfit, strict=True)}
+    if (added := m.added.get(effect)) is not None:
+        total = sum(max(one.removed, 1e-6) for one in m.added.values())
+        values |= {"model_gain": added.gain, "model_share": max(added.removed, 1e-6) / total}
+    return values
+
+
+def _held_out_gain(m: Measured, fit: FullFit) -> tuple[float, float]:
+    """Return the gain in log likelihood on held-out manoeuvres, and its standard error over manoeuvres."""
+    noise = np.maximum(np.average(fit.by_maneuver, axis=0, weights=np.maximum(m.samples, 1e-9)), 1e-12)
+    each = np.sum(0.5 * m.samples * (m.base_held - fit.by_maneuver) / noise, axis=1)
+    n = len(each)
+    error = float(np.std(each, ddof=1)) * np.sqrt(n) if n > 1 else float(abs(each[0]))
+    return float(np.sum(each)), error
+
+
+def _of_kinematics(m: Measured, effect: str) -> Values:
+    """Return the finding of the kinematics that speaks of the effect.
+
+    An offset shows in the kinematics alone. Its gain is that of a measurement z standard deviations from
+    zero, z²/2.
+    """
+    findings = {
+        "alpha_bias": (m.offset_rad, LEAST_OFFSET_RAD),
+        "alpha_lag": (m.lag_s, SMALLEST_LAG_S),
+        "alpha_skew": (m.lag_s, SMALLEST_LAG_S),
+        "alpha_scale": (m.scale, SMALLEST_SCALE),
+    }
+    if effect not in findings:
+        return {}
+    (value, std), smallest = findings[effect]
+    z, size = abs(value) / max(std, 1e-9), abs(value) / smallest
+    found = {"kinematics": z, "kinematic_size": size}
+    if effect in m.screened or std <= 0.0:
+        return found
+    gain = 0.5 * z**2
+    share = m.offset_gap / max(m.offset_gap + m.base_gap, 1e-9)
+    return found | {
+        "tried": 1.0, "screen_gain": gain, "screen_share": gain / max(gain + m.named_gain, _WEIGHTY),
+        "fit_gain": gain, "fit_share": gain / max(gain + m.named_gain, _WEIGHTY),
+        "size": size, "size_sigmas": z, "gap_removed": share, "model_share": share,
+    }  # fmt: skip
+
+
+def _of_air(m: Measured, effect: str) -> Values:
+    """Return the moving air, for the effects of the air."""
+    if effect not in _ONCE or "alpha" not in m.channels:
+        return {}
+    peak = np.log(m.air_peak / (_GAUSSIAN_PEAK * m.air_angle)) if m.air_peak > 0.0 < m.air_angle else 0.0
+    share = m.air_gain / max(m.air_gain + m.named_gain, _WEIGHTY)
+    removed = m.last_gap - m.air_gap
+    return {
+        "tried": 1.0, "screen_gain": m.air_gain, "screen_share": share,
+        "fit_gain": m.air_gain, "fit_share": share, "size": m.air_angle / LEAST_GUST_ANGLE,
+        "gap_removed": removed / m.base_gap if m.base_gap > 0.0 else 0.0,
+        "model_share": removed / max(m.base_gap - m.air_gap, 1e-9) if removed > 0.0 else 0.0,
+        "few_maneuvers": _ONCE[effect] * _concentration(m.last),
+        "peak": _ONCE[effect] * float(peak),
+    }  # fmt: skip
+
+
+def _concentration(residual: Residual) -> float:
+    """Return the logarithm of the loudest manoeuvre's power over the median."""
+    power: FloatArray = np.mean(residual.by_maneuver, axis=1)
+    return float(np.log(max(np.max(power), 1e-12) / max(np.median(power), 1e-12)))
+
+
+def _of_the_file(m: Measured) -> Values:
+    """Return how far the file's numbers are from fitted ones."""
+    return {
+        "tried": 1.0,
+        "file_gap": max(m.file_gap, 0.0),
+        "file_distance": float(np.sqrt(max(m.file_distance, 0.0))),
+    }
+
+
+def _of_fitted_numbers(m: Measured) -> Values:
+    """Return what fitted numbers remove of the gap."""
+    gap = max(m.file_gap, 0.0)
+    return {"gap_removed": gap / (gap + m.base_gap) if gap > 0.0 else 0.0}
+
+
+def _of_courses(m: Measured, *blocks: str) -> Values:
+    found = [m.courses[block] for block in blocks if block in m.courses]
+    return {"drift": max(f[0] for f in found), "step": max(f[1] for f in found)} if found else {}

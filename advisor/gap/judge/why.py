@@ -1,0 +1,39 @@
+"""The reasons: the answer against its strongest rival, in nats that add up to the log odds."""
+
+from collections.abc import Mapping
+
+from advisor.gap.alternative import Contribution
+from advisor.gap.evidence.quantities import QUANTITIES, Quantity
+from advisor.gap.evidence.rows import Row
+from advisor.gap.judge.logit import Logit
+from advisor.gap.judge.prior import FieldPrior
+
+MOST_LINES = 7
+"""Most lines of the reasons, so that they fit one look; the last one holds all smaller contributions."""
+
+
+def reasons(logit: Logit, answer: Row, rival: Row, prior: FieldPrior) -> tuple[Contribution, ...]:
+    """Return the contributions to the log odds of the answer against its rival, the largest first.
+
+    Their sum is the log odds. A column that both rows lack contributes nothing.
+    """
+    mine, other = logit.parts(answer), logit.parts(rival)
+    nats = {name: mine.get(name, 0.0) - other.get(name, 0.0) for name in {**mine, **other}}
+    ahead = logit.offset(answer.alternative.kind, prior) - logit.offset(rival.alternative.kind, prior)
+    lines = [
+        _line(quantity, nats[quantity.name], answer.values, rival.values)
+        for quantity in QUANTITIES
+        if quantity.name in nats
+    ]
+    lines.append(Contribution("prior", ahead, "before the flight is looked at"))
+    lines.sort(key=lambda line: -abs(line.nats))
+    kept, others = lines[: MOST_LINES - 1], lines[MOST_LINES - 1 :]
+    rest = Contribution("rest", sum(line.nats for line in others), "all smaller differences together")
+    return (*kept, rest)
+
+
+def _line(
+    quantity: Quantity, nats: float, answer: Mapping[str, float], rival: Mapping[str, float]
+) -> Contribution:
+    a, b = (quantity.written(values.get(quantity.name, 0.0)) for values in (answer, rival))
+    return Contribution(quantity.name, nats, f"{quantity.words}: {a} against {b}")

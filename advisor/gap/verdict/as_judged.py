@@ -1,0 +1,76 @@
+"""A diagnosis with the probabilities of its alternatives, and the reasons for its answer."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from advisor.gap.alternative import Alternative
+from advisor.gap.candidates.traits import TRAITS
+from advisor.gap.evidence.rows import stated_as
+from advisor.gap.judge.posterior import Posterior
+from advisor.gap.result import Cause, Diagnosis, spelled
+from advisor.gap.search.indistinguishable import way_to_distinguish
+from advisor.gap.verdict.text import place
+
+
+def as_judged(diagnosis: Diagnosis, told: Posterior) -> Diagnosis:
+    """Return the diagnosis with probabilities, evidence and reasons; a doubtful answer says so in a note."""
+    answer = answered(diagnosis)
+    reasons = told.why(answer)
+    doubt = doubtful(told.credible, (answer, told.of(answer)))
+    alike = [a.name for a, _ in told.credible if a.is_effect] if doubt else []
+    causes = tuple(_with_rivals(c, alike) if n == 0 else c for n, c in enumerate(diagnosis.causes))
+    return replace(
+        diagnosis,
+        causes=causes,
+        probabilities=told.probabilities,
+        evidence=told.evidence,
+        why=reasons,
+        rival=told.rival_of(answer).label if reasons else "",
+        notes=(*((doubt,) if doubt else ()), *diagnosis.notes),
+    )
+
+
+def answered(diagnosis: Diagnosis) -> Alternative:
+    """Return the answer of a diagnosis as an alternative."""
+    if diagnosis.verdict == "effect":
+        return stated_as(diagnosis.causes[0].effect)
+    if diagnosis.verdict == "unknown":
+        return Alternative("unknown", "unknown", diagnosis.where.block)
+    if diagnosis.verdict == "parameters":
+        return Alternative("parameters", "parameters")
+    return Alternative("none", "none")
+
+
+def doubtful(credible: Sequence[tuple[Alternative, float]], answer: tuple[Alternative, float]) -> str:
+    """Return the sentence about alternatives that the evidence cannot decide between.
+
+    It is empty where the answer is the only credible one. ``answer`` comes with its probability.
+    """
+    if answer[0] not in [alternative for alternative, _ in credible]:
+        likelier, p = credible[0]
+        return (
+            f"By the evidence {_said(likelier)} ({100.0 * p:.0f} %) is likelier than this answer "
+            f"({100.0 * answer[1]:.0f} %)."
+        )
+    if len(credible) < 2:
+        return ""
+    listed = [f"{_said(a)} ({100.0 * p:.0f} %)" for a, p in credible[:3]]
+    more = " and others" if len(credible) > 3 else ""
+    return f"The evidence does not decide between {', '.join(listed[:-1])} and {listed[-1]}{more}."
+
+
+def _said(alternative: Alternative) -> str:
+    words = {"none": "no gap", "parameters": "wrong numbers"}
+    if alternative.kind == "unknown":
+        return f"something without a name {place(alternative.block)}"
+    return words.get(alternative.kind, spelled(alternative.name))
+
+
+def _with_rivals(cause: Cause, alike: Sequence[str]) -> Cause:
+    """Return a cause with the effects that the evidence cannot exclude, and what distinguishes them."""
+    rivals = [name for name in alike if name not in (cause.effect, *cause.cannot_be_told_from)]
+    ways = [
+        way for name in rivals if cause.effect in TRAITS and (way := way_to_distinguish(cause.effect, name))
+    ]
+    way = "; ".join(dict.fromkeys(filter(None, (cause.tell_apart_by, *ways))))
+    return replace(cause, cannot_be_told_from=(*cause.cannot_be_told_from, *rivals), tell_apart_by=way)

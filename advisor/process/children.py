@@ -1,0 +1,31 @@
+"""Children of this process: none of them imports a module from the folder in which it is started.
+
+``python -m`` and the spawn method of `multiprocessing` put the current folder first on the path of modules. A
+folder of logs may hold any file: a ``queue.py`` or ``socket.py`` there would replace Python's own module.
+"""
+
+import multiprocessing
+import os
+import sys
+from multiprocessing.context import SpawnContext
+
+
+def python_module(module: str) -> list[str]:
+    """Return the command that runs a module of this program in a new process."""
+    keep_current_folder_out()
+    return [sys.executable, "-P", "-m", module]
+
+
+def spawning() -> SpawnContext:
+    """Return the context of `multiprocessing` that starts new interpreters."""
+    keep_current_folder_out()
+    return multiprocessing.get_context("spawn")
+
+
+def keep_current_folder_out() -> None:
+    """Let no child that this process starts look for modules in the current folder.
+
+    `multiprocessing` passes on neither an option nor an environment of our own, but children inherit this
+    process's environment (Python, ``PYTHONSAFEPATH``).
+    """
+    os.environ["PYTHONSAFEPATH"] = "1"

@@ -1,0 +1,71 @@
+"""The end of a diagnosis: three steps to take, with the commands that take them."""
+
+import shlex
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from advisor.gap.result import Cause, Diagnosis, spelled
+from advisor.report.gap_parameters import changed
+from advisor.report.gap_sizes import sizes_of
+from advisor.report.improved import improved_name
+
+
+@dataclass(frozen=True, slots=True)
+class GapStep:
+    """One thing to do after a diagnosis."""
+
+    text: str
+    command: str = ""
+    """Command line that does the step; empty where no command does."""
+
+
+def next_steps(
+    d: Diagnosis, logs: Sequence[str], aircraft_file: str | None, simulator: str | None = None
+) -> list[GapStep]:
+    """Return what to put into the simulator, how to prove the change, and what excludes the rival.
+
+    Parameters
+    ----------
+    logs
+        Logs of the diagnosis, as given.
+    aircraft_file
+        Aircraft file, as given; None without one.
+    simulator
+        Specification of the user's own simulator; None where the aircraft file is the simulator.
+    """
+    aircraft = ["--aircraft", aircraft_file] if aircraft_file else []
+    own = ["--simulator", simulator] if simulator else []
+    better = improved_name(d, aircraft_file)
+    found = []
+    if what := _to_put(d):
+        write = shlex.join(["advisor", "gap", *logs, *aircraft, *own, "--out", better])
+        prove = shlex.join(["advisor", "gap", *logs, *(own or ["--aircraft", better])])
+        found.append(GapStep(f"Put into the simulator: {what}. --export writes other formats.", write))
+        found.append(GapStep("Prove the change: the gap must fall to what is printed above.", prove))
+    if rival := _against_the_rival(d):
+        found.append(GapStep(rival))
+    return found
+
+
+def _to_put(d: Diagnosis) -> str:
+    """Return the effects and derivatives that the improved simulator has; empty where nothing is to put."""
+    if d.verdict == "parameters":
+        return ", ".join(changed(one) for one in d.derivatives if one.differs) or "the fitted derivatives"
+    if d.verdict != "effect":
+        return ""
+    return ", ".join(f"{spelled(c.effect)} {', '.join(sizes_of(c))}" for c in d.causes if c.present)
+
+
+def _against_the_rival(d: Diagnosis) -> str:
+    """Return what distinguishes the answer from an effect that looks alike, or shows what is hidden."""
+    telling = next((c for c in d.causes if c.present and c.cannot_be_told_from and c.tell_apart_by), None)
+    if telling is not None:
+        return f"To exclude {_rivals(telling)}: {telling.tell_apart_by}."
+    if d.verdict == "unknown":
+        return "To find the cause: fly two more manoeuvres of other amplitude, and log what is listed above."
+    hidden = next(iter(d.cannot_see), None)
+    return f"To see {spelled(hidden.effect)} as well: {hidden.would_need}." if hidden is not None else ""
+
+
+def _rivals(cause: Cause) -> str:
+    return " or ".join(map(spelled, cause.cannot_be_told_from))

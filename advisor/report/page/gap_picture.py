@@ -1,0 +1,173 @@
+"""The gap as a picture: the worst manoeuvre measured and simulated, its residuals, all manoeuvres small."""
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure as Drawing
+
+from advisor.report.page.content import Document
+from advisor.report.page.drawing import BLUE, GREY, ORANGE, picture, save
+from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import CHANNELS
+
+_ACROSS = 2
+"""Channels side by side in a picture for a close look; a picture for a glance has all in one row."""
+_SMALL_ACROSS, _SMALL_ON_A_PHONE = 7, 3
+"""Small pictures side by side."""
+_WIDTH_IN, _ON_A_PHONE_IN = 7.4, 3.8
+_OF_A_CHANNEL_IN, _OF_THE_SMALL_IN = 2.4, 1.1
+"""Heights of a row of channels and of a row of small pictures, inches."""
+_CURVES_IN, _RESIDUALS_IN, _SMALL_IN = 1.25, 0.5, 0.7
+"""Heights of the axes within such rows, inches."""
+_LEFT_IN, _LABEL_IN, _RIGHT_IN = 0.62, 0.42, 0.06
+"""Room left of axes, distance of the label within, and room at the right edge, inches."""
+_LEGEND_IN, _TITLE_IN = 0.35, 0.25
+"""Room for the legend, and for the numbers over the small pictures, inches."""
+_SHOWN_SMALL = "q"
+"""Channel of the small pictures: the pitch rate moves in every manoeuvre."""
+
+Trace = Mapping[str, Any]
+
+
+def caption(found: Document) -> str:
+    """Return the description of the picture."""
+    return (
+        f"Manoeuvre {worst(found)}, the one with the largest gap. Grey: measured. Orange dots: the simulator "
+        "as given. Dark dashes: with the findings. Below each: measured minus simulated; the band holds 95 % "
+        "of the noise. Last: the pitch rate of every manoeuvre."
+    )
+
+
+def gap_picture(name: str, found: Document, across: int = _ACROSS) -> Callable[[], str]:
+    """Return the picture for a page, with so many channels side by side."""
+    return picture(name, *_size_in(found, across), _paint, found, across)
+
+
+def _size_in(found: Document, across: int) -> tuple[float, float]:
+    """Return width and height of the picture, inches."""
+    channels = len({trace["channel"] for trace in found["traces"]})
+    small = len({trace["number"] for trace in found["traces"]})
+    rows, small_rows = -(-channels // across), -(-small // _small_across(across))
+    width = _WIDTH_IN if across > 1 else _ON_A_PHONE_IN
+    height = _LEGEND_IN + _OF_A_CHANNEL_IN * rows + _TITLE_IN + _OF_THE_SMALL_IN * small_rows
+    return width, height
+
+
+def _small_across(across: int) -> int:
+    """Return how many small pictures stand side by side; a phone has one channel across."""
+    return _SMALL_ACROSS if across > 1 else _SMALL_ON_A_PHONE
+
+
+def worst(found: Document) -> int:
+    """Return the number of the manoeuvre with the largest gap."""
+    return int(max(found["gap"]["by_maneuver"], key=lambda one: one["before"])["number"])
+
+
+def write_gap_picture(found: Document, path: Path) -> None:
+    """Write the picture into a file, in the format of its ending.
+
+    Raises
+    ------
+    OSError
+        The file cannot be written.
+    """
+    save(path, *_size_in(found, _ACROSS), _paint, found, _ACROSS)
+
+
+def _paint(drawing: Drawing, found: Document, across: int) -> None:
+    """Draw the worst manoeuvre channel by channel over all manoeuvres small.
+
+    Every axis has its place in inches: a layout that is solved differs in the last digit from run to run.
+    """
+    drawing.set_layout_engine("none")
+    number, traces = worst(found), found["traces"]
+    large = [trace for trace in traces if trace["number"] == number]
+    small = [trace for trace in traces if trace["channel"] == _SHOWN_SMALL]
+    width = (float(drawing.get_figwidth()) - _RIGHT_IN) / across
+    for k, trace in enumerate(large):
+        row, column = divmod(k, across)
+        top = _LEGEND_IN + row * _OF_A_CHANNEL_IN
+        _paint_channel(drawing, trace, found["gap"]["floor"], (column * width, top, width))
+    top = _LEGEND_IN + _OF_A_CHANNEL_IN * -(-len(large) // across) + _TITLE_IN
+    small_across = _small_across(across)
+    each = (float(drawing.get_figwidth()) - _LEFT_IN - _RIGHT_IN) / small_across
+    shared: Axes | None = None
+    for k, trace in enumerate(small):
+        row, column = divmod(k, small_across)
+        place = (_LEFT_IN + column * each, top + row * _OF_THE_SMALL_IN, each - 0.12, _SMALL_IN)
+        shared = _paint_small(drawing, trace, place, shared, worst=trace["number"] == number)
+        if column:
+            drawing.axes[-1].tick_params(labelleft=False)
+
+
+def _axes(drawing: Drawing, place: tuple[float, float, float, float], shared: Axes | None = None) -> Axes:
+    """Return axes at a place: left, top, width and height in inches from the upper left corner."""
+    left, top, width, height = place
+    across, down = float(drawing.get_figwidth()), float(drawing.get_figheight())
+    box = (left / across, 1.0 - (top + height) / down, width / across, height / down)
+    return drawing.add_axes(box, sharey=shared)
+
+
+def _paint_channel(
+    drawing: Drawing, trace: Trace, floor: Mapping[str, float], place: tuple[float, float, float]
+) -> None:
+    """Draw one channel over its residuals; ``place`` has left, top and width in inches."""
+    left, top, width = place
+    inside = left + _LEFT_IN, width - _LEFT_IN
+    curves = _axes(drawing, (inside[0], top, inside[1], _CURVES_IN))
+    residuals = _axes(drawing, (inside[0], top + _CURVES_IN + 0.12, inside[1], _RESIDUALS_IN))
+    quantity = CHANNELS[trace["channel"]]
+    t, measured, before, after = _arrays(trace, quantity.factor)
+    curves.plot(t, measured, color=GREY, linewidth=1.8, label="measured")
+    curves.plot(t, before, color=ORANGE, linestyle=":", linewidth=1.2, label="simulator")
+    curves.plot(t, after, color=BLUE, linestyle=(0, (4, 1.5)), linewidth=1.0, label="with the findings")
+    curves.set_ylabel(quantity.label)
+    curves.tick_params(labelbottom=False)
+    half = NORMAL_95 * floor[trace["channel"]] * quantity.factor
+    residuals.axhspan(-half, half, facecolor="#dfeaf4", linewidth=0.0)
+    residuals.plot(t, measured - before, color=ORANGE, linestyle=":", linewidth=1.0)
+    residuals.plot(t, measured - after, color=BLUE, linewidth=0.7)
+    residuals.set_xlabel("time [s]")
+    residuals.set_ylabel("error")
+    for axes in (curves, residuals):
+        axes.set_xlim(t[0], t[-1])
+        axes.yaxis.set_label_coords(-_LABEL_IN / inside[1], 0.5)
+    residuals.locator_params(axis="y", nbins=3)
+    if len(drawing.axes) == 2:
+        drawing.legend(*curves.get_legend_handles_labels(), loc="upper center", ncols=3)
+
+
+def _paint_small(
+    drawing: Drawing,
+    trace: Trace,
+    place: tuple[float, float, float, float],
+    shared: Axes | None,
+    *,
+    worst: bool,
+) -> Axes:
+    """Draw the pitch rate of one manoeuvre; return the axes whose scale all small pictures share."""
+    axes = _axes(drawing, place, shared)
+    t, measured, before, after = _arrays(trace, CHANNELS[_SHOWN_SMALL].factor)
+    axes.plot(t, measured, color=GREY, linewidth=1.2)
+    axes.plot(t, before, color=ORANGE, linestyle=":", linewidth=0.9)
+    axes.plot(t, after, color=BLUE, linestyle=(0, (4, 1.5)), linewidth=0.7)
+    _bare(axes, f"{trace['number']}{' (above)' if worst else ''}")
+    if shared is None:
+        axes.set_ylabel(CHANNELS[_SHOWN_SMALL].label)
+        axes.yaxis.set_label_coords(-_LABEL_IN / place[2], 0.5)
+    return shared or axes
+
+
+def _bare(axes: Axes, title: str) -> None:
+    axes.set_title(title)
+    axes.tick_params(labelsize=6)
+    axes.locator_params(nbins=3)
+
+
+def _arrays(trace: Trace, factor: float) -> tuple[Any, Any, Any, Any]:
+    """Return time from the first sample, and the three curves in the unit for people; each of shape (n,)."""
+    t = np.asarray(trace["t"])
+    return t - t[0], *(factor * np.asarray(trace[name]) for name in ("measured", "before", "after"))

@@ -1,0 +1,57 @@
+"""Findings of ``advisor simulator check`` as text and as a document."""
+
+from collections.abc import Iterator
+from math import degrees, isfinite, tau
+from typing import Any
+
+from advisor.simulators.check import CheckedSimulator
+from advisor.words.plain import picked
+
+SCHEMA = "advisor.simulator/1"
+_LACKS = {
+    "increments": "effects of force and moment stay on paper",
+    "mass": "it flies at its own mass",
+    "throttle": "a moved throttle of the flight is not flown",
+    "aileron": "the flight's aileron is not flown",
+    "rudder": "the flight's rudder is not flown",
+}
+
+
+def document(found: CheckedSimulator) -> dict[str, Any]:
+    """Return the ``advisor.simulator/1`` document."""
+    fault = found.fault
+    return {
+        "schema": SCHEMA,
+        "usable": fault is None,
+        **picked(found, "simulator airspeed_m_s height_m alpha_rad trim a_z_m_s2 rest_q_rad_s takes lacks"),
+        **picked(found, "derivatives lag_s dead_time_s omega_rad_s damping notes"),
+        "problems": [] if fault is None else [picked(fault.refuse(found.simulator).problem, "code text fix")],
+    }
+
+
+def lines(found: CheckedSimulator) -> Iterator[str]:
+    """Yield the findings, a line each."""
+    yield f"{found.simulator} at {found.airspeed_m_s:.4g} m/s true air speed, {found.height_m:.0f} m"
+    controls = "".join(f", {name} {_control(name, value)}" for name, value in found.trim.items())
+    yield f"trim        α {degrees(found.alpha_rad):+.2f} deg{controls}"
+    turns = f"pitch rate below {degrees(found.rest_q_rad_s):.3f} deg/s"
+    yield f"at rest     a_z {found.a_z_m_s2:+.2f} m/s², {turns}"
+    if found.fault is not None:
+        return
+    yield "signs       a_z down, α and q nose up: the motion agrees with itself"
+    yield "units       rad, rad/s, m/s²: the motion agrees with itself"
+    yield f"elevator    dead time {1e3 * found.dead_time_s:.0f} ms, lag {1e3 * found.lag_s:.0f} ms"
+    if isfinite(found.damping):
+        hertz = found.omega_rad_s / tau
+        yield f"short period {found.omega_rad_s:.2f} rad/s ({hertz:.2f} Hz), damping {found.damping:.2f}"
+    else:
+        yield "short period none: it is statically unstable here"
+    yield "numbers     " + ", ".join(f"{name} {value:.4g}" for name, value in found.derivatives.items())
+    yield f"takes       elevator{''.join(f', {name}' for name in found.takes)}"
+    for name in found.lacks:
+        yield f"does not take {name}: {_LACKS[name]}"
+    yield from found.notes
+
+
+def _control(name: str, value: float) -> str:
+    return f"{100.0 * value:.0f} %" if name == "throttle" else f"{degrees(value):+.2f} deg"

@@ -1,0 +1,134 @@
+"""A simulator checked before its physics: it trims, holds still, answers the elevator, and means SI units."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from math import nan
+
+import numpy as np
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.maneuvers.maneuver import Maneuver, Span
+from advisor.flight.signals.messages import FloatArray
+from advisor.flight.signals.record import Channel
+from advisor.gap.records.prepare import prepare
+from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, natural_frequency
+from advisor.simulators.flying import Flying, refuse_unmoved
+from advisor.simulators.interface import InterfaceFault, interface_fault
+from advisor.simulators.protocol import CONTROLS, Condition, Inputs, Replay, Simulator
+from advisor.simulators.surrogate import surrogate_of
+
+_STEP_S, _LEAD_S, _UNIT_S, _LASTS_S = 0.005, 1.0, 0.4, 9.0
+"""Step, time before the input, unit of the 3-2-1-1, and length of the record, s."""
+_SIZE_RAD = float(np.radians(1.0))
+"""Elevator step, rad: small enough for a linear answer, far above rounding."""
+_REST_S = 5.0
+"""Length of the flight with resting controls, s."""
+_RESTS_RAD_S = 1e-3
+"""Largest pitch rate of a trimmed simulator at rest, rad/s: 0.06 deg/s, half of a gyro's bias."""
+
+
+@dataclass(frozen=True)
+class CheckedSimulator:
+    """Findings on a simulator at one flight condition."""
+
+    simulator: str
+    airspeed_m_s: float
+    height_m: float
+    alpha_rad: float
+    """Angle of attack in the trimmed flight, rad."""
+    trim: Mapping[str, float]
+    """Trimmed controls, as far as the simulator tells them."""
+    a_z_m_s2: float
+    """Specific force along body z in the trimmed flight."""
+    rest_q_rad_s: float
+    """Largest pitch rate with resting controls."""
+    takes: tuple[str, ...]
+    lacks: tuple[str, ...]
+    """Controls, ``mass`` and ``increments`` of force and moment that the simulator does not take."""
+    derivatives: Mapping[str, float] = field(default_factory=dict)
+    lag_s: float = nan
+    """First-order lag between the command and the motion, s."""
+    dead_time_s: float = nan
+    omega_rad_s: float = nan
+    """Undamped natural frequency of the short period; 0 where it is aperiodic by stiffness."""
+    damping: float = nan
+    fault: InterfaceFault | None = None
+    notes: tuple[str, ...] = ()
+
+
+def check(simulator: Simulator, condition: Condition) -> CheckedSimulator:
+    """Fly a simulator at rest and through a 3-2-1-1, and identify its short period.
+
+    Raises
+    ------
+    UnusableInputError
+        The simulator does not trim, does not fly, or does not answer the elevator.
+    """
+    t: FloatArray = _STEP_S * (np.arange(round(_LASTS_S / _STEP_S), dtype=np.float64) + 0.5)
+    rest = t[t < _REST_S]
+    still = simulator.replay(condition, Inputs(rest, np.zeros(rest.size)))
+    flown = simulator.replay(condition, Inputs(t, _three_two_one_one(t)))
+    offered = {*CONTROLS, "mass"}
+    takes = {*simulator.takes} | ({"increments"} if simulator.takes_increments else set())
+    found = CheckedSimulator(
+        simulator.description, condition.airspeed_m_s, condition.height_m, float(still.alpha[0]), still.trim,
+        float(still.a_z[0]), float(np.max(np.abs(still.q))), tuple(sorted(takes)),
+        tuple(sorted({*offered, "increments"} - takes)), notes=tuple(getattr(simulator, "notes", ())),
+    )  # fmt: skip
+    fault = interface_fault(flown)
+    if fault is not None:
+        return replace(found, fault=fault)
+    return _identified(found, simulator, condition, flown, t)
+
+
+def _identified(
+    found: CheckedSimulator, simulator: Simulator, condition: Condition, flown: Replay, t: FloatArray
+) -> CheckedSimulator:
+    """Return the findings with derivatives, lag, dead time and natural motion."""
+    flights = prepare([_as_maneuver(flown, t)], Aircraft())
+    flying = Flying(simulator, flights, {1: condition.height_m}, {1: {}}, condition.mass_kg, lambda *_: None)
+    command = np.zeros((1, len(ENTRIES)))
+    replays = flying.replays(command, held=False)
+    refuse_unmoved(simulator.description, replays, flights)
+    surrogate = surrogate_of(
+        flights, flying.as_flown(replays), replays, command, simulator.linearise(condition)
+    )
+    numbers = np.array([surrogate.derivatives[name] for name in DERIVATIVES])
+    omega = natural_frequency(numbers)
+    damping = -(numbers[0] + numbers[4]) / (2.0 * omega) if omega > 0.0 else nan
+    notes = [*found.notes]
+    if found.rest_q_rad_s > _RESTS_RAD_S:
+        notes.append(
+            f"With resting controls it turns by {np.degrees(found.rest_q_rad_s):.2f} deg/s: its trim is not "
+            "steady, and every replay starts with that motion."
+        )
+    if surrogate.derivatives["M_delta_e"] > 0.0:
+        notes.append(
+            "The nose goes up where the trailing edge goes down: the elevator is reversed, unless it is a "
+            "canard."
+        )
+    return replace(
+        found, derivatives=surrogate.derivatives, lag_s=surrogate.lag_s, dead_time_s=surrogate.delay_s,
+        omega_rad_s=omega, damping=float(damping), notes=tuple(notes),
+    )  # fmt: skip
+
+
+def _three_two_one_one(t: FloatArray) -> FloatArray:
+    """Return a 3-2-1-1 of the elevator, rad, shape (n,)."""
+    onsets = _LEAD_S + _UNIT_S * np.array([0.0, 3.0, 5.0, 6.0, 7.0])
+    out = np.zeros(t.size)
+    for begin, end, sign in zip(onsets[:-1], onsets[1:], (1.0, -1.0, 1.0, -1.0), strict=True):
+        out[(t >= begin) & (t < end)] = sign * _SIZE_RAD
+    return out
+
+
+def _as_maneuver(flown: Replay, t: FloatArray) -> Maneuver:
+    """Return a replay as a manoeuvre without any instrument."""
+    series = {
+        "alpha": flown.alpha, "q": flown.q, "theta": flown.theta, "a_z": flown.a_z,
+        "airspeed": flown.airspeed_m_s, "height": flown.height_m,
+    }  # fmt: skip
+    channels = {name: Channel(name, flown.t, y, "simulator", "simulated") for name, y in series.items()}
+    channels["elevator"] = Channel("elevator", t, _three_two_one_one(t), "simulator", "commanded")
+    last = _LEAD_S + 7.0 * _UNIT_S
+    return Maneuver(1, 0, Span(0.0, _LEAD_S, last, float(t[-1]), "3-2-1-1", (), "quiet"), channels)

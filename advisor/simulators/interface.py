@@ -1,0 +1,141 @@
+"""Signs and units of a simulator, by the kinematics of its own replay: no aerodynamics is needed.
+
+In still air and in the vertical plane
+
+    θ̇ = q        α̇ = q + (a_z·cos α − a_x·sin α + g·cos γ)/V        a_z = −g·cos θ in steady level flight
+
+(Klein and Morelli, *Aircraft System Identification*, chapter 10). A factor of −1 or 180/π between the sides
+is a sign or a unit. Only the sense and the unit of the elevator need a second source, the flight itself.
+"""
+
+from dataclasses import dataclass
+from math import degrees, log
+
+import numpy as np
+
+from advisor.aircraft.standard_gravity import GRAVITY_M_S2
+from advisor.flight.signals.messages import FloatArray
+from advisor.simulators.protocol import Replay
+from advisor.words.problems import UnusableInputError
+
+_PER_RAD = degrees(1.0)
+_NEAR = log(1.5)
+"""Largest logarithm of the ratio between a factor and a unit's factor that counts as that unit. Units differ
+by a factor of 3 or more."""
+_MOVES_RAD = 1e-4
+"""Least range of ∫q dt, rad, by which a unit can be told. A real test input moves the nose by a hundred
+times as much."""
+_SMALL_RAD = 0.7
+"""Largest angle of attack or pitch angle, rad, of a test manoeuvre: 40 deg."""
+
+
+@dataclass(frozen=True)
+class InterfaceFault:
+    """A wrong sign or unit of one quantity."""
+
+    quantity: str
+    found: str
+    """Sign or unit of the quantity, in words."""
+    fix: str
+
+    def refuse(self, description: str) -> UnusableInputError:
+        """Return the refusal of a simulator with this fault."""
+        return UnusableInputError(
+            "simulator_interface", f"{description} gives {self.quantity} {self.found}.", self.fix
+        )
+
+
+def interface_fault(replay: Replay) -> InterfaceFault | None:
+    """Return the first wrong sign or unit of a replay's outputs; None where they agree with each other."""
+    a_z = float(replay.a_z[0])
+    if _is(a_z, GRAVITY_M_S2):
+        return _sign("a_z", f"as {a_z:+.2f} m/s² in steady flight, where body z down gives -9.81")
+    if _is(a_z, 1.0) or _is(a_z, -1.0):
+        told = f"as {a_z:+.2f} in steady flight, which is a number of g, where -9.81 m/s² is expected"
+        return InterfaceFault("a_z", told, "Multiply by 9.80665 (scale: {a_z: ...}), negative in flight.")
+    if abs(a_z) < 0.1 * GRAVITY_M_S2:
+        told = f"as {a_z:+.2f} m/s² in steady flight, an acceleration without the weight"
+        return InterfaceFault("a_z", told, "Give the specific force, which an accelerometer reads.")
+    large = [n for n in ("alpha", "theta") if np.max(np.abs(getattr(replay, n))) > _SMALL_RAD]
+    if large:
+        names = {"alpha": "α", "theta": "θ"}
+        told = " and ".join(names[name] for name in large)
+        return InterfaceFault(told, "in degrees", "Give angles in rad, and check q, which is in rad/s.")
+    turned = _integrated(replay.q, replay.t)
+    if np.ptp(turned) < _MOVES_RAD:
+        return None
+    return _of_the_angles(replay, turned)
+
+
+def _of_the_angles(replay: Replay, turned: FloatArray) -> InterfaceFault | None:
+    """Return the first fault of θ, q and α; ``turned`` is ∫q dt."""
+    pitch = _slope(turned, replay.theta - replay.theta[0])
+    bent = _path_turning(replay)
+    alpha = replay.alpha - replay.alpha[0]
+    by_q, by_force = np.linalg.lstsq(np.column_stack([turned, bent]), alpha)[0]
+    if _is(by_force, _PER_RAD) and _is(by_q, 1.0) and _is(pitch, 1.0):
+        return InterfaceFault("α, q and θ", "in degrees", "Give angles in rad and rates in rad/s.")
+    if _is(pitch, -1.0):
+        culprit = "q" if _is(by_q, -1.0) else "θ"
+        return _sign(culprit, "with the sign reversed: positive is nose up")
+    if _is(pitch, 1.0 / _PER_RAD):
+        return InterfaceFault("q", "in deg/s", "Give the pitch rate in rad/s.")
+    if _is(pitch, _PER_RAD):
+        return InterfaceFault("θ", "in degrees", "Give the pitch angle in rad.")
+    if _is(by_q, _PER_RAD) and _is(by_force, _PER_RAD):
+        return InterfaceFault("α", "in degrees", "Give the angle of attack in rad.")
+    if _is(by_q, -1.0) and _is(by_force, -1.0):
+        return _sign("α", "with the sign reversed: positive is nose up")
+    return None
+
+
+def elevator_fault(simulated: float, flown: float) -> InterfaceFault | None:
+    """Return the wrong sign or unit of the elevator; None where the simulator answers as the aircraft.
+
+    Parameters
+    ----------
+    simulated, flown
+        M_δe of the simulator and of the flight, 1/s².
+    """
+    ratio = simulated / flown if flown else 1.0
+    if _is(ratio, -1.0):
+        told = "the wrong sense: it pitches up where the aircraft pitches down"
+        mend = "Reverse the elevator's input; trailing edge down is positive and pitches down."
+        return InterfaceFault("the elevator", told, mend)
+    if _is(abs(ratio), 1.0 / _PER_RAD):
+        told = f"{1.0 / abs(ratio):.0f} times less effect than the flight: it takes degrees"
+        return InterfaceFault("the elevator", told, "Turn the deflection, sent in rad, into degrees.")
+    if _is(abs(ratio), _PER_RAD):
+        told = f"{abs(ratio):.0f} times more effect than the flight: it takes another unit"
+        return InterfaceFault("the elevator", told, "The deflection is sent in rad; check its scale.")
+    return None
+
+
+def _path_turning(replay: Replay) -> FloatArray:
+    """Return ∫(a_z·cos α − a_x·sin α + g·cos γ)/V dt from the start, rad, shape (m,)."""
+    path = replay.theta - replay.alpha
+    along = replay.a_x if replay.a_x is not None else GRAVITY_M_S2 * np.sin(replay.theta)
+    force = replay.a_z * np.cos(replay.alpha) - along * np.sin(replay.alpha)
+    rate = (force + GRAVITY_M_S2 * np.cos(path)) / replay.airspeed_m_s
+    return _integrated(rate - rate[0], replay.t)
+
+
+def _integrated(rate: FloatArray, t: FloatArray) -> FloatArray:
+    """Return the integral of a rate over time, by trapezes, shape (m,)."""
+    steps = 0.5 * (rate[1:] + rate[:-1]) * np.diff(t)
+    return np.concatenate([[0.0], np.cumsum(steps)])
+
+
+def _slope(x: FloatArray, y: FloatArray) -> float:
+    """Return the slope of y on x."""
+    return float(x @ y / max(float(x @ x), 1e-300))
+
+
+def _is(factor: float, unit: float) -> bool:
+    """Return whether a factor is that of a sign or unit."""
+    return factor * unit > 0.0 and abs(log(factor / unit)) < _NEAR
+
+
+def _sign(quantity: str, found: str) -> InterfaceFault:
+    mend = f"Reverse {quantity} where the simulator hands it out (scale: -1), or in its wrapper."
+    return InterfaceFault(quantity, found, mend)

@@ -1,0 +1,119 @@
+"""Errors that no motion shows, in words: the trim, the air speed, and numbers that differ together.
+
+Z_α = -q̄·S·C_Lα/(m·V) and M_α = q̄·S·c·C_mα/I_yy: the weight moves the Zs alone, the inertia the Ms alone, the
+density both.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from math import degrees
+
+import numpy as np
+
+from advisor.gap.diagnose import DiagnosisEvidence
+from advisor.gap.result import Diagnosis, TrimDifference
+from advisor.gap.simulator.layout import DERIVATIVES
+from advisor.gap.uncatalogued.airspeed_scale import SIGMAS_IN_GUSTS
+
+_TRIM_OFF = {"alpha": 0.0175, "elevator": 0.0175, "throttle": 0.1}
+"""Quantity to the least difference of two trims that is said. A vane or a surface aligned by hand is right to
+0.5 deg. Thrust at one throttle differs by a tenth between engines of a type."""
+_TRIM_SIGMAS = 3.0
+"""Least number of standard deviations of the mean by which two trims differ."""
+_TRIMMED = {
+    "alpha": ("angle of attack", "flaps, incidence, weight or air speed differ, or the vane has an offset"),
+    "elevator": ("elevator", "centre of gravity, flaps or thrust line differ, or the calibration is off"),
+    "throttle": ("throttle", "drag or engine differ"),
+}
+_READS_WRONG = 0.03
+"""Least relative error of the air speed that is said first. The prior of a static port's error has a standard
+deviation of 0.02."""
+_SIGMAS = 3.0
+"""Least number of standard deviations by which a common factor differs from 1."""
+_TOGETHER = 0.05
+"""Least relative difference of numbers that are told together, and most of those that count as equal: the
+tolerance of ``campaign.tolerance_percent``."""
+_MOMENTS, _FORCES = ("M_alpha", "M_q", "M_delta_e"), ("Z_alpha",)
+
+
+def with_static_errors(
+    diagnosis: Diagnosis, examined: DiagnosisEvidence, trims: Sequence[TrimDifference] = ()
+) -> Diagnosis:
+    """Return the diagnosis with its static errors told first.
+
+    Parameters
+    ----------
+    examined
+        The evidence of the diagnosis.
+    trims
+        Trims of the simulator and of the aircraft; empty without a simulator that trims.
+    """
+    told = (*_of_the_trims(trims), *_of_the_speed(examined), *_of_numbers_together(diagnosis, examined))
+    return replace(diagnosis, trims=tuple(trims), static=told, sentence=" ".join([*told, diagnosis.sentence]))
+
+
+def is_off(trim: TrimDifference) -> bool:
+    """Return whether two trims differ by more than instruments and scatter explain."""
+    by = abs(trim.simulator - trim.aircraft)
+    return by > max(_TRIM_OFF[trim.quantity], _TRIM_SIGMAS * trim.std)
+
+
+def _of_the_trims(trims: Sequence[TrimDifference]) -> Iterator[str]:
+    for one in filter(is_off, trims):
+        name, because = _TRIMMED[one.quantity]
+        by = one.simulator - one.aircraft
+        size = f"{100.0 * abs(by):.0f} %" if one.quantity == "throttle" else f"{abs(degrees(by)):.1f} deg"
+        more = "more" if by > 0.0 else "less"
+        yield f"The simulator trims at {size} {more} {name} than the aircraft: {because}."
+
+
+def _of_the_speed(examined: DiagnosisEvidence) -> Iterator[str]:
+    e = examined.evidence
+    found = e.airspeed_scale
+    if found is None or found.is_the_accelerometers(e.weight):
+        return
+    least = max(_READS_WRONG, SIGMAS_IN_GUSTS * found.std if e.air is not None else 0.0)
+    if abs(found.scale) > least:
+        read = 100.0 * (1.0 / (1.0 + found.scale) - 1.0)
+        yield f"The air speed reads {abs(read):.0f} % {'low' if read < 0.0 else 'high'} by the motion."
+
+
+def _of_numbers_together(diagnosis: Diagnosis, examined: DiagnosisEvidence) -> Iterator[str]:
+    """Yield the one physical number by which several derivatives differ alike."""
+    prior = examined.evidence.problem.prior_derivatives
+    if prior is None or diagnosis.verdict != "parameters":
+        return
+    given = dict(zip(DERIVATIVES, prior, strict=True))
+    moment, force = (_common(diagnosis, given, names) for names in (_MOMENTS, _FORCES))
+    if moment is None or force is None:
+        return
+    (m, m_std), (z, z_std) = moment, force
+    m_off, z_off = (abs(r - 1.0) > max(_SIGMAS * s, _TOGETHER) for r, s in (moment, force))
+    if m_off and z_off and abs(m - z) < max(_SIGMAS * np.hypot(m_std, z_std), _TOGETHER):
+        yield f"All numbers are {m:.2f} times the simulator's: the air is denser or thinner by that factor."
+    elif m_off and abs(z - 1.0) < max(_SIGMAS * z_std, _TOGETHER):
+        yield (
+            f"M_alpha, M_q and M_delta_e are {m:.2f} times the simulator's and Z_alpha agrees: the pitching "
+            f"inertia is {1.0 / m:.2f} times the simulator's."
+        )
+    elif z_off and abs(m - 1.0) < max(_SIGMAS * m_std, _TOGETHER):
+        yield (
+            f"Z_alpha is {z:.2f} times the simulator's and the Ms agree: the mass is {1.0 / z:.2f} times the "
+            "simulator's, or the wing lifts as much more."
+        )
+
+
+def _common(
+    diagnosis: Diagnosis, given: dict[str, float], names: Sequence[str]
+) -> tuple[float, float] | None:
+    """Return the common factor of some derivatives over the simulator's, with its standard deviation; None
+    where they differ by different factors."""
+    if any(given[name] == 0.0 for name in names):
+        return None
+    ratios = np.array([diagnosis.model[name].value / given[name] for name in names])
+    # A damping hardly tells a factor of a few per cent; its own scatter says so.
+    stds = np.array([diagnosis.model[name].std / abs(given[name]) for name in names])
+    weights = 1.0 / np.maximum(stds, 1e-6) ** 2
+    mean = float(weights @ ratios / np.sum(weights))
+    apart = np.abs(ratios - mean) > np.maximum(_SIGMAS * stds, _TOGETHER * mean)
+    return None if np.any(apart) else (mean, float(1.0 / np.sqrt(np.sum(weights))))

@@ -1,0 +1,200 @@
+"""The gap on manoeuvres that neither the search nor the fit has used.
+
+The whole search is repeated on the other manoeuvres. A cross-validated fit alone flatters: a search that has
+seen all manoeuvres passes its luck for shrink (Varma and Simon 2006).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.messages import FloatArray
+from advisor.gap.candidates.moment import PROPELLER
+from advisor.gap.diagnose import DiagnosisEvidence, examine
+from advisor.gap.fitting.holdout import HeldOut
+from advisor.gap.fitting.measure import shrink_interval, whole_gap
+from advisor.gap.fitting.problem import EffectProblem, SearchPoint
+from advisor.gap.fitting.refit import own_refitted
+from advisor.gap.result import Diagnosis, Shrink
+from advisor.gap.verdict.holdout_numbers import over_maneuvers, with_offset
+from advisor.gap.verdict.statements import in_simulator
+from advisor.gap.verdict.text import sentence_of
+
+LEAST_TRAINED = 2
+"""Least number of manoeuvres for a search, which holds one of them out to confirm an effect."""
+_EVERY = 3
+"""One manoeuvre of so many is kept apart, as in the folds of the search."""
+_OFFSET = "alpha_bias"
+
+
+@dataclass(frozen=True)
+class UnseenManeuvers:
+    """Manoeuvres kept apart, and the diagnosis of all others."""
+
+    kept: tuple[int, ...]
+    """Indices of the manoeuvres kept apart, in the problem of the whole diagnosis."""
+    found: DiagnosisEvidence
+
+
+def kept_apart(n: int, holdout: int | None) -> tuple[int, ...]:
+    """Return the indices of the manoeuvres to keep apart: the last ``holdout`` ones, or every third.
+
+    Empty where too few would remain for a search.
+    """
+    kept = range(n - holdout, n) if holdout is not None and 0 < holdout < n else range(1, n, _EVERY)
+    return tuple(kept) if n - len(kept) >= LEAST_TRAINED else ()
+
+
+def changes_something(diagnosis: Diagnosis) -> bool:
+    """Return whether a diagnosis changes the simulator. Moving air alone changes nothing."""
+    shrink = diagnosis.shrink
+    if shrink is None:
+        return False
+    of_numbers = shrink.beyond_air_percent is not None or shrink.by_numbers_percent is not None
+    named = any(cause.present and cause.block != "air" for cause in diagnosis.causes)
+    return diagnosis.verdict == "parameters" or named or of_numbers
+
+
+def unseen_of(
+    whole: DiagnosisEvidence, maneuvers: Sequence[Maneuver], aircraft: Aircraft, holdout: int | None
+) -> UnseenManeuvers | None:
+    """Diagnose all manoeuvres but those kept apart; None where they are too few.
+
+    Parameters
+    ----------
+    whole
+        Diagnosis of all ``maneuvers`` against ``aircraft``.
+    holdout
+        Argument of ``advisor.gap.diagnose.diagnose``.
+    """
+    numbers = [flight.number for flight in whole.evidence.problem.flights.flights]
+    kept = kept_apart(len(numbers), holdout)
+    if not kept:
+        return None
+    apart = {numbers[i] for i in kept}
+    others = [m for m in maneuvers if m.number in numbers and m.number not in apart]
+    return UnseenManeuvers(kept, examine(others, aircraft))
+
+
+def as_changed(unseen: UnseenManeuvers, whole: DiagnosisEvidence) -> SearchPoint:
+    """Return the model that an export writes, for all manoeuvres.
+
+    The nuisance parameters belong to the flight instead of the simulator; only a propeller is exported.
+    Initial states, and the side on which a play rests, start from the whole diagnosis.
+    """
+    found, everything = unseen.found, whole.evidence.stages[-1].fitted.point
+    point, written = found.evidence.stages[-1].fitted.point, found.diagnosis.effects
+    with_propeller = not written.get("thrust_moment", {}).keys().isdisjoint(PROPELLER.names)
+    kept = [
+        k
+        for k, effect in enumerate(point.effects)
+        if (with_propeller if effect == PROPELLER else not effect.is_nuisance and effect.effect in written)
+    ]
+    return replace(point.keeping(kept), own=everything.own, sides=everything.sides, edges=None)
+
+
+def with_nuisances(point: SearchPoint, unseen: UnseenManeuvers) -> SearchPoint:
+    """Return a model together with the nuisance parameters of the diagnosis without the manoeuvres kept
+    apart."""
+    found = unseen.found.evidence.stages[-1].fitted.point
+    for effect, values in zip(found.effects, found.values, strict=True):
+        if effect.is_nuisance and effect not in point.effects:
+            point = point.with_effect(effect, values)
+    return point
+
+
+def as_given(derivatives: FloatArray, point: SearchPoint) -> SearchPoint:
+    """Return the model of a simulator as given, with its derivatives of shape (6,) and nothing added."""
+    return SearchPoint(derivatives, point.own)
+
+
+def predicted(
+    problem: EffectProblem,
+    point: SearchPoint,
+    floor: FloatArray,
+    kept: Sequence[int],
+    offset_rad: float = 0.0,
+) -> HeldOut:
+    """Return the residuals of a model, with mean squares over the manoeuvres kept apart.
+
+    Only each manoeuvre's initial state, trim and offsets are refitted, weighed by the noise ``floor`` of
+    shape (channels,).
+
+    Parameters
+    ----------
+    offset_rad
+        Offset of the angle of attack that was removed from the data and that the model does not know.
+    """
+    plain = replace(problem, whitening=None)
+    held = own_refitted(plain, point, floor)
+    return over_maneuvers(plain, with_offset(plain, held, offset_rad) if offset_rad else held, kept)
+
+
+def unknown_offset(whole: Diagnosis, model: Diagnosis | None) -> float:
+    """Return the offset of α that the data lost and that ``model`` does not know, rad.
+
+    Parameters
+    ----------
+    whole
+        Diagnosis of the data.
+    model
+        Diagnosis behind the model; None for a simulator as given.
+    """
+    removed = whole.effects.get(_OFFSET, {}).get("bias_rad", 0.0)
+    known = 0.0 if model is None else model.effects.get(_OFFSET, {}).get("bias_rad", 0.0)
+    return removed - known
+
+
+def with_unseen_shrink(whole: DiagnosisEvidence, unseen: UnseenManeuvers, aircraft: Aircraft) -> Diagnosis:
+    """Return the diagnosis against an aircraft file's model, with the shrink on the manoeuvres kept apart."""
+    diagnosis, problem = whole.diagnosis, whole.evidence.problem
+    if problem.prior_derivatives is None:
+        return diagnosis
+    last = whole.evidence.stages[-1].fitted.point
+    floor = floor_of(whole)
+    given = as_given(problem.prior_derivatives, last)
+    before = predicted(problem, given, floor, unseen.kept, unknown_offset(diagnosis, None))
+    after = before
+    if changes_something(unseen.found.diagnosis):
+        offset = unknown_offset(diagnosis, unseen.found.diagnosis)
+        after = predicted(problem, as_changed(unseen, whole), floor, unseen.kept, offset)
+    return resaid(diagnosis, shrink_on(whole, unseen, before, after), aircraft)
+
+
+def shrink_on(
+    whole: DiagnosisEvidence, unseen: UnseenManeuvers, before: HeldOut, after: HeldOut
+) -> Shrink | None:
+    """Return the shrink from ``before`` to ``after`` on the manoeuvres kept apart."""
+    shrink = whole.diagnosis.shrink
+    if shrink is None:
+        return None
+    floor, kept = floor_of(whole), list(unseen.kept)
+    was, now = (whole_gap(held.mean_square, floor) for held in (before, after))
+    percent = percent_of(was, now)
+    low, high = shrink_interval(before.by_maneuver[kept], after.by_maneuver[kept], floor)
+    flights = whole.evidence.problem.flights.flights
+    return replace(
+        shrink,
+        holdout=tuple(flights[i].number for i in kept),
+        before=was, after=now, percent=percent, ci95_percent=(min(low, percent), max(high, percent)),
+    )  # fmt: skip
+
+
+def resaid(diagnosis: Diagnosis, shrink: Shrink | None, aircraft: Aircraft) -> Diagnosis:
+    """Return the diagnosis with another shrink, also in its sentence."""
+    d = diagnosis
+    sentence = sentence_of(d.verdict, d.gap, d.where, d.causes, shrink, in_simulator(aircraft))
+    return replace(d, shrink=shrink, sentence=sentence)
+
+
+def percent_of(was: float, now: float) -> float:
+    """Return the shrink of a gap in per cent."""
+    return 100.0 * (1.0 - now / was) if was > 1e-9 else 0.0
+
+
+def floor_of(whole: DiagnosisEvidence) -> FloatArray:
+    """Return the noise floor of the diagnosis, shape (channels,)."""
+    return np.array([whole.diagnosis.gap.floor[c] for c in whole.evidence.problem.channels])

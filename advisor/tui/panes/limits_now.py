@@ -1,0 +1,72 @@
+"""Bank, air speed and angle of attack now, against the limits of the next manoeuvre."""
+
+from math import degrees, isfinite
+
+from advisor.session.view import View
+from advisor.tui.panes.lines import Lines
+from advisor.tui.panes.part import Part
+
+_APART = "    "
+
+
+class LimitsNow(Part, Lines):
+    """One line that a pilot reads before the first step."""
+
+    def show(self, view: View) -> None:
+        """Write the newest values. A value outside its limit has a cross."""
+        self.write(f"before it   {limits_now(view)}")
+
+
+def limits_now(view: View) -> str:
+    """Return bank, air speed and angle of attack with their limits, as far as they are received.
+
+    The air speed is compared with that of the joint estimate, or with the aircraft file's.
+    """
+    limits = view.aircraft.limits
+    said = [
+        _of_bank(_newest(view, "bank"), limits.bank_deg),
+        _of_speed(_newest(view, "airspeed"), _speed_of_tests(view), limits.airspeed_change_percent),
+        _of_alpha(_newest(view, "alpha"), limits.alpha_deg),
+    ]
+    return _APART.join(filter(None, said)) or "bank, air speed and angle of attack are not received"
+
+
+def _newest(view: View, name: str) -> float | None:
+    status = view.state.channels.get(name)
+    return status.newest if status is not None and isfinite(status.newest) else None
+
+
+def _speed_of_tests(view: View) -> float | None:
+    model = view.state.model
+    flown = model.airspeed_m_s if model is not None else None
+    return flown or view.aircraft.stated_airspeed_m_s
+
+
+def _of_bank(bank_rad: float | None, limit_deg: float) -> str:
+    if bank_rad is None:
+        return ""
+    bank_deg = abs(degrees(bank_rad))
+    return f"{_mark(bank_deg <= limit_deg)} bank {bank_deg:.0f} deg (≤ {limit_deg:.0f})"
+
+
+def _of_speed(speed_m_s: float | None, tests_m_s: float | None, limit_percent: float) -> str:
+    if speed_m_s is None:
+        return ""
+    if tests_m_s is None:
+        return f"V {speed_m_s:.0f} m/s"
+    change_m_s = 0.01 * limit_percent * tests_m_s
+    low, high = tests_m_s - change_m_s, tests_m_s + change_m_s
+    return f"{_mark(low <= speed_m_s <= high)} V {speed_m_s:.0f} m/s ({low:.0f} to {high:.0f})"
+
+
+def _of_alpha(alpha_rad: float | None, limit_deg: float | None) -> str:
+    if alpha_rad is None:
+        return ""
+    alpha_deg = degrees(alpha_rad)
+    if limit_deg is None:
+        return f"α {alpha_deg:.0f} deg"
+    return f"{_mark(alpha_deg <= limit_deg)} α {alpha_deg:.0f} deg (≤ {limit_deg:.0f})"
+
+
+def _mark(within: bool) -> str:
+    return "✓" if within else "✗"

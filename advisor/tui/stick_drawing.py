@@ -1,0 +1,67 @@
+"""The next input as a drawing of the stick: pull above trim, push below, the seconds of each step."""
+
+from collections.abc import Sequence
+
+_UNIT_COLUMNS = 6
+"""Columns of the shortest step, which holds its duration: ``0.4 s``."""
+_LEAD = 3
+"""Columns of trim before the first step and after the last."""
+_PULL, _TRIM, _PUSH = 0, 1, 2
+_SIDES = {_PULL: "pull", _TRIM: "", _PUSH: "push"}
+_SIDE_COLUMNS = 6
+
+
+def stick_drawing(steps: Sequence[tuple[bool, float]], width: int) -> str:
+    """Draw the steps as a line above and below trim, with the duration of each step below.
+
+    Parameters
+    ----------
+    steps
+        Steps in order: whether the step is nose up (stick back), and its duration, s.
+    width
+        Columns of the drawing. Without room the drawing is empty.
+    """
+    shortest = min(duration for _, duration in steps)
+    lengths = [round(_UNIT_COLUMNS * duration / shortest) for _, duration in steps]
+    if _SIDE_COLUMNS + 2 * _LEAD + sum(lengths) > width:
+        return ""
+    levels = [_TRIM, *(_PULL if nose_up else _PUSH for nose_up, _ in steps), _TRIM]
+    columns = [_LEAD, *lengths, _LEAD]
+    rows = _line(levels, columns)
+    seconds = " " * _LEAD + "".join(
+        f"{duration:.1f} s".center(length) for (_, duration), length in zip(steps, lengths, strict=True)
+    )
+    drawn = [f"{_SIDES[level]:<{_SIDE_COLUMNS}}{row}".rstrip() for level, row in enumerate(rows)]
+    return "\n".join([*drawn, f"{'':<{_SIDE_COLUMNS}}{seconds}".rstrip()])
+
+
+def stick_line(steps: Sequence[tuple[bool, float]]) -> str:
+    """Draw the steps in one line, one block for each half of the shortest step: ``▁▁▁▁▁▁▔▔▔▔▁▁▔▔``."""
+    shortest = min(duration for _, duration in steps)
+    return "".join(
+        ("▔" if nose_up else "▁") * max(round(2.0 * duration / shortest), 1) for nose_up, duration in steps
+    )
+
+
+def _line(levels: Sequence[int], columns: Sequence[int]) -> list[str]:
+    """Return three rows with a line that runs through the levels, each for its number of columns."""
+    rows = [""] * len(_SIDES)
+    before = levels[0]
+    for level, length in zip(levels, columns, strict=True):
+        for row in _SIDES:
+            edge = _edge(row, before, level)
+            rows[row] += edge + ("─" if row == level else " ") * (length - 1)
+        before = level
+    return rows
+
+
+def _edge(row: int, before: int, level: int) -> str:
+    """Return the character of a row where the line changes from one level to the next."""
+    if before == level:
+        return "─" if row == level else " "
+    falls = before < level
+    if row == before:
+        return "┐" if falls else "┘"
+    if row == level:
+        return "└" if falls else "┌"
+    return "│" if min(before, level) < row < max(before, level) else " "

@@ -1,0 +1,109 @@
+"""The answer of a diagnosis as an engineer reads it: which numbers, how large, what limits it, what next."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from advisor.gap.document import gap_document
+from advisor.gap.result import ComparedDerivative, Shrink, Value
+from advisor.report.gap_fidelity import peaks
+from advisor.report.gap_parameters import changed, changes, limits_of
+from advisor.report.gap_steps import next_steps
+from advisor.report.page.gap import shown_causes
+from advisor.report.page.gap_picture import write_gap_picture
+from tests.gap.test_report_screen import DELAY, UNLIKELY, diagnosis, printed
+
+STIFFER = ComparedDerivative("M_alpha", -44.6, Value(-34.3, 0.36))
+SAME = ComparedDerivative("Z_alpha", -8.0, Value(-8.1, 0.2))
+DERIVATIVES = (STIFFER, SAME)
+LOGS = ["flight.tlog"]
+
+
+def test_a_derivative_that_differs_stands_with_both_values_the_interval_and_the_change():
+    assert changed(STIFFER) == "M_α −44.60 → −34.30 ± 0.71 (−23 %)"
+    assert changed(replace(STIFFER, given=-30.0)).endswith("(+14 %)")
+
+
+def test_a_derivative_of_another_sign_has_no_per_cent():
+    assert changed(replace(STIFFER, given=44.6)) == "M_α 44.60 → −34.30 ± 0.71"
+
+
+def test_derivatives_that_agree_share_a_line():
+    assert changes(DERIVATIVES)[1:] == ["Z_α agrees"]
+    assert not SAME.differs
+    assert STIFFER.differs
+
+
+def test_wrong_numbers_are_named_in_the_box():
+    lines = printed(diagnosis(verdict="parameters", derivatives=DERIVATIVES), 80)
+    box = lines[: next(k for k, line in enumerate(lines) if line.startswith("╰"))]
+    assert "WRONG NUMBERS" in box[0]
+    assert any("M_α −44.60 → −34.30 ± 0.71 (−23 %)" in line for line in box)
+
+
+def test_the_peak_error_comes_in_an_engineers_units():
+    said = peaks(diagnosis().traces)
+    assert said.startswith("peak error of α 5.7 → 0 deg, of q 5.7 → 0 deg/s, of a_z 0.1 → 0 m/s²")
+
+
+def test_the_limits_of_an_answer_stand_in_the_box():
+    assert list(limits_of(diagnosis())) == ["No simulator was given: the answer is about the flight alone."]
+    in_gusts = Shrink((1, 2), 10.0, 0.1, 99.0, (98.0, 100.0), beyond_air_percent=60.0)
+    said = list(limits_of(diagnosis(derivatives=DERIVATIVES, shrink=in_gusts)))
+    assert said[0].endswith("Beyond the air the gap falls by 60 %.")
+
+
+def test_a_gap_that_has_grown_is_marked():
+    gap = replace(diagnosis().gap, by_maneuver=((1, 2.0, 0.1), (2, 0.5, 0.7)))
+    lines = printed(diagnosis(gap=gap), 80)
+    assert any("0.5 → 0.7 ▲" in line for line in lines)
+    assert any("▲ worse than before" in line for line in lines)
+
+
+def test_the_steps_say_what_to_put_how_to_prove_it_and_what_excludes_the_rival():
+    put, prove, rival = next_steps(diagnosis(effects={"transport_delay": {}}), LOGS, "mine.yaml")
+    better = "mine-with-transport-delay.yaml"
+    assert "transport delay 30 ± 12 ms" in put.text
+    assert put.command == f"advisor gap flight.tlog --aircraft mine.yaml --out {better}"
+    assert prove.command == f"advisor gap flight.tlog --aircraft {better}"
+    assert rival.text == "To exclude actuator lag: log the measured surface position."
+
+
+def test_the_users_own_simulator_is_flown_again_as_the_proof():
+    _, prove, _ = next_steps(diagnosis(), LOGS, None, "jsbsim:c172p")
+    assert prove.command == "advisor gap flight.tlog --simulator jsbsim:c172p"
+
+
+def test_without_a_gap_there_is_nothing_to_put():
+    steps = next_steps(diagnosis(verdict="none", causes=()), LOGS, None)
+    assert [step.command for step in steps] == [""]
+    assert steps[0].text == "To see ground effect as well: fly low and high."
+
+
+def test_the_document_lists_the_derivatives_that_differ():
+    (one,) = gap_document(diagnosis(derivatives=DERIVATIVES))["parameters_changed"]
+    assert (one["derivative"], one["simulator"], one["found"]) == ("M_alpha", -44.6, -34.3)
+    low, high = one["ci95"]
+    assert low == pytest.approx(-35.0, abs=0.01)
+    assert high == pytest.approx(-33.6, abs=0.01)
+
+
+def test_the_document_has_the_traces_sample_by_sample():
+    found = diagnosis()
+    document = gap_document(found)
+    assert [trace["channel"] for trace in document["traces"]] == ["alpha", "q", "a_z", "theta"]
+    assert document["traces"][0]["measured"] == pytest.approx(found.traces[0].measured.tolist(), rel=1e-6)
+
+
+@pytest.mark.parametrize(("name", "head"), [("gap.svg", b"<?xml"), ("gap.png", b"\x89PNG")])
+def test_the_picture_is_written_in_the_format_of_its_ending(tmp_path: Path, name: str, head: bytes):
+    gap = replace(diagnosis().gap, by_maneuver=((2, 5.0, 0.2),))
+    write_gap_picture(gap_document(diagnosis(gap=gap)), tmp_path / name)
+    assert (tmp_path / name).read_bytes().startswith(head)
+
+
+def test_an_effect_of_no_probability_has_no_row_on_the_page():
+    assert [c["effect"] for c in shown_causes(gap_document(diagnosis(causes=(DELAY, UNLIKELY))))] == [
+        "transport_delay"
+    ]

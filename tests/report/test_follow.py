@@ -1,0 +1,54 @@
+"""The lines of a campaign without a screen."""
+
+from collections.abc import Sequence
+from typing import Any, cast
+
+import pytest
+
+from advisor.campaign.campaign import Campaign
+from advisor.flight.maneuvers.events import DataAgain, NoData
+from advisor.report.follow import follow
+from advisor.words.problems import Problem
+
+SLOW = NoData((Problem("rate", "ATTITUDE arrives at 4.0 Hz.", "Ask for 50 Hz."),))
+
+
+class Told:
+    """A campaign that gives one list of events for each batch; the data serve after ``DataAgain``."""
+
+    def __init__(self, *events: Sequence[object]) -> None:
+        self._events = list(events)
+        self.serves = False
+        self.state = None
+
+    def feed(self, columns: object) -> Sequence[object]:
+        events = self._events.pop(0)
+        self.serves = not any(isinstance(event, NoData) for event in events)
+        return events
+
+    def finish(self) -> Sequence[object]:
+        return ()
+
+
+def lines(*events: Sequence[object], of_log: bool) -> list[str]:
+    said: list[str] = []
+    follow(iter([[] for _ in events]), cast(Any, Told(*events)), said.append, of_log)
+    return said
+
+
+def test_a_log_that_begins_with_slow_streams_gives_no_alarm() -> None:
+    assert lines([SLOW], [DataAgain()], of_log=True) == []
+
+
+@pytest.mark.parametrize("of_log", [True, False])
+def test_data_that_fail_after_they_served_give_an_alarm(of_log: bool) -> None:
+    said = lines([], [SLOW], [DataAgain()], of_log=of_log)
+    assert [line.partition(":")[0] for line in said] == ["NO DATA", "DATA AGAIN"]
+
+
+def test_a_link_that_begins_with_slow_streams_gives_an_alarm() -> None:
+    assert lines([SLOW], of_log=False) == ["NO DATA: ATTITUDE arrives at 4.0 Hz. Ask for 50 Hz."]
+
+
+def test_the_campaign_type_has_what_follow_asks() -> None:
+    assert isinstance(Campaign.serves, property)

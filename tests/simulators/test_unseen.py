@@ -1,0 +1,93 @@
+"""Shrink on manoeuvres that neither the search nor the fit has used, and models refitted within reason."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.gap.fitting import refit
+from advisor.gap.fitting.problem import EffectProblem, SearchPoint
+from advisor.gap.records.prepare import prepare
+from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, NUISANCES, SPEED
+from advisor.simulators import unseen
+from advisor.simulators.unseen import changes_something, kept_apart
+from tests.simulators.nonlinear import flown
+
+MODEL = dict(zip(DERIVATIVES, (-2.7, 0.02, -0.15, -23.0, -3.4, -29.0), strict=True))
+
+
+@pytest.mark.parametrize(
+    ("flown", "holdout", "kept"),
+    [(9, None, (1, 4, 7)), (4, None, (1,)), (3, None, (1,)), (9, 2, (7, 8)), (2, None, ()), (3, 2, ())],
+)
+def test_a_third_is_kept_apart_unless_too_few_remain_for_a_search(flown, holdout, kept):
+    assert kept_apart(flown, holdout) == kept
+
+
+def test_the_search_never_meets_the_manoeuvres_kept_apart(monkeypatch):
+    seen = []
+    monkeypatch.setattr(unseen, "examine", lambda maneuvers, aircraft: seen.extend(maneuvers))
+    numbered = [SimpleNamespace(number=n) for n in range(1, 7)]
+    problem = SimpleNamespace(flights=SimpleNamespace(flights=numbered))
+    whole = SimpleNamespace(evidence=SimpleNamespace(problem=problem))
+    unusable = SimpleNamespace(number=9)
+    found = unseen.unseen_of(whole, [*numbered, unusable], Aircraft(), None)
+    assert found.kept == (1, 4)
+    assert [m.number for m in seen] == [1, 3, 4, 6]
+
+
+def said(block: str, verdict: str = "effect", **shrink: float | None):
+    whole = {"beyond_air_percent": None, "by_numbers_percent": None, **shrink}
+    cause = SimpleNamespace(present=True, block=block)
+    return SimpleNamespace(verdict=verdict, causes=[cause], shrink=SimpleNamespace(**whole))
+
+
+def test_moving_air_alone_changes_nothing_in_a_simulator():
+    assert not changes_something(said("air"))
+    assert changes_something(said("input"))
+    assert changes_something(said("air", beyond_air_percent=12.0))
+    assert changes_something(said("air", verdict="parameters"))
+
+
+def wrong_model() -> tuple[EffectProblem, SearchPoint]:
+    """Return manoeuvres next to a model that diverges, from an initial state that no aircraft had."""
+    flights = prepare(flown(maneuvers=2), Aircraft())
+    problem = EffectProblem(flights, np.zeros(len(ENTRIES)))
+    derivatives = np.array(list((MODEL | {"M_alpha": 6.0, "M_q": 0.5}).values()))
+    return problem, SearchPoint(derivatives, np.full((len(flights), len(NUISANCES)), 5.0))
+
+
+def test_a_model_that_does_not_fit_gets_no_initial_state_that_no_aircraft_had(monkeypatch):
+    problem, point = wrong_model()
+    simulated = []
+    linearise = refit.linearise
+
+    def seen(problem, point):
+        simulated.append(point.own)
+        return linearise(problem, point)
+
+    monkeypatch.setattr(refit, "linearise", seen)
+    refit.own_refitted(problem, point, problem.flights.white)
+    lift = [9.80665 / np.mean(f.slow[SPEED]) for f in problem.flights.flights]
+    for own in simulated:
+        assert np.all(np.abs(own[:, 0]) <= np.radians(6.0))
+        assert np.all(np.abs(own[:, 2] + lift) <= 0.31 * np.array(lift))
+
+
+def test_refitting_never_leaves_more_than_steady_flight_does():
+    problem, point = wrong_model()
+    noise = problem.flights.white
+    steady = np.array([[0.0, 0.0, f.level_lift, 0.0] for f in problem.flights.flights])
+    p = problem.driving(replace(point, own=steady))
+    found = refit.own_refitted(problem, point, noise)
+    for i, flight in enumerate(problem.flights.flights):
+        as_it_is = problem.measured(flight) - problem.read(flight, problem.fly(flight, p[i]), p[i])
+        costs = [
+            sum(
+                float(np.sum((r[rows] / s) ** 2)) for rows, s in zip(problem.rows(flight), noise, strict=True)
+            )
+            for r in (found.residuals[i], as_it_is)
+        ]
+        assert costs[0] <= costs[1]
