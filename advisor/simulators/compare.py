@@ -22,7 +22,7 @@ from advisor.gap.judge.prior import FIELD, FieldPrior
 from advisor.gap.records.as_stamped import as_stamped
 from advisor.gap.records.prepare import prepare
 from advisor.gap.records.unmeasured_alpha import alpha_by_motion, is_known
-from advisor.gap.result import Diagnosis, TrimDifference
+from advisor.gap.result import Diagnosis, Trace, TrimDifference
 from advisor.gap.search.baseline import base_entries
 from advisor.gap.simulator.layout import DERIVATIVES, INDEX, NUISANCES, OUTPUTS
 from advisor.simulators.air import refuse_unknown_air, standard_heights
@@ -128,15 +128,24 @@ def compare(
         surrogate = replace(surrogate, reference_m_s=reference)
         again = replace(again, simulator=replace(simulator, reference_m_s=reference))
     progress("searching again without the manoeuvres kept apart", _DIAGNOSED)
-    unseen = unseen_of(examined, beside, as_file, holdout) if changes_something(examined.diagnosis) else None
-    found = _measured(examined, unseen, as_file, in_simulator(examined, unseen, again, surrogate, as_flown))
+    unseen = (
+        unseen_of(examined, beside, as_file, holdout, prior)
+        if changes_something(examined.diagnosis)
+        else None
+    )
+    flown = in_simulator(examined, unseen, again, surrogate, as_flown)
+    found = _measured(examined, unseen, as_file, flown, as_flown)
     found = with_static_errors(found, examined, trims)
     notes = getattr(simulator, "notes", ())
     return Compared(replace(found, notes=(*notes, *found.notes)), as_file)
 
 
 def _measured(
-    examined: DiagnosisEvidence, unseen: UnseenManeuvers | None, as_file: Aircraft, flown: Flown
+    examined: DiagnosisEvidence,
+    unseen: UnseenManeuvers | None,
+    as_file: Aircraft,
+    flown: Flown,
+    as_flown: Mapping[int, AsGiven],
 ) -> Diagnosis:
     """Return the diagnosis with the gap of the simulator itself, before and after the findings."""
     diagnosis, gap = examined.diagnosis, flown.gap
@@ -149,7 +158,20 @@ def _measured(
     notes = diagnosis.notes
     if gap.refused:
         notes = (f"The simulator cannot take the effects: {gap.refused}", *notes)
-    return replace(diagnosis, in_simulator=gap, notes=notes)
+    return replace(diagnosis, in_simulator=gap, notes=notes, traces=_as_logged(diagnosis.traces, as_flown))
+
+
+def _as_logged(traces: Sequence[Trace], as_flown: Mapping[int, AsGiven]) -> tuple[Trace, ...]:
+    """Return the traces of the flight as logged, with those of the simulator instead of its surrogate."""
+    found = []
+    for trace in traces:
+        one = as_flown[trace.number]
+        t = np.arange(one.beyond.shape[1]) * one.flight.h
+        by = np.interp(trace.t, t, one.beyond[OUTPUTS.index(trace.channel)])
+        found.append(
+            replace(trace, measured=trace.measured + by, before=trace.before + by, after=trace.after + by)
+        )
+    return tuple(found)
 
 
 def _linear(flying: Flying) -> dict[int, AsGiven]:

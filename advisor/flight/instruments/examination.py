@@ -146,8 +146,8 @@ def _attitude_and_rate(work: _Work) -> bool:
         channel = "theta" if rate_moves_alpha(work.channels) else "q"
         name = _PLAIN[channel]
         work.contradict(
-            channel, "sign", "nose up", "nose down", known, f"{name} has the wrong sense: {told}",
-            f"check the sense of {name}, positive nose up",
+            channel, "sign", "nose up", "nose down", known, f"{name} has the wrong sign: {told}",
+            f"check the sign of {name}, positive nose up",
         )  # fmt: skip
     elif weighed.best == ANY:
         work.contradict(
@@ -265,8 +265,8 @@ def _name_alpha(work: _Work, weighed: Weighed, known: Measured) -> None:
         )  # fmt: skip
     elif weighed.best == REVERSED:
         work.contradict(
-            "alpha", "sign", "nose up", "nose down", known, f"alpha has the wrong sense: {told}",
-            f"turn the sense of {source}: an angle of attack is positive nose up",
+            "alpha", "sign", "nose up", "nose down", known, f"alpha has the wrong sign: {told}",
+            f"reverse the sign of {source}: an angle of attack is positive nose up",
         )  # fmt: skip
     else:
         unit = weighed.best[-3:]

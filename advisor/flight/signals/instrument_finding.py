@@ -52,7 +52,7 @@ class InstrumentFinding:
     @property
     def problem(self) -> Problem:
         """Finding as an obstacle, with its remedy."""
-        return Problem(self.code, f"{self.sentence}.", f"Mend: {self.fix}.")
+        return Problem(self.code, f"{self.sentence}.", f"Fix: {self.fix}.")
 
     @property
     def refuses(self) -> bool:

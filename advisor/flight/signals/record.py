@@ -49,8 +49,6 @@ class Channel:
     """``vane``, ``derived``, ``simulated``, ``measured``, ``commanded`` or ``unknown``."""
     delay_s: float = 0.0
     """Known delay of the values relative to their stamps, s, such as that of an autopilot's filter."""
-    delay_is_stated: bool = False
-    """Whether a parameter states the delay. Otherwise the autopilot's default is assumed."""
     gain: float = 1.0
     """Mean factor from the values as logged to these, such as that from the indicated to the true air
     speed."""

@@ -12,7 +12,7 @@ from advisor.flight.signals.messages import Columns
 from advisor.flight.signals.record import Channel
 from advisor.flight.signals.trust import Distrust
 from advisor.flight.vehicle.following import FOLLOW, TAKE, Following, chosen
-from advisor.flight.vehicle.imu_filters import filter_delay_s, states_filter
+from advisor.flight.vehicle.imu_filters import filter_delay_s
 from advisor.flight.vehicle.modes import in_hover, mode_name
 from advisor.flight.vehicle.parameters import AIRSPEED_SENSOR, Parameters, read_by
 from advisor.flight.vehicle.surfaces import Surface, listed
@@ -105,11 +105,8 @@ class Identity:
         if vehicle is None:
             return replace(channel, provenance=provenance)
         stated = self._parameters.stated(_speakers(vehicle), vehicle.autopilot)
-        is_stated = states_filter(channel.name, vehicle.autopilot, stated)
-        if self.simulated and not is_stated:
-            return replace(channel, provenance=provenance)
         delay_s = filter_delay_s(channel.name, channel.source, vehicle.autopilot, stated)
-        return replace(channel, provenance=provenance, delay_s=delay_s, delay_is_stated=is_stated)
+        return replace(channel, provenance=provenance, delay_s=delay_s)
 
     @property
     def airspeed_doubt(self) -> str:

@@ -1,5 +1,8 @@
 """Delay of an autopilot's own filters of gyro and accelerometer, as its parameters state them.
 
+A filter that no parameter states is unknown. Its delay then is part of the delay of the command and of the
+angle of attack, which the fit estimates with priors.
+
 Below its cut-off f a second-order Butterworth low-pass delays every motion by √2/(2πf): 11 ms at 20 Hz. A
 notch of width b at f adds b/(2πf²). The short period is far below both frequencies."""
 
@@ -8,17 +11,8 @@ from math import pi, sqrt
 
 PREFIXES = ("INS_GYRO_FILTER", "INS_ACCEL_FILTER", "INS_HNTCH_", "IMU_GYRO_CUTOFF", "IMU_ACCEL_CUTOFF")
 """Beginnings of these parameters' names."""
-_USUAL_HZ = 20.0
-"""Cut-off of ArduPlane's gyro and accelerometer filters, Hz, where no parameter states another."""
 _RATES = ("p", "q", "r")
 _FORCES = ("a_x", "a_y", "a_z")
-_PARAMETER = {
-    ("ardupilot", True): "INS_GYRO_FILTER",
-    ("ardupilot", False): "INS_ACCEL_FILTER",
-    ("px4", True): "IMU_GYRO_CUTOFF",
-    ("px4", False): "IMU_ACCEL_CUTOFF",
-}
-"""Autopilot, and whether the channel is a rate, to the parameter that states the filter's cut-off, Hz."""
 _UNFILTERED_ON_PX4 = "HIGHRES_IMU"
 """Message of PX4 that comes from the integrals of the sensors, without a filter."""
 
@@ -40,17 +34,13 @@ def filter_delay_s(channel: str, source: str, autopilot: str, stated: Mapping[st
     if autopilot == "px4":
         if source.startswith(_UNFILTERED_ON_PX4):
             return 0.0
-        return _low_pass_s(stated.get(_PARAMETER[autopilot, channel in _RATES], 0.0))
+        cutoff = stated.get("IMU_GYRO_CUTOFF" if channel in _RATES else "IMU_ACCEL_CUTOFF", 0.0)
+        return _low_pass_s(cutoff)
     if autopilot != "ardupilot":
         return 0.0
-    low_pass_s = _low_pass_s(stated.get(_PARAMETER[autopilot, channel in _RATES], _USUAL_HZ))
-    return low_pass_s + (_notch_s(stated) if channel in _RATES else 0.0)
-
-
-def states_filter(channel: str, autopilot: str, stated: Mapping[str, float]) -> bool:
-    """Return whether a parameter states the filter of a channel; the arguments are those of
-    ``filter_delay_s``."""
-    return channel in _RATES + _FORCES and _PARAMETER.get((autopilot, channel in _RATES)) in stated
+    if channel in _FORCES:
+        return _low_pass_s(stated.get("INS_ACCEL_FILTER", 0.0))
+    return _low_pass_s(stated.get("INS_GYRO_FILTER", 0.0)) + _notch_s(stated)
 
 
 def _low_pass_s(cutoff_hz: float) -> float:

@@ -68,9 +68,7 @@ def outputs_of(m: Maneuver) -> dict[str, Measured]:
         if channel is None or len(channel) < LEAST_SAMPLES:
             continue
         cut = channel.cut(start, end)
-        # A default that no parameter states may be wrong. A nuisance parameter allows for such a filter.
-        late_s = channel.delay_s if channel.delay_is_stated else 0.0
-        t, y = condensed(*renewed(cut.t - start - late_s, cut.y, _LEAST_RENEWED))
+        t, y = condensed(*renewed(cut.t - start - cut.delay_s, cut.y, _LEAST_RENEWED))
         if len(t) >= LEAST_SAMPLES:
             outputs[name] = Measured(t, y)
     return outputs

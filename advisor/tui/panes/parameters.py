@@ -19,6 +19,8 @@ _COLUMNS = (("parameter", 11), ("model ± 95 %", 18), ("selected ± 95 %", 18), 
 """Name and width, with a space at the end: what grows must not push the others about. The last ones are left
 away where they have no room: half a number would be another number."""
 _SCROLL_BAR = 1
+_FIRST_SHOWN = "M_alpha"
+"""Parameter that is chosen at first: the stability, which a crew asks for before all others."""
 
 
 class ParametersPane(Pane):
@@ -49,6 +51,7 @@ verdict pane says why.
         super().on_mount()
         self._view: View | None = None
         self._columns = 0
+        self._row = NAMES.index(_FIRST_SHOWN)
 
     def on_resize(self, event: Resize) -> None:
         """Show as many columns as have room."""
@@ -69,7 +72,7 @@ verdict pane says why.
         if not self._columns or not self.changed(view.state.maneuvers, view.state.model, view.judged):
             return
         table = self.query_one(DataTable)
-        row = max(table.cursor_row, 0)
+        row = self._row
         selected = view.judged.estimate if view.judged else None
         with self.prevent(DataTable.RowHighlighted):
             table.clear()
@@ -83,6 +86,7 @@ verdict pane says why.
         """Draw the history of the parameter under the cursor."""
         event.stop()
         if event.row_key.value is not None:
+            self._row = NAMES.index(event.row_key.value)
             self._draw_history(event.row_key.value)
 
     def _draw_history(self, name: str) -> None:
