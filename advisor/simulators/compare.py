@@ -11,8 +11,6 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.messages import FloatArray
-from advisor.flight.signals.record import Channel
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import with_known
 from advisor.gap.candidates.traits import TRAITS
@@ -37,9 +35,11 @@ from advisor.simulators.flying import (
     beyond,
     refuse_another_elevator,
     refuse_unmoved,
+    without_difference,
 )
 from advisor.simulators.improved import EQUATIONS, Flown, in_simulator
 from advisor.simulators.linear import LinearSimulator
+from advisor.simulators.mirror import mirrored
 from advisor.simulators.protocol import Condition, Inputs, Replay, Simulator
 from advisor.simulators.static_errors import with_static_errors
 from advisor.simulators.surrogate import Surrogate, surrogate_of
@@ -103,6 +103,7 @@ def compare(
     heights_m = {number: height or 0.0 for number, height in heights.items()}
     mass_kg = aircraft.reference.mass_kg
     trims: tuple[TrimDifference, ...] = ()
+    replays: list[Replay] = []
     controls = other_controls(flights.flights, maneuvers)
     flying = Flying(simulator, flights, heights_m, controls, mass_kg, lambda w, s: progress(w, _FLIES * s))
     if isinstance(simulator, LinearSimulator):
@@ -114,7 +115,7 @@ def compare(
         surrogate, as_flown, replays = _surrogate_and_rest(flying, aircraft)
         trims = trim_differences(flights, maneuvers, replays, aircraft)
         as_file = replace(surrogate.aircraft(aircraft), simulator=simulator.description)
-    beside = [_without(m, as_flown) for m in maneuvers]
+    beside = [without_difference(m, as_flown) for m in maneuvers]
     examined = examine(
         beside,
         as_file,
@@ -128,13 +129,14 @@ def compare(
         surrogate = replace(surrogate, reference_m_s=reference)
         again = replace(again, simulator=replace(simulator, reference_m_s=reference))
     progress("searching again without the manoeuvres kept apart", _DIAGNOSED)
-    unseen = (
-        unseen_of(examined, beside, as_file, holdout, prior)
-        if changes_something(examined.diagnosis)
-        else None
-    )
+    changes = changes_something(examined.diagnosis)
+    unseen = unseen_of(examined, beside, as_file, holdout, prior) if changes else None
     flown = in_simulator(examined, unseen, again, surrogate, as_flown)
     found = _measured(examined, unseen, as_file, flown, as_flown)
+    if replays:
+        progress("looking for what only the simulator has", _FOUND)
+        mirror = mirrored(examined, maneuvers, flying, replays, aircraft)
+        found = found if mirror is None else mirror.said(found)
     found = with_static_errors(found, examined, trims)
     notes = getattr(simulator, "notes", ())
     return Compared(replace(found, notes=(*notes, *found.notes)), as_file)
@@ -218,23 +220,3 @@ def _usual(flying: Flying) -> Condition:
     """Return the condition in the middle of those at the starts of the manoeuvres."""
     height = float(np.mean([flying.condition(f).height_m for f in flying.flights.flights]))
     return Condition(flying.flights.reference_m_s, height, 0.0, flying.mass_kg)
-
-
-def _without(m: Maneuver, as_flown: Mapping[int, AsGiven]) -> Maneuver:
-    """Return the manoeuvre without the simulator's difference to its surrogate."""
-    if m.number not in as_flown:
-        return m
-    flight, grid = as_flown[m.number].flight, as_flown[m.number].beyond
-    t: FloatArray = flight.started_s + np.arange(grid.shape[1], dtype=np.float64) * flight.h
-    channels = dict(m.channels)
-    for c, name in enumerate(OUTPUTS):
-        if name in channels:
-            channels[name] = _less(channels[name], t, grid[c])
-    return replace(m, channels=channels)
-
-
-def _less(channel: Channel, t: FloatArray, by: FloatArray) -> Channel:
-    """Return a channel minus a series; a sample that repeats the one before still repeats it."""
-    y = channel.y - np.interp(channel.t, t, by)
-    fresh = np.concatenate([[True], np.diff(channel.y) != 0.0])
-    return replace(channel, y=y[np.maximum.accumulate(np.where(fresh, np.arange(len(y)), 0))])

@@ -84,7 +84,8 @@ def _refitted(
     m, k = block.m, len(own)
     normal = np.tensordot(weights**2, block.products, 1)
     H, g = normal[:m, :m] + np.diag(block.prior), normal[:m, -1] + block.prior * block.departure
-    reach = np.full(m, np.inf)
+    # A prior of a manoeuvre's own is the variance of a range, as of an edge anywhere between two stamps.
+    reach = np.sqrt(3.0 / np.maximum(block.prior, 1e-300))
     offsets = [_OFFSETS[name] for name in _OFFSETS if name in problem.channels]
     reach[k : k + len(offsets)] = offsets
     held = np.concatenate([np.zeros(k), reach[k:]])
