@@ -23,7 +23,5 @@ else:
         packages=[*advisor, *("inflight_" + name for name in simulator), "advisor.sample"],
         package_dir={"inflight_sim": "sim", "advisor.sample": "logs"},
         package_data={"advisor.sample": list(SAMPLE)},
-        exclude_package_data={
-            "advisor.sample": ["arduplane-turbulent.*", "bundled-demo.*", "*.md"]
-        },
+        exclude_package_data={"advisor.sample": ["arduplane-turbulent.*", "bundled-demo.*", "*.md"]},
     )
