@@ -185,7 +185,7 @@ async def test_the_parameter_under_the_cursor_has_its_history_drawn():
         await here.press("3", "down", "down")
         chart = here.app.screen.query_one(ParametersPane).query_one(Plot).chart
         assert chart.y_label == "M_δe [1/s²]"
-        assert [level.name for level in chart.levels] == ["model", "prior"]
+        assert [level.name for level in chart.levels] == ["joint", "simulator"]
 
 
 async def test_a_manoeuvre_without_an_estimate_says_why():
