@@ -20,8 +20,8 @@ from advisor.gap.candidates.traits import TRAITS
 from benchmarks.pages.constants import constants_in
 
 ROOM = Path(__file__).parents[1] / "advisor" / "gap"
-EFFECTS = (ROOM / "candidates", ROOM / "simulator")
-"""Folders that describe effects: their table, and their equations."""
+EFFECTS = (ROOM / "candidates", ROOM / "simulator", ROOM / "judge" / "weights.py")
+"""Folders that describe effects, by their table and their equations; and the weights of ``make judge``."""
 BLOCKS = frozenset(trait.block for trait in TRAITS.values()) | {"attitude_sensor"}
 NAMES = frozenset(TRAITS) | BLOCKS
 LIMITS = {"lines of code": 6750, "constants": 289, "names compared": 20, "complex functions": 0}

@@ -7,6 +7,7 @@ import sys
 import tempfile
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
+from typing import cast
 
 from advisor.analysis.gap import compare_logs
 from advisor.cli.options import read_aircraft
@@ -17,31 +18,38 @@ from advisor.words.problems import UnusableInputError
 from benchmarks.judge.flights import JudgedFlight, read, written
 from benchmarks.second_generator.cases import cases as second
 from benchmarks.third_generator.files import cases as third
-from sim.blind.draw import GROUPS
+from sim.blind.draw import GROUPS, Group
 from sim.blind.generate import draw
 from sim.sealed.cases import AIRCRAFT, LOG, SealedCase, write_case
 
-SEEDS = (64001, 64011, 64021, 64031)
-"""Seeds of the flights. The corpus of ``benchmarks.corpus`` has others, so that it stays a test."""
-_A_SEED = 60
-DRAWS: Mapping[str, Callable[[int], Iterator[SealedCase]]] = {
-    "own": lambda seed: draw(_A_SEED, seed, GROUPS),
-    "second": lambda seed: second(_A_SEED, seed),
-    "third": lambda seed: third(_A_SEED, seed),
+SEED = 64001
+"""Seed of the flights. The corpus of ``benchmarks.corpus`` has others, so that it stays a test."""
+DRAWS: Mapping[str, Callable[[int, int, str | None], Iterator[SealedCase]]] = {
+    "own": lambda count, seed, only: draw(count, seed, GROUPS if only is None else (cast(Group, only),)),
+    "second": second,
+    "third": third,
 }
-"""Flights of each generator by seed. A real autopilot's flights and real records are never among them."""
+"""Flights of each generator by number, seed, and kind. A real autopilot's flights and real records are never
+among them."""
+STRATA = ((None, 1.0), ("outside", 0.4), ("none", 0.2))
+"""Kinds that are drawn, None for all in the generator's mixture, with their numbers relative to the first.
+Rare kinds teach the judge more; the field prior corrects for their number."""
 
 
 def record(path: Path, each: int) -> None:
-    """Append ``each`` flights of every generator to a file; flights that the file has are kept."""
+    """Append flights of every generator to a file; flights that the file has are kept.
+
+    ``each`` is the number of flights of a generator in its own mixture; more come from ``STRATA``.
+    """
     done = {flight.case for flight in read(path)} if path.exists() else set()
     path.parent.mkdir(parents=True, exist_ok=True)
-    streams = [_named(generator, each) for generator in DRAWS]
-    for together in zip(*streams, strict=True):
-        for generator, name, case in together:
-            if name not in done and (flight := flown(generator, name, case)) is not None:
-                written([flight], path)
-                print(name, case.truth["kind"], flight.answer["verdict"], file=sys.stderr)
+    for n, (only, share) in enumerate(STRATA):
+        for generator, cases in DRAWS.items():
+            for case in cases(max(round(share * each), 1), SEED + n, only):
+                name = f"{generator}/{SEED + n}/{case.name}"
+                if name not in done and (flight := flown(generator, name, case)) is not None:
+                    written([flight], path)
+                    print(name, case.truth["kind"], flight.answer["verdict"], file=sys.stderr)
 
 
 def flown(generator: str, name: str, case: SealedCase) -> JudgedFlight | None:
@@ -62,12 +70,6 @@ def flown(generator: str, name: str, case: SealedCase) -> JudgedFlight | None:
     keys = ("kind", "condition", "blocks", "background")
     truth = {key: case.truth[key] for key in keys} | {"effects": list(case.truth["effects"])}
     return JudgedFlight(generator, name, tuple(map(_row, found.evidence)), truth, answer)
-
-
-def _named(generator: str, each: int) -> Iterator[tuple[str, str, SealedCase]]:
-    drawn = ((seed, case) for seed in SEEDS for case in DRAWS[generator](seed))
-    for _, (seed, case) in zip(range(each), drawn, strict=False):
-        yield generator, f"{generator}/{seed}/{case.name}", case
 
 
 def _row(one: AlternativeEvidence) -> Row:

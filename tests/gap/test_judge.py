@@ -118,6 +118,15 @@ def test_the_field_prior_moves_the_odds_by_just_its_own_ratio():
     assert odds[1] / odds[0] == pytest.approx(0.2 / 0.5)
 
 
+def test_the_shares_of_the_fitted_flights_are_replaced_by_the_field_prior():
+    rows, flown = rows_of(delayed()), FieldPrior(0.1, 0.1, 0.7, 0.1)
+    many = posterior(rows, flown, replace(SIMPLE, flown=flown))
+    field = posterior(rows, FieldPrior(0.7, 0.1, 0.1, 0.1), replace(SIMPLE, flown=flown))
+    odds = [told.of(NONE) / told.of(DELAY) for told in (many, field)]
+    assert odds[1] / odds[0] == pytest.approx(49.0)
+    assert many.of(NONE) == pytest.approx(posterior(rows, EVEN, SIMPLE).of(NONE))
+
+
 @pytest.mark.parametrize("logit", [SIMPLE, LOGIT])
 def test_the_reasons_add_up_to_the_log_odds_in_at_most_seven_lines(logit):
     told = posterior(rows_of(delayed()), FIELD, logit)
