@@ -6,6 +6,7 @@ A flight is drawn, diagnosed and written in turn, so that an interrupted run kee
 import sys
 import tempfile
 from collections.abc import Callable, Iterator, Mapping
+from itertools import chain, zip_longest
 from pathlib import Path
 from typing import cast
 
@@ -22,7 +23,7 @@ from sim.blind.draw import GROUPS, Group
 from sim.blind.generate import draw
 from sim.sealed.cases import AIRCRAFT, LOG, SealedCase, write_case
 
-SEED = 64001
+SEED = 65001
 """Seed of the flights. The corpus of ``benchmarks.corpus`` has others, so that it stays a test."""
 DRAWS: Mapping[str, Callable[[int, int, str | None], Iterator[SealedCase]]] = {
     "own": lambda count, seed, only: draw(count, seed, GROUPS if only is None else (cast(Group, only),)),
@@ -37,19 +38,24 @@ Rare kinds teach the judge more; the field prior corrects for their number."""
 
 
 def record(path: Path, each: int) -> None:
-    """Append flights of every generator to a file; flights that the file has are kept.
+    """Append flights of every generator to a file in turns; flights that the file has are kept.
 
     ``each`` is the number of flights of a generator in its own mixture; more come from ``STRATA``.
     """
     done = {flight.case for flight in read(path)} if path.exists() else set()
     path.parent.mkdir(parents=True, exist_ok=True)
-    for n, (only, share) in enumerate(STRATA):
-        for generator, cases in DRAWS.items():
-            for case in cases(max(round(share * each), 1), SEED + n, only):
-                name = f"{generator}/{SEED + n}/{case.name}"
-                if name not in done and (flight := flown(generator, name, case)) is not None:
-                    written([flight], path)
-                    print(name, case.truth["kind"], flight.answer["verdict"], file=sys.stderr)
+    streams = [_named(generator, n, each) for n in range(len(STRATA)) for generator in DRAWS]
+    for generator, name, case in filter(None, chain.from_iterable(zip_longest(*streams))):
+        if name not in done and (flight := flown(generator, name, case)) is not None:
+            written([flight], path)
+            print(name, case.truth["kind"], flight.answer["verdict"], file=sys.stderr)
+
+
+def _named(generator: str, stratum: int, each: int) -> Iterator[tuple[str, str, SealedCase]]:
+    """Yield the flights of one generator and stratum with their names."""
+    (only, share), seed = STRATA[stratum], SEED + stratum
+    for case in DRAWS[generator](max(round(share * each), 1), seed, only):
+        yield generator, f"{generator}/{seed}/{case.name}", case
 
 
 def flown(generator: str, name: str, case: SealedCase) -> JudgedFlight | None:
