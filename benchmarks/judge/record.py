@@ -10,9 +10,12 @@ from itertools import chain, zip_longest
 from pathlib import Path
 from typing import cast
 
-from advisor.analysis.gap import compare_logs
+from advisor.analysis.gap import maneuvers_of, with_true_reference
+from advisor.analysis.refused import without_refused
 from advisor.cli.options import read_aircraft
+from advisor.flight.signals.true_airspeed import true_over_read
 from advisor.gap.alternative import AlternativeEvidence
+from advisor.gap.diagnose import diagnose
 from advisor.gap.document import gap_document
 from advisor.gap.evidence.rows import Row
 from advisor.words.problems import UnusableInputError
@@ -62,9 +65,11 @@ def flown(generator: str, name: str, case: SealedCase) -> JudgedFlight | None:
     """Return the evidence of a case; None where its log cannot serve."""
     with tempfile.TemporaryDirectory() as folder:
         write_case(case, Path(folder) / "case")
-        log, file = (Path(folder) / "case" / part for part in (LOG, AIRCRAFT))
+        log, aircraft = Path(folder) / "case" / LOG, read_aircraft(Path(folder) / "case" / AIRCRAFT)
         try:
-            found = compare_logs([log], read_aircraft(file), None).diagnosis
+            chosen = without_refused(maneuvers_of([log], aircraft).maneuvers, aircraft)
+            gain = true_over_read(m.channels for m in chosen.maneuvers)
+            found = diagnose(chosen.maneuvers, with_true_reference(aircraft, gain))
         except UnusableInputError:
             return None
     document = gap_document(found)
