@@ -80,14 +80,6 @@ class Elevator:
         mend="film a step of the servo on the ground; the delay ends when the arm begins to move",
         within=(0.0, 2.0),
     )] = None  # fmt: skip
-    lag_found_s: float | None = None
-    """Lag that all manoeuvres together tell, s. The file has no such key."""
-    lag_found_std_s: float | None = None
-    """Standard deviation of ``lag_found_s``, s. None: a tenth of it."""
-    delay_found_s: float | None = None
-    """Delay of the command that all manoeuvres of one power-on tell together, s. The file has no such key."""
-    delay_found_std_s: float | None = None
-    """Standard deviation of ``delay_found_s``, s."""
 
     @property
     def is_calibrated(self) -> bool:
@@ -106,6 +98,49 @@ class Elevator:
         low = sum(weight * min(deg for _, deg in pairs) for weight, pairs in calibrations)
         high = sum(weight * max(deg for _, deg in pairs) for weight, pairs in calibrations)
         return low / total, high / total
+
+
+@dataclass(frozen=True)
+class SideControl:
+    """How the command of the aileron, or of the rudder, becomes a deflection."""
+
+    output: Annotated[int | Literal["auto"], Key(
+        "Servo output 1..32. ``auto``: all outputs whose SERVOn_FUNCTION is the control's (4 aileron, 21 "
+        "rudder), with elevons, flaperons and V-tails.",
+    )] = "auto"  # fmt: skip
+    calibration: Annotated[Pairs | None, Key(
+        "Pairs (PWM in us, deflection in deg), with linear interpolation. A positive aileron rolls to the "
+        "left, a positive rudder yaws to the left. None: SERVOn_MIN/TRIM/MAX and ±25 deg.",
+    )] = None  # fmt: skip
+    lag_s: Annotated[float | None, Key(
+        "First-order lag of the servo, s. None: unknown.",
+        within=(0.0, 2.0),
+    )] = None  # fmt: skip
+    delay_s: Annotated[float | None, Key(
+        "Delay between command and servo, s. None: unknown.",
+        within=(0.0, 2.0),
+    )] = None  # fmt: skip
+
+    @property
+    def ends_deg(self) -> tuple[float, float] | None:
+        """Lowest and highest deflection of the calibration, deg. None without a calibration."""
+        if self.calibration is None:
+            return None
+        angles = [deg for _, deg in self.calibration]
+        return min(angles), max(angles)
+
+
+@dataclass(frozen=True)
+class Beta:
+    """Source of the sideslip."""
+
+    source: Annotated[str, Key(
+        "auto | aoa_ssa | named_value:NAME | none, positive with wind from the right. ``auto`` uses what "
+        "a vane measures, and nothing that an autopilot derives.",
+    )] = "auto"  # fmt: skip
+    vane_arm_m: Annotated[float | None, Key(
+        "Distance of the sideslip vane ahead of the centre of gravity, m. None: that of the angle of attack.",
+    )] = None  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -182,6 +217,10 @@ class Reference:
         mend="take the area from the drawing",
         positive=True,
     )] = None  # fmt: skip
+    span_m: Annotated[float | None, Key(
+        "Wing span, m, for the coefficients of roll and yaw.",
+        positive=True,
+    )] = None  # fmt: skip
     chord_m: Annotated[float | None, Key(
         "Mean aerodynamic chord, m.",
         example="0.25",
@@ -197,6 +236,17 @@ class Reference:
         cost="No non-dimensional moment derivatives, and no static margin.",
         mend="swing the aircraft as a pendulum, or take the value of the design",
         positive=True,
+    )] = None  # fmt: skip
+    ixx_kg_m2: Annotated[float | None, Key(
+        "Rolling moment of inertia about the centre of gravity, kg m².",
+        positive=True,
+    )] = None  # fmt: skip
+    izz_kg_m2: Annotated[float | None, Key(
+        "Yawing moment of inertia about the centre of gravity, kg m².",
+        positive=True,
+    )] = None  # fmt: skip
+    ixz_kg_m2: Annotated[float | None, Key(
+        "Product of inertia in the plane of symmetry, kg m².",
     )] = None  # fmt: skip
     cg_percent_chord: Annotated[float | None, Key(
         "Distance of the centre of gravity behind the leading edge of the mean aerodynamic chord, % of "
@@ -367,7 +417,10 @@ class Aircraft:
         answer="my aircraft",
     )] = "aircraft"  # fmt: skip
     elevator: Elevator = field(default_factory=Elevator)
+    aileron: SideControl = field(default_factory=SideControl)
+    rudder: SideControl = field(default_factory=SideControl)
     alpha: Alpha = field(default_factory=Alpha)
+    beta: Beta = field(default_factory=Beta)
     accelerometer: Accelerometer = field(default_factory=Accelerometer)
     airspeed_m_s: Annotated[float | None, Key(
         "True air speed of the flight, m/s, only for a log without one.",

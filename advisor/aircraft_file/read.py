@@ -19,6 +19,7 @@ from advisor.aircraft.aircraft import (
     FmuVariables,
     Markers,
     Pairs,
+    SideControl,
     TableColumns,
 )
 from advisor.aircraft.aircraft_effects import mistakes_in
@@ -177,11 +178,10 @@ _UNION_TAGS = frozenset({"int", "str", "float", "none"})
 def _beyond_types(aircraft: Aircraft) -> Iterator[str]:
     """Yield mistakes that types do not show, as ``path: description``."""
     yield from _elevator_mistakes(aircraft.elevator)
-    source = aircraft.alpha.source
-    if source not in ("auto", "aoa_ssa", "derived", "none") and not (
-        source.startswith("named_value:") and 1 <= len(source.split(":", 1)[1]) <= 10
-    ):
-        yield f"alpha.source: {source!r} is none of auto, aoa_ssa, derived, none, named_value:NAME"
+    for name in ("aileron", "rudder"):
+        yield from _side_control_mistakes(name, getattr(aircraft, name))
+    yield from _source_mistakes("alpha.source", aircraft.alpha.source, ("auto", "aoa_ssa", "derived", "none"))
+    yield from _source_mistakes("beta.source", aircraft.beta.source, ("auto", "aoa_ssa", "none"))
     yield from _out_of_bounds(aircraft)
     for name in aircraft.model:
         if name not in PARAMETERS:
@@ -218,6 +218,12 @@ def _out_of_bounds(aircraft: Aircraft) -> Iterator[str]:
             yield f"{key.path}: {mistake}"
 
 
+def _source_mistakes(path: str, source: str, known: Sequence[str]) -> Iterator[str]:
+    named = source.startswith("named_value:") and 1 <= len(source.split(":", 1)[1]) <= 10
+    if source not in known and not named:
+        yield f"{path}: {source!r} is none of {', '.join(known)}, named_value:NAME"
+
+
 def _elevator_mistakes(elevator: Elevator) -> Iterator[str]:
     if isinstance(elevator.output, int) and not 1 <= elevator.output <= _OUTPUTS:
         yield f"elevator.output: {elevator.output} is not a servo output 1..{_OUTPUTS} (or auto)"
@@ -243,6 +249,13 @@ def _elevator_mistakes(elevator: Elevator) -> Iterator[str]:
             yield from _calibration_mistakes(f"{path}.calibration", one.calibration)
         elif elevator.is_calibrated:
             yield f"{path}.calibration: give one for every output, or for none"
+
+
+def _side_control_mistakes(name: str, control: SideControl) -> Iterator[str]:
+    if isinstance(control.output, int) and not 1 <= control.output <= _OUTPUTS:
+        yield f"{name}.output: {control.output} is not a servo output 1..{_OUTPUTS} (or auto)"
+    if control.calibration is not None:
+        yield from _calibration_mistakes(f"{name}.calibration", control.calibration)
 
 
 def _calibration_mistakes(path: str, points: Pairs) -> Iterator[str]:

@@ -9,9 +9,10 @@ from advisor.campaign.hand_decisions import NOTHING, ByHand, Remark
 from advisor.campaign.instruments import as_known_by, together, with_fit
 from advisor.campaign.joint_estimate import NEWEST, Together
 from advisor.campaign.journal import Journal
+from advisor.campaign.lateral import LateralCampaign
+from advisor.campaign.learning import learnt as learnt_from
+from advisor.campaign.learning import may_learn, of_another_power_on, reserved, told
 from advisor.campaign.running_estimate import Settling
-from advisor.campaign.servo_lag import learnt as learnt_from
-from advisor.campaign.servo_lag import may_learn, of_another_power_on, reserved, told
 from advisor.campaign.single_maneuver import assess
 from advisor.campaign.state import CampaignState, JudgedManeuver
 from advisor.campaign.whole_flight import WholeFlights
@@ -27,6 +28,7 @@ from advisor.flight.maneuvers.events import (
     ManeuverFlown,
     ModeChanged,
     Notice,
+    SideManeuverFlown,
 )
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.marks import MARK_NOTICES, Mark
@@ -74,6 +76,8 @@ class Campaign:
         Further marks, which replace overlapping marks of ``by_hand`` and are not kept in a file.
     names
         Names of the campaign's logs, in their order; empty for a single log.
+    lateral
+        Whether to judge the manoeuvres of aileron and rudder, too.
     """
 
     def __init__(
@@ -86,13 +90,15 @@ class Campaign:
         by_hand: ByHand = NOTHING,
         marks: Sequence[Mark] = (),
         names: Sequence[str] = (),
+        lateral: bool = False,
     ) -> None:
+        self._lateral = LateralCampaign(aircraft) if lateral else None
         self._aircraft = aircraft
         self._learnt = aircraft
         self._told_by: set[tuple[int, int]] = set()
         self._method: Method = method
         self._tell = tell
-        self._flights = Flights(aircraft, target_system, (*marks, *by_hand.marks), names)
+        self._flights = Flights(aircraft, target_system, (*marks, *by_hand.marks), names, lateral)
         self.by_hand = by_hand
         """All decisions by hand so far."""
         self._to_remark = list(by_hand.remarks)
@@ -124,6 +130,8 @@ class Campaign:
         told = self._take(self._flights.finish())
         self._ended = True
         self._decide()
+        if self._lateral is not None:
+            self._lateral.finish()
         self._learn()
         for problem in self._stream.marks.problems():
             self._journal.write(str(problem))
@@ -173,6 +181,7 @@ class Campaign:
             flight=flights.flight,
             boot=stream.boot,
             flights=flights.heard(channels, self._ended),
+            lateral=self._lateral.state if self._lateral is not None else None,
             activity=self._activity,
         )
 
@@ -243,6 +252,8 @@ class Campaign:
                     self._whole_flights.change_mode(self.power_on, at_s, mode)
                 case ManeuverFlown(maneuver):
                     told.append(self._judge(maneuver))
+                case SideManeuverFlown(maneuver):
+                    self._judge_lateral(maneuver)
                 case Activity():
                     joined = event.joined(self._activity[-1]) if self._activity else None
                     self._activity = (*self._activity[:-1], joined) if joined else (*self._activity, event)
@@ -269,6 +280,11 @@ class Campaign:
         self._journal.write_of_past(verdict, span.end_s)
         self._journal.write_of_past(self._flight_test.sentence, span.end_s)
         return ManeuverJudged(self._judged[-1], self._flight_test)
+
+    def _judge_lateral(self, maneuver: Maneuver) -> None:
+        """Estimate and judge a lateral manoeuvre that has just been flown."""
+        if self._lateral is not None:
+            self._lateral.take(maneuver)
 
     def _blame_instruments(self, newest: Maneuver) -> None:
         """Judge the earlier manoeuvres again where the newest one contradicts their instruments."""

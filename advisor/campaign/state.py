@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from statistics import median
 
+from advisor.campaign.lateral import LateralState
 from advisor.campaign.whole_flight import WholeFlight
 from advisor.decision.verdict import FlightTestVerdict, ManeuverVerdict
 from advisor.flight.elevator.elevator_guess import Guess
@@ -85,6 +86,8 @@ class CampaignState:
     """Number of the vehicle's power-on in this log or link, 0 for the first."""
     flights: tuple[FlightHeard, ...] = ()
     """Every log and link so far. The one being heard is the last."""
+    lateral: LateralState | None = None
+    """Lateral half of the campaign. None where it was not asked for."""
     activity: tuple[Activity, ...] = ()
     """Movements of the elevator that were no test inputs, oldest first. Similar neighbours are one entry."""
 

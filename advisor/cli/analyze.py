@@ -18,9 +18,12 @@ from advisor.cli.stages import Stages
 from advisor.words.printable import printable
 from advisor.words.problems import Problem
 
+Axis = Literal["pitch", "lateral", "both"]
+
 if TYPE_CHECKING:
     from advisor.analysis.log_series import LogSeries
     from advisor.campaign.campaign import Campaign
+    from advisor.campaign.lateral import LateralState
 
 
 @click.command
@@ -35,11 +38,19 @@ if TYPE_CHECKING:
 @click.option(
     "--all", "every_movement", is_flag=True, help="List also the elevator movements that were no test inputs."
 )
+@click.option(
+    "--axis",
+    type=click.Choice(["pitch", "lateral", "both"]),
+    default="both",
+    show_default=True,
+    help="Axis that is analyzed: the elevator's, that of aileron and rudder, or both.",
+)
 @json_option
 def command(
     asked: LogsAsked,
     method: Literal["gauss-newton", "nelder-mead"],
     every_movement: bool,
+    axis: Axis,
     as_json: bool,
 ) -> int:
     """Print every manoeuvre's verdict, the estimates, and stop or continue.
@@ -53,6 +64,7 @@ def command(
       advisor analyze battery-1.tlog battery-2.bin --aircraft my-aircraft.yaml
       advisor analyze flight.tlog --maneuver +12:+24 --maneuver 312.5:320
       advisor analyze flight.tlog --json | python -m json.tool
+      advisor analyze flight.tlog --axis lateral
     """
     aircraft = asked.read_aircraft()
     from advisor.analysis.log_series import LogSeries
@@ -69,10 +81,11 @@ def command(
         by_hand=by_hand,
         marks=asked.marks,
         names=series.names,
+        lateral=axis != "pitch",
     )
     with Stages() as tell:
         tell("reading and judging", 0.0)
-        state, left_out = _analyze(series, campaign)
+        state, left_out = _analyze(series, campaign, axis)
     usable = len(left_out) < len(asked.logs)
     said = [series.order_said] if series.order_said else []
     for flight, problems in sorted(left_out.items()):
@@ -87,7 +100,9 @@ def command(
         from advisor.report.console import PlainConsole
         from advisor.report.text import AnalysisText
 
-        shown = AnalysisText(state, list(map(printable, series.names)), aircraft, every_movement)
+        shown = AnalysisText(
+            state, list(map(printable, series.names)), aircraft, every_movement, pitch=axis != "lateral"
+        )
         PlainConsole(soft_wrap=True).print(shown)
     elif state is not None and every_movement:
         from advisor.report.text import activity_line
@@ -100,7 +115,7 @@ def command(
 
 
 def _analyze(
-    series: "LogSeries", make_campaign: "Callable[[], Campaign]"
+    series: "LogSeries", make_campaign: "Callable[[], Campaign]", axis: Axis
 ) -> "tuple[CampaignState | None, dict[int, tuple[Problem, ...]]]":
     """Return the campaign at the end of its logs and, by flight, the reasons for which logs do not count. The
     campaign is None without a readable log."""
@@ -112,4 +127,35 @@ def _analyze(
         return None, unreadable
     campaign.finish()
     state = campaign.state
-    return state, {one.flight: one.problems for one in state.flights if one.problems} | unreadable
+    left_out = {one.flight: one.problems for one in state.flights if one.problems}
+    if state.lateral is not None:
+        left_out = _of_axis(axis, state.lateral, left_out, len(state.flights))
+    return state, left_out | unreadable
+
+
+def _of_axis(
+    axis: Axis, lateral: "LateralState", left_out: dict[int, tuple[Problem, ...]], flights: int
+) -> dict[int, tuple[Problem, ...]]:
+    """Return the problems that remain by flight, given the lateral manoeuvres.
+
+    A flight with an accepted lateral manoeuvre needs none of the elevator's.
+    """
+    told = {one.maneuver.flight for one in lateral.maneuvers if axis == "lateral" or one.verdict.accepted}
+    elsewhere = {
+        flight: problems
+        for flight, problems in left_out.items()
+        if not all(p.code in _OF_ELEVATOR for p in problems)
+    }
+    if axis == "lateral":
+        silent = [flight for flight in range(flights) if flight not in told and flight not in elsewhere]
+        return elsewhere | dict.fromkeys(silent, (_NO_LATERAL,))
+    return {flight: problems for flight, problems in left_out.items() if flight not in told} | elsewhere
+
+
+_OF_ELEVATOR = ("no_maneuver", "no_elevator", "no_alpha")
+"""Codes of problems that concern the elevator's axis alone."""
+_NO_LATERAL = Problem(
+    "no_maneuver",
+    "No test manoeuvre of the aileron or the rudder was found.",
+    "Fly an aileron doublet and a rudder doublet in MANUAL, hands and feet still before and after.",
+)

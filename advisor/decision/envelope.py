@@ -4,7 +4,7 @@ The model knows one input, a constant speed and wings level. Each check here is 
 the measured number and its limit.
 """
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 
 import numpy as np
 
@@ -60,7 +60,7 @@ def incomplete(maneuver: Maneuver, period_s: float, counted: Collection[str]) ->
         return [Reason(d.code, f"{d.text}; {d.fix}", d.value, 0.0) for d in wrong]
     needed = [maneuver.channels[name] for name in NEEDED]
     used = [maneuver.channels[name] for name in {*NEEDED, *counted} if name in maneuver.channels]
-    return [*_rate(needed, period_s), *_gap(used, maneuver, period_s)]
+    return [*too_slow(needed, period_s), *with_gap(used, maneuver, period_s)]
 
 
 def not_heard(maneuver: Maneuver) -> Reason:
@@ -79,11 +79,11 @@ def outside(maneuver: Maneuver, aircraft: Aircraft) -> list[Reason]:
     """Return reasons for a manoeuvre outside the limits: bank, saturation, angle of attack, throttle, other
     controls."""
     return [
-        *_bank(maneuver, aircraft.limits.bank_deg),
-        *_saturation(maneuver, aircraft),
-        *_alpha(maneuver, aircraft.limits.alpha_deg),
-        *_throttle(maneuver),
-        *_other_controls(maneuver),
+        *banked(maneuver, aircraft.limits.bank_deg),
+        *saturated(maneuver, "elevator", aircraft.elevator.ends_deg),
+        *steep(maneuver, aircraft.limits.alpha_deg),
+        *throttled(maneuver),
+        *other_controls(maneuver, ("aileron", "rudder"), "use the elevator alone"),
     ]
 
 
@@ -108,7 +108,8 @@ def flown(maneuver: Maneuver, name: str) -> FloatArray:
     return channel.cut(maneuver.span.start_s, maneuver.span.end_s).y
 
 
-def _rate(channels: list[Channel], period_s: float) -> list[Reason]:
+def too_slow(channels: Sequence[Channel], period_s: float) -> list[Reason]:
+    """Return a reason for each channel that arrives too slowly for a motion of this period, s."""
     needed_hz = SAMPLES_PER_PERIOD / period_s
     reasons = []
     for c in channels:
@@ -122,7 +123,8 @@ def _rate(channels: list[Channel], period_s: float) -> list[Reason]:
     return reasons
 
 
-def _gap(channels: list[Channel], maneuver: Maneuver, period_s: float) -> list[Reason]:
+def with_gap(channels: Sequence[Channel], maneuver: Maneuver, period_s: float) -> list[Reason]:
+    """Return a reason for the longest gap of these channels in a manoeuvre, where it is too long."""
     share, least, most = _LONGEST_GAP
     reasons = []
     for c in channels:
@@ -149,7 +151,7 @@ def short_response(maneuver: Maneuver, period_s: float) -> list[Reason]:
         return []
     shown, limit = distinct_texts(free, least, 1)
     ended = _CUT_SHORT_BY.get(maneuver.span.closed_by)
-    mend = "hands still after the last step" if ended is None else f"{ended[0]} there; {ended[1]}"
+    mend = "stick still after the last step" if ended is None else f"{ended[0]} there; {ended[1]}"
     text = f"free response too short, {shown} s (at least {limit}); {mend}"
     return [Reason("free_response", text, free, least)]
 
@@ -166,12 +168,13 @@ def _is_broken_off(span: Span) -> bool:
     return span.closed_by in _CUT_SHORT_BY and bool(span.steps) and span.steps[-1][1] != 0.0
 
 
-def _bank(maneuver: Maneuver, limit: float) -> list[Reason]:
+def banked(maneuver: Maneuver, limit: float, mend: str = "fly it wings level") -> list[Reason]:
+    """Return a reason where the bank exceeds its limit, deg."""
     bank = float(np.degrees(np.max(np.abs(flown(maneuver, "bank")), initial=0.0)))
     if bank <= limit:
         return []
     shown, most = distinct_texts(bank, limit)
-    return [Reason("bank", f"bank reached {shown} deg (limit {most}); fly it wings level", bank, limit)]
+    return [Reason("bank", f"bank reached {shown} deg (limit {most}); {mend}", bank, limit)]
 
 
 def changed_speed(maneuver: Maneuver, aircraft: Aircraft) -> list[Reason]:
@@ -191,7 +194,8 @@ def changed_speed(maneuver: Maneuver, aircraft: Aircraft) -> list[Reason]:
     return [Reason("airspeed", text, change, limit)]
 
 
-def _alpha(maneuver: Maneuver, limit: float | None) -> list[Reason]:
+def steep(maneuver: Maneuver, limit: float | None) -> list[Reason]:
+    """Return a reason where the angle of attack exceeds its limit, deg."""
     alpha = float(np.degrees(np.max(np.abs(flown(maneuver, "alpha")), initial=0.0)))
     if limit is None or alpha <= limit:
         return []
@@ -200,30 +204,33 @@ def _alpha(maneuver: Maneuver, limit: float | None) -> list[Reason]:
     return [Reason("alpha", text, alpha, limit)]
 
 
-def _saturation(maneuver: Maneuver, aircraft: Aircraft) -> list[Reason]:
-    ends = aircraft.elevator.ends_deg or (-_ASSUMED_STROKE_DEG, _ASSUMED_STROKE_DEG)
-    elevator = np.degrees(flown(maneuver, "elevator"))
-    stuck = (elevator <= min(ends) + 1e-6) | (elevator >= max(ends) - 1e-6)
+def saturated(maneuver: Maneuver, control: str, ends_deg: tuple[float, float] | None) -> list[Reason]:
+    """Return a reason where a control stays at an end of its travel, deg; None: 25 deg either way."""
+    ends = ends_deg or (-_ASSUMED_STROKE_DEG, _ASSUMED_STROKE_DEG)
+    deflection = np.degrees(flown(maneuver, control))
+    stuck = (deflection <= min(ends) + 1e-6) | (deflection >= max(ends) - 1e-6)
     share = 100.0 * float(np.mean(stuck)) if len(stuck) else 0.0
     if np.count_nonzero(stuck) < 2:
         return []
     shown, most = distinct_texts(share, 0.0)
-    text = f"elevator at the end of its travel for {shown} % of the time (limit {most}); use less stick"
+    text = f"{control} at the end of its travel for {shown} % of the time (limit {most}); use less stick"
     return [Reason("saturation", text, share, 0.0)]
 
 
-def _other_controls(maneuver: Maneuver) -> list[Reason]:
+def other_controls(maneuver: Maneuver, names: Sequence[str], mend: str) -> list[Reason]:
+    """Return a reason for each of these controls that moved much."""
     reasons = []
-    for name in ("aileron", "rudder"):
+    for name in names:
         moved = float(np.degrees(np.ptp(flown(maneuver, name)))) / 2.0 if len(flown(maneuver, name)) else 0.0
         if moved > OTHER_CONTROLS_DEG:
             shown, most = distinct_texts(moved, OTHER_CONTROLS_DEG)
-            text = f"{name} moved by {shown} deg (limit {most}); use the elevator alone"
+            text = f"{name} moved by {shown} deg (limit {most}); {mend}"
             reasons.append(Reason(name, text, moved, OTHER_CONTROLS_DEG))
     return reasons
 
 
-def _throttle(maneuver: Maneuver) -> list[Reason]:
+def throttled(maneuver: Maneuver) -> list[Reason]:
+    """Return a reason where the throttle moved."""
     throttle = flown(maneuver, "throttle")
     change = 100.0 * float(np.ptp(throttle)) if len(throttle) else 0.0
     if change <= THROTTLE_PERCENT:

@@ -63,7 +63,7 @@ def elevator_limits(found: ElevatorFound, elevator: Elevator) -> list[Limit]:
         limits.append(
             Limit(
                 "calibration",
-                f"{outputs} not calibrated: full strokes, {given}, count as 25 deg, "
+                f"{outputs} not calibrated: full travel, {given}, count as 25 deg, "
                 "so Z_delta_e and M_delta_e have an assumed scale",
                 f"measure the deflection at three pulse widths and give {key} in the aircraft file",
             )

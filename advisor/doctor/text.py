@@ -76,7 +76,7 @@ class ExaminationText:
         alpha = self._findings.alpha
         if alpha is None:
             return "alpha      none"
-        return f"alpha      {alpha.source}, {alpha.provenance}, renewed at {alpha.renewed_hz:.1f} Hz"
+        return f"alpha      {alpha.source}, {alpha.provenance}, new values at {alpha.renewed_hz:.1f} Hz"
 
     def _clocks(self) -> str:
         clocks = self._findings.clocks

@@ -15,6 +15,8 @@ import numpy as np
 
 from advisor.aircraft.aircraft import PARAMETERS
 from advisor.flight.signals.messages import FloatArray
+from advisor.model.axis import Names
+from advisor.model.response import LOCAL, OUTPUTS, SHARED
 
 SPEED_EXPONENTS: Mapping[str, int] = {
     "Z_0": 1,
@@ -30,6 +32,10 @@ SPEED_EXPONENTS: Mapping[str, int] = {
 
 Z = -ρVS·C_L/(2m) and M = ρV²Sc·C_m/(2I_yy); a rate derivative carries another c/(2V).
 """
+
+
+NAMES = Names(OUTPUTS, SHARED, LOCAL, PARAMETERS)
+"""Names of the short period. Z_0 and M_0 are reported as means over the manoeuvres."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,12 +13,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.special import stdtrit
 
-from advisor.aircraft.aircraft import PARAMETERS
 from advisor.flight.signals.messages import FloatArray
-from advisor.model.response import LOCAL, N_PARAMETERS, N_SHARED, OUTPUTS, SHARED
+from advisor.model.short_period import NAMES
 from advisor.oem.colour import Colour, Stretch, find_colour, moved, product
 from advisor.oem.extra import Extra
-from advisor.oem.problem import Assembly
+from advisor.oem.problem import Laid
 
 LEAST_EIGENVALUE = 1e-13
 """Least eigenvalue of a normalised information matrix. Round-off decides the inverse below it."""
@@ -27,8 +26,8 @@ OPEN_SHARE = 0.01
 DIFFERENCE = 0.05
 LEAST_FREEDOM = 3.0
 GAUSS_975 = 1.959963984540054
-REPORTED = tuple((name in SHARED, (SHARED if name in SHARED else LOCAL).index(name)) for name in PARAMETERS)
-"""Place of each of the eight parameters: whether it is shared, and its index."""
+REPORTED = NAMES.places
+"""Place of each of the eight parameters of the short period: whether it is shared, and its index."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +42,8 @@ class Influence:
     """Parameters in a direction about which the data say nothing."""
     extra_covariance: FloatArray
     """(k, k) inverse information of the extra parameters, with all others free."""
+    shared_inverse: FloatArray
+    """(f, 8 + k) inverse information of the f free shared parameters with each parameter."""
     prior_rows: FloatArray
     """(k, 8 + k) change of each parameter for a change of each extra parameter's prior mean by one standard
     deviation of the prior."""
@@ -73,7 +74,7 @@ class Coloured:
 
 
 def influence(
-    assembly: Assembly,
+    assembly: Laid,
     g: FloatArray,
     noise: FloatArray,
     extra: Extra | None = None,
@@ -89,14 +90,16 @@ def influence(
     prior : (7,) inverse prior variances of the shared parameters.
     """
     weight = 1.0 / noise[assembly.channel] ** 2
-    common, own = assembly.free[assembly.free < N_SHARED], assembly.free[assembly.free >= N_SHARED]
+    names, split = assembly.names, len(assembly.names.shared)
+    reported = len(names.reported)
+    common, own = assembly.free[assembly.free < split], assembly.free[assembly.free >= split]
     shared_g = g[:, common] if extra is None else np.column_stack([g[:, common], extra.columns])
     places = [
-        (j, int(np.searchsorted(own, N_SHARED + i))) for j, (shared, i) in enumerate(REPORTED) if not shared
+        (j, int(np.searchsorted(own, split + i))) for j, (shared, i) in enumerate(names.places) if not shared
     ]
     parts = []
     projected = np.empty_like(shared_g)
-    open_share = np.zeros(N_PARAMETERS)
+    open_share = np.zeros(split + len(names.local))
     for named in assembly.rows:
         rows = slice(min(s.start for s in named.values()), max(s.stop for s in named.values()))
         mine = g[rows][:, own]
@@ -116,11 +119,12 @@ def influence(
         return None
     inverse, left_open = _inverse(information)
     open_share[common] = left_open[: len(common)]
-    columns = np.zeros((len(inverse), len(PARAMETERS) + len(inverse) - len(common)))
-    columns[:, len(PARAMETERS) :] = inverse[:, len(common) :]
-    for j, (is_shared, index) in enumerate(REPORTED):
-        if is_shared:
-            columns[:, j] = inverse[:, index]
+    columns = np.zeros((len(inverse), reported + len(inverse) - len(common)))
+    columns[:, reported:] = inverse[:, len(common) :]
+    position = {int(index): k for k, index in enumerate(common)}
+    for j, (is_shared, index) in enumerate(names.places):
+        if is_shared and index in position:
+            columns[:, j] = inverse[:, position[index]]
     for j, at in places:
         columns[:, j] = -inverse @ np.mean([mix[at] for *_, mix in parts], axis=0)
     result: FloatArray = weighted_shared @ columns
@@ -129,9 +133,9 @@ def influence(
     for rows, own_inverse, weighted, _ in parts:
         for j, at in places:
             result[rows, j] += own_inverse[at] @ weighted / len(parts)
-    eight = result[:, : len(PARAMETERS)]
-    from_priors = prior_rows[:, : len(PARAMETERS)]
-    covariance = (eight / weight[:, None]).T @ eight + from_priors.T @ from_priors
+    wanted = result[:, :reported]
+    from_priors = prior_rows[:, :reported]
+    covariance = (wanted / weight[:, None]).T @ wanted + from_priors.T @ from_priors
     scale = np.sqrt(np.diag(covariance))
     if not np.all(np.isfinite(scale)):
         return None
@@ -142,10 +146,11 @@ def influence(
         condition=float(np.linalg.cond(correlation)),
         unresolved=tuple(
             name
-            for name, (is_shared, index) in zip(PARAMETERS, REPORTED, strict=True)
-            if open_share[index if is_shared else N_SHARED + index] > OPEN_SHARE
+            for name, (is_shared, index) in zip(names.reported, names.places, strict=True)
+            if open_share[index if is_shared else split + index] > OPEN_SHARE
         ),
         extra_covariance=inverse[len(common) :, len(common) :],
+        shared_inverse=columns[: len(common)],
         prior_rows=prior_rows,
     )
 
@@ -164,12 +169,12 @@ def _inverse(information: FloatArray) -> tuple[FloatArray, FloatArray]:
     return result, np.sum(vectors[:, dead] ** 2, axis=1)
 
 
-def cramer_rao(assembly: Assembly, rows: FloatArray, noise: FloatArray) -> FloatArray:
+def cramer_rao(assembly: Laid, rows: FloatArray, noise: FloatArray) -> FloatArray:
     """Return the Cramér-Rao bound AᵀRA, shape (8 + k, 8 + k)."""
     return (rows * noise[assembly.channel, None] ** 2).T @ rows
 
 
-def colours_of(assembly: Assembly, residual: FloatArray, g: FloatArray) -> Mapping[str, Colour]:
+def colours_of(assembly: Laid, residual: FloatArray, g: FloatArray) -> Mapping[str, Colour]:
     """Return by output name the noise model of the output, pooled over the manoeuvres."""
     return {
         output: find_colour([Stretch(residual[s], g[s][:, assembly.free]) for s in stretches])
@@ -177,7 +182,7 @@ def colours_of(assembly: Assembly, residual: FloatArray, g: FloatArray) -> Mappi
     }
 
 
-def coloured(assembly: Assembly, rows: FloatArray, noise: Coloured) -> FloatArray:
+def coloured(assembly: Laid, rows: FloatArray, noise: Coloured) -> FloatArray:
     """Return AᵀΓA, shape (8 + k, 8 + k), with each standard deviation widened."""
     total = np.zeros((rows.shape[1], rows.shape[1]))
     for output, stretches in _stretches(assembly).items():
@@ -187,7 +192,7 @@ def coloured(assembly: Assembly, rows: FloatArray, noise: Coloured) -> FloatArra
     return widened
 
 
-def widening(assembly: Assembly, rows: FloatArray, colours: Mapping[str, Colour]) -> FloatArray:
+def widening(assembly: Laid, rows: FloatArray, colours: Mapping[str, Colour]) -> FloatArray:
     """Return the factor on each standard deviation for the uncertainty of the noise model, shape (8 + k,).
 
     The uncertainty of the noise model is carried to each variance (Satterthwaite's degrees of freedom). The
@@ -217,10 +222,10 @@ def widening(assembly: Assembly, rows: FloatArray, colours: Mapping[str, Colour]
     return factor
 
 
-def _stretches(assembly: Assembly) -> dict[str, list[slice]]:
+def _stretches(assembly: Laid) -> dict[str, list[slice]]:
     """Return output name to its rows in each manoeuvre that has it."""
     return {
         output: [named[output] for named in assembly.rows if output in named]
-        for output in OUTPUTS
+        for output in assembly.names.outputs
         if any(output in named for named in assembly.rows)
     }

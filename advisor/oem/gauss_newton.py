@@ -7,7 +7,7 @@ with process and measurement noise*, 1981. Levenberg's damping enters only when 
 far below the usual sizes. The record of a diverging aircraft has directions 1e-9 as well determined as
 others, and a larger damping would stop the search.
 
-The normal equations have the shape of an arrow: six derivatives are shared by all manoeuvres, and each
+The normal equations have the shape of an arrow: the derivatives are shared by all manoeuvres, and each
 manoeuvre has its own nuisance parameters. These are eliminated manoeuvre by manoeuvre, so the work grows
 linearly with their number.
 """
@@ -17,7 +17,9 @@ from typing import NamedTuple
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.model.response import N_LOCAL, N_PARAMETERS, N_SHARED, OUTPUTS, Grid, Index, respond
+from advisor.model.axis_response import AxisGrid
+from advisor.model.either_response import respond_either
+from advisor.model.response import Grid, Index
 from advisor.process.compiled import kernel
 
 FLAT = 1e-11
@@ -45,31 +47,32 @@ class Optimum(NamedTuple):
     status: int
     """``CONVERGED``, ``EXHAUSTED`` (too many iterations), ``OVERFLOW`` or ``SINGULAR``."""
     shared: FloatArray
-    """(7,), order of ``SHARED``."""
+    """(s,) parameters that all manoeuvres share."""
     local: FloatArray
-    """(m, 7), order of ``LOCAL``."""
+    """(m, l) parameters that each manoeuvre has for itself."""
     noise: FloatArray
-    """(4,) σ of each output, in the order of ``OUTPUTS``; 0 where an output is not measured."""
+    """(outputs,) σ of each output; 0 where an output is not measured."""
     log_likelihood_cost: float
     """Σ n_c·log σ_c²."""
     iterations: int
     fitted: FloatArray
     """(N,) outputs of the model at the optimum."""
     sensitivities: FloatArray
-    """(N, 14) derivatives of the outputs by the parameters of the row's manoeuvre."""
+    """(N, s + l) derivatives of the outputs by the parameters of the row's manoeuvre."""
 
 
 @kernel()
 def weigh(z: FloatArray, y: FloatArray, channel: Index, floor: FloatArray) -> tuple[FloatArray, float]:
     """Return σ of each output from its residuals, Eq. (8), and the cost Σ n_c·log σ_c²."""
-    power = np.zeros(len(OUTPUTS))
-    count = np.zeros(len(OUTPUTS))
+    outputs = len(floor)
+    power = np.zeros(outputs)
+    count = np.zeros(outputs)
     for i in range(len(z)):
         power[channel[i]] += (z[i] - y[i]) ** 2
         count[channel[i]] += 1.0
-    noise = np.zeros(len(OUTPUTS))
+    noise = np.zeros(outputs)
     cost = 0.0
-    for c in range(len(OUTPUTS)):
+    for c in range(outputs):
         if count[c] > 0.0:
             noise[c] = max(np.sqrt(power[c] / count[c]), floor[c])
             cost += 2.0 * count[c] * np.log(noise[c])
@@ -94,7 +97,7 @@ def _add_products(block: FloatArray, information: FloatArray, gradient: FloatArr
 
 @kernel()
 def normal_equations(
-    grid: Grid,
+    grid: Grid | AxisGrid,
     z: FloatArray,
     y: FloatArray,
     g: FloatArray,
@@ -224,19 +227,23 @@ def _eliminate(carried: FloatArray, top: FloatArray, right: FloatArray) -> None:
 
 @kernel()
 def arrow_step(
-    information: FloatArray, gradient: FloatArray, free: Index, damping: float
+    information: FloatArray, gradient: FloatArray, free: Index, damping: float, shared: int, local: int
 ) -> tuple[bool, FloatArray, FloatArray, float]:
     """Solve the damped normal equations.
 
+    Parameters
+    ----------
+    shared, local : number of parameters that all manoeuvres share, and that each has for itself.
+
     Returns
     -------
-    False when singular; the step of the shared (7,) and of the local parameters (m, 7); and
+    False when singular; the step of the shared (s,) and of the local parameters (m, l); and
     the promised decrease gradientᵀ·step of the weighted sum of squares.
     """
     maneuvers = len(information)
-    width = int(np.sum(free < N_SHARED))
+    width = int(np.sum(free < shared))
     n = len(free) - width
-    shared_step, local_step = np.zeros(N_SHARED), np.zeros((maneuvers, N_LOCAL))
+    shared_step, local_step = np.zeros(shared), np.zeros((maneuvers, local))
     top = np.zeros((width, width))
     right = np.zeros((width, 1))
     factors = np.zeros((maneuvers, n, n))
@@ -265,13 +272,13 @@ def arrow_step(
                 rest[i, 0] -= carried[m, i, j] * right[j, 0]
         solve_upper(factors[m], rest)
         for i in range(n):
-            local_step[m, free[width + i] - N_SHARED] = rest[i, 0]
+            local_step[m, free[width + i] - shared] = rest[i, 0]
     return True, shared_step, local_step, promise
 
 
 @kernel()
 def descend(
-    grid: Grid,
+    grid: Grid | AxisGrid,
     z: FloatArray,
     channel: Index,
     owner: Index,
@@ -282,15 +289,16 @@ def descend(
     local: FloatArray,
     flat: float = FLAT,
 ) -> Optimum:
-    """Minimise Σ n_c·log σ_c² from a start. Shapes as in ``Assembly``; ``floor`` (4,) of σ.
+    """Minimise Σ n_c·log σ_c² from a start. Shapes as in ``Laid``; ``floor`` (outputs,) of σ.
 
-    ``prior`` (7,) holds inverse prior variances of the shared parameters about zero, which the cost includes.
+    ``prior`` (s,) holds inverse prior variances of the shared parameters about zero, which the cost includes.
     """
     shared, local = shared.copy(), local.copy()
-    y, g = np.empty(len(z)), np.empty((len(z), N_PARAMETERS))
-    y_trial, g_trial = np.empty(len(z)), np.empty((len(z), N_PARAMETERS))
-    if not respond(grid, shared, local, y, g):
-        return Optimum(OVERFLOW, shared, local, np.zeros(len(OUTPUTS)), np.inf, 0, y, g)
+    parameters = len(shared) + local.shape[1]
+    y, g = np.empty(len(z)), np.empty((len(z), parameters))
+    y_trial, g_trial = np.empty(len(z)), np.empty((len(z), parameters))
+    if not respond_either(grid, shared, local, y, g):
+        return Optimum(OVERFLOW, shared, local, np.zeros(len(floor)), np.inf, 0, y, g)
     noise, cost = weigh(z, y, channel, floor)
     cost += np.sum(prior * shared**2)
     damping = 0.0
@@ -300,15 +308,17 @@ def descend(
         iteration += 1
         information, gradient = normal_equations(grid, z, y, g, channel, owner, free, noise)
         for j in range(len(free)):
-            if free[j] < N_SHARED:
+            if free[j] < len(shared):
                 information[0, j, j] += prior[free[j]]
                 gradient[0, j] -= prior[free[j]] * shared[free[j]]
         accepted = False
         for _ in range(16):
-            fine, shared_step, local_step, promise = arrow_step(information, gradient, free, damping)
+            fine, shared_step, local_step, promise = arrow_step(
+                information, gradient, free, damping, len(shared), local.shape[1]
+            )
             if fine:
                 trial, trial_local = shared + shared_step, local + local_step
-                if respond(grid, trial, trial_local, y_trial, g_trial):
+                if respond_either(grid, trial, trial_local, y_trial, g_trial):
                     trial_noise, trial_cost = weigh(z, y_trial, channel, floor)
                     trial_cost += np.sum(prior * trial**2)
                     if trial_cost <= cost:

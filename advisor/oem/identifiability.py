@@ -12,7 +12,7 @@ A parameter is lost in four ways, each with its own sentence:
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -117,12 +117,14 @@ def own_motion(solution: Solution) -> float:
     return float(np.linalg.norm(left)) / size if size > 0.0 else 1.0
 
 
-def correlated(covariance: FloatArray) -> tuple[tuple[str, str, float], ...]:
+def correlated(
+    covariance: FloatArray, names: Sequence[str] = PARAMETERS
+) -> tuple[tuple[str, str, float], ...]:
     """Return pairs of parameters whose errors are correlated above ``HIGH_CORRELATION``."""
     correlation = correlation_matrix(covariance)
     return tuple(
-        (PARAMETERS[i], PARAMETERS[j], float(correlation[i, j]))
-        for i in range(len(PARAMETERS))
-        for j in range(i + 1, len(PARAMETERS))
+        (names[i], names[j], float(correlation[i, j]))
+        for i in range(len(names))
+        for j in range(i + 1, len(names))
         if abs(correlation[i, j]) > HIGH_CORRELATION
     )

@@ -16,6 +16,8 @@ from advisor.oem.airspeed import Airspeed, airspeed
 from advisor.oem.alpha_use import FEWEST_SAMPLES, can_do_without, infer, lacking, why_left_out
 from advisor.oem.alpha_use import has as _has
 from advisor.oem.estimate import NoEstimate
+from advisor.oem.found import found_of
+from advisor.oem.instruments import as_found
 from advisor.oem.lost_input import restored
 from advisor.oem.problem import OutputErrorProblem, Record, Signal
 from advisor.oem.surface import Servo
@@ -78,7 +80,7 @@ def prepare(
     speeds = [airspeed(m.channels) for m in maneuvers]
     if any(speed is None for speed in speeds) and aircraft.airspeed_m_s is None:
         usable = [name for name in usable if name != "a_z"]
-    alphas = [_renewed(_signal(m.channels["alpha"])) for m in maneuvers]
+    alphas = [_renewed(signal_of(m.channels["alpha"])) for m in maneuvers]
     return _prepared(
         maneuvers,
         aircraft,
@@ -99,7 +101,7 @@ def _without_alpha(maneuvers: Sequence[Maneuver], aircraft: Aircraft, why: str) 
         maneuvers,
         aircraft,
         [airspeed(channels) for channels in known],
-        [_signal(alpha) for alpha in inferred],
+        [signal_of(alpha) for alpha in inferred],
         ["q", "a_z"],
         alpha_left_out=why,
     )
@@ -120,7 +122,7 @@ def _prepared(
     measured = [speed for speed in speeds if speed is not None]
     together = len(measured) == len(maneuvers)
     signals = [
-        speed.signal if speed is not None and together else _constant(maneuver, aircraft.airspeed_m_s)
+        speed.signal if speed is not None and together else constant_speed(maneuver, aircraft.airspeed_m_s)
         for maneuver, speed in zip(maneuvers, speeds, strict=True)
     ]
     known = [signal for signal in signals if signal is not None]
@@ -129,8 +131,8 @@ def _prepared(
             _record(maneuver, signal, alpha, usable)
             for maneuver, signal, alpha in zip(maneuvers, signals, alphas, strict=True)
         ),
-        reference_airspeed_m_s=_reference(
-            known, _stated(aircraft, maneuvers), all(v.smooth for v in measured)
+        reference_airspeed_m_s=reference_speed(
+            known, stated_reference(aircraft, maneuvers), all(v.smooth for v in measured)
         )
         if together
         else None,
@@ -139,7 +141,7 @@ def _prepared(
         accelerometer_arm_m=aircraft.accelerometer.arm_m or 0.0,
     )
     return Prepared(
-        problem=restored(problem),
+        problem=restored(as_found(problem, found_of(aircraft))),
         renewed_hz=renewed_hz,
         alpha_held=alpha_held,
         alpha_left_out=alpha_left_out,
@@ -150,8 +152,7 @@ def _prepared(
 
 
 def _servo(elevator: Elevator) -> Servo:
-    lag_s = elevator.lag_s if elevator.lag_found_s is None else elevator.lag_found_s
-    return Servo(lag_s or 0.0, elevator.delay_s or 0.0)
+    return Servo(elevator.lag_s or 0.0, elevator.delay_s or 0.0)
 
 
 def _renewed(signal: Signal) -> tuple[Signal, bool]:
@@ -178,22 +179,22 @@ def _missing(maneuver: Maneuver) -> NoEstimate | None:
 
 def _record(maneuver: Maneuver, speed: Signal | None, alpha: Signal, usable: Sequence[str]) -> Record:
     channels = maneuver.channels
-    outputs = {"q": _signal(channels["q"])}
+    outputs = {"q": signal_of(channels["q"])}
     if "alpha" in usable:
         outputs = {"alpha": alpha, **outputs}
     normal = gravity = None
     if "a_z" in usable:
-        outputs["a_z"] = _signal(channels["a_z"])
+        outputs["a_z"] = signal_of(channels["a_z"])
     if "theta" in usable:
         outputs["theta"] = _level(channels)
     if _has(channels, "theta"):
-        theta = _signal(channels["theta"])
+        theta = signal_of(channels["theta"])
         bank = bank_at(theta.t, channels)
         up, size = gravity_in_plane(theta.y, bank)
         normal = Signal(theta.t, size / GRAVITY_M_S2 * np.cos(up - alpha.at(theta.t)))
         gravity = Signal(theta.t, GRAVITY_M_S2 * np.cos(theta.y) * np.cos(bank))
     return Record(
-        elevator=_signal(channels["elevator"]),
+        elevator=signal_of(channels["elevator"]),
         outputs=outputs,
         airspeed=speed,
         normal_gravity=normal,
@@ -204,13 +205,13 @@ def _record(maneuver: Maneuver, speed: Signal | None, alpha: Signal, usable: Seq
 
 def _level(channels: Mapping[str, Channel]) -> Signal:
     """Return the pitch angle of level wings: θ minus the integral of (cos φ - 1)·q - r·sin φ."""
-    theta = _signal(channels["theta"])
+    theta = signal_of(channels["theta"])
     if not _has(channels, "bank"):
         return theta
-    bank = _signal(channels["bank"]).at(theta.t)
-    rate = (np.cos(bank) - 1.0) * _signal(channels["q"]).at(theta.t)
+    bank = signal_of(channels["bank"]).at(theta.t)
+    rate = (np.cos(bank) - 1.0) * signal_of(channels["q"]).at(theta.t)
     if _has(channels, "r"):
-        rate = rate - np.sin(bank) * _signal(channels["r"]).at(theta.t)
+        rate = rate - np.sin(bank) * signal_of(channels["r"]).at(theta.t)
     return Signal(theta.t, theta.y - integrated(theta.t, rate))
 
 
@@ -221,19 +222,20 @@ def _no_alpha(maneuvers: Sequence[Maneuver], aircraft: Aircraft, why: str) -> No
     return NoEstimate("no_alpha", text[0].upper() + text[1:])
 
 
-def _constant(maneuver: Maneuver, speed: float | None) -> Signal | None:
+def constant_speed(maneuver: Maneuver, speed: float | None) -> Signal | None:
+    """Return a constant air speed over a manoeuvre; None without one."""
     if speed is None:
         return None
-    return Signal(maneuver.channels["elevator"].t[[0, -1]], np.array([speed, speed]))
+    return Signal(maneuver.channels["q"].t[[0, -1]], np.array([speed, speed]))
 
 
-def _stated(aircraft: Aircraft, maneuvers: Sequence[Maneuver]) -> float | None:
+def stated_reference(aircraft: Aircraft, maneuvers: Sequence[Maneuver]) -> float | None:
     """Return the true air speed at the reference speed of the file, which is one as read."""
     read = aircraft.reference_airspeed_m_s
     return None if read is None else read * true_over_read(m.channels for m in maneuvers)
 
 
-def _reference(speeds: Sequence[Signal], stated: float | None, smooth: bool) -> float | None:
+def reference_speed(speeds: Sequence[Signal], stated: float | None, smooth: bool) -> float | None:
     """Return the reference air speed, where the speed changes enough to matter."""
     together = np.concatenate([speed.y for speed in speeds])
     if np.min(together) <= 0.0:
@@ -245,7 +247,7 @@ def _reference(speeds: Sequence[Signal], stated: float | None, smooth: bool) -> 
     return reference if moved or differs else None
 
 
-def _signal(channel: Channel) -> Signal:
+def signal_of(channel: Channel) -> Signal:
     """Return the finite samples of a channel, each at the time of which it tells."""
     keep = np.isfinite(channel.y)
     return Signal(np.asarray(channel.t[keep], float) - channel.delay_s, np.asarray(channel.y[keep], float))

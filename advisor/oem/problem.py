@@ -8,7 +8,9 @@ import numpy as np
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.signals.messages import FloatArray
+from advisor.model.axis import Names
 from advisor.model.response import LOCAL, N_SHARED, OUTPUTS, SHARED, Grid, Index
+from advisor.model.short_period import NAMES
 from advisor.oem.surface import Servo
 
 STAMP_S = 1e-9
@@ -83,11 +85,11 @@ class OutputErrorProblem:
     are off by some per cent, which would otherwise bias Z_alpha and M_alpha."""
 
 
-@dataclass(frozen=True, slots=True)
-class Assembly:
-    """A problem laid out for the kernel."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Laid:
+    """Measurements of all manoeuvres as rows, with the parameters that are free."""
 
-    grid: Grid
+    names: Names = NAMES
     z: FloatArray
     """(N,) measurements, manoeuvre by manoeuvre, within one output by output."""
     t: FloatArray
@@ -95,16 +97,23 @@ class Assembly:
     rows: tuple[Mapping[str, slice], ...]
     """For each manoeuvre, output name to its rows."""
     channel: Index
-    """(N,) index into ``OUTPUTS``."""
+    """(N,) index of the output."""
     owner: Index
     """(N,) index of the manoeuvre."""
     free: Index
-    """Indices of the estimated parameters among the 14, increasing."""
+    """Indices of the estimated parameters among the shared ones, then the local ones, increasing."""
 
     @property
     def maneuvers(self) -> int:
         """Number of manoeuvres."""
         return len(self.rows)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Assembly(Laid):
+    """A problem of the short period laid out for the kernel."""
+
+    grid: Grid
 
 
 def assemble(problem: OutputErrorProblem) -> Assembly:
@@ -211,7 +220,7 @@ class _Piece:
 
     @classmethod
     def of(cls, record: Record, problem: OutputErrorProblem) -> "_Piece":
-        outputs = {name: _finite(record.outputs[name]) for name in OUTPUTS if name in record.outputs}
+        outputs = {name: finite(record.outputs[name]) for name in OUTPUTS if name in record.outputs}
         for name in ("q", "alpha" if "alpha" in outputs else "a_z"):
             if name not in outputs or len(outputs[name].t) < 2:
                 raise ValueError(f"a record needs at least two samples of {name}")
@@ -246,18 +255,19 @@ class _Piece:
         return cls(
             t=t,
             outputs=outputs,
-            steps=_padded(np.column_stack([np.round(step, STAMP_DIGITS), ratio])),
+            steps=padded(np.column_stack([np.round(step, STAMP_DIGITS), ratio])),
             elevator=at_event,
             start=start,
-            slope=_padded((arrival - start[:-1]) / step),
-            known=_padded(known),
+            slope=padded((arrival - start[:-1]) / step),
+            known=padded(known),
             airspeed=airspeed,
             acceleration=acceleration,
             gravity=gravity,
         )
 
 
-def _finite(signal: Signal) -> Signal:
+def finite(signal: Signal) -> Signal:
+    """Return the finite samples of a signal."""
     keep = np.isfinite(signal.y) & np.isfinite(signal.t)
     return Signal(np.ascontiguousarray(signal.t[keep], float), np.ascontiguousarray(signal.y[keep], float))
 
@@ -275,7 +285,7 @@ def merged(stamps: FloatArray, pace: float) -> FloatArray:
     return merged
 
 
-def _padded(rows: FloatArray) -> FloatArray:
+def padded(rows: FloatArray) -> FloatArray:
     """Return the rows with the last one repeated, so that there are as many steps as events."""
     padded: FloatArray = np.concatenate([rows, rows[-1:]])
     return padded

@@ -22,7 +22,7 @@ from advisor.oem.estimate import NoEstimate
 from advisor.oem.extra import Extra
 from advisor.oem.gauss_newton import CONVERGED, FLAT, LEAST_NOISE, OVERFLOW, SINGULAR, Optimum, descend
 from advisor.oem.prior import precision
-from advisor.oem.problem import Assembly, OutputErrorProblem, assemble
+from advisor.oem.problem import Assembly, Laid, OutputErrorProblem, assemble
 from advisor.oem.simplex import descend_by_simplex
 from advisor.oem.start import start
 
@@ -174,7 +174,7 @@ def evaluate(
     )
 
 
-def contributions_of(assembly: Assembly, rows: FloatArray, residual: FloatArray) -> FloatArray:
+def contributions_of(assembly: Laid, rows: FloatArray, residual: FloatArray) -> FloatArray:
     """Return the contribution of each manoeuvre, shape (m, 8 + k), from influence ``rows`` (N, 8 + k) and
     ``residual`` (N,)."""
     pull = rows * residual[:, None]
@@ -188,10 +188,11 @@ def reported(shared: FloatArray, local: FloatArray) -> FloatArray:
     return np.array([shared[i] if is_shared else mean[i] for is_shared, i in REPORTED])
 
 
-def noise_floor(assembly: Assembly) -> FloatArray:
-    """Return the smallest σ of each output, shape (4,), for data without noise."""
-    count = np.maximum(np.bincount(assembly.channel, minlength=len(OUTPUTS)), 1)
-    mean = np.bincount(assembly.channel, assembly.z, len(OUTPUTS)) / count
+def noise_floor(assembly: Laid) -> FloatArray:
+    """Return the smallest σ of each output, shape (outputs,), for data without noise."""
+    outputs = len(assembly.names.outputs)
+    count = np.maximum(np.bincount(assembly.channel, minlength=outputs), 1)
+    mean = np.bincount(assembly.channel, assembly.z, outputs) / count
     deviation = assembly.z - mean[assembly.channel]
-    variance = np.bincount(assembly.channel, deviation**2, len(OUTPUTS)) / count
+    variance = np.bincount(assembly.channel, deviation**2, outputs) / count
     return np.maximum(LEAST_NOISE * np.sqrt(variance), 1e-300)

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.model.response import OUTPUTS
+from advisor.model.response import N_LOCAL, N_SHARED, OUTPUTS
 from advisor.oem.covariance import Coloured, Influence, influence
 from advisor.oem.extra import Extra
 from advisor.oem.gauss_newton import arrow_step, normal_equations
@@ -70,7 +70,7 @@ class Weighing:
         information, gradient = normal_equations(
             a.grid, white, np.zeros(len(white)), self.forward(g), a.channel, a.owner, a.free, UNIT
         )
-        *_, promise = arrow_step(information, gradient, a.free, 0.0)
+        *_, promise = arrow_step(information, gradient, a.free, 0.0, N_SHARED, N_LOCAL)
         return float(white @ white) - promise
 
     def _each(self, apply: Callable[[Whitening, FloatArray], FloatArray], rows: FloatArray) -> FloatArray:

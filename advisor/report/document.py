@@ -11,6 +11,7 @@ from advisor.decision.verdict import FlightTestVerdict, Remaining
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.stream.flights import FlightHeard
 from advisor.oem.estimate import Estimate, NoEstimate
+from advisor.report.lateral import lateral_document
 from advisor.report.qualities import coefficients_of, qualities_document, qualities_of
 from advisor.words.plain import picked, plain
 from advisor.words.problems import Problem
@@ -65,6 +66,7 @@ def analysis_document(
         **({"logs": logs, "notes": list(notes)} if several else {}),
         **_OF_NO_CAMPAIGN,
         **(_campaign(state, aircraft, of_log) if state else {}),
+        **({"lateral": lateral_document(state.lateral)} if state and state.lateral else {}),
     }
 
 

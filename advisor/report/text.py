@@ -15,6 +15,7 @@ from advisor.flight.maneuvers.events import Activity
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.oem.estimate import Estimate
 from advisor.report import table as report_table
+from advisor.report.lateral import lateral_lines
 from advisor.report.qualities import coefficients_of, qualities_of, quality_lines, reference_speed
 from advisor.report.result_rows import ParameterRow, channel_table, parameter_row
 from advisor.words.vehicle_time import CLOCK, clock
@@ -86,9 +87,10 @@ class AnalysisText:
         files: Sequence[str],
         aircraft: Aircraft,
         every_movement: bool = False,
+        pitch: bool = True,
     ) -> None:
         self.state, self.files, self.aircraft = state, files, aircraft
-        self.every_movement = every_movement
+        self.every_movement, self.pitch = every_movement, pitch
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
         for flight in self.state.flights:
@@ -103,6 +105,12 @@ class AnalysisText:
         )
         yield from (Text(line, style="yellow") for line in instrument_lines(self.state.instruments))
         yield Text()
+        if self.pitch:
+            yield from self._short_period()
+        yield from self._lateral()
+
+    def _short_period(self) -> RenderResult:
+        """Yield manoeuvres, parameters and decision of the elevator's axis."""
         yield from self._movements()
         yield Text()
         yield from (Text(line, style="dim") for line in caution_lines(self.state.maneuvers))
@@ -114,6 +122,13 @@ class AnalysisText:
             yield from self._qualities()
             yield Text()
         yield from self._decision()
+
+    def _lateral(self) -> Iterator[Text]:
+        """Yield the lateral half, where it was asked for."""
+        if self.state.lateral is not None:
+            yield Text()
+            yield Text("Roll and yaw", style="bold")
+            yield from (Text(line) for line in lateral_lines(self.state.lateral))
 
     def _movements(self) -> Iterator[Text]:
         """Yield the manoeuvres and, on request, all other elevator movements, in the order of time."""
@@ -141,7 +156,7 @@ class AnalysisText:
         speed = reference_speed(self.state)
         numbers = ", ".join(str(number) for number in self.state.estimate_from)
         rows = (parameter_row(name, model, self.aircraft.model) for name in PARAMETERS)
-        head = ("parameter", "value", "± 95 %", "± 95 % if white", "today's model", "unit")
+        head = ("parameter", "value", "± 95 %", "± 95 % if white", "simulator", "unit")
         table = report_table.Table("joint", "", head, tuple(map(_cells, rows)), frozenset({1, 2, 3, 4}))
         return table.on_console(f"Joint estimate from manoeuvres {numbers}{speed}")
 

@@ -17,7 +17,9 @@ from advisor.gap.candidates.traits import TRAITS
 from advisor.gap.diagnose import DiagnosisEvidence, examine
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.judge.prior import FIELD, FieldPrior
+from advisor.gap.records.as_stamped import as_stamped
 from advisor.gap.records.prepare import prepare
+from advisor.gap.records.unmeasured_alpha import alpha_by_motion, is_known
 from advisor.gap.result import Diagnosis, Trace, TrimDifference
 from advisor.gap.search.baseline import base_entries
 from advisor.gap.simulator.layout import DERIVATIVES, INDEX, NUISANCES, OUTPUTS
@@ -91,8 +93,9 @@ def compare(
     """
     if not simulator.takes_increments:
         aircraft = _without_equations(aircraft)
+    maneuvers = alpha_by_motion([as_stamped(m) for m in maneuvers], aircraft)
     flights = prepare(maneuvers, aircraft)
-    if not len(flights) or "alpha" not in flights.channels:
+    if not len(flights) or not is_known(maneuvers):
         examine(maneuvers, aircraft, holdout, progress, prior)
     heights = standard_heights(maneuvers, aircraft)
     if not isinstance(simulator, LinearSimulator):

@@ -121,7 +121,7 @@ def elevator_fault(simulated: float, flown: float) -> InterfaceFault | None:
     """
     ratio = simulated / flown if flown else 1.0
     if _is(ratio, -1.0):
-        told = "the wrong sense: it pitches up where the aircraft pitches down"
+        told = "the wrong direction: it pitches up where the aircraft pitches down"
         mend = "Reverse the elevator's input; trailing edge down is positive and pitches down."
         return InterfaceFault("the elevator", told, mend)
     if _is(abs(ratio), 1.0 / _PER_RAD):

@@ -85,7 +85,7 @@ def _as_given(output: int, calibration: Pairs | None, wiring: Wiring, why: str) 
 
 def _as_found(calibration: Pairs | None, wiring: Wiring) -> Surface | Problem:
     # Groups of outputs that each make a whole elevator: all plain ones, and all pairs of one kind.
-    kinds = dict.fromkeys(role.surface for role in wiring.roles.values() if role.side)
+    kinds = dict.fromkeys(role.surface for role in wiring.roles.values() if role.surface in _CANCELS)
     groups = [[wiring.outputs_of(ELEVATOR)]]
     groups += [
         [wiring.outputs_of(Role(kind, "left")), wiring.outputs_of(Role(kind, "right"))] for kind in kinds
@@ -155,7 +155,7 @@ def _uncalibrated(part: Part, why: str, wiring: Wiring) -> Surface:
     doubts = _doubts([part], wiring)
     said = (
         f"No elevator.calibration: output {part.output} ({why}) is scaled by {_limits(doubts, wiring)} "
-        "as full strokes of 25 deg, so Z_delta_e and M_delta_e are per assumed degree."
+        "as full travel of 25 deg, so Z_delta_e and M_delta_e are per assumed degree."
     )
     return Surface((part,), False, " ".join([said, *map(str, doubts)]), doubts)
 
@@ -164,7 +164,7 @@ def _scaled(parts: tuple[Part, ...], formed: str, wiring: Wiring) -> Surface:
     """Return the surface of several outputs without a calibration."""
     doubts = _doubts(parts, wiring)
     said = (
-        f"No calibration: they are scaled by {_limits(doubts, wiring)} as full strokes of 25 deg, so "
+        f"No calibration: they are scaled by {_limits(doubts, wiring)} as full travel of 25 deg, so "
         "Z_delta_e and M_delta_e are per assumed degree."
     )
     return Surface(parts, False, " ".join([formed, said, *map(str, doubts)]), doubts)
@@ -180,8 +180,8 @@ def _limits(doubts: Sequence[Problem], wiring: Wiring) -> str:
 
 
 def _is_half(n: int, wiring: Wiring) -> bool:
-    """Return whether output ``n`` is known to be one half of a mixed pair."""
-    return n in wiring.roles and bool(wiring.roles[n].side)
+    """Return whether output ``n`` is known to be one half of a pair that also pitches."""
+    return n in wiring.roles and wiring.roles[n].surface in _CANCELS
 
 
 def _has_known_direction(n: int, wiring: Wiring) -> bool:

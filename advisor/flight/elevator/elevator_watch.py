@@ -38,6 +38,11 @@ class ElevatorWatch:
         return self._segmenter.onset_s
 
     @property
+    def amplitude(self) -> float:
+        """Largest deviation of the input so far, rad."""
+        return self._segmenter.amplitude
+
+    @property
     def last_step_s(self) -> float | None:
         """Last step of the input whose free response is being flown, s. None before the input is over."""
         recognised = self._segmenter.recognised

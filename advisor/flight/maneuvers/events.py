@@ -53,6 +53,13 @@ class ManeuverFlown:
 
 
 @dataclass(frozen=True, slots=True)
+class SideManeuverFlown:
+    """A lateral manoeuvre is complete, with its data."""
+
+    maneuver: Maneuver
+
+
+@dataclass(frozen=True, slots=True)
 class ManeuverAgain:
     """A known manoeuvre came again, in another log or power-on. A manoeuvre counts once."""
 
@@ -154,6 +161,7 @@ FlightEvent = (
     | ModeChanged
     | ManeuverStarted
     | ManeuverFlown
+    | SideManeuverFlown
     | ManeuverAgain
     | Activity
     | Notice

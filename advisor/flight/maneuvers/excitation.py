@@ -18,6 +18,7 @@ from math import inf, sqrt
 
 import numpy as np
 
+from advisor.flight.maneuvers.loop import PITCH, Loop
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.motion import integrated
@@ -36,10 +37,10 @@ _MANY = 40.0
 
 @dataclass(frozen=True, slots=True)
 class Excitation:
-    """Effect of the elevator on the pitch rate."""
+    """Effect of a control on the rate that answers."""
 
-    pitch_rate: float
-    """Half of the range of the pitch rate, rad/s."""
+    rate: float
+    """Half of the range of the rate, rad/s."""
     relative_error: float
     """Relative standard error of the elevator's effect: one over the root of 3·F. Infinite without an
     effect."""
@@ -49,43 +50,46 @@ class Excitation:
     """Elevator's effect on the pitch rate, b0 + b1 + b2. Its sign is the control's; 0 where not estimated."""
 
 
-def excitation(maneuver: Maneuver) -> Excitation | None:
+def excitation(maneuver: Maneuver, loop: Loop = PITCH) -> Excitation | None:
     """Measure the information of a movement about the short period.
 
     Parameters
     ----------
     maneuver
-        Record with channels ``elevator`` and ``q``. Without ``theta`` the integral of ``q`` serves.
+        Record with the channels of the control and the rate. Without the angle the integral of the rate
+        serves.
+    loop
+        Control, and the rate that answers.
 
     Returns
     -------
     Excitation or None
-        None where the pitch rate is missing or never changes. The error is infinite for too
+        None where the rate is missing or never changes. The error is infinite for too
         few samples.
     """
-    elevator, q = maneuver.channels.get("elevator"), maneuver.channels.get("q")
+    elevator, q = maneuver.channels.get(loop.control), maneuver.channels.get(loop.rate)
     if elevator is None or q is None or len(elevator) < 3 or len(q) < 3 or np.ptp(q.y) == 0.0:
         return None
     start, end = max(elevator.t[0], q.t[0]), min(elevator.t[-1], q.t[-1])
     lasting = [b - a for (a, _), (b, _) in pairwise(maneuver.span.steps)]
     coarse = max(float(np.median(np.diff(elevator.t))), float(np.median(np.diff(q.t))))
     wanted = min(min(lasting, default=inf) / _PER_STEP, (end - start) / _MANY, _LONGEST_S)
-    pitch_rate = 0.5 * float(np.ptp(q.y))
+    moves = 0.5 * float(np.ptp(q.y))
     edges = np.arange(start, end, max(coarse, wanted))
     if len(edges) <= _FEWEST:
-        return Excitation(pitch_rate, inf, inf, 0.0)
+        return Excitation(moves, inf, inf, 0.0)
     rate, moved = _means(edges, q.t, q.y), _means(edges, elevator.t, elevator.y - np.mean(elevator.y))
-    external = _means(edges, elevator.t, _external(maneuver))
+    external = _means(edges, elevator.t, _external(maneuver, loop))
     error, effect = _effect(rate, moved)
-    return Excitation(pitch_rate, error, _effect(rate, external)[0], effect)
+    return Excitation(moves, error, _effect(rate, external)[0], effect)
 
 
-def _external(maneuver: Maneuver) -> FloatArray:
+def _external(maneuver: Maneuver, loop: Loop) -> FloatArray:
     """Return the part of the elevator that no linear feedback of the motion explains, at the elevator's
     stamps."""
-    elevator, q = maneuver.channels["elevator"], maneuver.channels["q"]
+    elevator, q = maneuver.channels[loop.control], maneuver.channels[loop.rate]
     rate = np.interp(elevator.t, q.t, q.y)
-    theta = maneuver.channels.get("theta")
+    theta = maneuver.channels.get(loop.angle)
     if theta is not None and len(theta) > 2:
         pitch = np.interp(elevator.t, theta.t, theta.y)
     else:

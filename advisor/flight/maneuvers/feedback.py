@@ -14,6 +14,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from advisor.flight.maneuvers.loop import PITCH, Loop
 from advisor.flight.maneuvers.maneuver import Span
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.record import Channel
@@ -30,7 +31,7 @@ _AT_S = 0.2
 
 
 def explained_by_feedback(
-    span: Span, elevator: Channel, motion: Mapping[str, Channel], effect: float
+    span: Span, elevator: Channel, motion: Mapping[str, Channel], effect: float, loop: Loop = PITCH
 ) -> float:
     """Return the share of a movement's variation that feedback of the motion explains, 0 to 1.
 
@@ -45,6 +46,8 @@ def explained_by_feedback(
         the share is 0.
     effect
         Elevator's effect on the pitch rate. Only the sign counts; 0: unknown.
+    loop
+        Another control, whose rate and angle stand for q and θ.
 
     Returns
     -------
@@ -52,13 +55,13 @@ def explained_by_feedback(
         0 where the movement does not bring the pitch angle back to the angle kept before.
     """
     moved = elevator.cut(span.start_s, span.end_s)
-    if not {"q", "theta"} <= motion.keys() or effect == 0.0 or len(moved) < _FEWEST:
+    if not {loop.rate, loop.angle} <= motion.keys() or effect == 0.0 or len(moved) < _FEWEST:
         return 0.0
     u = -np.sign(effect) * moved.y
     varying = float(np.sum((u - np.mean(u)) ** 2))
-    if varying == 0.0 or not _comes_back(motion["theta"], span):
+    if varying == 0.0 or not _comes_back(motion[loop.angle], span):
         return 0.0
-    left = min(_left(motion["q"], motion["theta"], moved.t - delay_s, u) for delay_s in DELAYS_S)
+    left = min(_left(motion[loop.rate], motion[loop.angle], moved.t - delay_s, u) for delay_s in DELAYS_S)
     return max(0.0, 1.0 - left / varying)
 
 

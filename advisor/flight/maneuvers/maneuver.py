@@ -8,7 +8,22 @@ from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.record import Channel
 from advisor.flight.signals.trust import Distrust
 
-InputKind = Literal["3-2-1-1", "reverse 3-2-1-1", "doublet", "pulse", "multisine", "other"]
+InputKind = Literal[
+    "3-2-1-1",
+    "reverse 3-2-1-1",
+    "doublet",
+    "pulse",
+    "multisine",
+    "other",
+    "aileron doublet",
+    "aileron 1-2-1",
+    "bank to bank",
+    "aileron 3-2-1-1",
+    "rudder doublet",
+    "rudder 3-2-1-1",
+    "dutch roll release",
+]
+"""Names of inputs, of the elevator and then of aileron and rudder."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,6 +15,7 @@ from advisor.aircraft.aircraft import Limits
 from advisor.flight.maneuvers.excitation import excitation
 from advisor.flight.maneuvers.feedback import explained_by_feedback
 from advisor.flight.maneuvers.hand_flying import EDGE_S, flown_elsewhere, motion_of
+from advisor.flight.maneuvers.loop import PITCH, Loop
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.rest import SMALLEST_RAD
 from advisor.flight.signals.derived_alpha import SLOWEST_FLIGHT_M_S
@@ -81,6 +82,7 @@ def not_an_input(
     on_ground: str | None = None,
     motion: Mapping[str, Channel] | None = None,
     limits: Limits | None = None,
+    loop: Loop = PITCH,
 ) -> Because | None:
     """Return the reason for which an elevator movement is no test input; None where it may be one.
 
@@ -95,69 +97,77 @@ def not_an_input(
         of the record.
     limits
         Limits of bank and air speed. None: the usual ones.
+    loop
+        Control that moved, and the motion that answers. Slow flying elsewhere concerns the elevator alone.
     """
+    control = loop.control
     if on_ground is not None:
-        return Because("ground", f"the elevator moved on the ground: {on_ground}")
+        return Because("ground", f"the {control} moved on the ground: {on_ground}")
     if _is_on_ground(maneuver):
-        return Because("ground", "the elevator moved while the aircraft did not fly")
+        return Because("ground", f"the {control} moved while the aircraft did not fly")
     if hovers(maneuver.mode):
-        return Because("hover", f"the elevator moved in {maneuver.mode}, where rotors carry the aircraft")
-    because = _tells_nothing(maneuver, maneuver.channels if motion is None else motion)
-    if closes_pitch_loop(maneuver.mode) and (lacks := _lacks_in_a_loop(maneuver, because)):
-        return Because("autopilot", f"the elevator moved in {maneuver.mode}{lacks}; not a test input")
-    if because is None and (how := flown_elsewhere(maneuver, limits or Limits())) is not None:
+        return Because("hover", f"the {control} moved in {maneuver.mode}, where rotors carry the aircraft")
+    because = _tells_nothing(maneuver, maneuver.channels if motion is None else motion, loop)
+    if closes_pitch_loop(maneuver.mode) and (lacks := _lacks_in_a_loop(maneuver, because, control)):
+        return Because("autopilot", f"the {control} moved in {maneuver.mode}{lacks}; not a test input")
+    if (
+        because is None
+        and loop is PITCH
+        and (how := flown_elsewhere(maneuver, limits or Limits())) is not None
+    ):
         return Because("elsewhere", f"the elevator moved slowly {how}; not a test input")
     return because
 
 
-def _lacks_in_a_loop(maneuver: Maneuver, because: Because | None) -> str:
+def _lacks_in_a_loop(maneuver: Maneuver, because: Because | None, control: str) -> str:
     """Return in words what a movement in a closed loop lacks for a test input; empty for a test input."""
     if has_an_errand(maneuver.mode):
         return " by the autopilot's own task"
-    if not _is_external(maneuver):
+    if not _is_external(maneuver, control):
         return " without the sharp steps of a test"
     return f", and {because.text.partition('; ')[0]}" if because else ""
 
 
-def _tells_nothing(maneuver: Maneuver, motion: Mapping[str, Channel]) -> Because | None:
-    """Return the reason for which the pitch rate cannot show the elevator's effect; None where it can, or is
+def _tells_nothing(maneuver: Maneuver, motion: Mapping[str, Channel], loop: Loop) -> Because | None:
+    """Return the reason for which the rate cannot show the control's effect; None where it can, or is
     missing."""
+    control = loop.control
     if maneuver.span.closed_by == "no rest":
-        return Because("unsettled", "the elevator never came to rest; not a test input")
-    found = excitation(maneuver)
+        return Because("unsettled", f"the {control} never came to rest; not a test input")
+    found = excitation(maneuver, loop)
     if found is None:
         return None
-    rate = degrees(found.pitch_rate)
-    if found.pitch_rate < radians(LEAST_PITCH_RATE_DEG_S):
+    rate = degrees(found.rate)
+    if found.rate < radians(LEAST_PITCH_RATE_DEG_S):
         shown, least = distinct_texts(rate, LEAST_PITCH_RATE_DEG_S, 2, "g")
         return Because(
-            "small", f"a correction: the pitch rate moved by {shown} deg/s only (at least {least})"
+            "small", f"a correction: the {loop.rate_said} moved by {shown} deg/s only (at least {least})"
         )
     # For an elevator moved from outside, no other evidence is needed to separate cause from effect.
-    outside = is_manual(maneuver.mode) or _is_external(maneuver)
+    outside = is_manual(maneuver.mode) or _is_external(maneuver, control)
     error = found.relative_error if outside else found.external_error
     if error > LARGEST_ERROR:
         known = "not at all"
         if isfinite(error) and error < 1.0:
             shown, most = distinct_texts(100.0 * error, 100.0 * LARGEST_ERROR)
             known = f"to {shown} % only (limit {most})"
-        return Because("no_information", f"the elevator's effect on the pitch rate is known {known}")
-    answers = explained_by_feedback(maneuver.span, maneuver.channels["elevator"], motion, found.effect)
+        return Because("no_information", f"the {control}'s effect on the {loop.rate_said} is known {known}")
+    answers = explained_by_feedback(maneuver.span, maneuver.channels[control], motion, found.effect, loop)
     if answers > _MOSTLY:
         shown, most = distinct_texts(100.0 * answers, 100.0 * _MOSTLY)
-        follows = "the elevator brought the attitude back, as feedback of the motion"
+        follows = f"the {control} brought the attitude back, as feedback of the motion"
         return Because("feedback", f"{follows} explains to {shown} % (limit {most}); not a test input")
-    if not _stands_out(maneuver):
-        same = "the elevator moved no faster than in the second before"
+    if not _stands_out(maneuver, control):
+        same = f"the {control} moved no faster than in the second before"
         return Because("small", f"a correction: {same}; not a test input")
     return None
 
 
-def _stands_out(maneuver: Maneuver) -> bool:
-    """Return whether the elevator moves faster than before the movement. Hands that fly on do not."""
+def _stands_out(maneuver: Maneuver, control: str) -> bool:
+    """Return whether the control moves faster than before the movement. Hands that fly on do not."""
     span = maneuver.span
-    before = motion_of(maneuver, span.record_from_s + EDGE_S, span.start_s)[:-1]
-    within = motion_of(maneuver, span.start_s, span.last_step_s + EDGE_S)
+    before = motion_of(maneuver, span.record_from_s + EDGE_S, span.start_s, control)[:-1]
+    within = motion_of(maneuver, span.start_s, span.last_step_s + EDGE_S, control)
     if len(before) < _FEWEST_BEFORE or len(within) == 0:
         return True
     return float(within.max()) >= _STANDS_OUT * float(np.sqrt(np.mean(before**2)))
@@ -175,12 +185,12 @@ def _is_on_ground(maneuver: Maneuver) -> bool:
     return q is not None and len(q) > 0 and 0.5 * float(np.ptp(q.y)) < radians(LEAST_PITCH_RATE_DEG_S)
 
 
-def _is_external(maneuver: Maneuver) -> bool:
-    """Return whether the elevator moves in sharp steps, which no feedback of the aircraft's motion makes.
+def _is_external(maneuver: Maneuver, control: str) -> bool:
+    """Return whether the control moves in sharp steps, which no feedback of the aircraft's motion makes.
 
     A step of less than two of the smallest movements is sharp only by the resolution of the output.
     """
-    elevator = maneuver.channels["elevator"]
+    elevator = maneuver.channels[control]
     interval_s = float(np.median(np.diff(elevator.t))) if len(elevator) > 1 else np.inf
     if interval_s > _SLOWEST_S:
         return False

@@ -95,6 +95,11 @@ class Segmenter:
         return self._moved_from_s if self._amplitude >= SMALLEST_RAD else None
 
     @property
+    def amplitude(self) -> float:
+        """Largest deviation of the movement so far, rad."""
+        return self._pending.movement.amplitude if self._pending else self._amplitude
+
+    @property
     def recognised(self) -> Movement | None:
         """Movement whose free response is awaited."""
         return self._pending.movement if self._pending else None

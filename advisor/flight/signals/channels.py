@@ -41,6 +41,9 @@ def _scaled(factor: float) -> Callable[[NDArray[Any]], FloatArray]:
     return lambda raw: np.asarray(raw, dtype=np.float64) * factor
 
 
+_FORCES = (("a_x", "xacc"), ("a_y", "yacc"), ("a_z", "zacc"))
+"""Components of the specific force, and their fields."""
+
 READINGS = (
     Reading("q", "ATTITUDE", "pitchspeed", _scaled(1.0)),
     Reading("p", "ATTITUDE", "rollspeed", _scaled(1.0)),
@@ -48,6 +51,7 @@ READINGS = (
     Reading("theta", "ATTITUDE", "pitch", _scaled(1.0)),
     Reading("bank", "ATTITUDE", "roll", _scaled(1.0)),
     Reading("alpha", "AOA_SSA", "AOA", np.radians, "derived"),
+    Reading("beta", "AOA_SSA", "SSA", np.radians, "derived"),
     Reading("airspeed", "VFR_HUD", "true_airspeed", _scaled(1.0)),
     Reading("airspeed", "VFR_HUD", "airspeed", _scaled(1.0)),
     Reading("climb_rate", "VFR_HUD", "climb", _scaled(1.0)),
@@ -55,15 +59,14 @@ READINGS = (
     *(
         Reading(channel, message, field, _scaled(_MILLI_G))
         for message in ("RAW_IMU", "SCALED_IMU")
-        for channel, field in (("a_x", "xacc"), ("a_z", "zacc"))
+        for channel, field in _FORCES
     ),
-    Reading("a_x", "HIGHRES_IMU", "xacc", _scaled(1.0)),
-    Reading("a_z", "HIGHRES_IMU", "zacc", _scaled(1.0)),
+    *(Reading(channel, "HIGHRES_IMU", field, _scaled(1.0)) for channel, field in _FORCES),
     # Second and third sensors of an autopilot, used where the first is not sent.
     *(
         Reading(channel, message, field, _scaled(_MILLI_G))
         for message in ("SCALED_IMU2", "SCALED_IMU3")
-        for channel, field in (("a_x", "xacc"), ("a_z", "zacc"))
+        for channel, field in _FORCES
     ),
     Reading("height", "GLOBAL_POSITION_INT", "relative_alt", _scaled(1e-3)),
     Reading("altitude", "GLOBAL_POSITION_INT", "alt", _scaled(1e-3)),
@@ -152,13 +155,13 @@ def of_companion(decoded: Decoded) -> Decoded:
     return replace(decoded, source=f"{decoded.source} of an onboard computer", provenance="unknown")
 
 
-def named_value(columns: Columns, t: FloatArray, name: str) -> Decoded:
-    """Return the angle of attack from NAMED_VALUE_FLOAT messages with this name, in the sender's unit."""
+def named_value(columns: Columns, t: FloatArray, channel: str, name: str) -> Decoded:
+    """Return a vane's channel from NAMED_VALUE_FLOAT messages with this name, in the sender's unit."""
     mine = np.array(
         [raw.rstrip(b"\0") == name.encode() for raw in columns.fields["name"].tolist()], dtype=bool
     )
     y = np.where(mine, np.asarray(columns.fields["value"], dtype=np.float64), np.nan)
-    return _decoded("alpha", f"NAMED_VALUE_FLOAT.{name}", "vane", t, y, columns)
+    return _decoded(channel, f"NAMED_VALUE_FLOAT.{name}", "vane", t, y, columns)
 
 
 def given_airspeed(attitude: Columns, t: FloatArray, airspeed_m_s: float) -> Decoded:

@@ -7,19 +7,22 @@ import numpy as np
 from advisor.flight.signals.messages import FloatArray
 
 # Channels that the advisor knows, with SI units. Alpha, pitch rate and pitch are positive nose up; elevator
-# is positive trailing edge down; body z points down.
+# is positive trailing edge down; body z points down. Sideslip is positive with wind from the right. A
+# positive aileron rolls to the left, a positive rudder yaws to the left.
 UNITS = {
     "elevator": "rad",
     "aileron": "rad",
     "rudder": "rad",
     "throttle": "1",
     "alpha": "rad",
+    "beta": "rad",
     "q": "rad/s",
     "p": "rad/s",
     "r": "rad/s",
     "theta": "rad",
     "bank": "rad",
     "a_x": "m/s^2",
+    "a_y": "m/s^2",
     "a_z": "m/s^2",
     "airspeed": "m/s",
     "climb_rate": "m/s",

@@ -17,7 +17,7 @@ from advisor.flight.signals.derived_alpha import DERIVED_ALPHA, DerivedAlpha
 from advisor.flight.signals.extremes import Course
 from advisor.flight.signals.record import AIR_UNITS, UNITS, Channel
 from advisor.flight.signals.track import SHOWN_WHOLE, ChannelStatus, Track
-from advisor.flight.signals.true_airspeed import AS_REPORTED, true_airspeed
+from advisor.flight.signals.true_airspeed import AS_GROUND_SPEED, AS_REPORTED, true_airspeed
 
 _AIR_S = 10.0
 """Margin around a stretch within which pressure and height tell the density of the air, s. They may come once
@@ -40,6 +40,8 @@ class Tracks:
         Pressure altitude of the aircraft file, m, for a log without pressure and height above sea level.
     logs_true_speed
         Returns whether the vehicle reports its true air speed in place of the calibrated one.
+    beta_source
+        Source of the sideslip in the aircraft file: ``named_value:NAME``, or one that AOA_SSA brings.
     """
 
     def __init__(
@@ -49,6 +51,7 @@ class Tracks:
         temperature_c: float | None = None,
         height_m: float | None = None,
         logs_true_speed: Callable[[], bool] = lambda: False,
+        beta_source: str = "auto",
     ) -> None:
         self._tracks: dict[tuple[str, str], Track] = {}
         self._derived = DerivedAlpha(self._best, partial(self.cut, "airspeed"), airspeed_m_s)
@@ -66,6 +69,8 @@ class Tracks:
             "aoa_ssa": ["AOA_SSA.AOA", COMPANION_ALPHA],
             "derived": [DERIVED_ALPHA],
         }.get(alpha_source, [f"NAMED_VALUE_FLOAT.{named}"])
+        if beta_source.startswith("named_value:"):
+            self._sources["beta"] = [f"NAMED_VALUE_FLOAT.{beta_source.removeprefix('named_value:')}"]
 
     def clear(self) -> None:
         """Drop all samples before another boot."""
@@ -102,6 +107,8 @@ class Tracks:
             return found
         if self._logs_true_speed():
             return replace(found, source=f"{found.source}{AS_REPORTED}")
+        if self.speeds_are_one(start_s, end_s, up_to_order):
+            return replace(found, source=f"{found.source}{AS_GROUND_SPEED}")
         air = (self._cut(n, start_s - _AIR_S, end_s + _AIR_S, up_to_order) for n in AIR_UNITS)
         by_name = {channel.name: channel for channel in air if channel is not None}
         return true_airspeed(

@@ -1,6 +1,7 @@
 """From elevator movements to manoeuvres with their channels, or to activities with their reasons."""
 
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -122,9 +123,7 @@ class Cutting:
 
     def _motion(self, span: Span, up_to_order: int | None) -> dict[str, Channel]:
         """Return the pitch rate and angle of a movement and of the time before."""
-        from_s = span.start_s - HISTORY_S
-        cut = {name: self._tracks.cut(name, from_s, span.end_s, up_to_order) for name in ("q", "theta")}
-        return {name: channel for name, channel in cut.items() if channel is not None}
+        return self.motion_before(span, ("q", "theta"), up_to_order)
 
     def pilot_flies(self, at_s: float) -> bool:
         """Return whether the pilot moves the elevator at this time, by the flight mode."""
@@ -140,24 +139,14 @@ class Cutting:
         if earlier_boot == boot and earlier_s > span.record_from_s:
             # The lead-in does not reach into the record of another manoeuvre.
             span = replace(span, record_from_s=min(earlier_s, span.start_s))
-        channels: dict[str, Channel] = {}
-        notes = self._airspeed_notes(span, up_to_order)
-        for name in UNITS:
-            channel = self._tracks.cut(name, span.record_from_s, span.end_s, up_to_order)
-            if channel is not None:
-                sound = repaired(counted_once(self._who.known(channel)))
-                channels[name] = sound.channel
-                notes += sound.said
+        channels, notes = self._recorded(span, up_to_order)
         distrusts = self._who.distrusts(distrusted(channels))
         for still in distrusts:
             if still.channel == "a_z":
                 # An estimate can do without a specific force; a frozen one would spoil the estimate.
                 del channels["a_z"]
         examined = examine(channels, self._evidence)
-        channels = dict(examined.channels)
-        for name in AIR_UNITS:
-            if (air := self._tracks.cut(name, span.record_from_s, span.end_s, up_to_order)) is not None:
-                channels[name] = air
+        channels = {**examined.channels, **self._air(span, up_to_order)}
         mode = self._stay(_middle_s(span))[1]
         maneuver = Maneuver(
             self.maneuvers + 1,
@@ -172,6 +161,38 @@ class Cutting:
             leapt_s=self._breaks.leapt_s(span.record_from_s, span.end_s),
         )
         return maneuver, examined.evidence
+
+    def side(self, span: Span, boot: int, number: int, up_to_order: int | None) -> Maneuver:
+        """Return the record of a lateral manoeuvre with this number."""
+        channels, notes = self._recorded(span, up_to_order)
+        channels |= self._air(span, up_to_order)
+        mode = self._stay(_middle_s(span))[1]
+        return Maneuver(number, boot, span, channels, mode, data_notes=tuple(notes))
+
+    def motion_before(self, span: Span, names: Sequence[str], up_to_order: int | None) -> dict[str, Channel]:
+        """Return channels of a movement and of the time before."""
+        from_s = span.start_s - HISTORY_S
+        cut = {name: self._tracks.cut(name, from_s, span.end_s, up_to_order) for name in names}
+        return {name: channel for name, channel in cut.items() if channel is not None}
+
+    def _recorded(self, span: Span, up_to_order: int | None) -> tuple[dict[str, Channel], list[str]]:
+        """Return the channels of a record, repaired, and sentences on their samples."""
+        channels: dict[str, Channel] = {}
+        notes = self._airspeed_notes(span, up_to_order)
+        for name in UNITS:
+            channel = self._tracks.cut(name, span.record_from_s, span.end_s, up_to_order)
+            if channel is not None:
+                sound = repaired(counted_once(self._who.known(channel)))
+                channels[name] = sound.channel
+                notes += sound.said
+        return channels, notes
+
+    def _air(self, span: Span, up_to_order: int | None) -> dict[str, Channel]:
+        """Return the channels of a record that tell the density of the air."""
+        cut = {
+            name: self._tracks.cut(name, span.record_from_s, span.end_s, up_to_order) for name in AIR_UNITS
+        }
+        return {name: air for name, air in cut.items() if air is not None}
 
     def _airspeed_notes(self, span: Span, up_to_order: int | None) -> list[str]:
         """Return sentences on an air speed that no sensor measured."""

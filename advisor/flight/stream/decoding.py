@@ -15,7 +15,7 @@ from advisor.flight.stream.identity import Identity
 from advisor.flight.vehicle.boots import Master
 
 _NAMED = "named_value:"
-"""Beginning of ``alpha.source`` where a NAMED_VALUE_FLOAT brings the angle of attack."""
+"""Beginning of a vane's ``source`` where a NAMED_VALUE_FLOAT brings its angle."""
 
 
 def decoded(columns: Columns, t: FloatArray, aircraft: Aircraft, companion: bool) -> Iterator[Decoded]:
@@ -28,7 +28,7 @@ def decoded(columns: Columns, t: FloatArray, aircraft: Aircraft, companion: bool
     t
         Shape (n,), vehicle time of each message, s since boot.
     aircraft
-        The aircraft file, for an air speed and an angle of attack that it names.
+        The aircraft file, for an air speed and vanes that it names.
     companion
         Whether another component than the autopilot sent the messages.
     """
@@ -36,8 +36,10 @@ def decoded(columns: Columns, t: FloatArray, aircraft: Aircraft, companion: bool
     yield from map(of_companion, found) if companion else found
     if columns.name == "ATTITUDE" and aircraft.airspeed_m_s is not None:
         yield given_airspeed(columns, t, aircraft.airspeed_m_s)
-    if columns.name == "NAMED_VALUE_FLOAT" and aircraft.alpha.source.startswith(_NAMED):
-        yield named_value(columns, t, aircraft.alpha.source.removeprefix(_NAMED))
+    if columns.name == "NAMED_VALUE_FLOAT":
+        for channel, source in (("alpha", aircraft.alpha.source), ("beta", aircraft.beta.source)):
+            if source.startswith(_NAMED):
+                yield named_value(columns, t, channel, source.removeprefix(_NAMED))
 
 
 def power_on(

@@ -12,6 +12,7 @@ from advisor.flight.maneuvers.events import (
     ManeuverAgain,
     ManeuverFlown,
     Notice,
+    SideManeuverFlown,
     VehicleFound,
 )
 from advisor.flight.maneuvers.maneuver import Maneuver
@@ -57,6 +58,8 @@ class Flights:
         Stretches marked as manoeuvres, each on its flight.
     names
         Names of the logs, in their order; empty for a single log.
+    lateral
+        Whether to find the manoeuvres of aileron and rudder, too.
     """
 
     def __init__(
@@ -65,10 +68,13 @@ class Flights:
         target_system: int | None = None,
         marks: Sequence[Mark] = (),
         names: Sequence[str] = (),
+        lateral: bool = False,
     ) -> None:
+        self._lateral = lateral
         self._aircraft, self._target_system = aircraft, target_system
         self._marks, self._names = tuple(marks), tuple(names) if len(names) > 1 else ()
         self._found: list[Maneuver] = []
+        self._side_found: list[Maneuver] = []
         self._past: list[FlightHeard] = []
         self._notes: list[str] = []
         self._one_aircraft = OneAircraft()
@@ -78,7 +84,7 @@ class Flights:
     def _begin(self, flight: int) -> None:
         self.flight = flight
         marks = [mark for mark in self._marks if mark.flight == flight]
-        self.stream = FlightStream(self._aircraft, self._target_system, marks)
+        self.stream = FlightStream(self._aircraft, self._target_system, marks, lateral=self._lateral)
         """Stream of the present flight."""
         self._again = 0
         self._foreign: Problem | None = None
@@ -178,6 +184,8 @@ class Flights:
             match event:
                 case ManeuverFlown(maneuver):
                     through.append(self._once(replace(maneuver, flight=self.flight)))
+                case SideManeuverFlown(maneuver):
+                    through += self._side_once(replace(maneuver, flight=self.flight))
                 case Activity():
                     through.append(replace(event, flight=self.flight))
                 case VehicleFound(vehicle):
@@ -201,6 +209,14 @@ class Flights:
                 return ManeuverAgain(again, takes_place)
         self._found.append(replace(maneuver, number=len(self._found) + 1))
         return ManeuverFlown(self._found[-1])
+
+    def _side_once(self, maneuver: Maneuver) -> list[FlightEvent]:
+        """Return the event of a lateral manoeuvre with its number in the campaign; empty for a known one."""
+        known = self._side_found
+        if any(one.power_on != maneuver.power_on and are_one(maneuver, one) for one in known):
+            return []
+        known.append(replace(maneuver, number=len(known) + 1))
+        return [SideManeuverFlown(known[-1])]
 
     def _compare_vehicles(self, vehicle: Vehicle) -> Iterator[FlightEvent]:
         """Yield notices on a vehicle that differs from the first flight's. Another aircraft is refused."""

@@ -4,8 +4,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 from math import isfinite, nan
 
-from advisor.aircraft.aircraft import Elevator
+from advisor.aircraft.aircraft import Aircraft, Elevator
 from advisor.flight.elevator.elevator_outputs import find_elevator
+from advisor.flight.elevator.side_outputs import find_side_control
 from advisor.flight.maneuvers.events import FlightEvent, Notice, VehicleFound
 from advisor.flight.signals.messages import Columns
 from advisor.flight.signals.record import Channel
@@ -16,7 +17,7 @@ from advisor.flight.vehicle.modes import in_hover, mode_name
 from advisor.flight.vehicle.parameters import AIRSPEED_SENSOR, Parameters, read_by
 from advisor.flight.vehicle.surfaces import Surface, listed
 from advisor.flight.vehicle.vehicle import Vehicle, VehicleFinder
-from advisor.flight.vehicle.wiring import AILERON, RUDDER, Wiring
+from advisor.flight.vehicle.wiring import Wiring
 from advisor.words.printable import printable
 from advisor.words.problems import Problem
 from advisor.words.vehicle_time import clock
@@ -44,14 +45,14 @@ class Identity:
 
     Parameters
     ----------
-    elevator
-        Elevator of the aircraft file.
+    aircraft
+        The aircraft file, for its elevator, aileron and rudder.
     target_system
         System id to follow; None: the first vehicle heard.
     """
 
-    def __init__(self, elevator: Elevator, target_system: int | None) -> None:
-        self._elevator = elevator
+    def __init__(self, aircraft: Aircraft, target_system: int | None) -> None:
+        self._aircraft, self._elevator = aircraft, aircraft.elevator
         self._finder = VehicleFinder(target_system)
         self._firmware: dict[int, str] = {}
         self._parameters = Parameters()
@@ -63,7 +64,7 @@ class Identity:
         self._following = Following(self._has_elevator)
         self.simulated = False
         """Whether the bundled aircraft has introduced itself, whose vane is simulated."""
-        self.elevator: Surface | Problem = find_elevator(elevator, self._wiring())
+        self.elevator: Surface | Problem = find_elevator(self._elevator, self._wiring())
         """Outputs and scale of the elevator, or the reason for their absence."""
         self.surfaces: dict[str, Surface] = {}
         """Elevator, aileron and rudder, where known."""
@@ -92,7 +93,7 @@ class Identity:
         On ArduPilot, AOA_SSA is derived from inertial speed and estimated wind. Elsewhere its origin is
         unknown.
         """
-        if source != "AOA_SSA.AOA" or self.vehicle is None:
+        if source not in ("AOA_SSA.AOA", "AOA_SSA.SSA") or self.vehicle is None:
             return stated
         if self.simulated:
             return "simulated"
@@ -101,7 +102,7 @@ class Identity:
     def known(self, channel: Channel) -> Channel:
         """Return a channel with its provenance and with the known delay of the autopilot's filters."""
         vehicle, provenance = self.vehicle, self.provenance(channel.source, channel.provenance)
-        if vehicle is None or self.simulated:
+        if vehicle is None:
             return replace(channel, provenance=provenance)
         stated = self._parameters.stated(_speakers(vehicle), vehicle.autopilot)
         delay_s = filter_delay_s(channel.name, channel.source, vehicle.autopilot, stated)
@@ -282,8 +283,8 @@ class Identity:
             self.elevator = find_elevator(self._taken, wiring, "by a guess that a hand has taken")
         found = {
             "elevator": self.elevator,
-            "aileron": wiring.surface(AILERON),
-            "rudder": wiring.surface(RUDDER),
+            "aileron": find_side_control("aileron", self._aircraft.aileron, wiring),
+            "rudder": find_side_control("rudder", self._aircraft.rudder, wiring),
         }
         self.surfaces = {name: surface for name, surface in found.items() if isinstance(surface, Surface)}
         said = self.elevator.said if isinstance(self.elevator, Surface) else ""

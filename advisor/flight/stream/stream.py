@@ -20,7 +20,7 @@ from advisor.flight.maneuvers.markers import HEARD, MarkerWatch
 from advisor.flight.maneuvers.marks import Mark, Marks
 from advisor.flight.signals.attitude import Attitudes
 from advisor.flight.signals.banks import Banks, merged
-from advisor.flight.signals.channels import COMPANIONS, stamps
+from advisor.flight.signals.channels import COMPANIONS, Decoded, stamps
 from advisor.flight.signals.clocks import BootClock
 from advisor.flight.signals.derived_alpha import DERIVED_ALPHA, promised
 from advisor.flight.signals.extremes import Course
@@ -37,6 +37,7 @@ from advisor.flight.stream.elevator_path import ElevatorPath
 from advisor.flight.stream.identity import Identity
 from advisor.flight.stream.instrument_watch import InstrumentWatch
 from advisor.flight.stream.service import Service
+from advisor.flight.stream.side_path import SidePath
 from advisor.flight.stream.suitability import problems, with_guess
 from advisor.flight.stream.vehicle_texts import VehicleTexts
 from advisor.flight.vehicle.boots import Master, by_boot
@@ -69,6 +70,8 @@ class FlightStream:
         Stretches marked as manoeuvres before the stream begins.
     keep_all
         Whether to keep every sample, for ``power_ons``. Memory then grows with the length of the flight.
+    lateral
+        Whether to find the manoeuvres of aileron and rudder, too.
     """
 
     def __init__(
@@ -78,13 +81,14 @@ class FlightStream:
         marks: Sequence[Mark] = (),
         *,
         keep_all: bool = False,
+        lateral: bool = False,
     ) -> None:
         self._aircraft = aircraft
         self._keep_s = np.inf if keep_all else KEEP_S
         self._clock_heard: list[Master] = []
         self.power_ons: list[PowerOn] = []
         """Every power-on that is over, whole; empty without ``keep_all``."""
-        self._who = Identity(aircraft.elevator, target_system)
+        self._who = Identity(aircraft, target_system)
         self._texts = VehicleTexts()
         self._attitudes = Attitudes()
         self._clock = BootClock()
@@ -94,6 +98,7 @@ class FlightStream:
             aircraft.reference.air_temperature_c,
             aircraft.reference.height_m,
             lambda: self._who.simulated,
+            aircraft.beta.source,
         )
         self._breaks = Breaks()
         self._cutting = Cutting(self._tracks, self._who, aircraft, self._breaks)
@@ -102,6 +107,7 @@ class FlightStream:
         """Marks by hand, by a switch and by texts."""
         self._markers = MarkerWatch(aircraft.markers)
         self._path = ElevatorPath(self._tracks, self._mixing, self.marks, self._cutting)
+        self._side = SidePath(self._tracks, self._cutting) if lateral else None
         self._over = False
         self.boot = 0
         """Number of the power-on, 0 for the first in the stream."""
@@ -120,6 +126,8 @@ class FlightStream:
         self._tracks.clear()
         self._clock_heard.clear()
         self._path.begin(self.boot)
+        if self._side is not None:
+            self._side.begin(self.boot)
         self._banks = Banks()
         self._breaks.begin()
         self._mixing.begin()
@@ -282,7 +290,8 @@ class FlightStream:
         return events
 
     def _finish_boot(self) -> list[FlightEvent]:
-        events = [*self._path.finish(self._master_s), *self._texts.finish(self._master_s)]
+        lateral = self._side.finish() if self._side is not None else []
+        events = [*self._path.finish(self._master_s), *lateral, *self._texts.finish(self._master_s)]
         self._past = self._at_best()
         if self._keep_s == np.inf:
             self.power_ons.append(
@@ -319,6 +328,8 @@ class FlightStream:
                 order = min(int(c.order[0]) for c in piece)
                 earliest_s = max(self._heartbeat_s, self._master_s - _HEARTBEAT_S)
                 self._path.mode_changed(earliest_s, order)
+                if self._side is not None:
+                    self._side.mode_changed(earliest_s, order)
                 # A pilot who takes over and flies an input at once did so before the heartbeat that reports
                 # the mode.
                 closed = closes_pitch_loop(self._who.mode)
@@ -337,6 +348,25 @@ class FlightStream:
     def _serving(self, piece: Sequence[Columns]) -> list[FlightEvent]:
         """Return the event of a change in the usability of the data; empty without a change."""
         return list(self._service.advance(piece))
+
+    def _take_outputs(
+        self, columns: Columns, t: FloatArray, autopilot: str, elevator: list[Commanded], side: list[Decoded]
+    ) -> list[Notice]:
+        """Append the samples of the elevator, and those of aileron and rudder, to the two lists.
+
+        Return a notice for each time that the advisor missed.
+        """
+        missed: list[Notice] = []
+        for moved in commanded(self._who.surfaces, self._banks.together(columns), t, autopilot):
+            if moved.channel == "elevator":
+                elevator.append(moved)
+                arrived_s = arrivals(columns, moved.order)
+                self._service.take(moved.channel, moved.source, arrived_s)
+                missed += map(_missed, self._breaks.take(moved.t, arrived_s))
+            else:
+                side.append(moved.combined())
+                self._tracks.append(side[-1])
+        return missed
 
     def _set_clock(self, part: Sequence[Columns], orders: IntArray, clock: FloatArray) -> None:
         """Set the vehicle's clock by a part; readings of the clock have these orders, both of shape (n,)."""
@@ -371,6 +401,7 @@ class FlightStream:
         if self._keep_s == np.inf:
             self._clock_heard.append(replace(master, t=clock[1:]))
         elevator: list[Commanded] = []
+        side: list[Decoded] = []
         missed: list[FlightEvent] = []
         for columns in merged(part):
             now = np.searchsorted(orders, columns.order, side="right") - 1
@@ -393,17 +424,11 @@ class FlightStream:
             if columns.name in _OUTPUTS:
                 if isinstance(self.elevator, Problem):
                     self._guesses.hear(columns, t)
-                pulses = self._banks.together(columns)
-                for moved in commanded(self._who.surfaces, pulses, t, vehicle.autopilot):
-                    if moved.channel == "elevator":
-                        elevator.append(moved)
-                        arrived_s = arrivals(columns, moved.order)
-                        self._service.take(moved.channel, moved.source, arrived_s)
-                        missed += map(_missed, self._breaks.take(moved.t, arrived_s))
-                    else:
-                        self._tracks.append(moved.combined())
+                missed += self._take_outputs(columns, t, vehicle.autopilot, elevator, side)
         self._set_clock(part, orders, clock)
         followed = [*missed, *self._path.feed(elevator, closes_pitch_loop(self._who.mode))]
+        if self._side is not None:
+            followed += self._side.feed(side)
         if self._cutting.maneuvers == self._flown_before:
             self._instruments.advance(self._first_s, self._master_s)
         if not isinstance(self.elevator, Problem) or not np.isfinite(self._master_s):

@@ -11,6 +11,8 @@ _ROLES = {
     4: AILERON,
     19: ELEVATOR,
     21: RUDDER,
+    24: Role("flaperon", "left"),
+    25: Role("flaperon", "right"),
     77: Role("elevon", "left"),
     78: Role("elevon", "right"),
     79: Role("V-tail", "left"),

@@ -22,7 +22,7 @@ _UNUSED_PX4 = 900.0
 
 @dataclass(frozen=True, slots=True)
 class Scale:
-    """Pulses of one output at full strokes, taken as 25 degrees, and at zero deflection."""
+    """Pulses of one output at full travel, taken as 25 degrees, and at zero deflection."""
 
     low_us: float = 1100.0
     trim_us: float = 1500.0
@@ -71,7 +71,8 @@ class Part:
     """Number of the output, 1..32."""
     scale: Scale | Calibration
     share: float = 1.0
-    """Share of the surface's deflection. The shares of one surface sum to 1."""
+    """Share of the surface's deflection. The sizes of one surface's shares sum to 1. The share is negative
+    for the side that a roll or yaw demand moves the other way."""
     sure: bool = True
     """Whether a calibration or a parameter gives the output's sign."""
     side: str = ""
@@ -184,9 +185,9 @@ def driven(pwm_us: FloatArray, autopilot: str) -> NDArray[np.bool_]:
 
 
 def in_shares(parts: Iterable[Part]) -> tuple[Part, ...]:
-    """Return the parts of one surface, in the order of their outputs, with shares that sum to 1."""
+    """Return the parts of one surface, in the order of their outputs, with shares whose sizes sum to 1."""
     ordered = sorted(parts, key=lambda part: part.output)
-    total = sum(part.share for part in ordered)
+    total = sum(abs(part.share) for part in ordered)
     return tuple(replace(part, share=part.share / total) for part in ordered)
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from advisor.flight.vehicle.limits import assumed_limits
-from advisor.flight.vehicle.surfaces import Part, Scale, Surface, in_shares
+from advisor.flight.vehicle.surfaces import Scale
 from advisor.words.problems import Problem
 
 Parameters = Mapping[str, float]
@@ -18,7 +18,7 @@ class Role:
 
     surface: str
     """``elevator``, ``aileron``, ``rudder``, or a mixed pair: ``elevon``, ``V-tail``, ``A-tail``,
-    ``differential spoiler``."""
+    ``flaperon``, ``differential spoiler``."""
     side: Literal["", "left", "right"] = ""
     """Half of a mixed pair; empty for a plain surface."""
 
@@ -35,7 +35,7 @@ class Words:
     elevator: str
     """Setting that makes an output the elevator."""
     limits: str
-    """Parameters of the pulses at full strokes."""
+    """Parameters of the pulses at full travel."""
     trim: str
     """Parameter of the pulse at zero deflection."""
     sense: str
@@ -75,10 +75,3 @@ class Wiring:
     def outputs_of(self, role: Role) -> list[int]:
         """Return the outputs with this role, rising."""
         return sorted(n for n, mine in self.roles.items() if mine == role)
-
-    def surface(self, role: Role) -> Surface | None:
-        """Return the surface of the outputs with this role; None without such a parameter, or for two
-        banks."""
-        outputs = self.outputs_of(role)
-        surface = Surface(in_shares([Part(n, self.scale(n), side=role.surface) for n in outputs]), False, "")
-        return surface if len(surface.ports) == 1 else None

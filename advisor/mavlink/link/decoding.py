@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from advisor.aircraft.aircraft import Elevator
+from advisor.aircraft.aircraft import Aircraft, Elevator
 from advisor.flight.signals.messages import Columns
 from advisor.flight.stream.identity import Identity
 from advisor.flight.vehicle.pieces import pieces
@@ -27,7 +27,7 @@ class Decoding:
         hello = Packer(None).pack(Heartbeat().speak(None, 0.0)[0], (OWN_SYSTEM, OWN_COMPONENT), 0)
         FrameScanner().feed(bytes(8) + hello)
         self._scanner = FrameScanner()
-        self._who = Identity(elevator or Elevator(), target_system)
+        self._who = Identity(Aircraft(elevator=elevator or Elevator()), target_system)
         self._followed: Ids | None = None
 
     def feed(self, records: bytes) -> list[Columns]:

@@ -2,7 +2,7 @@
 
 import pytest
 
-from advisor.aircraft.aircraft import Elevator
+from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.stream.identity import READER_NOTICE, Identity
 from advisor.flight.vehicle.surfaces import Surface
 from tests.flight.columns import Wire, heartbeat, parameter
@@ -12,7 +12,7 @@ GROUND_STATION, GIMBAL = 190, 154
 
 def elevator(*parameters):
     """Elevator after a heartbeat of 1/1 and PARAM_VALUEs given as (component, name, value)."""
-    identity = Identity(Elevator(), None)
+    identity = Identity(Aircraft(), None)
     wire = Wire()
     heartbeat(wire, 0.0)
     for at_s, (component, name, value) in enumerate(parameters, start=1):
@@ -44,7 +44,7 @@ BEFORE = ((1, "SERVO2_FUNCTION", 19.0), (1, "SERVO2_TRIM", 1500.0), (1, "SERVO2_
 
 def after_a_change(name, value, flown):
     """The elevator after one of its parameters changes, and what is said of that."""
-    identity, wire = Identity(Elevator(), None), Wire()
+    identity, wire = Identity(Aircraft(), None), Wire()
     heartbeat(wire, 0.0)
     for at_s, (_, key, number) in enumerate((*BEFORE, (1, name, value)), start=1):
         parameter(wire, float(at_s), key, number)
@@ -109,7 +109,7 @@ def test_a_parameter_that_does_not_change_the_elevator_is_passed_over_in_silence
 def test_the_version_of_a_development_build_is_told_as_such(kind, text, expected, text_first):
     version = expected.partition("-")[0].split(".")
     packed = sum(int(part) << shift for part, shift in zip(version, (24, 16, 8), strict=True)) | kind
-    identity, wire = Identity(Elevator(), None), Wire()
+    identity, wire = Identity(Aircraft(), None), Wire()
     heartbeat(wire, 0.0)
     wire.send("AUTOPILOT_VERSION", 2.0, flight_sw_version=packed)
     wire.send("STATUSTEXT", 1.0 if text_first else 3.0, text=text.encode())

@@ -3,14 +3,18 @@
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Elevator, ElevatorOutput
+from advisor.aircraft.aircraft import Elevator, ElevatorOutput, SideControl
 from advisor.flight.elevator import elevator_outputs
+from advisor.flight.elevator.side_outputs import find_side_control
 from advisor.flight.vehicle.ardupilot_wiring import ardupilot_wiring
 from advisor.flight.vehicle.surfaces import Surface, driven
-from advisor.flight.vehicle.wiring import AILERON, RUDDER
 from advisor.words.problems import Problem
 
 PLANE = {"SERVO1_FUNCTION": 4.0, "SERVO2_FUNCTION": 19.0, "SERVO4_FUNCTION": 21.0}
+
+
+def side(name, parameters):
+    return find_side_control(name, SideControl(), ardupilot_wiring(parameters))
 
 
 def find_elevator(elevator, parameters):
@@ -165,9 +169,39 @@ def test_outputs_beyond_16_are_in_the_second_bank():
 
 
 def test_aileron_and_rudder_are_found_where_the_parameters_say():
-    assert ardupilot_wiring(PLANE).surface(AILERON).outputs == (1,)
-    assert ardupilot_wiring(PLANE).surface(RUDDER).outputs == (4,)
-    assert ardupilot_wiring({}).surface(RUDDER) is None
+    assert side("aileron", PLANE).outputs == (1,)
+    assert side("rudder", PLANE).outputs == (4,)
+    assert side("rudder", {}) is None
+
+
+def test_more_pulse_rolls_to_the_right_which_is_negative_and_reversed_the_other_way():
+    pulse = np.array([[1900.0]])
+    assert np.degrees(side("aileron", PLANE).deflection(pulse)[0]) == pytest.approx(-25.0)
+    turned = side("aileron", PLANE | {"SERVO1_REVERSED": 1.0})
+    assert np.degrees(turned.deflection(pulse)[0]) == pytest.approx(25.0)
+
+
+@pytest.mark.parametrize(
+    ("left", "right", "name", "down"),
+    [(77, 78, "aileron", "right"), (24, 25, "aileron", "right"), (79, 80, "rudder", "left")],
+)
+def test_half_of_the_difference_of_a_pair_is_its_aileron_or_rudder(left, right, name, down):
+    surface = side(name, {"SERVO1_FUNCTION": float(left), "SERVO2_FUNCTION": float(right)})
+    # 1100 us is trailing edge down for an output that is not reversed.
+    apart = np.array([[1100.0, 1900.0] if down == "left" else [1900.0, 1100.0]])
+    together = np.array([[1100.0, 1100.0]])
+    assert np.degrees(surface.deflection(apart)[0]) == pytest.approx(25.0)
+    assert surface.deflection(together)[0] == pytest.approx(0.0)
+
+
+def test_flaperons_are_no_elevator():
+    assert isinstance(find_elevator(Elevator(), {"SERVO1_FUNCTION": 24.0, "SERVO2_FUNCTION": 25.0}), Problem)
+
+
+def test_the_aircraft_file_calibrates_the_aileron():
+    stated = SideControl(output=1, calibration=((1000.0, 25.0), (2000.0, -25.0)))
+    surface = find_side_control("aileron", stated, ardupilot_wiring({}))
+    assert np.degrees(surface.deflection(np.array([[2000.0]]))[0]) == pytest.approx(-25.0)
 
 
 def test_idle_outputs_carry_no_pulse():

@@ -1,0 +1,157 @@
+"""Objections to a lateral manoeuvre itself: complete data, within the model, long enough, well explained.
+
+A bank of up to 45 deg is the response, because the model keeps sin φ. The derivatives hold for one angle of
+attack and one air speed, and without pitching: the moments p·q and q·r are no part of the model.
+"""
+
+import math
+
+import numpy as np
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.decision.envelope import (
+    banked,
+    changed_speed,
+    flown,
+    other_controls,
+    saturated,
+    short_response,
+    steep,
+    throttled,
+    too_slow,
+    with_gap,
+)
+from advisor.decision.quality import LEAST_R2, WIDEST_PREDICTION_PERCENT
+from advisor.decision.verdict import UNTRUSTED, Reason
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.oem.estimate import NoEstimate
+from advisor.oem.lateral_estimator import LateralEstimate
+from advisor.words.digits import distinct_texts
+from advisor.words.quantiles import NORMAL_95
+
+BANK_DEG = 45.0
+"""Largest bank in a lateral manoeuvre, deg, where the aircraft file allows no more."""
+ALPHA_CHANGE_DEG = 5.0
+"""Largest change of the angle of attack, half of its range, deg: as far as the lift is taken as linear."""
+COUPLING = 0.2
+"""Largest root mean square of the moments p·q and q·r, over that of the angular accelerations."""
+_USUAL_PERIOD_S = 2.0
+"""Period of the Dutch roll where no estimate gives one, s. Small aircraft have 1.8 s, jets 3.5 s."""
+_RATE_OF = {"aileron": "p", "rudder": "r"}
+_NEEDED = ("p", "r", "bank")
+
+
+def judge_lateral(
+    maneuver: Maneuver, estimate: LateralEstimate | NoEstimate, aircraft: Aircraft
+) -> tuple[Reason, ...]:
+    """Return objections to a lateral manoeuvre, the most important first; empty for an accepted one.
+
+    Parameters
+    ----------
+    maneuver
+        Manoeuvre as cut from the stream.
+    estimate
+        Estimate from this manoeuvre alone, or the reason for its absence.
+    """
+    period_s = _period_s(estimate)
+    missing = [name for name in _NEEDED if name not in maneuver.channels]
+    if missing:
+        text = f"no {' and no '.join(missing)} during the manoeuvre; check the recording and fly it again"
+        return (Reason("missing", text, float(len(missing)), 0.0),)
+    controls = [name for name in _RATE_OF if name in maneuver.channels]
+    needed = [maneuver.channels[name] for name in (*controls, *_NEEDED)]
+    reasons = [*too_slow(needed, period_s), *with_gap(needed, maneuver, period_s)]
+    if {reason.code for reason in reasons} & UNTRUSTED:
+        return tuple(reasons)
+    reasons += banked(maneuver, max(BANK_DEG, aircraft.limits.bank_deg), "less aileron, or shorter")
+    for name in controls:
+        reasons += saturated(maneuver, name, getattr(aircraft, name).ends_deg)
+    reasons += steep(maneuver, aircraft.limits.alpha_deg)
+    reasons += [*_unsteady_alpha(maneuver), *throttled(maneuver)]
+    reasons += other_controls(maneuver, ("elevator",), "hold the nose with less elevator")
+    reasons += [*_pitching(maneuver), *changed_speed(maneuver, aircraft)]
+    if isinstance(estimate, NoEstimate):
+        untold = Reason(estimate.code, estimate.text, math.nan, math.nan)
+        return (*reasons, *short_response(maneuver, period_s), untold)
+    lacking = _badly_explained(estimate) or _poor(estimate)
+    # A record that tells enough needs no longer tail.
+    return (*reasons, *(short_response(maneuver, period_s) if lacking else ()), *lacking)
+
+
+def _period_s(estimate: LateralEstimate | NoEstimate) -> float:
+    omega = estimate.modes.dutch_roll_omega if isinstance(estimate, LateralEstimate) else None
+    return 2.0 * math.pi / omega.value if omega is not None and omega.value > 0.0 else _USUAL_PERIOD_S
+
+
+def _unsteady_alpha(maneuver: Maneuver) -> list[Reason]:
+    alpha = flown(maneuver, "alpha")
+    change = 0.5 * float(np.degrees(np.ptp(alpha))) if len(alpha) else 0.0
+    if change <= ALPHA_CHANGE_DEG:
+        return []
+    shown, most = distinct_texts(change, ALPHA_CHANGE_DEG, 1)
+    text = f"angle of attack moved by {shown} deg (limit {most}); keep the nose where it is"
+    return [Reason("alpha", text, change, ALPHA_CHANGE_DEG)]
+
+
+def _pitching(maneuver: Maneuver) -> list[Reason]:
+    """Return a reason where the moments of pitching and rolling together are no longer small."""
+    q, p, r = (maneuver.channels.get(name) for name in ("q", "p", "r"))
+    if q is None or p is None or r is None:
+        return []
+    t = p.t
+    roll, yaw, pitch = p.y, np.interp(t, r.t, r.y), np.interp(t, q.t, q.y)
+    pitch = pitch - np.mean(pitch)
+    shares = [
+        _rms(pitch * rate) / max(_rms(np.gradient(other, t)), 1e-12)
+        for rate, other in ((roll, yaw), (yaw, roll))
+    ]
+    if max(shares) <= COUPLING:
+        return []
+    shown, most = distinct_texts(100.0 * max(shares), 100.0 * COUPLING)
+    text = f"pitching with rolling makes up to {shown} % of the moments (limit {most}); hold the nose still"
+    return [Reason("coupling", text, max(shares), COUPLING)]
+
+
+def _rms(x: np.ndarray) -> float:
+    return float(np.sqrt(np.mean(x**2)))
+
+
+def _badly_explained(estimate: LateralEstimate) -> list[Reason]:
+    """Return a reason where the model does not explain the rate of a control that was flown."""
+    fits = estimate.estimate.fits[0]
+    shares = {name: fits[_RATE_OF[name]].r2 for name in estimate.flown}
+    least = LEAST_R2["q"]
+    worst = min(shares, key=lambda name: shares[name], default="")
+    if not worst or shares[worst] >= least:
+        return []
+    shown, most = distinct_texts(100.0 * shares[worst], 100.0 * least)
+    rate = "roll rate" if worst == "aileron" else "yaw rate"
+    text = f"the model explains {shown} % of the {rate} (at least {most}); fly it in calm air, from rest"
+    return [Reason("fit", text, shares[worst], least)]
+
+
+def _unknown_modes(estimate: LateralEstimate) -> list[Reason]:
+    """Return a reason where the frequency of the Dutch roll is known too poorly."""
+    omega = estimate.modes.dutch_roll_omega
+    width = 100.0 * NORMAL_95 * omega.std / omega.value if omega is not None else math.inf
+    if width <= WIDEST_PREDICTION_PERCENT:
+        return []
+    shown, most = distinct_texts(width, WIDEST_PREDICTION_PERCENT)
+    text = f"the Dutch roll's frequency is known to {shown} % only (limit {most}); use more rudder"
+    return [Reason("information", text, width, WIDEST_PREDICTION_PERCENT)]
+
+
+def _poor(estimate: LateralEstimate) -> list[Reason]:
+    """Return a reason where the estimate predicts the rate of a control too poorly.
+
+    Where only the modes are told, the frequency of the Dutch roll stands for the prediction.
+    """
+    if set(estimate.estimate.not_identifiable) == set(estimate.estimate.names):
+        return _unknown_modes(estimate)
+    bands = {name: 100.0 * estimate.estimate.prediction[_RATE_OF[name]] for name in estimate.flown}
+    widest = max(bands, key=lambda name: bands[name], default="")
+    if not widest or bands[widest] <= WIDEST_PREDICTION_PERCENT:
+        return []
+    shown, most = distinct_texts(bands[widest], WIDEST_PREDICTION_PERCENT)
+    text = f"the {widest}'s response is known to {shown} % only (limit {most}); use more {widest}"
+    return [Reason("information", text, bands[widest], WIDEST_PREDICTION_PERCENT)]

@@ -1,0 +1,156 @@
+"""Path of the samples of aileron and rudder: from movements to lateral manoeuvres.
+
+Each control has a finder of its own. Movements at the same time are one input. An input is cut where its free
+response has lasted long enough, in the vehicle's time, so that a log and a live link agree.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from advisor.flight.elevator.elevator_watch import SETTLE_S, ElevatorWatch
+from advisor.flight.maneuvers.events import FlightEvent, SideManeuverFlown
+from advisor.flight.maneuvers.loop import ROLL, YAW, Loop
+from advisor.flight.maneuvers.maneuver import Maneuver, Span
+from advisor.flight.maneuvers.purpose import not_an_input
+from advisor.flight.maneuvers.side_input import (
+    BESIDE,
+    TAIL_S,
+    TOGETHER_S,
+    SideInput,
+    SideMovement,
+    first_input,
+    input_span,
+    named,
+)
+from advisor.flight.signals.channels import Decoded
+from advisor.flight.signals.tracks import Tracks
+from advisor.flight.stream.cutting import Cutting
+
+LOOPS: dict[str, Loop] = {"aileron": ROLL, "rudder": YAW}
+
+
+class SidePath:
+    """Finds lateral manoeuvres in the samples of aileron and rudder.
+
+    Parameters
+    ----------
+    tracks
+        Channels of the vehicle.
+    cutting
+        Gives the record of a manoeuvre.
+    """
+
+    def __init__(self, tracks: Tracks, cutting: Cutting) -> None:
+        self._tracks, self._cutting = tracks, cutting
+        self.maneuvers = 0
+        """Number of lateral manoeuvres found."""
+        self.begin(0)
+
+    def begin(self, boot: int) -> None:
+        """Begin another power-on, or another vehicle."""
+        self._boot = boot
+        self._watches = {name: ElevatorWatch() for name in LOOPS}
+        self._pending: list[SideMovement] = []
+        self._messages: dict[str, str] = {}
+
+    def mode_changed(self, earliest_s: float, order: int) -> None:
+        """Take a change of the flight mode by the message of this order, at ``earliest_s`` at the
+        earliest."""
+        for watch in self._watches.values():
+            watch.mode_changed(earliest_s, order)
+
+    def feed(self, moved: Sequence[Decoded]) -> list[FlightEvent]:
+        """Follow samples of aileron and rudder, in their order of arrival."""
+        events: list[FlightEvent] = []
+        arrived = [
+            (order, t, new.channel, y)
+            for new in moved
+            if new.source.startswith(self._messages.setdefault(new.channel, new.source.partition(".")[0]))
+            for order, t, y in zip(new.order.tolist(), new.t.tolist(), new.y.tolist(), strict=True)
+        ]
+        for order, t, name, y in sorted(arrived):
+            for found in self._watches[name].push(t, order, y):
+                if isinstance(found, Span):
+                    self._add(SideMovement(LOOPS[name], found))
+            while self._pending and self._is_over():
+                events += self._released(order)
+        return events
+
+    def finish(self) -> list[FlightEvent]:
+        """Take the end of the samples, and close every open movement."""
+        for name, watch in self._watches.items():
+            for span in watch.finish():
+                self._add(SideMovement(LOOPS[name], span))
+        events: list[FlightEvent] = []
+        while self._pending:
+            events += self._released(None)
+        return events
+
+    @property
+    def _newest_s(self) -> float:
+        """Newest stamp of a control, s."""
+        return max(watch.newest_s for watch in self._watches.values())
+
+    def _add(self, movement: SideMovement) -> None:
+        self._pending = sorted([*self._pending, movement], key=lambda one: one.span.start_s)
+
+    def _is_over(self) -> bool:
+        """Return whether nothing can join or shorten the first input any more."""
+        found, _ = first_input(self._pending)
+        last_s = found.last_step_s
+        if self._newest_s >= last_s + TAIL_S[1] + SETTLE_S:
+            return not any(
+                watch.onset_s is not None and watch.onset_s <= last_s + TOGETHER_S
+                for watch in self._watches.values()
+            )
+        return any(one.span.closed_by in ("gap", "mode change") for one in found.movements)
+
+    def _released(self, up_to_order: int | None) -> list[FlightEvent]:
+        """Take the first input out, and return its event; empty for no test input."""
+        found, self._pending = first_input(self._pending)
+        last_s = found.last_step_s
+        yaw_rate = self._tracks.cut("r", last_s, last_s + TAIL_S[1], up_to_order)
+        ahead = [
+            *self._pending,
+            *(
+                _begun(watch.onset_s, watch.amplitude, found.main, LOOPS[name])
+                for name, watch in self._watches.items()
+                if watch.onset_s is not None and up_to_order is not None
+            ),
+        ]
+        span = input_span(found, sorted(ahead, key=_onset), self._newest_s, yaw_rate)
+        self._pending = [one for one in self._pending if not _is_hidden(one, found, span)]
+        maneuver = self._cutting.side(span, self._boot, self.maneuvers + 1, up_to_order)
+        if self._is_no_input(maneuver, found, up_to_order):
+            return []
+        self.maneuvers += 1
+        return [SideManeuverFlown(replace(maneuver, span=replace(span, kind=named(found))))]
+
+    def _is_no_input(self, maneuver: Maneuver, found: SideInput, up_to_order: int | None) -> bool:
+        """Return whether no movement of the input is a test input."""
+        on_ground = self._cutting.why_on_ground(maneuver.span, up_to_order)
+        for one in found.movements:
+            if one.loop.control not in maneuver.channels:
+                continue
+            names = [name for name in (one.loop.rate, one.loop.angle) if name]
+            alone = replace(one.span, record_from_s=maneuver.span.record_from_s, end_s=maneuver.span.end_s)
+            motion = self._cutting.motion_before(alone, names, up_to_order)
+            if not_an_input(replace(maneuver, span=alone), on_ground, motion, None, one.loop) is None:
+                return False
+        return True
+
+
+def _is_hidden(movement: SideMovement, found: SideInput, span: Span) -> bool:
+    """Return whether a movement is a small one within the record of another input."""
+    return movement.span.start_s < span.end_s and movement.amplitude < BESIDE * found.main.amplitude
+
+
+def _onset(movement: SideMovement) -> float:
+    return movement.span.start_s
+
+
+def _begun(onset_s: float, amplitude: float, like: SideMovement, loop: Loop) -> SideMovement:
+    """Return a movement that is still being flown, with its amplitude so far, rad."""
+    steps = ((onset_s, amplitude),)
+    span = replace(like.span, start_s=onset_s, last_step_s=onset_s, end_s=onset_s, steps=steps)
+    return SideMovement(loop, span)

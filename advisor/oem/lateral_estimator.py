@@ -1,0 +1,95 @@
+"""From lateral manoeuvres to derivatives and modes: the function that the rest of the program calls."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.model.lateral import LATERAL, Trim
+from advisor.oem.estimate import Estimate, NoEstimate
+from advisor.oem.estimator import channel_fits
+from advisor.oem.identifiability import correlated
+from advisor.oem.lateral_estimate import LateralSolution, lateral_not_identifiable, solve_lateral
+from advisor.oem.lateral_instruments import nuisances_of
+from advisor.oem.lateral_modes import LateralModes, lateral_modes
+from advisor.oem.lateral_prepare import prepare_lateral
+from advisor.words.quantiles import NORMAL_95
+
+
+@dataclass(frozen=True, slots=True)
+class LateralEstimate:
+    """The lateral derivatives from one manoeuvre, or from several together, with the modes."""
+
+    estimate: Estimate
+    """Derivatives, in the order of ``LATERAL``."""
+    modes: LateralModes
+    nuisances: Mapping[str, tuple[float, float]]
+    """Lag or delay by name, to its value and standard deviation, s."""
+    flown: tuple[str, ...]
+    """Controls of the test: ``aileron``, ``rudder``."""
+
+
+def estimate_lateral(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> LateralEstimate | NoEstimate:
+    """Return the lateral derivatives from manoeuvres that share them, or why there is no estimate."""
+    if not maneuvers:
+        return NoEstimate("no_maneuver", "There is no manoeuvre to estimate from.")
+    problem = prepare_lateral(maneuvers, aircraft)
+    if isinstance(problem, NoEstimate):
+        return problem
+    solution = solve_lateral(problem, nuisances_of(problem, aircraft))
+    return solution if isinstance(solution, NoEstimate) else _reported(solution)
+
+
+def _reported(solution: LateralSolution) -> LateralEstimate:
+    problem = solution.problem
+    told = lateral_not_identifiable(solution)
+    estimate = Estimate(
+        theta=solution.theta,
+        covariance_cr=solution.covariance_cr,
+        covariance=solution.covariance,
+        cost=solution.cost,
+        fits=channel_fits(solution.assembly, solution.optimum),
+        iterations=solution.optimum.iterations,
+        not_identifiable=told,
+        correlated=correlated(solution.covariance_cr, LATERAL.names.reported),
+        condition=solution.influence.condition,
+        airspeed_m_s=_airspeed(solution),
+        servo_lag_s=max((servo.lag_s for servo in problem.servos.values()), default=0.0),
+        prediction=_bands(solution),
+        names=LATERAL.names.reported,
+    )
+    modes = lateral_modes(solution.theta, solution.covariance, _trim(solution))
+    flown = tuple(name for name in LATERAL.inputs if problem.flies(name))
+    return LateralEstimate(estimate, modes, solution.nuisances, flown)
+
+
+def _bands(solution: LateralSolution) -> Mapping[str, float]:
+    """Return the largest half-width of the 95 % band of roll and yaw rate, over the peak of each."""
+    found = {}
+    for name in ("p", "r"):
+        shares = []
+        for named in solution.assembly.rows:
+            rows = named[name]
+            g = solution.optimum.sensitivities[rows][:, : len(LATERAL.shared)]
+            std = np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", g, solution.covariance, g), 0.0))
+            peak = 0.5 * float(np.ptp(solution.optimum.fitted[rows]))
+            shares.append(NORMAL_95 * float(np.max(std)) / peak if peak > 0.0 else np.inf)
+        found[name] = max(shares)
+    return found
+
+
+def _airspeed(solution: LateralSolution) -> float:
+    """Return the speed of the derivatives, m/s: the reference, or the mean of a nearly constant speed."""
+    problem = solution.problem
+    return problem.reference_airspeed_m_s or float(np.mean([np.mean(r.airspeed.y) for r in problem.records]))
+
+
+def _trim(solution: LateralSolution) -> Trim:
+    records = solution.problem.records
+    alpha, theta = (
+        float(np.mean([np.mean(getattr(record, name).y) for record in records]))
+        for name in ("alpha", "theta")
+    )
+    return Trim(_airspeed(solution), alpha, theta)

@@ -1,0 +1,121 @@
+"""Servos and clocks of a lateral record as nuisance parameters of the fit, each with its prior.
+
+The command acts up to half an interval and a filter's delay earlier or later than its stamps, and the
+attitude may be late relative to the rates. Every time is relative to the rates. A servo that
+the aircraft file leaves open lags by an unknown time: an ignored lag of 0.08 s costs a quarter of L_p and
+L_δa. Each is one more parameter, and its error is part of every interval.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.instruments.lateness import lateness_std
+from advisor.flight.signals.messages import FloatArray
+from advisor.model.axis_response import respond_axis
+from advisor.model.lateral import LATERAL
+from advisor.oem.extra import Extra, Prior
+from advisor.oem.lateral_problem import LateralProblem, assemble_lateral
+
+USUAL_LAG = Prior(0.05, 0.05)
+"""Lag of a servo that the aircraft file leaves open, s. Servos of small aircraft have 0.03 to 0.15 s, and a
+measured surface has none."""
+KNOWN_TO = 0.1
+"""Standard deviation of a stated lag, over the lag: as for the elevator's servo."""
+DIFFERENCE_S = 1e-3
+"""Step of the differences, s: half of it is below the shortest interval of a command."""
+LONGEST_LAG_S = 0.4
+
+
+@dataclass(frozen=True, slots=True)
+class Nuisance:
+    """One nuisance parameter, in s."""
+
+    kind: Literal["lag", "delay", "command"]
+    """Lag of a control's servo, delay of an output relative to the rates, or delay of all commands."""
+    of: str
+    """Control or output; empty for the commands."""
+    prior: Prior
+
+    @property
+    def name(self) -> str:
+        """Name of the parameter with its unit."""
+        return f"{self.of or 'command'}_{'lag' if self.kind == 'lag' else 'delay'}_s"
+
+    def read(self, problem: LateralProblem) -> float:
+        """Return the value in a problem, s."""
+        if self.kind == "lag":
+            return problem.servos[self.of].lag_s
+        return problem.delays_s.get(self.of, 0.0) if self.kind == "delay" else problem.command_delay_s
+
+    def write(self, problem: LateralProblem, value: float) -> LateralProblem:
+        """Return the problem with another value, s; a lag within its range."""
+        if self.kind == "command":
+            return replace(problem, command_delay_s=value)
+        if self.kind == "delay":
+            return replace(problem, delays_s={**problem.delays_s, self.of: value})
+        servo = replace(problem.servos[self.of], lag_s=float(np.clip(value, 0.0, LONGEST_LAG_S)))
+        return replace(problem, servos={**problem.servos, self.of: servo})
+
+
+def nuisances_of(problem: LateralProblem, aircraft: Aircraft) -> tuple[Nuisance, ...]:
+    """Return the nuisance parameters of a problem; a still input has none."""
+    moving = [name for name in LATERAL.inputs if problem.moves(name)]
+    stamps = [record.inputs[name].t for record in problem.records for name in moving if name in record.inputs]
+    found = [Nuisance("command", "", Prior(0.0, lateness_std(stamps)))] if stamps else []
+    for name in ("bank", "beta"):
+        measured = [record.outputs[name].t for record in problem.records if name in record.outputs]
+        if measured:
+            found.append(Nuisance("delay", name, Prior(0.0, lateness_std(measured))))
+    for name in moving:
+        stated = getattr(aircraft, name).lag_s
+        if stated is None:
+            found.append(Nuisance("lag", name, USUAL_LAG))
+        elif stated > 0.0:
+            found.append(Nuisance("lag", name, Prior(stated, KNOWN_TO * stated)))
+    return tuple(found)
+
+
+def begun(problem: LateralProblem, nuisances: Sequence[Nuisance]) -> LateralProblem:
+    """Return the problem with every nuisance parameter at the mean of its prior."""
+    for x in nuisances:
+        problem = x.write(problem, x.prior.mean)
+    return problem
+
+
+def extra_of(
+    problem: LateralProblem, shared: FloatArray, local: FloatArray, nuisances: Sequence[Nuisance]
+) -> Extra:
+    """Return the nuisance parameters as additional ones of a fit; ``shared`` (15,), ``local`` (m, 9)."""
+    columns = []
+    for x in nuisances:
+        value = x.read(problem)
+        low = max(value - DIFFERENCE_S, 0.0) if x.kind == "lag" else value - DIFFERENCE_S
+        ends = [_outputs(x.write(problem, at), shared, local) for at in (low, value + DIFFERENCE_S)]
+        columns.append((ends[1] - ends[0]) / (value + DIFFERENCE_S - low))
+    if not columns:
+        return Extra.none(len(assemble_lateral(problem).z))
+    values = np.array([x.read(problem) for x in nuisances])
+    return Extra.at(np.column_stack(columns), values, [x.prior for x in nuisances])
+
+
+def _outputs(problem: LateralProblem, shared: FloatArray, local: FloatArray) -> FloatArray:
+    assembly = assemble_lateral(problem)
+    y = np.empty(len(assembly.z))
+    respond_axis(assembly.grid, shared, local, y, np.empty((0, len(shared) + local.shape[1])))
+    return y
+
+
+def moved_by(step: FloatArray, problem: LateralProblem, nuisances: Sequence[Nuisance]) -> LateralProblem:
+    """Return the problem with its nuisance parameters moved by ``step`` (k,), s."""
+    for x, change in zip(nuisances, step, strict=True):
+        problem = x.write(problem, x.read(problem) + float(change))
+    return problem
+
+
+def penalty(problem: LateralProblem, nuisances: Sequence[Nuisance]) -> float:
+    """Return -2 log of the priors' density up to a constant, as white noise weighs the priors."""
+    return sum(((x.read(problem) - x.prior.mean) / (x.prior.std * x.prior.share)) ** 2 for x in nuisances)

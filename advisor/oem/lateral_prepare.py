@@ -1,0 +1,120 @@
+"""From lateral manoeuvres and the aircraft file to the estimation problem."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from advisor.aircraft.aircraft import Aircraft, SideControl
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.derived_alpha import SLOWEST_FLIGHT_M_S
+from advisor.flight.signals.record import Channel
+from advisor.model.lateral import LATERAL
+from advisor.oem.airspeed import airspeed
+from advisor.oem.alpha_use import FEWEST_SAMPLES, can_do_without, has, infer, why_left_out
+from advisor.oem.estimate import NoEstimate
+from advisor.oem.lateral_problem import NEEDED, LateralProblem, LateralRecord
+from advisor.oem.prepare import constant_speed, reference_speed, signal_of, stated_reference
+from advisor.oem.problem import Signal
+from advisor.oem.surface import Servo
+
+_SPOKEN = {"p": "roll rate", "r": "yaw rate", "bank": "bank angle", "theta": "pitch angle", "q": "pitch rate"}
+
+
+def prepare_lateral(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> LateralProblem | NoEstimate:
+    """Return the estimation problem of the lateral axis, or why there is none."""
+    for maneuver in maneuvers:
+        missing = _missing(maneuver)
+        if missing is not None:
+            return missing
+    measured = [airspeed(m.channels) for m in maneuvers]
+    speeds = [
+        found.signal
+        if found is not None
+        else _plain_speed(m) or constant_speed(m, aircraft.stated_airspeed_m_s)
+        for found, m in zip(measured, maneuvers, strict=True)
+    ]
+    known = [speed for speed in speeds if speed is not None]
+    if len(known) < len(maneuvers):
+        return NoEstimate(
+            "no_airspeed", "No air speed is known, which the turn of the path needs: set airspeed_m_s."
+        )
+    reference = reference_speed(
+        known,
+        stated_reference(aircraft, maneuvers),
+        all(found is not None and found.smooth for found in measured),
+    )
+    outputs = _outputs(maneuvers, aircraft)
+    left_out = why_left_out(maneuvers, aircraft)
+    arm = aircraft.beta.vane_arm_m
+    return LateralProblem(
+        records=tuple(
+            LateralRecord(
+                inputs={
+                    name: signal_of(m.channels[name]) for name in LATERAL.inputs if has(m.channels, name)
+                },
+                outputs={name: signal_of(m.channels[name]) for name in outputs},
+                airspeed=speed,
+                alpha=_alpha(m, aircraft, left_out),
+                theta=signal_of(m.channels["theta"]),
+                q=signal_of(m.channels["q"]),
+            )
+            for m, speed in zip(maneuvers, known, strict=True)
+        ),
+        reference_airspeed_m_s=reference,
+        servos={name: _servo(getattr(aircraft, name)) for name in LATERAL.inputs},
+        beta_arm_m=(aircraft.alpha.vane_arm_m if arm is None else arm) or 0.0,
+        accelerometer_arm_m=aircraft.accelerometer.arm_m or 0.0,
+    )
+
+
+def _plain_speed(maneuver: Maneuver) -> Signal | None:
+    """Return the air speed of the slowest aircraft, whose readings fall below the speed of others."""
+    channel = maneuver.channels.get("airspeed")
+    if channel is None or len(channel) < 2 or not np.median(channel.y) > SLOWEST_FLIGHT_M_S:
+        return None
+    return Signal(channel.t, np.maximum(channel.y, 0.5 * SLOWEST_FLIGHT_M_S))
+
+
+def _servo(control: SideControl) -> Servo:
+    return Servo(control.lag_s or 0.0, control.delay_s or 0.0)
+
+
+def _missing(maneuver: Maneuver) -> NoEstimate | None:
+    for name in (*NEEDED, "theta", "q"):
+        if not has(maneuver.channels, name):
+            samples = len(maneuver.channels[name]) if name in maneuver.channels else 0
+            text = f"The record has {samples} samples of the {_SPOKEN[name]}; it takes {FEWEST_SAMPLES}."
+            return NoEstimate("too_few_samples", text)
+    return None
+
+
+def _outputs(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> list[str]:
+    """Return the outputs that every manoeuvre has. An estimate of the autopilot's own is no sideslip."""
+    names = [*NEEDED]
+    if all(_moves(m, "a_y") for m in maneuvers):
+        names.append("a_y")
+    stated = aircraft.beta.source not in ("auto", "none")
+    wanted = aircraft.beta.source != "none" and all(
+        _moves(m, "beta") and (stated or m.channels["beta"].provenance in ("vane", "simulated"))
+        for m in maneuvers
+    )
+    return [*names, "beta"] if wanted else names
+
+
+def _moves(maneuver: Maneuver, name: str) -> bool:
+    return has(maneuver.channels, name) and float(np.ptp(maneuver.channels[name].y)) > 0.0
+
+
+def _alpha(maneuver: Maneuver, aircraft: Aircraft, left_out: str) -> Signal:
+    """Return the angle of attack: measured, by the motion, or that of level flight at the mean attitude."""
+    channel: Channel | None = None
+    if not left_out and has(maneuver.channels, "alpha"):
+        channel = maneuver.channels["alpha"]
+    elif can_do_without(maneuver, aircraft):
+        channel = infer(maneuver, aircraft)
+    elif has(maneuver.channels, "alpha"):
+        channel = maneuver.channels["alpha"]
+    if channel is not None:
+        return signal_of(channel)
+    theta = maneuver.channels["theta"]
+    return Signal(theta.t[[0, -1]], np.full(2, float(np.mean(theta.y))))

@@ -1,0 +1,137 @@
+"""The start of the search on the lateral axis: the integrated equations as a linear regression.
+
+The kinematics give the sideslip up to its level and drift,
+
+    β̇ = a_y/V + (g/V)·cos θ·sin φ + sin α·p - cos α·r,
+
+with the specific force a_y, or without one with the weak guess a_y/V = Y_β·β. The rates then obey equations
+that are linear in the derivatives once they are integrated (the integral form of the equation-error method,
+Klein & Morelli, *Aircraft System Identification*, Ch. 5).
+"""
+
+import numpy as np
+
+from advisor.aircraft.standard_gravity import GRAVITY_M_S2
+from advisor.flight.signals.messages import FloatArray
+from advisor.flight.signals.motion import integrated
+from advisor.model.lateral import LATERAL
+from advisor.oem.lateral_problem import LateralProblem, LateralRecord
+
+_GUESSED_Y_BETA = -0.3
+"""Y_β, 1/s, where neither a vane nor a_y is measured: jets have -0.2, small aircraft -0.5."""
+
+
+def lateral_start(problem: LateralProblem) -> tuple[FloatArray, FloatArray]:
+    """Return shared (15,) and local (m, 9) parameters for the start of a search.
+
+    The numbers are always finite; a record without information yields a least-norm solution.
+    """
+    prepared = [_Motion(record, problem) for record in problem.records]
+    names = LATERAL.names
+    shared = np.zeros(len(names.shared))
+    local = np.zeros((len(prepared), len(names.local)))
+    for letter in "LN":
+        output = {"L": "p", "N": "r"}[letter]
+        columns = [k for k, name in enumerate(names.shared) if name.startswith(f"{letter}_")]
+        found, own = _regressed([(m.integrals(letter), m.signals[output], m.own()) for m in prepared])
+        shared[columns] = found
+        local[:, names.local.index(f"{letter}_0")] = own
+    columns = [k for k, name in enumerate(names.shared) if name.startswith("Y_")]
+    forces = [m.force() for m in prepared if m.has_force]
+    if forces:
+        found, own = _regressed(forces)
+        kept = np.array([name not in ("Y_p", "Y_r") for name in np.array(names.shared)[columns]])
+        shared[columns] = np.where(kept, found, 0.0)
+        local[[m.has_force for m in prepared], names.local.index("Y_0")] = own
+    else:
+        shared[columns[0]] = _GUESSED_Y_BETA
+    for i, motion in enumerate(prepared):
+        for state in LATERAL.states:
+            local[i, names.local.index(f"{state}_initial")] = motion.signals[state][0]
+    return shared, local
+
+
+class _Motion:
+    """Signals of one record at the stamps of the roll rate."""
+
+    def __init__(self, record: LateralRecord, problem: LateralProblem) -> None:
+        t = record.outputs["p"].t
+        self.t = t
+        self.speed = record.airspeed.at(t)
+        reference = problem.reference_airspeed_m_s
+        self.ratio = np.ones(len(t)) if reference is None else self.speed / reference
+        self.signals = {name: record.outputs[name].at(t) for name in ("p", "r", "bank")}
+        for name in LATERAL.inputs:
+            command = record.inputs.get(name)
+            moved = np.zeros(len(t))
+            if command is not None:
+                servo = problem.servo(name)
+                grid, pace = servo.grid(command.t)
+                fine = np.union1d(grid, np.arange(grid[0], grid[-1], pace)) if np.isfinite(pace) else grid
+                moved = np.interp(t, fine, servo.move(command.t, command.y, fine)[0])
+            self.signals[name] = moved
+        self.has_force = "a_y" in record.outputs
+        alpha, theta = record.alpha.at(t), record.theta.at(t)
+        turn = GRAVITY_M_S2 / self.speed * np.cos(theta) * np.sin(self.signals["bank"])
+        turn += np.sin(alpha) * self.signals["p"] - np.cos(alpha) * self.signals["r"]
+        self.force_rate = record.outputs["a_y"].at(t) / self.speed if self.has_force else np.zeros(len(t))
+        if "beta" in record.outputs:
+            arm = problem.beta_arm_m / self.speed
+            self.signals["beta"] = record.outputs["beta"].at(t) - arm * self.signals["r"]
+        elif self.has_force:
+            self.signals["beta"] = integrated(t, turn + self.force_rate)
+        else:
+            self.signals["beta"] = _leaking(t, turn)
+
+    def integrals(self, letter: str) -> FloatArray:
+        """Return the integrals (n, 5) that multiply the derivatives of one moment."""
+        return np.column_stack(
+            [
+                integrated(self.t, self.ratio**term.power * self.signals[term.factor])
+                for term in LATERAL.shared
+                if term.name.startswith(f"{letter}_")
+            ]
+        )
+
+    def own(self) -> FloatArray:
+        """Return the columns of the manoeuvre itself: constant of trim, initial rate, drift of β."""
+        since = self.t - self.t[0]
+        return np.column_stack([integrated(self.t, self.ratio**2), np.ones(len(since)), since**2])
+
+    def force(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return columns (n, 5) of Y, the force per mass and speed (n,), and the own columns."""
+        columns = np.column_stack(
+            [
+                self.ratio**term.power * self.signals[term.factor]
+                for term in LATERAL.shared
+                if term.name.startswith("Y_")
+            ]
+        )
+        since = self.t - self.t[0]
+        return columns, self.force_rate, np.column_stack([self.ratio, since, since**2])
+
+
+def _leaking(t: FloatArray, rate: FloatArray) -> FloatArray:
+    """Return the solution of β̇ = Y_β·β + rate with the guessed Y_β, from rest."""
+    beta = np.zeros(len(t))
+    for i, step in enumerate(np.diff(t)):
+        beta[i + 1] = beta[i] + step * (_GUESSED_Y_BETA * beta[i] + 0.5 * (rate[i] + rate[i + 1]))
+    return beta
+
+
+def _regressed(parts: list[tuple[FloatArray, FloatArray, FloatArray]]) -> tuple[FloatArray, FloatArray]:
+    """Return the common coefficients (k,), and the first own coefficient of each manoeuvre (m,).
+
+    Each part holds common columns (n, k), the left side (n,) and own columns (n, l). The own columns are
+    removed from both by regression, manoeuvre by manoeuvre.
+    """
+    left, right = [], []
+    for common, y, own in parts:
+        basis, _ = np.linalg.qr(own)
+        left.append(common - basis @ (basis.T @ common))
+        right.append(y - basis @ (basis.T @ y))
+    stacked = np.concatenate(left)
+    size = np.maximum(np.linalg.norm(stacked, axis=0), 1e-12)
+    found = np.linalg.lstsq(stacked / size, np.concatenate(right), rcond=1e-6)[0] / size
+    own_first = [np.linalg.lstsq(own, y - common @ found, rcond=None)[0][0] for common, y, own in parts]
+    return found, np.array(own_first)

@@ -1,0 +1,149 @@
+"""The lateral half of the analysis: its JSON block, and its text."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from advisor.campaign.lateral import JudgedLateral, LateralState
+from advisor.oem.estimate import Estimate
+from advisor.oem.flying_qualities import Quality
+from advisor.oem.lateral_estimator import LateralEstimate
+from advisor.oem.lateral_modes import LateralModes
+from advisor.words.plain import picked, plain
+from advisor.words.quantiles import NORMAL_95
+from advisor.words.vehicle_time import clock
+
+
+def lateral_document(state: LateralState) -> dict[str, Any]:
+    """Return the block ``lateral`` of ``advisor analyze --json``, in SI units."""
+    verdict, model = state.flight_test, state.model
+    return {
+        "maneuvers": [_maneuver(judged) for judged in state.maneuvers],
+        "flight_test": {
+            **picked(verdict, "rule decision sentence criterion_percent limit_percent stopped_at warnings"),
+            "by_rule": {
+                name: picked(one, "stopped_at history_percent parameter_percent")
+                for name, one in verdict.by_rule.items()
+            },
+            "next": verdict.next and picked(verdict.next, "advice holding_back"),
+        },
+        "model": _model(model),
+        "modes": _modes(model.modes) if model else None,
+        "not_identifiable": dict(model.estimate.not_identifiable) if model else {},
+        "estimate_from": list(state.estimate_from),
+    }
+
+
+def _maneuver(judged: JudgedLateral) -> dict[str, Any]:
+    maneuver, span, verdict = judged.maneuver, judged.maneuver.span, judged.verdict
+    found = judged.estimate if isinstance(judged.estimate, LateralEstimate) else None
+    fits = found.estimate.fits[0].items() if found else ()
+    return {
+        **picked(maneuver, "number flight boot mode"),
+        "start_boot_s": plain(span.start_s),
+        "end_boot_s": plain(span.end_s),
+        "last_step_boot_s": plain(span.last_step_s),
+        "input": span.kind,
+        "closed_by": span.closed_by,
+        "verdict": "accepted" if verdict.accepted else "rejected",
+        **picked(verdict, "sentence reasons cautions rules"),
+        "cost": plain(found.estimate.cost) if found else None,
+        "fit": {name: picked(fit, "rms tic r2") for name, fit in fits},
+        "estimates": _told(found.estimate) if found else None,
+        "modes": _modes(found.modes) if found else None,
+        "not_identifiable": dict(found.estimate.not_identifiable) if found else {},
+    }
+
+
+def _told(estimate: Estimate) -> dict[str, Any]:
+    """Return every identifiable derivative as ``{value, std, std_cr, ci95}``."""
+    return {
+        name: {
+            "value": plain(float(value)),
+            "std": plain(float(std)),
+            "std_cr": plain(float(bound)),
+            "ci95": [plain(float(value + side * NORMAL_95 * std)) for side in (-1.0, 1.0)],
+        }
+        for name, value, std, bound in zip(
+            estimate.names, estimate.theta, estimate.std, estimate.std_cr, strict=True
+        )
+        if name not in estimate.not_identifiable
+    }
+
+
+def _model(model: LateralEstimate | None) -> dict[str, Any] | None:
+    if model is None:
+        return None
+    return {
+        **_told(model.estimate),
+        "reference_airspeed_m_s": plain(model.estimate.airspeed_m_s),
+        "instruments": {
+            name: {"value": plain(value), "std": plain(std)} for name, (value, std) in model.nuisances.items()
+        },
+    }
+
+
+def _modes(modes: LateralModes) -> dict[str, Any]:
+    return {
+        "dutch_roll": {"omega": _one(modes.dutch_roll_omega), "zeta": _one(modes.dutch_roll_zeta)},
+        "roll": {"time_constant": _one(modes.roll_time_constant)},
+        "spiral": {"pole": _one(modes.spiral_pole)},
+        "left_out": dict(modes.left_out),
+    }
+
+
+def _one(quality: Quality | None) -> dict[str, Any] | None:
+    if quality is None:
+        return None
+    return {
+        "value": plain(quality.value),
+        "std": plain(quality.std),
+        "ci95": [plain(end) for end in quality.ci95],
+    }
+
+
+def lateral_lines(state: LateralState) -> Iterator[str]:
+    """Yield the lines of the lateral half: verdicts, derivatives, modes, stop or continue."""
+    if not state.maneuvers:
+        yield "No test input of the aileron or the rudder was found."
+        return
+    for judged in state.maneuvers:
+        span, verdict = judged.maneuver.span, judged.verdict
+        mark = "✓" if verdict.accepted else "✗"
+        yield (
+            f"{judged.maneuver.number:2d}  {clock(span.start_s):>7}  {span.kind:<18}  {mark} "
+            f"{verdict.sentence}"
+        )
+    if state.model is not None:
+        yield ""
+        yield from _model_lines(state.model)
+    yield ""
+    yield state.flight_test.sentence
+    if state.flight_test.next is not None:
+        yield f"  {state.flight_test.next.advice}"
+
+
+def _model_lines(model: LateralEstimate) -> Iterator[str]:
+    estimate = model.estimate
+    for name, value, std in zip(estimate.names, estimate.theta, estimate.std, strict=True):
+        if name not in estimate.not_identifiable:
+            yield f"  {name:<10} {value:10.4g} ± {NORMAL_95 * std:.2g}"
+    for text, names in _by_reason(estimate.not_identifiable).items():
+        yield f"  not identifiable: {', '.join(names)} ({text})"
+    shown = {
+        "Dutch roll frequency": (model.modes.dutch_roll_omega, "rad/s"),
+        "Dutch roll damping": (model.modes.dutch_roll_zeta, ""),
+        "roll time constant": (model.modes.roll_time_constant, "s"),
+        "spiral pole": (model.modes.spiral_pole, "1/s"),
+    }
+    for name, (quality, unit) in shown.items():
+        if quality is not None:
+            yield f"  {name:<21} {quality.value:8.3g} ± {NORMAL_95 * quality.std:.2g} {unit}".rstrip()
+    for mode, text in model.modes.left_out.items():
+        yield f"  no {mode.replace('_', ' ')}: {text}"
+
+
+def _by_reason(reasons: Mapping[str, str]) -> dict[str, list[str]]:
+    found: dict[str, list[str]] = {}
+    for name, text in reasons.items():
+        found.setdefault(text, []).append(name)
+    return found

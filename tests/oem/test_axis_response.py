@@ -1,0 +1,85 @@
+import numpy as np
+import pytest
+
+from advisor.model.axis_response import AxisGrid, respond_axis
+from advisor.model.lateral import LATERAL
+from advisor.model.response import respond
+from advisor.oem.lateral_problem import LateralProblem, assemble_lateral
+from advisor.oem.problem import OutputErrorProblem, Record, Signal, assemble
+from tests.oem.lateral_builders import JET, TRIM, aileron_doublet, flown, rudder_doublet, vector
+
+T = np.arange(0.0, 8.0, 0.025)
+INITIAL = (0.002, 0.01, -0.004, 0.05)
+
+
+def responding(assembly, shared, local, sensitivities=False):
+    rows = len(assembly.z)
+    y, g = np.empty(rows), np.empty((rows if sensitivities else 0, len(shared) + local.shape[1]))
+    assert respond_axis(assembly.grid, shared, local, y, g)
+    return y, g
+
+
+@pytest.fixture(scope="module")
+def lateral():
+    record = flown(JET, aileron=aileron_doublet(T), rudder=rudder_doublet(T), seconds=8.0, initial=INITIAL)
+    local = np.zeros((1, len(LATERAL.names.local)))
+    local[0, :3], local[0, 3:7] = list(TRIM.values()), INITIAL
+    return assemble_lateral(LateralProblem((record,), accelerometer_arm_m=0.0)), local
+
+
+def test_the_kernel_agrees_with_an_independent_integration(lateral):
+    assembly, local = lateral
+    y, _ = responding(assembly, vector(JET), local)
+    for name, rows in assembly.rows[0].items():
+        size = np.ptp(assembly.z[rows])
+        assert np.max(np.abs(y[rows] - assembly.z[rows])) < 1e-5 * size, name
+
+
+def test_sensitivities_are_the_derivatives_of_the_outputs(lateral):
+    assembly, local = lateral
+    everything = np.concatenate([vector(JET), local[0]])
+    _, g = responding(assembly, vector(JET), local, sensitivities=True)
+    for j in range(len(everything)):
+        step = np.zeros(len(everything))
+        step[j] = 1e-5
+        ends = [
+            responding(assembly, x[:15], x[15:][None, :])[0] for x in (everything + step, everything - step)
+        ]
+        by_difference = (ends[0] - ends[1]) / 2e-5
+        scale = np.max(np.abs(g[:, j])) + 1e-9
+        assert np.max(np.abs(by_difference - g[:, j])) < 1e-3 * scale, j
+
+
+def test_the_short_period_described_as_an_axis_is_its_closed_form():
+    t = np.arange(0.0, 4.0, 0.02)
+    elevator = Signal(t, np.where((t > 0.5) & (t < 1.5), 0.05, 0.0))
+    still = Signal(t, np.zeros(len(t)))
+    closed = assemble(OutputErrorProblem((Record(elevator, {"alpha": still, "q": still, "theta": still}),)))
+    shared = np.array([-1.0, -0.05, -0.1, -5.0, -1.5, -7.0, 0.0])
+    local = np.array([[0.04, 0.47, 0.05, 0.01, 0.02, 0.0, 0.0]])
+    expected = np.empty(len(closed.z))
+    assert respond(closed.grid, shared, local, expected, np.empty((0, 14)))
+    n, events = 3, len(t)
+    linear = np.zeros((events, n, n))
+    linear[:, 0, 1] = linear[:, 2, 1] = 1.0
+    seen = np.tile(np.eye(n), (events, 1, 1))
+    zero = np.zeros((events, n))
+    # α̇ by α, q, δe; q̇ by α, q, δe; then the constants of both.
+    place = np.array([(0, 0, 1), (0, 1, 0), (0, 3, 1), (1, 0, 2), (1, 1, 1), (1, 3, 2), (0, 4, 1), (1, 4, 2)])
+    grid = AxisGrid(
+        first=np.array([0, events]), step_s=closed.grid.step_s[closed.grid.kind],
+        ratio=np.ones(events), inputs=elevator.y[:, None], start=elevator.y[:, None],
+        slope=closed.grid.slope[:, None], linear=linear, sine=zero, turn=zero,
+        row=closed.grid.row[[0, 1, 3]], seen=seen, felt=np.zeros_like(seen), place=place,
+        bias=np.full(3, -1), bank=-1, yaw=0,
+    )  # fmt: skip
+    y = np.empty(len(closed.z))
+    assert respond_axis(grid, shared[:6], local[:, :5], y, np.empty((0, 11)))
+    np.testing.assert_allclose(y, expected, atol=1e-7)
+
+
+def test_a_model_that_runs_away_is_no_response(lateral):
+    assembly, local = lateral
+    wild = vector(JET | {"L_p": 80.0})
+    y = np.empty(len(assembly.z))
+    assert not respond_axis(assembly.grid, wild, local, y, np.empty((0, 24)))

@@ -1,0 +1,84 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from advisor.model.lateral import LATERAL
+from advisor.oem.lateral_estimate import (
+    SIDE_FORCE_STD,
+    LateralSolution,
+    lateral_not_identifiable,
+    solve_lateral,
+)
+from advisor.oem.lateral_problem import LateralProblem
+from advisor.oem.problem import Signal
+from tests.oem.lateral_builders import JET, aileron_doublet, both_inputs, flown, rudder_doublet, vector
+
+T = np.arange(0.0, 15.0, 0.025)
+WITHOUT_VANE = ("p", "r", "bank", "a_y")
+
+
+def solved(problem):
+    solution = solve_lateral(problem)
+    assert isinstance(solution, LateralSolution), solution
+    return solution
+
+
+def errors(solution):
+    return (solution.theta - vector(JET)) / np.sqrt(np.diag(solution.covariance))
+
+
+def place(name):
+    return LATERAL.names.reported.index(name)
+
+
+@pytest.mark.parametrize("measured", [WITHOUT_VANE, (*WITHOUT_VANE, "beta"), ("p", "r", "bank", "beta")])
+def test_two_doublets_tell_every_derivative_with_a_true_error(measured):
+    solution = solved(both_inputs(JET, np.random.default_rng(3), measured))
+    assert np.max(np.abs(errors(solution))) < 3.5
+    assert solution.covariance[place("L_p"), place("L_p")] < (0.02 * 2.1) ** 2
+
+
+def test_everything_is_identifiable_from_aileron_and_rudder():
+    solution = solved(both_inputs(JET, np.random.default_rng(1)))
+    assert lateral_not_identifiable(solution) == {}
+
+
+def test_the_aileron_alone_leaves_the_rudder_unknown_and_says_what_to_fly():
+    record = flown(JET, aileron=aileron_doublet(T), rng=np.random.default_rng(1))
+    told = lateral_not_identifiable(solved(LateralProblem((record,))))
+    for name in ("Y_delta_r", "L_delta_r", "N_delta_r"):
+        assert told[name] == "the rudder did not move; fly a rudder doublet"
+    assert "L_p" not in told
+
+
+def test_the_rudder_alone_leaves_the_aileron_unknown():
+    record = flown(JET, rudder=rudder_doublet(T), rng=np.random.default_rng(1))
+    told = lateral_not_identifiable(solved(LateralProblem((record,))))
+    assert told["L_delta_a"] == "the aileron did not move; fly an aileron doublet"
+    assert "N_delta_r" not in told
+
+
+def test_a_prior_that_the_data_do_not_sharpen_is_no_knowledge():
+    rng = np.random.default_rng(1)
+    record = flown(JET, aileron=aileron_doublet(T), measured=WITHOUT_VANE, rng=rng)
+    force = record.outputs["a_y"]
+    useless = Signal(force.t, force.y + rng.normal(0.0, 3.0, len(force.t)))
+    solution = solved(LateralProblem((replace(record, outputs={**record.outputs, "a_y": useless}),)))
+    std = np.sqrt(np.diag(solution.covariance))
+    assert std[place("Y_p")] > 0.3 * SIDE_FORCE_STD
+    assert "Y_r" in lateral_not_identifiable(solution)
+
+
+def test_derivatives_are_given_at_the_reference_speed():
+    record = flown(JET, aileron=aileron_doublet(T), rudder=rudder_doublet(T))
+    at_half = solved(LateralProblem((record,), reference_airspeed_m_s=65.0))
+    assert at_half.theta[place("L_beta")] == pytest.approx(JET["L_beta"] / 4.0, rel=1e-3)
+    assert at_half.theta[place("L_p")] == pytest.approx(JET["L_p"] / 2.0, rel=1e-3)
+
+
+def test_without_side_force_and_sideslip_no_derivative_is_told():
+    record = flown(JET, aileron=aileron_doublet(T), measured=("p", "r", "bank"), rng=np.random.default_rng(1))
+    told = lateral_not_identifiable(solved(LateralProblem((record,))))
+    assert set(told) == set(LATERAL.names.reported)
+    assert all("record a_y" in text for text in told.values())
