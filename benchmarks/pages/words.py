@@ -12,8 +12,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 MOST_WORDS = 22_000
-"""Words of all pages together: 20,000 of explanation, and 2,000 of tables that are looked up. Such tables are
-those of symbols, symptoms and keys, which nobody reads through."""
+"""Words of all pages together: 20,000 of explanation, and 2,000 of tables that are looked up and not read
+through (symbols and terms, symptoms, keys)."""
 MOST_BYTES = {"docs/explanation/gap.md": 8_192}
 """Size of single pages, bytes."""
 _MADE = re.compile(r"<!-- ([a-z-]+): begin -->.*?<!-- \1: end -->", re.DOTALL)

@@ -36,6 +36,8 @@ class InstrumentFinding:
     """Line for the aircraft file, or what to change on the aircraft, without a full stop."""
     used: bool = False
     """Whether the estimates use the value that the data tell."""
+    removed_s: float = 0.0
+    """Delay that was removed from the channel's stamps, s."""
 
     @property
     def code(self) -> str:

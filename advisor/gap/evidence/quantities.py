@@ -37,6 +37,7 @@ class Quantity:
 
 
 QUANTITIES: tuple[Quantity, ...] = (
+    Quantity("answer", "", "mark of the answer that the search ends with"),
     Quantity("tried", "", "mark of an alternative that this flight can show"),
     Quantity("screen_gain", "nats", "gain in the screening, less the price of parameters", _folded),
     Quantity("screen_share", "", "gain in the screening relative to the best alternative"),

@@ -34,11 +34,14 @@ class Row:
     """One alternative with the values of its columns; a column that is left out is zero."""
 
     alternative: Alternative
-    values: Mapping[str, float]
+    values: Values
 
 
-def rows_of(m: Measured) -> tuple[Row, ...]:
-    """Return one row for each alternative: none, parameters, every effect, and every block without a name."""
+def rows_of(m: Measured, answer: Alternative | None = None) -> tuple[Row, ...]:
+    """Return one row for each alternative: none, parameters, every effect, and every block without a name.
+
+    ``answer`` is the alternative that the search ends with.
+    """
     probed = _of_blocks(m)
     strongest = max(probed.values(), key=lambda values: values["block_gain"])
     together = _of_residual(m, m.base) | _of_courses(m, *m.courses) | strongest
@@ -61,7 +64,10 @@ def rows_of(m: Measured) -> tuple[Row, ...]:
             {"law_lead": lead} if m.laws.get(block, 0.0) == max(m.laws.values(), default=0.0) > 0 else {}
         )
         rows.append(Row(Alternative("unknown", "unknown", block), values))
-    return tuple(rows)
+    return tuple(
+        Row(row.alternative, {**row.values, "answer": 1.0}) if row.alternative == answer else row
+        for row in rows
+    )
 
 
 def stated_as(effect: str) -> Alternative:
