@@ -27,6 +27,7 @@ from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.lateral_estimator import LateralEstimate
 from advisor.words.digits import distinct_texts
+from advisor.words.quantiles import NORMAL_95
 
 BANK_DEG = 45.0
 """Largest bank in a lateral manoeuvre, deg, where the aircraft file allows no more."""
@@ -129,8 +130,24 @@ def _badly_explained(estimate: LateralEstimate) -> list[Reason]:
     return [Reason("fit", text, shares[worst], least)]
 
 
+def _unknown_modes(estimate: LateralEstimate) -> list[Reason]:
+    """Return a reason where the frequency of the Dutch roll is known too poorly."""
+    omega = estimate.modes.dutch_roll_omega
+    width = 100.0 * NORMAL_95 * omega.std / omega.value if omega is not None else math.inf
+    if width <= WIDEST_PREDICTION_PERCENT:
+        return []
+    shown, most = distinct_texts(width, WIDEST_PREDICTION_PERCENT)
+    text = f"the Dutch roll's frequency is known to {shown} % only (limit {most}); use more rudder"
+    return [Reason("information", text, width, WIDEST_PREDICTION_PERCENT)]
+
+
 def _poor(estimate: LateralEstimate) -> list[Reason]:
-    """Return a reason where the estimate predicts the rate of a control too poorly."""
+    """Return a reason where the estimate predicts the rate of a control too poorly.
+
+    Where only the modes are told, the frequency of the Dutch roll stands for the prediction.
+    """
+    if set(estimate.estimate.not_identifiable) == set(estimate.estimate.names):
+        return _unknown_modes(estimate)
     bands = {name: 100.0 * estimate.estimate.prediction[_RATE_OF[name]] for name in estimate.flown}
     widest = max(bands, key=lambda name: bands[name], default="")
     if not widest or bands[widest] <= WIDEST_PREDICTION_PERCENT:

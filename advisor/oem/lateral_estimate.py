@@ -123,7 +123,7 @@ def _at(problem: LateralProblem, begin: tuple[FloatArray, FloatArray], flat: flo
 
 def _floor(assembly: LateralAssembly) -> FloatArray:
     least = np.array([LEAST_NOISE[name] for name in LATERAL.outputs])
-    return np.maximum(noise_floor(assembly), least)
+    return np.asarray(np.maximum(noise_floor(assembly), least))
 
 
 def _refused(optimum: Optimum) -> NoEstimate | None:

@@ -69,4 +69,5 @@ def _slope(a: FloatArray, value: complex) -> np.ndarray:
 
 
 def _quality(value: float, slope: FloatArray, covariance: FloatArray) -> Quality:
-    return Quality(float(value), float(np.sqrt(max(slope @ covariance @ slope, 0.0))))
+    variance = float(slope @ covariance @ slope)
+    return Quality(float(value), max(variance, 0.0) ** 0.5)

@@ -4,6 +4,8 @@ The compiled code is kept next to the modules (or where ``NUMBA_CACHE_DIR`` says
 in a fraction of a second.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
@@ -12,6 +14,7 @@ from advisor.flight.signals.record import Channel
 from advisor.oem.estimator import estimate_jointly
 from advisor.oem.filter_error import filter_error, moving_air
 from advisor.oem.following import Follower
+from advisor.oem.lateral_estimator import estimate_lateral
 from advisor.oem.prepare import Prepared, prepare
 from advisor.oem.solution import Solution, solve
 
@@ -25,6 +28,18 @@ def warm() -> None:
         filter_error(solution, moving_air(solution, seen_by_alpha=True).air, ())
     estimate_jointly([maneuver, maneuver], Aircraft())
     Follower(Aircraft()).refresh(maneuver)
+    estimate_lateral([_rolled(maneuver)], Aircraft())
+
+
+def _rolled(maneuver: Maneuver) -> Maneuver:
+    """Return a doublet of the aileron with arbitrary motion, for which the lateral kernels are compiled."""
+    channels = maneuver.channels
+    names = {
+        "aileron": "elevator", "p": "q", "r": "q", "bank": "theta", "a_y": "a_z", "beta": "alpha",
+        "rudder": "elevator",
+    }  # fmt: skip
+    side = {name: replace(channels[source], name=name) for name, source in names.items()}
+    return replace(maneuver, channels={**channels, **side})
 
 
 def _flown() -> Maneuver:

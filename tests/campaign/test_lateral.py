@@ -1,0 +1,127 @@
+"""The lateral half of a flight from messages to its document."""
+
+import numpy as np
+import pytest
+
+from advisor.aircraft.aircraft import Aircraft, SideControl
+from advisor.aircraft.standard_gravity import GRAVITY_M_S2
+from advisor.campaign.campaign import Campaign
+from advisor.flight.vehicle.imu_filters import filter_delay_s
+from advisor.report.lateral import lateral_document, lateral_lines
+from tests.flight.columns import Wire, heartbeat, plane_parameters
+from tests.oem.lateral_builders import JET, flown, steps
+
+RATE_HZ = 25.0
+T = np.arange(0.0, 40.0, 1.0 / RATE_HZ)
+KNOWN = SideControl(lag_s=0.0, delay_s=0.0)
+AIRCRAFT = Aircraft(aileron=KNOWN, rudder=KNOWN)
+
+
+def wired(*, rudder=True):
+    """Return the messages of a jet that flies an aileron doublet and, on request, a rudder doublet."""
+    aileron = steps(T, (3.0, 4.0, 5.0), (0.06, -0.06, 0.0))
+    feet = steps(T, (20.0, 21.6, 23.2), (0.05, -0.05, 0.0))
+    record = flown(
+        JET, aileron=aileron, rudder=feet if rudder else None, seconds=40.0, rate_hz=RATE_HZ,
+        rng=np.random.default_rng(4), measured=("p", "r", "bank", "a_y"), initial=(0.0, 0.0, 0.0, 0.0),
+    )  # fmt: skip
+    late_s = filter_delay_s("p", "ATTITUDE.rollspeed", "ardupilot", {})
+
+    def read(name, late=0.0):
+        signal = record.outputs[name]
+        return np.interp(T - late, signal.t, signal.y)
+
+    p, r, bank = read("p", late_s), read("r", late_s), read("bank")
+    force = read("a_y", late_s) / GRAVITY_M_S2 * 1000.0
+    wire = Wire()
+    heartbeat(wire, 0.0)
+    plane_parameters(wire, 1e-3)
+    for k, since in enumerate(T):
+        now, boot = 0.01 + since, 100.0 + since
+        if k % 25 == 0:
+            heartbeat(wire, now)
+        wire.send(
+            "ATTITUDE", now, time_boot_ms=round(boot * 1000), roll=bank[k], pitch=0.105, yaw=0.0,
+            rollspeed=p[k], pitchspeed=0.01 + 1e-4 * (k % 2), yawspeed=r[k],
+        )  # fmt: skip
+        wire.send(
+            "RAW_IMU", now + 1e-4, time_usec=round(boot * 1e6), xacc=0.0, yacc=force[k],
+            zacc=-1000.0 + 0.1 * (k % 2),
+        )  # fmt: skip
+        wire.send("AOA_SSA", now + 2e-4, time_usec=round(boot * 1e6), AOA=4.0 + 0.01 * (k % 2), SSA=0.0)
+        pulses = dict.fromkeys(range(1, 17), 0) | {3: 1600, 2: 1500}
+        for output, command in ((1, aileron), (4, feet)):
+            moved = command.y[k] if output == 1 or rudder else 0.0
+            pulses[output] = round(1500.0 - 400.0 * np.degrees(moved) / 25.0, 2)
+        wire.send(
+            "SERVO_OUTPUT_RAW", now + 3e-4, time_usec=round(boot * 1e6), port=0,
+            **{f"servo{n}_raw": pulse for n, pulse in pulses.items()},
+        )  # fmt: skip
+        wire.send(
+            "VFR_HUD", now + 4e-4, airspeed=130.0 + 0.01 * (k % 2), groundspeed=131.0, throttle=50, alt=100.0,
+            climb=0.0,
+        )  # fmt: skip
+    return wire
+
+
+def ended(wire, batches=1):
+    campaign = Campaign(AIRCRAFT, lateral=True)
+    for rows in np.array_split(np.arange(len(wire)), batches):
+        campaign.feed(wire.columns(rows.tolist()))
+    campaign.finish()
+    return campaign.state.lateral
+
+
+@pytest.fixture(scope="module")
+def both():
+    return wired()
+
+
+@pytest.fixture(scope="module")
+def state(both):
+    return ended(both)
+
+
+def test_both_doublets_are_found_named_and_accepted(state):
+    assert [one.maneuver.span.kind for one in state.maneuvers] == ["aileron doublet", "rudder doublet"]
+    assert [one.verdict.accepted for one in state.maneuvers] == [True, True]
+
+
+def test_the_joint_estimate_has_the_truth_in_its_intervals(state):
+    estimate = state.model.estimate
+    for name in ("L_p", "L_delta_a", "N_beta", "N_delta_r", "L_beta"):
+        off = estimate.value(name) - JET[name]
+        assert abs(off) < 3.0 * estimate.std[estimate.names.index(name)], name
+        assert abs(off) < 0.06 * abs(JET[name]), name
+
+
+def test_a_derivative_is_told_or_not_identifiable_and_never_both(state):
+    document = lateral_document(state)
+    told = set(document["model"]) - {"reference_airspeed_m_s", "instruments"}
+    assert told.isdisjoint(document["not_identifiable"])
+    assert told | set(document["not_identifiable"]) == set(state.model.estimate.names)
+    assert document["modes"]["dutch_roll"]["omega"]["value"] == pytest.approx(1.81, rel=0.03)
+
+
+def test_the_text_says_every_verdict_and_the_decision(state):
+    lines = list(lateral_lines(state))
+    assert sum("doublet" in line and "✓" in line for line in lines) == 2
+    assert any(line.startswith(("STOP", "CONTINUE")) for line in lines)
+
+
+def test_the_result_does_not_depend_on_the_batches(both, state):
+    live = ended(both, batches=60)
+    assert [one.maneuver.span for one in live.maneuvers] == [one.maneuver.span for one in state.maneuvers]
+    np.testing.assert_array_equal(live.model.estimate.theta, state.model.estimate.theta)
+
+
+def test_without_a_rudder_input_the_advice_is_a_rudder_doublet():
+    state = ended(wired(rudder=False))
+    assert lateral_document(state)["not_identifiable"]["N_delta_r"].endswith("fly a rudder doublet")
+    assert state.flight_test.next.advice.startswith("next: rudder doublet")
+
+
+def test_a_campaign_that_is_not_asked_has_no_lateral_half(both):
+    campaign = Campaign(AIRCRAFT)
+    campaign.feed(both.columns(list(range(200))))
+    assert campaign.state.lateral is None

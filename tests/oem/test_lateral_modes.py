@@ -1,0 +1,42 @@
+import numpy as np
+import pytest
+
+from advisor.model.lateral import LATERAL, Trim, modes_of, state_matrix
+from advisor.oem.lateral_modes import lateral_modes
+from tests.oem.lateral_builders import JET, vector
+
+TRIM = Trim(130.0, 0.07, 0.105)
+N = len(LATERAL.shared)
+
+
+def test_the_modes_of_a_jet_are_those_of_its_eigenvalues():
+    found = lateral_modes(vector(JET), np.zeros((N, N)), TRIM)
+    values = np.linalg.eigvals(state_matrix(vector(JET), TRIM))
+    swing = values[np.argmax(values.imag)]
+    assert found.dutch_roll_omega.value == pytest.approx(abs(swing))
+    assert found.dutch_roll_zeta.value == pytest.approx(-swing.real / abs(swing))
+    assert found.roll_time_constant.value == pytest.approx(-1.0 / min(values.real))
+    assert abs(found.spiral_pole.value) < 0.05
+
+
+@pytest.mark.parametrize("mode", ["dutch_roll_omega", "dutch_roll_zeta", "roll_time_constant", "spiral_pole"])
+def test_the_error_of_a_mode_is_the_slope_times_the_error_of_a_derivative(mode):
+    def value(theta):
+        return getattr(lateral_modes(theta, np.zeros((N, N)), TRIM), mode).value
+
+    for k in range(N):
+        step = np.zeros(N)
+        step[k] = 1e-6
+        slope = (value(vector(JET) + step) - value(vector(JET) - step)) / 2e-6
+        covariance = np.zeros((N, N))
+        covariance[k, k] = 0.01
+        stated = getattr(lateral_modes(vector(JET), covariance, TRIM), mode).std
+        assert stated == pytest.approx(0.1 * abs(slope), rel=1e-4, abs=1e-8)
+
+
+def test_roll_and_spiral_that_oscillate_together_are_told_as_such():
+    coupled = vector(JET | {"L_p": -0.3, "L_beta": -10.0, "L_r": 0.3, "N_p": 0.2})
+    found = lateral_modes(coupled, np.zeros((N, N)), TRIM)
+    assert modes_of(state_matrix(coupled, TRIM)).roll is None
+    assert found.roll_time_constant is None
+    assert "oscillate together" in found.left_out["roll"]
