@@ -39,7 +39,8 @@ SMALLEST_ARM_M = 0.02
 STEADY_MOMENT_RAD = 0.02
 """Standard deviation of the elevator deflection that balances the moments which do not scale with V², rad. A
 change of power asks for a degree or so of trim. From 0.005 to 0.08 rad no derivative of a business
-jet's held step moves by a fiftieth of its interval. No derivative of an autopilot's test leaves its interval."""
+jet's held step moves by a fiftieth of its interval. No derivative of an autopilot's test leaves its
+interval."""
 
 
 @dataclass(frozen=True, slots=True)
