@@ -138,7 +138,7 @@ study-quality: .venv/.developed ## good manoeuvres rejected, and other tests mar
 study-gap: .venv/.developed ## whole diagnoses of flights whose cause is known (about fifteen minutes)
 	$(BIN)/python -m pytest -n 2 --dist loadgroup --timeout 900 -m study tests/gap
 
-survival: .venv/.developed ## a live campaign in which fifty processes are killed (three minutes)
+survival: .venv/.developed ## a live campaign in which fifty processes are killed, and one in which fifty stand still (twenty minutes)
 	$(BIN)/python -m pytest -m study tests/mavlink/link/test_never_lost.py
 
 DAMAGE_CASES ?= 3400
