@@ -160,8 +160,9 @@ examples: .venv/.developed ## run the worked examples of the documentation, and 
 
 pictures: .venv/.developed ## the screens in the README, drawn by the running program
 	$(BIN)/python -m advisor.tui.picture logs/bundled-demo.tlog --after 3 --out docs/assets
+	$(BIN)/advisor gap logs/arduplane-calm.tlog --aircraft logs/arduplane-calm.yaml --figure docs/assets/gap.svg
 
-.PHONY: wheel install-check lowest release container coverage
+.PHONY: wheel install-check lowest release audit container coverage
 wheel: .venv/.developed ## the wheel and the source archive, in dist
 	$(BIN)/python -m build
 
@@ -174,6 +175,11 @@ install-check: ## the wheel in empty environments, by pip, pipx and uv (ten minu
 
 lowest: ## the lowest versions that pyproject.toml allows: text, report and both screens (five minutes)
 	.ci/lowest $(PYTHON)
+
+audit: ## known weaknesses of the tested versions
+	$(PYTHON) -m venv build/audit
+	build/audit/bin/pip install --quiet pip-audit
+	build/audit/bin/pip-audit --requirement constraints.txt --no-deps --disable-pip
 
 container: ## the container image (docker or podman)
 	docker build -f Containerfile -t inflight-advisor .

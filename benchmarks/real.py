@@ -21,6 +21,8 @@ from typing import Any
 
 import yaml
 
+from advisor.model.short_period import SPEED_EXPONENTS
+
 RECORDS = Path(__file__).with_name("real_records.yaml")
 NEAR_S = 1.5
 """A found input is the one that was flown when it begins this close to it, s."""
@@ -49,11 +51,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 0
     records = yaml.safe_load(RECORDS.read_text(encoding="utf-8"))
     rows = [row for record in records for row in judged(record, given.folder)]
-    measured = f"{date.today().isoformat()}, {platform.machine()}, Python {platform.python_version()}"
+    measured = f"{date.today().isoformat()}, commit {_commit()}, Python {platform.python_version()}"
     print(in_markdown(rows, measured))
     if given.write:
         write(given.write, rows, measured)
     return 0 if all(row.holds for row in rows) else 1
+
+
+def _commit() -> str:
+    """Return the short name of the commit that is measured; ``unknown`` outside a repository."""
+    asked = ["git", "-C", str(RECORDS.parent), "rev-parse", "--short", "HEAD"]
+    return subprocess.run(asked, capture_output=True, text=True, check=False).stdout.strip() or "unknown"
 
 
 def judged(record: Mapping[str, Any], folder: Path) -> Iterator[Row]:
@@ -141,7 +149,7 @@ def _stopped(record: Mapping[str, Any], document: Mapping[str, Any]) -> Iterator
 def _figures(record: Mapping[str, Any], document: Mapping[str, Any]) -> Iterator[Claim]:
     for name, known in record.get("figures", {}).items():
         value, half = _figure(name, document)
-        truth = _truth(known, record, document)
+        truth = _truth(name, known, record, document["model"]["reference_airspeed_m_s"])
         margin = known["within"] * abs(truth) if "within" in known else known["absolute"]
         holds = value is not None and (abs(value - truth) <= margin or abs(value - truth) <= half)
         shown = "none" if value is None else f"{value:.3g} ± {half:.2g}"
@@ -152,29 +160,30 @@ def _figures(record: Mapping[str, Any], document: Mapping[str, Any]) -> Iterator
         yield f"{name} {excluded:g} outside the interval", "outside" if holds else "inside", holds
 
 
-def _truth(known: Mapping[str, float], record: Mapping[str, Any], document: Mapping[str, Any]) -> float:
-    if "value" in known:
+def _truth(name: str, known: Mapping[str, float], record: Mapping[str, Any], speed_m_s: float) -> float:
+    """Return a known figure at the air speed of the estimate, m/s.
+
+    A record's ``at_true_m_s`` is the true air speed of its figures. A derivative grows with a power of the
+    speed.
+    """
+    at_m_s = record.get("at_true_m_s")
+    if at_m_s is None:
         return known["value"]
-    speed = document["model"]["reference_airspeed_m_s"]
-    if document["flying_qualities"]["air"]["airspeed_is"] != "true":
-        speed *= record["true_over_indicated"]
-    if "per_speed" in known:
-        return float(known["per_speed"] * speed)
-    return float(known["per_speed_squared"] * speed**2)
+    speed_m_s *= record.get("true_over_standard", 1.0)
+    return float(known["value"] * (speed_m_s / at_m_s) ** SPEED_EXPONENTS.get(name, 0))
 
 
 def _figure(name: str, document: Mapping[str, Any]) -> tuple[float | None, float]:
     """A figure of the joint estimate and the half-width of its 95 % interval."""
     model = document["model"] or {}
-    if name == "vane_lag_s":
-        instruments = model.get("instruments", {})
-        if "alpha_delay_s" in instruments:
-            entry = instruments["alpha_delay_s"]
-        else:
-            speed = model.get("reference_airspeed_m_s") or 1.0
-            entry = {k: v / speed for k, v in instruments.get("vane_arm_m", {}).items()}
-    elif name == "servo_lag_s":
-        entry = model.get("instruments", {}).get("servo_lag_s", {})
+    instruments = model.get("instruments", {})
+    if name == "servo_lateness_s":
+        # A servo's lag and a delay look nearly alike, and fits without a delay give their sum as the lag.
+        parts = [instruments[n] for n in ("servo_lag_s", "command_delay_s") if n in instruments]
+        value = float(sum(part["value"] for part in parts)) if parts else None
+        return value, NORMAL_95 * float(sum(part["std"] ** 2 for part in parts)) ** 0.5
+    if name in ("servo_lag_s", "vane_arm_m"):
+        entry = instruments.get(name, {})
     elif name.startswith("C_"):
         entry = document["coefficients"].get(name, {})
     else:

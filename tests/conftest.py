@@ -32,13 +32,15 @@ def pytest_sessionstart(session: pytest.Session) -> None:
 
 
 def pytest_itemcollected(item: pytest.Item) -> None:
-    """Keep the tests of one module in one process where the module keeps results between its tests."""
+    """Keep tests in one process that share results of their module or of their package."""
     if item.get_closest_marker("xdist_group") or not isinstance(item, pytest.Function):
         return
     name = item.module.__name__
     values = [value for value in vars(item.module).values() if isinstance(value, _lru_cache_wrapper)]
     fixtures = [found[-1].scope for found in item._fixtureinfo.name2fixturedefs.values()]
-    if "module" in fixtures or any(value.__module__ == name for value in values):
+    if "package" in fixtures:
+        item.add_marker(pytest.mark.xdist_group(item.module.__package__))
+    elif "module" in fixtures or any(value.__module__ == name for value in values):
         item.add_marker(pytest.mark.xdist_group(name))
 
 

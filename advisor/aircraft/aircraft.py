@@ -80,14 +80,6 @@ class Elevator:
         mend="film a step of the servo on the ground; the delay ends when the arm begins to move",
         within=(0.0, 2.0),
     )] = None  # fmt: skip
-    lag_found_s: float | None = None
-    """Lag that all manoeuvres together tell, s. The file has no such key."""
-    lag_found_std_s: float | None = None
-    """Standard deviation of ``lag_found_s``, s. None: a tenth of it."""
-    delay_found_s: float | None = None
-    """Delay of the command that all manoeuvres of one power-on tell together, s. The file has no such key."""
-    delay_found_std_s: float | None = None
-    """Standard deviation of ``delay_found_s``, s."""
 
     @property
     def is_calibrated(self) -> bool:
@@ -333,6 +325,38 @@ class FmuVariables:
 
 
 @dataclass(frozen=True)
+class TableColumns:
+    """Names of the columns of a table that a simulator wrote (``simulator: log:FILE.csv`` or ``.mat``)."""
+
+    time: Annotated[str, Key("Column of the time, s.")]
+    elevator: Annotated[str, Key("Column of the elevator's deflection, positive trailing edge down.")]
+    q: Annotated[str, Key("Column of the pitch rate, positive nose up.")]
+    alpha: Annotated[str | None, Key("Column of the angle of attack.")] = None
+    theta: Annotated[str | None, Key("Column of the pitch angle.")] = None
+    bank: Annotated[str | None, Key("Column of the bank angle.")] = None
+    p: Annotated[str | None, Key("Column of the roll rate.")] = None
+    r: Annotated[str | None, Key("Column of the yaw rate.")] = None
+    a_z: Annotated[str | None, Key(
+        "Column of the specific force along body z, -9.81 m/s² in level flight. See ``scale`` for a load "
+        "factor.",
+    )] = None  # fmt: skip
+    a_x: Annotated[str | None, Key("Column of the specific force along body x, m/s².")] = None
+    airspeed: Annotated[str | None, Key("Column of the true air speed, m/s.")] = None
+    indicated_airspeed: Annotated[str | None, Key(
+        "Column of the indicated air speed, m/s; the height makes it true.",
+    )] = None  # fmt: skip
+    height: Annotated[str | None, Key("Column of the height above sea level, m.")] = None
+    throttle: Annotated[str | None, Key("Column of the throttle, 0 to 1.")] = None
+    units: Annotated[Literal["rad", "deg"], Key(
+        "Unit of every angle and every angular rate of the table.",
+    )] = "rad"  # fmt: skip
+    scale: Annotated[Mapping[str, float], Key(
+        "Factor from the column to the quantity of this class: ``a_z: -9.80665`` for a load factor, "
+        "``airspeed: 0.514444`` for knots.",
+    )] = field(default_factory=dict)  # fmt: skip
+
+
+@dataclass(frozen=True)
 class CampaignPlan:
     """Stop criterion that the crew chose."""
 
@@ -435,6 +459,8 @@ class Aircraft:
     markers: Markers = field(default_factory=Markers)
     fmu: FmuVariables | None = None
     """Names of the FMU's variables, where the simulator is an FMU. None: the simulator is no FMU."""
+    columns: TableColumns | None = None
+    """Names of the columns of a simulator's table. None: the simulator wrote no table."""
     simulator: Annotated[str | None, Key(
         "The user's own simulator: linear | jsbsim:MODEL | fmu:FILE | python:module:factory | log:FILE.",
     )] = None  # fmt: skip

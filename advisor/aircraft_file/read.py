@@ -2,7 +2,7 @@
 listed at once."""
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from copy import deepcopy
 from dataclasses import fields, replace
 from difflib import get_close_matches
@@ -20,6 +20,7 @@ from advisor.aircraft.aircraft import (
     Markers,
     Pairs,
     SideControl,
+    TableColumns,
 )
 from advisor.aircraft.aircraft_effects import mistakes_in
 from advisor.aircraft.key import keys_of, sections_of
@@ -203,6 +204,8 @@ def _beyond_types(aircraft: Aircraft) -> Iterator[str]:
     yield from _mistakes_in_markers(aircraft.markers)
     if aircraft.fmu is not None:
         yield from _mistakes_in_fmu(aircraft.fmu)
+    if aircraft.columns is not None:
+        yield from _mistakes_in_scale("columns.scale", aircraft.columns.scale, _COLUMNS)
 
 
 def _out_of_bounds(aircraft: Aircraft) -> Iterator[str]:
@@ -283,12 +286,19 @@ _FMU_VARIABLES = tuple(
 )
 
 
-def _mistakes_in_fmu(fmu: FmuVariables) -> Iterator[str]:
-    for name, factor in fmu.scale.items():
-        if name not in _FMU_VARIABLES:
-            yield f"fmu.scale.{name}: unknown key, the variables are {' '.join(_FMU_VARIABLES)}"
+_COLUMNS = tuple(one.name for one in fields(TableColumns) if one.name not in ("units", "scale"))
+
+
+def _mistakes_in_scale(path: str, scale: Mapping[str, float], names: Sequence[str]) -> Iterator[str]:
+    for name, factor in scale.items():
+        if name not in names:
+            yield f"{path}.{name}: unknown key, the variables are {' '.join(names)}"
         elif factor == 0.0:
-            yield f"fmu.scale.{name}: must not be 0"
+            yield f"{path}.{name}: must not be 0"
+
+
+def _mistakes_in_fmu(fmu: FmuVariables) -> Iterator[str]:
+    yield from _mistakes_in_scale("fmu.scale", fmu.scale, _FMU_VARIABLES)
     if fmu.step_s is not None and not 0.0 < fmu.step_s <= _LONGEST_STEP_S:
         yield f"fmu.step_s: {fmu.step_s} s is outside 0..{_LONGEST_STEP_S}"
     if (fmu.force_increment is None) != (fmu.moment_increment is None):

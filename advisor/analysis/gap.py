@@ -6,6 +6,7 @@ from pathlib import Path
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.refused import without_refused
+from advisor.analysis.table_log import SUFFIXES, table_maneuvers
 from advisor.campaign.hand_decisions import ByHand
 from advisor.flight.maneuvers.events import ManeuverFlown, Notice
 from advisor.flight.maneuvers.maneuver import Maneuver
@@ -176,7 +177,7 @@ def compare_logs(
         progress("comparing the air speed with the motion", 0.02)
         chosen = chosen.with_speed(by_the_motion(chosen.maneuvers, aircraft))
     gain = true_over_read(m.channels for m in chosen.maneuvers)
-    at_true_speed = _at_true_speed(aircraft, gain)
+    at_true_speed = with_true_reference(aircraft, gain)
     if simulator is not None:
         as_true = _simulator_at_true_speed(simulator, gain)
         compared = compare(chosen.maneuvers, as_true, at_true_speed, holdout, progress, prior)
@@ -187,7 +188,7 @@ def compare_logs(
             told = without_simulator(told)
         elif changes_something(told):
             progress("searching again without the manoeuvres kept apart", 0.9)
-            unseen = unseen_of(whole, chosen.maneuvers, at_true_speed, holdout)
+            unseen = unseen_of(whole, chosen.maneuvers, at_true_speed, holdout, prior)
             told = told if unseen is None else with_unseen_shrink(whole, unseen, at_true_speed)
         told = with_static_errors(told, whole)
         compared = Compared(told, aircraft)
@@ -216,12 +217,14 @@ def named_simulator(aircraft: Aircraft, target_system: int | None = None) -> Sim
         return None
 
     def read(log: Path) -> list[Maneuver]:
+        if log.suffix.lower() in SUFFIXES:
+            return table_maneuvers(log, aircraft)
         return maneuvers_of([log], aircraft, target_system).maneuvers
 
     return simulator_of(aircraft.simulator, aircraft, read)
 
 
-def _at_true_speed(aircraft: Aircraft, true_over_read: float) -> Aircraft:
+def with_true_reference(aircraft: Aircraft, true_over_read: float) -> Aircraft:
     """Return the aircraft with the true air speed at its reference speed, which is one as read."""
     read = aircraft.reference_airspeed_m_s
     return aircraft if read is None else replace(aircraft, reference_airspeed_m_s=read * true_over_read)

@@ -22,7 +22,7 @@ SUFFIX = ".maneuvers.yaml"
 _TEXT_KEYS = {"excluded": "because", "notes": "text", "remarks": "text"}
 """Section of sentences, named as the field of ``ByHand``, to the key that holds each sentence."""
 _SECTIONS = ("maneuvers", *_TEXT_KEYS)
-_MEND = "Mend the file, move it away, or give --no-marks."
+_MEND = "Fix the file, move it away, or give --no-marks."
 _HEADING = "# Decided by hand; times in vehicle seconds since boot. `advisor` reads this file with its log.\n"
 
 

@@ -1,19 +1,24 @@
 """Manoeuvres that ``advisor analyze`` refuses by their data alone, which the gap does not use either."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.decision.envelope import incomplete, outside
-from advisor.decision.quality import natural_period
+from advisor.decision.envelope import changed_speed, incomplete, outside, short_response
+from advisor.decision.quality import natural_period, refusals
 from advisor.decision.verdict import Reason
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.estimate import NoEstimate
 from advisor.simulators.speed_kind import SpeedKind
+from advisor.words.problems import UnusableInputError
 
 _KNOWN = frozenset({"throttle", "rate"})
 """Reasons that do not apply here. The gap's model knows the throttle, and the gap says itself which effects a
 slow channel hides."""
+_LARGEST_SPEED_CHANGE_PERCENT = 30.0
+"""Change of the air speed, %, up to which the gap scales forces with the speed, where the crew allows less.
+Forces change by two thirds. Manoeuvres of the generators stay below 24 %, and those of two UAV records
+outside the model have 66 and 69 %."""
 LEAST = 3
 """Least number of manoeuvres that must remain: two for a search, and one kept apart from it."""
 
@@ -34,9 +39,21 @@ def without_refused(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Chosen
     """Return the manoeuvres without those outside the limits or with incomplete data.
 
     Where fewer than ``LEAST`` would remain, all are used, and the sentences say what is wrong.
+
+    Raises
+    ------
+    UnusableInputError
+        A contradicted instrument or the air speed leaves no manoeuvre.
     """
     reasons = {m.number: reason for m in maneuvers if (reason := _reason(m, aircraft)) is not None}
     good = [m for m in maneuvers if m.number not in reasons]
+    hopeless = [r for r in reasons.values() if r.by_instrument or r.code == "airspeed"]
+    if maneuvers and len(hopeless) == len(maneuvers):
+        raise UnusableInputError(
+            hopeless[0].code,
+            f"No manoeuvre of the log can serve. Manoeuvre {maneuvers[0].number}: {hopeless[0].text}.",
+            "Fly manoeuvres that advisor analyze accepts.",
+        )
     enough = len(good) >= LEAST
     verb = "is not used" if enough else "is used, although analyze refuses it"
     notes = tuple(f"Manoeuvre {number} {verb}: {reason.text}." for number, reason in reasons.items())
@@ -46,5 +63,14 @@ def without_refused(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Chosen
 def _reason(maneuver: Maneuver, aircraft: Aircraft) -> Reason | None:
     """Return the first reason for which ``advisor analyze`` refuses a manoeuvre, whatever its estimate."""
     period_s = natural_period(maneuver, NoEstimate("not_asked", "no estimate was asked for"))
-    found = [*incomplete(maneuver, period_s, ("alpha",)), *outside(maneuver, aircraft)]
+    most = max(aircraft.limits.airspeed_change_percent, _LARGEST_SPEED_CHANGE_PERCENT)
+    allowing = replace(aircraft, limits=replace(aircraft.limits, airspeed_change_percent=most))
+    found = [
+        *incomplete(maneuver, period_s, ("alpha",)),
+        # The gap has late streams and the scale of the air speed in its own model.
+        *refusals(f for f in maneuver.findings if f.quantity != "delay_s" and f.channel != "airspeed"),
+        *outside(maneuver, aircraft),
+        *changed_speed(maneuver, allowing),
+        *(r for r in short_response(maneuver, period_s) if r.code == "aborted"),
+    ]
     return next((reason for reason in found if reason.code not in _KNOWN), None)

@@ -44,9 +44,9 @@ def index_page(flights: Sequence[Analyzed]) -> str:
             f"<title>Flights of a batch</title>\n<style>\n{style}{_STYLE}</style></head>\n<body>",
             "<h1>Flights of a batch</h1>",
             f"<p>Logs: {len(flights)}. Logs that cannot be used: {failures}.</p>",
-            *trends,
             "<h2>Flights</h2>",
             _table(flights),
+            *trends,
             f'<p class="note">Written by the inflight advisor {escape(__version__)}.</p>\n</body></html>\n',
         ]
     )

@@ -10,9 +10,9 @@ from advisor.campaign.instruments import as_known_by, together, with_fit
 from advisor.campaign.joint_estimate import NEWEST, Together
 from advisor.campaign.journal import Journal
 from advisor.campaign.lateral import LateralCampaign
+from advisor.campaign.learning import learnt as learnt_from
+from advisor.campaign.learning import may_learn, of_another_power_on, reserved, told
 from advisor.campaign.running_estimate import Settling
-from advisor.campaign.servo_lag import learnt as learnt_from
-from advisor.campaign.servo_lag import may_learn, of_another_power_on, reserved, told
 from advisor.campaign.single_maneuver import assess
 from advisor.campaign.state import CampaignState, JudgedManeuver
 from advisor.campaign.whole_flight import WholeFlights

@@ -99,9 +99,7 @@ def _is_log(target: str) -> bool:
 
 def _first_obstacle(findings: "Examination | None") -> Problem | None:
     stopping = [limit for limit in findings.limits if limit.stops] if findings else []
-    return (
-        Problem(stopping[0].code, f"{stopping[0].text}.", f"Mend: {stopping[0].fix}.") if stopping else None
-    )
+    return Problem(stopping[0].code, f"{stopping[0].text}.", f"Fix: {stopping[0].fix}.") if stopping else None
 
 
 def examine_log(log: Path, aircraft: Aircraft, target_system: int | None) -> "Examination":

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import click
 
-from advisor.process.installed import SAMPLE, SAMPLES
+from advisor.process.installed import SAMPLE, SAMPLES, SLOW_SAMPLE
 from advisor.words.problems import ConfigurationError
 
 
@@ -14,7 +14,8 @@ from advisor.words.problems import ConfigurationError
 def command(folder: Path) -> None:
     """Write a sample flight and its aircraft file into FOLDER, by default the current one.
 
-    The flight holds seven elevator 3-2-1-1 of an ArduPlane in calm air. Files of these names are kept.
+    The flight holds seven elevator 3-2-1-1 of an ArduPlane in calm air. A second log has streams that are
+    too slow, and doctor says so. Files of these names are kept.
 
     \b
     Example:
@@ -22,13 +23,14 @@ def command(folder: Path) -> None:
       advisor analyze arduplane-calm.tlog --aircraft arduplane-calm.yaml
     """
     log, aircraft = (folder / f"{SAMPLE}{ending}" for ending in (".tlog", ".yaml"))
-    for target in (log, aircraft):
+    slow = folder / f"{SLOW_SAMPLE}.tlog"
+    for target in (log, aircraft, slow):
         if target.exists():
             raise ConfigurationError(f"{target} exists: name another folder, e.g. advisor sample trial.")
     folder.mkdir(parents=True, exist_ok=True)
-    for target in (log, aircraft):
+    for target in (log, aircraft, slow):
         shutil.copyfile(SAMPLES / target.name, target)
-    click.echo(f"Wrote {log} and {aircraft}. Next:")
+    click.echo(f"Wrote {log}, {aircraft} and {slow}. Next:")
     for line in (
         f"advisor doctor {log} --aircraft {aircraft}",
         f"advisor replay {log} --aircraft {aircraft}",

@@ -50,7 +50,7 @@ class Conditions:
     nose_up_first: bool
     """Whether the last manoeuvre's first step was nose up."""
     last_covariance: FloatArray
-    """(8, 8) covariance of the last manoeuvre's estimate."""
+    """(8, 8) covariance of the last manoeuvre's estimate for given instruments."""
 
 
 def find_conditions(
@@ -86,7 +86,7 @@ def find_conditions(
         alpha_rad=float(alpha),
         travel_rad=travel,
         nose_up_first=_nose_up_first(last),
-        last_covariance=estimate.covariance,
+        last_covariance=estimate.own_covariance,
     )
 
 

@@ -81,8 +81,8 @@ def excess(posteriors: Sequence[Posterior]) -> float:
 
 
 def widened(posterior: Posterior, factor: float) -> Posterior:
-    """Return the estimate with ``factor`` times its variance."""
-    return Posterior(posterior.theta, factor * posterior.covariance)
+    """Return the estimate with ``factor`` times its own variance. Scatter tells nothing of a common error."""
+    return Posterior(posterior.theta, factor * posterior.covariance, posterior.common)
 
 
 def consensus(posteriors: Sequence[Posterior]) -> tuple[Posterior, float, tuple[int, ...]]:

@@ -151,7 +151,7 @@ def short_response(maneuver: Maneuver, period_s: float) -> list[Reason]:
         return []
     shown, limit = distinct_texts(free, least, 1)
     ended = _CUT_SHORT_BY.get(maneuver.span.closed_by)
-    mend = "hands still after the last step" if ended is None else f"{ended[0]} there; {ended[1]}"
+    mend = "stick still after the last step" if ended is None else f"{ended[0]} there; {ended[1]}"
     text = f"free response too short, {shown} s (at least {limit}); {mend}"
     return [Reason("free_response", text, free, least)]
 

@@ -163,7 +163,7 @@ def _next(shares: Mapping[str, float], accepted: Sequence[LateralEstimate]) -> N
     if control == "aileron":
         known = [m.roll_time_constant.value for m in modes if m.roll_time_constant is not None]
         step_s = max(2.0 * float(np.median(known)), 0.5) if known else 1.0
-        return NextInput(f"next: aileron doublet, {step_s:.1f} s steps, then hands still", None, worst)
+        return NextInput(f"next: aileron doublet, {step_s:.1f} s steps, then stick still", None, worst)
     omegas = [m.dutch_roll_omega.value for m in modes if m.dutch_roll_omega is not None]
     period_s = 2.0 * math.pi / float(np.median(omegas)) if omegas else 2.0
     advice = (

@@ -6,7 +6,7 @@ data, only estimates and covariances, so that every decision of a campaign is qu
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
 
@@ -44,12 +44,14 @@ class Posterior:
     theta: FloatArray
     """Mean, shape (8,), in the order of ``PARAMETERS``."""
     covariance: FloatArray
-    """Covariance, shape (8, 8). Infinite on the diagonal for an unknown parameter."""
+    """Covariance for given instruments, shape (8, 8). Infinite on the diagonal for an unknown parameter."""
+    common: FloatArray = field(default_factory=lambda: np.zeros((len(PARAMETERS), len(PARAMETERS))))
+    """Covariance by the errors of given instruments, which all estimates share, shape (8, 8)."""
 
     @property
     def std(self) -> FloatArray:
-        """Standard deviations, shape (8,)."""
-        return np.sqrt(np.diag(self.covariance))
+        """Standard deviations with both parts of the error, shape (8,)."""
+        return np.sqrt(np.diag(self.covariance) + np.diag(self.common))
 
     @cached_property
     def shared(self) -> Shared:
@@ -75,8 +77,8 @@ def posteriors_at_one_speed(estimates: Sequence[Estimate]) -> list[Posterior]:
     scale, values = _at_one_speed(estimates)
     factors = _widening_by_colour(estimates) * scale[:, :, None] * scale[:, None, :]
     return [
-        Posterior(value, e.covariance_cr * factor)
-        for e, value, factor in zip(estimates, values, factors, strict=True)
+        Posterior(value, e.own_covariance_cr * factor, e.common * np.outer(s, s))
+        for e, value, factor, s in zip(estimates, values, factors, scale, strict=True)
     ]
 
 
@@ -108,8 +110,8 @@ def common_airspeed(estimates: Sequence[Estimate]) -> float | None:
 def _widening_by_colour(estimates: Sequence[Estimate]) -> FloatArray:
     """Return an (8, 8) factor on the Cramér-Rao bounds: the squared median ratio of corrected to plain
     errors."""
-    plain = np.array([e.std_cr for e in estimates])
-    corrected = np.array([e.std for e in estimates])
+    plain = np.sqrt(np.array([np.diag(e.own_covariance_cr) for e in estimates]))
+    corrected = np.sqrt(np.array([np.diag(e.own_covariance) for e in estimates]))
     usable = np.isfinite(plain) & np.isfinite(corrected) & (plain > 0.0)
     ratio = np.divide(corrected, plain, out=np.ones_like(plain), where=usable)
     median = np.median(ratio, axis=0)
@@ -125,7 +127,8 @@ def pool(posteriors: Sequence[Posterior]) -> Posterior:
     """Return the information-weighted mean of several estimates, each with its own Z_0 and M_0.
 
     The six derivatives are shared. Z_0 and M_0 of the result are means over the manoeuvres. Each manoeuvre's
-    own pair is first corrected for the others' information on its derivatives.
+    own pair is first corrected for the others' information on its derivatives. No further estimate averages
+    out the error by the instruments, which all estimates share.
 
     Parameters
     ----------
@@ -146,7 +149,7 @@ def pool(posteriors: Sequence[Posterior]) -> Posterior:
     covariance[_DD], covariance[_CC] = shared.covariance, own + gain @ known @ gain.T
     covariance[_CD] = gain @ known
     covariance[_DC] = covariance[_CD].T
-    return Posterior(theta, covariance)
+    return Posterior(theta, covariance, posteriors[-1].common)
 
 
 def disagreement(one: Shared, other: Shared) -> tuple[float, int]:

@@ -85,8 +85,10 @@ def share_after(known: Knowledge, next_covariance: FloatArray, more: int) -> flo
     information = known.posterior.information + more * information_of(next_covariance[inside])
     covariance = covariance_of(information)
     with np.errstate(divide="ignore", invalid="ignore"):
-        variance = 1.0 / (1.0 / known.posterior.std**2 + more / np.diag(next_covariance))
+        own = np.diag(known.posterior.covariance)
+        variance = 1.0 / (1.0 / own + more / np.diag(next_covariance))
         variance[list(DERIVATIVES)] = np.diag(covariance)
+        variance += np.diag(known.posterior.common)
         half = np.nan_to_num(NORMAL_95 * np.sqrt(variance) / known.tolerance, nan=np.inf)
     return max(known.shares_with(known.prediction.percent(covariance), half).values(), default=np.inf)
 
@@ -143,5 +145,5 @@ def errors_as_flown(usable: Sequence[CandidateManeuver], widening: float) -> Flo
     widening
         Variance ratio by which the manoeuvres scatter more than their stated errors.
     """
-    information = np.mean([information_of(e.covariance) for e in estimates_of(usable)], axis=0)
+    information = np.mean([information_of(e.own_covariance) for e in estimates_of(usable)], axis=0)
     return np.asarray(widening * covariance_of(information))

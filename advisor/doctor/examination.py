@@ -48,7 +48,7 @@ class ElevatorFound:
     resolution_deg: float
     """Deflection of the smallest step that an output can express: 1 us of one output."""
     calibrated: bool
-    """Whether the file has a calibration. Without one, the parameters' limits and assumed full strokes give
+    """Whether the file has a calibration. Without one, the parameters' limits and assumed full travel give
     the scale."""
     doubts: tuple[Problem, ...] = ()
     """Problems of limits that are assumed in the scale."""

@@ -272,7 +272,7 @@ def _fast(message: str, vehicle: Vehicle) -> str:
 
 
 def _stopping(problem: Problem, vehicle: Vehicle | None) -> Limit:
-    fix = problem.fix.removeprefix("Mend: ").rstrip(".")
+    fix = problem.fix.removeprefix("Fix: ").rstrip(".")
     if problem.code == "no_elevator" and (vehicle is None or vehicle.carrier == "telemetry"):
         fix += "; on a live link --request-rates asks the vehicle for them"
     return Limit(problem.code, problem.text.rstrip("."), f"{fix[:1].lower()}{fix[1:]}", stops=True)

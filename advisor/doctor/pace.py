@@ -68,7 +68,7 @@ def rate_limits(
         message = vehicle.mends.called(channel.message)
         arrives = f"{message} arrives at {channel.rate_hz:.1f} Hz"
         if repeats:
-            arrives += f" but is renewed at {channel.renewed_hz:.1f} Hz"
+            arrives += f" but changes only at {channel.renewed_hz:.1f} Hz"
         limits.append(
             Limit(
                 "renewal" if repeats else "rate",

@@ -11,8 +11,10 @@ from advisor.gap.explain import evidence_of_one_maneuver, explain
 from advisor.gap.fitting.prior_speed import prior_speed
 from advisor.gap.judge.prior import FIELD, FieldPrior
 from advisor.gap.records.airspeed import measures_speed
+from advisor.gap.records.as_stamped import as_stamped
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.records.prepare import prepare
+from advisor.gap.records.unmeasured_alpha import alpha_by_motion, is_known
 from advisor.gap.records.unmeasured_speed import speed_of_the_motion
 from advisor.gap.records.usable import usable_of
 from advisor.gap.result import Diagnosis
@@ -84,9 +86,10 @@ def examine(
         No usable manoeuvre, or no angle of attack.
     """
     progress("checking the angle of attack against the motion", 0.0)
+    maneuvers = [as_stamped(m) for m in maneuvers]
     aircraft = _with_speed(usable_of(maneuvers), aircraft)
     offset = aircraft.effects.get("alpha_bias", {}).get("bias_rad", 0.0)
-    maneuvers = [_without_offset(m, offset) for m in maneuvers]
+    maneuvers = alpha_by_motion([_without_offset(m, offset) for m in maneuvers], aircraft)
     evidence, kinematics = _explained(maneuvers, aircraft, progress)
     progress("measuring the gap", 0.9)
     diagnosis = answer(evidence, aircraft, kinematics, holdout, prior)
@@ -100,11 +103,13 @@ def _explained(
 ) -> tuple[Evidence, KinematicCheck]:
     """Return the evidence of the manoeuvres, and the check of α against the kinematics alone."""
     flights = prepare(maneuvers, aircraft)
-    _refuse(flights)
+    _refuse(flights, maneuvers)
     arms = aircraft.accelerometer.arm_m, aircraft.alpha.vane_arm_m
     numbers = {flight.number for flight in flights.flights}
     flown = [_without_dead_pitot(m) for m in maneuvers if m.number in numbers]
-    kinematics = combine([check_alpha(m, aircraft.stated_airspeed_m_s, *arms) for m in flown])
+    measured = "alpha" in flights.channels
+    checks = [check_alpha(m, aircraft.stated_airspeed_m_s, *arms) for m in flown if measured]
+    kinematics = combine(checks)
     progress("fitting the simulator's model", 0.1)
     least = max(LEAST_OFFSET_RAD, OFFSET_SIGMAS * kinematics.offset.std_rad)
     if kinematics.offset.stays and abs(kinematics.offset.rad) > least:
@@ -125,21 +130,23 @@ def _explained(
         problem, baseline = at_another_speed(problem, baseline, flights)
     if len(flights) == 1:
         return evidence_of_one_maneuver(problem, baseline), kinematics
-    return _checked_against_path(explain(problem, baseline, aircraft, progress), flown, weight), kinematics
+    explained = explain(problem, baseline, aircraft, progress)
+    return (_checked_against_path(explained, flown, weight) if measured else explained), kinematics
 
 
-def _refuse(flights: PreparedManeuvers) -> None:
+def _refuse(flights: PreparedManeuvers, maneuvers: Sequence[Maneuver]) -> None:
     if not len(flights):
         raise UnusableInputError(
             "no_maneuver",
             "No usable manoeuvre in the log: there is nothing to compare a simulator with.",
             "Fly at least three elevator manoeuvres (3-2-1-1 or doublets), better nine.",
         )
-    if "alpha" not in flights.channels:
+    if not is_known(maneuvers):
         raise UnusableInputError(
             "no_alpha",
-            "No angle of attack in the log.",
-            "Log AOA_SSA, or set alpha.source in the aircraft file.",
+            "The log has no angle of attack, and the motion cannot replace one without a_z, theta and air "
+            "speed.",
+            "Log AOA_SSA or RAW_IMU, or set alpha.source in the aircraft file.",
         )
 
 

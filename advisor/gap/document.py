@@ -37,7 +37,7 @@ def gap_document(
     if diagnosis is None:
         return {**document, **_NOTHING}
     d, gap = diagnosis, diagnosis.gap
-    in_simulator, tested = d.in_simulator, d.verdict != "untested"
+    tested = d.verdict != "untested"
     document |= plain({
         "verdict": d.verdict if tested else None,
         **picked(d, "sentence maneuvers model reference_airspeed_m_s cannot_see notes share_irreducible"),
@@ -51,10 +51,8 @@ def gap_document(
             "ranking": [{"block": b, "score": s} for b, s in d.where.ranking],
         },
         "causes": [_cause(c) for c in d.causes],
-        "shrink": d.shrink and {**plain(d.shrink), "in_simulator": _in_simulator(in_simulator)},
-        "simulator": in_simulator and in_simulator.simulator,
-        **picked(d, "static trims"),
-        "qualification": in_simulator and {q.channel: _qualification(q) for q in in_simulator.qualification},
+        "shrink": d.shrink and {**plain(d.shrink), "in_simulator": _in_simulator(d.in_simulator)},
+        **_of_the_simulator(d),
         "waterfall": [{"effect": e, "after": a} for e, a in d.waterfall],
         "alpha_check": {
             **picked(d.kinematics, "finding lag_s lag_std_s scale"),
@@ -80,6 +78,16 @@ def gap_document(
         "rival": d.rival or None,
     })  # fmt: skip
     return document
+
+
+def _of_the_simulator(d: Diagnosis) -> dict[str, Any]:
+    """Return what the simulator is, how it trims, and how its channels qualify."""
+    found = d.in_simulator
+    return {
+        "simulator": found and found.simulator,
+        "qualification": found and {q.channel: _qualification(q) for q in found.qualification},
+        **picked(d, "static trims"),
+    }
 
 
 def _changed(one: ComparedDerivative) -> dict[str, Any]:

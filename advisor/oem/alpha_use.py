@@ -40,15 +40,23 @@ def can_do_without(maneuver: Maneuver, aircraft: Aircraft) -> bool:
     return not lacking(maneuver, aircraft)
 
 
-def why_left_out(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> str:
-    """Return why no measured angle of attack is used in these manoeuvres, as half a sentence; empty where one
-    is."""
+def why_not_measured(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> str:
+    """Return why these manoeuvres have no measured angle of attack, as half a sentence; empty where they have
+    one."""
     if aircraft.alpha.source == "none":
         return "alpha is left out, as the aircraft file asks"
     if not all(has(m.channels, "alpha") for m in maneuvers):
         return "no alpha was measured"
     if all(m.channels["alpha"].source == DERIVED_ALPHA for m in maneuvers):
         return "alpha derived from the climb rate is left out: a_z and the pitch rate hold more information"
+    return ""
+
+
+def why_left_out(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> str:
+    """Return why no measured angle of attack is used in these manoeuvres, as half a sentence; empty where one
+    is."""
+    if why := why_not_measured(maneuvers, aircraft):
+        return why
     check = combine(
         [
             check_alpha(m, aircraft.airspeed_m_s, aircraft.accelerometer.arm_m, aircraft.alpha.vane_arm_m)

@@ -3,12 +3,12 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import nan
-from typing import Literal
 
 import numpy as np
 
 from advisor.aircraft.aircraft import PARAMETERS
 from advisor.flight.signals.messages import FloatArray
+from advisor.oem.found import FoundInstruments, InstrumentName
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +56,7 @@ class ChannelFit:
 class InstrumentEstimate:
     """A parameter of the instruments that was estimated together with the derivatives."""
 
-    name: Literal["servo_lag_s", "command_delay_s", "vane_arm_m", "alpha_delay_s", "accelerometer_arm_m"]
+    name: InstrumentName
     value: float
     """Value in use, in the unit that ends the name."""
     std: float
@@ -106,6 +106,11 @@ class Estimate:
     noise or in moving air the smallest error lies at another point (``efficient``, ``filter_error``)."""
     instruments: tuple[InstrumentEstimate, ...] = ()
     """Instrument parameters that the data determine, as used in this estimate."""
+    found: FoundInstruments | None = None
+    """All instrument parameters of the fit, also those that only priors determine. None: no such
+    parameter."""
+    common: FloatArray = field(default_factory=lambda: np.zeros((len(PARAMETERS), len(PARAMETERS))))
+    """Shape (8, 8), part of ``covariance`` that all estimates with the same given instruments share."""
     gust_rad: float | None = None
     """Standard deviation of the gust angle w/V, rad, where the air moved."""
     filtered: bool = False
@@ -136,6 +141,16 @@ class Estimate:
     def std_cr(self) -> FloatArray:
         """Shape (8,), plain Cramér-Rao standard deviations."""
         return np.sqrt(np.diag(self.covariance_cr))
+
+    @property
+    def own_covariance(self) -> FloatArray:
+        """Shape (8, 8), covariance for given instruments, corrected for coloured residuals."""
+        return self.covariance - self.common
+
+    @property
+    def own_covariance_cr(self) -> FloatArray:
+        """Shape (8, 8), plain Cramér-Rao bound for given instruments."""
+        return self.covariance_cr - self.common
 
     def value(self, parameter: str) -> float:
         """Return one parameter by name."""

@@ -1,7 +1,9 @@
 """From manoeuvres to estimates: the functions that the rest of the program calls."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
+
+import numpy as np
 
 from advisor.aircraft.aircraft import PARAMETERS, Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
@@ -9,8 +11,9 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.oem.between import widened_by_scatter
 from advisor.oem.edges import large_steps, with_edges
 from advisor.oem.efficient import efficient
-from advisor.oem.estimate import ChannelFit, Estimate, NoEstimate
+from advisor.oem.estimate import ChannelFit, Estimate, InstrumentEstimate, NoEstimate
 from advisor.oem.filter_error import filter_error, moving_air
+from advisor.oem.found import FoundInstruments, found_of
 from advisor.oem.gauss_newton import CONVERGED, Optimum
 from advisor.oem.identifiability import SUPPOSED_LAG_S, correlated, not_identifiable
 from advisor.oem.instrument_fit import Identified, InstrumentFit, fit_instruments, refreshed
@@ -125,7 +128,9 @@ def _derives_alpha(maneuvers: Sequence[Maneuver]) -> bool:
 
 def lag_is_unknown(aircraft: Aircraft) -> bool:
     """Return whether neither the crew nor an earlier manoeuvre gives the servo's lag."""
-    return aircraft.elevator.lag_s is None and aircraft.elevator.lag_found_s is None
+    found = found_of(aircraft)
+    told = found is not None and "servo_lag_s" in found.names
+    return aircraft.elevator.lag_s is None and not told
 
 
 def _solved(problem: OutputErrorProblem, method: Method) -> Solution | NoEstimate:
@@ -184,27 +189,58 @@ def report(
     quick : leave out what takes milliseconds: the cost of missing channels, and the efficient estimate.
     """
     best = filtered or (solution if quick else efficient(solution))
-    pulls = (filtered or solution).contributions[:, : len(best.covariance)]
-    best = replace(best, covariance=widened_by_scatter(best.covariance, pulls))
+    source = filtered or solution
+    told = _widened(source.covariance, source)
+    best = replace(best, covariance=_widened(best.covariance, source))
+    airspeed_m_s = solution.problem.reference_airspeed_m_s or prepared.airspeed_m_s
+    given = found_of(aircraft)
+    common = np.zeros((N, N)) if given is None else given.covariance_at(airspeed_m_s)
     return Estimate(
         theta=best.theta,
-        covariance_cr=best.covariance_cr[:N, :N],
-        covariance=best.covariance[:N, :N],
+        covariance_cr=best.covariance_cr[:N, :N] + common,
+        covariance=best.covariance[:N, :N] + common,
         cost=solution.cost,
         fits=channel_fits(solution.assembly, solution.optimum),
         iterations=solution.optimum.iterations,
         not_identifiable=not_identifiable(best if filtered else solution, lagged),
         correlated=correlated(best.covariance_cr[:N, :N]),
         condition=solution.influence.condition,
-        airspeed_m_s=solution.problem.reference_airspeed_m_s or prepared.airspeed_m_s,
+        airspeed_m_s=airspeed_m_s,
         notes=notes(solution, prepared, aircraft, identified, lagged, best=best, priced=not quick),
         theta_of_lowest_cost=None if best.theta is solution.theta else solution.theta,
-        instruments=tuple(x.reported for x in identified if x.reported is not None),
+        instruments=(*_given(given), *(x.reported for x in identified if x.reported is not None)),
+        found=_found(told, identified, airspeed_m_s),
+        common=common,
         gust_rad=air.gust_angle if air is not None and air.present else None,
         filtered=filtered is not None,
         servo_lag_s=best.problem.servo.lag_s,
         prediction={} if quick else prediction_band(best),
     )
+
+
+def _widened(covariance: FloatArray, source: Solution) -> FloatArray:
+    return widened_by_scatter(covariance, source.contributions[:, : len(covariance)])
+
+
+def _found(
+    covariance: FloatArray, identified: Sequence[Identified], airspeed_m_s: float | None
+) -> FoundInstruments | None:
+    """Return the instruments of a fit with the errors that they cause; None without any.
+
+    ``covariance`` (8 + k, 8 + k) is that of the parameters, then of the instruments.
+    """
+    if not identified:
+        return None
+    names = tuple(x.instrument.name for x in identified)
+    values = np.array([x.value for x in identified])
+    return FoundInstruments.of(names, values, covariance, airspeed_m_s)
+
+
+def _given(found: FoundInstruments | None) -> Iterator[InstrumentEstimate]:
+    """Yield the instruments that other manoeuvres have told, for the rest of the program."""
+    for name, value, std in zip(found.names, found.values, found.std, strict=True) if found else ():
+        if name != "steady_moment_rad":
+            yield InstrumentEstimate(name, float(value), float(std), clear=False)
 
 
 def _supposing_a_lag(solution: Solution, aircraft: Aircraft) -> FloatArray | None:

@@ -72,7 +72,7 @@ def _text(x: InstrumentEstimate, stated: float | None, value: float, std: float)
             return f"alpha reads like a vane {value:.2f} ± {half:.2f} m ahead of the centre of gravity"
         case "alpha_delay_s":
             return f"alpha is {1e3 * value:+.0f} ± {1e3 * half:.0f} ms late relative to the motion"
-        case "accelerometer_arm_m":
+        case _:
             return f"the accelerometer reads as if {value:.2f} ± {half:.2f} m ahead of the centre of gravity"
 
 

@@ -3,11 +3,13 @@
 Gauss-Newton steps move all instruments of a problem, with everything else refitted. Three kinds of parameter
 differ by what is known before the flight:
 
-- *The delay of the command* is a nuisance of every log. A prior holds it, and every interval contains it.
+- *The delays of the command and of the angle of attack* are nuisances of every log. A prior holds each, and
+  every interval contains both. A late angle of attack and a vane's arm look nearly alike, and are off by
+  Z_α² times the delay in Z_α. So both are in the fit.
 - *An open parameter* is kept where the record is clearly likelier with the parameter, for noise of the
   residuals' colour. The likelihood ratio holds where an error from the curvature does not. On a well damped
-  aircraft a servo's lag is correlated with M_q and M_δe over a long range. An angle of attack whose lateness
-  is not clear keeps the lateness of sound instruments as its prior.
+  aircraft a servo's lag is correlated with M_q and M_δe over a long range. A vane's arm that is not clear
+  keeps the arms of sound instruments as its prior.
 - *A stated parameter* is estimated next to the statement. Where both agree, the statement is a prior with a
   width. Where they exclude each other, the data decide alone, and the contradiction is told.
 """
@@ -25,7 +27,7 @@ from advisor.oem.covariance import influence
 from advisor.oem.estimate import InstrumentEstimate
 from advisor.oem.extra import Prior
 from advisor.oem.gauss_newton import CONVERGED, Optimum
-from advisor.oem.instruments import OF_ALPHA, Instrument, extra_of, moved_by, penalty
+from advisor.oem.instruments import Instrument, extra_of, moved_by, penalty
 from advisor.oem.problem import Assembly, OutputErrorProblem
 from advisor.oem.solution import Solution, evaluate, search
 from advisor.oem.weighing import Weighing
@@ -115,14 +117,11 @@ def fit_instruments(plain: Solution, unknown: Sequence[Instrument]) -> Instrumen
     unknown
         Parameters with a prior, open ones, and stated ones.
     """
+    if not unknown:
+        return InstrumentFit(plain)
     begin = _Fit(plain.problem, plain.assembly, plain.optimum)
-    unknown = [weighed(x, share_of(plain)) for x in unknown]
-    common = tuple(x for x in unknown if x.name not in OF_ALPHA)
-    near = _looked_about(begin, common)
-    choices = [(*common, x) for x in unknown if x.name in OF_ALPHA] or [common]
-    fits = [(names, _descend(near, names)) for names in choices if names]
-    names, best = min(fits, key=lambda found: found[1].cost(found[0]), default=((), begin))
-    kept = _clear_ones(names, best, plain)
+    names = tuple(weighed(x, share_of(plain)) for x in unknown)
+    kept = _clear_ones(names, _descend(_looked_about(begin, names), names), plain)
     if kept is None:
         return InstrumentFit(plain)
     return _with_statements(*kept, plain)

@@ -13,28 +13,19 @@ autopilot has such a moment as well.
 Each unknown instrument is one more shared parameter of the fit (``instrument_fit``).
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
 
 import numpy as np
 
-from advisor.aircraft.aircraft import Aircraft, Elevator
+from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.instruments.lateness import lateness_std
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import N_PARAMETERS, respond
 from advisor.oem.extra import Extra, Prior
+from advisor.oem.found import FoundInstruments, InstrumentName, found_of
 from advisor.oem.problem import OutputErrorProblem, assemble
 from advisor.oem.surface import Servo
-
-InstrumentName = Literal[
-    "servo_lag_s",
-    "command_delay_s",
-    "vane_arm_m",
-    "alpha_delay_s",
-    "accelerometer_arm_m",
-    "steady_moment_rad",
-]
 
 KNOWN_TO = 0.1
 """Standard deviation over the value for which the value represents the aircraft, and that of a servo's lag in
@@ -47,8 +38,8 @@ SMALLEST_ARM_M = 0.02
 """Smallest distance of an accelerometer from the centre of gravity that matters, m."""
 STEADY_MOMENT_RAD = 0.02
 """Standard deviation of the elevator deflection that balances the moments which do not scale with V², rad. A
-change of power asks for a degree or so of trim. Set on a business jet, 0.01 rad, and on a jet in turbulence,
-0.02 rad."""
+change of power asks for a degree or so of trim. From 0.005 to 0.08 rad no derivative of a business jet's held
+step moves by a fiftieth of its interval, and none of an autopilot's test by more than half of it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -210,8 +201,10 @@ STEADY_MOMENT = Instrument(
     usual=lambda _: STEADY_MOMENT_RAD,
 )
 OF_ALPHA = ("vane_arm_m", "alpha_delay_s")
-"""Two readings of an angle of attack that contradict the kinematics in nearly equal ways; at most one is
-kept."""
+"""Instruments of the angle of attack. They change Z_α, Z_q and Z_δe."""
+BY_NAME: Mapping[InstrumentName, Instrument] = {
+    x.name: x for x in (SERVO_LAG, COMMAND_DELAY, VANE_ARM, ALPHA_DELAY, ACCELEROMETER_ARM, STEADY_MOMENT)
+}
 
 
 def extra_of(
@@ -255,16 +248,22 @@ def unknown_instruments(problem: OutputErrorProblem, aircraft: Aircraft) -> tupl
     A vane and an accelerometer at one place describe the motion of that place. Instruments at the centre of
     gravity describe the aircraft's equally well. One of the two places must be known to determine the other.
     """
-    command = _command(aircraft.elevator, problem)
-    unknown = [_servo_lag(aircraft.elevator), *([command] if command else [])]
+    command = COMMAND_DELAY.innocent(problem)
+    commanded = [command] if command is not None else []
+    found = found_of(aircraft)
+    if found is not None:
+        return tuple(x for x in commanded if x.name not in found.names)
+    unknown = [replace(SERVO_LAG, stated=aircraft.elevator.lag_s), *commanded]
     steady = STEADY_MOMENT.innocent(problem)
     if steady is not None and problem.reference_airspeed_m_s is not None:
         unknown.append(steady)
     measured = {name for record in problem.records for name in record.outputs}
     vane_m, imu_m = aircraft.alpha.vane_arm_m, aircraft.accelerometer.arm_m
     if {"alpha", "a_z"} <= measured:
+        late = ALPHA_DELAY.innocent(problem)
+        unknown += [late] if late is not None else []
         if vane_m is None:
-            unknown += [VANE_ARM, ALPHA_DELAY]
+            unknown.append(VANE_ARM)
         elif imu_m is None:
             unknown.append(ACCELEROMETER_ARM)
         else:
@@ -272,18 +271,8 @@ def unknown_instruments(problem: OutputErrorProblem, aircraft: Aircraft) -> tupl
     return tuple(unknown)
 
 
-def _servo_lag(elevator: Elevator) -> Instrument:
-    """Return the servo's lag as known before this fit: by earlier manoeuvres, by the aircraft file, or
-    not."""
-    found = elevator.lag_found_s
-    if found is not None:
-        return replace(SERVO_LAG, prior=Prior(found, elevator.lag_found_std_s or KNOWN_TO * found))
-    return replace(SERVO_LAG, stated=elevator.lag_s)
-
-
-def _command(elevator: Elevator, problem: OutputErrorProblem) -> Instrument | None:
-    """Return the delay of the command as known before this fit: by other manoeuvres of the power-on, or by
-    the prior of sound instruments."""
-    if elevator.delay_found_s is None or elevator.delay_found_std_s is None:
-        return COMMAND_DELAY.innocent(problem)
-    return replace(COMMAND_DELAY, prior=Prior(elevator.delay_found_s, elevator.delay_found_std_s))
+def as_found(problem: OutputErrorProblem, found: FoundInstruments | None) -> OutputErrorProblem:
+    """Return the problem with the instruments that manoeuvres have told together."""
+    for name, value in zip(found.names, found.values, strict=True) if found is not None else ():
+        problem = BY_NAME[name].write(problem, float(value))
+    return problem

@@ -7,6 +7,7 @@ import numpy as np
 from advisor.aircraft.aircraft import PARAMETERS, Aircraft
 from advisor.flight.signals.messages import FloatArray
 from advisor.oem.correlation import HIGH_CORRELATION
+from advisor.oem.found import found_of
 from advisor.oem.identifiability import SUPPOSED_LAG_S, correlated
 from advisor.oem.instrument_fit import Identified
 from advisor.oem.instruments import KNOWN_TO
@@ -131,10 +132,11 @@ def _servo(solution: Solution, lagged: FloatArray | None) -> str:
 
 
 def _found_lag(aircraft: Aircraft) -> str:
-    elevator = aircraft.elevator
-    if elevator.lag_s is not None or elevator.lag_found_s is None:
+    found = found_of(aircraft)
+    lag_s = None if found is None else found.value("servo_lag_s")
+    if aircraft.elevator.lag_s is not None or lag_s is None:
         return ""
-    return f"The servo's lag of {elevator.lag_found_s:.3f} s is used, as estimated from all manoeuvres."
+    return f"The servo's lag of {lag_s:.3f} s is used, as estimated from all manoeuvres."
 
 
 def _airspeed(prepared: Prepared) -> str:

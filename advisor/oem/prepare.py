@@ -16,6 +16,8 @@ from advisor.oem.airspeed import Airspeed, airspeed
 from advisor.oem.alpha_use import FEWEST_SAMPLES, can_do_without, infer, lacking, why_left_out
 from advisor.oem.alpha_use import has as _has
 from advisor.oem.estimate import NoEstimate
+from advisor.oem.found import found_of
+from advisor.oem.instruments import as_found
 from advisor.oem.lost_input import restored
 from advisor.oem.problem import OutputErrorProblem, Record, Signal
 from advisor.oem.surface import Servo
@@ -139,7 +141,7 @@ def _prepared(
         accelerometer_arm_m=aircraft.accelerometer.arm_m or 0.0,
     )
     return Prepared(
-        problem=restored(problem),
+        problem=restored(as_found(problem, found_of(aircraft))),
         renewed_hz=renewed_hz,
         alpha_held=alpha_held,
         alpha_left_out=alpha_left_out,
@@ -150,8 +152,7 @@ def _prepared(
 
 
 def _servo(elevator: Elevator) -> Servo:
-    lag_s = elevator.lag_s if elevator.lag_found_s is None else elevator.lag_found_s
-    return Servo(lag_s or 0.0, elevator.delay_s or 0.0)
+    return Servo(elevator.lag_s or 0.0, elevator.delay_s or 0.0)
 
 
 def _renewed(signal: Signal) -> tuple[Signal, bool]:

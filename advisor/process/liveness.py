@@ -35,7 +35,7 @@ class Beat(Enum):
 class Watch:
     """Measures the age of a process's newest message while the context is open.
 
-    An interval between two looks counts at most twice its planned length: while this process was stopped
+    An interval between two looks counts at most twice its planned length. While this process was stopped
     itself, or the computer slept, nobody else was late.
 
     Parameters

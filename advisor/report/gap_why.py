@@ -9,7 +9,7 @@ from rich.text import Text
 
 from advisor.gap.result import Diagnosis, spelled
 from advisor.gap.verdict.as_judged import answered
-from advisor.gap.verdict.ledger import in_words
+from advisor.report.gap_decisions import in_words
 
 _SAYABLE_NATS = 12.0
 """Log odds, nats, above which odds are no longer written as a number: 160,000 to 1."""

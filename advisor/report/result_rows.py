@@ -121,6 +121,6 @@ def channel_table(name: str, caption: str, channels: Mapping[str, ChannelStatus]
 def message_table(name: str, messages: Sequence[Mapping[str, Any]]) -> Table:
     """Return the table of the messages of ``advisor.doctor/1``: rates, jitter and largest gap."""
     decimals = {"rate_hz": 1, "lowest_hz": 1, "renewed_hz": 1, "jitter_ms": 1, "largest_gap_s": 3}
-    head = ("message", "rate [Hz]", "lowest [Hz]", "renewed [Hz]", "jitter [ms]", "gap [s]")
+    head = ("message", "rate [Hz]", "lowest [Hz]", "new [Hz]", "jitter [ms]", "gap [s]")
     rows = tuple((one["name"], *(digits(one[k], n) for k, n in decimals.items())) for one in messages)
     return Table(name, "How the messages arrive; gap: the largest.", head, rows, frozenset(range(1, 6)))

@@ -81,7 +81,7 @@ def read_campaign(recording: Path) -> CampaignFile | None:
     path = path_beside(recording)
     if not path.exists():
         return None
-    content = read_yaml(path, "Mend the file, or move it away and give the options again.")
+    content = read_yaml(path, "Fix the file, or move it away and give the options again.")
     if not _is_campaign(content):
         raise ConfigurationError(
             f"{path}: must hold master and may hold {', '.join(_KEYS[1:])}. Move the file away and give the "

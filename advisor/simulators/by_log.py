@@ -15,7 +15,7 @@ from advisor.words.quantiles import NORMAL_95
 
 _LEAST = 2
 """Least number of manoeuvres in a simulator's log. A single one names no effect, for lack of a hold-out."""
-_SUFFIXES = (".tlog", ".bin", ".ulg")
+_SUFFIXES = (".tlog", ".bin", ".ulg", ".csv", ".txt", ".tsv", ".mat")
 
 
 @dataclass(frozen=True)

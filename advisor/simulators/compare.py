@@ -11,16 +11,16 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.messages import FloatArray
-from advisor.flight.signals.record import Channel
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import with_known
 from advisor.gap.candidates.traits import TRAITS
 from advisor.gap.diagnose import DiagnosisEvidence, examine
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.judge.prior import FIELD, FieldPrior
+from advisor.gap.records.as_stamped import as_stamped
 from advisor.gap.records.prepare import prepare
-from advisor.gap.result import Diagnosis, TrimDifference
+from advisor.gap.records.unmeasured_alpha import alpha_by_motion, is_known
+from advisor.gap.result import Diagnosis, Trace, TrimDifference
 from advisor.gap.search.baseline import base_entries
 from advisor.gap.simulator.layout import DERIVATIVES, INDEX, NUISANCES, OUTPUTS
 from advisor.simulators.air import refuse_unknown_air, standard_heights
@@ -35,9 +35,11 @@ from advisor.simulators.flying import (
     beyond,
     refuse_another_elevator,
     refuse_unmoved,
+    without_difference,
 )
 from advisor.simulators.improved import EQUATIONS, Flown, in_simulator
 from advisor.simulators.linear import LinearSimulator
+from advisor.simulators.mirror import mirrored
 from advisor.simulators.protocol import Condition, Inputs, Replay, Simulator
 from advisor.simulators.static_errors import with_static_errors
 from advisor.simulators.surrogate import Surrogate, surrogate_of
@@ -91,8 +93,9 @@ def compare(
     """
     if not simulator.takes_increments:
         aircraft = _without_equations(aircraft)
+    maneuvers = alpha_by_motion([as_stamped(m) for m in maneuvers], aircraft)
     flights = prepare(maneuvers, aircraft)
-    if not len(flights) or "alpha" not in flights.channels:
+    if not len(flights) or not is_known(maneuvers):
         examine(maneuvers, aircraft, holdout, progress, prior)
     heights = standard_heights(maneuvers, aircraft)
     if not isinstance(simulator, LinearSimulator):
@@ -100,6 +103,7 @@ def compare(
     heights_m = {number: height or 0.0 for number, height in heights.items()}
     mass_kg = aircraft.reference.mass_kg
     trims: tuple[TrimDifference, ...] = ()
+    replays: list[Replay] = []
     controls = other_controls(flights.flights, maneuvers)
     flying = Flying(simulator, flights, heights_m, controls, mass_kg, lambda w, s: progress(w, _FLIES * s))
     if isinstance(simulator, LinearSimulator):
@@ -111,7 +115,7 @@ def compare(
         surrogate, as_flown, replays = _surrogate_and_rest(flying, aircraft)
         trims = trim_differences(flights, maneuvers, replays, aircraft)
         as_file = replace(surrogate.aircraft(aircraft), simulator=simulator.description)
-    beside = [_without(m, as_flown) for m in maneuvers]
+    beside = [without_difference(m, as_flown) for m in maneuvers]
     examined = examine(
         beside,
         as_file,
@@ -125,15 +129,25 @@ def compare(
         surrogate = replace(surrogate, reference_m_s=reference)
         again = replace(again, simulator=replace(simulator, reference_m_s=reference))
     progress("searching again without the manoeuvres kept apart", _DIAGNOSED)
-    unseen = unseen_of(examined, beside, as_file, holdout) if changes_something(examined.diagnosis) else None
-    found = _measured(examined, unseen, as_file, in_simulator(examined, unseen, again, surrogate, as_flown))
+    changes = changes_something(examined.diagnosis)
+    unseen = unseen_of(examined, beside, as_file, holdout, prior) if changes else None
+    flown = in_simulator(examined, unseen, again, surrogate, as_flown)
+    found = _measured(examined, unseen, as_file, flown, as_flown)
+    if replays:
+        progress("looking for what only the simulator has", _FOUND)
+        mirror = mirrored(examined, maneuvers, flying, replays, aircraft)
+        found = found if mirror is None else mirror.said(found)
     found = with_static_errors(found, examined, trims)
     notes = getattr(simulator, "notes", ())
     return Compared(replace(found, notes=(*notes, *found.notes)), as_file)
 
 
 def _measured(
-    examined: DiagnosisEvidence, unseen: UnseenManeuvers | None, as_file: Aircraft, flown: Flown
+    examined: DiagnosisEvidence,
+    unseen: UnseenManeuvers | None,
+    as_file: Aircraft,
+    flown: Flown,
+    as_flown: Mapping[int, AsGiven],
 ) -> Diagnosis:
     """Return the diagnosis with the gap of the simulator itself, before and after the findings."""
     diagnosis, gap = examined.diagnosis, flown.gap
@@ -146,7 +160,20 @@ def _measured(
     notes = diagnosis.notes
     if gap.refused:
         notes = (f"The simulator cannot take the effects: {gap.refused}", *notes)
-    return replace(diagnosis, in_simulator=gap, notes=notes)
+    return replace(diagnosis, in_simulator=gap, notes=notes, traces=_as_logged(diagnosis.traces, as_flown))
+
+
+def _as_logged(traces: Sequence[Trace], as_flown: Mapping[int, AsGiven]) -> tuple[Trace, ...]:
+    """Return the traces of the flight as logged, with those of the simulator instead of its surrogate."""
+    found = []
+    for trace in traces:
+        one = as_flown[trace.number]
+        t = np.arange(one.beyond.shape[1]) * one.flight.h
+        by = np.interp(trace.t, t, one.beyond[OUTPUTS.index(trace.channel)])
+        found.append(
+            replace(trace, measured=trace.measured + by, before=trace.before + by, after=trace.after + by)
+        )
+    return tuple(found)
 
 
 def _linear(flying: Flying) -> dict[int, AsGiven]:
@@ -193,23 +220,3 @@ def _usual(flying: Flying) -> Condition:
     """Return the condition in the middle of those at the starts of the manoeuvres."""
     height = float(np.mean([flying.condition(f).height_m for f in flying.flights.flights]))
     return Condition(flying.flights.reference_m_s, height, 0.0, flying.mass_kg)
-
-
-def _without(m: Maneuver, as_flown: Mapping[int, AsGiven]) -> Maneuver:
-    """Return the manoeuvre without the simulator's difference to its surrogate."""
-    if m.number not in as_flown:
-        return m
-    flight, grid = as_flown[m.number].flight, as_flown[m.number].beyond
-    t: FloatArray = flight.started_s + np.arange(grid.shape[1], dtype=np.float64) * flight.h
-    channels = dict(m.channels)
-    for c, name in enumerate(OUTPUTS):
-        if name in channels:
-            channels[name] = _less(channels[name], t, grid[c])
-    return replace(m, channels=channels)
-
-
-def _less(channel: Channel, t: FloatArray, by: FloatArray) -> Channel:
-    """Return a channel minus a series; a sample that repeats the one before still repeats it."""
-    y = channel.y - np.interp(channel.t, t, by)
-    fresh = np.concatenate([[True], np.diff(channel.y) != 0.0])
-    return replace(channel, y=y[np.maximum.accumulate(np.where(fresh, np.arange(len(y)), 0))])

@@ -5,12 +5,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import FloatArray
+from advisor.flight.signals.record import Channel
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.fitting.regression import regressions
 from advisor.gap.records.flights import PreparedManeuver, PreparedManeuvers
 from advisor.gap.records.usable import DEPARTED_RAD
-from advisor.gap.simulator.layout import BANK, DERIVATIVES, HEIGHT, INDEX
+from advisor.gap.simulator.layout import BANK, DERIVATIVES, HEIGHT, INDEX, OUTPUTS
 from advisor.simulators.around import instruments, skewed
 from advisor.simulators.increments import SimulatorIncrements, entries_of
 from advisor.simulators.inputs import as_flight, condition_of, inputs_of, on_grid, surface_of
@@ -238,3 +240,23 @@ def refuse_unmoved(description: str, replays: Sequence[Replay], flights: Prepare
             f"{description} does not answer the elevator: its pitch rate stays as it is.",
             "Check which input of the model the elevator is, and its unit.",
         )
+
+
+def without_difference(m: Maneuver, as_flown: Mapping[int, AsGiven]) -> Maneuver:
+    """Return the manoeuvre without the simulator's difference to its surrogate."""
+    if m.number not in as_flown:
+        return m
+    flight, grid = as_flown[m.number].flight, as_flown[m.number].beyond
+    t: FloatArray = flight.started_s + np.arange(grid.shape[1], dtype=np.float64) * flight.h
+    channels = dict(m.channels)
+    for c, name in enumerate(OUTPUTS):
+        if name in channels:
+            channels[name] = _less(channels[name], t, grid[c])
+    return replace(m, channels=channels)
+
+
+def _less(channel: Channel, t: FloatArray, by: FloatArray) -> Channel:
+    """Return a channel minus a series; a sample that repeats the one before still repeats it."""
+    y = channel.y - np.interp(channel.t, t, by)
+    fresh = np.concatenate([[True], np.diff(channel.y) != 0.0])
+    return replace(channel, y=y[np.maximum.accumulate(np.where(fresh, np.arange(len(y)), 0))])

@@ -34,7 +34,7 @@ def condition_of(flight: PreparedManeuver, height_m: float, mass_kg: float | Non
     """
     before = max(int(flight.first_step_s / flight.h), 1)
     speed = float(np.mean(flight.slow[SPEED, :before]))
-    steep = float(flight.trim[THETA_FROM]) - flight.alpha_trim if "theta" in flight.outputs else 0.0
+    steep = float(flight.trim[THETA_FROM]) - flight.alpha_trim
     return Condition(speed, height_m, steep, mass_kg)
 
 

@@ -17,6 +17,7 @@ from advisor.flight.signals.standard_atmosphere import SEA_LEVEL_DENSITY_KG_M3
 from advisor.gap.candidates.sensors import TRUE_AIR_SPEED
 from advisor.gap.records.airspeed import measures_speed
 from advisor.gap.records.prepare import prepare
+from advisor.gap.records.unmeasured_alpha import alpha_by_motion
 from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.uncatalogued.airspeed_scale import airspeed_scale_of
 
@@ -44,7 +45,7 @@ def by_the_motion(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> SpeedKin
     if abs(factor - 1.0) < _MATTERS:
         return unchanged
     unmodelled = replace(aircraft, model={}, effects={}, simulator=None)
-    flights = prepare(maneuvers, unmodelled)
+    flights = prepare(alpha_by_motion(maneuvers, unmodelled), unmodelled)
     if not {"alpha", "a_z"} <= set(flights.channels):
         return unchanged
     shown = airspeed_scale_of(*fit_baseline(flights, unmodelled))

@@ -18,6 +18,7 @@ from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.measure import shrink_interval, whole_gap
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.fitting.refit import own_refitted
+from advisor.gap.judge.prior import FIELD, FieldPrior
 from advisor.gap.result import Diagnosis, Shrink
 from advisor.gap.verdict.holdout_numbers import over_maneuvers, with_offset
 from advisor.gap.verdict.statements import in_simulator
@@ -59,7 +60,11 @@ def changes_something(diagnosis: Diagnosis) -> bool:
 
 
 def unseen_of(
-    whole: DiagnosisEvidence, maneuvers: Sequence[Maneuver], aircraft: Aircraft, holdout: int | None
+    whole: DiagnosisEvidence,
+    maneuvers: Sequence[Maneuver],
+    aircraft: Aircraft,
+    holdout: int | None,
+    prior: FieldPrior = FIELD,
 ) -> UnseenManeuvers | None:
     """Diagnose all manoeuvres but those kept apart; None where they are too few.
 
@@ -67,8 +72,8 @@ def unseen_of(
     ----------
     whole
         Diagnosis of all ``maneuvers`` against ``aircraft``.
-    holdout
-        Argument of ``advisor.gap.diagnose.diagnose``.
+    holdout, prior
+        Arguments of ``advisor.gap.diagnose.diagnose``.
     """
     numbers = [flight.number for flight in whole.evidence.problem.flights.flights]
     kept = kept_apart(len(numbers), holdout)
@@ -76,7 +81,7 @@ def unseen_of(
         return None
     apart = {numbers[i] for i in kept}
     others = [m for m in maneuvers if m.number in numbers and m.number not in apart]
-    return UnseenManeuvers(kept, examine(others, aircraft))
+    return UnseenManeuvers(kept, examine(others, aircraft, prior=prior))
 
 
 def as_changed(unseen: UnseenManeuvers, whole: DiagnosisEvidence) -> SearchPoint:

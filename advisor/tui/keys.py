@@ -53,6 +53,7 @@ PANES = (
     ("h", "history"),
     ("u", "flying qualities"),
     ("i", "whole flight"),
+    ("d", "gap to the simulator"),
 )
 """Key and name of each pane, in the order of their numbers."""
 

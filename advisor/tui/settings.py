@@ -54,11 +54,11 @@ def load_settings(path: Path | None = None) -> Settings:
     data = read_yaml(path, "See `advisor locate config`.") or {}
     if not isinstance(data, dict):
         raise ConfigurationError(
-            f"{path} must hold keys and values, as in `theme: light`. Mend the file, or move it away."
+            f"{path} must hold keys and values, as in `theme: light`. Fix the file, or move it away."
         )
     mistakes = [*_unknown(data), *_wrong(data)]
     if mistakes:
-        raise ConfigurationError(f"{path}: {'; '.join(mistakes)}. Mend the file, or move it away.")
+        raise ConfigurationError(f"{path}: {'; '.join(mistakes)}. Fix the file, or move it away.")
     return Settings(**data)
 
 

@@ -15,9 +15,9 @@ from advisor.gap.judge.logit import SCALES, Logit
 from advisor.gap.judge.prior import FieldPrior
 from benchmarks.judge.flights import JudgedFlight
 
-Columns = Mapping[Kind, tuple[str, ...]]
-
-COLUMNS: Columns = {
+Slot = tuple[Kind, str]
+"""A weight: the kind of alternative that it belongs to, and its column."""
+COLUMNS: Mapping[Kind, tuple[str, ...]] = {
     "none": ("file_gap", "file_distance", "misfit", "of_peak", "activity", "block_gain", "drift"),
     "parameters": ("file_gap", "file_distance", "gap_removed", "misfit", "block_gain"),
     "effect": (
@@ -26,10 +26,10 @@ COLUMNS: Columns = {
         "at_bound", "model_gain", "model_share", "misfit", "block_share", "kinematics", "kinematic_size",
         "estimated", "drift", "step",
     ),
-    "air": ("few_maneuvers", "peak", "activity"),
+    "air": ("few_maneuvers", "shape", "activity", "block_explains"),
     "unknown": (
         "block_share", "block_left", "block_left_share", "block_explains", "law_gain", "law_lead", "misfit",
-        "of_peak", "activity", "few_maneuvers", "drift", "step", "block_gain",
+        "of_peak", "activity", "few_maneuvers", "drift", "step", "block_gain", "answer",
     ),
 }  # fmt: skip
 """Columns that the judge weighs, by kind of alternative. Effects of the air share the weights of all effects,
@@ -39,7 +39,6 @@ PRIOR_STD = 0.4
 of two either way differ by less than one flight in thirty, on flights of a generator that was left out."""
 _FREE = 0.1
 """Factor on the prior precision of an intercept, which the field prior corrects anyway."""
-FOLDS = 5
 _TEMPERATURES = np.geomspace(0.5, 3.0, 25)
 _SPREAD = 1e-6
 
@@ -59,16 +58,16 @@ class _Table:
     """Weight of each flight: every generator counts alike."""
 
 
-def weighed(kind: Kind) -> list[tuple[Kind, str]]:
+def weighed(kind: Kind) -> list[Slot]:
     """Return the slots of the columns of a kind of alternative."""
-    shared: list[tuple[Kind, str]] = [("effect", name) for name in COLUMNS["effect"]] if kind == "air" else []
-    return [*shared, *((kind, name) for name in COLUMNS[kind])]
+    owners: tuple[Kind, ...] = ("effect", kind) if kind == "air" else (kind,)
+    return [(owner, name) for owner in owners for name in COLUMNS[owner]]
 
 
-def slots() -> list[tuple[Kind, str]]:
-    """Return kind and column of every weight; an empty column is the intercept of a kind."""
-    intercepts: list[tuple[Kind, str]] = [(kind, "") for kind in KINDS if kind != "effect"]
-    return [*((kind, name) for kind in KINDS for name in COLUMNS[kind]), *intercepts]
+def slots() -> list[Slot]:
+    """Return owner and column of every weight; an empty column is the intercept of a kind."""
+    every = dict.fromkeys(slot for kind in KINDS for slot in weighed(kind))
+    return [*every, *((kind, "") for kind in KINDS if kind != "effect")]
 
 
 def matrix(flight: JudgedFlight) -> np.ndarray:
@@ -85,13 +84,15 @@ def matrix(flight: JudgedFlight) -> np.ndarray:
 
 
 def fitted(flights: Sequence[JudgedFlight]) -> Logit:
-    """Return the judge of some flights, tempered by those that each of five fits has not seen."""
+    """Return the judge of some flights, tempered by generators that each of its fits has not seen.
+
+    A user's aircraft is none of the generators, so the temperature is that of a generator that was left out.
+    """
     logit = _fitted(flights)
-    seen = np.random.default_rng(0).permutation(len(flights)) % FOLDS
     utilities, right = [], []
-    for fold in range(FOLDS):
-        other = _fitted([f for f, k in zip(flights, seen, strict=True) if k != fold])
-        for flight in (f for f, k in zip(flights, seen, strict=True) if k == fold):
+    for generator in sorted({flight.generator for flight in flights}):
+        other = _fitted([f for f in flights if f.generator != generator])
+        for flight in (f for f in flights if f.generator == generator):
             utilities.append(other.utilities(flight.rows, other.flown))
             right.append(flight.is_right)
     return cooled(logit, _temperature(utilities, right))

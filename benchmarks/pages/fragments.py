@@ -6,6 +6,7 @@ from pathlib import Path
 
 from benchmarks import real
 from benchmarks.pages import results
+from benchmarks.pages.forest import forest
 
 DATA = Path(__file__).parents[2] / "docs" / "data"
 GAP_RESULTS = DATA / "gap-results.json"
@@ -14,6 +15,7 @@ _MARK = re.compile(r"^<!-- made: ([a-z-]+) -->$", re.MULTILINE)
 
 FRAGMENTS: Mapping[str, Callable[[], str]] = {
     "real": lambda: real.in_markdown(*real.read(REAL)),
+    "real-forest": lambda: forest(real.read(REAL)[0]),
     "gap-figures": lambda: results.figures_table(results.read(GAP_RESULTS)),
     "gap-sets": lambda: results.sets_table(results.read(GAP_RESULTS)),
 }

@@ -2,6 +2,7 @@
 
 import os
 import struct
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 os.environ.setdefault("MAVLINK20", "1")
@@ -107,17 +108,22 @@ def _rows(stream: Stream, *channels: str) -> zip:  # type: ignore[type-arg]
 
 
 def messages(
-    streams: dict[str, Stream], wiring: Wiring, elevation_m: float, mode: int = MANUAL
+    streams: dict[str, Stream],
+    wiring: Wiring,
+    elevation_m: float,
+    mode: int = MANUAL,
+    stated: Mapping[str, float] | None = None,
 ) -> list[Timed]:
     """Every message with the time since boot [s] at which the vehicle sent it.
 
     The streams are ``attitude``, ``imu``, ``servo`` (with ``throttle_us``), ``hud`` (with
-    ``throttle_percent``), ``position``, and ``alpha`` where the vehicle sends an angle of attack.
+    ``throttle_percent``), ``position``, and ``alpha`` where the vehicle sends an angle of attack. ``stated``
+    has further parameters.
     """
     boot, last = wiring.boot_s, float(streams["attitude"].stamps[-1])
     beat = mavlink.MAVLink_heartbeat_message(1, 3, 81, mode, 4, 3)
     out: list[Timed] = [(boot + k, beat) for k in range(int(last) + 1)]
-    values = parameters(wiring)
+    values = parameters(wiring) | dict(stated or {})
     for k, (name, value) in enumerate(values.items()):
         message = mavlink.MAVLink_param_value_message(name.encode(), value, 9, len(values), k)
         out.append((boot + 0.01 + 0.005 * k, message))
@@ -176,6 +182,12 @@ def packed(timed: list[Timed]) -> bytes:
     return b"".join(parts)
 
 
-def tlog(streams: dict[str, Stream], wiring: Wiring, elevation_m: float, mode: int = MANUAL) -> bytes:
-    """The whole log."""
-    return packed(messages(streams, wiring, elevation_m, mode))
+def tlog(
+    streams: dict[str, Stream],
+    wiring: Wiring,
+    elevation_m: float,
+    mode: int = MANUAL,
+    stated: Mapping[str, float] | None = None,
+) -> bytes:
+    """The whole log; ``stated`` has further parameters."""
+    return packed(messages(streams, wiring, elevation_m, mode, stated))

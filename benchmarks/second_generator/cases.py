@@ -12,13 +12,16 @@ from sim.sealed.cases import SealedCase
 
 from .design import assignments
 from .draw import Case, draw_case, largest_speed_change
+from .nature import SHARE
 from .telemetry import record
 
 
-def cases(count: int, seed: int, only: str | None = None) -> Iterator[SealedCase]:
-    """Yield ``count`` cases, each flown."""
+def cases(
+    count: int, seed: int, only: str | None = None, natural_share: float = SHARE
+) -> Iterator[SealedCase]:
+    """Yield ``count`` cases, each flown; a share of them has natural nuisances."""
     for index, assignment in enumerate(assignments(count, seed, only), start=1):
-        case = draw_case(assignment, seed, index)
+        case = draw_case(assignment, seed, index, natural_share)
         yield SealedCase(f"{index:04d}", truth(case), log_bytes(case), aircraft_file(case))
 
 
@@ -26,8 +29,10 @@ def log_bytes(case: Case) -> bytes:
     """The case's tlog."""
     rng = np.random.default_rng(case.record_seed + 1)
     time = case.experiment.time
-    streams = record(time, case.flown.observed, case.flown.truth, case.recorder, case.noise, rng)
-    return tlog(streams, case.wiring, case.experiment.aircraft.elevation_m)
+    shown = case.nature.shown(case.flown.observed, float(time[1] - time[0]))
+    streams = case.nature.sent(record(time, shown, case.flown.truth, case.recorder, case.noise, rng))
+    elevation_m = case.experiment.aircraft.elevation_m
+    return tlog(streams, case.wiring, elevation_m, stated=case.nature.parameters)
 
 
 def aircraft_file(case: Case) -> dict[str, Any]:
@@ -38,7 +43,7 @@ def aircraft_file(case: Case) -> dict[str, Any]:
         calibration=case.wiring.calibration,
         servo=(None, None),
         arms_m=(case.stated_arms["vane"], case.stated_arms["accelerometer"]),
-        airspeed_m_s=aircraft.airspeed_m_s,
+        airspeed_m_s=case.nature.indicated * aircraft.airspeed_m_s,
         reference=(
             aircraft.mass_kg, aircraft.wing_area_m2, aircraft.chord_m, aircraft.pitch_inertia_kg_m2,
         ),
@@ -71,6 +76,7 @@ def truth(case: Case) -> dict[str, Any]:
         believed_model=None if case.believed is None else case.believed.as_dict(),
         stated_arms_m=case.stated_arms,
         noise=asdict(case.noise),
+        nature=asdict(case.nature),
         wiring=asdict(case.wiring),
         maneuvers=[asdict(maneuver) for maneuver in experiment.plan.maneuvers],
     )  # fmt: skip

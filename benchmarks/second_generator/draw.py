@@ -17,6 +17,7 @@ from .equipment import draw_noise, draw_recorder, draw_wiring
 from .flight import Link
 from .flight_model import plain_model
 from .maneuvers import Plan
+from .nature import SHARE, Nature, draw_nature
 from .pilot import suitable_pilot
 from .planning import STEP, Wishes, draw_plan
 from .sensors import Accelerometer, Instruments, Vane
@@ -46,6 +47,7 @@ class Case:
     believed: LinearModel | None
     stated_arms: dict[str, float | None]
     record_seed: int
+    nature: Nature
 
 
 def largest_speed_change(plan: Plan, flown: Flown) -> float:
@@ -174,7 +176,7 @@ def _with_effects(
     return case, tuple(effects)
 
 
-def draw_case(assignment: Assignment, seed: int, index: int) -> Case:
+def draw_case(assignment: Assignment, seed: int, index: int, natural_share: float = SHARE) -> Case:
     """Draw and fly one case. Design, plan, air, effects and noise have generators of their own."""
     seeds = np.random.SeedSequence([seed, index]).generate_state(5).tolist()
     design_seed, plan_seed, air_seed, effect_seed, record_seed = seeds
@@ -212,4 +214,10 @@ def draw_case(assignment: Assignment, seed: int, index: int) -> Case:
         believed=believed,
         stated_arms=stated,
         record_seed=record_seed,
+        nature=draw_nature(
+            np.random.default_rng([record_seed, 3]),
+            assignment.names,
+            case.aircraft.elevation_m + float(flown.truth.height[0]),
+            natural_share,
+        ),
     )

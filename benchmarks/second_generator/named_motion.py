@@ -38,7 +38,8 @@ def actuator_deadband(case: Experiment, size: float, rng: Generator) -> Outcome:
 
 
 def transport_delay(case: Experiment, size: float, rng: Generator) -> Outcome:
-    delay = size * 0.28 / case.omega
+    # A shorter delay is that of telemetry.
+    delay = max(size * 0.28 / case.omega, 0.03)
     jitter = float(rng.uniform(0.0, 0.003))
     # The delay of a packet lasts until the next one.
     packets = rng.uniform(-jitter, jitter, len(case.time) // 10 + 1)

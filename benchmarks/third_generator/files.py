@@ -11,6 +11,7 @@ from benchmarks.sealed.tlog import MANUAL, STABILIZE, tlog
 from sim.sealed.cases import SealedCase
 
 from .cases import EFFECTS, Case, assignments, draw_case
+from .nature import SHARE, Nature, drawn
 from .plan import as_key
 from .recording import record
 from .trim import short_period
@@ -19,21 +20,27 @@ LATE = ("alpha_skew", "alpha_lag")
 """Names that are true of an angle of attack that the autopilot makes itself."""
 
 
-def cases(count: int, seed: int, only: str | None = None) -> Iterator[SealedCase]:
-    """Yield ``count`` cases, each flown."""
+def cases(
+    count: int, seed: int, only: str | None = None, natural_share: float = SHARE
+) -> Iterator[SealedCase]:
+    """Yield ``count`` cases, each flown; a share of them has natural nuisances."""
     for index, assignment in enumerate(assignments(count, seed, only), start=1):
         case = draw_case(assignment, seed, index)
-        yield SealedCase(f"{index:04d}", truth(case), log_bytes(case), aircraft_file(case))
+        above_sea_m = case.ground_m + case.setup.plan.aircraft.height_m
+        nature = drawn(np.random.default_rng([case.noise_seed, 3]), above_sea_m, natural_share)
+        told = truth(case) | {"nature": nature.facts()}
+        yield SealedCase(f"{index:04d}", told, log_bytes(case, nature), aircraft_file(case, nature))
 
 
-def log_bytes(case: Case) -> bytes:
+def log_bytes(case: Case, nature: Nature) -> bytes:
     """The case's log."""
-    streams = record(case.shown, case.setup.kit, np.random.default_rng(case.noise_seed))
+    rng = np.random.default_rng(case.noise_seed)
+    streams = nature.stamped(record(nature.measured(case.shown), case.setup.kit, rng))
     mode = STABILIZE if case.setup.plan.gains.damper > 0.0 else MANUAL
-    return tlog(streams, case.wiring, case.ground_m, mode)
+    return tlog(streams, case.wiring, case.ground_m, mode, nature.parameters())
 
 
-def aircraft_file(case: Case) -> dict[str, Any]:
+def aircraft_file(case: Case, nature: Nature) -> dict[str, Any]:
     """What a crew knows of its aircraft; a servo without a stated lag has none."""
     plan, kit, servo = case.setup.plan, case.setup.kit, case.setup.servo
     return generator.aircraft_file(
@@ -41,7 +48,7 @@ def aircraft_file(case: Case) -> dict[str, Any]:
         calibration=case.wiring.calibration,
         servo=(servo.lag_s, servo.delay_s) if servo.lag_s > 0.0 else (None, None),
         arms_m=(kit.vane_arm_m, kit.stated_imu_arm_m),
-        airspeed_m_s=plan.aircraft.airspeed_m_s,
+        airspeed_m_s=nature.pitot * plan.aircraft.airspeed_m_s,
         reference=(plan.shape.mass, plan.shape.area, plan.shape.chord, plan.shape.inertia),
         model=case.believed,
     )

@@ -213,7 +213,8 @@ NAMED = {
     "actuator_rate_limit": Effect("input", 1.2, 6.0, 12.0, _rate),
     "actuator_backlash": Effect("input", 0.1 * DEG, 1.2 * DEG, 2.5 * DEG, _play),
     "actuator_deadband": Effect("input", 0.15 * DEG, 1.2 * DEG, 2.5 * DEG, _deadband),
-    "transport_delay": Effect("input", 0.01, 0.15, 0.3, _delay),
+    # A shorter delay is that of telemetry with stamps 20 to 50 ms apart.
+    "transport_delay": Effect("input", 0.04, 0.15, 0.3, _delay),
     "elevator_nonlinearity": Effect("moment_equation", 0.08, 0.35, 0.5, _bent_elevator),
     "nonlinear_pitching_moment": Effect("moment_equation", 0.1, 0.5, 0.8, _bent_moment),
     "thrust_moment": Effect("moment_equation", 0.05, 0.4, 1.0, _thrust_arm, wishes=Wishes(power=0.5)),

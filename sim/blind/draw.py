@@ -12,6 +12,7 @@ from ..linear import ShortPeriod
 from ..loading import DepartureError
 from ..scenario import Air, Clock, Instruments, Maneuver, Noise, Scenario
 from ..trim import TrimError
+from .natural import SHARE, natural, without_vane_noise
 from .sizes import INSIDE, ON_ANY_ENGINE, OUTSIDE, Scale
 from .visibility import structural_gap
 
@@ -72,8 +73,17 @@ class Case:
         }
 
 
-def draw_case(group: Group, generator: np.random.Generator) -> Case:
+def draw_case(group: Group, generator: np.random.Generator, natural_share: float = SHARE) -> Case:
     """Draw a case until its effect is visible above the noise.
+
+    Parameters
+    ----------
+    group
+        Group of the case.
+    generator
+        Generator of everything that is drawn.
+    natural_share
+        Share of the cases with natural nuisances.
 
     Raises
     ------
@@ -84,13 +94,16 @@ def draw_case(group: Group, generator: np.random.Generator) -> Case:
     for _ in range(40):
         names = _names(group, generator)
         scenario, background = scenario_of(group, names, hard, generator)
+        if np.random.default_rng([scenario.seed, 76]).random() < natural_share:
+            scenario = natural(scenario, names, hangar.habits(scenario).airspeed_m_s / 25.0)
+            background = [*background, "natural"]
         try:
             case = sized(group, scenario, names, hard, background, generator)
         except TrimError:
             # An airframe, a speed and an effect that do not match are drawn again.
             continue
         if case is not None:
-            return case
+            return replace(case, scenario=without_vane_noise(case.scenario))
     raise RuntimeError(f"no visible case of group {group}")
 
 

@@ -12,6 +12,7 @@ from ..record import write_tlog
 from ..sealed.cases import SealedCase, write_set
 from ..servo import Calibration
 from .draw import GROUPS, SHARES, Case, Group, draw_case
+from .natural import SHARE, read_airspeed
 from .simulated import SimulatedCase, draw_simulated
 
 
@@ -32,8 +33,10 @@ def generate(
     return write_set(folder, told())
 
 
-def draw(count: int, seed: int, groups: Sequence[Group]) -> Iterator[SealedCase]:
-    """Yield the cases of a set, each flown."""
+def draw(
+    count: int, seed: int, groups: Sequence[Group], natural_share: float = SHARE
+) -> Iterator[SealedCase]:
+    """Yield the cases of a set, each flown; a share of them has natural nuisances."""
     generator = np.random.default_rng([seed, 2026])
     shares = np.array([SHARES[GROUPS.index(group)] for group in groups])
     if not shares.any():
@@ -42,7 +45,7 @@ def draw(count: int, seed: int, groups: Sequence[Group]) -> Iterator[SealedCase]
         group = groups[int(generator.choice(len(groups), p=shares / shares.sum()))]
         own = np.random.default_rng([seed, number])
         name = own.bytes(6).hex()
-        case = draw_simulated(own) if group == "simulator" else draw_case(group, own)
+        case = draw_simulated(own) if group == "simulator" else draw_case(group, own, natural_share)
         log = BytesIO()
         write_tlog(flight_of(case.scenario), log)
         yield SealedCase(name, case.key(), log.getvalue(), aircraft_file(case))
@@ -67,6 +70,6 @@ def aircraft_file(case: Case) -> dict[str, Any]:
         "name": "aircraft",
         "elevator": elevator,
         "accelerometer": {"arm_m": round(case.scenario.instruments.accelerometer_arm_m, 4)},
-        "reference_airspeed_m_s": round(case.scenario.airspeed_m_s or 0.0, 3),
+        "reference_airspeed_m_s": round(read_airspeed(case.scenario), 3),
         "model": {name: float(f"{value:.6g}") for name, value in case.prior.as_dict().items()},
     }

@@ -90,7 +90,8 @@ INSIDE: dict[str, Draw] = {
     "actuator_rate_limit": _one("rate_rad_s", 0.25, 1.6),
     "actuator_backlash": _one("half_width_rad", 0.08, 0.45, by="amplitude"),
     "actuator_deadband": _one("half_width_rad", 0.08, 0.45, by="amplitude"),
-    "transport_delay": _one("delay_s", 0.012, 0.15),
+    # A shorter delay is that of any telemetry.
+    "transport_delay": _one("delay_s", 0.03, 0.15),
     "elevator_nonlinearity": _elevator,
     "nonlinear_pitching_moment": _moment,
     "thrust_moment": _one("arm_m", 0.04, 0.4, signed=True, by="length"),

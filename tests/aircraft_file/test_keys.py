@@ -16,7 +16,7 @@ def test_the_schema_explains_every_key_with_its_meaning_and_cost():
     parts = [schema["properties"], *(part["properties"] for part in schema["$defs"].values())]
     silent = {name for part in parts for name, one in part.items() if "description" not in one}
     sections = {path.rpartition(".")[2].removesuffix("[]") for path, _ in sections_of(Aircraft) if path}
-    assert silent - sections == {"lag_found_s", "lag_found_std_s", "delay_found_s", "delay_found_std_s"}
+    assert silent <= sections
 
 
 def test_a_key_has_its_path_its_unit_and_its_default():

@@ -101,4 +101,4 @@ def test_a_mistake_is_told_with_its_place_and_a_mend(tmp_path: Path, content: st
     with pytest.raises(ConfigurationError) as told:
         read_by_hand(log)
     assert MISTAKES[content] in str(told.value)
-    assert str(told.value).endswith("Mend the file, move it away, or give --no-marks.")
+    assert str(told.value).endswith("Fix the file, move it away, or give --no-marks.")

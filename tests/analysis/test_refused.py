@@ -3,11 +3,14 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.refused import without_refused
 from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.record import Channel
+from advisor.words.problems import UnusableInputError
 from tests.simulators.nonlinear import flown
 
 
@@ -45,3 +48,48 @@ def test_a_throttle_that_moves_is_known_to_the_gaps_model():
     moved = Channel("throttle", t, np.where(t > t[100], 0.8, 0.4), "test", "measured")
     maneuvers[0] = replace(maneuvers[0], channels={**maneuvers[0].channels, "throttle": moved})
     assert without_refused(maneuvers, Aircraft()).notes == ()
+
+
+def broken_off(m: Maneuver) -> Maneuver:
+    steps = ((m.span.start_s, 0.05),)
+    return replace(m, span=replace(m.span, closed_by="gap", steps=steps))
+
+
+def slowing(m: Maneuver, percent: float) -> Maneuver:
+    """Return the manoeuvre with an air speed that falls by so many per cent after the first step."""
+    t = m.channels["airspeed"].t
+    fallen = np.clip((t - m.span.start_s) / 3.0, 0.0, 1.0)
+    speed = replace(m.channels["airspeed"], y=22.0 * (1.0 - 0.01 * percent * fallen))
+    return replace(m, channels={**m.channels, "airspeed": speed})
+
+
+def contradicted(m: Maneuver, quantity: str) -> Maneuver:
+    told = InstrumentFinding("alpha", quantity, "up", "down", 0.1, True, "alpha is reversed", "turn it")
+    return replace(m, findings=(told,))
+
+
+@pytest.mark.parametrize(
+    ("spoil", "said"),
+    [
+        (broken_off, "the telemetry breaks off"),
+        (lambda m: slowing(m, 50.0), "air speed changed by 50 %"),
+        (lambda m: contradicted(m, "sign"), "alpha is reversed"),
+    ],
+)
+def test_a_manoeuvre_that_no_model_answers_is_not_used(spoil, said):
+    *others, last = flown(maneuvers=4)
+    found = without_refused([*others, spoil(last)], Aircraft())
+    assert found.maneuvers == others
+    assert found.notes[0].startswith(f"Manoeuvre 4 is not used: {said}")
+
+
+@pytest.mark.parametrize("change", [lambda m: slowing(m, 20.0), lambda m: contradicted(m, "delay_s")])
+def test_what_the_gap_has_in_its_model_is_no_objection(change):
+    maneuvers = [change(m) for m in flown(maneuvers=3)]
+    assert without_refused(maneuvers, Aircraft()).notes == ()
+
+
+@pytest.mark.parametrize("spoil", [lambda m: slowing(m, 50.0), lambda m: contradicted(m, "sign")])
+def test_a_log_of_a_contradicted_instrument_or_of_any_speed_cannot_serve(spoil):
+    with pytest.raises(UnusableInputError, match="No manoeuvre of the log can serve"):
+        without_refused([spoil(m) for m in flown(maneuvers=3)], Aircraft())

@@ -126,3 +126,8 @@ def test_the_page_overflows_nowhere_on_a_screen_and_on_a_phone(tmp_path: Path) -
         assert (one["loaded"], one["wide"], one["cut"]) == ([], [], [])
         assert one["figures"] == 6
         assert one["least_height"] > 60.0
+
+
+def test_the_table_of_flights_comes_before_the_courses() -> None:
+    text = index_page(FLIGHTS)
+    assert 0 < text.index('id="flights"') < text.index('class="gallery"')

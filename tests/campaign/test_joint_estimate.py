@@ -8,17 +8,18 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft, Elevator
 from advisor.campaign.campaign import Campaign
 from advisor.campaign.joint_estimate import NEWEST, Together
-from advisor.campaign.servo_lag import may_learn
+from advisor.campaign.learning import may_learn
 from advisor.campaign.state import CampaignState
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.mavlink.logs.logs import open_log
 from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import estimate_jointly
+from advisor.oem.found import FoundInstruments, with_found
 from sim.scenario import Scenario
 from tests.flights import recorded
 
 KNOWN = Aircraft(elevator=Elevator(lag_s=0.0))
-LEARNT = Aircraft(elevator=Elevator(lag_found_s=0.14))
+LEARNT = with_found(Aircraft(), FoundInstruments((), np.empty(0), np.empty(0), np.eye(8), None))
 LONGER = (*Scenario().maneuvers, *Scenario().maneuvers[:2])
 
 
@@ -76,7 +77,7 @@ def test_without_manoeuvres_there_is_no_joint_estimate() -> None:
     assert Together(KNOWN).estimate([]) is None
 
 
-def test_the_newest_manoeuvres_alone_do_not_change_a_lag_that_is_learnt() -> None:
+def test_the_newest_manoeuvres_alone_do_not_change_what_is_learnt() -> None:
     assert may_learn(Aircraft(), all_of_them=False)
     assert may_learn(LEARNT, all_of_them=True)
     assert not may_learn(LEARNT, all_of_them=False)

@@ -9,6 +9,7 @@ from tests.conftest import Advisor
 def test_the_sample_is_written_with_its_aircraft_file(advisor: Advisor, tmp_path: Path) -> None:
     assert advisor("sample", tmp_path / "trial").returncode == 0
     assert (tmp_path / "trial" / "arduplane-calm.tlog").stat().st_size > 1_000_000
+    assert (tmp_path / "trial" / "arduplane-default-rates.tlog").stat().st_size > 100_000
     assert load_aircraft(tmp_path / "trial" / "arduplane-calm.yaml").elevator.output == 2
 
 

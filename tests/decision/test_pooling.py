@@ -169,3 +169,11 @@ def test_both_sides_of_every_split_equal_pooling_each_side() -> None:
     for k, (before, after) in enumerate(pooled_on_both_sides(posteriors), start=1):
         assert_alike(before, pooled(posteriors[:k]))
         assert_alike(after, pooled(posteriors[k:]))
+
+
+def test_pooling_averages_out_each_estimate_s_own_error_and_not_the_one_that_all_share() -> None:
+    own, common = np.diag((0.02 * THETA) ** 2), np.diag((0.01 * THETA) ** 2)
+    four = [replace(estimate(covariance=own + common), common=common)] * 4
+    pooled = pool(posteriors_at_one_speed(four))
+    np.testing.assert_allclose(np.diag(pooled.covariance), np.diag(own) / 4.0, rtol=1e-6)
+    np.testing.assert_allclose(pooled.std**2, np.diag(own) / 4.0 + np.diag(common), rtol=1e-6)

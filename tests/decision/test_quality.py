@@ -148,7 +148,7 @@ def test_an_estimate_whose_damping_may_be_zero_needs_a_free_response():
     ("closed_by", "mend"),
     [
         ("end of log", "let the recording run on"), ("gap", "check the link"),
-        ("mode change", "stay in the mode"), ("next input", "hands still"),
+        ("mode change", "stay in the mode"), ("next input", "stick still"),
     ],
 )  # fmt: skip
 def test_a_free_response_cut_short_is_laid_to_what_ended_it(closed_by, mend):

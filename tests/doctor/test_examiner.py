@@ -97,7 +97,7 @@ def test_whether_a_rate_is_enough_depends_on_the_aircraft() -> None:
 
 def test_a_staircase_is_judged_by_its_renewals() -> None:
     found = examined(flight(renewed=10.0))
-    assert "renewed at 10.0 Hz" in limits(found)["renewal"].text
+    assert "changes only at 10.0 Hz" in limits(found)["renewal"].text
     assert not limits(found)["renewal"].stops
     assert limits(found)["renewal"].std_ratio["Z_alpha"] > 1.0
 

@@ -7,7 +7,6 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.decision import Decision
 from advisor.gap.fitting.fit import fit
 from advisor.gap.fitting.holdout import held_out, hold_out
 from advisor.gap.fitting.step import bounds_of
@@ -16,7 +15,6 @@ from advisor.gap.records.prepare import prepare
 from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.search.score import addition, log_likelihood_gained, support_of
 from advisor.gap.simulator.layout import DERIVATIVES
-from advisor.gap.verdict.ledger import in_words
 from tests.gap.generator import Setup, fly
 
 
@@ -85,11 +83,6 @@ def test_each_decision_about_a_name_holds_where_it_is_named(late):
     questions = [decision.name for decision in judged.decisions]
     assert questions == ["likelihood", "change", "significance", "size", "range", "hold-out"]
     assert all(decision.holds for decision in judged.decisions) == judged.is_accepted
-
-
-def test_a_decision_says_its_number_its_limit_and_its_margin():
-    said = in_words(Decision("attitude_skew", "hold-out", 0.75, 1.0, "standard errors"))
-    assert said == "attitude skew, hold-out: 0.75 standard errors, at least 1: no, by 0.25"
 
 
 def test_no_derivative_makes_an_aircraft_that_nobody_can_fly(late):

@@ -5,8 +5,10 @@ from pathlib import Path
 
 import pytest
 
+from advisor.gap.decision import Decision
 from advisor.gap.document import gap_document
 from advisor.gap.result import ComparedDerivative, Shrink, Value
+from advisor.report.gap_decisions import in_words
 from advisor.report.gap_fidelity import peaks
 from advisor.report.gap_parameters import changed, changes, limits_of
 from advisor.report.gap_steps import next_steps
@@ -107,3 +109,24 @@ def test_an_effect_of_no_probability_has_no_row_on_the_page():
     assert [c["effect"] for c in shown_causes(gap_document(diagnosis(causes=(DELAY, UNLIKELY))))] == [
         "transport_delay"
     ]
+
+
+@pytest.mark.parametrize(
+    ("decision", "said"),
+    [
+        (
+            Decision("structural_mode", "range", 0.0, 1.0, "inside the searched range"),
+            "structural mode: rejected, the value lies at the edge of the searched range",
+        ),
+        (
+            Decision("attitude_skew", "hold-out", 0.75, 1.0, "standard errors"),
+            "attitude skew: rejected, held-out manoeuvres improve by 0.75 standard errors (at least 1)",
+        ),
+        (
+            Decision("actuator_lag", "size", 0.125, 0.01, "of lag_s"),
+            "actuator lag: passed, the size is 0.125 of lag_s (at least 0.01)",
+        ),
+    ],
+)
+def test_a_decision_is_a_sentence_with_its_number_and_its_limit(decision: Decision, said: str):
+    assert in_words(decision) == said

@@ -31,6 +31,8 @@ class Nonlinear:
 
     lag_s: float = 0.0
     delay_s: float = 0.0
+    rate_rad_s: float = np.inf
+    half_play_rad: float = 0.0
     takes_increments: bool = True
     takes: frozenset[str] = frozenset()
     description: str = "the test's simulator"
@@ -41,6 +43,7 @@ class Nonlinear:
         trim_speed, steep = condition.airspeed_m_s, condition.flight_path_rad
         t = np.arange(0.0, inputs.t[-1] + 1.5 * STEP_S, STEP_S)
         surface = _lagging(np.interp(t - self.delay_s, inputs.t, inputs.elevator), self.lag_s)
+        surface = _limited(surface, self.rate_rad_s * STEP_S, self.half_play_rad)
 
         def rates(x: FloatArray, at: float, elevator: float) -> tuple[FloatArray, float]:
             alpha, q, theta, speed, height = x.tolist()
@@ -90,6 +93,15 @@ def _lagging(y: FloatArray, lag_s: float) -> FloatArray:
     out, keep = y.copy(), np.exp(-STEP_S / lag_s) if lag_s > 0.0 else 0.0
     for i in range(1, len(y)):
         out[i] = keep * out[i - 1] + (1.0 - keep) * 0.5 * (y[i - 1] + y[i]) if keep > 0.0 else y[i]
+    return out
+
+
+def _limited(y: FloatArray, step: float, half_play: float) -> FloatArray:
+    """Follow a series by at most ``step`` a sample, and only once its play is used up."""
+    out = y.copy()
+    for i in range(1, len(y)):
+        target = min(max(out[i - 1], y[i] - half_play), y[i] + half_play)
+        out[i] = out[i - 1] + min(max(target - out[i - 1], -step), step)
     return out
 
 

@@ -86,7 +86,7 @@ def test_the_reference_speed_of_linear_is_made_true_as_the_flights_speed_is(monk
     class ToldError(Exception):
         pass
 
-    def told(maneuvers, simulator, aircraft, holdout, progress):
+    def told(maneuvers, simulator, aircraft, *_):
         asked.update(simulator=simulator, aircraft=aircraft)
         raise ToldError
 

@@ -170,3 +170,14 @@ def test_where_the_simulator_does_not_fly_with_the_effects_the_diagnosis_stands_
     assert found.causes[0].effect == "transport_delay"
     assert found.in_simulator.after is None
     assert found.notes[0] == "The simulator cannot take the effects: It does not fly."
+
+
+@pytest.mark.study
+def test_traces_are_the_flight_as_logged_and_the_simulator_itself():
+    late = replace(PLAIN, delay_s=0.05)
+    logged = {m.number: m.channels for m in flown(late)}
+    trace = next(t for t in of(late, PLAIN).diagnosis.traces if t.channel == "q")
+    begun = logged[trace.number]["q"].t[0]
+    assert trace.measured == pytest.approx(
+        np.interp(trace.t + begun, logged[trace.number]["q"].t, logged[trace.number]["q"].y), abs=2e-3
+    )

@@ -28,7 +28,7 @@ def test_a_third_is_kept_apart_unless_too_few_remain_for_a_search(flown, holdout
 
 def test_the_search_never_meets_the_manoeuvres_kept_apart(monkeypatch):
     seen = []
-    monkeypatch.setattr(unseen, "examine", lambda maneuvers, aircraft: seen.extend(maneuvers))
+    monkeypatch.setattr(unseen, "examine", lambda maneuvers, *_, **__: seen.extend(maneuvers))
     numbered = [SimpleNamespace(number=n) for n in range(1, 7)]
     problem = SimpleNamespace(flights=SimpleNamespace(flights=numbered))
     whole = SimpleNamespace(evidence=SimpleNamespace(problem=problem))

@@ -182,10 +182,10 @@ async def test_notes_and_marks_reach_the_campaign():
 async def test_the_parameter_under_the_cursor_has_its_history_drawn():
     async with stage(flights.state(5), settings=ENGINEER, size=WIDE) as here:
         await filled(here, 5)
-        await here.press("3", "down", "down", "down", "down", "down")
+        await here.press("3", "down", "down")
         chart = here.app.screen.query_one(ParametersPane).query_one(Plot).chart
-        assert chart.y_label == "M_α [1/s²]"
-        assert [level.name for level in chart.levels] == ["model", "prior"]
+        assert chart.y_label == "M_δe [1/s²]"
+        assert [level.name for level in chart.levels] == ["joint", "simulator"]
 
 
 async def test_a_manoeuvre_without_an_estimate_says_why():
@@ -208,3 +208,10 @@ async def test_the_log_tells_of_the_campaign_and_of_the_link_in_order():
         lines = here.words("EventLogPane Lines").split("\n")
         assert [line[9:].split()[0] for line in lines] == ["following", "manoeuvre", "link:", "manoeuvre"]
         assert [line[:7].strip() for line in lines] == ["–", "1:53.0", "–", "2:18.0"]
+
+
+async def test_the_parameters_open_on_the_stability():
+    async with stage(flights.state(4), settings=ENGINEER, size=WIDE) as here:
+        await here.until(lambda: len(table(here, "ParametersPane")) == 8)
+        plot = here.app.screen.query_one(ParametersPane).query_one(Plot)
+        await here.until(lambda: plot.chart.y_label.startswith("M_α"))

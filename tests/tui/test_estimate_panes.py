@@ -49,7 +49,7 @@ def test_a_parameter_that_no_manoeuvre_tells_has_no_course():
 
 def test_the_joint_estimate_is_a_solid_line_and_the_prior_a_dashed_one():
     levels = history_chart(view(flights.state(4)), "M_q").levels
-    assert [(level.name, level.dashed) for level in levels] == [("model", False), ("prior", True)]
+    assert [(level.name, level.dashed) for level in levels] == [("joint", False), ("simulator", True)]
 
 
 async def test_the_history_numbers_the_manoeuvres_below_the_lowest_plots_only():

@@ -61,7 +61,7 @@ def test_after_the_stop_no_data_are_wanted():
 
 
 REVERSED = InstrumentFinding(
-    "alpha", "sign", "nose up", "nose down", 0.02, True, "alpha has the wrong sense", "turn the vane"
+    "alpha", "sign", "nose up", "nose down", 0.02, True, "alpha has the wrong sign", "turn the vane"
 )
 IN_COUNTS = InstrumentFinding(
     "a_z", "unit", "mg", "2048 counts a g", 0.02, True, "a_z is in counts", "send a_z in mg", used=True
@@ -72,16 +72,16 @@ def test_a_contradicted_instrument_asks_for_its_mend_and_not_for_another_manoeuv
     here = view(replace(flights.state(3, bad=(3,)), instruments=(IN_COUNTS, REVERSED)))
     assert [problem.code for problem in here.obstacles] == ["alpha_sign"]
     advice = advise(here)
-    assert (advice.word, advice.sentence) == ("NO DATA", "Alpha has the wrong sense. Mend: turn the vane.")
+    assert (advice.word, advice.sentence) == ("NO DATA", "Alpha has the wrong sign. Fix: turn the vane.")
 
 
 async def test_the_pilot_sees_what_stops_the_test_and_the_engineer_every_instrument():
     async with stage(replace(flights.state(3), instruments=(IN_COUNTS, REVERSED))) as here:
         await here.until(lambda: here.app.screen.query_one(BigWord).word == "NO DATA")
-        assert "Alpha has the wrong sense." in here.page()
+        assert "Alpha has the wrong sign." in here.page()
         assert "! 2 warnings for the engineer" in here.page()
         await here.press("e", "7")
-        await here.until(lambda: "! Alpha has the wrong sense." in here.words("Channels Lines"))
+        await here.until(lambda: "! Alpha has the wrong sign." in here.words("Channels Lines"))
         assert "! A_z is in counts." in here.words("Channels Lines")
 
 

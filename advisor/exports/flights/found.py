@@ -86,18 +86,17 @@ def estimates(state: CampaignState) -> FlightTable:
     found = [(one.maneuver.number, e) for one in state.maneuvers if (e := _estimate(one))]
     if state.model is not None:
         found.append((JOINT, state.model))
-    rows = [(number, e, name) for number, e in found for name in PARAMETERS]
+    rows = [
+        (number, e, name)
+        for number, e in found
+        for name in (*PARAMETERS, *(one.name for one in e.instruments))
+    ]
 
     def told(values: str, *of: int) -> NDArray[np.float64]:
         """Return an attribute of the estimates by row, shape (n,); NaN for an unidentifiable parameter."""
-        return numbers(
-            [
-                None if name in e.not_identifiable else getattr(e, values)[(PARAMETERS.index(name), *of)]
-                for _, e, name in rows
-            ]
-        )
+        return numbers([_told(e, name, values, of) for _, e, name in rows])
 
-    units = texts([PARAMETER_UNITS[name] for _, _, name in rows])
+    units = texts([PARAMETER_UNITS.get(name, _unit_of(name)) for _, _, name in rows])
     reasons = texts([e.not_identifiable.get(name, "") for _, e, name in rows])
     speeds = numbers([e.airspeed_m_s for _, e, _ in rows])
     which = f"number; {JOINT} is the joint estimate over the accepted manoeuvres"
@@ -114,7 +113,25 @@ def estimates(state: CampaignState) -> FlightTable:
     for k, name in enumerate(PARAMETERS):
         unit = f"{_BY_ROW} times {PARAMETER_UNITS[name]}"
         columns.append(Column(f"covariance_{name}", told("covariance", k), unit, f"covariance with {name}"))
-    return FlightTable("estimates", "A row is one parameter of one estimate.", tuple(columns))
+    about = "A row is one parameter of one estimate; instruments follow the derivatives."
+    return FlightTable("estimates", about, tuple(columns))
+
+
+def _told(e: Estimate, name: str, values: str, of: tuple[int, ...]) -> float | None:
+    """Return an attribute of one parameter of an estimate; None where the estimate does not tell it.
+
+    An instrument has a value and a standard deviation only.
+    """
+    if name in PARAMETERS:
+        return None if name in e.not_identifiable else getattr(e, values)[(PARAMETERS.index(name), *of)]
+    instrument = e.instrument(name)
+    told = {"theta": "value", "std": "std"}.get(values)
+    return None if instrument is None or told is None else getattr(instrument, told)
+
+
+def _unit_of(name: str) -> str:
+    """Return the SI unit that ends the name of an instrument's parameter."""
+    return name.rpartition("_")[2]
 
 
 def residuals(state: CampaignState, record_of: Mapping[tuple[int, int], int]) -> tuple[FlightTable, ...]:

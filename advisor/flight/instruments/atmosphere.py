@@ -21,7 +21,7 @@ from advisor.flight.signals.standard_atmosphere import (
     density,
     standard_pressure,
 )
-from advisor.flight.signals.true_airspeed import AS_REPORTED, BY_HEIGHT, BY_PRESSURE, is_true
+from advisor.flight.signals.true_airspeed import AS_GROUND_SPEED, AS_REPORTED, BY_HEIGHT, BY_PRESSURE, is_true
 
 DensitySource = Literal[
     "pressure and temperature", "height and temperature", "pressure", "height", "sea level"
@@ -97,6 +97,8 @@ def _speed_said(speeds: Sequence[Channel]) -> str:
         return "the simulated aircraft reports its true air speed"
     if source == TRUE_AIRSPEED:
         return "the log itself holds the true air speed"
+    if source.endswith(AS_GROUND_SPEED):
+        return "the logged air speed equals the ground speed and counts as true"
     if source.endswith(BY_PRESSURE):
         return "the static pressure makes the logged air speed true"
     if source.endswith(BY_HEIGHT):

@@ -27,7 +27,7 @@ more, and no parked aircraft does."""
 VANE_WIDTH = 0.15
 """Standard deviation of a vane's scale, as a share: upwash of wing and fuselage, and position. Vanes on
 record read 0.93 to 1.00 of the motion."""
-_COMPUTED_WIDTH = 0.03
+COMPUTED_WIDTH = 0.03
 """Standard deviation of the scale of an angle of attack that an autopilot computes from attitude and
 velocity, as a share. Wind and magnetic heading err by that much."""
 _LATEST_COMPUTED_S = 0.05
@@ -182,7 +182,7 @@ def force_against_alpha(channels: Channels) -> Evidence:
     assert other is not None
     of_rate, of_force = (float(delay) for delay in fit.delays_s)
     computed = source.provenance == "derived" and abs(of_rate) < _LATEST_COMPUTED_S
-    width = _COMPUTED_WIDTH if computed else VANE_WIDTH
+    width = COMPUTED_WIDTH if computed else VANE_WIDTH
     by_scale = width * (other.delays_s - fit.delays_s) / _STEP
     covariance = fit.delay_covariance + np.outer(by_scale, by_scale)
     apart = float(np.sqrt(covariance[0, 0] + covariance[1, 1] - 2.0 * covariance[0, 1]))

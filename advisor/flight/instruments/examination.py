@@ -121,10 +121,13 @@ class _Work:
         text: str,
         fix: str,
         used: bool = False,
+        removed_s: float = 0.0,
     ) -> None:
         """Add a contradiction."""
         self.findings.append(
-            InstrumentFinding(channel, quantity, stated, found, measured.std, True, text, fix, used)
+            InstrumentFinding(
+                channel, quantity, stated, found, measured.std, True, text, fix, used, removed_s
+            )
         )
 
 
@@ -143,8 +146,8 @@ def _attitude_and_rate(work: _Work) -> bool:
         channel = "theta" if rate_moves_alpha(work.channels) else "q"
         name = _PLAIN[channel]
         work.contradict(
-            channel, "sign", "nose up", "nose down", known, f"{name} has the wrong sense: {told}",
-            f"check the sense of {name}, positive nose up",
+            channel, "sign", "nose up", "nose down", known, f"{name} has the wrong sign: {told}",
+            f"check the sign of {name}, positive nose up",
         )  # fmt: skip
     elif weighed.best == ANY:
         work.contradict(
@@ -206,8 +209,7 @@ def _clock_of_rate(work: _Work) -> None:
     channel, other = ("q", "theta") if late.value > 0.0 else ("theta", "q")
     measured = Measured(abs(late.value), late.std)
     # An attitude is integrated from the gyro. Its lateness enters gravity alone, and can be removed.
-    _late(work, channel, _PLAIN[other], measured, used=channel == "theta")
-    work.shift(channel, measured.value)
+    _late(work, channel, _PLAIN[other], measured, used=channel == "theta", shifted=(channel,))
 
 
 def _alpha_and_force(work: _Work) -> None:
@@ -263,8 +265,8 @@ def _name_alpha(work: _Work, weighed: Weighed, known: Measured) -> None:
         )  # fmt: skip
     elif weighed.best == REVERSED:
         work.contradict(
-            "alpha", "sign", "nose up", "nose down", known, f"alpha has the wrong sense: {told}",
-            f"turn the sense of {source}: an angle of attack is positive nose up",
+            "alpha", "sign", "nose up", "nose down", known, f"alpha has the wrong sign: {told}",
+            f"reverse the sign of {source}: an angle of attack is positive nose up",
         )  # fmt: skip
     else:
         unit = weighed.best[-3:]
@@ -283,10 +285,9 @@ def _clock_of_force(work: _Work, told: Mapping[str, Measured]) -> bool:
     late_rate = next((f for f in work.findings if f.code == "q_delay_s"), None)
     if least is not None and least.value - _SIGMAS * least.std > range_s:
         late = most if exact and most is not None else least
-        _late(work, "a_z", _PLAIN["q" if late_rate is None else "theta"], late, used=exact, bound=not exact)
-        if exact:
-            work.shift("a_z", late.value)
-            work.shift("a_x", late.value)
+        other = _PLAIN["q" if late_rate is None else "theta"]
+        shifted = ("a_z", "a_x") if exact else ()
+        _late(work, "a_z", other, late, used=exact, bound=not exact, shifted=shifted)
         return True
     if most is not None and most.value + _SIGMAS * most.std < -range_s:
         _late(work, "q", _PLAIN["a_z"], Measured(-most.value, most.std), used=False)
@@ -354,15 +355,26 @@ def _name_speed(work: _Work, weighed: Weighed, known: Measured, by: str) -> None
 
 
 def _late(
-    work: _Work, channel: str, relative_to: str, late: Measured, *, used: bool, bound: bool = False
+    work: _Work,
+    channel: str,
+    relative_to: str,
+    late: Measured,
+    *,
+    used: bool,
+    bound: bool = False,
+    shifted: tuple[str, ...] = (),
 ) -> None:
+    """Contradict the clock of a channel, and set the stamps of the channels in ``shifted`` earlier."""
     name = _PLAIN[channel]
     ms = f"{'at least ' if bound else ''}{1e3 * late.value:.0f} ± {1e3 * late.std:.0f} ms"
     work.contradict(
         channel, "delay_s", None, late.value, late,
         f"{name} is {ms} late relative to {relative_to}" + (_ALLOWED if used else ""),
         f"check the stamps of {name} ({work.channels[channel].source})", used,
+        late.value if shifted else 0.0,
     )  # fmt: skip
+    for one in shifted:
+        work.shift(one, late.value)
 
 
 def _used(finding: InstrumentFinding) -> InstrumentFinding:

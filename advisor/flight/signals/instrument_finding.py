@@ -36,6 +36,8 @@ class InstrumentFinding:
     """Line for the aircraft file, or what to change on the aircraft, without a full stop."""
     used: bool = False
     """Whether the estimates use the value that the data tell."""
+    removed_s: float = 0.0
+    """Delay that was removed from the channel's stamps, s."""
 
     @property
     def code(self) -> str:
@@ -50,7 +52,7 @@ class InstrumentFinding:
     @property
     def problem(self) -> Problem:
         """Finding as an obstacle, with its remedy."""
-        return Problem(self.code, f"{self.sentence}.", f"Mend: {self.fix}.")
+        return Problem(self.code, f"{self.sentence}.", f"Fix: {self.fix}.")
 
     @property
     def refuses(self) -> bool:

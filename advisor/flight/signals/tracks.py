@@ -17,7 +17,7 @@ from advisor.flight.signals.derived_alpha import DERIVED_ALPHA, DerivedAlpha
 from advisor.flight.signals.extremes import Course
 from advisor.flight.signals.record import AIR_UNITS, UNITS, Channel
 from advisor.flight.signals.track import SHOWN_WHOLE, ChannelStatus, Track
-from advisor.flight.signals.true_airspeed import AS_REPORTED, true_airspeed
+from advisor.flight.signals.true_airspeed import AS_GROUND_SPEED, AS_REPORTED, true_airspeed
 
 _AIR_S = 10.0
 """Margin around a stretch within which pressure and height tell the density of the air, s. They may come once
@@ -107,6 +107,8 @@ class Tracks:
             return found
         if self._logs_true_speed():
             return replace(found, source=f"{found.source}{AS_REPORTED}")
+        if self.speeds_are_one(start_s, end_s, up_to_order):
+            return replace(found, source=f"{found.source}{AS_GROUND_SPEED}")
         air = (self._cut(n, start_s - _AIR_S, end_s + _AIR_S, up_to_order) for n in AIR_UNITS)
         by_name = {channel.name: channel for channel in air if channel is not None}
         return true_airspeed(

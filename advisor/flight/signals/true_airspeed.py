@@ -25,6 +25,9 @@ BY_PRESSURE = ", true by the static pressure"
 """End of the source of an air speed that the static pressure has made true."""
 AS_REPORTED = ", true as reported"
 """End of the source of an air speed that a simulator reports as the true one."""
+AS_GROUND_SPEED = ", equal to the ground speed"
+"""End of the source of an air speed that equals the ground speed in every sample. No pressure tells such a
+speed, so that no density makes another one of it."""
 BY_HEIGHT = ", true by the height"
 """End of the source of an air speed that the height has made true."""
 
@@ -32,7 +35,9 @@ BY_HEIGHT = ", true by the height"
 def is_true(airspeed: Channel) -> bool:
     """Return whether an air speed is true. One that stays as logged may be indicated."""
     source = airspeed.source
-    return source in (GIVEN_AIRSPEED, TRUE_AIRSPEED) or source.endswith((BY_PRESSURE, BY_HEIGHT, AS_REPORTED))
+    return source in (GIVEN_AIRSPEED, TRUE_AIRSPEED) or source.endswith(
+        (BY_PRESSURE, BY_HEIGHT, AS_REPORTED, AS_GROUND_SPEED)
+    )
 
 
 def true_airspeed(

@@ -102,7 +102,7 @@ class Identity:
     def known(self, channel: Channel) -> Channel:
         """Return a channel with its provenance and with the known delay of the autopilot's filters."""
         vehicle, provenance = self.vehicle, self.provenance(channel.source, channel.provenance)
-        if vehicle is None or self.simulated:
+        if vehicle is None:
             return replace(channel, provenance=provenance)
         stated = self._parameters.stated(_speakers(vehicle), vehicle.autopilot)
         delay_s = filter_delay_s(channel.name, channel.source, vehicle.autopilot, stated)

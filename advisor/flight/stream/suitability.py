@@ -66,7 +66,7 @@ def problems(
         alive = {name: status for name, status in channels.items() if name not in dead}
         found = [
             *_missing(elevator, alive, vehicle, seen),
-            *(Problem(d.code, f"{d.sentence}.", f"Mend: {d.fix}.") for d in still if d.stops),
+            *(Problem(d.code, f"{d.sentence}.", f"Fix: {d.fix}.") for d in still if d.stops),
             *_too_slow(alive, vehicle),
         ]
     if not found and maneuvers == 0:

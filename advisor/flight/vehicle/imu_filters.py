@@ -1,5 +1,8 @@
 """Delay of an autopilot's own filters of gyro and accelerometer, as its parameters state them.
 
+A filter that no parameter states is unknown. Its delay then is part of the delay of the command and of the
+angle of attack, which the fit estimates with priors.
+
 Below its cut-off f a second-order Butterworth low-pass delays every motion by √2/(2πf): 11 ms at 20 Hz. A
 notch of width b at f adds b/(2πf²). The short period is far below both frequencies."""
 
@@ -8,8 +11,6 @@ from math import pi, sqrt
 
 PREFIXES = ("INS_GYRO_FILTER", "INS_ACCEL_FILTER", "INS_HNTCH_", "IMU_GYRO_CUTOFF", "IMU_ACCEL_CUTOFF")
 """Beginnings of these parameters' names."""
-_USUAL_HZ = 20.0
-"""Cut-off of ArduPlane's gyro and accelerometer filters, Hz, where no parameter states another."""
 _RATES = ("p", "q", "r")
 _FORCES = ("a_x", "a_y", "a_z")
 _UNFILTERED_ON_PX4 = "HIGHRES_IMU"
@@ -38,8 +39,8 @@ def filter_delay_s(channel: str, source: str, autopilot: str, stated: Mapping[st
     if autopilot != "ardupilot":
         return 0.0
     if channel in _FORCES:
-        return _low_pass_s(stated.get("INS_ACCEL_FILTER", _USUAL_HZ))
-    return _low_pass_s(stated.get("INS_GYRO_FILTER", _USUAL_HZ)) + _notch_s(stated)
+        return _low_pass_s(stated.get("INS_ACCEL_FILTER", 0.0))
+    return _low_pass_s(stated.get("INS_GYRO_FILTER", 0.0)) + _notch_s(stated)
 
 
 def _low_pass_s(cutoff_hz: float) -> float:

@@ -22,7 +22,7 @@ _UNUSED_PX4 = 900.0
 
 @dataclass(frozen=True, slots=True)
 class Scale:
-    """Pulses of one output at full strokes, taken as 25 degrees, and at zero deflection."""
+    """Pulses of one output at full travel, taken as 25 degrees, and at zero deflection."""
 
     low_us: float = 1100.0
     trim_us: float = 1500.0

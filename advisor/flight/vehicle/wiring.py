@@ -35,7 +35,7 @@ class Words:
     elevator: str
     """Setting that makes an output the elevator."""
     limits: str
-    """Parameters of the pulses at full strokes."""
+    """Parameters of the pulses at full travel."""
     trim: str
     """Parameter of the pulse at zero deflection."""
     sense: str

@@ -23,7 +23,7 @@ def variants_for(flights: PreparedManeuvers) -> list[Variant]:
     """Return all variants whose channels were recorded and whose input varied."""
     # An autopilot's own estimates have passed its filters, and the delay of a filter is no fault.
     least_s = _FILTERED_S if flights.alpha_is_derived else _LEAST_S
-    instruments = sensors.variants(least_s, flights.reference_m_s)
+    instruments = sensors.variants(least_s, flights)
     within = [*input.variants(flights), *instruments, *timing.variants(flights, least_s)]
     between = [*moment.variants(flights), *force.variants(flights)]
     return [v for v in (*within, *between) if _possible(v, flights)]

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from advisor.flight.instruments.lateness import lateness_std
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.variant import Values, Variant
 from advisor.gap.records.flights import PreparedManeuvers
@@ -20,16 +21,34 @@ _DAMPING = 0.7
 overshoot."""
 
 
-LATENCY = Variant(
+_LEAST_S = 0.004
+"""Least delay or lag that is named, s: a fifth of a sample at 50 Hz."""
+
+
+LOOP = Variant(
     "latency", BLOCK, ("latency_s",), ((0.001,),), (5e-4,), ((-0.004, 0.005),), 0.0,
     entries=("latency_s",), is_nuisance=True,
 )  # fmt: skip
-"""Nuisance parameter of every model: stamps have a resolution, and a command takes effect after a few
-milliseconds."""
+"""Nuisance parameter until the motion of the command between its stamps is known. Stamps have a resolution,
+and a command takes effect within a loop of the autopilot."""
+
+
+def latency(flights: PreparedManeuvers) -> Variant:
+    """Return the delay of the command behind its stamps, a nuisance parameter of every model.
+
+    An autopilot renews the command at one rate and a stream samples it at another, with a phase that differs
+    from flight to flight. The prior is that of the estimate (``lateness``). Its standard deviation is also
+    the largest such delay, because the 28 flights behind it stay within.
+    """
+    std = lateness_std([flight.t_u for flight in flights.flights])
+    return Variant(
+        "latency", BLOCK, ("latency_s",), ((0.001,),), (5e-4,), ((-std, std),), 0.0,
+        entries=LOOP.entries, prior_std=(std,), is_nuisance=True,
+    )  # fmt: skip
 
 
 def _delay(p: FloatArray, values: Values, _: PreparedManeuvers) -> None:
-    """Set the whole delay: where the delay is free, it includes the few milliseconds of latency."""
+    """Set the whole delay: where the delay is free, it includes that between command and telemetry."""
     p[:, INDEX["delay_s"]] += values[0]
     p[:, INDEX["latency_s"]] = 0.0
 
@@ -56,22 +75,14 @@ def _deadband_about_trim(p: FloatArray, values: Values, _: PreparedManeuvers) ->
     p[:, INDEX["neutral_rad"]] = values[1]
 
 
-def _limited_from_midway(p: FloatArray, values: Values, flights: PreparedManeuvers) -> None:
-    """Set a rate limit, with each step of the command halfway between its two stamps.
-
-    A command read as linear would let the servo run at its limit before the step had happened.
-    """
-    intervals = np.concatenate([np.diff(flight.t_u) for flight in flights.flights])
-    p[:, INDEX["slowness_s_rad"]] += values[0]
-    p[:, INDEX["delay_s"]] += 0.5 * float(np.median(intervals))
-
-
 DELAY = Variant(
-    "transport_delay", BLOCK, ("delay_s",), ((0.005,), (0.03,), (0.1,)), (1e-3,), ((0.0, 0.5),), 0.004,
+    "transport_delay", BLOCK, ("delay_s",), ((0.005,), (0.03,), (0.1,)), (1e-3,), ((0.0, 0.5),), _LEAST_S,
     apply_with=_delay,
 )  # fmt: skip
+"""The whole delay of the command. The model without it has the delay of telemetry (``latency``), so that only
+a longer one changes anything."""
 LAG = Variant(
-    "actuator_lag", BLOCK, ("lag_s",), ((0.02,), (0.1,)), (1e-3,), ((0.0, 1.0),), 0.004,
+    "actuator_lag", BLOCK, ("lag_s",), ((0.02,), (0.1,)), (1e-3,), ((0.0, 1.0),), _LEAST_S,
     entries=("lag_s",),
 )  # fmt: skip
 
@@ -103,10 +114,10 @@ def variants(flights: PreparedManeuvers) -> list[Variant]:
         DELAY,
         LAG,
         Variant(
-            "actuator_lag", BLOCK, ("lag_s",), ((0.03,), (0.1,)), (1e-3,), ((0.0, 1.0),), 0.004,
+            "actuator_lag", BLOCK, ("lag_s",), ((0.03,), (0.1,)), (1e-3,), ((0.0, 1.0),), _LEAST_S,
             apply_with=_second_order, fixed={"damping": _DAMPING},
         ),
-        replace(_RATE_LIMIT, likewise=(replace(_RATE_LIMIT, apply_with=_limited_from_midway),)),
+        _RATE_LIMIT,
         Variant(
             "actuator_backlash", BLOCK, ("half_width_rad",), ((0.003,), (0.008,), (0.02,)), (2e-4,),
             ((0.0, 0.1),), _SMALL_ANGLE, _IF_BEYOND_DOUBT, entries=("half_play_rad",),

@@ -5,6 +5,7 @@ from functools import partial
 
 import numpy as np
 
+from advisor.flight.instruments.lateness import lateness_std
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.variant import Values, Variant
 from advisor.gap.records.flights import PreparedManeuvers
@@ -19,19 +20,29 @@ _STREAMS = (
 )
 _MESSAGE_S = 0.012
 """Least skew of a whole message that is named, s: a smaller one resembles too many other effects."""
-_FILTERS_S = {"alpha": 0.02, "a_z": 0.01, "theta": 0.01}
+_FILTERS_S = {"a_z": 0.01, "theta": 0.01}
 """Prior standard deviation, by channel, of the delay of an autopilot's filters relative to the pitch rate,
 s."""
 
+_REACH = 2.0
+"""Largest delay of an autopilot's own channel, in standard deviations of its prior."""
+
 
 def filters(flights: PreparedManeuvers) -> Variant:
-    """Return the delays of an autopilot's filters relative to its pitch rate, as nuisance parameters."""
-    channels = [c for c in flights.channels if c in _FILTERS_S]
+    """Return the delays of an autopilot's own channels relative to its pitch rate, as nuisance parameters.
+
+    The autopilot's own angle of attack is as late as the estimate assumes (``lateness``): held over an
+    interval, and up to 90 ms late.
+    """
+    std = dict(_FILTERS_S)
+    if "alpha" in flights.channels:
+        std["alpha"] = lateness_std([flight.outputs["alpha"].t for flight in flights.flights])
+    channels = [c for c in flights.channels if c in std]
     return Variant(
         "filters", BLOCK, tuple(f"{c}_late_s" for c in channels), ((0.0,) * len(channels),),
-        (1e-3,) * len(channels), tuple((-2.0 * _FILTERS_S[c], 2.0 * _FILTERS_S[c]) for c in channels), 0.0,
+        (1e-3,) * len(channels), tuple((-_REACH * std[c], _REACH * std[c]) for c in channels), 0.0,
         entries=tuple(SKEWS[OUTPUTS.index(c)] for c in channels),
-        prior_std=tuple(_FILTERS_S[c] for c in channels), is_nuisance=True,
+        prior_std=tuple(std[c] for c in channels), is_nuisance=True,
     )  # fmt: skip
 
 

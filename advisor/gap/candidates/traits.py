@@ -35,7 +35,11 @@ TRAITS = {
         stated=("elevator", "lag_s"),
     ),
     "actuator_rate_limit": Trait(
-        "input", said="The real elevator moves no faster than {rate_rad_s_deg:.0f} deg/s",
+        "input",
+        said=(
+            "The real elevator moves no faster than {rate_rad_s_deg:.0f} deg/s",
+            "The simulator's elevator moves no faster than {rate_rad_s_deg:.0f} deg/s, and the real one does",
+        ),
         distinguished_by={"transport_delay": _AMPLITUDES},
     ),
     "actuator_backlash": Trait(

@@ -81,7 +81,7 @@ def cost_of(
     """Return -2 log likelihood profiled over the noise, Σ_c N_c log σ_c², plus the priors."""
     noise = residual_noise(problem, residuals)
     power = problem.prior_cost(point) + sum(
-        float(np.sum(b.prior * o**2)) for b, o in zip(linear, owns, strict=True)
+        float(np.sum(b.prior * (o - b.departure) ** 2)) for b, o in zip(linear, owns, strict=True)
     )
     return float(np.sum(counts(problem) * 2.0 * np.log(noise))) + power
 

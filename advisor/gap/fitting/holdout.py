@@ -89,19 +89,6 @@ def hold_out(
     return held_out(problem, residuals, innovations)
 
 
-def points_without(
-    problem: EffectProblem, fitted: EffectFit, folds: Sequence[Sequence[int]] | None = None
-) -> tuple[SearchPoint, ...]:
-    """Return for every manoeuvre the model whose shared parameters are fitted without the manoeuvre's
-    fold."""
-    points = [fitted.point] * len(problem.flights)
-    for fold, step, _ in _without_each(problem, fitted, folds):
-        without = fitted.point.moved(fitted.point.shared + step, fitted.point.own)
-        for i in fold:
-            points[i] = without
-    return tuple(points)
-
-
 def _without_each(
     problem: EffectProblem, fitted: EffectFit, folds: Sequence[Sequence[int]] | None
 ) -> Iterator[tuple[Sequence[int], FloatArray, Sequence[FloatArray]]]:

@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
+from advisor.gap.fitting.own_prior import own_mean, own_precision
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.records.flights import PreparedManeuver
 from advisor.gap.simulator.layout import DISTURB_INPUT, INDEX, NUISANCES, OUTPUTS, SPEED
@@ -22,6 +23,9 @@ _NEAR, _STEPS = 0.02, 2.0
 their size, parameters of effects in finite-difference steps."""
 _OWN_STEPS = np.array([1e-4, 1e-4, 1e-3, 1e-3])
 """Finite-difference steps of initial states (rad, rad/s) and trim terms (1/s, 1/s²)."""
+_OFFSETS = {"a_z": 0.5, "theta": 0.035}
+"""Prior standard deviation of an instrument's offset in a manoeuvre, by channel, SI. An accelerometer that
+is not calibrated is off by 0.05 g, and an attitude by 2 deg."""
 _SPEEDS = ("speed_level_m_s", "speed_slope_m_s", "speed_bow_m_s")
 _SPEED_STEP = 1e-3
 """Finite-difference step of the air speed, relative."""
@@ -50,8 +54,8 @@ class SensitivityColumns:
 
     @property
     def own(self) -> FloatArray:
-        """Shape (rows, m): sensitivities to initial states, trim and offsets (flat priors), then speed errors
-        and edges."""
+        """Shape (rows, m): sensitivities to initial states, trim and offsets, then speed errors and
+        edges."""
         return self.columns[:, : self.m]
 
     @property
@@ -75,6 +79,8 @@ class Linear(SensitivityColumns):
 
     prior: FloatArray
     """Shape (m,): inverse prior variances of the nuisance parameters, 0 for flat priors."""
+    departure: FloatArray
+    """Shape (m,): prior means of the nuisance parameters minus their values at the point."""
     measured: SensitivityColumns
     """Residual and sensitivities in the units of the channels, before the filter."""
     channels: tuple[slice, ...]
@@ -103,7 +109,7 @@ def _stepped(step: FloatArray, own: FloatArray) -> FloatArray:
 def as_measured(block: Linear) -> Linear:
     """Return the linear model without a filter, in the units of the channels."""
     raw = block.measured
-    return Linear(raw.columns, raw.m, block.prior, raw, block.channels)
+    return Linear(raw.columns, raw.m, block.prior, block.departure, raw, block.channels)
 
 
 def shared_steps(point: SearchPoint) -> FloatArray:
@@ -213,7 +219,7 @@ def _pulses(
 def _offsets(problem: EffectProblem, flight: PreparedManeuver) -> FloatArray:
     """Return the constant offsets of accelerometer and attitude, shape (rows, offsets)."""
     return np.column_stack(
-        [flight.output == OUTPUTS.index(c) for c in ("a_z", "theta") if c in problem.channels]
+        [flight.output == OUTPUTS.index(c) for c in _OFFSETS if c in problem.channels]
         or [np.empty((len(flight.stamps), 0))]
     ).astype(float)
 
@@ -223,8 +229,12 @@ def _own_prior(problem: EffectProblem, flight: PreparedManeuver, own: int) -> Fl
     (own,).
 
     Edges come last. Errors of the air speed come before them, in units of their own standard deviation.
+    Initial states and trim come first, then offsets.
     """
     prior = np.zeros(own)
+    prior[: len(NUISANCES)] = own_precision(flight)
+    offsets = [_OFFSETS[c] for c in _OFFSETS if c in problem.channels]
+    prior[len(NUISANCES) : len(NUISANCES) + len(offsets)] = 1.0 / np.square(offsets)
     intervals, lost = flight.edges[:, 2], flight.edges[:, 3]
     # Where stamps were lost, a held command may have changed at any of them.
     held = (_HELD_JITTER_S**2 + problem.jitter_s**2 + _EDGE_VARIANCE * lost**2) / intervals**2
@@ -278,9 +288,10 @@ def linearise(
         moved = None if point.edges is None or not times else point.edges[i]
         known = None if near is None else near[i].measured.own[:, : near[i].m - len(flight.edges)]
         measured = measured_columns(problem, i, p[i], shifted[i], steps, moved, times, known)
-        prior = _own_prior(problem, flight, measured.m)
+        prior, departure = _own_prior(problem, flight, measured.m), np.zeros(measured.m)
+        departure[: len(NUISANCES)] = own_mean(flight) - point.own[i]
         columns = problem.innovations(i, measured.columns)
-        blocks.append(Linear(columns, measured.m, prior, measured, tuple(problem.rows(flight))))
+        blocks.append(Linear(columns, measured.m, prior, departure, measured, tuple(problem.rows(flight))))
     return tuple(blocks)
 
 

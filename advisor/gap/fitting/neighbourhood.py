@@ -162,11 +162,13 @@ class Neighbourhood:
             CX[:, flown.at] = np.sum(along, axis=0)
             m, shared = kept.m, slice(kept.m, kept.m + len(JX))
             AX = CX[:m]
+            linear = self.fitted.linear[i]
+            AX[:, firsts] += (linear.prior * linear.departure)[:, None]
             GX = solved(kept.chol, AX)
             JX += CX[shared] - kept.inner[:m, shared].T @ GX
             XX += _with_one_another(still, CX[kept.still], flown) - AX.T @ GX
             own = GX[:, firsts]
-            prior += self.fitted.linear[i].prior @ own**2
+            prior += linear.prior @ (own - linear.departure[:, None]) ** 2
             squares += self._squares(kept, flown, along, own)
             owns.append(own.T)
         noise = above_floor(problem, np.sqrt(squares / np.maximum(self.count, 1.0)[:, None]).T)
@@ -266,7 +268,8 @@ class Neighbourhood:
             rows = np.stack([q[i] for q in p])
             residual = kept.measured[:, None] - problem.fly_and_read(kept.flight, rows)
             r = problem.innovations(i, residual) * kept.weights[:, None]
-            Ar = kept.own.T @ r
+            linear = self.fitted.linear[i]
+            Ar = kept.own.T @ r + (linear.prior * linear.departure)[:, None]
             costs = np.sum(r * r, axis=0) - np.sum(Ar * solved(kept.chol, Ar), axis=0)
             # Without play all sides are equal but for rounding, and the first is taken.
             best.append(entries[int(np.argmax(costs <= np.min(costs) * (1.0 + 1e-9)))])

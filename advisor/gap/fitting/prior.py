@@ -10,6 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
+from advisor.gap.simulator.layout import DERIVATIVES
+from advisor.model.response import SHARED
+from advisor.oem.prior import precision_without_alpha
 
 ERROR_IF_RIGHT = 0.03
 """Relative standard deviation of derivatives that are right: they are linearised, at a nearby speed."""
@@ -51,6 +54,16 @@ def derivative_scale(prior: FloatArray) -> FloatArray:
 def prior_precision(prior: FloatArray, tolerance: float) -> FloatArray:
     """Return the inverse variances of the file's derivatives, given their relative error, shape (6,)."""
     return np.asarray(1.0 / (tolerance * derivative_scale(prior)) ** 2)
+
+
+def small_without_alpha(derivatives: FloatArray) -> FloatArray:
+    """Return the inverse variances about zero of derivatives that no angle of attack shows, shape (6,).
+
+    The prior is that of the estimate (``advisor.oem.prior``).
+    """
+    shared = dict(zip(DERIVATIVES, derivatives, strict=True))
+    found = precision_without_alpha(np.array([shared.get(name, 0.0) for name in SHARED]))
+    return found[[SHARED.index(name) for name in DERIVATIVES]]
 
 
 def log_prior(derivatives: FloatArray, covariance: FloatArray, prior: FloatArray) -> float:

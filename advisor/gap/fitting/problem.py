@@ -8,7 +8,13 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.variant import Variant
-from advisor.gap.fitting.prior import ERROR_IF_FIXED, ERROR_IF_RIGHT, ERROR_IF_WRONG, prior_precision
+from advisor.gap.fitting.prior import (
+    ERROR_IF_FIXED,
+    ERROR_IF_RIGHT,
+    ERROR_IF_WRONG,
+    prior_precision,
+    small_without_alpha,
+)
 from advisor.gap.fitting.whitening import Filters, Whitening
 from advisor.gap.records.flights import PreparedManeuver, PreparedManeuvers
 from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, FILTER, INDEX, LAYOUT, NUISANCES, SKEWS
@@ -144,7 +150,8 @@ class EffectProblem:
         shapes (k,).
 
         The prior mean is the file's for derivatives and zero for nuisance parameters. The prior is weak and
-        decides only what the data leave open. With an effect that derivatives imitate exactly, the file's
+        decides only what the data leave open. Without a measured angle of attack Z_q and Z_δe also have the
+        prior of the estimate, about zero. With an effect that derivatives imitate exactly, the file's
         derivatives hold within their tolerance.
         """
         inverse, expected = [np.zeros(len(DERIVATIVES))], [point.derivatives]
@@ -154,6 +161,10 @@ class EffectProblem:
                 ERROR_IF_FIXED if self.derivatives_fixed else ERROR_IF_RIGHT if trusted else ERROR_IF_WRONG
             )
             inverse, expected = [prior_precision(self.prior_derivatives, tolerance)], [self.prior_derivatives]
+        if "alpha" not in self.channels:
+            small = small_without_alpha(point.derivatives)
+            expected[0] = inverse[0] * expected[0] / np.maximum(inverse[0] + small, 1e-300)
+            inverse[0] = inverse[0] + small
         for effect, values in zip(point.effects, point.values, strict=True):
             inverse.append(
                 1.0 / np.array(effect.prior_std) ** 2 if effect.prior_std else np.zeros(len(values))

@@ -83,8 +83,9 @@ def _refitted(
     """
     m, k = block.m, len(own)
     normal = np.tensordot(weights**2, block.products, 1)
-    H, g = normal[:m, :m] + np.diag(block.prior), normal[:m, -1]
-    reach = np.full(m, np.inf)
+    H, g = normal[:m, :m] + np.diag(block.prior), normal[:m, -1] + block.prior * block.departure
+    # A prior of a manoeuvre's own is the variance of a range, as of an edge anywhere between two stamps.
+    reach = np.sqrt(3.0 / np.maximum(block.prior, 1e-300))
     offsets = [_OFFSETS[name] for name in _OFFSETS if name in problem.channels]
     reach[k : k + len(offsets)] = offsets
     held = np.concatenate([np.zeros(k), reach[k:]])
@@ -92,7 +93,8 @@ def _refitted(
     moved = solved_within(
         H, g, np.concatenate([ends[0] - own, -reach[k:]]), np.concatenate([ends[1] - own, reach[k:]])
     )
-    cost = float(normal[-1, -1] - 2.0 * g @ still + still @ H @ still)
+    unlikely = float(block.prior @ block.departure**2)
+    cost = float(normal[-1, -1] - 2.0 * g @ still + still @ H @ still) + unlikely
     unmoved = np.zeros(block.columns.shape[1] - m - 1)
     return _Refitted(cost, own.copy(), block.measured.after(unmoved, still)), moved[:k]
 

@@ -79,6 +79,7 @@ def own_eliminated(block: Linear, weights: FloatArray) -> tuple[FloatArray, Floa
     q = block.products.shape[1]
     normal = (weights**2 @ block.products.reshape(len(weights), q * q)).reshape(q, q)
     AX = normal[:m, m:]
+    AX[:, -1] += block.prior * block.departure
     eliminated = solved(factor_of(normal[:m, :m].copy(), block.prior), AX)
     inner: FloatArray = normal[m:, m:] - AX.T @ eliminated
     return inner, eliminated

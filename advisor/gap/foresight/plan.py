@@ -21,7 +21,7 @@ from advisor.gap.foresight.signatures import Signatures
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.records.prepare import prepare
 from advisor.gap.records.usable import LEAST_SAMPLES
-from advisor.gap.search.baseline import base_entries, everywhere, prior_derivatives
+from advisor.gap.search.baseline import base_entries, everywhere, prior_derivatives, with_telemetry
 from advisor.gap.simulator.layout import NUISANCES, OUTPUTS, natural_frequency
 from advisor.words.problems import ConfigurationError
 
@@ -107,7 +107,7 @@ def foresee_flights(
     problem = EffectProblem(flights, known, prior_derivatives=derivatives)
     own = np.zeros((len(flights), len(NUISANCES)))
     own[:, NUISANCES.index("Z_trim")] = [f.level_lift for f in flights.flights]
-    point = everywhere(SearchPoint(derivatives, own), flights)
+    point = with_telemetry(everywhere(SearchPoint(derivatives, own), flights), flights)
     linear = linearise(problem, point)
     step = solve_blocks(problem, linear, 1.0 / noise, point)
     owns = step.owns(step.shared)

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.candidates.input import LATENCY
+from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.problem import EffectProblem, row_weights
 
@@ -41,7 +41,8 @@ class Signatures:
         self._shared = U[:, size > _RANK * size[0]]
         self._latency = np.zeros(len(stacked)) if late is None else self._freed_of_shared(stacked[:, late])
         now = 0.0 if late is None else float(fitted.point.shared[late])
-        self._latency_bounds = LATENCY.bounds[0][0] - now, LATENCY.bounds[0][1] - now
+        low, high = (0.0, 0.0) if late is None else _latency_in(fitted)[0].bounds[0]
+        self._latency_bounds = low - now, high - now
 
     def of(self, columns: Sequence[FloatArray]) -> FloatArray:
         """Return the signature of a response, given per manoeuvre with shape (rows,), in the units of the
@@ -83,6 +84,11 @@ class Signatures:
 
 
 def _latency_at(fitted: EffectFit) -> int | None:
-    """Return the index of the latency among the shared parameters."""
-    point = fitted.point
-    return point.place(point.effects.index(LATENCY)).start if LATENCY in point.effects else None
+    """Return the index of the latency among the shared parameters; None where the model has none."""
+    found = _latency_in(fitted)
+    return fitted.point.place(fitted.point.effects.index(found[0])).start if found else None
+
+
+def _latency_in(fitted: EffectFit) -> list[Variant]:
+    """Return the latency of the model, in a list that is empty without one."""
+    return [effect for effect in fitted.point.effects if effect.effect == "latency"]

@@ -73,9 +73,9 @@ def probe_blocks(
         Shape (channels,): noise of the innovations, or without a filter that of the instruments alone.
     """
     wanted = [*DYNAMIC, *SENSOR_CHANNELS] if blocks is None else list(blocks)
-    # Only α identifies moving air.
-    needed = {**SENSOR_CHANNELS, "air": "alpha"}
-    there = [block for block in wanted if needed.get(block, "q") in problem.channels]
+    shown = {*problem.channels, *(["air"] if problem.flights.shows_air else [])}
+    needed = {**SENSOR_CHANNELS, "air": "air"}
+    there = [block for block in wanted if needed.get(block, "q") in shown]
     return sorted((_probe(problem, fitted, noise, block) for block in there), key=lambda p: -p.gain)
 
 

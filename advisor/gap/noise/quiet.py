@@ -35,7 +35,7 @@ _MARGIN = 1.03
 _FAINT, _FAINT_MARGIN = 3.0, 1.2
 """Power of a less loud manoeuvre over the quietest quarter, and the higher ratio of likelihoods that a gust
 there needs. A change of mass looks like moving air too."""
-ANY_GUST = 0.2
+_ANY_GUST = 0.2
 """Prior standard deviation of the gust angle where no size is assumed, rad: far above any gust."""
 _NO_LESS = 0.98
 """Least weight of a sample with which its stamp counts as exact."""
@@ -68,7 +68,7 @@ def whitening_of(problem: EffectProblem, fitted: EffectFit, first_look: bool = F
 def noise_in_quiet(problem: EffectProblem, fitted: EffectFit) -> AirModel | None:
     """Return coloured instruments or moving air where nothing was flown; None where white noise describes
     it."""
-    if not {"alpha", "q"} <= set(problem.channels):
+    if not problem.flights.shows_air:
         return None
     parts = [part for i in range(len(problem.flights)) for part in _quiet_parts(problem, fitted, i)]
     rows = _without_offsets(parts)
@@ -109,7 +109,22 @@ def gusts_in(
     likelier = {int(i): _likelier(problem, fitted, int(i), noise) for i in np.flatnonzero(louder > _FAINT)}
     gusty = {i for i, by in likelier.items() if by > (_MARGIN if louder[i] > _LONE else _FAINT_MARGIN)}
     suspects = {i for i in likelier if louder[i] > _LONE} if first_look and gusty else set()
-    return {i: replace(still, gust=ANY_GUST) for i in sorted(gusty | suspects)}
+    return {i: replace(still, gust=largest_gust(problem, fitted)) for i in sorted(gusty | suspects)}
+
+
+def largest_gust(problem: EffectProblem, fitted: EffectFit) -> float:
+    """Return the largest gust angle that the flight shows, rad: the range of a vane, and that of the lift.
+
+    A vane reads a gust, and lift follows a gust. A wrong model asks for any gust.
+    """
+    flights, z_alpha = problem.flights, abs(float(fitted.point.derivatives[0]))
+    shown = [_ANY_GUST]
+    if "alpha" in problem.channels and not flights.alpha_is_derived:
+        shown.append(max(float(np.ptp(f.outputs["alpha"].y)) for f in flights.flights))
+    if "a_z" in problem.channels and z_alpha > 0.0:
+        forces = (float(np.ptp(f.outputs["a_z"].y) / np.mean(f.slow[SPEED])) for f in flights.flights)
+        shown.append(max(forces) / z_alpha)
+    return min(shown)
 
 
 def _begun_anew(problem: EffectProblem, fitted: EffectFit, noise: FloatArray) -> list[FloatArray]:

@@ -132,9 +132,17 @@ class PreparedManeuvers:
     """Shape (channels,): standard deviation of the white noise, robust against steps of the motion."""
     peaks: FloatArray
     """Shape (channels,): median over the manoeuvres of the largest departure from the starting value."""
+    chord_m: float | None = None
+    """Mean chord of the wing, m, as the aircraft file states it or its mass tells; None where neither is
+    stated."""
 
     def __len__(self) -> int:
         return len(self.flights)
+
+    @property
+    def shows_air(self) -> bool:
+        """Whether the outputs show moving air: by a measured angle of attack, else by the specific force."""
+        return "alpha" in self.channels or "a_z" in self.channels
 
     @property
     def telling(self) -> list[int]:

@@ -13,12 +13,12 @@ second, which look as rough as a vane."""
 def is_estimate(m: Maneuver, smoothed: bool, rough: bool) -> bool:
     """Return whether α is an estimate from inertial sensors.
 
-    ArduPilot marks every α as derived. An α that is renewed faster than its estimator is a vane's. So is one
-    as rough as an instrument, where the rate makes roughness informative. A smooth record is an estimate all
-    the same.
+    ArduPilot marks every α as derived, and the bundled aircraft marks its own as simulated. An α that is
+    renewed faster than its estimator is a vane's. So is one as rough as an instrument, where the rate makes
+    roughness informative. A smooth record is an estimate all the same.
     """
     alpha = m.channels.get("alpha")
-    if alpha is None or alpha.provenance != "derived":
+    if alpha is None or alpha.provenance not in ("derived", "simulated"):
         return False
     t, _ = renewed(alpha.t, alpha.y)
     hz = len(t) / (alpha.t[-1] - alpha.t[0])

@@ -9,7 +9,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.renewal import renewed
 from advisor.gap.records.edges import step_unseen
 from advisor.gap.records.flights import Measured
-from advisor.gap.simulator.layout import OUTPUTS
+from advisor.gap.records.unmeasured_alpha import is_known_by_motion, outputs_with
 
 LEAST_SAMPLES = 15
 """Least number of samples of a channel in a manoeuvre. A derived α at 8 Hz has as many in the shortest
@@ -63,12 +63,12 @@ def outputs_of(m: Maneuver) -> dict[str, Measured]:
     """Return the compared channels with their renewed samples, in seconds since the manoeuvre's beginning."""
     start, end = recorded(m)
     outputs = {}
-    for name in OUTPUTS:
+    for name in outputs_with(m):
         channel = m.channels.get(name)
         if channel is None or len(channel) < LEAST_SAMPLES:
             continue
         cut = channel.cut(start, end)
-        t, y = condensed(*renewed(cut.t - start, cut.y, _LEAST_RENEWED))
+        t, y = condensed(*renewed(cut.t - start - cut.delay_s, cut.y, _LEAST_RENEWED))
         if len(t) >= LEAST_SAMPLES:
             outputs[name] = Measured(t, y)
     return outputs
@@ -108,4 +108,4 @@ def _steps_seen(m: Maneuver) -> bool:
 
 
 def _has_alpha(m: Maneuver) -> bool:
-    return "alpha" in outputs_of(m)
+    return "alpha" in outputs_of(m) or is_known_by_motion(m)

@@ -15,7 +15,7 @@ from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.holdout import mean_squares
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.noise.probes import KNOTS_S, DisturbanceCourse, disturbance_courses
-from advisor.gap.noise.quiet import ANY_GUST, instrument_noise, rows_of, system_of, with_floor
+from advisor.gap.noise.quiet import instrument_noise, largest_gust, rows_of, system_of, with_floor
 from advisor.model.response import OUTPUTS
 from advisor.oem.turbulence import Turbulence, find_turbulence
 
@@ -25,7 +25,10 @@ AIR_MANEUVERS = 5
 """Number of manoeuvres, the loudest ones, in which moving air is sought: enough to recognise turbulence."""
 
 LEAST_GUST_ANGLE = 0.001
-"""Least standard deviation of the gust angle for turbulence to be named, rad."""
+"""Least standard deviation of the gust angle, rad, for which the air counts as moving."""
+NATURAL_GUST_ANGLE = 0.006
+"""Largest standard deviation of the gust angle, rad, as found, that is part of every flight and no cause. At
+25 m/s that is 0.15 m/s, the lightest turbulence that the development flights of three generators name."""
 _LEAST_GUST_PEAK = 0.0025
 """Least peak of the gust angle for a gust to be named, rad. A gust that passed once hardly changes the
 standard deviation."""
@@ -62,6 +65,11 @@ class MovingAir:
     instruments: FloatArray
     """Shape (channels,): noise of the instruments in addition to moving air."""
 
+    @property
+    def is_natural(self) -> bool:
+        """Whether the air moves no more than in any flight, so that it is no cause."""
+        return not self.gust and self.angle_std < NATURAL_GUST_ANGLE
+
 
 @dataclass(frozen=True)
 class SoughtAir:
@@ -76,7 +84,7 @@ class SoughtAir:
 
 def moving_air(problem: EffectProblem, fitted: EffectFit) -> SoughtAir:
     """Seek moving air; none is found where noise of the instruments explains the residual equally well."""
-    if "alpha" not in problem.channels or "q" not in problem.channels:
+    if not problem.flights.shows_air:
         return SoughtAir()
     floor = 1.0 if problem.instruments is None else problem.instruments
     before = mean_squares(problem, fitted.residuals)
@@ -141,7 +149,8 @@ def _of_a_gust(
 
     A course of any size would wander far where the instruments hardly show it.
     """
-    sizes = [*np.geomspace(least, ANY_GUST, _TRIED)] if least < ANY_GUST else [ANY_GUST]
+    most = largest_gust(problem, fitted)
+    sizes = [*np.geomspace(least, most, _TRIED)] if least < most else [most]
     courses = disturbance_courses(problem, fitted, instruments, "air", sizes)
     powers = [float(np.sum(_mean_square(problem, c.residuals) / instruments**2)) for c in courses]
     before = float(np.sum(np.mean(mean_squares(problem, fitted.residuals), axis=0) / instruments**2))

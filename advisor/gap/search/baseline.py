@@ -40,14 +40,40 @@ start is tried."""
 
 
 def everywhere(point: SearchPoint, flights: PreparedManeuvers, latency_s: float = 0.0) -> SearchPoint:
-    """Return the point with all nuisance parameters that are part of every model."""
-    late = point.with_effect(input.LATENCY, (latency_s,))
+    """Return the point with all nuisance parameters that are part of every model.
+
+    The latency is that of a loop; ``with_telemetry`` widens it once the reading of the command is known.
+    """
+    late = point.with_effect(input.LOOP, (latency_s,))
     if flights.alpha_is_derived:
         filters = timing.filters(flights)
         late = late.with_effect(filters, (0.0,) * len(filters.names))
+        late = late.with_effect(sensors.OWN_ALPHA, (0.0, 0.0))
     if {"alpha", "a_z"} <= set(flights.channels):
         late = late.with_effect(sensors.TRUE_AIR_SPEED, (0.0,))
     return late.with_effect(moment.PROPELLER, (0.0, 0.0, 0.0)) if flights.speed_measured else late
+
+
+def with_telemetry(point: SearchPoint, flights: PreparedManeuvers) -> SearchPoint:
+    """Return the point with the delay that telemetry may put between the stamps of the command and its
+    effect."""
+    effects = tuple(input.latency(flights) if e is input.LOOP else e for e in point.effects)
+    return replace(point, effects=effects)
+
+
+def fit_telemetry(problem: EffectProblem, fitted: EffectFit, noise: FloatArray) -> EffectFit:
+    """Return the fit with that delay, from the present one and from both ends of the prior.
+
+    Edges of the command follow a delay, so that the cost has local minima in between.
+    """
+    point = with_telemetry(fitted.point, problem.flights)
+    k = point.index_of(input.LOOP.effect)
+    best = fit(problem, point, noise)
+    for start in point.effects[k].bounds[0]:
+        values = (*point.values[:k], np.array([start]), *point.values[k + 1 :])
+        other = fit(problem, replace(point, values=values), noise, beaten_by=best.cost)
+        best = min(best, other, key=_finite_cost)
+    return best
 
 
 def base_entries(aircraft: Aircraft) -> FloatArray:
@@ -115,10 +141,11 @@ def fit_baseline(flights: PreparedManeuvers, aircraft: Aircraft) -> tuple[Effect
     fitted = first_fit(problem, aircraft)
     baseline, seen = fitted, quietest(problem, fitted)
     problem, fitted = read_command(*_filtered(problem, fitted, seen, first_look=True))
+    fitted = fit_telemetry(problem, fitted, fitted.noise)
     if not problem.knows_the_noise:
         return problem, fitted
     # The noise is estimated through a fit, and the fit uses the noise: the second round is the last.
-    seen = fit(problem, seen.point, fitted.noise, iterations=8) if seen is not baseline else fitted
+    seen = fit_telemetry(problem, seen, fitted.noise) if seen is not baseline else fitted
     return _filtered(problem, fitted, seen)
 
 

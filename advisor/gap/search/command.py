@@ -60,7 +60,7 @@ def read_command(linear: EffectProblem, fitted: EffectFit) -> tuple[EffectProble
     delays = {p.held: _delay_of(f) for p, f in ((linear, both_linear), (held, both_held))}
     without_delay = delays[True] < _HALF_S and abs(delays[False] - half) < _HALF_S
     # Steps of a fast loop, all at one place of their interval, are late by up to a whole interval together.
-    in_step = half - _HALF_S < late < 2.0 * half + input.LATENCY.bounds[0][1]
+    in_step = half - _HALF_S < late < 2.0 * half + input.LOOP.bounds[0][1]
     nearest = best_of_all + _ALL_LATE_ALIKE * (max(plain.values()) - best_of_all)
     steps_alike = in_step and plain[True] < min(nearest, plain[False])
     if is_held or looks_held or steps_alike or (without_delay and both[True] < both[False] + price):

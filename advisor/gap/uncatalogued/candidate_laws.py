@@ -152,7 +152,7 @@ def laws_for(flights: PreparedManeuvers) -> list[Variant]:
     readings = [flights.channels[c] for c in flights.telling]
     of_readings = [variant for channel in readings for variant in _READINGS.get(channel, ())]
     of_readings += vane_stops(flights) if "alpha" in readings else []
-    of_lift = [lift_memory(flights), flow_lets_go(flights)]
+    of_lift = [lift_memory(flights), flow_lets_go(flights)] if "alpha" in flights.channels else []
     of_input = [*surface_stops(flights), RINGING, _sticking(flights), *_weaker(flights)]
     return [*of_readings, *_MOMENTS, *of_input, *of_lift]
 

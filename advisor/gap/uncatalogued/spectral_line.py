@@ -55,7 +55,7 @@ def spectral_line_in(problem: EffectProblem, fitted: EffectFit, noise: FloatArra
     hz, stands_out = max(lines, key=lambda line: line[1])
     if stands_out < _ABOVE:
         return None
-    blocks = [b for b in DYNAMIC if b != "air" or "alpha" in problem.channels]
+    blocks = [b for b in DYNAMIC if b != "air" or problem.flights.shows_air]
     blocks += [b for b, channel in SENSOR_CHANNELS.items() if channel in problem.channels]
     found = sorted((_swing(problem, fitted, noise, b, hz) for b in blocks), key=lambda x: -x[0].gain)
     return SpectralLine(hz, tuple(probe for probe, _ in found), found[0][1])

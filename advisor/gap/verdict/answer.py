@@ -23,7 +23,7 @@ from advisor.gap.records.floor import tolerance_of
 from advisor.gap.result import Cause, Diagnosis, Gap, GapVerdict, Where
 from advisor.gap.search.acceptance import LEAST_SIGMA
 from advisor.gap.simulator.layout import DERIVATIVES
-from advisor.gap.verdict.as_judged import as_judged
+from advisor.gap.verdict.as_judged import answered, as_judged
 from advisor.gap.verdict.causes import block_ranking
 from advisor.gap.verdict.holdout_numbers import as_read, on_holdout, over_maneuvers, with_offset, without_air
 from advisor.gap.verdict.judgement import judgement
@@ -50,11 +50,10 @@ def answer(
     prior: FieldPrior = FIELD,
 ) -> Diagnosis:
     """Return the diagnosis that follows from the evidence, at a field prior of the answers."""
-    # A single manoeuvre proves no cause, and the judge was fitted on none.
-    told = None if len(e.problem.flights) == 1 else posterior(rows_of(measured(e, kinematics)), prior)
+    examined = e
     e, kept = on_holdout(e, holdout)
     problem, stages = e.problem, e.stages
-    judged = judgement(e, kinematics, told.of_effect if told is not None else lambda _: 0.0)
+    judged = judgement(e, kinematics)
     verdict, causes = judged.verdict, judged.causes
     before, last = judged.before, stages[-1].held_out
     if judged.bias is not None:
@@ -98,7 +97,11 @@ def answer(
         notes=notes_of(e, aircraft, holdout, verdict, nuisances),
         maneuvers=tuple(f.number for f in problem.flights.flights),
     )  # fmt: skip
-    return diagnosis if told is None else as_judged(diagnosis, told)
+    if len(problem.flights) == 1:
+        # A single manoeuvre proves no cause, and the judge was fitted on none.
+        return diagnosis
+    found = measured(examined, kinematics)
+    return as_judged(diagnosis, posterior(rows_of(found, answered(diagnosis)), prior))
 
 
 def _speed_is_known(problem: EffectProblem, aircraft: Aircraft) -> bool:

@@ -11,6 +11,9 @@ from advisor.gap.result import Cause, Diagnosis, spelled
 from advisor.gap.search.indistinguishable import way_to_distinguish
 from advisor.gap.verdict.text import place
 
+MOST_CAUSES = 5
+"""Most causes that are stated, so that a reader sees the likely ones."""
+
 
 def as_judged(diagnosis: Diagnosis, told: Posterior) -> Diagnosis:
     """Return the diagnosis with probabilities, evidence and reasons; a doubtful answer says so in a note."""
@@ -18,10 +21,14 @@ def as_judged(diagnosis: Diagnosis, told: Posterior) -> Diagnosis:
     reasons = told.why(answer)
     doubt = doubtful(told.credible, (answer, told.of(answer)))
     alike = [a.name for a, _ in told.credible if a.is_effect] if doubt else []
-    causes = tuple(_with_rivals(c, alike) if n == 0 else c for n, c in enumerate(diagnosis.causes))
+    causes = [replace(c, probability=told.of_effect(c.effect)) for c in diagnosis.causes]
+    # The causes of an effect, or next to an unknown, keep the order of what they remove.
+    keeps = diagnosis.verdict in ("effect", "unknown")
+    causes.sort(key=lambda c: (not (keeps and c.present), 0.0 if keeps and c.present else -c.probability))
+    causes = [_with_rivals(c, alike) if n == 0 else c for n, c in enumerate(causes[:MOST_CAUSES])]
     return replace(
         diagnosis,
-        causes=causes,
+        causes=tuple(causes),
         probabilities=told.probabilities,
         evidence=told.evidence,
         why=reasons,

@@ -1,6 +1,6 @@
 """From judged candidates to readable causes: parameters, and indistinguishable effects."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -21,22 +21,22 @@ _TIMING = {"transport_delay": "delay_s", "actuator_lag": "lag_s"}
 """Effects that a common shift of all steps of the command would imitate, and their parameter."""
 
 
-def causes_of(
-    stages: Sequence[Stage], floor: FloatArray, channels: Sequence[str], probability: Callable[[str], float]
-) -> tuple[Cause, ...]:
-    """Return the added effects in their order, then the alternatives to the first one, likeliest first.
+def causes_of(stages: Sequence[Stage], floor: FloatArray, channels: Sequence[str]) -> tuple[Cause, ...]:
+    """Return the added effects in their order, then the alternatives to the first one.
 
-    ``probability`` returns the probability of an effect.
+    The probabilities are set later.
     """
     first = stages[0].considered
-
-    def cause(judged: JudgedAddition, considered: Sequence[JudgedAddition], present: bool) -> Cause:
-        return _cause(judged, considered, probability(judged.effect), floor, channels, present)
-
-    named = [cause(stage.added, stage.considered, True) for stage in stages if stage.added is not None]
+    named = [
+        _cause(stage.added, stage.considered, floor, channels, True)
+        for stage in stages
+        if stage.added is not None
+    ]
     taken = {c.effect for c in named}
-    others = [cause(j, first, False) for j in first if j.effect not in taken and j.gain > 0.0]
-    return (*named, *sorted(others, key=lambda c: -c.probability))
+    others = [
+        _cause(j, first, floor, channels, False) for j in first if j.effect not in taken and j.gain > 0.0
+    ]
+    return (*named, *others)
 
 
 def parameters_of(v: Variant, values: FloatArray, std: FloatArray) -> dict[str, Value]:
@@ -89,7 +89,6 @@ def _with_edge_error(cause: Cause, problem: EffectProblem) -> Cause:
 def _cause(
     judged: JudgedAddition,
     considered: Sequence[JudgedAddition],
-    probability: float,
     floor: FloatArray,
     channels: Sequence[str],
     present: bool,
@@ -97,7 +96,7 @@ def _cause(
     alike, way = indistinguishable_from(judged, considered, channels)
     gap_after = whole_gap(judged.held_out.mean_square, floor)
     sizes = parameters_of(judged.variant, judged.value, judged.std)
-    return Cause(judged.effect, judged.block, probability, sizes, alike, way, gap_after, present)
+    return Cause(judged.effect, judged.block, 0.0, sizes, alike, way, gap_after, present)
 
 
 def block_ranking(first: Stage, causes: Sequence[Cause]) -> tuple[tuple[str, float], ...]:

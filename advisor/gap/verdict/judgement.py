@@ -1,7 +1,7 @@
 """The judgement of the evidence: the verdict and its causes, before the numbers of the gap."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -25,8 +25,6 @@ _MOUNTED_RAD = 0.02
 _MOSTLY = 0.98
 """Share of the gap from wrong derivatives above which they are the answer, whatever else is present. Other
 derivatives imitate an effect by nine tenths at most, except for one that they imitate exactly."""
-MOST_CAUSES = 5
-"""Most causes that are stated, so that a reader sees the likely ones."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +33,7 @@ class Judgement:
 
     verdict: GapVerdict
     causes: tuple[Cause, ...]
-    """Causes, likeliest first, at most five."""
+    """Causes of the model, then alternatives to them; the probabilities are set later."""
     outside_fit: tuple[Cause, ...]
     """Causes that are judged outside the fits: moving air, offset of α, air speed."""
     speed: Cause | None
@@ -71,23 +69,16 @@ class _Found:
         return max(self.removed, 0.0)
 
 
-def judgement(
-    e: Evidence, kinematics: KinematicCheck, probability: Callable[[str], float] = lambda _: 0.0
-) -> Judgement:
-    """Return the verdict and the causes that follow from the evidence.
-
-    ``probability`` returns the probability of an effect.
-    """
+def judgement(e: Evidence, kinematics: KinematicCheck) -> Judgement:
+    """Return the verdict and the causes that follow from the evidence."""
     found = _found(e, kinematics)
-    causes = _ordered(e, found, probability)
+    causes = _ordered(e, found)
     verdict = _verdict(found, causes)
     before = e.file_model if e.file_model is not None else e.stages[0].held_out
     if e.constant_speed is not None and found.speed in found.outside_fit:
         before = _at_constant_speed(e.problem, before, e.constant_speed, e.stages[-1].held_out)
-    if verdict not in ("effect", "unknown"):
-        causes = tuple(sorted(causes, key=lambda c: -c.probability))
     return Judgement(
-        verdict, causes[:MOST_CAUSES], found.outside_fit, found.speed, found.bias, before,
+        verdict, causes, found.outside_fit, found.speed, found.bias, before,
         found.derivatives.are_wrong, decisions_of(e, found.derivatives),
     )  # fmt: skip
 
@@ -116,15 +107,14 @@ def _found(e: Evidence, kinematics: KinematicCheck) -> _Found:
     return _Found(named, removed, derivatives, bias, speed, outweighs, outside_fit, e.unexplained is not None)
 
 
-def _ordered(e: Evidence, found: _Found, probability: Callable[[str], float]) -> tuple[Cause, ...]:
+def _ordered(e: Evidence, found: _Found) -> tuple[Cause, ...]:
     """Return fitted causes and those outside the fits, the largest part of the gap first."""
     channels = e.problem.channels
-    fitted = [with_model_errors(c, e.problem) for c in causes_of(e.stages, e.floor, channels, probability)]
-    outside_fit = [replace(c, probability=probability(c.effect)) for c in found.outside_fit]
-    named = {c.effect for c in outside_fit}
+    fitted = [with_model_errors(c, e.problem) for c in causes_of(e.stages, e.floor, channels)]
+    named = {c.effect for c in found.outside_fit}
     present = [c for c in fitted if c.present]
     others = [c for c in fitted if not c.present and c.effect not in named]
-    causes = (*present, *outside_fit, *others)
+    causes = (*present, *found.outside_fit, *others)
     bias, speed = found.bias, found.speed
     derived = e.problem.flights.alpha_is_derived
     if bias is not None and not found.unknown and not derived and _exceeds_mounting(bias, found.named):

@@ -21,16 +21,6 @@ def decisions_of(e: Evidence, derivatives: WrongDerivatives) -> tuple[Decision, 
     )
 
 
-def in_words(decision: Decision) -> str:
-    """Return one decision as a line for people."""
-    said = "yes" if decision.holds else "no"
-    about = decision.about.replace("_", " ")
-    return (
-        f"{about}, {decision.name}: {decision.statistic:.3g} {decision.unit}, at least "
-        f"{decision.limit:.3g}: {said}, by {abs(decision.margin):.3g}"
-    )
-
-
 def _of_stage(stage: Stage) -> list[Decision]:
     """Return why an effect was added, and why others with a positive gain were rejected."""
     refused = [judged for judged in stage.considered if judged.gain > 0.0 and not judged.is_accepted]

@@ -147,6 +147,11 @@ def _of_the_file(aircraft: Aircraft, nuisances: Collection[str]) -> Iterator[str
 
 def _of_what_is_missing(e: Evidence, aircraft: Aircraft) -> Iterator[str]:
     flights = e.problem.flights
+    if "alpha" not in flights.channels:
+        yield (
+            "No instrument measures the angle of attack. The angle is a state of the model, which pitch "
+            "rate, specific force, attitude and air speed determine."
+        )
     missing = [c for c in ("a_z", "theta") if c not in flights.channels]
     if missing:
         yield f"Without {' and '.join(missing)} several instrument effects cannot be seen."

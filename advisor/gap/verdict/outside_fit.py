@@ -57,8 +57,9 @@ def alpha_bias_cause(
 
 
 def air_cause(e: Evidence) -> Cause | None:
-    """Return turbulence or a gust as a cause, with the strength of its course."""
-    if e.air is None:
+    """Return turbulence or a gust as a cause, with the strength of its course; None in the air of any
+    flight."""
+    if e.air is None or e.air.is_natural:
         return None
     reference = e.problem.flights.reference_m_s
     gust, stays = e.air.gust, without_air(e.stages[-1].held_out, e.air).mean_square

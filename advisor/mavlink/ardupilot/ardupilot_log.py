@@ -73,7 +73,7 @@ def read_dataflash(path: Path, wanted: Iterable[str] | None = None) -> Iterator[
     names = None if wanted is None else set(wanted)
     is_log, newest = False, -1
     for every in read_logs(path, (*_RECORDS, *SDLOG2_RECORDS, *apart)):
-        messages = _messages({name: _believable(table) for name, table in every.items()})
+        messages = _messages({name: _believable(every.pop(name)) for name in list(every)})
         if messages is not None:
             is_log = True
             for batch in _batch(messages, names):

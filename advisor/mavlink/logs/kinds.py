@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from advisor.mavlink.px4 import ulog
-from advisor.mavlink.records import dataflash
+from advisor.mavlink.records import dataflash, record_scan
 from advisor.mavlink.wire.frames import FrameScanner
 from advisor.mavlink.wire.scan import STAMP_BYTES
 from advisor.words.problems import Problem
@@ -40,7 +40,7 @@ class Found:
 
 def recognised(beginning: bytes) -> Found | None:
     """Return the kind of log that begins within the first ``BEGINNING_BYTES`` of a file; None for no log."""
-    if beginning.startswith(dataflash.HEADER):
+    if beginning.startswith(record_scan.HEADER):
         return Found("dataflash", 0)
     starts: dict[Kind, int] = {
         "dataflash": dataflash.first_definition(beginning),

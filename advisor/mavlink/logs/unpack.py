@@ -14,6 +14,11 @@ from advisor.words.problems import UnusableInputError
 
 LARGEST_UNPACKED_BYTES = (1 << 32) - 1
 """Largest log that is unpacked, bytes. Autopilots write to FAT32 cards, on which no file is larger."""
+MOST_TIMES = 100
+"""Largest ratio of a log's size to that of its packed file. Logs of this project's vehicles shrink to a half
+up to a tenth, and a log of a vehicle that stands still to a fiftieth."""
+_SMALL_BYTES = 64_000_000
+"""Size up to which no ratio is too large, bytes."""
 _MOST_MEMBERS = 1000
 """Most files of an archive that are examined."""
 _NAMED = 5
@@ -69,21 +74,22 @@ def unpacked(path: Path, beginning: bytes) -> Iterator[Path]:
     ------
     UnusableInputError
         An archive is damaged or encrypted, or holds no log, several, or one beyond
-        ``LARGEST_UNPACKED_BYTES``.
+        ``LARGEST_UNPACKED_BYTES`` or ``MOST_TIMES`` the packed file.
     """
     if not beginning.startswith((_GZIP, _ZIP)):
         yield path
         return
     with tempfile.TemporaryDirectory(prefix="advisor-") as folder:
         try:
+            size = path.stat().st_size
             if beginning.startswith(_GZIP):
                 with gzip.open(path) as packed:
-                    log = _copy(packed, path.name, Path(folder) / (path.stem or path.name))
+                    log = _copy(packed, path.name, size, Path(folder) / (path.stem or path.name))
             else:
                 with zipfile.ZipFile(path) as archive:
                     member = _only_log(archive, path.name)
                     with archive.open(member) as packed:
-                        log = _copy(packed, path.name, Path(folder) / Path(_shown(member)).name)
+                        log = _copy(packed, path.name, size, Path(folder) / Path(_shown(member)).name)
         except OSError as error:
             if error.strerror is None:
                 raise _damaged(path) from None
@@ -109,18 +115,19 @@ def _damaged(path: Path) -> UnusableInputError:
     )
 
 
-def _copy(packed: IO[bytes] | gzip.GzipFile, name: str, to: Path) -> Path:
+def _copy(packed: IO[bytes] | gzip.GzipFile, name: str, packed_bytes: int, to: Path) -> Path:
     """Unpack a log to a file, after its beginning has shown a log."""
     beginning = packed.read(BEGINNING_BYTES)
     if recognised(beginning) is None:
         raise UnusableInputError.of([refusal(f"{name}, unpacked,", beginning)])
+    largest = min(LARGEST_UNPACKED_BYTES, max(MOST_TIMES * packed_bytes, _SMALL_BYTES))
     with to.open("wb") as file:
         file.write(beginning)
         while chunk := packed.read(BEGINNING_BYTES):
-            if file.tell() + len(chunk) > LARGEST_UNPACKED_BYTES:
+            if file.tell() + len(chunk) > largest:
                 raise UnusableInputError(
                     "too_large",
-                    f"{name} holds more than {LARGEST_UNPACKED_BYTES >> 30} GiB.",
+                    f"{name} of {packed_bytes / 1e6:.1f} MB unpacks to more than {largest / 1e6:.0f} MB.",
                     "Unpack it by hand and cut out the flight.",
                 )
             file.write(chunk)

@@ -5,7 +5,7 @@ numba keeps its machine code next to the modules, so that later starts only load
 
 import numpy as np
 
-from advisor.mavlink.records.dataflash import gather, scan_records
+from advisor.mavlink.records.record_scan import gather, known_lengths, scan_records
 from advisor.mavlink.wire.checksum import crc16
 from advisor.mavlink.wire.definitions import DEFINITIONS
 from advisor.mavlink.wire.frames import FrameScanner
@@ -20,7 +20,7 @@ def warm_up() -> None:
     FrameScanner().feed(bytes(8) + b"\xfe" + head + checksum.to_bytes(2, "little"))
     nothing = np.empty(0, dtype=np.uint8)
     no_places = np.empty(0, dtype=np.int64)
-    scan_records(nothing, no_places)
+    scan_records(nothing, no_places, known_lengths(), True)
     gather(nothing, no_places, np.empty((0, 1), dtype=np.uint8))
 
 

@@ -1,13 +1,11 @@
 """ArduPilot's own log (``.bin``, "dataflash"): self-describing binary records.
 
 A record is two bytes of header, a type, and the fields that the type's FMT record lists (ArduPilot:
-AP_Logger, "Log message formats"). Records carry no checksum. So a record counts only when another header, or
-the end of the file, follows right behind it.
+AP_Logger, "Log message formats").
 """
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -15,13 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from advisor.flight.signals.messages import FloatArray, IntArray
-from advisor.process.compiled import kernel
+from advisor.mavlink.records.record_scan import FMT, FMT_LENGTH, HEADER, Window, bodies, windows
 
-HEADER = b"\xa3\x95"
-_HEADER_0, _HEADER_1 = HEADER
-_FMT = 0x80
-_FMT_LENGTH = 89
-_DEFINITION = HEADER + bytes([_FMT])
+_DEFINITION = HEADER + bytes([FMT])
 _FMT_LAYOUT = np.dtype(
     [("type", "u1"), ("length", "u1"), ("name", "S4"), ("format", "S16"), ("columns", "S64")]
 )
@@ -83,59 +77,112 @@ class RecordTable:
 def read_logs(path: Path, names: Iterable[str]) -> Iterator[dict[str, RecordTable]]:
     """Yield the records of the named types, for each log that was joined into the file.
 
-    Two logs may number their types differently. A type without records is left out.
+    Two logs may number their types differently. A type without records is left out. Only records of the named
+    types are kept in memory.
     """
-    stream = np.fromfile(path, dtype=np.uint8)
-    starts = np.empty(len(stream) // 4 + 1, dtype=np.int64)
-    starts = starts[: scan_records(stream, starts)]
-    wanted = set(names)
-    for log in np.split(starts, _begins(stream, starts)):
-        yield _tables(stream, log, wanted)
+    collected = _Collected(frozenset(names))
+    for window in windows(path):
+        yield from collected.take(window)
+    yield from collected.finish()
 
 
-def _begins(stream: NDArray[np.uint8], starts: IntArray) -> list[int]:
-    """Return the rows of ``starts`` at which another log begins: definitions that redefine a type."""
-    rows = np.flatnonzero(stream[starts + 2] == _FMT)
-    known: dict[int, bytes] = {}
-    found: list[int] = []
-    run = -1
-    for before, row in pairwise([-1, *rows.tolist()]):
-        run = run if row == before + 1 else row
-        number, at = int(stream[starts[row] + 3]), int(starts[row])
-        definition = stream[at : at + _FMT_LENGTH].tobytes()
-        if number in known and (number == _FMT or known[number] != definition) and run not in found:
-            found.append(run)
-            known.clear()
-        known[number] = definition
-    return found
+class _Collected:
+    """Records of the wanted types of one log, until definitions show that another log begins.
 
+    Definitions stand in runs. One that redefines a type is the first of another log, together with the rest
+    of its run.
+    """
 
-def _tables(stream: NDArray[np.uint8], starts: IntArray, wanted: set[str]) -> dict[str, RecordTable]:
-    """Return the records of one log, which begin at ``starts``."""
-    types = stream[starts + 2]
-    tables = {}
-    definition: Any
-    for definition in _records(stream, starts[types == _FMT] + 3, _FMT_LAYOUT):
-        name = definition["name"].decode("ascii", "replace")
-        layout, divisors = _layout(definition)
-        mine = starts[types == definition["type"]]
-        if name not in wanted or layout is None or not len(mine):
-            continue
-        records = _records(stream, mine + 3, layout)
-        tables[name] = RecordTable(
-            mine,
-            {
+    def __init__(self, wanted: frozenset[str]) -> None:
+        self._wanted = wanted
+        self._known: dict[int, bytes] = {}
+        self._run: list[bytes] = []
+        self._begin([])
+
+    def _begin(self, definitions: list[bytes]) -> None:
+        self._definitions = definitions
+        self._rows: dict[tuple[int, int], list[tuple[IntArray, NDArray[np.uint8]]]] = {}
+        self._count = 0
+
+    def take(self, window: Window) -> Iterator[dict[str, RecordTable]]:
+        """Take the next records; yield each log that ends among them."""
+        stream, starts, offset = window
+        types = stream[starts + 2]
+        done = 0
+        for row in [*np.flatnonzero(types == FMT).tolist(), len(starts)]:
+            if row > done:
+                yield from self._end_run()
+                self._gather(stream, starts[done:row], types[done:row], offset)
+            if row < len(starts):
+                self._run.append(stream[starts[row] + 3 : starts[row] + FMT_LENGTH].tobytes())
+            done = row + 1
+
+    def finish(self) -> Iterator[dict[str, RecordTable]]:
+        """Yield the last log."""
+        yield from self._end_run()
+        yield self._tables()
+
+    def _end_run(self) -> Iterator[dict[str, RecordTable]]:
+        """Take the definitions of a run that is over; yield the log that ends before them, if one does."""
+        run, self._run = self._run, []
+        is_another = False
+        for definition in run:
+            number = definition[0]
+            redefined = number in self._known and (number == FMT or self._known[number] != definition)
+            if redefined and not is_another:
+                is_another = True
+                self._known.clear()
+            self._known[number] = definition
+        if is_another and self._count:
+            yield self._tables()
+        if is_another:
+            self._begin(run)
+        else:
+            self._definitions += run
+        self._layouts = {
+            number: layout
+            for number, name, layout, _ in self._defined()
+            if name in self._wanted and layout is not None
+        }
+
+    def _gather(
+        self, stream: NDArray[np.uint8], starts: IntArray, types: NDArray[np.uint8], offset: int
+    ) -> None:
+        self._count += len(starts)
+        for number, layout in self._layouts.items():
+            mine = starts[types == number]
+            if len(mine):
+                rows = bodies(stream, mine, layout.itemsize)
+                self._rows.setdefault((number, layout.itemsize), []).append((mine + offset, rows))
+
+    def _defined(self) -> Iterator[tuple[int, str, "np.dtype[np.void] | None", list[float | None]]]:
+        """Yield type, name, layout and divisors of each definition."""
+        for definition in np.frombuffer(b"".join(dict.fromkeys(self._definitions)), dtype=_FMT_LAYOUT):
+            yield int(definition["type"]), definition["name"].decode("ascii", "replace"), *_layout(definition)
+
+    def _tables(self) -> dict[str, RecordTable]:
+        """Return the collected records, and keep none of them."""
+        tables = {}
+        for number, name, layout, divisors in self._defined():
+            if layout is None or name not in self._wanted:
+                continue
+            pieces = self._rows.pop((number, layout.itemsize), None)
+            if pieces is None:
+                continue
+            records = np.concatenate([rows for _, rows in pieces]).view(layout)[:, 0]
+            fields = {
                 field: records[field] if divisor is None else records[field] / divisor
                 for field, divisor in zip(layout.names or (), divisors, strict=True)
-            },
-        )
-    return tables
+            }
+            tables[name] = RecordTable(np.concatenate([order for order, _ in pieces]), fields)
+        self._begin([])
+        return tables
 
 
 def first_definition(beginning: bytes) -> int:
     """Return the position of the first FMT record that another record follows; -1 for none."""
     at = beginning.find(_DEFINITION)
-    while at >= 0 and beginning[at + _FMT_LENGTH : at + _FMT_LENGTH + len(HEADER)] != HEADER:
+    while at >= 0 and beginning[at + FMT_LENGTH : at + FMT_LENGTH + len(HEADER)] != HEADER:
         at = beginning.find(_DEFINITION, at + 1)
     return at
 
@@ -173,43 +220,6 @@ def _layout(definition: Any) -> tuple["np.dtype[np.void] | None", list[float | N
     if layout.itemsize + 3 != definition["length"]:
         return None, []
     return layout, [divisor for _, divisor in specifications]
-
-
-def _records(stream: NDArray[np.uint8], bodies: IntArray, layout: "np.dtype[np.void]") -> NDArray[Any]:
-    rows = np.empty((len(bodies), layout.itemsize), dtype=np.uint8)
-    gather(stream, bodies, rows)
-    return np.asarray(rows.view(layout)[:, 0])
-
-
-@kernel()
-def gather(stream: NDArray[np.uint8], bodies: IntArray, rows: NDArray[np.uint8]) -> None:
-    """Copy the bytes that begin at each of ``bodies`` into a row of ``rows``."""
-    for i in range(len(bodies)):
-        rows[i] = stream[bodies[i] : bodies[i] + rows.shape[1]]
-
-
-@kernel()
-def scan_records(stream: NDArray[np.uint8], starts: IntArray) -> int:
-    """Find the records: fill ``starts`` and return their number. FMT records give the lengths."""
-    n = len(stream)
-    lengths = np.zeros(256, dtype=np.int64)
-    lengths[_FMT] = _FMT_LENGTH
-    count = 0
-    at = 0
-    while at + 3 <= n:
-        if stream[at] == _HEADER_0 and stream[at + 1] == _HEADER_1:
-            length = int(lengths[stream[at + 2]])
-            end = at + length
-            follows = end + 1 < n and stream[end] == _HEADER_0 and stream[end + 1] == _HEADER_1
-            if length > 3 and (end == n or follows):
-                if stream[at + 2] == _FMT:
-                    lengths[stream[at + 3]] = stream[at + 4]
-                starts[count] = at
-                count += 1
-                at = end
-                continue
-        at += 1
-    return count
 
 
 def seconds(time_us: IntArray) -> FloatArray:

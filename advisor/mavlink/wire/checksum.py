@@ -1,5 +1,7 @@
 """The checksum of MAVLink frames: CRC-16/MCRF4XX, which MAVLink calls X.25."""
 
+from binascii import crc_hqx
+
 import numpy as np
 
 INITIAL = 0xFFFF
@@ -29,11 +31,17 @@ for _zeros in (1, 2, 3):
 FROM_HIGH_BYTE = np.argsort(TABLE >> 8)
 """Index into ``TABLE`` of the entry with a given high byte: every high byte occurs once."""
 
-_REMAINDERS: list[int] = TABLE.tolist()
+_MIRRORED = bytes(int(f"{byte:08b}"[::-1], 2) for byte in range(256))
+"""Each byte with its bits in the opposite order."""
 
 
 def crc16(data: bytes, crc: int = INITIAL) -> int:
-    """Return the checksum of ``data``, continued from ``crc``."""
-    for byte in data:
-        crc = crc >> 8 ^ _REMAINDERS[(crc ^ byte) & 0xFF]
-    return crc
+    """Return the checksum of ``data``, continued from ``crc``.
+
+    ``binascii.crc_hqx`` has this polynomial, with the bits of bytes and remainder in the opposite order.
+    """
+    return _mirrored(crc_hqx(data.translate(_MIRRORED), _mirrored(crc)))
+
+
+def _mirrored(word: int) -> int:
+    return _MIRRORED[word & 0xFF] << 8 | _MIRRORED[word >> 8]

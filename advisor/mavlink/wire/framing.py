@@ -3,10 +3,9 @@
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from fastcrc.crc16 import mcrf4xx
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
-from advisor.mavlink.wire.checksum import TABLE
+from advisor.mavlink.wire.checksum import TABLE, crc16
 
 MAGIC_V1 = 0xFE
 MAGIC_V2 = 0xFD
@@ -102,9 +101,9 @@ class FrameCutter:
         if seed is None:
             follower = buffer[i + total : i + total + 1]
             due = self._in_step and (not follower or follower[0] in MAGIC)
-            if not due or checksum ^ mcrf4xx(buffer[i + 1 : end - 2]) >> 8 not in _SEED_REMAINDERS:
+            if not due or checksum ^ crc16(buffer[i + 1 : end - 2]) >> 8 not in _SEED_REMAINDERS:
                 return None
-        elif mcrf4xx(buffer[i + 1 : end - 2] + seed) != checksum:
+        elif crc16(buffer[i + 1 : end - 2] + seed) != checksum:
             self.bad_crc += self._in_step
             return None
         return Frame(buffer[i : i + total], message_id, sequence, system, component, signed)

@@ -30,9 +30,11 @@ class Figure:
     """Function that draws the picture, for formats that show one."""
     caption: str
     """Description of the picture, also for readers who cannot see it."""
-    size: Literal["wide", "half", "third", "quarter"] = "wide"
+    size: Literal["wide", "half", "third", "quarter", "sixth"] = "wide"
     narrow: Callable[[], str] | None = None
     """Draws the picture for a phone, where the broad one would be too small to read."""
+    printed: bool = True
+    """Whether the picture is printed. A picture that stands smaller on another page of the paper is not."""
 
 
 @dataclass(frozen=True, slots=True)

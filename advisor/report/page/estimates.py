@@ -85,7 +85,7 @@ def _forest(
     rows = [*((number, found[name]) for number, found in alone.items()), ("joint", joint[name])]
     known = [(label, row) for label, row in rows if row.is_known]
     svg = picture(f"forest-{name}", 2.4, min(0.9 + 0.15 * len(rows), _TALLEST_IN), _paint, joint[name], known)
-    told = "" if joint[name].prior is None else " Dashes: the file's model."
+    told = "" if joint[name].prior is None else " Dashes: the simulator's value."
     symbol = joint[name].quantity.symbol
     return Figure(
         svg, f"{symbol}: each manoeuvre and the joint estimate with 95 % intervals.{told}", "quarter"

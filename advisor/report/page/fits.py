@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from statistics import fmean
+from typing import Literal
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
@@ -24,6 +25,9 @@ _EXPLAINED = (
 _SMALL = ("alpha", "q")
 """Outputs of a small picture."""
 
+_FEW = 8
+"""Most small pictures that stand four across. More stand six across, so that thirty fill one page."""
+Size = Literal["quarter", "sixth"]
 Fitted = tuple[JudgedManeuver, Estimate]
 
 
@@ -47,7 +51,8 @@ def _blocks(content: Content) -> Iterator[Block]:
     yield Gallery(tuple(_large(rank, *one) for rank, one in large))
     shown = {one.maneuver.number for _, (one, _) in large}
     if small := [one for one in accepted if one[0].maneuver.number not in shown]:
-        yield Gallery(tuple(_small(*one) for one in small))
+        size: Size = "quarter" if len(small) <= _FEW else "sixth"
+        yield Gallery(tuple(_small(size, *one) for one in small))
 
 
 def _explained(fitted: Fitted) -> float:
@@ -64,7 +69,7 @@ def _large(rank: str, judged: JudgedManeuver, estimate: Estimate) -> Figure:
     return Figure(svg, caption, "half")
 
 
-def _small(judged: JudgedManeuver, estimate: Estimate) -> Figure:
+def _small(size: Size, judged: JudgedManeuver, estimate: Estimate) -> Figure:
     number, all_of_them = judged.maneuver.number, estimate.fits[0]
     outputs = tuple(all_of_them[name] for name in _SMALL if name in all_of_them)
     svg = picture(
@@ -72,7 +77,7 @@ def _small(judged: JudgedManeuver, estimate: Estimate) -> Figure:
         _start(judged),
     )  # fmt: skip
     told = ", ".join(f"{CHANNELS[fit.name].symbol} R² {fit.r2:.3f}" for fit in all_of_them.values())
-    return Figure(svg, f"Manoeuvre {number}, {judged.maneuver.span.kind}: {told}.", "quarter")
+    return Figure(svg, f"Manoeuvre {number}, {judged.maneuver.span.kind}: {told}.", size)
 
 
 def _measures(fit: ChannelFit, estimate: Estimate) -> str:

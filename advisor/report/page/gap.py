@@ -41,8 +41,8 @@ def _blocks(found: Document) -> Iterator[Block]:
     yield Paragraph(found["sentence"], "verdict")
     size, shrink = found["gap"], found["shrink"]
     if found["traces"]:
-        close = gap_picture("gap-picture", found)
-        yield Gallery((Figure(close, caption(found), narrow=gap_picture("gap-phone", found, across=1)),))
+        close, phone = gap_picture("gap-picture", found), gap_picture("gap-phone", found, across=1)
+        yield Gallery((Figure(close, caption(found), narrow=phone, printed=False),))
     if found["parameters_changed"]:
         yield Table(
             "gap-parameters", "Derivatives that differ from the simulator's; the others agree within 95 %.",

@@ -15,7 +15,7 @@ def telemetry(content: Content) -> Section:
 def _blocks(content: Content) -> Iterator[Block]:
     for flight, (name, found) in enumerate(zip(content.names, content.doctor, strict=True)):
         yield Paragraph(f"{name}: {found['verdict']}.")
-        yield from listing([f"{limit['text']}. Mend: {limit['fix']}." for limit in found["limits"]])
+        yield from listing([f"{limit['text']}. Fix: {limit['fix']}." for limit in found["limits"]])
         yield from listing(list(found.get("notes", ())))
         if found["messages"]:
             yield message_table(f"messages-{flight}", found["messages"])

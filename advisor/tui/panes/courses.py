@@ -62,7 +62,7 @@ drifts shows an aircraft that changes.
             small = _small(history_chart(self._view, name), "no." if roomy else "", foot=lowest)
             self.query_one(f"#course-{name}", Plot).chart = small
         if self._view and self._view.state.maneuvers:
-            self.subtitle("├┤ ± 95 %  ── joint  ╌╌ aircraft file")
+            self.subtitle("├┤ ± 95 %  ── joint  ╌╌ simulator")
 
     def rows(self) -> TableRows:
         """Give one row for each manoeuvre and parameter."""

@@ -19,6 +19,8 @@ from advisor.words.vehicle_time import clock
 
 _INKS: dict[str, Ink] = {"elevator": "input", "height": "prior", "airspeed": "residual"}
 _ROWS_FOR_ONE = 4
+_GUTTER = 7
+"""Columns left of the plots, for the labels of their axes."""
 _LEAST_S = 10.0
 """Shortest time axis, s."""
 
@@ -102,7 +104,9 @@ def _chart(name: str, course: Course, ends: tuple[float, float], now_s: float, *
     quantity = channel(name)
     t, y = _zigzag(course)
     series = Series("", t, y * quantity.factor, _INKS.get(name, "measured"))
-    return Chart(quantity.label, "t [s]", series=(series,), x_range=ends, cursor=now_s, foot=foot, gutter=7)
+    return Chart(
+        quantity.label, "t [s]", series=(series,), x_range=ends, cursor=now_s, foot=foot, gutter=_GUTTER
+    )
 
 
 def _zigzag(course: Course) -> tuple[FloatArray, FloatArray]:
@@ -118,7 +122,8 @@ def _maneuvers(view: View, low: float, high: float, width: int) -> str:
         if judged.maneuver.power_on != here:
             continue
         text = f"{judged.maneuver.number}{symbol_and_word(judged)[0]}"
-        at = int((judged.maneuver.span.start_s - low) / (high - low) * (width - len(text)))
-        if at >= 0 and all(sign == " " for sign in line[max(at - 1, 0) : at + len(text)]):
+        share = (judged.maneuver.span.start_s - low) / (high - low)
+        at = _GUTTER + int(share * (width - _GUTTER - len(text)))
+        if at >= _GUTTER and all(sign == " " for sign in line[at - 1 : at + len(text)]):
             line[at : at + len(text)] = text
     return "".join(line).rstrip()

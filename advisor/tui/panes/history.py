@@ -57,9 +57,9 @@ def history_chart(view: View | None, name: str) -> Chart:
         return Chart(quantity.label, "manoeuvre", why_empty="no manoeuvre has given an estimate of it yet.")
     levels = []
     if of.model is not None:
-        levels.append(Level("model", of.model, "fitted", dashed=False))
+        levels.append(Level("joint", of.model, "fitted", dashed=False))
     if of.prior is not None:
-        levels.append(Level("prior", of.prior, "prior"))
+        levels.append(Level("simulator", of.prior, "prior"))
     values = Series("value ± 95 %", of.numbers, of.value, "measured", "intervals", of.half)
     return Chart(
         quantity.label,

@@ -1,4 +1,4 @@
-"""The eight parameters with their intervals, against the prior model and manoeuvre by manoeuvre."""
+"""The eight parameters with their intervals, against the simulator's model and manoeuvre by manoeuvre."""
 
 from collections.abc import Mapping
 from itertools import accumulate
@@ -15,10 +15,18 @@ from advisor.tui.panes.history import history_chart
 from advisor.tui.panes.pane import Pane
 from advisor.tui.plot.widget import Plot
 
-_COLUMNS = (("parameter", 11), ("model ± 95 %", 18), ("selected ± 95 %", 18), ("prior", 8), ("off by", 6))
+_COLUMNS = (
+    ("parameter", 11),
+    ("estimate ± 95 %", 18),
+    ("selected ± 95 %", 18),
+    ("simulator", 10),
+    ("off by", 6),
+)
 """Name and width, with a space at the end: what grows must not push the others about. The last ones are left
 away where they have no room: half a number would be another number."""
 _SCROLL_BAR = 1
+_FIRST_SHOWN = "M_alpha"
+"""Parameter that is chosen at first: the stability, which a crew asks for before all others."""
 
 
 class ParametersPane(Pane):
@@ -30,13 +38,13 @@ class ParametersPane(Pane):
     HELP = """\
 # Parameters
 
-*model*: the joint estimate over the accepted manoeuvres; *selected*: the selected manoeuvre alone; both
-with 95 % intervals (1.96 σ, corrected for coloured residuals). *prior*: the aircraft file's model; *off
+*estimate*: the joint estimate over the accepted manoeuvres; *selected*: the selected manoeuvre alone; both
+with 95 % intervals (1.96 σ, corrected for coloured residuals). *simulator*: the aircraft file's model; *off
 by*: how many σ it lies from the estimate. A column without room is left out.
 
 **up/down** chooses the parameter whose history is drawn: each manoeuvre's value with its interval, the
-prior as a dashed line. *not identifiable*: the input did not separate this parameter from the others; the
-verdict pane says why.
+simulator's value as a dashed line. *not identifiable*: the input did not separate this parameter from the
+others; the verdict pane says why.
 """
 
     def compose(self) -> ComposeResult:
@@ -49,6 +57,7 @@ verdict pane says why.
         super().on_mount()
         self._view: View | None = None
         self._columns = 0
+        self._row = NAMES.index(_FIRST_SHOWN)
 
     def on_resize(self, event: Resize) -> None:
         """Show as many columns as have room."""
@@ -69,7 +78,7 @@ verdict pane says why.
         if not self._columns or not self.changed(view.state.maneuvers, view.state.model, view.judged):
             return
         table = self.query_one(DataTable)
-        row = max(table.cursor_row, 0)
+        row = self._row
         selected = view.judged.estimate if view.judged else None
         with self.prevent(DataTable.RowHighlighted):
             table.clear()
@@ -83,6 +92,7 @@ verdict pane says why.
         """Draw the history of the parameter under the cursor."""
         event.stop()
         if event.row_key.value is not None:
+            self._row = NAMES.index(event.row_key.value)
             self._draw_history(event.row_key.value)
 
     def _draw_history(self, name: str) -> None:

@@ -18,6 +18,7 @@ from advisor.tui.panes.criterion import Criterion
 from advisor.tui.panes.event_log import EventLogPane
 from advisor.tui.panes.fit import Fit
 from advisor.tui.panes.flight import WholeFlightPane
+from advisor.tui.panes.gap import GapPane
 from advisor.tui.panes.keys_line import KeysLine
 from advisor.tui.panes.live import Live
 from advisor.tui.panes.maneuvers import Maneuvers
@@ -35,11 +36,11 @@ from advisor.tui.screens.pane_actions import PaneActions
 # In the order of their numbers.
 PANES: tuple[type[Pane], ...] = (
     Maneuvers, VerdictPane, ParametersPane, Fit, Live, Criterion, Channels, EventLogPane, Residuals,
-    Correlation, Courses, Qualities, WholeFlightPane,
+    Correlation, Courses, Qualities, WholeFlightPane, GapPane,
 )  # fmt: skip
 _COLUMNS: dict[str, tuple[type[Pane], ...]] = {
     "left": (Maneuvers, VerdictPane, ParametersPane),
-    "middle": (Fit, Residuals, Correlation, Courses, Qualities, WholeFlightPane),
+    "middle": (Fit, Residuals, Correlation, Courses, Qualities, WholeFlightPane, GapPane),
     "right": (Live, Criterion, Channels, EventLogPane),
 }
 _WIDE, _MEDIUM = (160, 42), (110, 30)
@@ -50,7 +51,7 @@ _LOW_TABLE = 38
 
 
 class EngineerScreen(Face, PaneActions):
-    """Thirteen panes: eight at once on a wide terminal, one next to or below the manoeuvres on a small one.
+    """Fourteen panes: eight at once on a wide terminal, one next to or below the manoeuvres on a small one.
 
     The panes of the middle column share one place: fit, residuals, correlation, history, whole flight.
     """
@@ -134,6 +135,8 @@ is offered the files instead.
         self.query_one(PaneTabs).choose(number)
         inner = chosen.query("DataTable, VerticalScroll")
         (inner.first() if inner else chosen).focus()
+        if isinstance(chosen, GapPane) and self._view is not None:
+            chosen.ask(self._view)
         self._refresh_panes()
 
     def _arrange(self) -> None:

@@ -48,14 +48,24 @@ def test_csv_has_the_estimates_of_the_json_document_with_the_joint_one_as_number
     told = {m["number"]: m["estimates"] for m in exported.document["maneuvers"]}
     told[0] = exported.document["model"]
     assert {number for number, _ in rows} == set(told)
-    for maneuver, name in rows:
+    derivatives = [key for key in rows if key[1] in PARAMETERS]
+    for maneuver, name in derivatives:
         for key in ("value", "std", "std_cr"):
             assert number(rows[maneuver, name][key]) == told[maneuver][name][key]
 
 
+def test_csv_has_the_instruments_that_were_estimated_with_the_derivatives(exported: Exported) -> None:
+    told = exported.document["model"]["instruments"]
+    rows = {row["parameter"]: row for row in rows_of(exported, "estimates") if row["maneuver"] == "0"}
+    assert set(rows) - set(PARAMETERS) == set(told)
+    for name, one in told.items():
+        assert (number(rows[name]["value"]), number(rows[name]["std"])) == (one["value"], one["std"])
+        assert name.endswith(rows[name]["unit"])
+
+
 def test_the_diagonal_of_the_covariance_is_the_square_of_the_standard_deviation(exported: Exported) -> None:
     for row in rows_of(exported, "estimates"):
-        if row["std"]:
+        if row["std"] and row["parameter"] in PARAMETERS:
             diagonal = float(row[f"covariance_{row['parameter']}"])
             assert diagonal == pytest.approx(float(row["std"]) ** 2, rel=1e-12)
 
@@ -193,7 +203,8 @@ def test_a_layout_beside_parquet_alone_loads_the_parquet_grid(exported: Exported
 
 
 def test_every_parameter_of_the_model_has_a_row_and_a_column_of_covariance(exported: Exported) -> None:
-    rows = [row for row in rows_of(exported, "estimates") if row["maneuver"] == "0"]
+    joint = [row for row in rows_of(exported, "estimates") if row["maneuver"] == "0"]
+    rows = joint[: len(PARAMETERS)]
     assert [row["parameter"] for row in rows] == list(PARAMETERS)
     matrix = np.array([[float(row[f"covariance_{name}"] or "nan") for name in PARAMETERS] for row in rows])
     model = exported.flights.state.model

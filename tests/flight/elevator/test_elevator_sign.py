@@ -98,4 +98,4 @@ def test_a_manoeuvre_that_tells_nothing_decides_nothing():
 
 def test_a_diagnosis_knows_what_was_assumed_of_the_elevator():
     (note,) = maneuvers_of([LOG], Aircraft()).notes
-    assert "full strokes of 25 deg" in note
+    assert "full travel of 25 deg" in note

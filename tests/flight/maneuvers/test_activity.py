@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from advisor.flight.maneuvers.events import Activity
-from tests.flights import SHIPPED
+from tests.flights import SHIPPED, TWO, recorded
 
 CRUISE = Activity(
     10.0,
@@ -35,7 +35,7 @@ def test_corrections_far_apart_or_of_another_size_are_told_one_by_one():
 
 
 def test_the_document_lists_activities_with_time_reason_and_text(advisor):
-    document = json.loads(advisor("analyze", SHIPPED / "bundled-demo.tlog", "--json").stdout)
+    document = json.loads(advisor("analyze", recorded("uav", 1.0, maneuvers=TWO), "--json").stdout)
     between = [(m["end_boot_s"], m["start_boot_s"]) for m in document["maneuvers"]]
     assert document["activity"]
     for activity in document["activity"]:
@@ -52,8 +52,8 @@ def test_the_document_lists_activities_with_time_reason_and_text(advisor):
 
 
 def test_all_lists_each_activity_in_a_line_of_its_own_among_the_manoeuvres(advisor):
-    plain = advisor("analyze", SHIPPED / "bundled-demo.tlog").stdout
-    everything = advisor("analyze", SHIPPED / "bundled-demo.tlog", "--all").stdout
+    plain = advisor("analyze", recorded("uav", 1.0, maneuvers=TWO)).stdout
+    everything = advisor("analyze", recorded("uav", 1.0, maneuvers=TWO), "--all").stdout
     assert "not a test input" not in plain
     lines = everything.splitlines()
     first, second = (next(i for i, line in enumerate(lines) if line.startswith(f" {n}  ")) for n in (1, 2))

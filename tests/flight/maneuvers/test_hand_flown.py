@@ -108,7 +108,7 @@ def test_each_input_flown_in_fly_by_wire_is_told_of():
     assert spans(events), "a sharp input in a closed loop is identified"
 
 
-@pytest.mark.parametrize("aircraft", ["uav", "light"])
+@pytest.mark.parametrize("aircraft", [pytest.param("uav", marks=pytest.mark.study), "light"])
 @pytest.mark.parametrize(
     "gusts_m_s", [pytest.param(0.0, marks=pytest.mark.study), pytest.param(0.5, marks=pytest.mark.study), 1.0]
 )

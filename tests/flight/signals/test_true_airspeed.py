@@ -103,3 +103,16 @@ def test_the_aircraft_files_height_serves_where_the_log_has_none() -> None:
     assert altitude is not None
     assert speed.y == pytest.approx(AT_3000_M, rel=1e-3)
     assert altitude.provenance == "given"
+
+
+def test_an_air_speed_that_is_the_ground_speed_in_every_sample_is_no_indicated_one() -> None:
+    found = Tracks("auto")
+    for channel, source, values in (
+        ("airspeed", "VFR_HUD.airspeed", 20.0 + T), ("groundspeed", "VFR_HUD.groundspeed", 20.0 + T),
+        ("altitude", "VFR_HUD.alt", np.full(len(T), 3000.0)),
+    ):  # fmt: skip
+        found.append(Decoded(channel, source, "measured", T, values, np.arange(len(T))))
+    speed = found.cut("airspeed", 0.0, 5.0)
+    assert speed is not None
+    assert speed.y.tolist() == (20.0 + T).tolist()
+    assert is_true(speed)

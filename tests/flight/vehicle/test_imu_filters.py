@@ -5,11 +5,17 @@ import pytest
 from advisor.flight.vehicle.imu_filters import filter_delay_s
 
 TWENTY_HZ_S = 0.011254
+AT_20_HZ = {"INS_GYRO_FILTER": 20.0, "INS_ACCEL_FILTER": 20.0}
 
 
 @pytest.mark.parametrize("channel", ["q", "a_z"])
 def test_arduplane_s_filters_of_20_hz_delay_gyro_and_accelerometer_by_11_ms(channel):
-    assert filter_delay_s(channel, "", "ardupilot", {}) == pytest.approx(TWENTY_HZ_S, abs=1e-6)
+    assert filter_delay_s(channel, "", "ardupilot", AT_20_HZ) == pytest.approx(TWENTY_HZ_S, abs=1e-6)
+
+
+@pytest.mark.parametrize("channel", ["q", "a_z"])
+def test_a_filter_that_no_parameter_states_delays_nothing(channel):
+    assert filter_delay_s(channel, "", "ardupilot", {}) == 0.0
 
 
 def test_a_stated_cut_off_counts_and_zero_switches_the_filter_off():
@@ -19,7 +25,7 @@ def test_a_stated_cut_off_counts_and_zero_switches_the_filter_off():
 
 
 def test_a_notch_delays_the_gyro_only():
-    notch = {"INS_HNTCH_ENABLE": 1.0, "INS_HNTCH_FREQ": 80.0, "INS_HNTCH_BW": 40.0}
+    notch = {**AT_20_HZ, "INS_HNTCH_ENABLE": 1.0, "INS_HNTCH_FREQ": 80.0, "INS_HNTCH_BW": 40.0}
     more = filter_delay_s("q", "", "ardupilot", notch) - TWENTY_HZ_S
     assert more == pytest.approx(0.000995, abs=1e-5)
     assert filter_delay_s("a_z", "", "ardupilot", notch) == pytest.approx(TWENTY_HZ_S, abs=1e-6)

@@ -3,9 +3,12 @@
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from advisor.mavlink.logs.logs import open_log
-from advisor.mavlink.records.dataflash import read_logs, scan_records
+from advisor.mavlink.records import record_scan
+from advisor.mavlink.records.dataflash import read_logs
+from advisor.mavlink.records.record_scan import known_lengths, scan_records
 
 BASE = Path(__file__).parents[2] / "cases" / "base.bin"
 FMT = 0x80
@@ -15,7 +18,7 @@ def renumbered(log: bytes) -> bytes:
     """The log with the types of its records interchanged."""
     stream = np.frombuffer(log, dtype=np.uint8).copy()
     starts = np.empty(len(stream) // 4 + 1, dtype=np.int64)
-    starts = starts[: scan_records(stream, starts)]
+    starts = starts[: scan_records(stream, starts, known_lengths(), True)[0]]
     definitions = starts[stream[starts + 2] == FMT]
     numbers = sorted({int(n) for n in stream[definitions + 3]} - {FMT})
     other = dict(zip(numbers, [*numbers[1:], numbers[0]], strict=True)) | {FMT: FMT}
@@ -47,3 +50,24 @@ def test_the_messages_of_both_joined_logs_arrive_one_log_after_the_other(tmp_pat
     first, second = open_log(joined(tmp_path))
     assert {c.name: len(c) for c in first} == {c.name: len(c) for c in second}
     assert max(int(c.order[-1]) for c in first) < min(int(c.order[0]) for c in second)
+
+
+@pytest.mark.parametrize("window", [300, 1000, 4096, 100_003])
+def test_a_file_read_in_small_windows_gives_the_records_of_one_large_window(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, window: int
+) -> None:
+    path = joined(tmp_path)
+    damaged = bytearray(path.read_bytes())
+    for at in np.random.default_rng(3).integers(5_000, len(damaged), 200).tolist():
+        damaged[at] ^= 0x41
+    path.write_bytes(damaged)
+    names = ("ATT", "IMU", "RCOU", "PARM", "MSG", "GPS")
+    whole = list(read_logs(path, names))
+    monkeypatch.setattr(record_scan, "WINDOW_BYTES", window)
+    parts = list(read_logs(path, names))
+    assert [tables.keys() for tables in parts] == [tables.keys() for tables in whole]
+    for one, other in zip(parts, whole, strict=True):
+        for name, table in one.items():
+            np.testing.assert_array_equal(table.order, other[name].order)
+            for field, values in table.fields.items():
+                np.testing.assert_array_equal(values, other[name].fields[field])

@@ -6,6 +6,7 @@ import signal
 import socket
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -140,6 +141,15 @@ def kill(pid: int | None) -> None:
     """Kill a process by its id, as an out-of-memory killer does."""
     if pid is not None:
         _signal(pid, signal.SIGKILL)
+
+
+def stand_still(pid: int | None, seconds: float) -> None:
+    """Stop a process by its id for a while, as a full memory or a debugger does."""
+    if pid is not None:
+        _signal(pid, signal.SIGSTOP)
+        going_on = threading.Timer(seconds, _signal, (pid, signal.SIGCONT))
+        going_on.daemon = True
+        going_on.start()
 
 
 def _signal(pid: int, number: int) -> None:

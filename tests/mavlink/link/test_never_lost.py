@@ -5,16 +5,18 @@ import resource
 import signal
 import subprocess
 import sys
+import time
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from advisor.mavlink.link.link_process import HUNG_AFTER_S
 from tests.flights import SHIPPED, TWO, recorded
 from tests.mavlink.link.air import Record, records_of
 from tests.mavlink.link.builders import wait_until
-from tests.mavlink.link.live import Advising, fly, kill
+from tests.mavlink.link.live import Advising, fly, kill, stand_still
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="processes are looked up in /proc")
 
@@ -45,24 +47,42 @@ def analyzed(log: Path) -> list[str]:
 
 
 def survives(
-    advising: Advising, flight: Sequence[Record], maneuvers: int, victims: list[str], speed: float
+    advising: Advising,
+    flight: Sequence[Record],
+    maneuvers: int,
+    victims: list[str],
+    speed: float,
+    hang_s: tuple[float, float] | None = None,
 ) -> None:
-    """Fly while each victim in turn is killed, a random time after the one before is replaced."""
+    """Fly while each victim in turn is struck, a random time after the one before is replaced.
+
+    Parameters
+    ----------
+    hang_s
+        Shortest and longest time for which a victim stands still. None: it is killed.
+    """
     rng = np.random.default_rng()
     waiting = list(rng.permutation(victims))
     pause_s = (flight[-1].stamp_us - flight[0].stamp_us) / 1e6 / len(victims) / 2.0
     next_s = [rng.uniform(0.0, 2.0 * pause_s)]
+    hangs_until_s = [0.0]
 
     def strike(now_s: float) -> None:
-        if not waiting or now_s < next_s[0] or not advising.whole:
+        if not waiting or now_s < next_s[0] or time.monotonic() < hangs_until_s[0] or not advising.whole:
             return
         next_s[0] = now_s + rng.uniform(0.0, pause_s)
         victim = waiting.pop()
-        if victim == "screen":
+        assert advising.process is not None
+        pid = {"screen": advising.process.pid, "narrator": advising.narrator}.get(victim, advising.keeper)
+        if hang_s is not None:
+            seconds = float(np.exp(rng.uniform(*np.log(hang_s))))
+            hangs_until_s[0] = time.monotonic() + seconds
+            stand_still(pid, seconds)
+        elif victim == "screen":
             advising.kill()
             advising.resume()
         else:
-            kill(advising.narrator if victim == "narrator" else advising.keeper)
+            kill(pid)
 
     advising.start()
     fly(flight, advising.port, speed, strike)
@@ -92,6 +112,19 @@ def test_fifty_deaths_at_random_moments_change_no_verdict(advising: Advising):
     assert verdicts(advising.said) == analyzed(advising.recording)
     assert all("ACCEPTED" in line for line in verdicts(advising.said))
     assert frames_missing(advising, FLIGHT) <= 10 * len(FLIGHT) / length_s
+
+
+@pytest.mark.study
+@pytest.mark.timeout(1200)
+def test_fifty_hangs_at_random_moments_change_no_verdict(advising: Advising):
+    """Hangs of half a second to 25 s: the longest are ended, the others end by themselves."""
+    speed = 0.2
+    survives(advising, FLIGHT, 7, ["narrator"] * 20 + ["screen"] * 20 + ["keeper"] * 10, speed, (0.5, 25.0))
+    length_s = (FLIGHT[-1].stamp_us - FLIGHT[0].stamp_us) / 1e6
+    assert verdicts(advising.said) == analyzed(advising.recording)
+    assert frames_missing(advising, FLIGHT) <= 10 * (HUNG_AFTER_S + 1.0) * speed * len(FLIGHT) / length_s
+    why = [line.split("REPEAT: ")[1] for line in verdicts(advising.said) if "REPEAT" in line]
+    assert {text.partition(" s ")[2] for text in why} <= {"are missing: the advisor was down; fly it again"}
 
 
 def test_the_link_goes_on_recording_when_everything_else_is_killed(advising: Advising):

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from advisor.mavlink.logs import logs
+from advisor.mavlink.logs import logs, unpack
 from advisor.mavlink.logs.logs import open_log
 from advisor.words.problems import UnusableInputError
 from tests.conftest import Advisor
@@ -160,6 +160,16 @@ def test_whatever_breaks_a_reader_is_one_sentence_about_that_log(
     with pytest.raises(UnusableInputError, match=r"^flight.bin ") as caught:
         list(open_log(path))
     assert caught.value.__cause__ is error
+
+
+def test_a_small_file_that_unpacks_to_a_huge_one_is_refused_early(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(unpack, "_SMALL_BYTES", 500_000)
+    path = tmp_path / "flight.bin.gz"
+    path.write_bytes(gzip.compress(dataflash_flight(2.0) + bytes(50_000_000)))
+    with pytest.raises(UnusableInputError, match=r"flight.bin.gz of 0\.\d MB unpacks to more than \d+ MB\."):
+        list(open_log(path))
 
 
 def test_neither_a_folder_nor_a_pipe_nor_a_device_is_waited_for(tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 from advisor.flight.signals.messages import Columns
 from advisor.mavlink.logs.warm import warm_up
-from advisor.mavlink.records.dataflash import scan_records
+from advisor.mavlink.records.record_scan import scan_records
 from advisor.mavlink.wire.definitions import DEFINITIONS
 from advisor.mavlink.wire.frames import FrameScanner
 from advisor.mavlink.wire.scan import copy_payloads, scan

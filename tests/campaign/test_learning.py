@@ -1,4 +1,4 @@
-"""What a campaign learns of the servo, and what becomes of verdicts that knew less."""
+"""What a campaign learns of its instruments, and what becomes of verdicts that knew less."""
 
 from dataclasses import replace
 
@@ -6,21 +6,31 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft, Elevator
-from advisor.campaign.servo_lag import learnt, of_another_power_on, reserved, told
+from advisor.campaign.learning import learnt, of_another_power_on, reserved, told
 from advisor.decision.verdict import ManeuverVerdict
 from advisor.oem.estimate import InstrumentEstimate
+from advisor.oem.found import FoundInstruments, found_of, with_found
 from tests.decision.campaigns import estimate
 
 GOOD = ManeuverVerdict(True, "ACCEPTED: good manoeuvre", (), {})
 
 
+def found(lag_s, std_s, delay_s=0.0, delay_std_s=0.002):
+    values, std = np.array([lag_s, delay_s]), np.array([std_s, delay_std_s])
+    return FoundInstruments(("servo_lag_s", "command_delay_s"), values, std, np.eye(8), None)
+
+
 def with_lag(lag_s, std_s, **changed):
     told = (InstrumentEstimate("servo_lag_s", lag_s, std_s),)
-    return replace(estimate(), instruments=told, servo_lag_s=lag_s, **changed)
+    return replace(estimate(), instruments=told, servo_lag_s=lag_s, found=found(lag_s, std_s), **changed)
+
+
+def lag_of(aircraft):
+    return found_of(aircraft).value("servo_lag_s")
 
 
 def test_a_lag_known_to_a_tenth_is_learnt():
-    assert learnt(Aircraft(), with_lag(0.14, 0.01)).elevator.lag_found_s == 0.14
+    assert lag_of(learnt(Aircraft(), with_lag(0.14, 0.01))) == 0.14
 
 
 @pytest.mark.parametrize("model", [None, estimate(), with_lag(0.14, 0.02)])
@@ -32,46 +42,48 @@ def test_a_lag_that_is_unknown_or_unsure_is_not_learnt(model):
 def against(stated_s, told_s, std_s, *, contradicts):
     value_s = told_s if contradicts else stated_s
     lag = InstrumentEstimate("servo_lag_s", value_s, std_s, stated_s, told_s, std_s, contradicts)
-    return replace(estimate(), instruments=(lag,), servo_lag_s=value_s)
+    return replace(estimate(), instruments=(lag,), servo_lag_s=value_s, found=found(value_s, std_s))
 
 
 GIVEN = Aircraft(elevator=Elevator(lag_s=0.14))
 
 
 def test_a_lag_that_the_crew_gives_stands_while_the_data_do_not_exclude_it():
-    now = learnt(GIVEN, against(0.14, 0.15, 0.01, contradicts=False))
-    assert now.elevator.lag_found_s == pytest.approx(0.14)
-    assert now.elevator.lag_found_std_s == pytest.approx(0.01)
+    now = found_of(learnt(GIVEN, against(0.14, 0.15, 0.01, contradicts=False)))
+    assert now.values[0] == pytest.approx(0.14)
+    assert now.std[0] == pytest.approx(0.01)
     assert learnt(GIVEN, estimate()) is GIVEN
 
 
 def test_a_lag_that_the_data_tell_takes_the_place_of_an_excluded_one():
     now = learnt(GIVEN, against(0.14, 0.22, 0.004, contradicts=True))
-    assert now.elevator.lag_found_s == 0.22
+    assert lag_of(now) == 0.22
     assert "0.220 s, against 0.140 s in elevator.lag_s" in told(now)
 
 
 def test_the_crew_s_lag_returns_when_later_manoeuvres_agree_with_it():
     misled = learnt(GIVEN, against(0.14, 0.22, 0.004, contradicts=True))
     back = learnt(misled, against(0.14, 0.15, 0.01, contradicts=False))
-    assert back.elevator.lag_found_s == pytest.approx(0.14)
+    assert lag_of(back) == pytest.approx(0.14)
     assert "as elevator.lag_s says" in told(back)
 
 
 def test_a_surer_value_of_the_same_lag_is_news():
     used = learnt(Aircraft(), with_lag(0.14, 0.01))
-    assert learnt(used, with_lag(0.14, 0.004)).elevator.lag_found_std_s == 0.004
+    assert found_of(learnt(used, with_lag(0.14, 0.004))).std[0] == 0.004
 
 
 def test_the_delay_of_the_command_holds_within_its_power_on_alone():
-    told_of = replace(Aircraft(), elevator=Elevator(lag_s=0.1, delay_found_s=0.01, delay_found_std_s=0.002))
-    assert of_another_power_on(told_of).elevator == Elevator(lag_s=0.1)
+    told_of = with_found(Aircraft(), found(0.1, 0.01))
+    assert found_of(of_another_power_on(told_of)).names == ("servo_lag_s",)
+    several = learnt(Aircraft(), with_lag(0.14, 0.01), one_power_on=False)
+    assert found_of(several).names == ("servo_lag_s",)
 
 
 def test_a_lag_within_its_own_error_of_the_one_used_changes_nothing_but_at_the_end():
     used = learnt(Aircraft(), with_lag(0.14, 0.01))
     assert learnt(used, with_lag(0.145, 0.01)) is used
-    assert learnt(used, with_lag(0.145, 0.01), exactly=True).elevator.lag_found_s == 0.145
+    assert lag_of(learnt(used, with_lag(0.145, 0.01), exactly=True)) == 0.145
 
 
 def test_no_verdict_praises_a_control_derivative_that_the_joint_estimate_contradicts():

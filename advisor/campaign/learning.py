@@ -1,0 +1,131 @@
+"""The instruments, identified during a campaign and used in every later estimate.
+
+They are estimated from all accepted manoeuvres together. Single estimates, verdicts and criteria take them as
+given, with their errors (``oem.found``). A servo's lag that the crew leaves open must be known to a tenth
+first.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from advisor.aircraft.aircraft import PARAMETERS, Aircraft
+from advisor.decision.verdict import ManeuverVerdict
+from advisor.model.short_period import SPEED_EXPONENTS
+from advisor.oem.estimate import Estimate, NoEstimate
+from advisor.oem.found import FoundInstruments, found_of, with_found
+from advisor.oem.instruments import KNOWN_TO
+
+CONTRADICTS = 3.0
+"""Difference between two estimates of one derivative, in standard deviations, that counts as a
+contradiction."""
+MUCH_SURER = 1.5
+"""Ratio of standard deviations above which the surer value replaces the one in use."""
+
+
+def may_learn(aircraft: Aircraft, all_of_them: bool) -> bool:
+    """Return whether a joint estimate may improve the knowledge of the instruments.
+
+    Parameters
+    ----------
+    aircraft
+        The crew's aircraft, with instruments that were identified before.
+    all_of_them
+        Whether the joint estimate is made from all accepted manoeuvres. The newest alone do not improve what
+        is known already.
+    """
+    return found_of(aircraft) is None or all_of_them
+
+
+def learnt(
+    aircraft: Aircraft, model: Estimate | None, *, one_power_on: bool = True, exactly: bool = False
+) -> Aircraft:
+    """Return the aircraft with the instruments that the joint estimate tells; unchanged without news.
+
+    Parameters
+    ----------
+    aircraft
+        The crew's aircraft, with what was identified before.
+    model
+        Joint estimate over the accepted manoeuvres, made with the crew's aircraft.
+    one_power_on
+        Whether all these manoeuvres are of one power-on. The delay of the command differs from one to the
+        next.
+    exactly
+        Take the newest values even within their standard deviations of those in use, as at the end of a log.
+    """
+    if model is None or model.found is None:
+        return aircraft
+    found = model.found if one_power_on else model.found.without("command_delay_s")
+    if aircraft.elevator.lag_s is None and not _knows_the_lag(model):
+        return aircraft
+    used = found_of(aircraft)
+    return (
+        aircraft
+        if used is not None and not exactly and _is_no_news(used, found)
+        else with_found(aircraft, found)
+    )
+
+
+def _knows_the_lag(model: Estimate) -> bool:
+    lag = model.instrument("servo_lag_s")
+    return lag is not None and lag.std < KNOWN_TO * lag.value
+
+
+def _is_no_news(used: FoundInstruments, found: FoundInstruments) -> bool:
+    """Return whether values in use lie within the new standard deviations, and are about as certain."""
+    if used.names != found.names:
+        return False
+    near = np.abs(found.values - used.values) <= found.std
+    return bool(np.all(near & (used.std <= MUCH_SURER * found.std)))
+
+
+def of_another_power_on(aircraft: Aircraft) -> Aircraft:
+    """Return what is known of an aircraft in a power-on that no manoeuvre has told of: no delay of the
+    command."""
+    found = found_of(aircraft)
+    return aircraft if found is None else with_found(aircraft, found.without("command_delay_s"))
+
+
+def told(aircraft: Aircraft) -> str:
+    """Return the sentence for the event log about the lag that every estimate uses now; empty without a
+    lag."""
+    found, stated = found_of(aircraft), aircraft.elevator.lag_s
+    lag_s = None if found is None else found.value("servo_lag_s")
+    if found is None or lag_s is None:
+        return ""
+    std = float(found.std[found.names.index("servo_lag_s")])
+    if stated is not None and abs(lag_s - stated) <= CONTRADICTS * std:
+        return f"the manoeuvres together tell a lag of the servo of {lag_s:.3f} s, as elevator.lag_s says"
+    against = "" if stated is None else f", against {stated:.3f} s in elevator.lag_s,"
+    return (
+        f"the servo's lag is {lag_s:.3f} s{against} by all manoeuvres together; every estimate uses it now;"
+        f" for the aircraft file: elevator: {{lag_s: {lag_s:.3f}}}"
+    )
+
+
+def reserved(
+    verdict: ManeuverVerdict, estimate: Estimate | NoEstimate, model: Estimate | None
+) -> ManeuverVerdict:
+    """Return the verdict, with a caution where the joint estimate contradicts the control derivative.
+
+    A record that does not determine the servo's lag alone has M_δe wrong by up to a factor of two. The fit of
+    such a record is as good as any, and the stated error is small.
+    """
+    if model is None or isinstance(estimate, NoEstimate) or not verdict.accepted:
+        return verdict
+    if model.instrument("servo_lag_s") is None or estimate.servo_lag_s > 0.0:
+        return verdict
+    scale = 1.0
+    if model.airspeed_m_s and estimate.airspeed_m_s:
+        scale = (model.airspeed_m_s / estimate.airspeed_m_s) ** SPEED_EXPONENTS["M_delta_e"]
+    j = PARAMETERS.index("M_delta_e")
+    here, std = scale * float(estimate.theta[j]), scale * float(estimate.std[j])
+    together, error = float(model.theta[j]), float(model.std[j])
+    if abs(here - together) <= CONTRADICTS * np.hypot(std, error):
+        return verdict
+    sentence = (
+        f"ACCEPTED, but not its M_delta_e of {here:.3g}: with the servo's lag that all manoeuvres tell"
+        f" it is {together:.3g}"
+    )
+    return replace(verdict, sentence=sentence)

@@ -1,0 +1,84 @@
+"""The diagnosis of the gap in a process of its own, so that the screens and the estimates go on.
+
+    python -m advisor.session.diagnosis
+
+The process reads a pickled `GapTask` and writes the pickled document of the diagnosis.
+"""
+
+import os
+import pickle
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.process import interrupt
+from advisor.session.child_process import start_child
+from advisor.words.problems import Problem
+
+_GIVES_WAY = 10
+"""Niceness of the process. A diagnosis may wait for the estimates of a manoeuvre in the air."""
+
+Document = Mapping[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class GapTask:
+    """Logs of a flight test, and its aircraft."""
+
+    logs: tuple[Path, ...]
+    aircraft: Aircraft
+
+    def done(self) -> Document:
+        """Diagnose here, and return ``advisor.gap/1`` with the next steps."""
+        from advisor.analysis.gap import compare_logs, named_simulator
+        from advisor.analysis.marks_file import read_by_hand
+        from advisor.gap.document import gap_document
+        from advisor.report.gap_steps import next_steps
+        from advisor.words.plain import plain
+        from advisor.words.problems import UnusableInputError
+
+        simulator = None
+        try:
+            simulator = named_simulator(self.aircraft)
+            by_hand = [read_by_hand(log) for log in self.logs]
+            found = compare_logs(self.logs, self.aircraft, simulator, by_hand=by_hand).diagnosis
+        except UnusableInputError as error:
+            return gap_document(None, error.problems)
+        finally:
+            if simulator is not None:
+                simulator.close()
+        steps = next_steps(found, list(map(str, self.logs)), None, self.aircraft.simulator)
+        return {**gap_document(found), "next": plain(steps)}
+
+
+def diagnose_elsewhere(task: GapTask) -> Document:
+    """Diagnose in another process. The call returns when the process has ended."""
+    with start_child("advisor.session.diagnosis") as process:
+        told, _ = process.communicate(pickle.dumps(task))
+    if process.returncode or not told:
+        from advisor.gap.document import gap_document
+
+        said = f"The process of the diagnosis ended with exit code {process.returncode}."
+        return gap_document(None, [Problem("diagnosis", said, "Run advisor gap in another terminal.")])
+    document: Document = pickle.loads(told)
+    return document
+
+
+def main() -> None:
+    """Diagnose one task. A library's output must not fall into the document."""
+    os.nice(_GIVES_WAY)
+    interrupt.ignore()
+    with os.fdopen(os.dup(sys.stdout.fileno()), "wb") as out:
+        os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
+        task: GapTask = pickle.load(sys.stdin.buffer)
+        pickle.dump(task.done(), out, pickle.HIGHEST_PROTOCOL)
+
+
+if __name__ == "__main__":
+    # Pickles name the module, and not the name under which it runs.
+    from advisor.session.diagnosis import main as run
+
+    run()

@@ -1,0 +1,175 @@
+"""An effect that only the simulator has: a rate limit, play, a filter that the aircraft does not show.
+
+A fit to the flight cannot take such an effect out of a simulator, because its size would be negative. So
+the roles change. The simulator's own replays are diagnosed without any model, and the effect found there
+joins the surrogate. Where the aircraft then flies like that surrogate without it, the simulator has too much.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.record import Channel
+from advisor.gap.alternative import Probabilities
+from advisor.gap.candidates.catalogue import variants_for
+from advisor.gap.candidates.known import with_known
+from advisor.gap.diagnose import DiagnosisEvidence, examine
+from advisor.gap.fitting.problem import EffectProblem, SearchPoint
+from advisor.gap.result import VISIBLE, Cause, Diagnosis, Value
+from advisor.gap.search.baseline import base_entries
+from advisor.gap.simulator.layout import DERIVATIVES, NUISANCES
+from advisor.gap.verdict.statements import what
+from advisor.simulators.around import skewed
+from advisor.simulators.flying import AsGiven, Flying, without_difference
+from advisor.simulators.inputs import on_grid
+from advisor.simulators.protocol import Replay
+from advisor.simulators.surrogate import trimmed_at
+from advisor.words.problems import UnusableInputError
+
+_BLOCKS = frozenset({"input", "alpha_sensor", "pitch_rate_sensor", "accelerometer", "timing"})
+"""Blocks whose effects lie around the physics: in the actuator and in the instruments."""
+_CLEARLY = 0.5
+"""Largest gap without the simulator's effect, relative to that with every effect found for the aircraft, or
+to that of the simulator as it is. Two fits of one flight that differ by less are no evidence of a role."""
+_MOTION = ("alpha", "q", "theta", "a_z")
+
+
+@dataclass(frozen=True)
+class Mirrored:
+    """A simulator with an effect that the aircraft lacks."""
+
+    causes: tuple[Cause, ...]
+    """Effects of the simulator, with negative sizes."""
+    before: float
+    after: float
+    """Gap of the simulator as it is, and without its effects, no number fitted to the flight."""
+
+    def said(self, diagnosis: Diagnosis) -> Diagnosis:
+        """Return the diagnosis with the effects as its causes."""
+        removed = 100.0 * (1.0 - self.after / self.before)
+        sentence = f"{what(self.causes[0])}; without it the gap is {removed:.0f} % less."
+        first = self.causes[0]
+        where = replace(diagnosis.where, block=first.block, share=float(np.clip(removed / 100.0, 0.0, 1.0)))
+        simulated = diagnosis.in_simulator
+        if simulated is not None:
+            names = tuple(cause.effect for cause in self.causes)
+            simulated = replace(simulated, after=simulated.before, percent=0.0, on_paper=names)
+        return replace(
+            diagnosis, verdict="effect", sentence=sentence, where=where, causes=self.causes, effects={},
+            waterfall=((first.effect, self.after),), shrink=None, in_simulator=simulated,
+            probabilities=_with(diagnosis.probabilities, first), why=(), rival="",
+        )  # fmt: skip
+
+
+def mirrored(
+    whole: DiagnosisEvidence,
+    maneuvers: Sequence[Maneuver],
+    flying: Flying,
+    replays: Sequence[Replay],
+    aircraft: Aircraft,
+) -> Mirrored | None:
+    """Return the effects that only the simulator has; None where there is none.
+
+    Parameters
+    ----------
+    whole
+        Diagnosis of the flight against the simulator.
+    maneuvers
+        The flight as logged.
+    flying, replays
+        The simulator, and its replays without added effects.
+    aircraft
+        The aircraft file.
+    """
+    if not _may_be(whole.diagnosis):
+        return None
+    unknown = replace(aircraft, model={}, effects={}, simulator=None)
+    unknown = replace(unknown, elevator=replace(aircraft.elevator, lag_s=None, delay_s=None))
+    try:
+        own = examine(_as_flights(maneuvers, flying, replays), unknown).diagnosis
+    except UnusableInputError:
+        return None
+    causes = tuple(c for c in own.causes if c.present and c.block in _BLOCKS)
+    if not causes:
+        return None
+    effects = {c.effect: own.effects[c.effect] for c in causes if c.effect in own.effects}
+    model = {name: own.model[name].value for name in DERIVATIVES}
+    reference = flying.flights.reference_m_s
+    as_file = replace(unknown, model=model, reference_airspeed_m_s=reference)
+    grids = _beyond(flying, replays, as_file, effects)
+    beside = [without_difference(m, grids) for m in maneuvers]
+    found = examine(beside, as_file).diagnosis
+    gap = whole.diagnosis.gap
+    # What is unknown explains nothing, whatever of it the likeliest course of the air removes.
+    rival = gap.before if whole.diagnosis.verdict == "unknown" else gap.after
+    if found.gap.before > _CLEARLY * rival:
+        return None
+    return Mirrored(tuple(map(_negative, causes)), gap.before, found.gap.before)
+
+
+def _may_be(diagnosis: Diagnosis) -> bool:
+    """Return whether an effect of the simulator may be behind the diagnosis."""
+    first = next((c for c in diagnosis.causes if c.present), None)
+    of_around = first is not None and first.block in _BLOCKS
+    leaves_a_gap = diagnosis.gap.after >= VISIBLE
+    return diagnosis.verdict == "unknown" or (diagnosis.verdict == "effect" and of_around and leaves_a_gap)
+
+
+def _as_flights(maneuvers: Sequence[Maneuver], flying: Flying, replays: Sequence[Replay]) -> list[Maneuver]:
+    """Return the simulator's replays as manoeuvres, with the noise of the flight's instruments."""
+    by_number = {m.number: m for m in maneuvers}
+    white = dict(zip(flying.flights.channels, flying.flights.white, strict=True))
+    found = []
+    for flight, replay in zip(flying.flights.flights, replays, strict=True):
+        maneuver = by_number[flight.number]
+        rng = np.random.default_rng(flight.number)
+        channels = {"elevator": maneuver.channels["elevator"]}
+        for name in (*_MOTION, "airspeed"):
+            logged = maneuver.channels.get(name)
+            if logged is None:
+                continue
+            y = replay.airspeed_m_s if name == "airspeed" else getattr(replay, name)
+            read = np.interp(logged.t - flight.started_s, replay.t, y)
+            noise = white.get(name, 0.0) * rng.standard_normal(len(read))
+            channels[name] = Channel(name, logged.t, read + noise, "simulator", "simulated")
+        found.append(replace(maneuver, channels=channels))
+    return found
+
+
+def _beyond(
+    flying: Flying, replays: Sequence[Replay], as_file: Aircraft, effects: Mapping[str, Mapping[str, float]]
+) -> dict[int, AsGiven]:
+    """Return the simulator's difference to a surrogate with its effects."""
+    flights = flying.flights
+    base = with_known(base_entries(as_file), effects, flights, variants_for(flights))
+    derivatives = np.array([as_file.model[name] for name in DERIVATIVES])
+    still = SearchPoint(derivatives, np.zeros((len(flights), len(NUISANCES))))
+    problem = EffectProblem(flights, base)
+    found = {}
+    pairs = zip(flying.as_flown(replays), replays, problem.driving(still), strict=True)
+    for there, replay, numbers in pairs:
+        # The simulator hands its instruments' effects out already; the surrogate gets them here.
+        linear = skewed(problem.fly(there, trimmed_at(numbers, there)), there.h, numbers)
+        found[there.number] = AsGiven(there, on_grid(replay, there) - linear)
+    return found
+
+
+def _with(known: Probabilities | None, first: Cause) -> Probabilities | None:
+    """Return the probabilities of all alternatives, with the rest of one effect's shared as it was."""
+    if known is None:
+        return None
+    rest = 1.0 - first.probability
+    effects = {name: rest * p for name, p in known.effects.items()}
+    effects[first.effect] = effects.get(first.effect, 0.0) + first.probability
+    unknown = {block: rest * p for block, p in known.unknown.items()}
+    return Probabilities(rest * known.none, rest * known.parameters, unknown, effects)
+
+
+def _negative(cause: Cause) -> Cause:
+    """Return a cause of the simulator as one of the aircraft: its size is what the aircraft lacks."""
+    first, *rest = cause.parameters.items()
+    name, size = first
+    return replace(cause, parameters={name: Value(-size.value, size.std), **dict(rest)})

@@ -1,0 +1,184 @@
+"""A simulator from an environment that only steps: Gymnasium, MuJoCo, Isaac, or a loop of one's own.
+
+    from advisor.simulators.stepped import Stepped
+
+    class Mine:                      # an environment as it is
+        def reset(self, speed, height, alpha, theta): ...
+        def step(self, dt, elevator, throttle): ...
+        def observe(self): return {"alpha": ..., "q": ..., "theta": ..., "a_z": ..., "airspeed": ...}
+
+    def make():                      # advisor gap --simulator python:my_module:make
+        return Stepped(Mine(), description="my environment")
+
+The wrapper searches the steady flight, replays recorded inputs from there, and adds increments where the
+environment takes them.
+"""
+
+from collections.abc import Mapping
+from math import ceil
+from typing import Any, Protocol
+
+import numpy as np
+
+from advisor.flight.signals.messages import FloatArray
+from advisor.simulators.protocol import CONTROLS, Condition, Increments, Inputs, Replay, State
+from advisor.words.problems import UnusableInputError
+
+_NEEDED = ("alpha", "q", "theta", "a_z")
+_DIFFERENCE = 1e-3
+"""Departure of an unknown of the trim for a finite difference, rad or share of the throttle."""
+_ROUNDS = 40
+_STEADY = 1e-4
+"""Rate of α (rad/s), of q (rad/s²) and relative rate of the speed (1/s) below which flight is steady."""
+_LONGEST_MOVE = 0.1
+"""Longest Newton step of an angle, rad, or of the throttle."""
+
+
+class Environment(Protocol):
+    """The least that an environment must do. Angles are in rad, α, q and θ positive nose up."""
+
+    def reset(self, speed: float, height: float, alpha: float, theta: float) -> Any:
+        """Begin at a true air speed (m/s), a height (m) and angles, at rest in rotation."""
+
+    def step(self, dt: float, **controls: float) -> Any:
+        """Advance by ``dt`` seconds with ``elevator`` (rad, trailing edge down) and the controls it takes."""
+
+    def observe(self) -> Mapping[str, float]:
+        """Return ``alpha``, ``q``, ``theta`` and ``a_z`` (m/s², -9.81 in level flight), and ``airspeed`` and
+        ``height`` where they change."""
+
+
+class Stepped:
+    """An environment with ``reset``, ``step`` and ``observe`` as a simulator (``protocol.Simulator``).
+
+    Parameters
+    ----------
+    environment
+        The environment.
+    description
+        Its name in every sentence.
+    dt
+        Step, s.
+    controls
+        Inputs next to the elevator that ``step`` takes by name, of ``protocol.CONTROLS``.
+    trims_throttle
+        Whether the throttle is trimmed for a steady speed; it must be one of ``controls``.
+    increments
+        Whether ``step`` takes ``force`` (rad/s, added to α̇) and ``moment`` (rad/s², added to q̇).
+    """
+
+    speed_limit_s = 60.0
+
+    def __init__(
+        self,
+        environment: Environment,
+        description: str = "the environment",
+        dt: float = 0.01,
+        controls: tuple[str, ...] = (),
+        trims_throttle: bool = False,
+        increments: bool = False,
+    ) -> None:
+        self.description = description
+        self.takes_increments = increments
+        self.takes = frozenset(controls) & frozenset(CONTROLS)
+        self._environment, self._dt = environment, dt
+        self._unknowns = ("alpha", "elevator", *(("throttle",) if trims_throttle else ()))
+
+    def replay(self, condition: Condition, inputs: Inputs, increments: Increments | None = None) -> Replay:
+        """Search the steady flight, and fly the inputs as departures from its controls."""
+        trim = self._trimmed(condition)
+        dt = self._dt
+        t = dt * np.arange(ceil(inputs.t[-1] / dt) + 1)
+        middles = t[:-1] + 0.5 * dt
+        given = {"elevator": inputs.elevator, **{n: y for n, y in inputs.others.items() if n in self.takes}}
+        moved = {name: np.interp(middles, inputs.t, y) for name, y in given.items()}
+        still = np.zeros(middles.size)
+        self._begin(condition, trim)
+        rows = [self._seen(condition)]
+        for k, now in enumerate(middles):
+            controls = {name: trim.get(name, 0.0) + float(y[k]) for name, y in moved.items()}
+            if increments is not None and self.takes_increments:
+                state = _state(rows, now, dt, moved["elevator"][k], moved.get("throttle", still)[k])
+                controls["force"], controls["moment"] = increments(state)
+            self._environment.step(dt, **self._with_trim(trim, controls))
+            rows.append(self._seen(condition))
+        alpha, q, theta, a_z, speed, height = np.array(rows).T
+        told = {name: value for name, value in trim.items() if name != "alpha"}
+        return Replay(t, alpha, q, theta, a_z, speed, height, trim=told)
+
+    def linearise(self, condition: Condition) -> None:
+        """Return None: derivatives are identified from replays."""
+
+    def close(self) -> None:
+        """Close the environment, where it can be closed."""
+        getattr(self._environment, "close", lambda: None)()
+
+    def _begin(self, condition: Condition, trim: Mapping[str, float]) -> None:
+        alpha = trim["alpha"]
+        self._environment.reset(
+            speed=condition.airspeed_m_s, height=condition.height_m, alpha=alpha,
+            theta=condition.flight_path_rad + alpha,
+        )  # fmt: skip
+
+    def _with_trim(self, trim: Mapping[str, float], controls: Mapping[str, float]) -> dict[str, float]:
+        """Return the controls of one step; those that the flight did not log stay at the trim."""
+        resting = {name: value for name, value in trim.items() if name != "alpha"}
+        return {**resting, **controls}
+
+    def _seen(self, condition: Condition) -> list[float]:
+        """Return α, q, θ, a_z, air speed and height; the last two stay at the condition where untold."""
+        seen = self._environment.observe()
+        missing = [name for name in _NEEDED if name not in seen]
+        if missing:
+            raise UnusableInputError(
+                "simulator_observation",
+                f"{self.description} observes no {', '.join(missing)}.",
+                "Return alpha, q, theta and a_z from observe().",
+            )
+        kept = {"airspeed": condition.airspeed_m_s, "height": condition.height_m}
+        return [float(({**kept, **seen})[name]) for name in (*_NEEDED, "airspeed", "height")]
+
+    def _trimmed(self, condition: Condition) -> dict[str, float]:
+        """Return the controls and angle of attack whose first two steps change nothing (Newton)."""
+
+        def rates(at: FloatArray) -> FloatArray:
+            trim = dict(zip(self._unknowns, at.tolist(), strict=True))
+            self._begin(condition, trim)
+            rest = self._with_trim(trim, {})
+            # A rate is that of the second step: some environments apply a control one step later.
+            self._environment.step(self._dt, **rest)
+            before = self._seen(condition)
+            self._environment.step(self._dt, **rest)
+            after = self._seen(condition)
+            change = (np.array(after) - np.array(before)) / self._dt
+            along = change[4] / condition.airspeed_m_s
+            return np.array([change[0], change[1], along])[: len(self._unknowns)]
+
+        at = np.zeros(len(self._unknowns))
+        at[2:] = 0.5
+        for _ in range(_ROUNDS):
+            now = rates(at)
+            if np.max(np.abs(now)) < _STEADY:
+                return dict(zip(self._unknowns, at.tolist(), strict=True))
+            steps = _DIFFERENCE * np.eye(len(at))
+            slopes = np.column_stack([(rates(at + h) - rates(at - h)) / (2.0 * _DIFFERENCE) for h in steps])
+            if not np.all(np.isfinite(slopes)) or np.linalg.matrix_rank(slopes) < len(at):
+                break
+            move = np.linalg.solve(slopes, -now)
+            at = at + move * min(1.0, _LONGEST_MOVE / float(np.max(np.abs(move))))
+        raise UnusableInputError(
+            "simulator_trim",
+            f"{self.description} finds no steady flight at {condition.airspeed_m_s:.4g} m/s and "
+            f"{condition.height_m:.4g} m.",
+            "Check that reset() takes the angle of attack, and that step() moves the elevator in rad.",
+        )
+
+
+def _state(rows: list[list[float]], t: float, dt: float, elevator: float, throttle: float) -> State:
+    """Return the state in the middle of the next step, extrapolated by the last step's rates."""
+    before, now = rows[-2] if len(rows) > 1 else rows[-1], rows[-1]
+    alpha_dot, q_dot = ((now[i] - before[i]) / dt for i in (0, 1))
+    return State(
+        float(t), now[0] + 0.5 * dt * alpha_dot, alpha_dot, now[1] + 0.5 * dt * q_dot, float(elevator),
+        now[4], now[5], float(throttle),
+    )  # fmt: skip

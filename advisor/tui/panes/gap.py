@@ -1,0 +1,136 @@
+"""The sim-to-real gap of the flight so far: answer, picture of the worst manoeuvre, next steps."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
+from typing import Any
+
+import numpy as np
+from textual.app import ComposeResult
+from textual.containers import VerticalScroll
+from textual.events import Resize
+
+from advisor.session.diagnosis import Document, GapTask, diagnose_elsewhere
+from advisor.session.view import View
+from advisor.tui.panes.hanging import HangingLines, Labelled
+from advisor.tui.panes.pane import Pane
+from advisor.tui.plot.chart import Chart, Series
+from advisor.tui.plot.widget import Plot
+from advisor.words.digits import decimals_for, signed, with_half
+from advisor.words.quantities import PARAMETERS, channel
+
+_SHOWN = ("alpha", "q", "a_z", "theta")
+_ROWS_FOR_ONE = 6
+_TEXT_SHARE = 0.45
+"""Share of the pane's height that the text takes at most."""
+_ASKING = "The diagnosis is running; it takes some seconds for each manoeuvre."
+_NO_LOG = "Nothing is recorded here, so there is no log to diagnose: run advisor gap on the log afterwards."
+_TOO_EARLY = "No manoeuvre has been flown yet, so there is nothing to compare with the simulator."
+
+
+class GapPane(Pane):
+    """The diagnosis of the flight so far, made when the pane is chosen."""
+
+    TITLE = "d Gap"
+    SHORT = "dGap"
+    HELP = """\
+# Gap
+
+Why the aircraft does not fly like its simulator. Choosing the pane starts the diagnosis of the flight so
+far, in a process of its own; choosing it again after further manoeuvres starts it again.
+
+The text has the answer, the derivatives that differ with their 95 % intervals, and the next steps. The plots
+show the manoeuvre with the largest gap: measured (dots), the simulator before, and with the findings.
+"""
+
+    def compose(self) -> ComposeResult:
+        """Lay out the text over one plot for each channel."""
+        with VerticalScroll():
+            yield HangingLines(_TOO_EARLY, id="gap-text")
+        for name in _SHOWN:
+            empty = Chart(channel(name).label, "t [s]", why_empty="no diagnosis yet.")
+            yield Plot(empty, id=f"gap-{name}")
+
+    _asked: tuple[int, ...] | None = None
+    """Manoeuvres of the newest diagnosis that was asked for."""
+    _view: View | None = None
+
+    def show(self, view: View) -> None:
+        """Keep the moment. The pane itself changes only with a diagnosis."""
+        self._view = view
+
+    def ask(self, view: View) -> None:
+        """Start the diagnosis, unless there is one of all manoeuvres so far."""
+        numbers = tuple(judged.maneuver.number for judged in view.state.maneuvers)
+        if not numbers or not view.logs:
+            self._say([("", _NO_LOG if numbers else _TOO_EARLY)])
+        elif numbers != self._asked:
+            self._asked = numbers
+            self._say([("", _ASKING)])
+            task = GapTask(tuple(view.logs), view.aircraft)
+            self.run_worker(partial(self._work, task), thread=True, exclusive=True, exit_on_error=False)
+
+    def _work(self, task: GapTask) -> None:
+        document = diagnose_elsewhere(task)
+        self.app.call_from_thread(self._told, document)
+
+    def _told(self, document: Document) -> None:
+        """Show a diagnosis."""
+        self._say(list(answer_rows(document)))
+        if not document["usable"]:
+            return
+        worst = max(document["gap"]["by_maneuver"], key=lambda one: one["before"])["number"]
+        self.subtitle(f"manoeuvre {worst}, the largest gap")
+        for name in _SHOWN:
+            mine = [t for t in document["traces"] if t["number"] == worst and t["channel"] == name]
+            if mine:
+                self.query_one(f"#gap-{name}", Plot).chart = _chart(name, mine[0])
+
+    def _say(self, rows: Sequence[Labelled]) -> None:
+        self.query_one("#gap-text", HangingLines).write_rows(rows)
+
+    def on_resize(self, event: Resize) -> None:
+        """Show as many channels as have room."""
+        room = (1.0 - _TEXT_SHARE) * event.size.height
+        count = max(1, int(room) // _ROWS_FOR_ONE)
+        for k, name in enumerate(_SHOWN):
+            self.query_one(f"#gap-{name}").display = k < count
+
+
+def answer_rows(document: Document) -> Iterator[Labelled]:
+    """Yield the answer, what differs, the shrink, and the numbered steps."""
+    if not document["usable"]:
+        yield from (("✗ ", f"{problem['text']} {problem['fix']}") for problem in document["problems"])
+        return
+    yield "", document["sentence"]
+    yield from (("  ", _changed(one)) for one in document["parameters_changed"])
+    shrink = document["shrink"]
+    if shrink is not None:
+        low, high = shrink["ci95_percent"]
+        yield "", f"gap {shrink['percent']:.1f} % less (95 %: {low:.1f} to {high:.1f}) on held-out manoeuvres"
+    for number, step in enumerate(document["next"], start=1):
+        yield f"{number}. ", " ".join(filter(None, (step["text"], step["command"])))
+
+
+def _changed(one: Mapping[str, Any]) -> str:
+    quantity = PARAMETERS[one["derivative"]]
+    low, high = one["ci95"]
+    half = 0.5 * (high - low) * quantity.factor
+    given = signed(one["simulator"] * quantity.factor, decimals_for(half))
+    return f"{quantity.symbol} {given} → {with_half(one['found'] * quantity.factor, half)} {quantity.unit}"
+
+
+def _chart(name: str, trace: Mapping[str, Any]) -> Chart:
+    quantity = channel(name)
+    t = np.asarray(trace["t"])
+    measured, before, after = (
+        quantity.factor * np.asarray(trace[curve]) for curve in ("measured", "before", "after")
+    )
+    return Chart(
+        quantity.label,
+        "t [s]",
+        series=(
+            Series("measured", t - t[0], measured, "measured", "points"),
+            Series("before", t - t[0], before, "residual"),
+            Series("after", t - t[0], after, "fitted"),
+        ),
+    )

@@ -1,0 +1,75 @@
+"""Nuisances that a flight has by nature and no simulator lacks: lateness, filters, thin air, light gusts.
+
+A third of the flights have it. A diagnosis that calls it a cause finds one on every real flight.
+"""
+
+from dataclasses import replace
+from typing import Literal
+
+import numpy as np
+
+from ..faults import Faults, Filters
+from ..faulty import standard_air
+from ..scenario import Air, AlphaSensor, Scenario
+
+SHARE = 1.0 / 3.0
+"""Share of the flights with natural nuisances."""
+_COMMAND_S = (-0.006, 0.010)
+"""Least and greatest time by which a command acts after its stamp, s, over 28 flights of one autopilot."""
+_ALPHA_S = (0.02, 0.09)
+"""Least and greatest lag of an angle of attack that an autopilot computes, s."""
+_CUTOFFS_HZ = (15.0, 20.0, 30.0)
+"""Usual cut-offs of an autopilot's filters, Hz."""
+_HIGHEST_M = 2500.0
+"""Greatest height of the ground above sea level, m."""
+_GUSTS_M_S = (0.02, 0.08)
+"""Least and greatest turbulence, m/s at 25 m/s, that flies with every aircraft."""
+OF_ALPHA = frozenset({"alpha_lag", "alpha_scale", "alpha_bias", "alpha_vane_offset", "alpha_skew"})
+"""Effects of a vane, which no computed angle of attack shows."""
+OF_THE_AIR = frozenset({"turbulence", "gust"})
+
+
+def natural(scenario: Scenario, names: list[str], speed_share: float) -> Scenario:
+    """Return the scenario with natural nuisances, drawn by the scenario's own seed.
+
+    Parameters
+    ----------
+    scenario, names
+        Flight without its effects, and the names of these.
+    speed_share
+        Air speed relative to 25 m/s. Gusts are as large as their angle.
+    """
+    generator = np.random.default_rng([scenario.seed, 77])
+    uniform = generator.uniform
+    parameters: Literal["stated", "withheld"] = "stated" if generator.random() < 0.5 else "withheld"
+    cutoff_hz = float(generator.choice(_CUTOFFS_HZ))
+    faults = Faults(
+        filters=Filters(cutoff_hz, cutoff_hz, parameters) if generator.random() < 0.5 else Filters(),
+        command_late_s=float(uniform(*_COMMAND_S)),
+        thin_air_m=float(uniform(100.0, _HIGHEST_M)) if scenario.engine == "bundled" else 0.0,
+    )
+    air, alpha = scenario.air, scenario.alpha
+    gusts = float(uniform(*_GUSTS_M_S)) * speed_share
+    if not OF_THE_AIR & set(names) and air.turbulence_m_s == 0.0:
+        air = Air(turbulence_m_s=gusts, length_m=60.0 * speed_share)
+    computed = AlphaSensor("derived", float(uniform(*_ALPHA_S)), float(uniform(0.0, 0.3)), 20.0)
+    if not (OF_ALPHA | OF_THE_AIR) & set(names) and generator.random() < 0.5:
+        alpha = computed
+    return replace(scenario, faults=faults, air=air, alpha=alpha)
+
+
+def without_vane_noise(scenario: Scenario) -> Scenario:
+    """Return the scenario without a vane's noise where the angle of attack is computed: its staircase is
+    clean."""
+    if scenario.alpha.source != "derived":
+        return scenario
+    return replace(scenario, noise=replace(scenario.noise, alpha_deg=0.0))
+
+
+def read_airspeed(scenario: Scenario) -> float:
+    """Return the air speed of the scenario as the aircraft reads it, m/s: indicated in thin air."""
+    speed = scenario.airspeed_m_s or 0.0
+    ground_m = scenario.faults.thin_air_m
+    if not ground_m:
+        return speed
+    return speed * float(np.sqrt(standard_air(ground_m + scenario.height_m)[2]))

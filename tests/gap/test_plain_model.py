@@ -1,0 +1,108 @@
+"""What every flight has is part of the plain model, with the estimate's priors, and is no cause."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from advisor.aircraft.aircraft import Aircraft, Reference
+from advisor.flight.instruments.lateness import lateness_std
+from advisor.flight.signals.derived_alpha import DERIVED_ALPHA
+from advisor.flight.signals.instrument_finding import InstrumentFinding
+from advisor.gap.candidates.catalogue import variants_for
+from advisor.gap.candidates.input import latency
+from advisor.gap.diagnose import diagnose
+from advisor.gap.fitting.problem import EffectProblem, SearchPoint
+from advisor.gap.noise.quiet import largest_gust
+from advisor.gap.records.as_stamped import as_stamped
+from advisor.gap.records.prepare import prepare
+from advisor.gap.records.unmeasured_alpha import alpha_by_motion
+from advisor.gap.records.usable import outputs_of
+from advisor.gap.search.baseline import base_entries
+from advisor.oem.instruments import COMMAND_DELAY
+from tests.gap.generator import Setup, fly
+
+FLOWN = fly(Setup(maneuvers=3, seed=71))
+DERIVATIVES = np.array([-4.0, 0.0, -0.3, -30.0, -4.0, -45.0])
+
+
+def changed(maneuver, name, **fields):
+    channel = replace(maneuver.channels[name], **fields)
+    return replace(maneuver, channels={**maneuver.channels, name: channel})
+
+
+def variant(flights, effect):
+    return next(v for v in variants_for(flights) if v.effect == effect)
+
+
+def test_the_delay_of_the_command_has_one_prior_in_estimate_and_diagnosis():
+    flights = prepare(FLOWN, Aircraft())
+    stamps = [flight.t_u for flight in flights.flights]
+    assert latency(flights).prior_std == (lateness_std(stamps),)
+    assert COMMAND_DELAY.usual is not None
+
+
+@pytest.mark.parametrize(("delay_s", "named"), [(0.02, []), (0.035, ["transport_delay"])])
+def test_a_transport_delay_is_named_only_beyond_that_of_telemetry(delay_s, named):
+    found = diagnose(fly(Setup(maneuvers=6, switches={"delay": delay_s}, seed=72)), Aircraft())
+    assert [cause.effect for cause in found.causes if cause.present] == named
+
+
+def test_a_filter_that_a_parameter_states_is_taken_out_of_the_stamps():
+    there, due = (outputs_of(changed(FLOWN[0], "q", delay_s=late))["q"] for late in (0.011, 0.0))
+    assert due.t - there.t == pytest.approx(0.011)
+
+
+def test_a_delay_that_the_examination_removed_is_put_back_once():
+    late = InstrumentFinding("a_z", "delay_s", None, 0.1, 0.01, True, used=True, removed_s=0.1)
+    once = as_stamped(replace(FLOWN[0], findings=(late,)))
+    for name in ("a_z", "a_x"):
+        assert once.channels[name].t == pytest.approx(FLOWN[0].channels[name].t + 0.1)
+    assert as_stamped(once).channels["a_z"].t == pytest.approx(once.channels["a_z"].t)
+
+
+def test_an_angle_of_attack_from_the_climb_rate_is_a_state_and_no_output():
+    derived = [changed(m, "alpha", source=DERIVED_ALPHA, provenance="derived") for m in FLOWN]
+    flights = prepare(alpha_by_motion(derived, Aircraft()), Aircraft())
+    measured = prepare(FLOWN, Aircraft())
+    assert flights.channels == ("q", "a_z")
+    for there, due in zip(flights.flights, measured.flights, strict=True):
+        assert there.alpha_trim == pytest.approx(due.alpha_trim, abs=0.02)
+
+
+def test_a_measured_angle_of_attack_stays_an_output():
+    assert alpha_by_motion(FLOWN, Aircraft()) == FLOWN
+
+
+def test_without_an_angle_of_attack_z_q_and_z_delta_e_have_the_estimates_prior():
+    derived = [changed(m, "alpha", source=DERIVED_ALPHA, provenance="derived") for m in FLOWN]
+    flights = prepare(alpha_by_motion(derived, Aircraft()), Aircraft())
+    problem = EffectProblem(flights, base_entries(Aircraft()))
+    inverse, _ = problem.prior_of(SearchPoint(DERIVATIVES, np.zeros((3, 4))))
+    assert inverse[1] == pytest.approx(0.1**-2)
+    assert inverse[2] == pytest.approx((0.02 * 45.0) ** -2)
+    assert np.all(inverse[[0, 3, 4, 5]] == 0.0)
+
+
+def test_a_gust_is_no_larger_than_what_vane_and_lift_show():
+    flights = prepare(FLOWN, Aircraft())
+    problem = EffectProblem(flights, base_entries(Aircraft()))
+    fitted = replace_point(DERIVATIVES)
+    ranges = [np.ptp(f.outputs["alpha"].y) for f in flights.flights]
+    assert 0.0 < largest_gust(problem, fitted) <= max(ranges)
+
+
+def replace_point(derivatives):
+    """Return a stand-in for a fit, of which only the derivatives are asked."""
+    return type("Fit", (), {"point": SearchPoint(derivatives, np.zeros((3, 4)))})()
+
+
+@pytest.mark.parametrize(
+    ("reference", "chord_m"),
+    [(Reference(chord_m=0.4), 0.4), (Reference(mass_kg=8.0), 0.3), (Reference(), None)],
+)
+def test_arms_have_priors_of_the_aircrafts_own_size(reference, chord_m):
+    flights = prepare(FLOWN, Aircraft(reference=reference))
+    vane, imu = (variant(flights, e).prior_std for e in ("alpha_vane_offset", "accelerometer_offset"))
+    assert vane == (() if chord_m is None else (pytest.approx(4.0 * chord_m),))
+    assert imu == (() if chord_m is None else (pytest.approx(chord_m),))

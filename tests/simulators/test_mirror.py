@@ -1,0 +1,47 @@
+"""What only the simulator has too much of: a rate limit, play, a filtered angle of attack."""
+
+from dataclasses import replace
+
+import pytest
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.gap.result import Cause, Value
+from advisor.gap.verdict.statements import what
+from advisor.simulators.around import lagging
+from advisor.simulators.compare import compare
+from advisor.simulators.mirror import _negative
+from tests.simulators.nonlinear import STEP_S, Nonlinear, flown
+
+
+class Filtered(Nonlinear):
+    """Hands its angle of attack out behind a lag."""
+
+    def replay(self, condition, inputs, increments=None):
+        flown = super().replay(condition, inputs, increments)
+        return replace(flown, alpha=lagging(flown.alpha, STEP_S, 0.12))
+
+
+def test_a_cause_of_the_simulator_is_said_as_what_it_has_too_much_of():
+    limit = Cause("actuator_rate_limit", "input", 0.9, {"rate_rad_s": Value(0.3, 0.01)}, (), "", 0.0, True)
+    play = Cause("actuator_backlash", "input", 0.9, {"half_width_rad": Value(0.006, 1e-4)}, (), "", 0.0, True)
+    assert what(_negative(limit)).startswith("The simulator's elevator moves no faster than 17 deg/s")
+    assert what(_negative(play)).startswith("The simulator's elevator has 0.34 deg too much play")
+
+
+@pytest.mark.study
+@pytest.mark.parametrize(
+    ("simulator", "effect"),
+    [
+        (Nonlinear(rate_rad_s=0.25), "actuator_rate_limit"),
+        (Nonlinear(half_play_rad=0.009), "actuator_backlash"),
+        (Filtered(), "alpha_lag"),
+        (Nonlinear(lag_s=0.1), "actuator_lag"),
+    ],
+    ids=["rate limit", "play", "filter", "lag"],
+)
+def test_an_effect_that_only_the_simulator_has_is_named_first_and_with_its_size(simulator, effect):
+    found = compare(flown(maneuvers=5), simulator, Aircraft()).diagnosis
+    assert found.causes[0].effect == effect
+    assert next(iter(found.causes[0].parameters.values())).value < 0.0
+    assert found.in_simulator.percent == 0.0
+    assert {effect, "its own servo"} & set(found.in_simulator.on_paper)

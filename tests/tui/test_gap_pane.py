@@ -1,0 +1,54 @@
+"""The pane of the gap to the simulator."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from advisor.gap.document import gap_document
+from advisor.session.diagnosis import GapTask, diagnose_elsewhere
+from advisor.tui.panes import gap as pane
+from advisor.tui.plot.widget import Plot
+from advisor.tui.settings import Settings
+from tests.gap.test_report_answer import DERIVATIVES
+from tests.gap.test_report_screen import diagnosis
+from tests.tui import flights
+from tests.tui.stage import stage
+
+ENGINEER = Settings(screen="engineer")
+GAP = replace(diagnosis().gap, by_maneuver=((2, 5.0, 0.2),))
+DOCUMENT = {
+    **gap_document(diagnosis(gap=GAP, derivatives=DERIVATIVES)),
+    "next": [{"text": "Put it there.", "command": "advisor gap x"}],
+}
+
+
+async def test_choosing_the_pane_diagnoses_the_flight_and_shows_the_worst_manoeuvre(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    asked: list[GapTask] = []
+    monkeypatch.setattr(pane, "diagnose_elsewhere", lambda task: asked.append(task) or DOCUMENT)
+    async with stage(flights.state(4), settings=ENGINEER, size=(140, 45), logs=[tmp_path / "a.tlog"]) as here:
+        await here.press("d")
+        await here.until(lambda: "answers 30 ms too early" in here.words("#gap-text"))
+        said = here.words("#gap-text")
+        assert "M_α −44.60 → −34.30 ± 0.71 1/s²" in said
+        assert "99.9 % less" in said
+        assert "1. Put it there. advisor gap x" in said
+        chart = here.app.screen.query_one("#gap-alpha", Plot).chart
+        assert [series.name for series in chart.series] == ["measured", "before", "after"]
+        await here.press("4", "d")
+        assert len(asked) == 1
+
+
+async def test_without_a_log_the_pane_says_what_to_run_afterwards() -> None:
+    async with stage(flights.state(4), settings=ENGINEER, size=(140, 45)) as here:
+        await here.press("d")
+        await here.until(lambda: "Nothing is recorded here" in here.words("#gap-text"))
+
+
+def test_the_other_process_gives_a_document_also_of_a_log_that_does_not_exist(tmp_path: Path) -> None:
+    found = diagnose_elsewhere(GapTask((tmp_path / "none.tlog",), flights.AIRCRAFT))
+    assert found["schema"] == "advisor.gap/1"
+    assert not found["usable"]
+    assert found["problems"]
