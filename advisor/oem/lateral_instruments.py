@@ -1,9 +1,9 @@
 """Servos and clocks of a lateral record as nuisance parameters of the fit, each with its prior.
 
-The command acts up to half an interval and a filter's delay earlier or later than its stamps, and the
-attitude may be late relative to the rates. Every time is relative to the rates. A servo that
-the aircraft file leaves open lags by an unknown time: an ignored lag of 0.08 s costs a quarter of L_p and
-L_δa. Each is one more parameter, and its error is part of every interval.
+The command acts up to half an interval and a filter's delay earlier or later than its stamps. The attitude
+may be late relative to the rates, and every time is relative to the rates. A servo that the aircraft file
+leaves open lags by an unknown time. An ignored lag of 0.08 s costs a quarter of L_p and L_δa. Each is one
+more parameter, and its error is part of every interval.
 """
 
 from collections.abc import Sequence
