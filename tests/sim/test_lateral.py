@@ -40,7 +40,8 @@ def test_hands_off_a_kick_leaves_the_dutch_roll(aircraft):
 
 
 def test_the_plan_is_flown_in_manual_with_a_still_elevator():
-    flight = lateral_flight(Scenario(step_s=0.0025, loop_hz=25.0), noisy=False)
+    times = {"lead_in_s": 1.0, "settling_s": 0.5, "free_s": 0.5, "gap_s": 0.5, "closing_s": 0.5}
+    flight = lateral_flight(Scenario(step_s=0.0025, loop_hz=25.0, **times), noisy=False)
     assert isinstance(flight, Flight)
     samples = list(flight.samples())
     flying = {s.flying.start_s for s in samples if s.flying is not None}
