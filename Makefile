@@ -160,6 +160,7 @@ examples: .venv/.developed ## run the worked examples of the documentation, and 
 
 pictures: .venv/.developed ## the screens in the README, drawn by the running program
 	$(BIN)/python -m advisor.tui.picture logs/bundled-demo.tlog --after 3 --out docs/assets
+	$(BIN)/advisor gap logs/arduplane-calm.tlog --aircraft logs/arduplane-calm.yaml --figure docs/assets/gap.svg
 
 .PHONY: wheel install-check lowest release audit container coverage
 wheel: .venv/.developed ## the wheel and the source archive, in dist

@@ -64,7 +64,7 @@ def elevator_limits(found: ElevatorFound, elevator: Elevator) -> list[Limit]:
             Limit(
                 "calibration",
                 f"{outputs} not calibrated: full travel, {given}, count as 25 deg, "
-                "so Z_delta_e and M_delta_e have an assumed scale",
+                "so Z_δe and M_δe have an assumed scale",
                 f"measure the deflection at three pulse widths and give {key} in the aircraft file",
             )
         )
@@ -82,7 +82,7 @@ def elevator_limits(found: ElevatorFound, elevator: Elevator) -> list[Limit]:
             Limit(
                 "servo_unknown",
                 "The servo's lag and delay are not given: the fit estimates the lag, and the intervals of "
-                "M_alpha and M_delta_e are wider",
+                "M_α and M_δe are wider",
                 "measure the servo on the ground and give elevator.lag_s and elevator.delay_s",
             )
         )

@@ -53,7 +53,7 @@ class ExaminationText:
                 half = NORMAL_95 * found.expectation.std[name] * quantity.factor
                 unit = "" if quantity.unit == "1" else quantity.unit
                 said = f"± {half:.2g} {unit}" if math.isfinite(half) else "not told by these rates"
-                yield Text(f"  {name:<10} {said}".rstrip())
+                yield Text(f"  {quantity.symbol:<10} {said}".rstrip())
         if self._commands:
             yield Text("\nNext:")
             yield from (Text(f"  {printable(command)}") for command in self._commands)
@@ -94,7 +94,7 @@ def _told(limit: Limit) -> list[Text]:
     """Return the lines of a defect: its text, its remedy and its cost."""
     lines = [Text(f"  {'✗' if limit.stops else '!'} {limit.text}."), Text(f"    -> {limit.fix}.")]
     worst = sorted(limit.std_ratio.items(), key=lambda item: -item[1])[:3]
-    notable = [f"{name} {ratio:.1f}" for name, ratio in worst if ratio >= _NOTABLE_COST]
+    notable = [f"{QUANTITIES[name].symbol} {ratio:.1f}" for name, ratio in worst if ratio >= _NOTABLE_COST]
     if notable:
         lines.append(Text(f"    costs: expected errors times {', '.join(notable)}"))
     return lines

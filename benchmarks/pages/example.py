@@ -76,7 +76,8 @@ EXAMPLES: Sequence[Example] = (
         {
             "gap": [Part(until="╭─ where in the flight"), Part("cause ", "● part of")],
             "gap-course": [Part("╭─ where in the flight", "cause ")],
-            "gap-unseen": [Part("This flight could not show")],
+            "gap-unseen": [Part("This flight could not show", "Next:")],
+            "gap-next": [Part("Next:")],
         },
     ),
     Example(

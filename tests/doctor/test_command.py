@@ -42,7 +42,7 @@ def test_a_usable_log_is_told_in_words_verdict_first(advisor: Advisor) -> None:
     first, *rest = run.stdout.splitlines()
     assert "USABLE WITH LIMITS" in first
     told = "\n".join(rest)
-    for word in ("output 2", "AOA_SSA", "derived", "ATTITUDE", "natural frequency", "M_alpha"):
+    for word in ("output 2", "AOA_SSA", "derived", "ATTITUDE", "natural frequency", "M_α"):
         assert word in told
 
 

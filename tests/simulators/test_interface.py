@@ -60,7 +60,7 @@ def test_small_angles_in_degrees_are_told_by_the_motion_alone():
 
 
 @pytest.mark.parametrize(
-    ("simulated", "words"), [(30.0, "the wrong sense"), (-30.0 / DEG, "takes degrees"), (-31.0, None)]
+    ("simulated", "words"), [(30.0, "the wrong direction"), (-30.0 / DEG, "takes degrees"), (-31.0, None)]
 )
 def test_an_elevator_of_another_sense_or_unit_than_the_flights_is_told(simulated, words):
     found = elevator_fault(simulated, -29.0)
@@ -78,7 +78,7 @@ def changed(by: Callable[[Nonlinear, Condition, Inputs], Replay]) -> Nonlinear:
 @pytest.mark.parametrize(
     ("by", "words"),
     [
-        (lambda s, c, i: s.replay(c, replace(i, elevator=-i.elevator)), "elevator the wrong sense"),
+        (lambda s, c, i: s.replay(c, replace(i, elevator=-i.elevator)), "elevator the wrong direction"),
         (lambda s, c, i: s.replay(c, replace(i, elevator=i.elevator / DEG)), "it takes degrees"),
         (lambda s, c, i: (lambda r: replace(r, a_z=-r.a_z))(s.replay(c, i)), "a_z as .9.79"),
         (lambda s, c, i: (lambda r: replace(r, alpha=DEG * r.alpha))(s.replay(c, i)), "α in degrees"),

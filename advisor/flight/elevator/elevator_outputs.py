@@ -155,7 +155,7 @@ def _uncalibrated(part: Part, why: str, wiring: Wiring) -> Surface:
     doubts = _doubts([part], wiring)
     said = (
         f"No elevator.calibration: output {part.output} ({why}) is scaled by {_limits(doubts, wiring)} "
-        "as full travel of 25 deg, so Z_delta_e and M_delta_e are per assumed degree."
+        "as full travel of 25 deg, so Z_δe and M_δe are per assumed degree."
     )
     return Surface((part,), False, " ".join([said, *map(str, doubts)]), doubts)
 
@@ -165,7 +165,7 @@ def _scaled(parts: tuple[Part, ...], formed: str, wiring: Wiring) -> Surface:
     doubts = _doubts(parts, wiring)
     said = (
         f"No calibration: they are scaled by {_limits(doubts, wiring)} as full travel of 25 deg, so "
-        "Z_delta_e and M_delta_e are per assumed degree."
+        "Z_δe and M_δe are per assumed degree."
     )
     return Surface(parts, False, " ".join([formed, said, *map(str, doubts)]), doubts)
 
