@@ -20,11 +20,11 @@ from advisor.gap.candidates.traits import TRAITS
 from benchmarks.pages.constants import constants_in
 
 ROOM = Path(__file__).parents[1] / "advisor" / "gap"
-EFFECTS = (ROOM / "candidates", ROOM / "simulator")
-"""Folders that describe effects: their table, and their equations."""
+EFFECTS = (ROOM / "candidates", ROOM / "simulator", ROOM / "judge" / "weights.py")
+"""Folders that describe effects, by their table and their equations; and the weights of ``make judge``."""
 BLOCKS = frozenset(trait.block for trait in TRAITS.values()) | {"attitude_sensor"}
 NAMES = frozenset(TRAITS) | BLOCKS
-LIMITS = {"lines of code": 7060, "constants": 306, "names compared": 20, "complex functions": 0}
+LIMITS = {"lines of code": 7060, "constants": 300, "names compared": 20, "complex functions": 0}
 """Upper bound of each count. Lines have 2 % to spare, so that a mend needs no cut elsewhere. The evidence and
 the judge brought 500 of them. The ranges of nuisance parameters brought six constants."""
 MOST_COMPLEX = 15

@@ -35,6 +35,13 @@ class Mutant:
 MUTANTS = (
     Mutant("gap/search/score.py", "0.5 * numbers *", "0.1 * numbers *", "gap/test_price.py"),
     Mutant("gap/search/score.py", "1 if variant.fixed", "0 if variant.fixed", "gap/test_price.py"),
+    Mutant(
+        "gap/judge/logit.py", "prior.of(kind) / self.flown.of(kind)", "prior.of(kind)", "gap/test_judge.py"
+    ),
+    Mutant("gap/judge/posterior.py", "CREDIBLE = 0.9", "CREDIBLE = 0.5", "gap/test_judge.py"),
+    Mutant(
+        "gap/judge/why.py", "[: MOST_LINES - 1], lines[MOST_LINES - 1 :]", "[:2], []", "gap/test_judge.py"
+    ),
     Mutant("gap/verdict/judgement.py", "_MOSTLY = 0.98", "_MOSTLY = 0.6", "gap/test_verdicts.py"),
     Mutant("gap/verdict/judgement.py", "not derivatives.are_imitated and", "", "gap/test_verdicts.py"),
     Mutant(

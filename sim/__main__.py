@@ -11,6 +11,7 @@ import click
 
 from .effects.fitting import flight_of
 from .flight import Flight
+from .lateral import lateral_flight
 from .loading import ScenarioError
 from .modelled import modelled_flight
 from .scenario import Scenario, read_scenario
@@ -36,6 +37,8 @@ def _flown(options: dict[str, Any]) -> Flight:
     changes = {key: options[key] for key in ("seed", "aircraft", "engine") if options[key] is not None}
     scenario = replace(scenario, **changes)
     replayed = options["replay_inputs"]
+    if options["plan"] == "lateral":
+        return lateral_flight(scenario)
     if Path(scenario.aircraft).suffix in (".yaml", ".yml"):
         return modelled_flight(scenario, Path(scenario.aircraft), replayed)
     if replayed is not None:
@@ -56,6 +59,13 @@ def _flight_options(command: Callable[..., None]) -> Callable[..., None]:
             "--replay-inputs",
             type=click.Path(path_type=Path),
             help="Log whose elevator commands are flown again.",
+        ),
+        click.option(
+            "--plan",
+            type=click.Choice(["pitch", "lateral"]),
+            default="pitch",
+            show_default=True,
+            help="Inputs of the elevator, or of aileron and rudder.",
         ),
         click.option(
             "--seed", type=click.IntRange(0), help="Seed of the noise. Equal seeds give equal bytes."

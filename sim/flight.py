@@ -172,7 +172,9 @@ class Flight:
             cl, cm = force.step(time_s, motion, dt)
             extra_cl += cl
             extra_cm += cm
-        controls = Controls(surface, demand.throttle, demand.aileron, up, head, extra_cl, extra_cm)
+        controls = Controls(
+            surface, demand.throttle, demand.aileron, up, head, extra_cl, extra_cm, demand.rudder
+        )
         return self.engine.step(controls, dt)
 
     def _read(self, motion: Motion, dt: float) -> Reading:

@@ -251,7 +251,7 @@ class LinearAircraft:
         ``extra_cl`` and ``extra_cm`` are added α̇ in rad/s and q̇ in rad/s².
         """
         self._before, self._inputs = self._inputs, self._before
-        elevator, throttle, aileron, gust_up, _, extra_z, extra_m = controls
+        elevator, throttle, aileron, gust_up, _, extra_z, extra_m = controls[:7]
         self._inputs[:] = (
             elevator, throttle, aileron, gust_up, self.airspeed, extra_z, extra_m, self.airspeed_dot
         )  # fmt: skip

@@ -34,6 +34,10 @@ class Motion(NamedTuple):
     """Vertical gust, m/s: α of the air is α + gust_up / V."""
     gust_head: float
     """Head-on gust, m/s, added to the airspeed."""
+    r: float | None = None
+    """Yaw rate, rad/s. None: that of a coordinated turn."""
+    a_y: float = 0.0
+    """Specific force along body y at the centre of gravity, m/s²."""
 
     @property
     def air_alpha(self) -> float:
@@ -61,6 +65,8 @@ class Controls(NamedTuple):
     """Lift coefficient added by an effect from outside the equations of motion."""
     extra_cm: float = 0.0
     """Pitching moment coefficient added by an effect from outside the equations of motion."""
+    rudder: float = 0.0
+    """Rudder, −1..1."""
 
 
 class Engine(Protocol):

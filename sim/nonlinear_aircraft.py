@@ -66,6 +66,6 @@ class NonlinearAircraft:
     def step(self, controls: Controls, dt: float) -> Motion:
         """Fly for ``dt`` seconds and return the resulting motion."""
         self._before, self._inputs = self._inputs, self._before
-        self._inputs[:] = controls
+        self._inputs[:] = controls[:7]
         step(self._state, self._before, self._inputs, self.record, dt, self._rates)
         return self.motion()

@@ -177,7 +177,7 @@ def compare_logs(
         progress("comparing the air speed with the motion", 0.02)
         chosen = chosen.with_speed(by_the_motion(chosen.maneuvers, aircraft))
     gain = true_over_read(m.channels for m in chosen.maneuvers)
-    at_true_speed = _at_true_speed(aircraft, gain)
+    at_true_speed = with_true_reference(aircraft, gain)
     if simulator is not None:
         as_true = _simulator_at_true_speed(simulator, gain)
         compared = compare(chosen.maneuvers, as_true, at_true_speed, holdout, progress, prior)
@@ -224,7 +224,7 @@ def named_simulator(aircraft: Aircraft, target_system: int | None = None) -> Sim
     return simulator_of(aircraft.simulator, aircraft, read)
 
 
-def _at_true_speed(aircraft: Aircraft, true_over_read: float) -> Aircraft:
+def with_true_reference(aircraft: Aircraft, true_over_read: float) -> Aircraft:
     """Return the aircraft with the true air speed at its reference speed, which is one as read."""
     read = aircraft.reference_airspeed_m_s
     return aircraft if read is None else replace(aircraft, reference_airspeed_m_s=read * true_over_read)

@@ -67,8 +67,8 @@ def _reason(maneuver: Maneuver, aircraft: Aircraft) -> Reason | None:
     allowing = replace(aircraft, limits=replace(aircraft.limits, airspeed_change_percent=most))
     found = [
         *incomplete(maneuver, period_s, ("alpha",)),
-        # The gap names a late stream itself.
-        *refusals(f for f in maneuver.findings if f.quantity != "delay_s"),
+        # The gap has late streams and the scale of the air speed in its own model.
+        *refusals(f for f in maneuver.findings if f.quantity != "delay_s" and f.channel != "airspeed"),
         *outside(maneuver, aircraft),
         *changed_speed(maneuver, allowing),
         *(r for r in short_response(maneuver, period_s) if r.code == "aborted"),

@@ -7,7 +7,13 @@ from pathlib import Path
 import click
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.cli.options import UNUSABLE, aircraft_option, json_option, read_aircraft
+from advisor.cli.options import (
+    UNUSABLE,
+    aircraft_option,
+    json_option,
+    read_aircraft,
+    target_system_option,
+)
 from advisor.words.printable import printable
 from advisor.words.problems import ConfigurationError, UnusableInputError
 
@@ -20,6 +26,7 @@ def command() -> None:
     Example:
       advisor simulator check jsbsim:c172p --airspeed 50 --height 1000
       advisor simulator check fmu:plane.fmu --aircraft my-aircraft.yaml
+      advisor simulator fly flight.tlog --master tcp:127.0.0.1:5760
     """
 
 
@@ -78,6 +85,47 @@ def check(
         return 0
     click.echo(str(found.fault.refuse(found.simulator)), err=True)
     return UNUSABLE
+
+
+@command.command
+@click.argument("log", type=click.Path(exists=True, dir_okay=False, path_type=Path))
+@click.option("--master", required=True, metavar="CONN", help="Connection of the simulated vehicle.")
+@target_system_option
+def fly(log: Path, master: str, target_system: int | None) -> int:
+    """Replay the sticks of a flight into a simulation of ArduPilot or PX4, as an override of its receiver.
+
+    The log's RC_CHANNELS go out in their own time. Nothing is sent to a vehicle without a parameter that only
+    a simulation has. Fly the simulation straight and level in MANUAL first, and record it: its log then has
+    inputs of the flight's kind for --simulator log:FILE.
+
+    \b
+    Example:
+      advisor simulator fly flight.tlog --master tcp:127.0.0.1:5760
+    """
+    from advisor.analysis.sticks import sticks_of
+    from advisor.mavlink.link.link import Link
+    from advisor.mavlink.link.stick_replay import StickReplay
+
+    try:
+        recorded = sticks_of(log)
+    except UnusableInputError as error:
+        click.echo(str(error), err=True)
+        return UNUSABLE
+    replay = StickReplay(recorded.t, recorded.pulses)
+    click.echo(f"{recorded.t[-1]:.0f} s of sticks go to {printable(master)}; Ctrl-C ends them.", err=True)
+    with Link(master, target_system=target_system, talkers=[replay]) as link:
+        while not replay.done:
+            link.read(0.02)
+            for notice in link.take_notices():
+                click.echo(printable(notice.text), err=True)
+    if replay.refused:
+        click.echo(
+            f"The vehicle on {printable(master)} has no parameter of a simulation: nothing was sent. "
+            "Start ArduPilot's or PX4's simulation in the loop there.",
+            err=True,
+        )
+        return UNUSABLE
+    return 0
 
 
 def _speed_of(aircraft: Aircraft) -> float:

@@ -38,8 +38,8 @@ SMALLEST_ARM_M = 0.02
 """Smallest distance of an accelerometer from the centre of gravity that matters, m."""
 STEADY_MOMENT_RAD = 0.02
 """Standard deviation of the elevator deflection that balances the moments which do not scale with V², rad. A
-change of power asks for a degree or so of trim. Set on a business jet, 0.01 rad, and on a jet in turbulence,
-0.02 rad."""
+change of power asks for a degree or so of trim. From 0.005 to 0.08 rad no derivative of a business jet's held
+step moves by a fiftieth of its interval, and none of an autopilot's test by more than half of it."""
 
 
 @dataclass(frozen=True, slots=True)

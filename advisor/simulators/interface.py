@@ -8,8 +8,10 @@ In still air and in the vertical plane
 is a sign or a unit. Only the sense and the unit of the elevator need a second source, the flight itself.
 """
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from math import degrees, log
+from typing import Any
 
 import numpy as np
 
@@ -27,6 +29,9 @@ _MOVES_RAD = 1e-4
 times as much."""
 _SMALL_RAD = 0.7
 """Largest angle of attack or pitch angle, rad, of a test manoeuvre: 40 deg."""
+
+
+_NAMES = {"alpha": "α", "theta": "θ"}
 
 
 @dataclass(frozen=True)
@@ -56,11 +61,13 @@ def interface_fault(replay: Replay) -> InterfaceFault | None:
     if abs(a_z) < 0.1 * GRAVITY_M_S2:
         told = f"as {a_z:+.2f} m/s² in steady flight, an acceleration without the weight"
         return InterfaceFault("a_z", told, "Give the specific force, which an accelerometer reads.")
-    large = [n for n in ("alpha", "theta") if np.max(np.abs(getattr(replay, n))) > _SMALL_RAD]
+    large = [name for name in _NAMES if np.max(np.abs(getattr(replay, name))) > _SMALL_RAD]
     if large:
-        names = {"alpha": "α", "theta": "θ"}
-        told = " and ".join(names[name] for name in large)
-        return InterfaceFault(told, "in degrees", "Give angles in rad, and check q, which is in rad/s.")
+        # A large angle may also be that of a simulator that departs.
+        told = " and ".join(_NAMES[name] for name in large)
+        in_degrees = any(_agrees(_in_radians(replay, names)) for names in (large, [*large, "q"]))
+        mend = "Give angles in rad, and check q, which is in rad/s."
+        return InterfaceFault(told, "in degrees", mend) if in_degrees else None
     turned = _integrated(replay.q, replay.t)
     if np.ptp(turned) < _MOVES_RAD:
         return None
@@ -69,10 +76,7 @@ def interface_fault(replay: Replay) -> InterfaceFault | None:
 
 def _of_the_angles(replay: Replay, turned: FloatArray) -> InterfaceFault | None:
     """Return the first fault of θ, q and α; ``turned`` is ∫q dt."""
-    pitch = _slope(turned, replay.theta - replay.theta[0])
-    bent = _path_turning(replay)
-    alpha = replay.alpha - replay.alpha[0]
-    by_q, by_force = np.linalg.lstsq(np.column_stack([turned, bent]), alpha)[0]
+    pitch, by_q, by_force = _slopes(replay, turned)
     if _is(by_force, _PER_RAD) and _is(by_q, 1.0) and _is(pitch, 1.0):
         return InterfaceFault("α, q and θ", "in degrees", "Give angles in rad and rates in rad/s.")
     if _is(pitch, -1.0):
@@ -87,6 +91,24 @@ def _of_the_angles(replay: Replay, turned: FloatArray) -> InterfaceFault | None:
     if _is(by_q, -1.0) and _is(by_force, -1.0):
         return _sign("α", "with the sign reversed: positive is nose up")
     return None
+
+
+def _slopes(replay: Replay, turned: FloatArray) -> tuple[float, float, float]:
+    """Return the slopes of θ on ∫q dt, and of α on ∫q dt and on the path's turning: each is 1 in SI units."""
+    columns = np.column_stack([turned, _path_turning(replay)])
+    by_q, by_force = np.linalg.lstsq(columns, replay.alpha - replay.alpha[0])[0]
+    return _slope(turned, replay.theta - replay.theta[0]), float(by_q), float(by_force)
+
+
+def _agrees(replay: Replay) -> bool:
+    """Return whether the outputs of a replay agree with each other."""
+    return all(_is(slope, 1.0) for slope in _slopes(replay, _integrated(replay.q, replay.t)))
+
+
+def _in_radians(replay: Replay, names: Sequence[str]) -> Replay:
+    """Return the replay with some of its series taken from degrees."""
+    changed: dict[str, Any] = {name: np.radians(getattr(replay, name)) for name in names}
+    return replace(replay, **changed)
 
 
 def elevator_fault(simulated: float, flown: float) -> InterfaceFault | None:

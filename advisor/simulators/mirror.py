@@ -18,7 +18,7 @@ from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import with_known
 from advisor.gap.diagnose import DiagnosisEvidence, examine
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
-from advisor.gap.result import Cause, Diagnosis, Value
+from advisor.gap.result import VISIBLE, Cause, Diagnosis, Value
 from advisor.gap.search.baseline import base_entries
 from advisor.gap.simulator.layout import DERIVATIVES, NUISANCES
 from advisor.gap.verdict.statements import what
@@ -114,7 +114,8 @@ def _may_be(diagnosis: Diagnosis) -> bool:
     """Return whether an effect of the simulator may be behind the diagnosis."""
     first = next((c for c in diagnosis.causes if c.present), None)
     of_around = first is not None and first.block in _BLOCKS
-    return diagnosis.verdict == "unknown" or (diagnosis.verdict == "effect" and of_around)
+    leaves_a_gap = diagnosis.gap.after >= VISIBLE
+    return diagnosis.verdict == "unknown" or (diagnosis.verdict == "effect" and of_around and leaves_a_gap)
 
 
 def _as_flights(maneuvers: Sequence[Maneuver], flying: Flying, replays: Sequence[Replay]) -> list[Maneuver]:

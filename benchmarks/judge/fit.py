@@ -26,7 +26,7 @@ COLUMNS: Mapping[Kind, tuple[str, ...]] = {
         "at_bound", "model_gain", "model_share", "misfit", "block_share", "kinematics", "kinematic_size",
         "estimated", "drift", "step",
     ),
-    "air": ("few_maneuvers", "peak", "activity"),
+    "air": ("few_maneuvers", "shape", "activity", "block_explains"),
     "unknown": (
         "block_share", "block_left", "block_left_share", "block_explains", "law_gain", "law_lead", "misfit",
         "of_peak", "activity", "few_maneuvers", "drift", "step", "block_gain", "answer",

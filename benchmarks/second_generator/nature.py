@@ -65,14 +65,18 @@ class Nature:
 
 
 def draw_nature(rng: np.random.Generator, names: tuple[str, ...], height: float, share: float) -> Nature:
-    """Draw the nuisances of a flight with some effects, at a height [m] above sea level."""
+    """Draw the nuisances of a flight with some effects, at a height [m] above sea level.
+
+    An air speed is indicated in every flight.
+    """
+    indicated = float(np.sqrt(density(height) / SEA_LEVEL_DENSITY))
     if rng.random() >= share:
-        return Nature()
+        return Nature(indicated=indicated)
     computed = not OF_A_VANE & set(names) and bool(rng.random() < 0.5)
     return Nature(
         command_late=float(rng.uniform(-0.006, 0.010)),
         cutoff=float(rng.choice([0.0, 15.0, 20.0, 30.0])),
         stated=bool(rng.random() < 0.5),
         alpha_lag=float(rng.uniform(0.02, 0.09)) if computed else 0.0,
-        indicated=float(np.sqrt(density(height) / SEA_LEVEL_DENSITY)),
+        indicated=indicated,
     )

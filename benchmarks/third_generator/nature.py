@@ -60,12 +60,13 @@ class Nature:
 
 
 def drawn(rng: Generator, height_m: float, share: float = SHARE) -> Nature:
-    """Draw the nuisances of a flight at a height above sea level."""
+    """Draw the nuisances of a flight at a height above sea level, where every air speed is indicated."""
+    pitot = float(np.exp(-0.5 * height_m / _SCALE_HEIGHT_M))
     if rng.random() >= share:
-        return Nature()
+        return Nature(pitot=pitot)
     return Nature(
         command_late_s=float(rng.uniform(-0.006, 0.010)),
         filter_hz=float(rng.choice([0.0, 15.0, 20.0, 30.0])),
         told=bool(rng.random() < 0.5),
-        pitot=float(np.exp(-0.5 * height_m / _SCALE_HEIGHT_M)),
+        pitot=pitot,
     )

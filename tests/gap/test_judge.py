@@ -1,5 +1,6 @@
 """The judge turns evidence into probabilities, and its reasons add up to the odds it states."""
 
+import json
 import math
 from dataclasses import replace
 
@@ -8,6 +9,7 @@ import pytest
 
 from advisor.gap.alternative import Alternative
 from advisor.gap.candidates.traits import TRAITS
+from advisor.gap.document import gap_document
 from advisor.gap.evidence.course import drift_and_step
 from advisor.gap.evidence.measured import FullFit, Measured, QuickFit, Residual
 from advisor.gap.evidence.quantities import QUANTITIES
@@ -17,9 +19,11 @@ from advisor.gap.judge.posterior import posterior
 from advisor.gap.judge.prior import FIELD, FieldPrior, field_prior
 from advisor.gap.judge.weights import LOGIT
 from advisor.gap.judge.why import MOST_LINES
-from advisor.gap.verdict.as_judged import doubtful
+from advisor.gap.verdict.as_judged import answered, as_judged, doubtful
 from advisor.words.problems import ConfigurationError
 from benchmarks.judge.fit import slots
+from tests.gap.test_report_screen import diagnosis
+from tests.schemas import breaches
 
 CHANNELS = ("alpha", "q", "a_z", "theta")
 EVEN = FieldPrior(0.25, 0.25, 0.25, 0.25)
@@ -118,6 +122,15 @@ def test_the_field_prior_moves_the_odds_by_just_its_own_ratio():
     assert odds[1] / odds[0] == pytest.approx(0.2 / 0.5)
 
 
+def test_the_shares_of_the_fitted_flights_are_replaced_by_the_field_prior():
+    rows, flown = rows_of(delayed()), FieldPrior(0.1, 0.1, 0.7, 0.1)
+    many = posterior(rows, flown, replace(SIMPLE, flown=flown))
+    field = posterior(rows, FieldPrior(0.7, 0.1, 0.1, 0.1), replace(SIMPLE, flown=flown))
+    odds = [told.of(NONE) / told.of(DELAY) for told in (many, field)]
+    assert odds[1] / odds[0] == pytest.approx(49.0)
+    assert many.of(NONE) == pytest.approx(posterior(rows, EVEN, SIMPLE).of(NONE))
+
+
 @pytest.mark.parametrize("logit", [SIMPLE, LOGIT])
 def test_the_reasons_add_up_to_the_log_odds_in_at_most_seven_lines(logit):
     told = posterior(rows_of(delayed()), FIELD, logit)
@@ -154,6 +167,26 @@ def test_a_credible_answer_has_the_fewest_alternatives_with_nine_tenths():
     told = posterior(rows, EVEN, Logit({"effect": {"size": 1.0}}, {"none": -9.0}, EVEN))
     assert [a for a, _ in told.credible] == [LAG, DELAY]
     assert sum(p for _, p in told.credible) >= 0.9
+
+
+def test_a_diagnosis_states_the_probabilities_of_the_evidence():
+    found = as_judged(diagnosis(), posterior(rows_of(delayed()), FIELD))
+    assert found.probabilities is not None
+    assert all(cause.probability == found.probabilities.effects[cause.effect] for cause in found.causes)
+    assert answered(found) == DELAY
+    document = json.loads(json.dumps(gap_document(found), allow_nan=False))
+    assert breaches("gap", document) == []
+    assert sum(line["nats"] for line in document["why"]) == pytest.approx(
+        math.log(
+            document["probabilities"]["effects"]["transport_delay"]
+            / probability_of(document["rival"], document)
+        )
+    )
+
+
+def probability_of(label, document):
+    """Return the probability of an alternative of a document by its label."""
+    return next(one["probability"] for one in document["evidence"] if one["alternative"] == label)
 
 
 def test_a_prior_is_read_as_people_write_it_and_a_wrong_one_is_refused():

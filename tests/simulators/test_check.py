@@ -30,8 +30,9 @@ def make_turned() -> Turned:
 
 def test_dead_time_lag_and_short_period_are_those_of_the_simulator():
     found = check(Nonlinear(delay_s=0.04, lag_s=0.08), LEVEL)
-    # A lag and a dead time share the delay between them.
-    assert found.dead_time_s + found.lag_s == pytest.approx(0.12, abs=0.01)
+    # A lag and a dead time share the delay between them, and the simulator's own step of 10 ms adds half of
+    # itself.
+    assert found.dead_time_s + found.lag_s == pytest.approx(0.125, abs=0.012)
     assert found.dead_time_s == pytest.approx(0.04, abs=0.015)
     assert found.omega_rad_s == pytest.approx(np.sqrt(25.0 + 0.5 * 3.0 + 3.0 * 3.5 - 1.5), rel=0.1)
     assert found.lacks == ("aileron", "mass", "rudder", "throttle")

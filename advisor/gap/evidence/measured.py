@@ -96,8 +96,8 @@ class Measured:
     air_gain: float = 0.0
     air_angle: float = 0.0
     """Standard deviation of the gust angle, rad."""
-    air_peak: float = 0.0
-    """Largest departure of the gust angle, rad; 0 where no air was found."""
+    air_is_gust: bool | None = None
+    """Whether the air has one or a few bumps and is otherwise still; None where no air was found."""
     last_gap: float = 0.0
     """Gap on held-out manoeuvres of the model with all effects that were found."""
     air_gap: float = 0.0
@@ -143,7 +143,7 @@ def measured(e: Evidence, kinematics: KinematicCheck) -> Measured:
         named_gain=0.5 * (first.fitted.cost - last.fitted.cost),
         air_gain=e.sought_air.gain,
         air_angle=e.sought_air.angle_std,
-        air_peak=0.0 if e.air is None else abs(e.air.gust_angle),
+        air_is_gust=None if e.air is None else e.air.gust,
         last_gap=whole_gap(last.held_out.mean_square, e.floor),
         air_gap=whole_gap(
             last.held_out.mean_square if e.air is None else e.air.mean_square_beyond_air, e.floor

@@ -70,7 +70,7 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("law_gain", "nats", "gain of the best simple law without a name", _folded),
     Quantity("law_lead", "nats", "lead of that law over all named effects", _folded),
     Quantity("few_maneuvers", "", "concentration of the residual in a few manoeuvres, as expected"),
-    Quantity("peak", "", "logarithm of the peak over four standard deviations, as expected"),
+    Quantity("shape", "", "mark of the air's course: 1 as expected, -1 otherwise"),
     Quantity("kinematics", "standard deviations", "finding of the kinematics alone", _folded),
     Quantity("kinematic_size", "", "finding of the kinematics over the smallest physical size", _folded),
     Quantity("estimated", "", "mark of a channel that the autopilot estimates itself"),

@@ -19,12 +19,8 @@ BLOCKS = (*dict.fromkeys(trait.block for trait in TRAITS.values()), "attitude_se
 """Blocks in which an effect without a name may lie."""
 _KINDS: Mapping[str, Kind] = {"air": "air"}
 """Kind of the effects of a block, where it is not ``effect``."""
-_SURE = 5.0
-"""Gain in log likelihood, nats, of a best alternative below which relative gains say nothing."""
 _WEIGHTY = 20.0
-"""Least gain, nats, to which a lead over other alternatives is relative."""
-_GAUSSIAN_PEAK = 4.0
-"""Standard deviations that Gaussian air reaches in a record of this length."""
+"""Least gain in log likelihood, nats, to which other gains are relative: relative to less, chance decides."""
 _ONCE = {"gust": 1.0, "turbulence": -1.0}
 """Effects that are expected in a few manoeuvres (1), or in all (-1)."""
 
@@ -58,7 +54,8 @@ def rows_of(m: Measured, answer: Alternative | None = None) -> tuple[Row, ...]:
         rows.append(Row(stated_as(effect), values))
     lead = max(m.laws.values(), default=0.0) - m.named_gain
     for block in BLOCKS:
-        values = _of_residual(m, m.last) | probed[block] | _of_courses(m, block)
+        # A free disturbance of the air has a name: turbulence.
+        values = _of_residual(m, m.last) | _of_courses(m, block) | ({} if block in _KINDS else probed[block])
         values |= {"law_gain": m.laws.get(block, 0.0), "few_maneuvers": _concentration(m.last), "tried": 1.0}
         values |= (
             {"law_lead": lead} if m.laws.get(block, 0.0) == max(m.laws.values(), default=0.0) > 0 else {}
@@ -90,13 +87,13 @@ def _of_residual(m: Measured, residual: Residual) -> Values:
 def _of_blocks(m: Measured) -> dict[str, Values]:
     """Return the free disturbances by block; timing has those of the sensor whose stamps may be off."""
     first, last = (_gains(residual) for residual in (m.base, m.last))
-    best, best_left = max(*first.values(), 0.0), max(*last.values(), 0.0)
+    best, best_left = (max(*gains.values(), _WEIGHTY) for gains in (first, last))
     return {
         block: {
             "block_gain": first.get(block, 0.0),
-            "block_share": max(first.get(block, 0.0), 0.0) / best if best > _SURE else 0.0,
+            "block_share": max(first.get(block, 0.0), 0.0) / best,
             "block_left": last.get(block, 0.0),
-            "block_left_share": max(last.get(block, 0.0), 0.0) / best_left if best_left > _SURE else 0.0,
+            "block_left_share": max(last.get(block, 0.0), 0.0) / best_left,
             "block_explains": m.last.probes.get(block, (0.0, 0.0))[1],
         }
         for block in BLOCKS
@@ -120,7 +117,7 @@ def _probed_in(effect: str) -> str:
 def _of_screening(m: Measured) -> dict[str, Values]:
     """Return the gains of the screening, absolute and relative to those of other effects."""
     gains = {effect: found.gain for effect, found in m.screened.items()}
-    best = max(gains.values(), default=0.0)
+    best = max([*gains.values(), _WEIGHTY])
     values: dict[str, Values] = {}
     for effect in TRAITS:
         if effect not in m.screened:
@@ -131,8 +128,8 @@ def _of_screening(m: Measured) -> dict[str, Values]:
         values[effect] = {
             "tried": 1.0,
             "screen_gain": found.gain,
-            "screen_share": max(found.gain, 0.0) / best if best > _SURE else 0.0,
-            "screen_lead": (found.gain - max(other, 0.0)) / max(best, _WEIGHTY),
+            "screen_share": max(found.gain, 0.0) / best,
+            "screen_lead": (found.gain - max(other, 0.0)) / best,
             "file_agreement": found.file_agreement,
             "size": found.size,
         }
@@ -142,13 +139,13 @@ def _of_screening(m: Measured) -> dict[str, Values]:
 def _of_fits(m: Measured, effect: str) -> Values:
     """Return the full fit of an effect, and its part in the final model."""
     values: Values = {}
-    best = max((fit.gain for fit in m.fitted.values()), default=0.0)
+    best = max([*(fit.gain for fit in m.fitted.values()), _WEIGHTY])
     if (fit := m.fitted.get(effect, m.added.get(effect))) is not None:
         gain, error = _held_out_gain(m, fit)
         misfit = np.maximum(fit.power - 1.0, 0.0)
         values = {
             "fit_gain": fit.gain,
-            "fit_share": max(fit.gain, 0.0) / max(best, _SURE),
+            "fit_share": max(fit.gain, 0.0) / best,
             "heldout_gain": gain,
             "heldout_sigmas": gain / max(error, 1e-9),
             "support": float(np.clip(fit.support, -1e3, 1e3)),
@@ -206,7 +203,7 @@ def _of_air(m: Measured, effect: str) -> Values:
     """Return the moving air, for the effects of the air."""
     if effect not in _ONCE or "alpha" not in m.channels:
         return {}
-    peak = np.log(m.air_peak / (_GAUSSIAN_PEAK * m.air_angle)) if m.air_peak > 0.0 < m.air_angle else 0.0
+    shape = 0.0 if m.air_is_gust is None else 1.0 if m.air_is_gust else -1.0
     share = m.air_gain / max(m.air_gain + m.named_gain, _WEIGHTY)
     removed = m.last_gap - m.air_gap
     return {
@@ -215,7 +212,7 @@ def _of_air(m: Measured, effect: str) -> Values:
         "gap_removed": removed / m.base_gap if m.base_gap > 0.0 else 0.0,
         "model_share": removed / max(m.base_gap - m.air_gap, 1e-9) if removed > 0.0 else 0.0,
         "few_maneuvers": _ONCE[effect] * _concentration(m.last),
-        "peak": _ONCE[effect] * float(peak),
+        "shape": _ONCE[effect] * shape,
     }  # fmt: skip
 
 

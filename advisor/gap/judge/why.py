@@ -36,4 +36,10 @@ def _line(
     quantity: Quantity, nats: float, answer: Mapping[str, float], rival: Mapping[str, float]
 ) -> Contribution:
     a, b = (quantity.written(values.get(quantity.name, 0.0)) for values in (answer, rival))
-    return Contribution(quantity.name, nats, f"{quantity.words}: {a} against {b}")
+    # A value that both share may still be likelier under one of them: their kinds have weights of their own.
+    values_said = f"{a} against {b}" if a != b else f"{a}, as expected of the {_favoured(nats)}"
+    return Contribution(quantity.name, nats, f"{quantity.words}: {values_said}")
+
+
+def _favoured(nats: float) -> str:
+    return "answer" if nats > 0.0 else "rival"

@@ -1,0 +1,111 @@
+"""A flight's recorded sticks, sent to a simulated vehicle as an override of its receiver.
+
+RC_CHANNELS_OVERRIDE (MAVLink common.xml, 70) replaces the receiver's pulses; 0 releases a channel. An
+autopilot takes it from its ground station's id alone. A vehicle must prove to be a simulation by a parameter
+that only simulations have, before anything is sent.
+"""
+
+from typing import Any
+
+import numpy as np
+from pymavlink.dialects.v20 import ardupilotmega as dialect
+
+from advisor.flight.signals.messages import FloatArray, IntArray
+from advisor.mavlink.link.outgoing import Ids, Talker
+from advisor.mavlink.wire.framing import Frame
+
+CHANNELS = 4
+"""Number of overridden channels: roll, pitch, throttle and yaw by the usual order."""
+SIMULATED = ("SIM_SPEEDUP", "SIM_BAT_DRAIN")
+"""Parameters of ArduPilot's and of PX4's simulation in the loop. No autopilot on board of an aircraft has
+one."""
+_STATIONS = ("SYSID_MYGCS", "MAV_GCS_SYSID")
+"""Parameters with the id of the ground station from which ArduPilot takes an override."""
+_ASK_EVERY_S, _ASK_FOR_S, _SEND_EVERY_S = 0.5, 5.0, 0.02
+_RELEASES = 10
+"""Number of releasing messages at the end, because any of them may be lost."""
+_USUAL_STATION = 255
+
+
+class StickReplay(Talker):
+    """Asks whether the vehicle is simulated, then sends recorded pulses in their own time.
+
+    Parameters
+    ----------
+    t
+        Shape (n,): seconds since the first pulse.
+    pulses
+        Shape (n, 4): pulse widths of channels 1 to 4, µs.
+    """
+
+    def __init__(self, t: FloatArray, pulses: IntArray) -> None:
+        self._t, self._pulses = t, pulses
+        self._simulated = False
+        self._station = _USUAL_STATION
+        self._asked_s = self._sent_s = float("-inf")
+        self._first_asked_s: float | None = None
+        self._began_s: float | None = None
+        self._released = 0
+        self.refused = False
+        """Whether the vehicle did not answer for a parameter of a simulation."""
+
+    @property
+    def done(self) -> bool:
+        """Whether all pulses were sent and the channels released, or the vehicle was refused."""
+        return self.refused or self._released >= _RELEASES
+
+    def source(self, own: Ids, vehicle: Ids) -> Ids:
+        """Return the id of the vehicle's own ground station, whose override it takes."""
+        return self._station, own[1]
+
+    def hear(self, frame: Frame, now_s: float) -> None:
+        """Take the answers to the questions."""
+        if frame.message_id != dialect.MAVLINK_MSG_ID_PARAM_VALUE:
+            return
+        payload = frame.payload.ljust(25, b"\0")
+        name = payload[8:24].partition(b"\0")[0].decode("ascii", "replace")
+        if name in SIMULATED:
+            self._simulated = True
+        elif name in _STATIONS:
+            self._station = int(np.frombuffer(payload[:4], "<f4")[0]) or _USUAL_STATION
+
+    def speak(self, vehicle: Ids | None, now_s: float) -> list[Any]:
+        """Return the questions, then the pulses that are due, at last their release."""
+        if vehicle is None or self.done:
+            return []
+        if not self._simulated:
+            return self._asked(vehicle, now_s)
+        if self._began_s is None:
+            self._began_s = now_s
+        if now_s - self._sent_s < _SEND_EVERY_S:
+            return []
+        self._sent_s = now_s
+        at = now_s - self._began_s
+        if at > self._t[-1]:
+            self._released += 1
+            return [_override(vehicle, [0] * CHANNELS)]
+        row = max(int(np.searchsorted(self._t, at, side="right")) - 1, 0)
+        return [_override(vehicle, self._pulses[row].tolist())]
+
+    def leave(self, now_s: float) -> list[Any] | None:
+        """Return nothing more to send: an override that ends is released by the vehicle itself."""
+        return None
+
+    def _asked(self, vehicle: Ids, now_s: float) -> list[Any]:
+        if self._first_asked_s is None:
+            self._first_asked_s = now_s
+        if now_s - self._first_asked_s > _ASK_FOR_S:
+            self.refused = True
+            return []
+        if now_s - self._asked_s < _ASK_EVERY_S:
+            return []
+        self._asked_s = now_s
+        return [
+            dialect.MAVLink_param_request_read_message(*vehicle, name.encode(), -1)
+            for name in (*SIMULATED, *_STATIONS)
+        ]
+
+
+def _override(vehicle: Ids, pulses: list[int]) -> Any:
+    unused = [0xFFFF] * (8 - CHANNELS)
+    return dialect.MAVLink_rc_channels_override_message(*vehicle, *pulses, *unused)
