@@ -116,6 +116,7 @@ corpus: .venv/.developed ## 160 flights whose keys are open: at most 2 % of the 
 .PHONY: judge
 judge: .venv/.developed ## fit the probabilities of the gap diagnosis on flights with known causes (EACH=100 a generator; an hour)
 	$(BIN)/python -m benchmarks.judge --each $(EACH)
+	$(BIN)/ruff format advisor/gap/judge/weights.py
 
 EACH ?= 100
 FLIGHTS ?= ../shared/flights
@@ -138,7 +139,7 @@ study-quality: .venv/.developed ## good manoeuvres rejected, and other tests mar
 study-gap: .venv/.developed ## whole diagnoses of flights whose cause is known (about fifteen minutes)
 	$(BIN)/python -m pytest -n 2 --dist loadgroup --timeout 900 -m study tests/gap
 
-survival: .venv/.developed ## a live campaign in which fifty processes are killed (three minutes)
+survival: .venv/.developed ## a live campaign in which fifty processes are killed, and one in which fifty stand still (twenty minutes)
 	$(BIN)/python -m pytest -m study tests/mavlink/link/test_never_lost.py
 
 DAMAGE_CASES ?= 3400

@@ -1,13 +1,29 @@
 """A link that continues a flight test whose earlier flights are in logs."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from math import inf
 from pathlib import Path
+
+import numpy as np
 
 from advisor.analysis.log_series import LogSeries, of_flight
 from advisor.analysis.marks_file import keep_on_all
 from advisor.campaign.hand_decisions import ByHand
 from advisor.flight.signals.messages import Columns
 from advisor.session.source import LinkHealth, LinkRequest, Source
+from advisor.session.timeline import Timeline
+
+STRETCH_S = 30.0
+"""Longest stretch of an earlier flight in one batch, s. An autopilot's own log comes as a whole, and its
+campaign would not report for minutes."""
+
+
+def stretches(batches: Iterable[list[Columns]]) -> Iterator[list[Columns]]:
+    """Yield the messages of the batches in their order, at most ``STRETCH_S`` of flight together."""
+    for batch in batches:
+        timeline = Timeline(batch)
+        ends = np.arange(STRETCH_S, timeline.duration_s, STRETCH_S)
+        yield from filter(None, map(timeline.up_to, [*ends.tolist(), inf]))
 
 
 class ResumedSource:
@@ -24,7 +40,7 @@ class ResumedSource:
     def __init__(self, logs: Sequence[Path], link: Source) -> None:
         self._series = LogSeries(logs)
         self._link = link
-        self._past: Iterator[list[Columns]] | None = self._series.batches()
+        self._past: Iterator[list[Columns]] | None = stretches(self._series.batches())
         self._kept = self._series.read_by_hand()
         self._notices: list[str] = []
 

@@ -2,14 +2,21 @@
 
 import contextlib
 import json
+import os
+import signal
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from threading import Thread
+from typing import Literal
 
 import platformdirs
 
 from advisor.mavlink.link.keeping import Door
 from advisor.process.atomic_file import write_atomically
+
+ANSWERS_WITHIN_S = 5.0
+"""Time within which the process of a link lets a caller in, s. Nothing that it does takes a second."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,17 +52,37 @@ def forget(pid: int) -> None:
 
 
 def running_alone() -> Iterator[RunningLink]:
-    """Yield links that run without their advisor. Notes of processes that are gone are removed."""
+    """Yield links that run without their advisor. Notes of processes that are gone are removed.
+
+    A process that nobody looks after and that hangs is ended, for it would keep its connection for ever.
+    """
     for path in sorted(_folder().glob("*.json")):
         with contextlib.suppress(OSError, ValueError, KeyError, TypeError):
             link = _read(path)
-            try:
-                link.door.open().close()
-            except OSError:
+            state = _state(link.door)
+            if state == "hangs" and link.alone:
+                os.kill(link.pid, signal.SIGKILL)
+            if state == "gone" or (state == "hangs" and link.alone):
                 forget(link.pid)
-                continue
-            if link.alone:
+            elif link.alone:
                 yield link
+
+
+def _state(door: Door) -> Literal["answers", "hangs", "gone"]:
+    """Return whether the process behind a door lets callers in within ``ANSWERS_WITHIN_S``."""
+    found: list[Literal["answers", "gone"]] = []
+
+    def knock() -> None:
+        try:
+            door.open().close()
+            found.append("answers")
+        except (OSError, EOFError):
+            found.append("gone")
+
+    knocking = Thread(target=knock, daemon=True)
+    knocking.start()
+    knocking.join(ANSWERS_WITHIN_S)
+    return found[0] if found else "hangs"
 
 
 def _read(path: Path) -> RunningLink:

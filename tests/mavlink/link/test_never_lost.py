@@ -190,6 +190,18 @@ def test_a_new_flight_test_on_the_connection_of_a_lost_one_ends_it_and_says_how_
     assert other.exists()
 
 
+def test_a_lost_link_that_hangs_keeps_no_new_flight_test_from_its_connection(advising: Advising):
+    advising.start()
+    advising.kill()
+    hung = advising.keeper
+    stand_still(hung, 60.0)
+    other = advising.folder / "other.tlog"
+    advising.start("--master", f"udpin:127.0.0.1:{advising.port}", "--record", str(other))
+    assert advising.keeper not in (None, hung)
+    assert advising.end() == 130
+    assert other.exists()
+
+
 def test_a_full_disk_is_said_and_nothing_is_lost_when_there_is_room_again(advising: Advising):
     flight = until(FLIGHT, 24.0)
     full, room = (len(until(flight, at_s)) for at_s in (4.0, 14.0))

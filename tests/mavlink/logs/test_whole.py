@@ -17,6 +17,7 @@ from advisor.flight.stream.identity import READER_NOTICE
 from advisor.flight.vehicle.parameters import names_in
 from advisor.mavlink.logs.logs import open_log
 from advisor.mavlink.logs.whole import read_whole_log
+from advisor.words.problems import UnusableInputError
 from tests.mavlink.builders import Sender, dialect
 from tests.mavlink.paths import records
 
@@ -142,3 +143,13 @@ def test_the_vehicle_that_flew_is_followed_though_an_idle_one_is_heard_first(tmp
 def test_of_two_armed_vehicles_a_log_chooses_none(tmp_path: Path) -> None:
     _, events = flown(read_whole_log(with_an_idle_vehicle(tmp_path / "two.tlog", idle_mode=217)))
     assert next(e.vehicle.system for e in events if isinstance(e, VehicleFound)) == 42
+
+
+def test_the_diagnosis_leaves_out_a_log_that_cannot_be_read_and_names_it(tmp_path: Path) -> None:
+    broken = tmp_path / "broken.tlog"
+    broken.write_bytes(b"no log at all" * 100)
+    both, alone = maneuvers_of([broken, BASE], Aircraft()), maneuvers_of([BASE], Aircraft())
+    assert len(both.maneuvers) == len(alone.maneuvers)
+    assert [note for note in both.notes if note.startswith("Left out: broken.tlog")]
+    with pytest.raises(UnusableInputError, match=r"broken.tlog"):
+        maneuvers_of([broken, broken], Aircraft())
