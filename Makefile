@@ -116,6 +116,7 @@ corpus: .venv/.developed ## 160 flights whose keys are open: at most 2 % of the 
 .PHONY: judge
 judge: .venv/.developed ## fit the probabilities of the gap diagnosis on flights with known causes (EACH=100 a generator; an hour)
 	$(BIN)/python -m benchmarks.judge --each $(EACH)
+	$(BIN)/ruff format advisor/gap/judge/weights.py
 
 EACH ?= 100
 FLIGHTS ?= ../shared/flights

@@ -24,7 +24,7 @@ EFFECTS = (ROOM / "candidates", ROOM / "simulator", ROOM / "judge" / "weights.py
 """Folders that describe effects, by their table and their equations; and the weights of ``make judge``."""
 BLOCKS = frozenset(trait.block for trait in TRAITS.values()) | {"attitude_sensor"}
 NAMES = frozenset(TRAITS) | BLOCKS
-LIMITS = {"lines of code": 7060, "constants": 300, "names compared": 20, "complex functions": 0}
+LIMITS = {"lines of code": 7060, "constants": 298, "names compared": 20, "complex functions": 0}
 """Upper bound of each count. Lines have 2 % to spare, so that a mend needs no cut elsewhere. The evidence and
 the judge brought 500 of them. The ranges of nuisance parameters brought six constants."""
 MOST_COMPLEX = 15

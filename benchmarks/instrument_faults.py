@@ -119,6 +119,9 @@ def _with(fault: tuple[str, Change] | None, columns: Columns) -> Columns:
         return columns
     channel, change = fault
     t = stamps(columns, columns.arrival_s)
+    if not np.ptp(t) > 0.0:
+        # A sender that fills in no stamps: the messages are told apart by their arrival.
+        t = columns.arrival_s
     fields = dict(columns.fields)
     for name in FIELDS[channel][columns.name]:
         fields[name] = change(t, np.asarray(fields[name], dtype=np.float64))

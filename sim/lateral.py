@@ -1,9 +1,10 @@
 """Roll and yaw of the bundled aircraft, and the pilot who flies them: ``python -m sim fly --plan lateral``.
 
-The lateral equations are those of Stevens & Lewis, *Aircraft Control and Simulation*, ch. 2, linear in the
-forces and moments, with gravity and attitude in full:
+The equations are those of Stevens & Lewis, *Aircraft Control and Simulation*, ch. 2. Forces and moments are
+linear, gravity and attitude are in full:
 
-    β̇ = (Y/m)/V + sin α·p − cos α·r + (g/V)·cos θ·sin φ        ṗ = L        ṙ = N        φ̇ = p + tan θ·r·cos φ
+    β̇ = (Y/m)/V + sin α·p − cos α·r + (g/V)·cos θ·sin φ
+    ṗ = L,    ṙ = N,    φ̇ = p + tan θ·r·cos φ
 
 Angle of attack, pitch and speed stay at their trim. A positive aileron rolls to the left, a positive rudder
 yaws to the left; the pilot's demands are positive to the right.
@@ -21,12 +22,13 @@ from .airframe import GRAVITY_M_S2
 from .autopilot import CRUISE, MANUAL, Demand, Planned
 from .fittings import Fittings
 from .flight import Flight
+from .linear import ShortPeriod
 from .linear_aircraft import LinearAircraft
 from .maneuvers import stepped
 from .motion import Controls, Motion
 from .scenario import Maneuver, Scenario
 from .sensors import Reading
-from .servo import Calibration, FirstOrderServo
+from .servo import FirstOrderServo
 
 UAV: Mapping[str, float] = {
     "Y_beta": -0.6, "Y_p": 0.0, "Y_r": 0.01, "Y_delta_a": 0.0, "Y_delta_r": 0.15, "L_beta": -14.0,
@@ -42,27 +44,35 @@ _HOLD = (0.12, 0.02)
 """Demand of the wing leveller per rad of bank and per rad/s of roll rate."""
 
 
-class LateralAircraft:
+class LateralAircraft(LinearAircraft):
     """An engine (see :class:`sim.motion.Engine`) that flies roll and yaw about a steady trim.
 
     Parameters
     ----------
-    level
-        Aircraft in steady level flight, which gives trim, speed and attitude.
+    model
+        Short-period parameters, which give the level trim.
+    airspeed_m_s, height_m
+        Speed in m/s and height in m, both constant.
     derivatives
         Lateral derivatives at this speed, by name.
     lag_s
         First-order lag of the servos of aileron and rudder, s; 0 for none.
     """
 
-    def __init__(self, level: LinearAircraft, derivatives: Mapping[str, float], lag_s: float = 0.0) -> None:
-        self._level, self._d = level, dict(derivatives)
-        self.trim, self.truth = level.trim, level.truth
-        self.calibration: Calibration = level.calibration
+    def __init__(
+        self,
+        model: ShortPeriod,
+        airspeed_m_s: float,
+        height_m: float,
+        derivatives: Mapping[str, float],
+        lag_s: float = 0.0,
+    ) -> None:
+        super().__init__(model, airspeed_m_s, height_m)
+        self._d = dict(derivatives)
         self._servos = [FirstOrderServo(lag_s) for _ in range(2)] if lag_s > 0.0 else []
-        self._state = np.zeros(4)
+        self._side = np.zeros(4)
         self._surfaces = np.zeros(2)
-        self._steady = level.motion()
+        self._steady = super().motion()
 
     def step(self, controls: Controls, dt: float) -> Motion:
         """Fly for ``dt`` seconds and return the resulting motion."""
@@ -71,19 +81,19 @@ class LateralAircraft:
         pairs = zip(self._servos, wanted, strict=True)
         self._surfaces = np.array([servo.step(u, dt) for servo, u in pairs] if self._servos else wanted)
         middle = 0.5 * (before + self._surfaces)
-        k1 = self._rates(self._state, before)
-        k2 = self._rates(self._state + 0.5 * dt * k1, middle)
-        k3 = self._rates(self._state + 0.5 * dt * k2, middle)
-        k4 = self._rates(self._state + dt * k3, self._surfaces)
-        self._state = self._state + dt / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
+        k1 = self._side_rates(self._side, before)
+        k2 = self._side_rates(self._side + 0.5 * dt * k1, middle)
+        k3 = self._side_rates(self._side + 0.5 * dt * k2, middle)
+        k4 = self._side_rates(self._side + dt * k3, self._surfaces)
+        self._side = self._side + dt / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
         return self.motion()
 
     def motion(self) -> Motion:
         """Return the motion now."""
-        _, p, r, phi = self._state.tolist()
+        _, p, r, phi = self._side.tolist()
         steady = self._steady
         down = steady.a_z + GRAVITY_M_S2 * math.cos(steady.theta) * (1.0 - math.cos(phi))
-        side = steady.airspeed * self._per_speed("Y", self._state, self._surfaces)
+        side = steady.airspeed * self._per_speed("Y", self._side, self._surfaces)
         return steady._replace(phi=phi, p=p, r=r, a_y=side, a_z=down)
 
     def _per_speed(self, letter: str, x: NDArray[np.float64], u: NDArray[np.float64]) -> float:
@@ -91,7 +101,7 @@ class LateralAircraft:
         factors = zip(("beta", "p", "r", "delta_a", "delta_r"), (*x[:3], *u), strict=True)
         return float(sum(self._d[f"{letter}_{name}"] * value for name, value in factors))
 
-    def _rates(self, x: NDArray[np.float64], u: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _side_rates(self, x: NDArray[np.float64], u: NDArray[np.float64]) -> NDArray[np.float64]:
         _, p, r, phi = x
         alpha, theta = self._steady.alpha, self._steady.theta
         turn = math.sin(alpha) * p - math.cos(alpha) * r
@@ -128,8 +138,8 @@ PLAN = (
     SideInput("rudder", tuple((n, -share) for n, share in _DOUBLET), 0.25, 0.85),
     SideInput("aileron", tuple((n, -share) for n, share in _DOUBLET), 0.25, 0.5),
 )
-"""Inputs of ``--plan lateral``: steps of half a Dutch roll for the rudder, of five roll time constants for the
-aileron."""
+"""Inputs of ``--plan lateral``. Steps of the rudder last half a Dutch roll, those of the aileron five roll
+time constants."""
 
 
 class LateralPilot:
@@ -173,7 +183,12 @@ class LateralPilot:
             control = next(one.control for one, p in self._inputs if p is planned)
             moved[control] = planned.input.pull(time_s - planned.start_s)
         return Demand(
-            self._trim.elevator, self._trim.throttle, moved["aileron"], moved["rudder"], self.mode(time_s), 0.0
+            self._trim.elevator,
+            self._trim.throttle,
+            moved["aileron"],
+            moved["rudder"],
+            self.mode(time_s),
+            0.0,
         )
 
 
@@ -192,8 +207,8 @@ class LateralNoise:
 def lateral_flight(scenario: Scenario, noisy: bool = True) -> Flight:
     """Return the lateral plan flown by the bundled aircraft under a scenario's servo, rates and times."""
     known = hangar.build(scenario)
-    level = LinearAircraft(known.truth, known.motion().airspeed, scenario.height_m)
-    engine = LateralAircraft(level, UAV, scenario.servo.lag_s)
+    speed = known.motion().airspeed
+    engine = LateralAircraft(known.truth, speed, scenario.height_m, UAV, scenario.servo.lag_s)
     pilot = LateralPilot(scenario, engine.trim)
     fittings = Fittings(sensors=[LateralNoise(scenario.seed)] if noisy else [])
     return Flight(scenario, fittings, engine, pilot, pilot.end_s + scenario.closing_s)

@@ -1,7 +1,7 @@
 """Objections to a lateral manoeuvre itself: complete data, within the model, long enough, well explained.
 
 A bank of up to 45 deg is the response, because the model keeps sin φ. The derivatives hold for one angle of
-attack and one air speed, and without pitching: the moments p·q and q·r are no part of the model.
+attack and one air speed. The moments p·q and q·r are no part of the model.
 """
 
 import math

@@ -55,7 +55,7 @@ def elevator_limits(found: ElevatorFound, elevator: Elevator) -> list[Limit]:
     """Return defects of the elevator's calibration, resolution and servo."""
     limits = [Limit(d.code, d.text.rstrip("."), _continued(d.fix)) for d in found.doubts]
     if not found.calibrated:
-        given = "whose pulses are assumed" if found.doubts else "as the parameters have them"
+        given = "whose pulses are assumed" if found.doubts else "as the parameters have it"
         listed = joined_numbers(found.outputs)
         several = len(found.outputs) > 1
         outputs = f"Outputs {listed} are" if several else f"Output {listed} is"
@@ -63,7 +63,7 @@ def elevator_limits(found: ElevatorFound, elevator: Elevator) -> list[Limit]:
         limits.append(
             Limit(
                 "calibration",
-                f"{outputs} not calibrated: full travel, {given}, count as 25 deg, "
+                f"{outputs} not calibrated: full travel, {given}, counts as 25 deg, "
                 "so Z_δe and M_δe have an assumed scale",
                 f"measure the deflection at three pulse widths and give {key} in the aircraft file",
             )

@@ -18,8 +18,8 @@ from advisor.process.compiled import kernel
 REACH = 0.25
 """Largest product of a step and the largest row sum of the matrix. The error of a step is below 1e-5 of the
 states."""
-MOST_PARTS = 64
-"""Most parts of a step: rates of 160 1/s at 10 Hz. A search that asks for faster ones has gone astray."""
+MOST_PARTS = 16
+"""Most parts of a step: rates of 200 1/s at 50 Hz. A search that asks for faster ones has gone astray."""
 LARGEST = 1e9
 """Sum of the states' sizes at which the model has run away."""
 

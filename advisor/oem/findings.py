@@ -16,6 +16,7 @@ _PLACES: dict[str, tuple[str, Quantity, str]] = {
     "command_delay_s": ("elevator", "delay_s", "elevator: {{delay_s: {:.3f}}}"),
     "vane_arm_m": ("alpha", "arm_m", "alpha: {{vane_arm_m: {:.2f}}}"),
     "alpha_delay_s": ("alpha", "delay_s", ""),
+    "a_z_delay_s": ("a_z", "delay_s", ""),
     "accelerometer_arm_m": ("a_z", "arm_m", "accelerometer: {{arm_m: {:.2f}}}"),
 }
 """Instrument parameter to its channel, its quantity, and the line for the aircraft file."""
@@ -72,6 +73,8 @@ def _text(x: InstrumentEstimate, stated: float | None, value: float, std: float)
             return f"alpha reads like a vane {value:.2f} ± {half:.2f} m ahead of the centre of gravity"
         case "alpha_delay_s":
             return f"alpha is {1e3 * value:+.0f} ± {1e3 * half:.0f} ms late relative to the motion"
+        case "a_z_delay_s":
+            return f"a_z is {1e3 * value:+.0f} ± {1e3 * half:.0f} ms late relative to the pitch rate"
         case _:
             return f"the accelerometer reads as if {value:.2f} ± {half:.2f} m ahead of the centre of gravity"
 

@@ -21,6 +21,7 @@ InstrumentName = Literal[
     "command_delay_s",
     "vane_arm_m",
     "alpha_delay_s",
+    "a_z_delay_s",
     "accelerometer_arm_m",
     "steady_moment_rad",
 ]

@@ -107,6 +107,10 @@ def _with_delay(problem: OutputErrorProblem, value: float) -> OutputErrorProblem
     return replace(problem, alpha_delay_s=value)
 
 
+def _with_force_delay(problem: OutputErrorProblem, value: float) -> OutputErrorProblem:
+    return replace(problem, a_z_delay_s=value)
+
+
 def _with_imu(problem: OutputErrorProblem, value: float) -> OutputErrorProblem:
     return replace(problem, accelerometer_arm_m=value)
 
@@ -127,6 +131,10 @@ def _command_lateness(problem: OutputErrorProblem) -> float:
 
 def _alpha_lateness(problem: OutputErrorProblem) -> float:
     return lateness_std([record.outputs["alpha"].t for record in problem.records])
+
+
+def _force_lateness(problem: OutputErrorProblem) -> float:
+    return lateness_std([record.outputs["a_z"].t for record in problem.records])
 
 
 def _speed(problem: OutputErrorProblem) -> float:
@@ -179,6 +187,17 @@ ALPHA_DELAY = Instrument(
     lambda _: SMALLEST_DELAY_S,
     usual=_alpha_lateness,
 )
+FORCE_DELAY = Instrument(
+    "a_z_delay_s",
+    lambda problem: problem.a_z_delay_s,
+    _with_force_delay,
+    1e-4,
+    -0.3,
+    0.5,
+    (),
+    lambda _: SMALLEST_DELAY_S,
+    usual=_force_lateness,
+)
 ACCELEROMETER_ARM = Instrument(
     "accelerometer_arm_m",
     lambda problem: problem.accelerometer_arm_m,
@@ -200,10 +219,11 @@ STEADY_MOMENT = Instrument(
     lambda _: 0.0,
     usual=lambda _: STEADY_MOMENT_RAD,
 )
-OF_ALPHA = ("vane_arm_m", "alpha_delay_s")
-"""Instruments of the angle of attack. They change Z_α, Z_q and Z_δe."""
+OF_ALPHA = ("vane_arm_m", "alpha_delay_s", "a_z_delay_s")
+"""Instruments of the angle of attack and of the specific force. They change Z_α, Z_q and Z_δe."""
 BY_NAME: Mapping[InstrumentName, Instrument] = {
-    x.name: x for x in (SERVO_LAG, COMMAND_DELAY, VANE_ARM, ALPHA_DELAY, ACCELEROMETER_ARM, STEADY_MOMENT)
+    x.name: x
+    for x in (SERVO_LAG, COMMAND_DELAY, VANE_ARM, ALPHA_DELAY, FORCE_DELAY, ACCELEROMETER_ARM, STEADY_MOMENT)
 }
 
 
@@ -260,8 +280,8 @@ def unknown_instruments(problem: OutputErrorProblem, aircraft: Aircraft) -> tupl
     measured = {name for record in problem.records for name in record.outputs}
     vane_m, imu_m = aircraft.alpha.vane_arm_m, aircraft.accelerometer.arm_m
     if {"alpha", "a_z"} <= measured:
-        late = ALPHA_DELAY.innocent(problem)
-        unknown += [late] if late is not None else []
+        late = (ALPHA_DELAY.innocent(problem), FORCE_DELAY.innocent(problem))
+        unknown += [x for x in late if x is not None]
         if vane_m is None:
             unknown.append(VANE_ARM)
         elif imu_m is None:

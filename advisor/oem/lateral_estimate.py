@@ -229,7 +229,7 @@ def lateral_not_identifiable(solution: LateralSolution) -> dict[str, str]:
         error = float(std[LATERAL.names.reported.index(name)])
         if name not in reasons and not error <= _largest_error(name) * size:
             reasons[name] = (
-                f"its error ±{error:.2g} is too large beside the size of such a derivative here"
+                f"its error ±{error:.2g} is too large for the size of such a derivative here"
                 f" ({size:.2g}); fly {advice}"
             )
     return reasons

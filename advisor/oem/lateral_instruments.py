@@ -1,9 +1,9 @@
 """Servos and clocks of a lateral record as nuisance parameters of the fit, each with its prior.
 
-The command acts up to half an interval and a filter's delay earlier or later than its stamps, and the
-attitude may be late relative to the rates. Every time is relative to the rates. A servo that
-the aircraft file leaves open lags by an unknown time: an ignored lag of 0.08 s costs a quarter of L_p and
-L_δa. Each is one more parameter, and its error is part of every interval.
+The command acts up to half an interval and a filter's delay earlier or later than its stamps. The attitude
+may be late relative to the rates, and every time is relative to the rates. A servo that the aircraft file
+leaves open lags by an unknown time. An ignored lag of 0.08 s costs a quarter of L_p and L_δa. Each is one
+more parameter, and its error is part of every interval.
 """
 
 from collections.abc import Sequence
@@ -28,6 +28,10 @@ KNOWN_TO = 0.1
 DIFFERENCE_S = 1e-3
 """Step of the differences, s: half of it is below the shortest interval of a command."""
 LONGEST_LAG_S = 0.4
+FIRST_LAG_S = 0.01
+"""Unknown lag with which the search begins, s."""
+LARGEST_MOVE_S = 0.03
+"""Largest step of one nuisance parameter, s, within which the fit is nearly linear in it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,9 +84,13 @@ def nuisances_of(problem: LateralProblem, aircraft: Aircraft) -> tuple[Nuisance,
 
 
 def begun(problem: LateralProblem, nuisances: Sequence[Nuisance]) -> LateralProblem:
-    """Return the problem with every nuisance parameter at the mean of its prior."""
+    """Return the problem at the start of the search: an unknown lag is short, all else at its prior's
+    mean.
+
+    A lag and the roll mode act alike on the roll rate. A search from a long lag may exchange them.
+    """
     for x in nuisances:
-        problem = x.write(problem, x.prior.mean)
+        problem = x.write(problem, FIRST_LAG_S if x.prior is USUAL_LAG else x.prior.mean)
     return problem
 
 
@@ -112,7 +120,7 @@ def _outputs(problem: LateralProblem, shared: FloatArray, local: FloatArray) -> 
 def moved_by(step: FloatArray, problem: LateralProblem, nuisances: Sequence[Nuisance]) -> LateralProblem:
     """Return the problem with its nuisance parameters moved by ``step`` (k,), s."""
     for x, change in zip(nuisances, step, strict=True):
-        problem = x.write(problem, x.read(problem) + float(change))
+        problem = x.write(problem, x.read(problem) + float(np.clip(change, -LARGEST_MOVE_S, LARGEST_MOVE_S)))
     return problem
 
 

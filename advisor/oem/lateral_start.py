@@ -4,9 +4,9 @@ The kinematics give the sideslip up to its level and drift,
 
     β̇ = a_y/V + (g/V)·cos θ·sin φ + sin α·p - cos α·r,
 
-with the specific force a_y, or without one with the weak guess a_y/V = Y_β·β. The rates then obey equations
-that are linear in the derivatives once they are integrated (the integral form of the equation-error method,
-Klein & Morelli, *Aircraft System Identification*, Ch. 5).
+with the specific force a_y, or without one with the weak guess a_y/V = Y_β·β. The integrated equations of
+the rates are linear in the derivatives. This is the integral form of the equation-error method (Klein &
+Morelli, *Aircraft System Identification*, Ch. 5).
 """
 
 import numpy as np

@@ -105,6 +105,11 @@ def _instrument(identified: Identified, solution: Solution) -> str:
                 f"alpha is {1e3 * value:.0f} ± {1e3 * half:.0f} ms late relative to the motion;"
                 " the estimate allows for that."
             )
+        case "a_z_delay_s":
+            return (
+                f"a_z is {1e3 * value:.0f} ± {1e3 * half:.0f} ms late relative to the pitch rate;"
+                " the estimate allows for that."
+            )
         case "accelerometer_arm_m":
             return (
                 f"The accelerometer reads as if {value:.2f} ± {half:.2f} m ahead of the centre of gravity;"

@@ -77,6 +77,8 @@ class OutputErrorProblem:
     accelerometer_arm_m: float = 0.0
     alpha_delay_s: float = 0.0
     """Delay of the angle of attack, s."""
+    a_z_delay_s: float = 0.0
+    """Delay of the specific force, s."""
     steady_moment_rad: float = 0.0
     """Moment that does not scale with the square of the air speed, as the deflection that balances it at the
     reference speed, rad."""
@@ -226,6 +228,8 @@ class _Piece:
                 raise ValueError(f"a record needs at least two samples of {name}")
         if "alpha" in outputs:
             outputs["alpha"] = Signal(outputs["alpha"].t - problem.alpha_delay_s, outputs["alpha"].y)
+        if "a_z" in outputs:
+            outputs["a_z"] = Signal(outputs["a_z"].t - problem.a_z_delay_s, outputs["a_z"].y)
         if len(record.elevator.t) < 2:
             raise ValueError("a record needs at least two samples of the elevator")
         stamps = [signal.t for signal in outputs.values()]

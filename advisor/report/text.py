@@ -18,6 +18,7 @@ from advisor.report import table as report_table
 from advisor.report.lateral import lateral_lines
 from advisor.report.qualities import coefficients_of, qualities_of, quality_lines, reference_speed
 from advisor.report.result_rows import ParameterRow, channel_table, parameter_row
+from advisor.words.digits import decimals_for, signed
 from advisor.words.vehicle_time import CLOCK, clock
 
 
@@ -69,11 +70,13 @@ def next_line(verdict: FlightTestVerdict) -> str:
     return "; ".join(filter(None, (verdict.next.advice, more)))
 
 
-def _cells(row: ParameterRow) -> tuple[str, ...]:
-    known = "" if row.prior is None else f"{row.prior:.4g}"
+def parameter_cells(row: ParameterRow) -> tuple[str, ...]:
+    """Return the cells of one parameter: symbol, value, intervals, the simulator's value, unit or reason."""
+    known = "" if row.prior is None else row.prior_cell
     if row.reason:
         return row.quantity.symbol, "–", "", "", known, row.reason
-    numbers = f"{row.value:.4g}", f"{row.half:.2g}", f"{row.half_if_white:.2g}"
+    decimals = decimals_for(row.half)
+    numbers = signed(row.value, decimals), signed(row.half, decimals), f"{row.half_if_white:.2g}"
     return row.quantity.symbol, *numbers, known, row.quantity.unit
 
 
@@ -157,7 +160,9 @@ class AnalysisText:
         numbers = ", ".join(str(number) for number in self.state.estimate_from)
         rows = (parameter_row(name, model, self.aircraft.model) for name in PARAMETERS)
         head = ("parameter", "value", "± 95 %", "± 95 % if white", "simulator", "unit")
-        table = report_table.Table("joint", "", head, tuple(map(_cells, rows)), frozenset({1, 2, 3, 4}))
+        table = report_table.Table(
+            "joint", "", head, tuple(map(parameter_cells, rows)), frozenset({1, 2, 3, 4})
+        )
         return table.on_console(f"Joint estimate from manoeuvres {numbers}{speed}")
 
     def _qualities(self) -> Iterator[Text]:

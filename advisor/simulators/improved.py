@@ -104,9 +104,8 @@ def in_simulator(
     after = predicted(now, part.point, floor, kept, offset)
     here = whole_gap(after.mean_square, floor)
     if here > was:
-        # Nothing is added that raises the gap: without the part on paper, the rest makes it larger.
-        names = (*part.on_paper, *(v.effect for v in part.point.effects), DERIVATIVES_OF_IT)
-        return Flown(replace(unchanged, on_paper=tuple(dict.fromkeys(names))), before, None)
+        # Nothing is added that raises the gap, as the rest does without the part on paper.
+        return Flown(unchanged, before, None)
     found = replace(
         unchanged,
         after=here,

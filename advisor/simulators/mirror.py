@@ -134,7 +134,8 @@ def _as_flights(maneuvers: Sequence[Maneuver], flying: Flying, replays: Sequence
             y = replay.airspeed_m_s if name == "airspeed" else getattr(replay, name)
             read = np.interp(logged.t - flight.started_s, replay.t, y)
             noise = white.get(name, 0.0) * rng.standard_normal(len(read))
-            channels[name] = Channel(name, logged.t, read + noise, "simulator", "simulated")
+            # A simulator's own angle of attack is exact: its lateness is no habit of an autopilot.
+            channels[name] = Channel(name, logged.t, read + noise, "simulator", "vane")
         found.append(replace(maneuver, channels=channels))
     return found
 

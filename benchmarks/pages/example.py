@@ -68,7 +68,7 @@ EXAMPLES: Sequence[Example] = (
             "analyze-estimate": [Part("Joint estimate", "note:")],
             "analyze-qualities": [Part("Flying qualities", "  static margin")],
             "analyze-rules": [Part("rule continuous")],
-            "analyze-short": [Part(" 1 ", " 3 "), Part("Joint estimate", "note:"), Part("■")],
+            "analyze-short": [Part(" 1 ", " 3 "), Part("Joint estimate", "note:"), Part("■", "Roll and yaw")],
         },
     ),
     Example(

@@ -2,6 +2,7 @@
 
 import os
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -96,20 +97,23 @@ def test_without_an_order_no_file_is_written_and_the_command_that_would_is_said(
     found: Diagnosis = diagnosis(verdict="effect")
     monkeypatch.setattr(reading, "compare_logs", lambda *_: Compared(found, Aircraft()))
     monkeypatch.chdir(tmp_path)
-    code, error = said(capsys, monkeypatch, "flight.tlog")
-    assert code == 0
-    assert "advisor gap flight.tlog --out aircraft-with-" in error
+    monkeypatch.setattr("sys.argv", ["advisor", "gap", "flight.tlog"])
+    with pytest.raises(SystemExit) as ended:
+        cli.main()
+    assert ended.value.code == 0
+    assert "--out aircraft-with-" in " ".join(capsys.readouterr().out.split())
     assert not list(tmp_path.iterdir())
 
 
 def test_a_log_that_is_given_twice_counts_once_and_a_note_says_so(monkeypatch):
     judged: list[Maneuver] = []
 
-    def noted(maneuvers: list[Maneuver], *_: object) -> Diagnosis:
+    def noted(maneuvers: list[Maneuver], *_: object) -> SimpleNamespace:
         judged.extend(maneuvers)
-        return diagnosis(notes=("The command was held.",))
+        return SimpleNamespace(diagnosis=diagnosis(notes=("The command was held.",)))
 
-    monkeypatch.setattr(reading, "diagnose", noted)
+    monkeypatch.setattr(reading, "examine", noted)
+    monkeypatch.setattr(reading, "with_static_errors", lambda told, _: told)
     log = recorded("uav", 1.0, maneuvers=TWO)
     once = reading.maneuvers_of([log], Aircraft()).maneuvers
     found = reading.diagnose_logs([log, log], Aircraft())

@@ -113,6 +113,7 @@ def delay(found: Diagnosis) -> float:
 
 
 @pytest.mark.study
+@pytest.mark.timeout(900)
 def test_the_answer_depends_neither_on_the_coding_nor_on_the_order_nor_on_the_half():
     whole = delay(told(late()))
     assert whole == pytest.approx(0.05, abs=0.006)

@@ -15,9 +15,9 @@ from advisor.flight.signals.record import Channel
 FOLLOWED_PERCENT = 15.0
 """Change of the air speed that the model follows, %, however much the user allows.
 
-The dynamic pressure falls by 28 %. Held step of a business jet, M_δe -7.5 ± 0.4 at 90 m/s: every end from 8
-to 30 % gives -8.0 to -6.9 with an interval that holds it. At 40 % it is -6.5 ± 0.5. At 5 % the record is too
-short."""
+The dynamic pressure falls by 28 %. The held step of a business jet has M_δe -7.5 ± 0.4 at 90 m/s. Every end
+from 8 to 30 % gives -8.0 to -6.9, with an interval that holds -7.5. At 40 % it is -6.5 ± 0.5. At 5 % the
+record is too short."""
 LEFT = "air speed"
 """Reason of the end of a span where the air speed left the model."""
 

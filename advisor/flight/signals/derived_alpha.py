@@ -66,7 +66,12 @@ class DerivedAlpha:
         climb = self._track("climb_rate")
         assert climb is not None
         return replace(
-            climb.status, source=DERIVED_ALPHA, provenance="derived", lowest=-np.inf, highest=np.inf
+            climb.status,
+            source=DERIVED_ALPHA,
+            provenance="derived",
+            lowest=-np.inf,
+            highest=np.inf,
+            newest=np.nan,
         )
 
     def cut(self, start_s: float, end_s: float, up_to_order: int | None = None) -> Channel:

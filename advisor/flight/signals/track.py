@@ -85,8 +85,9 @@ class Track:
         before = self.newest_s if self._size else float(t[0])
         newest = np.maximum.accumulate(np.concatenate(([before], t)))
         self.largest_gap_s = max(self.largest_gap_s, float((newest[1:] - newest[:-1]).max()))
-        if newest[-1] >= self.newest_s:
-            self.newest = float(y[int(np.argmax(t))])
+        latest = int(np.argmax(t))
+        if t[latest] > self.newest_s:
+            self.newest = float(y[latest])
         self.newest_s = float(newest[-1])
         self._best.add(t)
         if self.extremes is not None:

@@ -107,7 +107,7 @@ class Tracks:
             return found
         if self._logs_true_speed():
             return replace(found, source=f"{found.source}{AS_REPORTED}")
-        if self.speeds_are_one(start_s, end_s, up_to_order):
+        if self._speeds_agree(start_s, end_s, up_to_order):
             return replace(found, source=f"{found.source}{AS_GROUND_SPEED}")
         air = (self._cut(n, start_s - _AIR_S, end_s + _AIR_S, up_to_order) for n in AIR_UNITS)
         by_name = {channel.name: channel for channel in air if channel is not None}
@@ -131,8 +131,15 @@ class Tracks:
 
     def speeds_are_one(self, start_s: float, end_s: float, up_to_order: int | None) -> bool:
         """Return whether air speed and ground speed change, and are equal in every sample of a stretch."""
+        air = self._cut("airspeed", start_s, end_s, up_to_order)
+        if air is None or float(np.ptp(air.y)) == 0.0 or self._logs_true_speed():
+            return False
+        return self._speeds_agree(start_s, end_s, up_to_order)
+
+    def _speeds_agree(self, start_s: float, end_s: float, up_to_order: int | None) -> bool:
+        """Return whether air speed and ground speed are equal in every sample, as no two instruments are."""
         air, ground = (self._cut(name, start_s, end_s, up_to_order) for name in ("airspeed", "groundspeed"))
-        if air is None or ground is None or float(np.ptp(air.y)) == 0.0 or self._logs_true_speed():
+        if air is None or ground is None:
             return False
         return np.array_equal(air.t, ground.t) and np.array_equal(air.y, ground.y)
 

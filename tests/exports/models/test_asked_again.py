@@ -10,49 +10,40 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.gap import compare_logs, named_simulator
-from advisor.exports.models.improvement import improvement_of
 from advisor.exports.models.matlab import script_text
 from advisor.exports.models.write import carry_out, order_of
-from advisor.simulators.compare import compare
+from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.simulators.linear import LinearSimulator
+from advisor.simulators.protocol import Condition, Inputs
 from sim.effects.fitting import flight_of
 from sim.record import record
 from sim.scenario import Maneuver, Scenario
-from tests.simulators.nonlinear import flown
+from tests.exports.models.cases import improvement
 
 OCTAVE = shutil.which("octave-cli")
-MODEL = {"Z_alpha": -2.7, "Z_q": 0.0, "Z_delta_e": -0.15, "M_alpha": -23.0, "M_q": -3.4, "M_delta_e": -29.0}
 SIX = tuple(Maneuver(name) for name in ("3211", "rev", "doublet", "3211", "rev", "doublet"))
 
 
-class Late(LinearSimulator):
-    """The linear aircraft behind a delay of 50 ms."""
-
-    def replay(self, condition, inputs, increments=None):
-        late = np.interp(inputs.t - 0.05, inputs.t, inputs.elevator)
-        return super().replay(condition, replace(inputs, elevator=late), increments)
-
-
-@pytest.mark.study
 @pytest.mark.skipif(OCTAVE is None, reason="octave-cli is not installed on this machine")
-def test_the_script_read_by_octave_flies_like_the_aircraft(tmp_path: Path) -> None:
-    file = Aircraft(model={**MODEL, "M_alpha": -16.0}, reference_airspeed_m_s=26.0)
-    flight = flown(Late(MODEL, 26.0), maneuvers=6)
-    found = compare(flight, LinearSimulator(file.model, 26.0), file).diagnosis
-    assert {cause.effect for cause in found.causes if cause.present} == {"transport_delay"}
+def test_the_script_flown_by_octave_moves_as_the_model_found(tmp_path: Path) -> None:
+    improved = improvement()
     script = tmp_path / "model.m"
-    script.write_text(script_text(improvement_of(found, file)).text)
-    asked = "[A(:); B(:); servo.delay_s; servo.lag_s; V]"
-    code = f"run('{script}'); printf('%.12g\\n', {asked});"
+    script.write_text(script_text(improved).text)
+    seconds = (0.1, 0.25, 0.5)
+    # The answer to a step of the elevator, x = A⁻¹ (exp(A t) - 1) B.
+    asked = "; ".join(f"A \\ ((expm(A * {t}) - eye(2)) * B)" for t in seconds)
+    code = f"run('{script}'); printf('%.12g\\n', [{asked}]);"
+    assert OCTAVE is not None
     done = subprocess.run(
         [OCTAVE, "--norc", "--quiet", "--eval", code], capture_output=True, text=True, timeout=60, check=True
     )
-    z_alpha, m_alpha, z_q, m_q, z_delta, m_delta, delay, lag, speed = map(float, done.stdout.split())
-    numbers = (z_alpha, z_q - 1.0, z_delta, m_alpha, m_q, m_delta)
-    better = LinearSimulator(dict(zip(MODEL, numbers, strict=True)), speed)
-    servo = replace(Aircraft().elevator, delay_s=delay, lag_s=lag or None)
-    as_exported = Aircraft(model=better.derivatives, elevator=servo, reference_airspeed_m_s=speed)
-    assert compare(flight, better, as_exported).diagnosis.verdict == "none"
+    flown = np.array(done.stdout.split(), float).reshape(len(seconds), 2)
+    numbers = {name: improved.model[name].value for name in DERIVATIVES}
+    t, step = 0.001 * (np.arange(600) + 0.5), 1e-5
+    own = LinearSimulator(numbers).replay(Condition(improved.airspeed_m_s), Inputs(t, np.full(600, step)))
+    for (alpha, q), at in zip(flown, seconds, strict=True):
+        assert np.interp(at, own.t, own.alpha) / step == pytest.approx(alpha, rel=0.01)
+        assert np.interp(at, own.t, own.q) / step == pytest.approx(q, rel=0.01)
 
 
 @pytest.mark.study
