@@ -193,6 +193,7 @@ def test_a_new_flight_test_on_the_connection_of_a_lost_one_ends_it_and_says_how_
 def test_a_lost_link_that_hangs_keeps_no_new_flight_test_from_its_connection(advising: Advising):
     advising.start()
     advising.kill()
+    wait_until(lambda: bool(advising.note_of_keeper().get("alone")))
     hung = advising.keeper
     stand_still(hung, 60.0)
     other = advising.folder / "other.tlog"
