@@ -1,7 +1,7 @@
 """``advisor analyze``: verdicts on the manoeuvres of a log, as text or JSON."""
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Literal
 
@@ -10,10 +10,7 @@ import click
 from advisor.campaign.hand_decisions import NOTHING
 from advisor.campaign.state import CampaignState
 from advisor.cli.log_options import LogsAsked, log_options
-from advisor.cli.options import (
-    UNUSABLE,
-    json_option,
-)
+from advisor.cli.options import UNUSABLE, json_option
 from advisor.cli.stages import Stages
 from advisor.words.printable import printable
 from advisor.words.problems import Problem
@@ -24,6 +21,7 @@ if TYPE_CHECKING:
     from advisor.analysis.log_series import LogSeries
     from advisor.campaign.campaign import Campaign
     from advisor.campaign.lateral import LateralState
+    from advisor.flight.stream.flights import FlightHeard
 
 
 @click.command
@@ -129,12 +127,15 @@ def _analyze(
     state = campaign.state
     left_out = {one.flight: one.problems for one in state.flights if one.problems}
     if state.lateral is not None:
-        left_out = _of_axis(axis, state.lateral, left_out, len(state.flights))
+        left_out = _of_axis(axis, state.lateral, left_out, state.flights)
     return state, left_out | unreadable
 
 
 def _of_axis(
-    axis: Axis, lateral: "LateralState", left_out: dict[int, tuple[Problem, ...]], flights: int
+    axis: Axis,
+    lateral: "LateralState",
+    left_out: dict[int, tuple[Problem, ...]],
+    flights: "Sequence[FlightHeard]",
 ) -> dict[int, tuple[Problem, ...]]:
     """Return the problems that remain by flight, given the lateral manoeuvres.
 
@@ -147,15 +148,25 @@ def _of_axis(
         if not all(p.code in _OF_ELEVATOR for p in problems)
     }
     if axis == "lateral":
-        silent = [flight for flight in range(flights) if flight not in told and flight not in elsewhere]
-        return elsewhere | dict.fromkeys(silent, (_NO_LATERAL,))
+        silent = [one for one in flights if one.flight not in told and one.flight not in elsewhere]
+        return elsewhere | {one.flight: (_no_lateral(one),) for one in silent}
     return {flight: problems for flight, problems in left_out.items() if flight not in told} | elsewhere
 
 
 _OF_ELEVATOR = ("no_maneuver", "no_elevator", "no_alpha")
 """Codes of problems that concern the elevator's axis alone."""
-_NO_LATERAL = Problem(
-    "no_maneuver",
-    "No test manoeuvre of the aileron or the rudder was found.",
-    "Fly an aileron doublet and a rudder doublet in MANUAL, hands and feet still before and after.",
-)
+
+
+def _no_lateral(flight: "FlightHeard") -> Problem:
+    """Return why a flight has no lateral manoeuvre."""
+    if not {"aileron", "rudder"} & set(flight.channels):
+        return Problem(
+            "no_aileron",
+            "Nothing says which servo outputs are the aileron and the rudder.",
+            "State aileron.output and rudder.output in the aircraft file, or record the parameters.",
+        )
+    return Problem(
+        "no_maneuver",
+        "No test manoeuvre of the aileron or the rudder was found.",
+        "Fly an aileron doublet and a rudder doublet in MANUAL, hands and feet still before and after.",
+    )

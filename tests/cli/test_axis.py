@@ -1,0 +1,27 @@
+"""``advisor analyze --axis lateral`` on logs without a lateral manoeuvre."""
+
+from pathlib import Path
+
+from advisor.cli.analyze import _no_lateral
+from advisor.flight.stream.flights import FlightHeard
+from tests.conftest import Advisor
+from tests.flights import TWO, recorded
+
+BIN = Path(__file__).parents[1] / "cases" / "base.bin"
+
+
+def test_a_log_whose_ailerons_did_not_move_asks_for_aileron_and_rudder_inputs(advisor: Advisor) -> None:
+    told = advisor("analyze", BIN, "--axis", "lateral")
+    assert told.returncode == 3
+    assert "Fly an aileron doublet and a rudder doublet" in told.stderr
+
+
+def test_a_log_that_names_no_aileron_asks_for_its_output() -> None:
+    asked = _no_lateral(FlightHeard(0, "flight.tlog", None, 60.0, channels={}))
+    assert "State aileron.output and rudder.output" in asked.fix
+
+
+def test_the_axis_of_pitch_alone_leaves_out_roll_and_yaw(advisor: Advisor) -> None:
+    told = advisor("analyze", recorded("uav", 1.0, maneuvers=TWO), "--axis", "pitch")
+    assert told.returncode == 0
+    assert "Roll and yaw" not in told.stdout
