@@ -20,8 +20,9 @@ Advisor = Callable[..., "CompletedProcess[str]"]
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
-MOST_DIAGNOSES = 20
-"""Whole diagnoses of flights that all tests without the mark ``study`` may make, seconds each."""
+MOST_DIAGNOSES = 30
+"""Whole diagnoses of flights that all tests without the mark ``study`` may make, seconds each. A gap of several
+manoeuvres takes two: the second measures the shrink on manoeuvres that the first search has used."""
 
 
 def pytest_sessionstart(session: pytest.Session) -> None:

@@ -73,21 +73,24 @@ def load(path: Path, dt: float) -> tuple[Any, tuple[str, ...]]:
     engines, systems = (
         str(folder if folder.is_dir() else root / folder.name) for folder in (own / "engine", own / "systems")
     )
-    copy = Path(tempfile.mkdtemp()) / f"{path.stem}.xml"
     tree = _equipped(path)
     foreign = foreign_properties(_files(tree, [path.parent, path.parent / "Systems", Path(systems)]))
-    tree.write(copy)
     fdm = jsbsim.FGFDMExec(str(root))
     fdm.set_debug_level(0)
     # A lag or filter computes its coefficients from the step at the time of loading.
     fdm.set_dt(dt)
     for name in foreign:
         fdm[name] = 0.0
-    relative = os.path.relpath(copy.with_suffix(""), path.parent)
-    try:
-        loaded = fdm.load_model_with_paths(relative, str(path.parent), engines, systems, False)
-    except jsbsim.BaseError as error:
-        raise _unloadable(path, " ".join(str(error).split())) from error
+    # JSBSim finds the copy by way of the model's folder. Beyond a link, ".." leads elsewhere.
+    folder = path.parent.resolve()
+    with tempfile.TemporaryDirectory() as made:
+        copy = Path(made).resolve() / path.stem
+        tree.write(copy.with_name(f"{path.stem}.xml"))
+        try:
+            relative = os.path.relpath(copy, folder)
+            loaded = fdm.load_model_with_paths(relative, str(folder), engines, systems, False)
+        except jsbsim.BaseError as error:
+            raise _unloadable(path, " ".join(str(error).split())) from error
     if not loaded:
         raise _unloadable(path, "JSBSim does not load the file")
     return fdm, foreign

@@ -58,6 +58,13 @@ def test_engines_are_found_two_folders_above_a_users_model(tmp_path: Path) -> No
     assert mine.q.tolist() == Jsbsim(shipped).replay(LEVEL, step(-0.02)).q.tolist()
 
 
+def test_a_model_in_a_folder_behind_a_link_loads(tmp_path: Path) -> None:
+    deep = tmp_path / "far" / "away" / "c172p"
+    shutil.copytree(find_model("c172p").parent, deep)
+    (tmp_path / "link").symlink_to(deep, target_is_directory=True)
+    Jsbsim(find_model(str(tmp_path / "link" / "c172p.xml")))
+
+
 def test_a_hysteresis_of_the_models_own_actuator_stays_in_the_path() -> None:
     c172x = Jsbsim(find_model("c172x"))  # its elevator rests within 0.025 rad of where it stands
     assert np.max(np.abs(c172x.replay(LEVEL, step(0.02)).q)) < 1e-4
