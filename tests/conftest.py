@@ -21,8 +21,9 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 MOST_DIAGNOSES = 30
-"""Whole diagnoses of flights that all tests without the mark ``study`` may make, seconds each. A gap of several
-manoeuvres takes two: the second measures the shrink on manoeuvres that the first search has used."""
+"""Whole diagnoses of flights that all tests without the mark ``study`` may make, seconds each.
+
+A gap of several manoeuvres takes two: the second search leaves out the manoeuvres that measure the shrink."""
 
 
 def pytest_sessionstart(session: pytest.Session) -> None:
