@@ -96,8 +96,8 @@ class JsbsimAircraft:
         for i in range(round(PROBE_S / self._dt)):
             pulled = self.trim._replace(elevator=self.trim.elevator - stick.pull(i * self._dt))
             rows.append(self.step(pulled, self._dt))
-        flown = np.array(rows)
-        column = {name: flown[:, i] for i, name in enumerate(Motion._fields)}
+        used = ("alpha", "q", "elevator", "airspeed", "theta", "alpha_dot", "q_dot")
+        column = {name: np.array([getattr(row, name) for row in rows]) for name in used}
         regressors = np.column_stack(
             [
                 np.ones(len(rows)),

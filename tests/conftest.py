@@ -1,5 +1,6 @@
 """What tests of every folder may ask for, and the limit of what they may take."""
 
+import os
 import signal
 from collections.abc import Callable, Iterator
 from functools import _lru_cache_wrapper
@@ -19,6 +20,11 @@ Advisor = Callable[..., "CompletedProcess[str]"]
 # A shell has the programs that it starts in the background ignore Ctrl-C, which tests send to programs.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+# Children look for no module in the current folder, but some are given what tests define.
+os.environ["PYTHONPATH"] = os.pathsep.join(
+    [str(Path(__file__).parents[1]), *filter(None, [os.environ.get("PYTHONPATH")])]
+)
 
 MOST_DIAGNOSES = 30
 """Whole diagnoses of flights that all tests without the mark ``study`` may make, seconds each.

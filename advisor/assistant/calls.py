@@ -1,7 +1,6 @@
 """Commands of the advisor, called for an assistant: each in a process of its own, for a limited time."""
 
 import json
-import sys
 from collections.abc import Sequence
 from subprocess import DEVNULL
 from typing import Any
@@ -9,6 +8,7 @@ from typing import Any
 from anyio import CapacityLimiter, fail_after, run_process
 
 from advisor.assistant.folders import RefusedError
+from advisor.process.children import python_module
 
 _MOST_BYTES = 1_000_000
 """Longest answer, bytes. A longer one would fill the context of an assistant."""
@@ -55,7 +55,7 @@ class Calls:
 
     async def _run(self, arguments: Sequence[str]) -> tuple[int, bytes, str]:
         """Return exit code, standard output and standard error of a command."""
-        words = [sys.executable, "-m", "advisor", *arguments]
+        words = [*python_module("advisor"), *arguments]
         try:
             async with self._one:
                 with fail_after(self._limit_s):

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Literal
 import click
 
 from advisor.campaign.hand_decisions import NOTHING
-from advisor.campaign.state import CampaignState
 from advisor.cli.log_options import LogsAsked, log_options
 from advisor.cli.options import UNUSABLE, json_option
 from advisor.cli.stages import Stages
@@ -21,6 +20,7 @@ if TYPE_CHECKING:
     from advisor.analysis.log_series import LogSeries
     from advisor.campaign.campaign import Campaign
     from advisor.campaign.lateral import LateralState
+    from advisor.campaign.state import CampaignState
     from advisor.flight.stream.flights import FlightHeard
 
 

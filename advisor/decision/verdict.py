@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from math import nan
 from typing import TYPE_CHECKING, Literal
 
 from advisor.aircraft.aircraft import CampaignPlan, Rule
@@ -109,8 +108,8 @@ class NextInput:
     """Parameter, or output of a prediction, that delays the stop."""
     input: "StepInput | None" = None
     """Input that the advice names; None where the advice names none."""
-    travel_rad: float = nan
-    """Elevator travel of 100 % stick, rad; NaN without an input."""
+    travel_rad: float | None = None
+    """Elevator travel of 100 % stick, rad; None without an input."""
 
     @property
     def foretold(self) -> str:

@@ -51,10 +51,8 @@ def test_eighty_columns_suffice_for_block_letters(word: str):
     assert "█" in block_letters(word, 76, 5)
 
 
-@pytest.mark.parametrize(("value", "filled"), [(0.0, 0), (25.0, 12), (50.0, 24), (500.0, 24)])
-def test_the_bar_is_half_full_at_the_limit(value: float, filled: int):
-    cells = bar(value, 25.0, 24)
+@pytest.mark.parametrize(("share", "filled"), [(0.0, 0), (0.5, 12), (1.0, 24), (1.5, 24)])
+def test_the_bar_is_filled_by_the_share_of_the_way_flown(share: float, filled: int):
+    cells = bar(share, 24)
     assert len(cells) == 24
-    assert cells[12] == "┃"
-    assert abs(cells.count("█") - filled) <= 2
-    assert cells.endswith("►") == (value > 50.0)
+    assert cells.count("█") == filled
