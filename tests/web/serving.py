@@ -8,7 +8,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from playwright.sync_api import Browser, Page, WebSocket, sync_playwright
@@ -41,9 +41,11 @@ class Serving:
         pid = self.process.pid
         found = []
         for task in Path(f"/proc/{pid}/task").iterdir():
-            for child in (task / "children").read_text().split():
-                words = Path(f"/proc/{child}/cmdline").read_bytes().split(b"\0")
-                found.append((int(child), words[words.index(b"-m") + 1].decode() if b"-m" in words else ""))
+            with suppress(FileNotFoundError, ProcessLookupError):  # it has ended meanwhile
+                for child in (task / "children").read_text().split():
+                    words = Path(f"/proc/{child}/cmdline").read_bytes().split(b"\0")
+                    name = words[words.index(b"-m") + 1].decode() if b"-m" in words else ""
+                    found.append((int(child), name))
         return found
 
     def interrupt(self) -> int:

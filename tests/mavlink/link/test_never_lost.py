@@ -233,7 +233,7 @@ def test_a_resumed_flight_test_keeps_its_connection_rule_and_decisions(advising:
     decided.write_text(f"excluded:\n- {{at_s: {start_s}, because: a gust}}\n")
     advising.resume()
     wait_until(lambda: any("a gust" in line for line in advising.said), 30.0)
-    assert any("0 of 3 accepted manoeuvres" in line for line in advising.said)
+    wait_until(lambda: any("0 of 3 accepted manoeuvres" in line for line in advising.said), 30.0)
     fly(FLIGHT[len(until(FLIGHT, 40.0)) :], advising.port, 20.0, lambda now_s: None)
     wait_until(lambda: len(verdicts(advising.said)) == 6, 30.0)
     assert advising.end() == 130
