@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-COPIED = ("advisor", "sim", "benchmarks", "tests", "logs", "pyproject.toml")
+COPIED = ("advisor", "sim", "benchmarks", "tests", "docs", "logs", "pyproject.toml")
 LONGEST_S = 60
 """Longest processor time of the tests on one mutant, s."""
 

@@ -217,3 +217,11 @@ def test_a_trim_that_drifts_shows_as_a_drift_and_one_that_steps_as_a_step():
 
 def test_few_manoeuvres_have_no_course():
     assert drift_and_step({"M_trim": np.arange(4.0)}, np.arange(4.0)) == {}
+
+
+def test_at_the_shares_of_its_own_flights_the_judge_is_not_corrected():
+    shares = FieldPrior(none=0.1, parameters=0.2, effect=0.6, unknown=0.1)
+    uneven = replace(SIMPLE, flown=shares)
+    assert uneven.offset("effect", shares) == pytest.approx(0.0)
+    assert uneven.offset("none", shares) == pytest.approx(0.5)
+    assert uneven.offset("none", FIELD) == pytest.approx(0.5 + math.log(4.0))
