@@ -10,7 +10,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.model.axis_response import AxisGrid
 from advisor.model.lateral import LATERAL
 from advisor.model.response import Index
-from advisor.oem.problem import STAMP_S, Laid, Signal, finite, merged, padded
+from advisor.oem.problem import Laid, Signal, finite, lay_rows, merged, padded
 from advisor.oem.surface import Servo
 
 _BETA, _P, _R, _BANK = range(len(LATERAL.states))
@@ -92,40 +92,24 @@ def assemble_lateral(problem: LateralProblem) -> LateralAssembly:
     """
     pieces = [_Piece.of(record, problem) for record in problem.records]
     measured = {name for piece in pieces for name in piece.outputs}
-    first = np.concatenate([[0], np.cumsum([len(piece.t) for piece in pieces])]).astype(np.int64)
-    row = np.full((len(LATERAL.outputs), first[-1]), -1, np.int64)
-    rows: list[dict[str, slice]] = []
-    n = 0
-    for m, piece in enumerate(pieces):
-        rows.append({})
-        for name, signal in piece.outputs.items():
-            rows[m][name] = slice(n, n + len(signal.t))
-            at = first[m] + np.searchsorted(piece.t, signal.t - STAMP_S)
-            row[LATERAL.outputs.index(name), at] = np.arange(n, n + len(signal.t))
-            n += len(signal.t)
+    laid = lay_rows(pieces, LATERAL.outputs)
 
     def joined(name: str) -> FloatArray:
         return np.concatenate([getattr(piece, name) for piece in pieces])
 
     grid = AxisGrid(
-        first=first,
+        first=laid.first,
         **{name: joined(name) for name in _STACKED},
-        row=row,
+        row=laid.row,
         place=LATERAL.place,
         bias=LATERAL.bias,
         bank=_BANK,
         yaw=_R,
     )
-    signals = [(m, name, signal) for m, p in enumerate(pieces) for name, signal in p.outputs.items()]
-    sizes = [len(signal.t) for _, _, signal in signals]
     return LateralAssembly(
         names=LATERAL.names,
         grid=grid,
-        z=np.concatenate([signal.y for _, _, signal in signals]),
-        t=np.concatenate([signal.t for _, _, signal in signals]),
-        rows=tuple(rows),
-        channel=np.repeat([LATERAL.outputs.index(name) for _, name, _ in signals], sizes),
-        owner=np.repeat([m for m, _, _ in signals], sizes),
+        **laid.measurements,
         free=_free(problem, measured),
     )
 

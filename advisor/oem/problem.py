@@ -1,8 +1,8 @@
 """The estimation problem: data of one or more manoeuvres, each channel at its own stamps."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import NamedTuple, Protocol, TypedDict
 
 import numpy as np
 
@@ -126,17 +126,7 @@ def assemble(problem: OutputErrorProblem) -> Assembly:
     """
     pieces = [_Piece.of(record, problem) for record in problem.records]
     measured = {name for piece in pieces for name in piece.outputs}
-    first = np.concatenate([[0], np.cumsum([len(piece.t) for piece in pieces])])
-    row = np.full((len(OUTPUTS), first[-1]), -1, np.int64)
-    rows: list[dict[str, slice]] = []
-    n = 0
-    for m, piece in enumerate(pieces):
-        rows.append({})
-        for name, signal in piece.outputs.items():
-            rows[m][name] = slice(n, n + len(signal.t))
-            at = first[m] + np.searchsorted(piece.t, signal.t - STAMP_S)
-            row[OUTPUTS.index(name), at] = np.arange(n, n + len(signal.t))
-            n += len(signal.t)
+    laid = lay_rows(pieces, OUTPUTS)
     steps = np.concatenate([piece.steps for piece in pieces])
     kinds, kind = _kinds(steps)
 
@@ -145,7 +135,7 @@ def assemble(problem: OutputErrorProblem) -> Assembly:
 
     speed = joined("airspeed")
     grid = Grid(
-        first=first.astype(np.int64),
+        first=laid.first,
         kind=kind,
         step_s=np.ascontiguousarray(kinds[:, 0]),
         ratio=np.ascontiguousarray(kinds[:, 1]),
@@ -153,24 +143,75 @@ def assemble(problem: OutputErrorProblem) -> Assembly:
         start=joined("start"),
         slope=joined("slope"),
         known=joined("known"),
-        row=row,
+        row=laid.row,
         vane=-problem.vane_arm_m / speed if problem.vane_arm_m else np.zeros(len(speed)),
         airspeed=speed,
         acceleration=joined("acceleration"),
         gravity=joined("gravity"),
         arm=problem.accelerometer_arm_m,
     )
-    signals = [(m, name, signal) for m, p in enumerate(pieces) for name, signal in p.outputs.items()]
-    sizes = [len(signal.t) for _, _, signal in signals]
     return Assembly(
         grid=grid,
+        **laid.measurements,
+        free=_free(measured, problem.airspeed_may_be_off and {"alpha", "a_z"} <= measured),
+    )
+
+
+class Stamped(Protocol):
+    """One record on the union of its stamps."""
+
+    @property
+    def t(self) -> FloatArray:
+        """Stamps, s."""
+
+    @property
+    def outputs(self) -> Mapping[str, Signal]:
+        """Measured outputs; each of their stamps is one of ``t``."""
+
+
+class Measurements(TypedDict):
+    """The fields of ``Laid`` that the measured outputs decide."""
+
+    z: FloatArray
+    t: FloatArray
+    rows: tuple[Mapping[str, slice], ...]
+    channel: Index
+    owner: Index
+
+
+class LaidRows(NamedTuple):
+    """Measurements as rows, and where they stand among the events of all records."""
+
+    first: Index
+    """(m + 1,) index of the first event of each manoeuvre, and their number."""
+    row: Index
+    """(C, E) row of the measurement of each output at each event, -1 for none."""
+    measurements: Measurements
+
+
+def lay_rows(pieces: Sequence[Stamped], outputs: Sequence[str]) -> LaidRows:
+    """Lay measurements manoeuvre by manoeuvre, within one output by output; ``outputs`` are the model's."""
+    first = np.concatenate([[0], np.cumsum([len(piece.t) for piece in pieces])]).astype(np.int64)
+    row = np.full((len(outputs), first[-1]), -1, np.int64)
+    rows: list[dict[str, slice]] = []
+    n = 0
+    for m, piece in enumerate(pieces):
+        rows.append({})
+        for name, signal in piece.outputs.items():
+            rows[m][name] = slice(n, n + len(signal.t))
+            at = first[m] + np.searchsorted(piece.t, signal.t - STAMP_S)
+            row[outputs.index(name), at] = np.arange(n, n + len(signal.t))
+            n += len(signal.t)
+    signals = [(m, name, signal) for m, p in enumerate(pieces) for name, signal in p.outputs.items()]
+    sizes = [len(signal.t) for _, _, signal in signals]
+    measurements = Measurements(
         z=np.concatenate([signal.y for _, _, signal in signals]),
         t=np.concatenate([signal.t for _, _, signal in signals]),
         rows=tuple(rows),
-        channel=np.repeat([OUTPUTS.index(name) for _, name, _ in signals], sizes),
+        channel=np.repeat([outputs.index(name) for _, name, _ in signals], sizes),
         owner=np.repeat([m for m, _, _ in signals], sizes),
-        free=_free(measured, problem.airspeed_may_be_off and {"alpha", "a_z"} <= measured),
     )
+    return LaidRows(first, row, measurements)
 
 
 def _kinds(steps: FloatArray) -> tuple[FloatArray, Index]:
