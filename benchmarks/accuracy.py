@@ -30,7 +30,8 @@ from advisor.model.response import N_LOCAL, N_PARAMETERS, respond
 from advisor.oem.covariance import influence
 from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import estimate, estimate_jointly
-from advisor.oem.problem import OutputErrorProblem, Record, Signal, assemble
+from advisor.oem.problem import OutputErrorProblem, Record, assemble
+from advisor.oem.rows import Signal
 
 Array = NDArray[np.float64]
 

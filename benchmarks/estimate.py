@@ -27,7 +27,8 @@ from advisor.mavlink.logs.tlog import read_tlog
 from advisor.model.response import N_PARAMETERS, respond
 from advisor.oem.batch import solve_many
 from advisor.oem.following import Follower
-from advisor.oem.problem import OutputErrorProblem, Record, Signal
+from advisor.oem.problem import OutputErrorProblem, Record
+from advisor.oem.rows import Signal
 from advisor.oem.solution import search, solve
 from advisor.oem.start import start
 from benchmarks.accuracy import JET, clean

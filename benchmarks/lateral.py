@@ -26,7 +26,7 @@ from advisor.campaign.lateral import LateralState
 from advisor.model.lateral import LATERAL
 from advisor.oem.lateral_estimate import LateralSolution, solve_lateral
 from advisor.oem.lateral_problem import LateralProblem, LateralRecord
-from advisor.oem.problem import Signal
+from advisor.oem.rows import Signal
 
 FORTY = ((500.0, -25.0), (1500.0, 0.0), (2500.0, 25.0))
 """Calibration of 40 us a degree, both positive as in the records."""

@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from advisor.model.response import N_LOCAL, N_PARAMETERS, respond
-from advisor.oem.problem import OutputErrorProblem, Record, Signal, assemble
+from advisor.oem.problem import OutputErrorProblem, Record, assemble
+from advisor.oem.rows import Signal
 from advisor.oem.solution import Solution, solve
 from advisor.oem.surface import Servo
 

@@ -14,7 +14,7 @@ from advisor.decision.prediction import response_to, trim_of
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import FloatArray
 from advisor.oem.estimate import Estimate
-from advisor.oem.problem import Signal
+from advisor.oem.rows import Signal
 from advisor.oem.surface import Servo
 
 FULL_TRAVEL_RAD = float(np.radians(25.0))

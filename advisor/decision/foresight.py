@@ -9,7 +9,8 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import LOCAL, N_LOCAL, N_PARAMETERS, SHARED, respond
 from advisor.model.short_period import ShortPeriod
 from advisor.oem.covariance import cramer_rao, influence
-from advisor.oem.problem import Assembly, OutputErrorProblem, Record, Signal, assemble
+from advisor.oem.problem import Assembly, OutputErrorProblem, Record, assemble
+from advisor.oem.rows import Signal
 from advisor.oem.surface import Servo
 
 UNMEASURED = 1e3

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.oem.problem import Signal
+from advisor.oem.rows import Signal
 
 ORDERS: Mapping[str, tuple[int, ...]] = {
     "3-2-1-1": (3, 2, 1, 1),

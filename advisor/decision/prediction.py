@@ -21,7 +21,8 @@ from advisor.model.response import N_LOCAL, N_PARAMETERS, SHARED, respond
 from advisor.model.short_period import SPEED_EXPONENTS
 from advisor.oem.estimate import Estimate
 from advisor.oem.prediction import half_widths
-from advisor.oem.problem import OutputErrorProblem, Record, Signal, assemble
+from advisor.oem.problem import OutputErrorProblem, Record, assemble
+from advisor.oem.rows import Signal
 from advisor.oem.surface import Servo
 
 PREDICTED = ("alpha", "q", "a_z")

@@ -16,7 +16,8 @@ from advisor.model.response import OUTPUTS
 from advisor.model.short_period import ShortPeriod
 from advisor.oem.prepare import OUTPUTS as COUNTED
 from advisor.oem.prior import precision_without_alpha
-from advisor.oem.problem import Assembly, OutputErrorProblem, Record, Signal, assemble
+from advisor.oem.problem import Assembly, OutputErrorProblem, Record, assemble
+from advisor.oem.rows import Signal
 
 UNITS_OF_TIME = (3, 2, 1, 1)
 RESPONSE_ALPHA_DEG = 4.0

@@ -14,7 +14,8 @@ from advisor.model.response import N_SHARED, Grid, Index
 from advisor.oem.covariance import REPORTED
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.gauss_newton import CONVERGED, cholesky, descend, normal_equations, solve_lower
-from advisor.oem.problem import OutputErrorProblem, Record, Signal, assemble
+from advisor.oem.problem import OutputErrorProblem, Record, assemble
+from advisor.oem.rows import Signal
 from advisor.oem.solution import noise_floor, solve
 from advisor.process.compiled import kernel
 

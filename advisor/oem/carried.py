@@ -22,7 +22,8 @@ from advisor.oem.covariance import REPORTED
 from advisor.oem.estimate import ChannelFit, Estimate
 from advisor.oem.prepare import Prepared
 from advisor.oem.prior import precision
-from advisor.oem.problem import STAMP_S, Signal, merged
+from advisor.oem.problem import merged
+from advisor.oem.rows import STAMP_S, Signal
 from advisor.oem.solution import Solution, noise_floor, reported
 from advisor.oem.sums import Sums
 

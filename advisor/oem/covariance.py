@@ -17,7 +17,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.model.short_period import NAMES
 from advisor.oem.colour import Colour, Stretch, find_colour, moved, product
 from advisor.oem.extra import Extra
-from advisor.oem.problem import Laid
+from advisor.oem.rows import Laid
 
 LEAST_EIGENVALUE = 1e-13
 """Least eigenvalue of a normalised information matrix. Round-off decides the inverse below it."""

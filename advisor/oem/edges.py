@@ -17,7 +17,8 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import N_PARAMETERS, Index, respond
 from advisor.oem.extra import Extra, Prior
 from advisor.oem.gauss_newton import CONVERGED, Optimum
-from advisor.oem.problem import OutputErrorProblem, Record, Signal, assemble
+from advisor.oem.problem import OutputErrorProblem, Record, assemble
+from advisor.oem.rows import Signal
 from advisor.oem.solution import Solution, evaluate, search
 from advisor.oem.weighing import Weighing
 

@@ -21,7 +21,8 @@ from advisor.oem.instruments import COMMAND_DELAY, unknown_instruments
 from advisor.oem.notes import notes
 from advisor.oem.prediction import prediction_band
 from advisor.oem.prepare import Prepared, prepare
-from advisor.oem.problem import Laid, OutputErrorProblem
+from advisor.oem.problem import OutputErrorProblem
+from advisor.oem.rows import Laid
 from advisor.oem.solution import Method, Solution, evaluate, reported, search, solve
 from advisor.oem.surface import Servo
 from advisor.oem.turbulence import Turbulence

@@ -14,7 +14,7 @@ from advisor.oem.alpha_use import FEWEST_SAMPLES, can_do_without, has, infer, wh
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.lateral_problem import NEEDED, LateralProblem, LateralRecord
 from advisor.oem.prepare import constant_speed, reference_speed, signal_of, stated_reference
-from advisor.oem.problem import Signal
+from advisor.oem.rows import Signal
 from advisor.oem.surface import Servo
 
 _SPOKEN = {"p": "roll rate", "r": "yaw rate", "bank": "bank angle", "theta": "pitch angle", "q": "pitch rate"}

@@ -10,7 +10,8 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.model.axis_response import AxisGrid
 from advisor.model.lateral import LATERAL
 from advisor.model.response import Index
-from advisor.oem.problem import Laid, Signal, finite, lay_rows, merged, padded
+from advisor.oem.problem import finite, merged, padded
+from advisor.oem.rows import Laid, Signal, lay_rows
 from advisor.oem.surface import Servo
 
 _BETA, _P, _R, _BANK = range(len(LATERAL.states))

@@ -13,7 +13,8 @@ import numpy as np
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import N_PARAMETERS, Index, respond
 from advisor.oem.estimate import NoEstimate
-from advisor.oem.problem import OutputErrorProblem, Record, Signal, assemble
+from advisor.oem.problem import OutputErrorProblem, Record, assemble
+from advisor.oem.rows import Signal
 from advisor.oem.solution import Solution, solve
 
 LOST_INTERVAL = 1.5

@@ -12,7 +12,8 @@ from advisor.aircraft.aircraft import PARAMETERS
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import N_PARAMETERS, OUTPUTS, respond
 from advisor.oem.covariance import cramer_rao, influence
-from advisor.oem.problem import Assembly, Signal, assemble
+from advisor.oem.problem import Assembly, assemble
+from advisor.oem.rows import Signal
 from advisor.oem.solution import Solution
 
 WORTH_NAMING = 1.05

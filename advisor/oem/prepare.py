@@ -19,7 +19,8 @@ from advisor.oem.estimate import NoEstimate
 from advisor.oem.found import found_of
 from advisor.oem.instruments import as_found
 from advisor.oem.lost_input import restored
-from advisor.oem.problem import OutputErrorProblem, Record, Signal
+from advisor.oem.problem import OutputErrorProblem, Record
+from advisor.oem.rows import Signal
 from advisor.oem.surface import Servo
 
 OUTPUTS = ("alpha", "q", "a_z")

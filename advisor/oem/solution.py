@@ -22,7 +22,8 @@ from advisor.oem.estimate import NoEstimate
 from advisor.oem.extra import Extra
 from advisor.oem.gauss_newton import CONVERGED, FLAT, LEAST_NOISE, OVERFLOW, SINGULAR, Optimum, descend
 from advisor.oem.prior import precision
-from advisor.oem.problem import Assembly, Laid, OutputErrorProblem, assemble
+from advisor.oem.problem import Assembly, OutputErrorProblem, assemble
+from advisor.oem.rows import Laid
 from advisor.oem.simplex import descend_by_simplex
 from advisor.oem.start import start
 

@@ -15,7 +15,8 @@ import numpy as np
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.motion import integrated
 from advisor.model.response import N_LOCAL, N_SHARED
-from advisor.oem.problem import OutputErrorProblem, Record, Signal
+from advisor.oem.problem import OutputErrorProblem, Record
+from advisor.oem.rows import Signal
 from advisor.oem.surface import Servo
 
 

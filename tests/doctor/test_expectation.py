@@ -16,7 +16,8 @@ from advisor.doctor.expectation import (
     frequency,
 )
 from advisor.model.short_period import ShortPeriod
-from advisor.oem.problem import OutputErrorProblem, Record, Signal
+from advisor.oem.problem import OutputErrorProblem, Record
+from advisor.oem.rows import Signal
 from advisor.oem.solution import Solution, solve
 
 ASSUMED = Assumed(TYPICAL, NOISE, "a test")

@@ -7,7 +7,7 @@ from scipy.integrate import solve_ivp
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.model.lateral import LATERAL
 from advisor.oem.lateral_problem import LateralProblem, LateralRecord
-from advisor.oem.problem import Signal
+from advisor.oem.rows import Signal
 
 FloatArray = NDArray[np.float64]
 

@@ -7,7 +7,8 @@ from scipy.linalg import expm
 
 from advisor.aircraft.aircraft import PARAMETERS
 from advisor.model.short_period import ShortPeriod
-from advisor.oem.problem import OutputErrorProblem, Record, Signal
+from advisor.oem.problem import OutputErrorProblem, Record
+from advisor.oem.rows import Signal
 from advisor.oem.solution import solve
 from benchmarks.accuracy import JET, clean
 

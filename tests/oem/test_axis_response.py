@@ -5,7 +5,8 @@ from advisor.model.axis_response import AxisGrid, respond_axis
 from advisor.model.lateral import LATERAL
 from advisor.model.response import respond
 from advisor.oem.lateral_problem import LateralProblem, assemble_lateral
-from advisor.oem.problem import OutputErrorProblem, Record, Signal, assemble
+from advisor.oem.problem import OutputErrorProblem, Record, assemble
+from advisor.oem.rows import Signal
 from tests.oem.lateral_builders import JET, TRIM, aileron_doublet, flown, rudder_doublet, vector
 
 T = np.arange(0.0, 8.0, 0.025)

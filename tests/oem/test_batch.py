@@ -1,7 +1,8 @@
 import numpy as np
 
 from advisor.oem.batch import solve_many
-from advisor.oem.problem import OutputErrorProblem, Record, Signal
+from advisor.oem.problem import OutputErrorProblem, Record
+from advisor.oem.rows import Signal
 from advisor.oem.solution import solve
 from tests.oem.builders import JET, elevator_3211, simulate, trim_alpha, trim_elevator
 

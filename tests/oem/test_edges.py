@@ -4,7 +4,8 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft, Elevator
 from advisor.oem.edges import large_steps, sharpened, with_edges
 from advisor.oem.estimator import estimate
-from advisor.oem.problem import OutputErrorProblem, Record, Signal
+from advisor.oem.problem import OutputErrorProblem, Record
+from advisor.oem.rows import Signal
 from advisor.oem.solution import solve
 from tests.oem.builders import UAV, flown, maneuver, simulate, trim_alpha, trim_elevator
 

@@ -7,7 +7,8 @@ from advisor.oem.colour import Colour
 from advisor.oem.covariance import Coloured, cramer_rao
 from advisor.oem.efficient import efficient, efficient_step
 from advisor.oem.estimator import estimate, estimate_jointly
-from advisor.oem.problem import OutputErrorProblem, Record, Signal
+from advisor.oem.problem import OutputErrorProblem, Record
+from advisor.oem.rows import Signal
 from advisor.oem.solution import solve
 from advisor.oem.surface import Servo
 from advisor.oem.weighing import Weighing

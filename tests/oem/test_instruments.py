@@ -12,7 +12,7 @@ from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import estimate, estimate_jointly
 from advisor.oem.instruments import SERVO_LAG
 from advisor.oem.prepare import prepare
-from advisor.oem.problem import Signal
+from advisor.oem.rows import Signal
 from advisor.oem.surface import Servo
 from tests.oem.builders import UAV, elevator_3211, flown, maneuver, simulate, trim_alpha, trim_elevator
 

@@ -4,7 +4,8 @@ from scipy.linalg import expm
 
 from advisor.model.response import LOCAL, N_PARAMETERS, SHARED, respond
 from advisor.model.transition import WIDTH, divisions, fill
-from advisor.oem.problem import OutputErrorProblem, Record, Signal, assemble
+from advisor.oem.problem import OutputErrorProblem, Record, assemble
+from advisor.oem.rows import Signal
 from tests.oem.builders import JET, UAV, simulate
 
 MATRICES = [

@@ -11,7 +11,7 @@ from advisor.oem.lateral_estimate import (
     solve_lateral,
 )
 from advisor.oem.lateral_problem import LateralProblem
-from advisor.oem.problem import Signal
+from advisor.oem.rows import Signal
 from tests.oem.lateral_builders import JET, aileron_doublet, both_inputs, flown, rudder_doublet, vector
 
 T = np.arange(0.0, 15.0, 0.025)

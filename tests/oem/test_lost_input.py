@@ -4,7 +4,8 @@ from scipy.signal import cont2discrete
 
 from advisor.model.short_period import ShortPeriod
 from advisor.oem.lost_input import restored
-from advisor.oem.problem import OutputErrorProblem, Record, Signal
+from advisor.oem.problem import OutputErrorProblem, Record
+from advisor.oem.rows import Signal
 from advisor.oem.solution import Solution, solve
 
 TRUE = ShortPeriod.from_mapping(

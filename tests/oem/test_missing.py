@@ -5,7 +5,8 @@ import numpy as np
 from advisor.aircraft.aircraft import PARAMETERS, Aircraft, Elevator
 from advisor.oem.estimator import estimate
 from advisor.oem.missing import in_words, price
-from advisor.oem.problem import OutputErrorProblem, Record, Signal
+from advisor.oem.problem import OutputErrorProblem, Record
+from advisor.oem.rows import Signal
 from advisor.oem.solution import solve
 from tests.oem.builders import UAV, elevator_3211, flown, simulate, trim_alpha, trim_elevator
 

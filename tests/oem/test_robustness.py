@@ -4,7 +4,8 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import estimate, estimate_jointly
-from advisor.oem.problem import OutputErrorProblem, Record, Signal
+from advisor.oem.problem import OutputErrorProblem, Record
+from advisor.oem.rows import Signal
 from advisor.oem.solution import Solution, solve
 from benchmarks.robustness import mismatched, search_everywhere
 from tests.oem.builders import JET, flown, maneuver

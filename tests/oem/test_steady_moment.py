@@ -9,7 +9,8 @@ from advisor.aircraft.aircraft import Aircraft, Elevator
 from advisor.model.response import N_PARAMETERS, respond
 from advisor.oem.instrument_fit import fit_instruments
 from advisor.oem.instruments import unknown_instruments
-from advisor.oem.problem import OutputErrorProblem, Record, Signal, assemble
+from advisor.oem.problem import OutputErrorProblem, Record, assemble
+from advisor.oem.rows import Signal
 from advisor.oem.solution import solve
 from tests.oem.builders import JET, elevator_3211, trim_alpha, trim_elevator
 

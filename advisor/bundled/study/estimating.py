@@ -7,7 +7,7 @@ from advisor.decision.foresight import Instruments, expect
 from advisor.flight.signals.messages import FloatArray
 from advisor.oem.batch import Batch, solve_many
 from advisor.oem.estimate import ChannelFit, Estimate
-from advisor.oem.problem import Signal
+from advisor.oem.rows import Signal
 from advisor.oem.surface import Servo
 
 

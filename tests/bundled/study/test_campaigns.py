@@ -18,7 +18,8 @@ from advisor.decision.history import CandidateManeuver
 from advisor.decision.pooling import pool, posteriors_at_one_speed
 from advisor.decision.stopping import progress
 from advisor.oem.estimate import Estimate
-from advisor.oem.problem import OutputErrorProblem, Record, Signal
+from advisor.oem.problem import OutputErrorProblem, Record
+from advisor.oem.rows import Signal
 from advisor.oem.solution import Solution, solve
 from advisor.process.tasks.runner import results_in_order, run_here
 
