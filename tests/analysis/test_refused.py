@@ -42,6 +42,13 @@ def test_where_too_few_would_remain_all_are_used_and_the_reason_is_said():
     assert all("is used, although analyze refuses it: bank" in note for note in found.notes)
 
 
+def test_two_sound_manoeuvres_are_too_few_and_three_are_enough():
+    first, second, third, turn = flown(maneuvers=4)
+    turn = banked(turn, 43.0)
+    assert len(without_refused([first, second, turn], Aircraft()).maneuvers) == 3
+    assert len(without_refused([first, second, third, turn], Aircraft()).maneuvers) == 3
+
+
 def test_a_throttle_that_moves_is_known_to_the_gaps_model():
     maneuvers = flown(maneuvers=3)
     t = maneuvers[0].channels["q"].t

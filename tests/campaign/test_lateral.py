@@ -125,3 +125,15 @@ def test_a_campaign_that_is_not_asked_has_no_lateral_half(both):
     campaign = Campaign(AIRCRAFT)
     campaign.feed(both.columns(list(range(200))))
     assert campaign.state.lateral is None
+
+
+def test_every_interval_is_that_of_95_percent(state):
+    document = lateral_document(state)
+    told = [
+        one for name, one in document["model"].items() if "ci95" in (one if isinstance(one, dict) else {})
+    ]
+    assert len(told) > 10
+    for one in told:
+        assert one["ci95"] == pytest.approx(
+            [one["value"] - 1.96 * one["std"], one["value"] + 1.96 * one["std"]], rel=1e-4
+        )

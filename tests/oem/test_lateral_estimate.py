@@ -82,3 +82,11 @@ def test_without_side_force_and_sideslip_no_derivative_is_told():
     told = lateral_not_identifiable(solved(LateralProblem((record,))))
     assert set(told) == set(LATERAL.names.reported)
     assert all("record a_y" in text for text in told.values())
+
+
+@pytest.mark.parametrize(("share", "flown_too"), [(0.15, False), (0.25, True)])
+def test_feet_that_move_a_fifth_of_the_hands_fly_no_rudder_test(share, flown_too):
+    feet = Signal(T, share * aileron_doublet(T).y)
+    problem = LateralProblem((flown(JET, aileron=aileron_doublet(T), rudder=feet),))
+    assert problem.flies("aileron")
+    assert problem.flies("rudder") == flown_too
