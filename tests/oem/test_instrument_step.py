@@ -16,7 +16,7 @@ PULL = 1e-3
 
 
 def stepped(monkeypatch, pull):
-    """Return the step from a lag and an arm of 0 whose free step is ``pull`` in thousandths, and its promise."""
+    """Return the step from a lag and an arm of 0 with this free step, in thousandths, and its promise."""
     rows = np.zeros((1, 10))
     rows[0, 8:] = PULL * np.array(pull)
     found = Influence(

@@ -1,4 +1,4 @@
-"""Trim, air speed, inertia, weight and density are told as what they are, before any effect."""
+"""Errors of trim, air speed, inertia, weight and density are named before any effect."""
 
 from types import SimpleNamespace
 
