@@ -44,8 +44,8 @@ class Span:
     """Steps of the input: (onset in s, level in rad from trim) for each."""
     closed_by: str
     """Reason of the end: ``quiet``, ``mode change``, ``next input``, ``gap``, ``end of log``, ``air speed``,
-    ``no rest``. A marked stretch has ``marked by hand``, ``marked by a switch`` or ``marked by a text of
-    the vehicle``. A movement that is being flown has ``still flying``."""
+    ``no rest``. A marked stretch has ``marked by hand``, ``marked by a switch``, ``marked by a text of
+    the vehicle`` or ``marked by SystemID``. A movement that is being flown has ``still flying``."""
 
     @property
     def input_is_over(self) -> bool:

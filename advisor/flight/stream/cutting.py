@@ -85,9 +85,7 @@ class Cutting:
         maneuver, evidence = self._cut(span, boot, up_to_order)
         because = self._not_an_input(maneuver, up_to_order)
         if because is not None:
-            self.activities[because.what] += 1
-            stay_s, _ = self._stay(_middle_s(span))
-            return [Activity(span.start_s, span.end_s, because.reason, because.text, stay_s, boot)]
+            return [self._activity(maneuver, because)]
         airspeed = maneuver.channels.get("airspeed")
         steady = at_steady_speed(maneuver.span, airspeed, self._limits.airspeed_change_percent)
         if steady is not maneuver.span:
@@ -95,9 +93,23 @@ class Cutting:
         return self._counted(maneuver, evidence)
 
     def marked(self, mark: Mark, boot: int, up_to_order: int | None) -> list[FlightEvent]:
-        """Return the manoeuvre of a marked stretch, which counts without the finder's criteria."""
+        """Return the manoeuvre of a marked stretch.
+
+        A crew's mark counts without the finder's criteria. SystemID moves any control, so that the elevator's
+        visible effect decides.
+        """
         elevator = self._tracks.cut("elevator", mark.start_s - LEAD_IN_S, mark.end_s, up_to_order)
-        return self._counted(*self._cut(marked_span(mark, elevator), boot, up_to_order))
+        maneuver, evidence = self._cut(marked_span(mark, elevator), boot, up_to_order)
+        if mark.by == "system id" and (because := self._not_an_input(maneuver, up_to_order)) is not None:
+            return [self._activity(maneuver, because)]
+        return self._counted(maneuver, evidence)
+
+    def _activity(self, maneuver: Maneuver, because: Because) -> Activity:
+        """Return the event of a movement that was no test input, and count the movement."""
+        self.activities[because.what] += 1
+        span = maneuver.span
+        stay_s, _ = self._stay(_middle_s(span))
+        return Activity(span.start_s, span.end_s, because.reason, because.text, stay_s, maneuver.boot)
 
     def _counted(self, maneuver: Maneuver, evidence: Evidence) -> list[FlightEvent]:
         self.maneuvers += 1
