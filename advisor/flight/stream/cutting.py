@@ -1,7 +1,7 @@
 """From elevator movements to manoeuvres with their channels, or to activities with their reasons."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -25,7 +25,7 @@ from advisor.flight.signals.record import AIR_UNITS, UNITS, Channel
 from advisor.flight.signals.renewal import counted_once
 from advisor.flight.signals.repair import repaired
 from advisor.flight.signals.tracks import Tracks
-from advisor.flight.signals.trust import distrusted
+from advisor.flight.signals.trust import Distrust, distrusted
 from advisor.flight.stream.identity import Identity
 from advisor.flight.vehicle.breaks import Breaks
 from advisor.flight.vehicle.modes import closes_pitch_loop
@@ -153,10 +153,7 @@ class Cutting:
             span = replace(span, record_from_s=min(earlier_s, span.start_s))
         channels, notes = self._recorded(span, up_to_order)
         distrusts = self._who.distrusts(distrusted(channels))
-        for still in distrusts:
-            if still.channel == "a_z":
-                # An estimate can do without a specific force; a frozen one would spoil the estimate.
-                del channels["a_z"]
+        channels = _trusted(channels, distrusts)
         examined = examine(channels, self._evidence)
         channels = {**examined.channels, **self._air(span, up_to_order)}
         mode = self._stay(_middle_s(span))[1]
@@ -216,6 +213,16 @@ class Cutting:
                 "If no sensor measured the air speed, wind makes the derivatives wrong."
             ]
         return []
+
+
+def _trusted(channels: Mapping[str, Channel], distrusts: Sequence[Distrust]) -> dict[str, Channel]:
+    """Return the channels without those that would spoil an estimate which can do without them."""
+    left_out = {distrust.channel for distrust in distrusts if distrust.left_out}
+    kept = {name: channel for name, channel in channels.items() if name not in left_out}
+    if "a_z" in left_out and "alpha" in kept and kept["alpha"].provenance == "derived":
+        # Nothing computes an angle of attack from an accelerometer that stands still.
+        kept["alpha"] = replace(kept["alpha"], provenance="unknown")
+    return kept
 
 
 def _middle_s(span: Span) -> float:
