@@ -211,6 +211,6 @@ def _missing(solution: Solution, prepared: Prepared, priced: bool) -> str:
         return ""
     return (
         "No vertical acceleration was used, which needs a_z and air speed. Z_alpha, Z_q, Z_delta_e and M_q"
-        " depend on the delay and the arm of the angle of attack, which nothing else tells: give"
-        " alpha.vane_arm_m for a vane." + in_words(price(solution) if priced else None)
+        " depend on the delay and the arm of the angle of attack. Give alpha.vane_arm_m for a vane."
+        + in_words(price(solution) if priced else None)
     )
