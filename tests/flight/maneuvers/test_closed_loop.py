@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.decision.quality import judge_quality
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.maneuvers.marked_input import SWEPT
 from advisor.flight.maneuvers.purpose import not_an_input
@@ -59,6 +60,7 @@ def swept(size_deg, mode="FBWA", gust=0.0, closed_by=SWEPT):
 
 def right(maneuver):
     fitted = estimate(maneuver, Aircraft())
+    assert judge_quality(maneuver, fitted, Aircraft()) == ()
     return all(fitted.value(name) == pytest.approx(true, rel=0.08) for name, true in TRUE.items())
 
 
