@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.gap.candidates.variant import Variant
+from advisor.gap.kit.variant import Variant
 from advisor.gap.search.acceptance import JudgedAddition, least_offset_rad
 
 LAG = Variant(

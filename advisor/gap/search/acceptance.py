@@ -5,11 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.candidates.traits import TAKES
-from advisor.gap.candidates.variant import Variant
 from advisor.gap.decision import Decision
+from advisor.gap.effects import effect_named
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.holdout import HeldOut
+from advisor.gap.kit.variant import Variant
 
 MOST_EFFECTS = 3
 """Most effects named in one flight. More names in one flight are hardly ever right."""
@@ -199,4 +199,4 @@ def least_offset_rad(std_rad: float, derived: bool = False, alone: bool = True) 
 def size_of(variant: Variant, value: FloatArray) -> float:
     """Return the size of an effect that is compared with its physical minimum."""
     # Ice reduces lift: a change that keeps the lift slope is another effect.
-    return float(-value[0] if variant.effect in TAKES else abs(value[0]))
+    return float(-value[0] if effect_named(variant.effect).takes else abs(value[0]))
