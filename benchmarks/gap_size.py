@@ -4,7 +4,7 @@
 
 Counted over ``advisor/gap`` are lines of code, without docstrings, comments and blank lines, so that an
 explanation costs nothing; constants, which are names of numbers; comparisons with the name of an effect or a
-block; and functions of a cyclomatic complexity above 15 (McCabe 1976). A new effect does not count: the two
+block; and functions of a cyclomatic complexity above 15 (McCabe 1976). A new effect does not count: the
 folders that describe effects, ``EFFECTS``, are left out of all counts but the last. ``make check`` and
 ``.ci/run`` fail above a limit.
 """
@@ -30,7 +30,7 @@ EFFECTS = (
 )
 """Folders that describe effects, by their table and their equations; and the weights of ``make judge``."""
 NAMES = frozenset(CATALOGUE) | frozenset(BLOCKS_OF_EFFECTS) | {"attitude_sensor"}
-LIMITS = {"lines of code": 7060, "constants": 298, "names compared": 20, "complex functions": 0}
+LIMITS = {"lines of code": 7060, "constants": 295, "names compared": 16, "complex functions": 0}
 """Upper bound of each count. Lines have 2 % to spare, so that a mend needs no cut elsewhere. The evidence and
 the judge brought 500 of them. The ranges of nuisance parameters brought six constants."""
 MOST_COMPLEX = 15

@@ -4,8 +4,8 @@ from advisor.gap.records.flights import PreparedManeuvers
 
 LEAST_S = 0.004
 FILTERED_S = 0.02
-"""Least delay or lag that is named, s: a fifth of a sample at 50 Hz (4 ms), and in a channel that an
-autopilot filtered (20 ms)."""
+"""Least delay or lag that is named, s: a fifth of a sample at 50 Hz, and the delay of an autopilot's
+filters."""
 SMALL_ANGLE_RAD = 0.00175
 """Least angle that is named, rad (0.1 deg): no linkage has less play."""
 IF_BEYOND_DOUBT = 0.4

@@ -52,6 +52,8 @@ EFFECT_ENTRIES = (
     # 1: the attitude contains the structural mode too
     "mode_attitude",
 )  # fmt: skip
+EQUATION_ENTRIES = EFFECT_ENTRIES[EFFECT_ENTRIES.index("M_delta2") : EFFECT_ENTRIES.index("alpha_lag_s")]
+"""Parameters of effects in Eqs. (1)-(2)."""
 ENTRIES = (*DERIVATIVES, *NUISANCES, *EFFECT_ENTRIES)
 INDEX = {name: i for i, name in enumerate(ENTRIES)}
 
