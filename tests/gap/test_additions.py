@@ -63,6 +63,11 @@ def test_an_effect_that_one_manoeuvre_shows_needs_more_likelihood(gain, accepted
     assert replace(PLAIN, gain=gain, sole_maneuver=2, support=0.0).is_accepted == accepted
 
 
+@pytest.mark.parametrize(("gain", "accepted"), [(29.0, False), (31.0, True)])
+def test_what_moves_with_the_air_needs_more_likelihood(gain, accepted):
+    assert replace(PLAIN, gain=gain, with_the_air=True).is_accepted == accepted
+
+
 @pytest.mark.parametrize(
     ("change", "least_rad"),
     [({}, 0.003), ({"std_rad": 6e-4}, 0.0042), ({"alone": False}, 0.007), ({"derived": True}, 0.0087)],

@@ -208,7 +208,7 @@ def _full(e: Evidence, j: JudgedAddition, noise: FloatArray) -> FullFit:
         support=j.support,
         change=j.removed / max(j.least, 1e-12),
         sigmas=float(j.sigmas),
-        size=size_of(j.variant, j.value) / j.least_size if j.least_size > 0.0 else 0.0,
+        size=size_of(j.variant, j.value) / j.smallest if j.smallest > 0.0 else 0.0,
         at_bound=j.at_its_bounds,
         removed=j.removed,
         gap=whole_gap(j.held_out.mean_square, e.floor),

@@ -101,7 +101,7 @@ def addition(
         least=least, least_certain=least * _share_enough(problem, before, variant, value),
         smallest=smallest_of(problem, variant, gain),
         prior_gain=prior_gain, prior_terms=prior_terms, value=value, sole_maneuver=sole_maneuver,
-        with_the_air=bool(variant.needs) and problem.knows_the_noise, alone=is_baseline(before),
+        with_the_air=bool(variant.needs) and problem.knows_the_noise,
         std=np.sqrt(np.maximum(np.diag(known_numbers), 0.0)), sigmas=sigmas_of(value, known_numbers, located),
     )  # fmt: skip
 
