@@ -56,12 +56,12 @@ class Servo:
         else:
             start = np.concatenate([command[: len(early)], after])
             arrival = start[1:]
-        surface = _lagged(np.diff(run), start[:-1], arrival, self.lag_s, start[0])[len(early) :]
+        surface = lagged(np.diff(run), start[:-1], arrival, self.lag_s, start[0])[len(early) :]
         return surface, surface, surface[1:]
 
 
 @kernel()
-def _lagged(
+def lagged(
     step: FloatArray, start: FloatArray, arrival: FloatArray, lag: float, initial: float
 ) -> FloatArray:
     """Return the first-order lag of a command that moves linearly from ``start`` to ``arrival`` in each
