@@ -1,4 +1,4 @@
-"""``fmu:FILE.fmu``: a flight compared with a functional mock-up unit (FMI 2 or 3, co-simulation).
+"""``fmu:FILE.fmu``: a flight compared with a functional mock-up unit (FMI 2 or 3).
 
 An FMU is a program. The FMU runs in a process of its own, with a time limit and with the user's rights.
 """
@@ -125,7 +125,7 @@ class FmuSimulator:
         return Replay(t, alpha, q, theta, a_z, speed, height, trim=trim)
 
     def linearise(self, condition: Condition) -> Mapping[str, float] | None:
-        """Return None: FMUs for co-simulation have no common interface for a linearisation."""
+        """Return None: an FMU's states are not in general those of a short period."""
         return None
 
     def close(self) -> None:
