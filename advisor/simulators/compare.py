@@ -47,6 +47,7 @@ from advisor.simulators.trims import trim_differences
 from advisor.simulators.unseen import (
     UnseenManeuvers,
     changes_something,
+    other_finding,
     resaid,
     shrink_on,
     unseen_of,
@@ -141,7 +142,11 @@ def compare(
         mirror = mirrored(examined, maneuvers, flying, replays, aircraft)
         found = found if mirror is None else mirror.said(found)
     found = with_static_errors(found, examined, trims)
-    notes = (*getattr(simulator, "notes", ()), *still_air_said(simulator, blown))
+    notes = (
+        *getattr(simulator, "notes", ()),
+        *still_air_said(simulator, blown),
+        *other_finding(examined.diagnosis, unseen),
+    )
     return Compared(replace(found, notes=(*notes, *found.notes)), as_file)
 
 

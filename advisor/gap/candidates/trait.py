@@ -26,6 +26,8 @@ class Trait:
     block: str
     """Block of the simulator that the effect belongs to."""
     said: Said = ""
+    said_or: str = ""
+    """Words for the effect as the second of two that look alike; empty: it is only listed."""
     said_with: Mapping[str, Said] = field(default_factory=dict)
     """Sentence by a parameter that only some variants of the effect have."""
     said_beyond: Said = ""

@@ -31,6 +31,7 @@ TRAITS = {
             "The simulator's elevator is too slow: its servo lags by {lag_s_ms:.0f} ms too much",
         ),
         said_beyond="The simulator's elevator is too quick: the real servo lags by {lag_s_ms:.0f} ms more",
+        said_or="a servo that lags by {lag_s_ms:.0f} ms",
         distinguished_by={"transport_delay": _SURFACE, "actuator_rate_limit": _AMPLITUDES},
         stated=("elevator", "lag_s"),
     ),
@@ -69,6 +70,7 @@ TRAITS = {
         ),
         said_beyond="The simulator answers {delay_s_ms:.0f} ms too early: the delay between command and "
         "surface is longer than its own",
+        said_or="a delay of {delay_s_ms:.0f} ms",
         imitated_by=("an equal delay of every logged stream", _SURFACE), stated=("elevator", "delay_s"),
     ),
     "elevator_nonlinearity": Trait(
