@@ -275,6 +275,12 @@ class FmuTrim:
     height: Annotated[str | None, Key("Parameter of the flight's pressure altitude, m.")] = None
     flight_path: Annotated[str | None, Key("Parameter of the flight-path angle.")] = None
     mass: Annotated[str | None, Key("Parameter of the mass, kg.")] = None
+    wind_along: Annotated[str | None, Key(
+        "Parameter or input of the wind along the heading, m/s, positive from behind.",
+    )] = None  # fmt: skip
+    wind_right: Annotated[str | None, Key(
+        "Parameter or input of the wind across the heading, m/s, positive towards the right.",
+    )] = None  # fmt: skip
     alpha: Annotated[str | None, Key(
         "Parameter of the initial angle of attack, which the trim search sets together with the elevator.",
     )] = None  # fmt: skip

@@ -26,6 +26,7 @@ from advisor.flight.signals.renewal import counted_once
 from advisor.flight.signals.repair import repaired
 from advisor.flight.signals.tracks import Tracks
 from advisor.flight.signals.trust import Distrust, distrusted
+from advisor.flight.signals.wind import along_heading
 from advisor.flight.stream.identity import Identity
 from advisor.flight.vehicle.breaks import Breaks
 from advisor.flight.vehicle.modes import closes_pitch_loop
@@ -189,7 +190,7 @@ class Cutting:
         channels: dict[str, Channel] = {}
         notes = self._airspeed_notes(span, up_to_order)
         for name in UNITS:
-            channel = self._tracks.cut(name, span.record_from_s, span.end_s, up_to_order)
+            channel = self._whole(name, span, up_to_order)
             if channel is not None:
                 sound = repaired(counted_once(self._who.known(channel)))
                 channels[name] = sound.channel
@@ -197,11 +198,18 @@ class Cutting:
         return channels, notes
 
     def _air(self, span: Span, up_to_order: int | None) -> dict[str, Channel]:
-        """Return the channels of a record that tell the density of the air."""
-        cut = {
-            name: self._tracks.cut(name, span.record_from_s, span.end_s, up_to_order) for name in AIR_UNITS
-        }
-        return {name: air for name, air in cut.items() if air is not None}
+        """Return the channels of a record that tell the density of the air and the wind."""
+        cut = {name: self._whole(name, span, up_to_order) for name in AIR_UNITS}
+        found = {name: air for name, air in cut.items() if air is not None}
+        north, east, heading = (
+            self._whole(name, span, up_to_order) for name in ("wind_north", "wind_east", "heading")
+        )
+        if north is None or east is None or heading is None:
+            return found
+        return found | along_heading(north, east, heading)
+
+    def _whole(self, name: str, span: Span, up_to_order: int | None) -> Channel | None:
+        return self._tracks.cut(name, span.record_from_s, span.end_s, up_to_order)
 
     def _airspeed_notes(self, span: Span, up_to_order: int | None) -> list[str]:
         """Return sentences on an air speed that no sensor measured."""

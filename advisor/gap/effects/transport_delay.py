@@ -39,6 +39,7 @@ EFFECT = Effect(
     ),
     said_beyond="The simulator answers {delay_s_ms:.0f} ms too early: the delay between command and "
     "surface is longer than its own",
+    said_or="a delay of {delay_s_ms:.0f} ms",
     imitated_by=("an equal delay of every logged stream", "log the measured surface position"),
     stated=("elevator", "delay_s"),
     servo={"delay_s": ("delay_s", 1.0)},

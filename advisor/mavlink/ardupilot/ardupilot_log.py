@@ -44,6 +44,7 @@ _RECORDS: dict[str, set[str]] = {
     "GPS": {"GWk", "GMS"},
     "IMU": {"GyrX", "GyrY", "GyrZ", "AccX", "AccY", "AccZ"},
     "NKF1": {"VD"},
+    "NKF2": {"VWN", "VWE"},
     "NTUN": {"Arspd"},
     "POS": {"Lat", "Lng", "Alt", "RelHomeAlt"},
     "RCIN": {"C1"},
@@ -51,6 +52,7 @@ _RECORDS: dict[str, set[str]] = {
     "RCO2": set(),
     "RCO3": set(),
     "XKF1": {"VD"},
+    "XKF2": {"VWN", "VWE"},
 }
 """Record to its necessary fields. Without them (another kind of vehicle, an older version) a record counts as
 missing."""
@@ -173,6 +175,9 @@ class _Translation:
             yield self._scaled_pressure(self._tables["BARO"].first_instance())
         yield from self._servo_outputs()
         yield from self._vfr_hud()
+        blown = next((self._tables[name] for name in ("XKF2", "NKF2") if name in self._tables), None)
+        if blown is not None:
+            yield self._wind(blown.first_instance())
         yield self._statustext()
 
     def _message(
@@ -275,6 +280,16 @@ class _Translation:
             fields: dict[str, ArrayLike] = dict(air_data(*found.records))
             order = np.asarray(fields.pop("order"))
             yield self._made("VFR_HUD", order, np.asarray(fields["time_usec"]), fields)
+
+    def _wind(self, estimated: RecordTable) -> Columns:
+        """Return WIND: the speed of the estimator's wind, and the direction from which it blows."""
+        north, east = (estimated.fields[name].astype(np.float64) for name in ("VWN", "VWE"))
+        fields: dict[str, ArrayLike] = {
+            "time_usec": estimated.time_us,
+            "speed": np.hypot(north, east),
+            "direction": np.degrees(np.arctan2(-east, -north)),
+        }
+        return self._message("WIND", estimated, fields)
 
     def _global_position_int(self, pos: RecordTable) -> Columns:
         fields: dict[str, ArrayLike] = {
