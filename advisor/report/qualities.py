@@ -57,6 +57,7 @@ def qualities_document(found: FlyingQualities | None) -> dict[str, Any] | None:
             name: {**picked(one, "value std ci95"), "unit": UNITS[name]}
             for name, one in found.qualities.items()
         },
+        "correlation": found.correlation,
         "left_out": dict(found.left_out),
         "levels": {
             one.category: {
