@@ -2,12 +2,13 @@
 
 from collections.abc import Sequence
 
+from advisor.gap.alternative import Alternative
 from advisor.gap.result import VISIBLE, Cause, Gap, GapVerdict, Shrink, Where, spelled
 from advisor.gap.verdict.statements import what
 
 _AS_LIKELY = 0.99
 """Score relative to the best block at which another block is equally likely."""
-_BLOCK = {
+BLOCKS = {
     "input": "between the command and the surface",
     "force_equation": "in the lift",
     "moment_equation": "in the pitching moment",
@@ -22,7 +23,15 @@ _BLOCK = {
 
 def place(block: str) -> str:
     """Return the place of a block in words."""
-    return _BLOCK[block]
+    return BLOCKS[block]
+
+
+def in_words(alternative: Alternative) -> str:
+    """Return an alternative in words: ``something without a name in the lift``."""
+    words = {"none": "no gap", "parameters": "wrong numbers"}
+    if alternative.kind == "unknown":
+        return f"something without a name {place(alternative.block)}"
+    return words.get(alternative.kind, spelled(alternative.name))
 
 
 def sentence_of_one_maneuver(where: Where) -> str:
