@@ -74,13 +74,20 @@ def gap_document(
             {"name": f"{one.about} {one.name}", **picked(one, "about statistic limit margin unit holds")}
             for one in d.decisions
         ],
+        **_judged(d),
+    })  # fmt: skip
+    return document
+
+
+def _judged(d: Diagnosis) -> dict[str, Any]:
+    """Return the probabilities of all alternatives, their evidence, and the reasons for the answer."""
+    return {
         "probabilities": d.probabilities,
         "evidence": [_evidence(one) for one in d.evidence],
         "why": [{"name": c.name, "nats": c.nats, "text": c.sentence} for c in d.why],
         "answer": answered(d).label if d.why else None,
         "rival": d.rival or None,
-    })  # fmt: skip
-    return document
+    }
 
 
 def _of_the_simulator(d: Diagnosis) -> dict[str, Any]:

@@ -62,7 +62,8 @@ def in_words(factors: FloatArray | None) -> str:
     ]
     if not named:
         return f" No error is more than {100.0 * (WORTH_NAMING - 1.0):.0f} % larger without it."
-    return f" With an a_z as clear as the pitch rate, errors would be smaller by factors: {', '.join(named)}."
+    listed = ", ".join(named)
+    return f" With an a_z as free of noise as the pitch rate, errors would be smaller by factors: {listed}."
 
 
 def _spread(assembly: Assembly, y: FloatArray, output: str) -> float:

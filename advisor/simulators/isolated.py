@@ -135,7 +135,7 @@ class Isolated:
             raise UnusableInputError(
                 "simulator_failed",
                 f"{self.description} fails in {task}: {value}.",
-                "Run the simulator by itself with the same input, and mend what it says there.",
+                "Run the simulator by itself with the same input, and fix what the simulator reports.",
             )
         return value
 

@@ -158,7 +158,7 @@ def residuals(state: CampaignState, record_of: Mapping[tuple[int, int], int]) ->
                 "",
                 "number of the record",
             ),
-            Column("t_boot_s", joined("t"), "s", "vehicle time since boot"),
+            Column("t_boot_s", joined("t"), "s", "vehicle time since power-on"),
             Column("measured", joined("measured"), unit, f"measured {output}"),
             Column("fitted", joined("fitted"), unit, f"{output} of the fit of lowest cost"),
             Column("residual", joined("residual"), unit, "measured minus fitted"),

@@ -12,7 +12,7 @@ _NO_THETA = ("no attitude", "ATTITUDE at 50 Hz")
 _FEW = ("fewer than three manoeuvres", "repeat the same manoeuvre early and late")
 _ARMS = "measure where the vane and the IMU sit: alpha.vane_arm_m, accelerometer.arm_m"
 _SURFACE = "log the measured surface position"
-_AMPLITUDES = "fly two amplitudes: a rate limit answers larger steps later"
+_AMPLITUDES = "fly two amplitudes: a rate limit delays larger steps more"
 _SPEEDS = "fly at two air speeds: the arm's part goes with 1/V, the other does not"
 _WEIGHT = "log fuel and weight; ice moves lift and control by different shares"
 _TRIM = "see which elevator trims level flight at several speeds: there the angle of attack is steady"
@@ -64,10 +64,10 @@ TRAITS = {
     "transport_delay": Trait(
         "input",
         said=(
-            "The simulator answers {delay_s_ms:.0f} ms too early: a delay between command and surface",
-            "The simulator answers {delay_s_ms:.0f} ms too late: its delay is too long",
+            "The simulator responds {delay_s_ms:.0f} ms too early: a delay between command and surface",
+            "The simulator responds {delay_s_ms:.0f} ms too late: its delay is too long",
         ),
-        said_beyond="The simulator answers {delay_s_ms:.0f} ms too early: the delay between command and "
+        said_beyond="The simulator responds {delay_s_ms:.0f} ms too early: the delay between command and "
         "surface is longer than its own",
         imitated_by=("an equal delay of every logged stream", _SURFACE), stated=("elevator", "delay_s"),
     ),
