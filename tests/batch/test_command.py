@@ -3,6 +3,7 @@
 import json
 import resource
 import shutil
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from advisor.aircraft.aircraft import PARAMETERS, Aircraft
 from advisor.batch.flight import Analyzed, BatchTask, failed, kept, sha256_of
 from advisor.batch.logs import AircraftMap, find_logs, read_map
 from advisor.batch.tables import aircraft_of, is_whole, mixed_up
+from advisor.cli.batch_reports import ReportTask, write_reports
 from advisor.words.problems import ConfigurationError, Problem, UnusableInputError
 from sim.effects.fitting import flight_of
 from sim.record import record
@@ -264,3 +266,18 @@ def test_results_below_a_file_are_refused_in_one_sentence(
     assert run.returncode == 2
     assert run.stderr.startswith("-o: ")
     assert f"lies below the file {tmp_path / 'file'}" in run.stderr
+
+
+def test_each_flight_that_counts_has_a_report_that_is_written_once(tmp_path: Path) -> None:
+    log, other = tmp_path / "one.tlog", tmp_path / "two.tlog"
+    tasks = [ReportTask(one, Aircraft(), None, one.stem) for one in (log, other)]
+    asked: list[str] = []
+
+    def run(tasks: Sequence[ReportTask]) -> Iterator[tuple[ReportTask, str | Exception]]:
+        asked.extend(task.key for task in tasks)
+        yield from ((task, "page" if task.log == log else ValueError("no fit")) for task in tasks)
+
+    for _ in range(2):
+        assert write_reports(tasks, tmp_path, run) == {log: "reports/one.html"}
+    assert (tmp_path / "reports/one.html").read_text() == "page"
+    assert asked == ["one", "two", "two"]

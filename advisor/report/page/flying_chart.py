@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from math import inf
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -19,7 +19,7 @@ from advisor.words.quantiles import PAIR_95
 
 _FILLS = ("#c6dbef", "#e1ecf7", "#f3f7fb")
 """Colours of Levels 1 to 3, the best the darkest."""
-_LINES = ("-", "--", ":")
+_LINES: tuple[Literal["-", "--", ":"], ...] = ("-", "--", ":")
 """Styles of the bounds of Levels 1 to 3, so that a print without colour shows them."""
 _ROOM = 3.0
 """Factor from the short period to the ends of the axes at least, so that bounds next to it are seen."""
