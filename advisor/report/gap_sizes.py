@@ -113,4 +113,4 @@ def named(parameter: str) -> str:
     for ending in _ENDINGS:
         if parameter.endswith(ending):
             return parameter.removesuffix(ending).replace("_", " ")
-    return parameter
+    return parameter.replace("_", " ")

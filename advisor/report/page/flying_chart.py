@@ -21,7 +21,7 @@ _FILLS = ("#c6dbef", "#e1ecf7", "#f3f7fb")
 """Colours of Levels 1 to 3, the best the darkest."""
 _LINES: tuple[Literal["-", "--", ":"], ...] = ("-", "--", ":")
 """Styles of the bounds of Levels 1 to 3, so that a print without colour shows them."""
-_ROOM = 3.0
+_ROOM = 2.0
 """Factor from the short period to the ends of the axes at least, so that bounds next to it are seen."""
 _WIDTH_IN, _HEIGHT_IN = 7.4, 2.6
 _PHONE_IN, _OF_A_PANEL_IN = 3.8, 2.4

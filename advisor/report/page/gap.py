@@ -11,7 +11,7 @@ from advisor.gap.result import Value, spelled
 from advisor.gap.verdict.text import place
 from advisor.report.gap_reasons import alternatives_of, heading_of, how_sure, in_percent, is_shown, weighed
 from advisor.report.gap_sizes import WORSE, marked, short, sizes_of
-from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, listing
+from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, Verbatim, listing
 from advisor.report.page.content import Content, Document
 from advisor.report.page.drawing import BLUE, picture
 from advisor.report.page.gap_picture import caption, gap_picture
@@ -73,13 +73,20 @@ def _blocks(found: Document) -> Iterator[Block]:
         reasons = weighed((one["nats"], one["text"]) for one in found["why"])
         title = heading_of(found)
         yield Table(
-            "gap-why", f"{title[0].upper()}{title[1:]}.", ("nats", "reason"), tuple(reasons), frozenset({0})
+            "gap-why",
+            f"{title[0].upper()}{title[1:]}.",
+            ("nats", "reason: value of the answer against value of the rival"),
+            tuple(reasons),
+            frozenset({0}),
         )
     yield from listing(
         [f"Cannot be seen: {spelled(u['effect'])}, {u['because']}." for u in found["cannot_see"]]
     )
     yield from listing(list(found["notes"]))
-    yield from listing([" ".join(filter(None, step.values())) for step in found["next"]])
+    for number, step in enumerate(found["next"], start=1):
+        yield Paragraph(f"{number}. {step['text']}")
+        if step["command"]:
+            yield Verbatim(step["command"])
 
 
 def shown_causes(found: Document) -> list[Mapping[str, Any]]:
