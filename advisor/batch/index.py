@@ -21,6 +21,7 @@ from advisor.exports.flights.found import PARAMETER_UNITS
 from advisor.oem.estimate import Estimate
 from advisor.words.printable import printable
 from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import symbol
 
 _COLUMNS = ("Flight", "Log", "Begun, UTC", "Aircraft", "Accepted", "Result")
 
@@ -73,7 +74,7 @@ def _trends(name: str, flights: Sequence[tuple[int, Estimate]], change: ChangeOv
             for (number, _), posterior in zip(flights, posteriors, strict=True)
         ]
         since = change.since if change and PARAMETERS[k] in moved else None
-        picture = trend_svg(PARAMETERS[k], PARAMETER_UNITS[PARAMETERS[k]], points, since)
+        picture = trend_svg(symbol(PARAMETERS[k]), PARAMETER_UNITS[PARAMETERS[k]], points, since)
         pictures.append(f'<figure class="third">{picture}</figure>')
     at = f" brought to an air speed of {speed:.1f} m/s" if speed is not None else ""
     return (

@@ -23,6 +23,7 @@ from advisor.flight.instruments.atmosphere import AirFlown
 from advisor.model.mil_f_8785c import CATEGORIES, LevelFound, ShortPeriodFound, ShortPeriodLimits, assess
 from advisor.oem.estimate import Estimate
 from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import symbol
 
 UNITS: Mapping[str, str] = {
     "natural_frequency": "rad/s",
@@ -181,7 +182,7 @@ def _with_error(function: _Function, estimate: Estimate) -> Quality | str:
         n for n, g in zip(PARAMETERS, gradient, strict=True) if g != 0.0 and n in estimate.not_identifiable
     ]
     if unknown:
-        return f"{', '.join(unknown)} cannot be determined from these manoeuvres"
+        return f"{', '.join(map(symbol, unknown))} cannot be determined from these manoeuvres"
     variance = float(gradient @ estimate.covariance @ gradient)
     if not (isfinite(value) and isfinite(variance)):
         return "the short period is statically unstable (det A ≤ 0)"

@@ -76,13 +76,13 @@ def test_names_of_logs_and_reasons_are_text_only_and_nothing_is_asked_for(page: 
 
 def test_each_derivative_has_a_picture_with_every_flight(page: Page) -> None:
     pictures = [value for tag, name, value in page.attributes if (tag, name) == ("svg", "aria-label")]
-    assert pictures[0] == "Z_alpha, 1/s over flights"
+    assert pictures[0] == "Z_α, 1/s over flights"
     assert len(pictures) == 6
     assert page.attributes.count(("g", "class", "flight")) == 6 * 10
 
 
 def test_the_sentence_of_the_change_test_stands_with_a_mark_in_its_picture_only(page: Page) -> None:
-    assert "Since flight 6 M_delta_e is 21 % smaller" in page.text
+    assert "Since flight 6 M_δe is 21 % smaller" in page.text
     assert [name for _, name, _ in page.attributes].count("stroke-dasharray") == 1
 
 
