@@ -128,8 +128,8 @@ def flaws(found: Flaws) -> list[str]:
 def readings(results: Iterable[ReadingResult]) -> list[str]:
     """Return lines on other readings of the paper."""
     lines = wrapped(
-        "Other readings of the rules: median needed, never, share of campaigns that need exactly what the "
-        "paper's did"
+        "Other readings of the rules: the median number of manoeuvres that the rule needs, the share of "
+        "campaigns that never stop, and the share that stops at the paper's number"
     )
     lines += [
         f"  {r.reading:<25}{r.rule:<11}{r.noise_percent:>4g} %{count(r.median):>6}  never "

@@ -113,7 +113,7 @@ def estimates(state: CampaignState) -> FlightTable:
     for k, name in enumerate(PARAMETERS):
         unit = f"{_BY_ROW} times {PARAMETER_UNITS[name]}"
         columns.append(Column(f"covariance_{name}", told("covariance", k), unit, f"covariance with {name}"))
-    about = "A row is one parameter of one estimate; instruments follow the derivatives."
+    about = "A row is one parameter of one estimate: the derivatives, then the instruments."
     return FlightTable("estimates", about, tuple(columns))
 
 

@@ -38,7 +38,7 @@ def sentence_of_one_maneuver(where: Where) -> str:
     """Return the sentence of a single manoeuvre, which shows where a gap lies and proves no cause."""
     return (
         f"Something acts {place(where.block)} that the simulator does not have; one manoeuvre cannot prove "
-        "what: fly two more."
+        "the cause: fly two more."
     )
 
 
@@ -77,7 +77,7 @@ def _of_wrong_parameters(present: Sequence[Cause], shrink: Shrink | None) -> str
     removed = _removed(shrink)
     if shrink is not None and shrink.beyond_air_percent is not None:
         removed = f"{shrink.beyond_air_percent:.0f} % of the gap, and the air makes the rest"
-    wrong = f"wrong parameters: the eight fitted ones remove {removed}"
+    wrong = f"wrong numbers: the eight fitted derivatives remove {removed}"
     if shrink is not None and shrink.by_numbers_percent is not None and present:
         return f"The simulator has {wrong}; {_listed(present)} explains little of it."
     return f"The simulator has the right structure and {wrong}."
