@@ -5,7 +5,7 @@ import numpy as np
 from advisor.aircraft.aircraft import PARAMETERS
 from advisor.decision.information import Knowledge
 from advisor.decision.pooling import DERIVATIVES
-from advisor.words.digits import distinct_texts
+from advisor.words.digits import distinct_texts, with_half
 from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import symbol
 
@@ -59,7 +59,8 @@ def evidence(known: Knowledge) -> tuple[str, ...]:
     bands = ", ".join(f"{SPOKEN[name]} {band:.1f} %" for name, band in known.prediction_percent.items())
     named = ", ".join(f"{symbol(name)} {100.0 * share[name]:.0f} %" for name in known.named)
     weak = ", ".join(
-        f"{symbol(PARAMETERS[k])} {known.posterior.theta[k]:.3g} ± {NORMAL_95 * known.posterior.std[k]:.2g}"
+        f"{symbol(PARAMETERS[k])} "
+        + with_half(float(known.posterior.theta[k]), NORMAL_95 * float(known.posterior.std[k]))
         for k in DERIVATIVES
         if PARAMETERS[k] not in known.named
     )
