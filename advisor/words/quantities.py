@@ -45,6 +45,11 @@ PARAMETERS: Mapping[str, Quantity] = {
 """Parameter to its quantity. Only Z_0 and M_0 carry an angle."""
 
 
+def symbol(parameter: str) -> str:
+    """Return the symbol of a parameter in a sentence for people: ``M_δe``."""
+    return parameter.replace("_alpha", "_α").replace("_beta", "_β").replace("_delta_", "_δ")
+
+
 def channel(name: str) -> Quantity:
     """Return the quantity of a channel. A channel without an entry keeps its own name and SI."""
     return CHANNELS.get(name, Quantity(name, "SI"))

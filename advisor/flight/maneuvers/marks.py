@@ -239,7 +239,7 @@ class Marks:
             Problem(
                 "mark_outside",
                 f"{mark.name} lies outside of the log, which holds {heard or 'no'} vehicle time.",
-                "Give a stretch within the log, in seconds since boot or with + from its start (+12:+24).",
+                "Give a stretch within the log: seconds since power-on, or from its start with + (+12:+24).",
             )
             for mark in self._given
         ]
