@@ -266,7 +266,7 @@ def _step(fit: _Fit, names: Sequence[Instrument]) -> tuple[FloatArray, float]:
     second value is the change of -2 log of the posterior that the quadratic model promises.
     """
     optimum = fit.optimum
-    extra = extra_of(fit.problem, optimum.shared, optimum.local, names)
+    extra = extra_of(fit.problem, fit.assembly, optimum.shared, optimum.local, names)
     effect = influence(fit.assembly, optimum.sensitivities, optimum.noise, extra)
     if effect is None:
         return np.zeros(len(names)), 0.0
@@ -311,6 +311,6 @@ def _identified(x: Instrument, problem: OutputErrorProblem, std: float) -> Ident
 
 
 def _solution(fit: _Fit, names: Sequence[Instrument]) -> Solution | None:
-    extra = extra_of(fit.problem, fit.optimum.shared, fit.optimum.local, names)
+    extra = extra_of(fit.problem, fit.assembly, fit.optimum.shared, fit.optimum.local, names)
     found = evaluate(*fit, extra)
     return found if isinstance(found, Solution) else None

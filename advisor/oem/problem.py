@@ -9,7 +9,7 @@ from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import LOCAL, N_SHARED, OUTPUTS, SHARED, Grid, Index
 from advisor.oem.rows import STAMP_S, Laid, Signal, lay_rows
-from advisor.oem.surface import Servo
+from advisor.oem.surface import Servo, padded
 
 STAMP_DIGITS = 12
 """Decimals to which lengths of steps are distinguished: equal steps share their matrices."""
@@ -75,6 +75,8 @@ class Assembly(Laid):
     """A problem of the short period laid out for the kernel."""
 
     grid: Grid
+    events: FloatArray
+    """(E,) stamps of the events, s."""
 
 
 def assemble(problem: OutputErrorProblem) -> Assembly:
@@ -113,6 +115,7 @@ def assemble(problem: OutputErrorProblem) -> Assembly:
     )
     return Assembly(
         grid=grid,
+        events=joined("t"),
         **laid.measurements,
         free=_free(measured, problem.airspeed_may_be_off and {"alpha", "a_z"} <= measured),
     )
@@ -191,8 +194,7 @@ class _Piece:
             if problem.reference_airspeed_m_s is not None:
                 ratio = speed / problem.reference_airspeed_m_s
                 known = pull - ratio * GRAVITY_M_S2 / problem.reference_airspeed_m_s
-                excess = (problem.reference_airspeed_m_s / airspeed) ** 2 - 1.0
-                steady = problem.steady_moment_rad * excess
+                steady = problem.steady_moment_rad * steady_share(problem, airspeed)
                 at_event, start, arrival = at_event + steady, start + steady, arrival + steady[1:]
             if record.normal_gravity is not None:
                 known += pull * (record.normal_gravity.at(middle) - 1.0)
@@ -209,6 +211,13 @@ class _Piece:
             acceleration=acceleration,
             gravity=gravity,
         )
+
+
+def steady_share(problem: OutputErrorProblem, airspeed: FloatArray) -> FloatArray:
+    """Return the deflections that act like a steady moment, shape (n,), over that at the reference speed."""
+    reference = problem.reference_airspeed_m_s
+    share: FloatArray = np.zeros(len(airspeed)) if reference is None else (reference / airspeed) ** 2 - 1.0
+    return share
 
 
 def finite(signal: Signal) -> Signal:
@@ -228,9 +237,3 @@ def merged(stamps: FloatArray, pace: float) -> FloatArray:
     within = np.arange(len(cells)) - np.repeat(np.cumsum(parts) - parts, parts)
     merged: FloatArray = np.append(t[cells] + within * (np.diff(t) / parts)[cells], t[-1])
     return merged
-
-
-def padded(rows: FloatArray) -> FloatArray:
-    """Return the rows with the last one repeated, so that there are as many steps as events."""
-    padded: FloatArray = np.concatenate([rows, rows[-1:]])
-    return padded
