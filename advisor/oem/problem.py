@@ -188,7 +188,7 @@ class _Piece:
         known = np.zeros(len(step))
         if record.airspeed is not None:
             airspeed = record.airspeed.at(t)
-            acceleration = np.gradient(airspeed, t)
+            acceleration = _slope(airspeed, t)
             speed = record.airspeed.at(middle)
             pull = GRAVITY_M_S2 / speed
             if problem.reference_airspeed_m_s is not None:
@@ -213,6 +213,15 @@ class _Piece:
         )
 
 
+def _slope(y: FloatArray, t: FloatArray) -> FloatArray:
+    """Return the slope at each stamp of the parabola through a sample and its neighbours, shape (n,)."""
+    step = np.diff(t)
+    rate = np.diff(y) / step
+    inside = (step[1:] * rate[:-1] + step[:-1] * rate[1:]) / (step[:-1] + step[1:])
+    slope: FloatArray = np.concatenate([rate[:1], inside, rate[-1:]])
+    return slope
+
+
 def steady_share(problem: OutputErrorProblem, airspeed: FloatArray) -> FloatArray:
     """Return the deflections that act like a steady moment, shape (n,), over that at the reference speed."""
     reference = problem.reference_airspeed_m_s
@@ -223,7 +232,8 @@ def steady_share(problem: OutputErrorProblem, airspeed: FloatArray) -> FloatArra
 def finite(signal: Signal) -> Signal:
     """Return the finite samples of a signal."""
     keep = np.isfinite(signal.y) & np.isfinite(signal.t)
-    return Signal(np.ascontiguousarray(signal.t[keep], float), np.ascontiguousarray(signal.y[keep], float))
+    t, y = (signal.t, signal.y) if keep.all() else (signal.t[keep], signal.y[keep])
+    return Signal(np.ascontiguousarray(t, float), np.ascontiguousarray(y, float))
 
 
 def merged(stamps: FloatArray, pace: float) -> FloatArray:
