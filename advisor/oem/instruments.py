@@ -21,10 +21,10 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.instruments.lateness import lateness_std
 from advisor.flight.signals.messages import FloatArray
-from advisor.model.response import N_PARAMETERS, respond
 from advisor.oem.extra import Extra, Prior
 from advisor.oem.found import FoundInstruments, InstrumentName, found_of
-from advisor.oem.problem import OutputErrorProblem, assemble
+from advisor.oem.instrument_columns import instrument_columns
+from advisor.oem.problem import Assembly, OutputErrorProblem
 from advisor.oem.surface import Servo
 
 KNOWN_TO = 0.1
@@ -55,8 +55,8 @@ class Instrument:
     name: InstrumentName
     read: Callable[[OutputErrorProblem], float]
     write: Callable[[OutputErrorProblem, float], OutputErrorProblem]
-    difference: float
-    """Step of central differences, in the parameter's unit."""
+    resolution: float
+    """Distance from an end of the range below which the search has reached it, in the parameter's unit."""
     lowest: float
     highest: float
     starts: tuple[float, ...]
@@ -84,7 +84,7 @@ class Instrument:
         Such a value is no estimate.
         """
         value = self.read(problem)
-        return not self.lowest + self.difference < value < self.highest - NORMAL_95 * std
+        return not self.lowest + self.resolution < value < self.highest - NORMAL_95 * std
 
 
 def _with_lag(problem: OutputErrorProblem, value: float) -> OutputErrorProblem:
@@ -214,23 +214,18 @@ BY_NAME: Mapping[InstrumentName, Instrument] = {
 
 
 def extra_of(
-    problem: OutputErrorProblem, shared: FloatArray, local: FloatArray, names: Sequence[Instrument]
+    problem: OutputErrorProblem,
+    assembly: Assembly,
+    shared: FloatArray,
+    local: FloatArray,
+    names: Sequence[Instrument],
 ) -> Extra:
     """Return the instruments as additional parameters of a fit; ``shared`` (7,), ``local`` (m, 7)."""
-    columns = []
-    for x in names:
-        sides = []
-        value = max(x.read(problem), x.lowest + 2.0 * x.difference)
-        for sign in (-1.0, 1.0):
-            assembly = assemble(x.write(problem, value + sign * x.difference))
-            y = np.empty(len(assembly.z))
-            respond(assembly.grid, shared, local, y, np.empty((0, N_PARAMETERS)))
-            sides.append(y)
-        columns.append((sides[1] - sides[0]) / (2.0 * x.difference))
-    if not columns:
-        return Extra.none(len(assemble(problem).z))
+    if not names:
+        return Extra.none(len(assembly.z))
+    columns = instrument_columns(problem, assembly, shared, local, [x.name for x in names])
     values = np.array([x.read(problem) for x in names])
-    return Extra.at(np.column_stack(columns), values, [x.prior for x in names])
+    return Extra.at(columns, values, [x.prior for x in names])
 
 
 def penalty(problem: OutputErrorProblem, names: Sequence[Instrument]) -> float:
