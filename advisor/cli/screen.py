@@ -111,7 +111,9 @@ def _campaign(
 ) -> "Campaign":
     from advisor.campaign.campaign import Campaign
 
-    return Campaign(aircraft, target_system, settle, tell, by_hand=by_hand, marks=marks, names=names)
+    return Campaign(
+        aircraft, target_system, settle, tell, by_hand=by_hand, marks=marks, names=names, lateral=True
+    )
 
 
 def _show(
@@ -133,10 +135,15 @@ def _show(
 
 
 def so_far(state: "CampaignState") -> Iterator[str]:
-    """Yield each verdict of a flight test that was left, and stop or continue; nothing before the first."""
+    """Yield each verdict of a flight test that was left, and stop or continue; nothing before the first
+    verdict of an axis."""
+    from advisor.report.lateral import lateral_lines
     from advisor.report.text import maneuver_line, next_line, stop_line
 
     if state.maneuvers:
         yield from map(maneuver_line, state.maneuvers)
         yield stop_line(state.flight_test)
         yield next_line(state.flight_test)
+    if state.lateral is not None and state.lateral.maneuvers:
+        yield "Roll and yaw"
+        yield from lateral_lines(state.lateral)

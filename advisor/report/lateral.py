@@ -101,18 +101,20 @@ def _one(quality: Quality | None) -> dict[str, Any] | None:
     }
 
 
+def lateral_maneuver_line(judged: JudgedLateral) -> str:
+    """Return one line on a manoeuvre of aileron or rudder: number, start, input, verdict."""
+    span, verdict = judged.maneuver.span, judged.verdict
+    mark = "✓" if verdict.accepted else "✗"
+    at = clock(span.start_s)
+    return f"{judged.maneuver.number:2d}  {at:>7}  {span.kind:<18}  {mark} {verdict.sentence}"
+
+
 def lateral_lines(state: LateralState) -> Iterator[str]:
     """Yield the lines of the lateral half: verdicts, derivatives, modes, stop or continue."""
     if not state.maneuvers:
         yield "No test input of the aileron or the rudder was found."
         return
-    for judged in state.maneuvers:
-        span, verdict = judged.maneuver.span, judged.verdict
-        mark = "✓" if verdict.accepted else "✗"
-        yield (
-            f"{judged.maneuver.number:2d}  {clock(span.start_s):>7}  {span.kind:<18}  {mark} "
-            f"{verdict.sentence}"
-        )
+    yield from map(lateral_maneuver_line, state.maneuvers)
     if state.model is not None:
         yield ""
         yield from _model_lines(state.model)
