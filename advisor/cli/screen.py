@@ -128,13 +128,13 @@ def _show(
         app.run()
     if app.failure is not None:
         raise app.failure
-    for line in so_far(app.view.state):
+    for line in so_far(app.view.state, aircraft):
         click.echo(printable(line))
     if tempo is not None and app.view.problems:
         raise UnusableInputError.of(app.view.problems[:1])
 
 
-def so_far(state: "CampaignState") -> Iterator[str]:
+def so_far(state: "CampaignState", aircraft: Aircraft) -> Iterator[str]:
     """Yield each verdict of a flight test that was left, and stop or continue; nothing before the first
     verdict of an axis."""
     from advisor.report.lateral import lateral_lines
@@ -146,4 +146,4 @@ def so_far(state: "CampaignState") -> Iterator[str]:
         yield next_line(state.flight_test)
     if state.lateral is not None and state.lateral.maneuvers:
         yield "Roll and yaw"
-        yield from lateral_lines(state.lateral)
+        yield from lateral_lines(state.lateral, aircraft)
