@@ -128,14 +128,19 @@ def lateral_lines(state: LateralState, aircraft: Aircraft) -> Iterator[str]:
         yield "No test input of the aileron or the rudder was found."
         return
     yield from map(lateral_maneuver_line, state.maneuvers)
-    if state.model is not None:
-        yield ""
-        yield from _model_lines(state.model)
-        yield from _quality_lines(state, aircraft)
+    yield ""
+    yield from lateral_results(state, aircraft)
     yield ""
     yield state.flight_test.sentence
     if state.flight_test.next is not None:
         yield f"  {state.flight_test.next.advice}"
+
+
+def lateral_results(state: LateralState, aircraft: Aircraft) -> Iterator[str]:
+    """Yield derivatives, modes, levels and tests of the joint estimate; nothing without one."""
+    if state.model is not None:
+        yield from _model_lines(state.model)
+        yield from _quality_lines(state, aircraft)
 
 
 def _model_lines(model: LateralEstimate) -> Iterator[str]:

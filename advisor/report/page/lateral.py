@@ -1,7 +1,6 @@
 """Roll and yaw: verdict, derivatives, modes, levels, tests of the simulator, and fits."""
 
 from collections.abc import Iterator, Mapping
-from typing import Any
 
 from advisor.aircraft.aircraft import SIDE_PARAMETERS
 from advisor.campaign.lateral import LateralState
@@ -123,6 +122,6 @@ def _modes(content: Content, state: LateralState) -> Iterator[Block]:
 
 
 def _test(one: LateralTest) -> tuple[str, ...]:
-    numbers: tuple[Any, ...] = (one.flown, one.simulated)
-    shown = (f"{value:.3g}" for value in numbers)
-    return one.entry, one.name, *shown, f"± {one.limit:.2g}", one.unit, "✓" if one.holds else "✗"
+    flown, simulated = (f"{value:.3g}".replace("-", "−") for value in (one.flown, one.simulated))
+    holds = "✓" if one.holds else "✗"
+    return one.entry, one.name, flown, simulated, f"± {one.limit:.2g}", one.unit, holds

@@ -25,8 +25,7 @@ from advisor.report.page.telemetry import telemetry
 PageFormat = Literal["html", "md"]
 _PARTS = (
     headline, gap, estimates, criterion, flying, flight_picture, maneuvers, fits, prediction, lateral,
-    telemetry,
-    assumptions, provenance,
+    telemetry, assumptions, provenance,
 )  # fmt: skip
 
 
