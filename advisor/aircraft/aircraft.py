@@ -15,6 +15,8 @@ Criterion = Literal["eq12", "eq13"]
 
 PARAMETERS = ("Z_0", "Z_alpha", "Z_q", "Z_delta_e", "M_0", "M_alpha", "M_q", "M_delta_e")
 """Names of the eight parameters θ, Eq. (3), in the order of every vector of parameters in this program."""
+SIDE_PARAMETERS = tuple(f"{y}_{x}" for y in "YLN" for x in ("beta", "p", "r", "delta_a", "delta_r"))
+"""Names of the fifteen derivatives of roll and yaw, in the order of every vector of theirs."""
 
 
 Pairs = tuple[tuple[float, float], ...]
