@@ -12,7 +12,7 @@ from advisor.oem.lateral_estimate import (
 )
 from advisor.oem.lateral_problem import LateralProblem
 from advisor.oem.rows import Signal
-from tests.oem.lateral_builders import JET, aileron_doublet, both_inputs, flown, rudder_doublet, vector
+from tests.oem.lateral_builders import JET, aileron_doublet, both_inputs, flown, rudder_doublet, steps, vector
 
 T = np.arange(0.0, 15.0, 0.025)
 WITHOUT_VANE = ("p", "r", "bank", "a_y")
@@ -90,3 +90,14 @@ def test_feet_that_move_a_fifth_of_the_hands_fly_no_rudder_test(share, flown_too
     problem = LateralProblem((flown(JET, aileron=aileron_doublet(T), rudder=feet),))
     assert problem.flies("aileron")
     assert problem.flies("rudder") == flown_too
+
+
+def test_a_control_that_hardly_moves_takes_less_of_the_models_error_than_a_flown_one():
+    twitch = steps(T, (14.85,), (0.002,))
+    record = flown(JET, aileron=aileron_doublet(T), rudder=twitch, rng=np.random.default_rng(1))
+    rate = record.outputs["r"]
+    gust = Signal(rate.t, rate.y + 0.2 * np.maximum(rate.t - 14.85, 0.0))
+    solution = solved(LateralProblem((replace(record, outputs={**record.outputs, "r": gust}),)))
+    # A fit without the prior gives 188.
+    assert abs(solution.theta[place("N_delta_r")]) < 100.0
+    assert solution.theta[place("L_delta_a")] == pytest.approx(JET["L_delta_a"], rel=0.01)

@@ -113,7 +113,7 @@ class Cutting:
 
     def why_on_ground(self, span: Span, up_to_order: int | None = None) -> str | None:
         """Return evidence that the aircraft was on the ground during a movement; None without evidence."""
-        return why_on_ground(span, partial(self._tracks.cut, up_to_order=up_to_order))
+        return why_on_ground(span, partial(self._tracks.cut, up_to_order=up_to_order), self._limits)
 
     def _not_an_input(self, maneuver: Maneuver, up_to_order: int | None) -> Because | None:
         span = maneuver.span
