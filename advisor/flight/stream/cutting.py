@@ -11,14 +11,15 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.elevator.elevator_sign import ElevatorSign, turned
 from advisor.flight.instruments.examination import examine
 from advisor.flight.instruments.measured import Evidence, pooled
-from advisor.flight.maneuvers.events import Activity, FlightEvent, ManeuverFlown, Notice
+from advisor.flight.maneuvers.events import Activity, FlightEvent, ManeuverFlown, Notice, SideManeuverFlown
 from advisor.flight.maneuvers.feedback import HISTORY_S
 from advisor.flight.maneuvers.ground import why_on_ground
+from advisor.flight.maneuvers.loop import PITCH, ROLL, YAW
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.maneuvers.marked_input import marked_span
 from advisor.flight.maneuvers.marks import Mark
 from advisor.flight.maneuvers.purpose import Because, not_an_input
-from advisor.flight.maneuvers.segmentation import LEAD_IN_S
+from advisor.flight.maneuvers.side_input import SideInput, SideMovement, named, part_of_input
 from advisor.flight.maneuvers.steady_speed import at_steady_speed
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.record import AIR_UNITS, UNITS, Channel
@@ -42,9 +43,13 @@ class Cutting:
         The aircraft file: the elevator's sign, and the limits of the model.
     breaks
         Breaks in the stamps.
+    lateral
+        Whether marks of aileron and rudder count, too.
     """
 
-    def __init__(self, tracks: Tracks, who: Identity, aircraft: Aircraft, breaks: Breaks) -> None:
+    def __init__(
+        self, tracks: Tracks, who: Identity, aircraft: Aircraft, breaks: Breaks, lateral: bool = False
+    ) -> None:
         self._tracks, self._who, self._limits, self._breaks = tracks, who, aircraft.limits, breaks
         self._sign = None if aircraft.elevator.is_calibrated else ElevatorSign()
         self._modes = [(-np.inf, who.mode)]
@@ -52,8 +57,11 @@ class Cutting:
         self._evidence: Evidence = {}
         self.findings: tuple[InstrumentFinding, ...] = ()
         """Contradictions of the instruments by all manoeuvres of this power-on."""
+        self._lateral = lateral
         self.maneuvers = 0
         """Number of manoeuvres found."""
+        self.side_maneuvers = 0
+        """Number of lateral manoeuvres found."""
         self.activities: Counter[str] = Counter()
         """Movements that were no test inputs: their description to their number."""
 
@@ -95,9 +103,28 @@ class Cutting:
         return self._counted(maneuver, evidence)
 
     def marked(self, mark: Mark, boot: int, up_to_order: int | None) -> list[FlightEvent]:
-        """Return the manoeuvre of a marked stretch, which counts without the finder's criteria."""
-        elevator = self._tracks.cut("elevator", mark.start_s - LEAD_IN_S, mark.end_s, up_to_order)
-        return self._counted(*self._cut(marked_span(mark, elevator), boot, up_to_order))
+        """Return the manoeuvres of a marked stretch, which count without the finder's criteria.
+
+        The stretch is a manoeuvre of the elevator, of aileron and rudder, or of both, by the controls that
+        moved. A stretch without any movement is one of the elevator.
+        """
+        spans = {
+            loop: marked_span(mark, self._tracks.cut(loop.control, *mark.reach, up_to_order))
+            for loop in (PITCH, ROLL, YAW)
+        }
+        moved = part_of_input([SideMovement(loop, span) for loop, span in spans.items()])
+        sides = tuple(one for one in moved if one.loop is not PITCH) if self._lateral else ()
+        events: list[FlightEvent] = []
+        if not sides or len(sides) < len(moved):
+            events += self._counted(*self._cut(spans[PITCH], boot, up_to_order))
+        if sides:
+            self.side_maneuvers += 1
+            found = SideInput(sides)
+            span = replace(
+                found.main.span, start_s=found.start_s, last_step_s=found.last_step_s, kind=named(found)
+            )
+            events.append(SideManeuverFlown(self.side(span, boot, self.side_maneuvers, up_to_order)))
+        return events
 
     def _counted(self, maneuver: Maneuver, evidence: Evidence) -> list[FlightEvent]:
         self.maneuvers += 1

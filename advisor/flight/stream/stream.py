@@ -101,13 +101,13 @@ class FlightStream:
             aircraft.beta.source,
         )
         self._breaks = Breaks()
-        self._cutting = Cutting(self._tracks, self._who, aircraft, self._breaks)
+        self._cutting = Cutting(self._tracks, self._who, aircraft, self._breaks, lateral)
         self._mixing = Mixing(self._tracks)
         self.marks = Marks(marks)
         """Marks by hand, by a switch and by texts."""
         self._markers = MarkerWatch(aircraft.markers)
         self._path = ElevatorPath(self._tracks, self._mixing, self.marks, self._cutting)
-        self._side = SidePath(self._tracks, self._cutting) if lateral else None
+        self._side = SidePath(self._tracks, self.marks, self._cutting) if lateral else None
         self._over = False
         self.boot = 0
         """Number of the power-on, 0 for the first in the stream."""
