@@ -12,6 +12,7 @@ from advisor.model.lateral import LATERAL
 from advisor.oem.airspeed import airspeed
 from advisor.oem.alpha_use import FEWEST_SAMPLES, can_do_without, has, infer, why_left_out
 from advisor.oem.estimate import NoEstimate
+from advisor.oem.lateral_instruments import beta_arm_m
 from advisor.oem.lateral_problem import NEEDED, LateralProblem, LateralRecord
 from advisor.oem.prepare import constant_speed, reference_speed, signal_of, stated_reference
 from advisor.oem.rows import Signal
@@ -45,7 +46,6 @@ def prepare_lateral(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Latera
     )
     outputs = _outputs(maneuvers, aircraft)
     left_out = why_left_out(maneuvers, aircraft)
-    arm = aircraft.beta.vane_arm_m
     return LateralProblem(
         records=tuple(
             LateralRecord(
@@ -62,7 +62,7 @@ def prepare_lateral(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Latera
         ),
         reference_airspeed_m_s=reference,
         servos={name: _servo(getattr(aircraft, name)) for name in LATERAL.inputs},
-        beta_arm_m=(aircraft.alpha.vane_arm_m if arm is None else arm) or 0.0,
+        beta_arm_m=beta_arm_m(aircraft) or 0.0,
         accelerometer_arm_m=aircraft.accelerometer.arm_m or 0.0,
     )
 
