@@ -158,3 +158,11 @@ def test_a_mark_of_an_aileron_input_replaces_the_one_that_was_found(both, state)
 
 def test_a_mark_without_elevator_is_no_manoeuvre_of_the_elevator(both):
     assert marked(both, Mark(102.5, 112.0)).maneuvers == ()
+
+
+def test_an_uncalibrated_aileron_is_per_assumed_degree(both):
+    notes = marked(both).elevator_notes
+    said = [note for note in notes if note.startswith("No aileron.calibration")]
+    assert len(said) == 1
+    assert "Y_δa, L_δa and N_δa are per assumed degree." in said[0]
+    assert any(note.startswith("No rudder.calibration") for note in notes)
