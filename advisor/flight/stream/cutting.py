@@ -159,8 +159,9 @@ class Cutting:
             data_notes=tuple(notes),
             missed_s=self._breaks.missed_s(span.record_from_s, span.end_s),
             leapt_s=self._breaks.leapt_s(span.record_from_s, span.end_s),
+            scale=counted.scale if (counted := self._who.surfaces.get("elevator")) else None,
         )
-        return maneuver, examined.evidence
+        return self._who.rescaled(maneuver), examined.evidence
 
     def side(self, span: Span, boot: int, number: int, up_to_order: int | None) -> Maneuver:
         """Return the record of a lateral manoeuvre with this number."""
