@@ -32,7 +32,7 @@ class Scale:
     @property
     def _full_rad(self) -> float:
         """Surface angle at ``high_us``, rad."""
-        return -_FULL_STROKE_RAD * (-1.0 if self.reversed else 1.0)
+        return float(_FULL_STROKE_RAD if self.reversed else -_FULL_STROKE_RAD)
 
     def deflection(self, pwm_us: FloatArray) -> FloatArray:
         """Return the surface angle in rad, trailing edge down positive, linear beyond the ends.
