@@ -52,6 +52,11 @@ class LateralCampaign:
         estimate = estimate_lateral([maneuver], self._aircraft)
         self._flown.append((maneuver, estimate, judge_lateral(maneuver, estimate, self._aircraft)))
 
+    @property
+    def maneuvers(self) -> tuple[Maneuver, ...]:
+        """Manoeuvres in the order flown."""
+        return tuple(maneuver for maneuver, _, _ in self._flown)
+
     def finish(self) -> None:
         """Make the joint estimate over the accepted manoeuvres."""
         accepted = [maneuver for maneuver, _, reasons in self._flown if not reasons]
