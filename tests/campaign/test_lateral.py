@@ -97,7 +97,7 @@ def test_the_joint_estimate_has_the_truth_in_its_intervals(state):
 
 
 def test_a_derivative_is_told_or_not_identifiable_and_never_both(state):
-    document = lateral_document(state)
+    document = lateral_document(state, AIRCRAFT)
     told = set(document["model"]) - {"reference_airspeed_m_s", "instruments"}
     assert told.isdisjoint(document["not_identifiable"])
     assert told | set(document["not_identifiable"]) == set(state.model.estimate.names)
@@ -105,7 +105,7 @@ def test_a_derivative_is_told_or_not_identifiable_and_never_both(state):
 
 
 def test_the_text_says_every_verdict_and_the_decision(state):
-    lines = list(lateral_lines(state))
+    lines = list(lateral_lines(state, AIRCRAFT))
     assert sum("doublet" in line and "✓" in line for line in lines) == 2
     assert any(line.startswith(("STOP", "CONTINUE")) for line in lines)
 
@@ -118,7 +118,7 @@ def test_the_result_does_not_depend_on_the_batches(both, state):
 
 def test_without_a_rudder_input_the_advice_is_a_rudder_doublet():
     state = ended(wired(rudder=False))
-    assert lateral_document(state)["not_identifiable"]["N_delta_r"].endswith("fly a rudder doublet")
+    assert lateral_document(state, AIRCRAFT)["not_identifiable"]["N_delta_r"].endswith("fly a rudder doublet")
     assert state.flight_test.next.advice.startswith("next: rudder doublet")
 
 
@@ -129,7 +129,7 @@ def test_a_campaign_that_is_not_asked_has_no_lateral_half(both):
 
 
 def test_every_interval_is_that_of_95_percent(state):
-    document = lateral_document(state)
+    document = lateral_document(state, AIRCRAFT)
     told = [
         one for name, one in document["model"].items() if "ci95" in (one if isinstance(one, dict) else {})
     ]

@@ -13,10 +13,10 @@ from advisor.flight.vehicle.wiring import ELEVATOR, Role, Wiring
 from advisor.words.problems import Problem
 
 _CANCELS = {
-    "elevon": "what they do in roll cancels",
-    "V-tail": "what they do in yaw cancels",
-    "A-tail": "what they do in yaw cancels",
-    "differential spoiler": "what they do in roll and yaw cancels",
+    "elevon": "their effects in roll cancel",
+    "V-tail": "their effects in yaw cancel",
+    "A-tail": "their effects in yaw cancel",
+    "differential spoiler": "their effects in roll and yaw cancel",
 }
 
 _OF_ELEVATOR = "Z_δe and M_δe"

@@ -91,9 +91,12 @@ def hold_clocks(work: Work, rate: str, angle: str) -> None:
     if late is None or not work.has(rate, angle):
         return
     range_s = FILTER_S + half_intervals(work, rate, angle)
+    channel, other = (rate, angle) if late.value > 0.0 else (angle, rate)
+    if channel == angle and bool(np.all(np.isin(work.channels[angle].t, work.channels[rate].t))):
+        # The autopilot integrates the rates of one message to the attitude of the same message.
+        range_s = FILTER_S
     if abs(late.value) - SIGMAS * late.std <= range_s:
         return
-    channel, other = (rate, angle) if late.value > 0.0 else (angle, rate)
     measured = Measured(abs(late.value), late.std)
     # An attitude is integrated from the gyro. Its lateness can be removed.
     be_late(work, channel, PLAIN[other], measured, used=channel == angle, shifted=(channel,))
@@ -111,7 +114,7 @@ def be_late(
 ) -> None:
     """Contradict the clock of a channel, and set the stamps of the channels in ``shifted`` earlier."""
     name = PLAIN[channel]
-    ms = f"{'at least ' if bound else ''}{1e3 * late.value:.0f} ± {1e3 * late.std:.0f} ms"
+    ms = f"{'at least ' if bound else ''}{1e3 * late.value:.0f} ± {1e3 * NORMAL_95 * late.std:.0f} ms"
     work.contradict(
         channel, "delay_s", None, late.value, late,
         f"{name} is {ms} late relative to {relative_to}" + (ALLOWED if used else ""),

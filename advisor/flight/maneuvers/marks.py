@@ -1,4 +1,4 @@
-"""Stretches of flight marked as manoeuvres: by hand, by a switch, or by a text of the vehicle.
+"""Stretches of flight marked as manoeuvres: by hand, by a switch, by a text, or by the autopilot's SystemID.
 
 A mark replaces every input that the finder finds in its stretch. A mark set while the stream runs gives the
 manoeuvre that results when the mark is known before the stream begins.
@@ -16,7 +16,7 @@ from advisor.flight.maneuvers.segmentation import LEAD_IN_S
 from advisor.words.problems import Problem
 from advisor.words.vehicle_time import between, clock
 
-Marker = Literal["hand", "switch", "text"]
+Marker = Literal["hand", "switch", "text", "system id"]
 
 LONGEST_S = 100.0
 """Longest mark, s. With its lead-in a mark must fit into the two minutes of channels that a stream keeps."""
@@ -249,7 +249,7 @@ class Marks:
             Problem(
                 "mark_outside",
                 f"{mark.name} lies outside of the log, which holds {heard or 'no'} vehicle time.",
-                "Give a stretch within the log, in seconds since boot or with + from its start (+12:+24).",
+                "Give a stretch within the log: seconds since power-on, or from its start with + (+12:+24).",
             )
             for mark in self._given
         ]

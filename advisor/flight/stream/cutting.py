@@ -1,7 +1,7 @@
 """From elevator movements to manoeuvres with their channels, or to activities with their reasons."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -27,7 +27,8 @@ from advisor.flight.signals.record import AIR_UNITS, UNITS, Channel
 from advisor.flight.signals.renewal import counted_once
 from advisor.flight.signals.repair import repaired
 from advisor.flight.signals.tracks import Tracks
-from advisor.flight.signals.trust import distrusted
+from advisor.flight.signals.trust import Distrust, distrusted
+from advisor.flight.signals.wind import along_heading
 from advisor.flight.stream.identity import Identity
 from advisor.flight.vehicle.breaks import Breaks
 from advisor.flight.vehicle.modes import closes_pitch_loop
@@ -97,9 +98,7 @@ class Cutting:
         maneuver, evidence = self._cut(span, boot, up_to_order)
         because = self._not_an_input(maneuver, up_to_order)
         if because is not None:
-            self.activities[because.what] += 1
-            stay_s, _ = self._stay(_middle_s(span))
-            return [Activity(span.start_s, span.end_s, because.reason, because.text, stay_s, boot)]
+            return [self._activity(maneuver, because)]
         airspeed = maneuver.channels.get("airspeed")
         steady = at_steady_speed(maneuver.span, airspeed, self._limits.airspeed_change_percent)
         if steady is not maneuver.span:
@@ -110,7 +109,8 @@ class Cutting:
         """Return the manoeuvres of a marked stretch, which count without the finder's criteria.
 
         The stretch is a manoeuvre of the elevator, of aileron and rudder, or of both, by the controls that
-        moved. A stretch without any movement is one of the elevator.
+        moved. A stretch without any movement is one of the elevator. SystemID moves any control, so that the
+        elevator's visible effect decides.
         """
         spans = {
             loop: marked_span(mark, self._tracks.cut(loop.control, *mark.reach, up_to_order))
@@ -120,7 +120,11 @@ class Cutting:
         sides = tuple(one for one in moved if one.loop is not PITCH) if self._lateral else ()
         events: list[FlightEvent] = []
         if not sides or len(sides) < len(moved):
-            events += self._counted(*self._cut(spans[PITCH], boot, up_to_order))
+            maneuver, evidence = self._cut(spans[PITCH], boot, up_to_order)
+            because = self._not_an_input(maneuver, up_to_order) if mark.by == "system id" else None
+            events += (
+                self._counted(maneuver, evidence) if because is None else [self._activity(maneuver, because)]
+            )
         if sides:
             found = SideInput(sides)
             span = replace(
@@ -128,6 +132,13 @@ class Cutting:
             )
             events += self.side_counted(*self.side(span, boot, up_to_order))
         return events
+
+    def _activity(self, maneuver: Maneuver, because: Because) -> Activity:
+        """Return the event of a movement that was no test input, and count the movement."""
+        self.activities[because.what] += 1
+        span = maneuver.span
+        stay_s, _ = self._stay(_middle_s(span))
+        return Activity(span.start_s, span.end_s, because.reason, because.text, stay_s, maneuver.boot)
 
     def _counted(self, maneuver: Maneuver, evidence: Evidence) -> list[FlightEvent]:
         self.maneuvers += 1
@@ -170,10 +181,7 @@ class Cutting:
             span = replace(span, record_from_s=min(earlier_s, span.start_s))
         channels, notes = self._recorded(span, up_to_order)
         distrusts = self._who.distrusts(distrusted(channels))
-        for still in distrusts:
-            if still.channel == "a_z":
-                # An estimate can do without a specific force; a frozen one would spoil the estimate.
-                del channels["a_z"]
+        channels = _trusted(channels, distrusts)
         examined = examine(channels, self._evidence)
         channels = {**examined.channels, **self._air(span, up_to_order)}
         mode = self._stay(_middle_s(span))[1]
@@ -188,8 +196,9 @@ class Cutting:
             data_notes=tuple(notes),
             missed_s=self._breaks.missed_s(span.record_from_s, span.end_s),
             leapt_s=self._breaks.leapt_s(span.record_from_s, span.end_s),
+            scale=counted.scale if (counted := self._who.surfaces.get("elevator")) else None,
         )
-        return maneuver, examined.evidence
+        return self._who.rescaled(maneuver), examined.evidence
 
     def side(self, span: Span, boot: int, up_to_order: int | None) -> tuple[Maneuver, Evidence]:
         """Return the record of a lateral manoeuvre, and what it tells of the instruments."""
@@ -227,7 +236,7 @@ class Cutting:
         channels: dict[str, Channel] = {}
         notes = self._airspeed_notes(span, up_to_order)
         for name in UNITS:
-            channel = self._tracks.cut(name, span.record_from_s, span.end_s, up_to_order)
+            channel = self._whole(name, span, up_to_order)
             if channel is not None:
                 sound = repaired(counted_once(self._who.known(channel)))
                 channels[name] = sound.channel
@@ -235,11 +244,18 @@ class Cutting:
         return channels, notes
 
     def _air(self, span: Span, up_to_order: int | None) -> dict[str, Channel]:
-        """Return the channels of a record that tell the density of the air."""
-        cut = {
-            name: self._tracks.cut(name, span.record_from_s, span.end_s, up_to_order) for name in AIR_UNITS
-        }
-        return {name: air for name, air in cut.items() if air is not None}
+        """Return the channels of a record that tell the density of the air and the wind."""
+        cut = {name: self._whole(name, span, up_to_order) for name in AIR_UNITS}
+        found = {name: air for name, air in cut.items() if air is not None}
+        north, east, heading = (
+            self._whole(name, span, up_to_order) for name in ("wind_north", "wind_east", "heading")
+        )
+        if north is None or east is None or heading is None:
+            return found
+        return found | along_heading(north, east, heading)
+
+    def _whole(self, name: str, span: Span, up_to_order: int | None) -> Channel | None:
+        return self._tracks.cut(name, span.record_from_s, span.end_s, up_to_order)
 
     def _airspeed_notes(self, span: Span, up_to_order: int | None) -> list[str]:
         """Return sentences on an air speed that no sensor measured."""
@@ -257,6 +273,16 @@ def _news(maneuver: Maneuver, known: Sequence[InstrumentFinding]) -> list[Notice
     """Return a notice for every contradiction of a manoeuvre's instruments that was not known before."""
     codes = {f.code for f in known}
     return [Notice(f.code, str(f.problem)) for f in maneuver.findings if f.code not in codes]
+
+
+def _trusted(channels: Mapping[str, Channel], distrusts: Sequence[Distrust]) -> dict[str, Channel]:
+    """Return the channels without those that would spoil an estimate which can do without them."""
+    left_out = {distrust.channel for distrust in distrusts if distrust.left_out}
+    kept = {name: channel for name, channel in channels.items() if name not in left_out}
+    if "a_z" in left_out and "alpha" in kept and kept["alpha"].provenance == "derived":
+        # Nothing computes an angle of attack from an accelerometer that stands still.
+        kept["alpha"] = replace(kept["alpha"], provenance="unknown")
+    return kept
 
 
 def _middle_s(span: Span) -> float:
