@@ -8,7 +8,6 @@ import numpy as np
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.alternative import AlternativeEvidence
 from advisor.gap.result import Cause, ComparedDerivative, Diagnosis, InSimulator, Qualification
-from advisor.gap.side import SideGap
 from advisor.gap.verdict.as_judged import answered
 from advisor.gap.verdict.text import in_words
 from advisor.words.plain import picked, plain
@@ -61,7 +60,7 @@ def gap_document(
             **picked(d.kinematics, "finding lag_s lag_std_s scale"),
             "text": d.kinematics.sentence, "bias_rad": d.kinematics.offset.rad,
         },
-        "parameters_changed": [_changed(one) for one in d.derivatives if one.differs],
+        "parameters_changed": [changed_document(one) for one in d.derivatives if one.differs],
         "traces": [
             {
                 **picked(trace, "number channel t"),
@@ -101,33 +100,8 @@ def _of_the_simulator(d: Diagnosis) -> dict[str, Any]:
     }
 
 
-def side_gap_document(found: SideGap) -> dict[str, Any]:
-    """Return the block ``lateral`` of ``advisor gap --json``, in SI units."""
-    before, after = (float(np.mean(list(g.values()))) if g else None for g in (found.before, found.after))
-    shrink = None
-    if before is not None and after is not None:
-        percent = 100.0 * (1.0 - after / before) if before > 0.0 else None
-        shrink = {"holdout": list(found.holdout), "before": before, "after": after, "percent": percent}
-    told: dict[str, Any] = plain({
-        **picked(found, "verdict sentence maneuvers not_identifiable"),
-        "gap": {"before": before, "by_channel": found.before, "by_channel_after": found.after},
-        "parameters_changed": [_changed(one) for one in found.derivatives if one.differs],
-        "parameters_compared": [_changed(one) for one in found.derivatives],
-        "instruments": {n: {"value": v.value, "std": v.std} for n, v in found.instruments.items()},
-        "shrink": shrink,
-        "decisions": [
-            {
-                "name": "the simulator's derivatives of roll and yaw",
-                "statistic": found.statistic,
-                "limit": found.limit,
-                "margin": found.limit - found.statistic,
-            }
-        ],
-    })  # fmt: skip
-    return told
-
-
-def _changed(one: ComparedDerivative) -> dict[str, Any]:
+def changed_document(one: ComparedDerivative) -> dict[str, Any]:
+    """Return a derivative of the simulator and of the flight."""
     return {
         "derivative": one.name,
         "simulator": one.given,

@@ -1,7 +1,7 @@
 """Evidence on the instruments of roll and yaw from the motion of one record.
 
-The bank's rate is p + tan θ·(q·sin φ + r·cos φ). The sideslip's rate is β̇ = a_y/V + b + c, with the part
-b = (g/V)·cos θ·sin φ of the weight and the part c = sin α·p - cos α·r of turning. On every aircraft the side
+The bank's rate is p + tan θ·(q·sin φ + r·cos φ). The sideslip's rate is β̇ = a_y/V + b + c. The part of the
+weight is b = (g/V)·cos θ·sin φ, and that of turning is c = sin α·p - cos α·r. On every aircraft the side
 force opposes the sideslip, a_y/V = Y_β·β with Y_β < 0 and a small part of the rudder's. So the sign of each
 part in a measured sideslip, and in a side force, is known without any aerodynamics.
 """

@@ -20,8 +20,8 @@ from advisor.flight.signals.record import Channel
 _GYRO_WIDTH = 0.05
 """Standard deviation of the ratio of bank and integrated roll rate, as a share: as for pitch."""
 _FORCE_WIDTH = 0.3
-"""Standard deviation of the side force's scale by a measured sideslip, as a share: a vane's own scale counts
-several times, because the side force is a small part of the sideslip's rate."""
+"""Standard deviation of the side force's scale by a measured sideslip, as a share. The side force is a small
+part of the sideslip's rate, so that a vane's own scale counts several times."""
 _USUAL_IN_G, _SPREAD = 2.0, 0.8
 """Side force of one radian of sideslip over the weight, |C_Yβ|/C_L: its usual value, and the standard
 deviation of its logarithm. Four aircraft on record have 0.7 to 4.9."""

@@ -21,7 +21,7 @@ from advisor.oem.lateral_estimator import LateralEstimate, estimate_lateral
 from advisor.oem.lateral_prediction import predicted_lateral
 
 LEVEL = 0.95
-"""Level of the joint test that the simulator's numbers are those of the flight, as of every interval."""
+"""Level of the joint test that the simulator's numbers are those of the flight: that of every interval."""
 HELD_OUT = 3
 """One in so many manoeuvres is held out, from the end."""
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft, Beta, SideControl
+from advisor.analysis.side_comparison import compare_side
+from advisor.cli.side_gap import side_gap_document
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.record import Channel
-from advisor.gap.document import side_gap_document
-from advisor.gap.side import compare_side
 from tests.oem.lateral_builders import JET, aileron_doublet, flown, rudder_doublet
 
 KNOWN = SideControl(lag_s=0.0, delay_s=0.0)
