@@ -63,6 +63,11 @@ class LateralCampaign:
         self._state = None
         return self._judged()[-1]
 
+    @property
+    def maneuvers(self) -> tuple[Maneuver, ...]:
+        """Manoeuvres in the order flown."""
+        return tuple(maneuver for maneuver, _, _ in self._flown)
+
     def finish(self) -> None:
         """Take the end of the flight, after which the joint estimate is over all accepted manoeuvres."""
         self._ended = True

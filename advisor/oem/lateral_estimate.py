@@ -64,7 +64,7 @@ class LateralSolution:
     covariance_cr: FloatArray
     """(15, 15) Cramér-Rao bound."""
     joint: FloatArray
-    """(15 + k, 15 + k) covariance of the derivatives and of the k nuisance parameters, corrected for coloured
+    """(15 + k, 15 + k) covariance of derivatives and of k nuisance parameters. It is corrected for coloured
     residuals and for the scatter between manoeuvres."""
     extra: Extra
     """Nuisance parameters at their values."""
