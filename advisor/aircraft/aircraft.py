@@ -15,6 +15,8 @@ Criterion = Literal["eq12", "eq13"]
 
 PARAMETERS = ("Z_0", "Z_alpha", "Z_q", "Z_delta_e", "M_0", "M_alpha", "M_q", "M_delta_e")
 """Names of the eight parameters θ, Eq. (3), in the order of every vector of parameters in this program."""
+SIDE_PARAMETERS = tuple(f"{y}_{x}" for y in "YLN" for x in ("beta", "p", "r", "delta_a", "delta_r"))
+"""Names of the fifteen derivatives of roll and yaw, in the order of every vector of theirs."""
 
 
 Pairs = tuple[tuple[float, float], ...]
@@ -275,6 +277,12 @@ class FmuTrim:
     height: Annotated[str | None, Key("Parameter of the flight's pressure altitude, m.")] = None
     flight_path: Annotated[str | None, Key("Parameter of the flight-path angle.")] = None
     mass: Annotated[str | None, Key("Parameter of the mass, kg.")] = None
+    wind_along: Annotated[str | None, Key(
+        "Parameter or input of the wind along the heading, m/s, positive from behind.",
+    )] = None  # fmt: skip
+    wind_right: Annotated[str | None, Key(
+        "Parameter or input of the wind across the heading, m/s, positive towards the right.",
+    )] = None  # fmt: skip
     alpha: Annotated[str | None, Key(
         "Parameter of the initial angle of attack, which the trim search sets together with the elevator.",
     )] = None  # fmt: skip

@@ -56,7 +56,7 @@ def gather(
         As :func:`advisor.analysis.marks_file.read_by_hand`.
     """
     tell("reading and judging", 0.0)
-    flights = read_whole(asked.logs, aircraft, asked.target_system, no_marks=asked.no_marks)
+    flights = read_whole(asked.logs, aircraft, asked.target_system, no_marks=asked.no_marks, axis="both")
     said = flights.said
     tell("examining the telemetry", 0.5)
     doctor = tuple(_examined(log, aircraft, asked.target_system) for log in flights.logs)

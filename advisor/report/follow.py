@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 
-from advisor.campaign.campaign import Campaign, CampaignEvent, ManeuverJudged
+from advisor.campaign.campaign import Campaign, CampaignEvent, LateralJudged, ManeuverJudged
 from advisor.campaign.state import CampaignState
 from advisor.flight.maneuvers.events import (
     DataAgain,
@@ -14,6 +14,7 @@ from advisor.flight.maneuvers.events import (
     VehicleFound,
 )
 from advisor.flight.signals.messages import Columns
+from advisor.report.lateral import lateral_maneuver_line
 from advisor.report.text import maneuver_line, next_line, stop_line
 from advisor.words.vehicle_time import CLOCK, clock
 
@@ -70,5 +71,9 @@ def _say(event: CampaignEvent, say: Callable[[str], object]) -> None:
             say("DATA AGAIN: what arrives can serve.")
         case ManeuverJudged(judged, verdict):
             say(maneuver_line(judged))
+            say(f"    {stop_line(verdict)}")
+            say(f"    {next_line(verdict)}")
+        case LateralJudged(judged, verdict):
+            say(f"{lateral_maneuver_line(judged)}  (roll and yaw)")
             say(f"    {stop_line(verdict)}")
             say(f"    {next_line(verdict)}")

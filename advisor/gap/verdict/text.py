@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from advisor.gap.alternative import Alternative
 from advisor.gap.result import VISIBLE, Cause, Gap, GapVerdict, Shrink, Where, spelled
-from advisor.gap.verdict.statements import what
+from advisor.gap.verdict.statements import or_else, what
 
 _AS_LIKELY = 0.99
 """Score relative to the best block at which another block is equally likely."""
@@ -59,7 +59,7 @@ def sentence_of(
         return _of_wrong_parameters(present, shrink)
     if verdict == "unknown":
         return _of_unknown(where, causes, present)
-    return _of_effects(present, shrink, in_simulator)
+    return _of_effects(causes, shrink, in_simulator)
 
 
 def _of_no_gap(gap: Gap) -> str:
@@ -93,8 +93,10 @@ def _of_unknown(where: Where, causes: Sequence[Cause], present: Sequence[Cause])
     return f"Something acts {places} that no known effect explains{near}."
 
 
-def _of_effects(present: Sequence[Cause], shrink: Shrink | None, in_simulator: frozenset[str]) -> str:
-    named, beyond_air = what(present[0], in_simulator), None if shrink is None else shrink.beyond_air_percent
+def _of_effects(causes: Sequence[Cause], shrink: Shrink | None, in_simulator: frozenset[str]) -> str:
+    present = [c for c in causes if c.present]
+    named = f"{what(present[0], in_simulator)}{or_else(present[0], causes)}"
+    beyond_air = None if shrink is None else shrink.beyond_air_percent
     if present[0].block == "air" and len(present) == 1:
         also_wrong = ""
         if beyond_air is not None:

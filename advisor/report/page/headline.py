@@ -32,6 +32,9 @@ def _blocks(content: Content) -> Iterator[Block]:
     if following is not None:
         yield Paragraph(f"Next: {following['advice'].removeprefix('next: ')}.".replace("..", "."))
     yield from listing([f"Warning: {warning}" for warning in verdict["warnings"]])
+    side = content.state.lateral
+    if side is not None and side.maneuvers:
+        yield Paragraph(f"Roll and yaw: {side.flight_test.sentence}")
     joint = joint_table(content)
     if joint is not None:
         yield joint

@@ -21,6 +21,7 @@ class Criterion(TextPane):
 
     TITLE = "6 Criterion"
     SHORT = "6Cri"
+    EITHER_AXIS = True
     HELP = """\
 # Criterion
 

@@ -35,6 +35,7 @@ class Maneuvers(Pane):
 
     TITLE = "1 Manoeuvres"
     SHORT = "1Man"
+    EITHER_AXIS = True
     can_focus = False
     HELP = """\
 # Manoeuvres

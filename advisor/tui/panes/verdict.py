@@ -18,6 +18,7 @@ class VerdictPane(TextPane):
 
     TITLE = "2 Verdict"
     SHORT = "2Ver"
+    EITHER_AXIS = True
     OF_SELECTED = True
     HELP = """\
 # Verdict
