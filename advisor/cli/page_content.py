@@ -33,7 +33,11 @@ _COUNTED = ("numpy", "scipy", "matplotlib", "jinja2", "pymavlink")
 
 
 def gather(
-    asked: LogsAsked, aircraft: Aircraft, with_gap: bool, tell: Progress = lambda *_: None
+    asked: LogsAsked,
+    aircraft: Aircraft,
+    with_gap: bool,
+    tell: Progress = lambda *_: None,
+    command: str | None = None,
 ) -> tuple[Content, list[str]]:
     """Return the content of the page, and sentences on logs that do not count.
 
@@ -41,6 +45,8 @@ def gather(
     ----------
     tell
         Receives each stage of the work as a sentence.
+    command
+        Command line that repeats the page; None: the one that this process was started with.
 
     Raises
     ------
@@ -68,7 +74,7 @@ def gather(
         origin=Origin(
             _hashes(flights, asked.aircraft_file),
             dict(_versions()),
-            printable(shlex.join(["advisor", *sys.argv[1:]])),
+            printable(command or shlex.join(["advisor", *sys.argv[1:]])),
         ),
     )
     return content, said

@@ -53,7 +53,7 @@ def follow(
 def _say(event: CampaignEvent, say: Callable[[str], object]) -> None:
     match event:
         case FlightBegan(_, name):
-            say(f"{name}: its times count from its own boot")
+            say(f"{name}: its times count from its own power-on")
         case ManeuverAgain(maneuver, takes_place):
             better = ", and this record replaces it" if takes_place else ""
             at = clock(maneuver.span.start_s)
@@ -61,7 +61,7 @@ def _say(event: CampaignEvent, say: Callable[[str], object]) -> None:
         case VehicleFound(vehicle):
             say(f"following {vehicle}; times are {CLOCK}")
         case Rebooted(boot):
-            say(f"power-on {boot + 1}: the vehicle's clock began anew, and times count from this boot")
+            say(f"power-on {boot + 1}: the vehicle's clock began anew, and times count from this power-on")
         case Notice(_, text):
             say(f"note: {text}")
         case NoData(problems):

@@ -61,6 +61,11 @@ SIDE_PARAMETERS: Mapping[str, Quantity] = {
 """Derivative of roll and yaw to its quantity."""
 
 
+def symbol(parameter: str) -> str:
+    """Return the symbol of a parameter in a sentence for people: ``M_δe``."""
+    return parameter.replace("_alpha", "_α").replace("_beta", "_β").replace("_delta_", "_δ")
+
+
 def channel(name: str) -> Quantity:
     """Return the quantity of a channel. A channel without an entry keeps its own name and SI."""
     return CHANNELS.get(name, Quantity(name, "SI"))

@@ -6,6 +6,7 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft, SideControl
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.campaign.campaign import Campaign
+from advisor.flight.maneuvers.marks import Mark
 from advisor.flight.vehicle.imu_filters import filter_delay_s
 from advisor.report.lateral import lateral_document, lateral_lines
 from tests.flight.columns import Wire, heartbeat, plane_parameters
@@ -137,3 +138,31 @@ def test_every_interval_is_that_of_95_percent(state):
         assert one["ci95"] == pytest.approx(
             [one["value"] - 1.96 * one["std"], one["value"] + 1.96 * one["std"]], rel=1e-4
         )
+
+
+def marked(wire, *marks):
+    campaign = Campaign(AIRCRAFT, marks=marks, lateral=True)
+    campaign.feed(wire.columns(list(range(len(wire)))))
+    campaign.finish()
+    return campaign.state
+
+
+def test_a_mark_of_an_aileron_input_replaces_the_one_that_was_found(both, state):
+    told = marked(both, Mark(102.5, 112.0))
+    spans = [one.maneuver.span for one in told.lateral.maneuvers]
+    assert [span.kind for span in spans] == ["aileron doublet", "rudder doublet"]
+    assert spans[0].end_s == 112.0
+    assert spans[0].closed_by == "marked by hand"
+    assert spans[1] == state.maneuvers[1].maneuver.span
+
+
+def test_a_mark_without_elevator_is_no_manoeuvre_of_the_elevator(both):
+    assert marked(both, Mark(102.5, 112.0)).maneuvers == ()
+
+
+def test_an_uncalibrated_aileron_is_per_assumed_degree(both):
+    notes = marked(both).elevator_notes
+    said = [note for note in notes if note.startswith("No aileron.calibration")]
+    assert len(said) == 1
+    assert "Y_δa, L_δa and N_δa are per assumed degree." in said[0]
+    assert any(note.startswith("No rudder.calibration") for note in notes)

@@ -240,8 +240,8 @@ class Identity:
         at = f" at {clock(now_s)}" if isfinite(now_s) else ""
         text = (
             f"{listed(late)} {'is' if len(late) == 1 else 'are'} heard only{at}: another value was assumed "
-            "in the manoeuvres before, so their Z_delta_e and M_delta_e have another scale. Exclude these "
-            "manoeuvres by hand; advisor analyze counts the whole recording with the value heard."
+            "in the manoeuvres before, so their Z_δe and M_δe have another scale. Exclude these "
+            "manoeuvres by hand. Later, advisor analyze uses the right value for the whole recording."
         )
         return [Notice(READER_NOTICE, text)]
 

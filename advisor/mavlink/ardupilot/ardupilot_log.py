@@ -23,6 +23,7 @@ from advisor.mavlink.ardupilot.body_rates import RATE_RECORDS, body_rates, calme
 from advisor.mavlink.ardupilot.former_records import SENSORS_APART, Clocked, in_todays_names
 from advisor.mavlink.ardupilot.log_health import HEALTH_RECORDS, health
 from advisor.mavlink.ardupilot.sensors import Said, flown, said, silent
+from advisor.mavlink.ardupilot.system_identification import SYSTEM_ID_RECORDS, lost_texts, sweeps
 from advisor.mavlink.px4.sdlog2 import SDLOG2_RECORDS, Sdlog2Messages, is_sdlog2
 from advisor.mavlink.records.dataflash import RecordTable, gps_time_base_s, read_logs, seconds
 from advisor.mavlink.records.equivalent import air_data, message, nearest
@@ -32,6 +33,7 @@ _RECORDS: dict[str, set[str]] = {
     **VEHICLE_RECORDS,
     **RATE_RECORDS,
     **HEALTH_RECORDS,
+    **SYSTEM_ID_RECORDS,
     "ACC": {"AccX", "AccY", "AccZ"},
     "AOA": {"AOA", "SSA"},
     "ARSP": {"Airspeed"},
@@ -42,6 +44,7 @@ _RECORDS: dict[str, set[str]] = {
     "GPS": {"GWk", "GMS"},
     "IMU": {"GyrX", "GyrY", "GyrZ", "AccX", "AccY", "AccZ"},
     "NKF1": {"VD"},
+    "NKF2": {"VWN", "VWE"},
     "NTUN": {"Arspd"},
     "POS": {"Lat", "Lng", "Alt", "RelHomeAlt"},
     "RCIN": {"C1"},
@@ -49,6 +52,7 @@ _RECORDS: dict[str, set[str]] = {
     "RCO2": set(),
     "RCO3": set(),
     "XKF1": {"VD"},
+    "XKF2": {"VWN", "VWE"},
 }
 """Record to its necessary fields. Without them (another kind of vehicle, an older version) a record counts as
 missing."""
@@ -146,7 +150,7 @@ class _Translation:
         self._tables = {name: table for name, table in self._tables.items() if len(table)}
         if "PARM" in self._tables:
             self._tables["PARM"] = in_todays_parameters(self._tables["PARM"])
-        self._said += health(self._tables)
+        self._said += [*health(self._tables), *sweeps(self._tables)]
         self._base_s = float(read.epoch_s) or gps_time_base_s(self._tables.get("GPS"))
         self._system = system_of(self._tables)
 
@@ -171,6 +175,9 @@ class _Translation:
             yield self._scaled_pressure(self._tables["BARO"].first_instance())
         yield from self._servo_outputs()
         yield from self._vfr_hud()
+        blown = next((self._tables[name] for name in ("XKF2", "NKF2") if name in self._tables), None)
+        if blown is not None:
+            yield self._wind(blown.first_instance())
         yield self._statustext()
 
     def _message(
@@ -274,6 +281,16 @@ class _Translation:
             order = np.asarray(fields.pop("order"))
             yield self._made("VFR_HUD", order, np.asarray(fields["time_usec"]), fields)
 
+    def _wind(self, estimated: RecordTable) -> Columns:
+        """Return WIND: the speed of the estimator's wind, and the direction from which it blows."""
+        north, east = (estimated.fields[name].astype(np.float64) for name in ("VWN", "VWE"))
+        fields: dict[str, ArrayLike] = {
+            "time_usec": estimated.time_us,
+            "speed": np.hypot(north, east),
+            "direction": np.degrees(np.arctan2(-east, -north)),
+        }
+        return self._message("WIND", estimated, fields)
+
     def _global_position_int(self, pos: RecordTable) -> Columns:
         fields: dict[str, ArrayLike] = {
             "time_boot_ms": _milliseconds(pos.time_us),
@@ -292,7 +309,10 @@ class _Translation:
         read = [
             (one.order + 2 + k, one.time_us, READER + one.text.encode()) for k, one in enumerate(self._said)
         ]
-        texts = np.array([*own, *read], dtype=[("order", "i8"), ("time_us", "i8"), ("text", "S256")])
+        texts = np.array(
+            [*own, *lost_texts(self._tables), *read],
+            dtype=[("order", "i8"), ("time_us", "i8"), ("text", "S256")],
+        )
         fields: dict[str, ArrayLike] = {"severity": _NOT_LOGGED, "text": texts["text"]}
         return self._made("STATUSTEXT", texts["order"], texts["time_us"], fields)
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from advisor.report.gap_reasons import alternatives_of, how_sure
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, listing
 from advisor.report.page.content import Content
 from advisor.report.page.estimates import joint_table
@@ -40,6 +41,8 @@ def _blocks(content: Content) -> Iterator[Block]:
     found = content.gap
     if found is not None and found["usable"]:
         yield Paragraph(found["sentence"], "verdict")
+        if sure := how_sure(alternatives_of(found)):
+            yield Paragraph(sure)
         glance = gap_picture("gap-glance", found, across=_GLANCE)
         yield Gallery((Figure(glance, caption(found), narrow=gap_picture("gap-narrow", found, across=1)),))
 
