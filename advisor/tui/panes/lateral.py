@@ -19,8 +19,8 @@ class LateralPane(TextPane):
 
 From the joint estimate over the accepted manoeuvres of aileron and rudder: the derivatives, each with half
 its 95 % interval; those that are not identifiable, with the input that would tell them; frequency and damping
-of the Dutch roll, time constant of the roll, pole of the spiral; the levels of MIL-F-8785C. Where the aircraft
-file states the derivatives, the tests of 14 CFR Part 60 compare it with the flight.
+of the Dutch roll, time constant of the roll, pole of the spiral; the levels of MIL-F-8785C. Where the
+aircraft file states the derivatives, the tests of 14 CFR Part 60 compare it with the flight.
 """
 
     def show(self, view: View) -> None:
