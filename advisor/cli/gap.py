@@ -55,7 +55,7 @@ _OF_A_PLAN = {
     type=click.Path(path_type=Path),
     help="File for the picture: measured, simulated before and after. Ends in .svg or .png.",
 )
-@export_option
+@export_option()
 @click.option("--why", is_flag=True, help="Print what speaks for the answer, and every decision on the way.")
 @click.option(
     "--prior",
