@@ -1,9 +1,9 @@
 """Copy of the user's JSBSim aircraft with the derivatives of roll and yaw as flown.
 
 A derivative is corrected where the 95 % interval of the estimate excludes the value of the aircraft. The
-difference is added as a function of β, p, r, aileron or rudder, in proportion to the dynamic pressure, and of
-p and r also to b/(2·V). At the controls' neutral such a function changes no trim. A side force acts on roll
-and yaw by its arm, so that the aircraft is corrected and measured in turn.
+difference is added as a function of β, p, r, aileron or rudder. Each function is in proportion to the dynamic
+pressure, and a function of p or r also to b/(2·V). At the controls' neutral such a function changes no trim.
+A side force acts on roll and yaw by its arm, so that the aircraft is corrected and measured in turn.
 """
 
 import xml.etree.ElementTree as ET
