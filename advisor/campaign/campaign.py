@@ -9,6 +9,7 @@ from advisor.campaign.hand_decisions import NOTHING, ByHand, Remark
 from advisor.campaign.instruments import as_known_by, together, with_fit
 from advisor.campaign.joint_estimate import NEWEST, Together
 from advisor.campaign.journal import Journal
+from advisor.campaign.late_limits import recount
 from advisor.campaign.lateral import OF_ELEVATOR, JudgedLateral, LateralCampaign
 from advisor.campaign.learning import learnt as learnt_from
 from advisor.campaign.learning import may_learn, of_another_power_on, reserved, told
@@ -22,7 +23,9 @@ from advisor.decision.judge import judge_campaign
 from advisor.decision.stopping import flight_test
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.flight.maneuvers.events import (
+    READER_NOTICE,
     Activity,
+    ElevatorRescaled,
     FlightEvent,
     ManeuverAgain,
     ManeuverFlown,
@@ -34,7 +37,6 @@ from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.marks import MARK_NOTICES, Mark
 from advisor.flight.signals.messages import Columns
 from advisor.flight.stream.flights import Flights
-from advisor.flight.stream.identity import READER_NOTICE
 from advisor.flight.stream.stream import FlightStream
 from advisor.oem.estimator import lag_is_unknown
 from advisor.oem.solution import Method
@@ -275,6 +277,8 @@ class Campaign:
                     self._note_down(event)
                 case ManeuverAgain():
                     told += self._heard_again(event)
+                case ElevatorRescaled():
+                    told += self._count_anew(event)
         if self._tell is not None:
             for happened in told:
                 self._tell(happened)
@@ -345,6 +349,25 @@ class Campaign:
         self._decide()
         self._learn()
         return [ManeuverJudged(self._judged[i], self._flight_test)] if event.takes_place else []
+
+    def _count_anew(self, event: ElevatorRescaled) -> list[CampaignEvent]:
+        """Count earlier manoeuvres by a limit that is heard late, so that no two scales are pooled."""
+        again = recount(self._maneuvers, event)
+        if again.notice is None:
+            return []
+        for maneuver in again.anew:
+            i = self._index(maneuver.number)
+            self._maneuvers[i] = maneuver
+            known = self._history[i].excluded_because
+            self._history[i] = replace(self._assess(maneuver), excluded_because=known)
+        for i in map(self._index, again.lost):
+            known = self._history[i].excluded_because
+            self._history[i] = replace(self._history[i], excluded_because=known or event.heard)
+        self._note_down(again.notice)
+        self._journal.take(again.notice)
+        self._decide()
+        self._learn()
+        return [again.notice]
 
     @property
     def _stream(self) -> FlightStream:

@@ -119,9 +119,7 @@ class Cutting:
             maneuver, evidence = self._cut(spans[PITCH], boot, up_to_order)
             because = self._not_an_input(maneuver, up_to_order) if mark.by == "system id" else None
             events += (
-                self._counted(maneuver, evidence)
-                if because is None
-                else [self._activity(maneuver, because)]
+                self._counted(maneuver, evidence) if because is None else [self._activity(maneuver, because)]
             )
         if sides:
             self.side_maneuvers += 1
@@ -196,8 +194,9 @@ class Cutting:
             data_notes=tuple(notes),
             missed_s=self._breaks.missed_s(span.record_from_s, span.end_s),
             leapt_s=self._breaks.leapt_s(span.record_from_s, span.end_s),
+            scale=counted.scale if (counted := self._who.surfaces.get("elevator")) else None,
         )
-        return maneuver, examined.evidence
+        return self._who.rescaled(maneuver), examined.evidence
 
     def side(self, span: Span, boot: int, number: int, up_to_order: int | None) -> Maneuver:
         """Return the record of a lateral manoeuvre with this number."""

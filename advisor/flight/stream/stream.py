@@ -132,6 +132,7 @@ class FlightStream:
         self._breaks.begin()
         self._mixing.begin()
         self._cutting.begin(self._who.mode)
+        self._who.begin()
         self._first_s = np.nan
         self._flown_before = self._cutting.maneuvers
         self._master_s = np.nan
