@@ -84,7 +84,7 @@ def _targets(side: SideModel, own: SideSlopes) -> dict[str, float]:
 def _loads(missing: Mapping[str, float], own: SideSlopes) -> dict[str, float]:
     """Return by derivative the value of the function that adds what is missing, lbs or lbs·ft."""
     moments = np.linalg.inv(np.array(own.turning))
-    found = {}
+    found: dict[str, float] = {}
     for variable in VARIABLES:
         roll, yaw = moments @ [missing[f"L_{variable}"], missing[f"N_{variable}"]]
         needed = {"Y": own.momentum * missing[f"Y_{variable}"], "L": roll, "N": yaw}
