@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal
 import click
 
 from advisor.campaign.hand_decisions import NOTHING
+from advisor.cli.improvement_export import export_option, orders_of, write_flown_model
 from advisor.cli.log_options import LogsAsked, log_options
 from advisor.cli.options import UNUSABLE, json_option
 from advisor.cli.stages import Stages
@@ -40,12 +41,14 @@ if TYPE_CHECKING:
     show_default=True,
     help="Axis that is analyzed: the elevator's, that of aileron and rudder, or both.",
 )
+@export_option("Write the model of the flight as matlab (both axes) or jsbsim (roll and yaw); repeatable.")
 @json_option
 def command(
     asked: LogsAsked,
     method: Literal["gauss-newton", "nelder-mead"],
     every_movement: bool,
     axis: "Axis",
+    exports: tuple[str, ...],
     as_json: bool,
 ) -> int:
     """Print every manoeuvre's verdict, the estimates, and stop or continue.
@@ -59,9 +62,10 @@ def command(
       advisor analyze battery-1.tlog battery-2.bin --aircraft my-aircraft.yaml
       advisor analyze flight.tlog --maneuver +12:+24 --maneuver 312.5:320
       advisor analyze flight.tlog --json | python -m json.tool
-      advisor analyze flight.tlog --axis lateral
+      advisor analyze flight.tlog --axis lateral --export matlab:roll-and-yaw.m
     """
     aircraft = asked.read_aircraft()
+    orders = orders_of(exports, aircraft, asked.inputs)
     from advisor.analysis.log_series import LogSeries
 
     series = LogSeries(asked.logs)
@@ -106,6 +110,8 @@ def command(
             click.echo(activity_line(activity))
     for sentence in said:
         click.echo(sentence, err=True)
+    if state is not None and usable:
+        write_flown_model(orders, state, aircraft)
     return 0 if usable else UNUSABLE
 
 

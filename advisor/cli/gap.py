@@ -55,7 +55,7 @@ _OF_A_PLAN = {
     type=click.Path(path_type=Path),
     help="File for the picture: measured, simulated before and after. Ends in .svg or .png.",
 )
-@export_option
+@export_option()
 @click.option(
     "--axis",
     type=click.Choice(["pitch", "lateral"]),

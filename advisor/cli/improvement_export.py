@@ -12,21 +12,18 @@ from advisor.words.printable import printable
 from advisor.words.problems import ConfigurationError
 
 if TYPE_CHECKING:
+    from advisor.campaign.state import CampaignState
     from advisor.exports.models.write import ExportOrder, ExportOutcome
     from advisor.gap.result import Diagnosis
 
 F = TypeVar("F", bound=Callable[..., Any])
 
 
-def export_option(command: F) -> F:
-    """Add the option ``--export FORMAT:FILE``, repeatable, which the command receives as ``exports``."""
-    return click.option(
-        "--export",
-        "exports",
-        multiple=True,
-        metavar="FORMAT:FILE",
-        help="Write the improvement as jsbsim, ardupilot, sdf, matlab or aircraft; repeatable.",
-    )(command)
+def export_option(
+    what: str = "Write the improvement as jsbsim, ardupilot, sdf, matlab or aircraft; repeatable.",
+) -> Callable[[F], F]:
+    """Return a decorator that adds the option ``--export FORMAT:FILE``, repeatable, as ``exports``."""
+    return click.option("--export", "exports", multiple=True, metavar="FORMAT:FILE", help=what)
 
 
 def orders_of(
@@ -71,7 +68,25 @@ def write_exports(
         return []
     from advisor.exports.models.write import carry_out
 
-    outcomes = carry_out(orders, found, aircraft)
+    return _said(carry_out(orders, found, aircraft))
+
+
+def write_flown_model(orders: "list[ExportOrder]", state: "CampaignState", aircraft: Aircraft) -> None:
+    """Write the model of a flight into each file, and print the result of each on standard error.
+
+    Raises
+    ------
+    ConfigurationError
+        The flight tells the derivatives of neither axis.
+    """
+    if orders:
+        from advisor.exports.models.flown import flown_model
+        from advisor.exports.models.write import write_flown
+
+        _said(write_flown(orders, flown_model(state, aircraft), aircraft))
+
+
+def _said(outcomes: "list[ExportOutcome]") -> "list[ExportOutcome]":
     for one in outcomes:
         missing = f"; it does not carry: {', '.join(one.left_out)}" if one.left_out else ""
         click.echo(

@@ -16,9 +16,10 @@ from typing import Self
 OLD_AFTER_S = 3.0
 """Age of the newest report, s, above which the crew reads that it is old. Reports come every 0.1 s, and an
 estimate of seven manoeuvres together delays one by up to 2 s on a laptop."""
-ENDED_AFTER_S = 20.0
-"""Age of the newest report, s, above which a process is ended and started again: ten times the longest
-estimate in flight. The limit doubles with each end, so that a slow computer comes to its result."""
+ENDED_AFTER_S = 60.0
+"""Age of the newest report, s, above which a process is ended and started again: four times the longest
+estimates in flight. A rudder doublet at 50 Hz takes 11 s of processor time, and the joint estimate after it 5
+s. The limit doubles with each end, so that a slow computer comes to its result."""
 START_S = 60.0
 """Time to the first report, s, above which a process is ended. Libraries load within 10 s, and compiled
 functions that no folder keeps are compiled within this time."""

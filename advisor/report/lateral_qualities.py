@@ -1,6 +1,6 @@
 """Levels and tolerances of roll and yaw: for the document and as rows for people."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import Any
 
@@ -10,6 +10,7 @@ from advisor.aircraft.aircraft import SIDE_PARAMETERS, Aircraft
 from advisor.campaign.lateral import JudgedLateral, LateralState
 from advisor.decision.lateral_levels import GROUPS, SOURCE, LateralLevels, lateral_levels
 from advisor.decision.lateral_qualification import LateralTest, lateral_qualification
+from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.model.lateral import Trim
 from advisor.model.mil_f_8785c import CATEGORIES, MANNED
 from advisor.oem.flying_qualities import Quality
@@ -72,7 +73,7 @@ def tests_of(state: LateralState, aircraft: Aircraft) -> tuple[LateralTest, ...]
     tests = lateral_qualification(
         model.estimate.theta,
         np.array([stated.get(name, 0.0) for name in SIDE_PARAMETERS]),
-        _trim(joined, model.estimate.airspeed_m_s or np.nan),
+        trim_of([one.maneuver for one in joined], model.estimate.airspeed_m_s or np.nan),
         *_step(rolled),
     )
     if rolled and "L_delta_a" not in model.estimate.not_identifiable:
@@ -85,14 +86,14 @@ def tests_document(tests: tuple[LateralTest, ...]) -> list[dict[str, Any]]:
     return [picked(one, "entry name unit flown simulated limit holds") for one in tests]
 
 
-def _trim(joined: list[JudgedLateral], airspeed_m_s: float) -> Trim:
+def trim_of(joined: Sequence[Maneuver], airspeed_m_s: float) -> Trim:
     """Return the mean attitude of the manoeuvres; level flight where no angle of attack was recorded."""
     theta = _mean(joined, "theta", 0.0)
     return Trim(airspeed_m_s, _mean(joined, "alpha", theta), theta)
 
 
-def _mean(joined: list[JudgedLateral], name: str, otherwise: float) -> float:
-    found = [one.maneuver.channels[name].y for one in joined if name in one.maneuver.channels]
+def _mean(joined: Sequence[Maneuver], name: str, otherwise: float) -> float:
+    found = [one.channels[name].y for one in joined if name in one.channels]
     return float(np.mean([np.mean(y) for y in found])) if found else otherwise
 
 

@@ -22,7 +22,7 @@ def script_text(improvement: Improvement) -> Exported:
     speed, servo = improvement.airspeed_m_s, improvement.servo
     head = commented(
         [
-            f"{improvement.name}: short period found by `advisor gap`.",
+            f"{improvement.name}: short period found by the inflight advisor.",
             "State x = [alpha; q] (rad, rad/s), input u = delta_e (rad, trailing edge down positive),",
             "output y = [alpha; q; a_z] (rad, rad/s, m/s^2; body z is down): departures from trim.",
             "xdot = A*x + B*u, y = C*x + D*u, where u has passed the servo below.",

@@ -2,11 +2,13 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.exports.models import ardupilot, matlab, sdf
 from advisor.exports.models.exported import Exported
+from advisor.exports.models.flown import FlownModel
 from advisor.exports.models.improvement import (
     REFERENCE_KEYS,
     Improvement,
@@ -15,6 +17,8 @@ from advisor.exports.models.improvement import (
 )
 from advisor.exports.models.jsbsim.aircraft import aircraft_text
 from advisor.exports.models.jsbsim.run import Model, model_of
+from advisor.exports.models.jsbsim.side import side_text
+from advisor.exports.models.matlab_side import both_axes_text
 from advisor.gap.result import Diagnosis
 from advisor.process.atomic_file import write_atomically
 from advisor.report.improved import write_improved
@@ -86,18 +90,38 @@ def refuse(order: ExportOrder, aircraft: Aircraft) -> None:
         )
 
 
+def write_flown(orders: Sequence[ExportOrder], model: FlownModel, aircraft: Aircraft) -> list[ExportOutcome]:
+    """Write the model of a flight into each file. The failure of one file does not hinder the others."""
+    return [_outcome(order, partial(_flown, order, model, aircraft)) for order in orders]
+
+
+def _flown(order: ExportOrder, model: FlownModel, aircraft: Aircraft) -> ExportOutcome:
+    if order.format == "matlab":
+        made = both_axes_text(model)
+    elif order.format == "jsbsim" and model.side is not None:
+        made = side_text(model.name, model.side, _model(aircraft))
+    else:
+        text = (
+            "no derivatives of roll and yaw" if order.format == "jsbsim" else "written by advisor gap alone"
+        )
+        return ExportOutcome(order, problem=f"--export: {order.file} was not written: {text}.")
+    write_atomically(order.file, made.text)
+    return ExportOutcome(order, made.left_out)
+
+
 def carry_out(orders: Sequence[ExportOrder], diagnosis: Diagnosis, aircraft: Aircraft) -> list[ExportOutcome]:
     """Write each file as a whole. The failure of one file does not hinder the others."""
-    found = []
-    for order in orders:
-        try:
-            found.append(_carried_out(order, diagnosis, aircraft))
-        except ConfigurationError as error:
-            found.append(ExportOutcome(order, problem=str(error)))
-        except OSError as error:
-            reason = error.strerror or str(error)
-            found.append(ExportOutcome(order, problem=f"--export: {order.file} was not written: {reason}."))
-    return found
+    return [_outcome(order, partial(_carried_out, order, diagnosis, aircraft)) for order in orders]
+
+
+def _outcome(order: ExportOrder, carry: Callable[[], ExportOutcome]) -> ExportOutcome:
+    try:
+        return carry()
+    except ConfigurationError as error:
+        return ExportOutcome(order, problem=str(error))
+    except OSError as error:
+        reason = error.strerror or str(error)
+        return ExportOutcome(order, problem=f"--export: {order.file} was not written: {reason}.")
 
 
 def _carried_out(order: ExportOrder, diagnosis: Diagnosis, aircraft: Aircraft) -> ExportOutcome:

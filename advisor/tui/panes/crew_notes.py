@@ -29,7 +29,7 @@ def _other_axis(view: View) -> Iterator[Labelled]:
     """Yield the state of the axis that is not shown, once one of its manoeuvres was flown."""
     lateral = view.state.lateral
     if view.elevator is not None and view.elevator.state.maneuvers:
-        yield "elevator    ", f"{view.elevator.state.flight_test.sentence} Key r shows it."
+        yield "elevator    ", view.elevator.state.flight_test.sentence
     elif view.elevator is None and lateral is not None and lateral.maneuvers:
         yield "roll, yaw   ", f"{lateral.flight_test.sentence} Key r shows it."
 
@@ -37,6 +37,8 @@ def _other_axis(view: View) -> Iterator[Labelled]:
 def _rows(view: View) -> Iterator[Labelled]:
     if view.elevator is None:
         yield "in the air  ", flying_in_words(view)
+    else:
+        yield "axis        ", "roll and yaw; key r shows the elevator's"
     yield from _other_axis(view)
     if view.health.condition in ("poor", "lost"):
         yield "link        ", view.health.sentence

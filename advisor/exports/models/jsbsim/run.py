@@ -8,7 +8,9 @@ import tempfile
 import xml.etree.ElementTree as ET
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
+from advisor.exports.models.jsbsim.side_slopes import SideRequest, SideSlopes
 from advisor.exports.models.jsbsim.slopes import Request, Slopes
 from advisor.exports.models.jsbsim.source import parse
 from advisor.process.children import python_module
@@ -56,6 +58,28 @@ def model_of(what: str) -> Model:
 
 
 def measure(content: bytes, model: Model, asked: Request) -> Slopes:
+    """Return the slopes of the short period of a content, loaded as the aircraft.
+
+    Raises
+    ------
+    ConfigurationError
+        As ``_answered``.
+    """
+    return Slopes(**_answered("slopes", content, model, asdict(asked)))
+
+
+def measure_side(content: bytes, model: Model, asked: SideRequest) -> SideSlopes:
+    """Return the slopes of roll and yaw of a content, loaded as the aircraft.
+
+    Raises
+    ------
+    ConfigurationError
+        As ``_answered``.
+    """
+    return SideSlopes(**_answered("side_slopes", content, model, asdict(asked)))
+
+
+def _answered(module: str, content: bytes, model: Model, asked: dict[str, Any]) -> dict[str, Any]:
     """Load a content as the aircraft, with the files that it includes, and measure it.
 
     Raises
@@ -77,16 +101,17 @@ def measure(content: bytes, model: Model, asked: Request) -> Slopes:
         ET.ElementTree(root).write(place / f"{model.name}.xml", encoding="utf-8")
         places = {"aircraft": folder, "engine": str(model.engine), "systems": str(model.systems)}
         foreign = list(foreign_properties([root]))
-        request = asdict(asked) | places | {"model": model.name, "foreign": foreign}
+        request = asked | places | {"model": model.name, "foreign": foreign}
         try:
             done = subprocess.run(
-                python_module("advisor.exports.models.jsbsim.slopes"),
+                python_module(f"advisor.exports.models.jsbsim.{module}"),
                 input=json.dumps(request), capture_output=True, text=True, timeout=TIME_LIMIT_S, check=True,
                 cwd=folder, env=os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
             )  # fmt: skip
-            return Slopes(**json.loads(done.stdout.splitlines()[-1]))
+            found: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
+            return found
         except (subprocess.SubprocessError, ValueError, IndexError, TypeError) as error:
             raise ConfigurationError(
                 f"--export jsbsim: JSBSim does not load and trim {model.file.name} at "
-                f"{asked.airspeed_m_s:.4g} m/s; check the aircraft, and the air speed of the log."
+                f"{asked['airspeed_m_s']:.4g} m/s; check the aircraft, and the air speed of the log."
             ) from error

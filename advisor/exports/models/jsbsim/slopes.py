@@ -9,6 +9,7 @@ q, as in a flight.
 import json
 import os
 import sys
+from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -154,8 +155,14 @@ def _finds_its_throttle(fdm: Any) -> bool:
     return True
 
 
-def main() -> None:
-    """Read one request as JSON from stdin, and answer with one line of JSON, the last on stdout."""
+def answer(measure: Callable[[Any, dict[str, Any]], Any]) -> None:
+    """Read one request as JSON from stdin, and answer with one line of JSON, the last on stdout.
+
+    Parameters
+    ----------
+    measure
+        Measures a loaded aircraft under the request, and returns a data class.
+    """
     told = json.load(sys.stdin)
     foreign = told.pop("foreign")
     model, *places = (told.pop(key) for key in ("model", "aircraft", "engine", "systems"))
@@ -168,8 +175,8 @@ def main() -> None:
         fdm[name] = 0.0
     aircraft, engine, systems = places
     fdm.load_model_with_paths(model, aircraft, engine, systems, True)
-    print("\n" + json.dumps(asdict(measured(fdm, Request(**told))), allow_nan=False))
+    print("\n" + json.dumps(asdict(measure(fdm, told)), allow_nan=False))
 
 
 if __name__ == "__main__":
-    main()
+    answer(lambda fdm, told: measured(fdm, Request(**told)))

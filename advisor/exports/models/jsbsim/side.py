@@ -1,0 +1,103 @@
+"""Copy of the user's JSBSim aircraft with the derivatives of roll and yaw as flown.
+
+A derivative is corrected where the 95 % interval of the estimate excludes the value of the aircraft. The
+difference is added as a function of β, p, r, aileron or rudder. Each function is in proportion to the dynamic
+pressure, and a function of p or r also to b/(2·V). At the controls' neutral such a function changes no trim.
+A side force acts on roll and yaw by its arm, so that the aircraft is corrected and measured in turn.
+"""
+
+import xml.etree.ElementTree as ET
+from collections.abc import Mapping
+from math import isfinite
+
+import numpy as np
+
+from advisor.aircraft.aircraft import SIDE_PARAMETERS
+from advisor.exports.models.exported import Exported
+from advisor.exports.models.flown import SideModel
+from advisor.exports.models.jsbsim.knobs import ROUNDS, WITHIN
+from advisor.exports.models.jsbsim.run import Model, measure_side
+from advisor.exports.models.jsbsim.side_slopes import VARIABLES, SideRequest, SideSlopes
+from advisor.exports.models.jsbsim.source import AddedFunction, corrected, parse
+from advisor.exports.models.servo import ExportedServo
+from advisor.words.problems import ConfigurationError
+from advisor.words.quantiles import NORMAL_95
+
+RATES = ("p", "r")
+AXES = {"Y": "SIDE", "L": "ROLL", "N": "YAW"}
+
+
+def side_text(name: str, side: SideModel, model: Model) -> Exported:
+    """Return the corrected aircraft, measured at the speed and height flown.
+
+    Raises
+    ------
+    ConfigurationError
+        The aircraft does not load or trim, has no axes of side force, roll and yaw, or its aileron or rudder
+        moves nothing.
+    """
+    content = model.file.read_bytes()
+    _require_axes(parse(content, model.file.name), model.file.name)
+    asked = SideRequest(side.trim.airspeed_m_s, side.height_m)
+    first = measure_side(content, model, asked)
+    wanted = _targets(side, first)
+    sizes = dict.fromkeys(wanted, 0.0)
+    now, estimate = first, side.found.estimate
+    for _ in range(ROUNDS):
+        missing = {name: target - now.derivatives[name] for name, target in wanted.items()}
+        if all(abs(size) <= WITHIN * max(abs(wanted[name]), 1.0) for name, size in missing.items()):
+            break
+        added = _loads(missing, first)
+        sizes = {name: size + added[name] for name, size in sizes.items()}
+        made = corrected(content, model.file.name, _functions(sizes), ExportedServo(), "")
+        now = measure_side(made.encode(), model, asked)
+    changes = _functions(sizes)
+    changed = [name for name in SIDE_PARAMETERS if wanted[name] != first.derivatives[name]]
+    note = (
+        f"Corrected by the inflight advisor for {name} at {side.trim.airspeed_m_s:.4g} m/s: "
+        f"{', '.join(changed) or 'nothing'}."
+    )
+    left = [f"{p}: {reason}" for p, reason in estimate.not_identifiable.items()]
+    return Exported(corrected(content, model.file.name, changes, ExportedServo(), note), tuple(left))
+
+
+def _require_axes(root: ET.Element, name: str) -> None:
+    missing = set(AXES.values()) - {axis.get("name") for axis in root.iterfind("aerodynamics/axis")}
+    if missing:
+        raise ConfigurationError(
+            f"--export jsbsim: {name} has no axis {', '.join(sorted(missing))}; use --export matlab."
+        )
+
+
+def _targets(side: SideModel, own: SideSlopes) -> dict[str, float]:
+    """Return each derivative as the aircraft must have it, per unit of its properties."""
+    estimate = side.found.estimate
+    wanted = dict(own.derivatives)
+    for k, name in enumerate(SIDE_PARAMETERS):
+        flown = own.signs.get(name[2:], 1.0) * float(estimate.theta[k])
+        half = NORMAL_95 * float(estimate.std[k])
+        if name not in estimate.not_identifiable and isfinite(half) and abs(flown - wanted[name]) > half:
+            wanted[name] = flown
+    return wanted
+
+
+def _loads(missing: Mapping[str, float], own: SideSlopes) -> dict[str, float]:
+    """Return by derivative the value of the function that adds what is missing, lbs or lbs·ft."""
+    moments = np.linalg.inv(np.array(own.turning))
+    found: dict[str, float] = {}
+    for variable in VARIABLES:
+        roll, yaw = moments @ [missing[f"L_{variable}"], missing[f"N_{variable}"]]
+        needed = {"Y": own.momentum * missing[f"Y_{variable}"], "L": roll, "N": yaw}
+        scale = own.pressure_psf * (own.span_time_s if variable in RATES else 1.0)
+        found |= {f"{y}_{variable}": float(size / scale) for y, size in needed.items()}
+    return found
+
+
+def _functions(sizes: Mapping[str, float]) -> list[AddedFunction]:
+    return [
+        AddedFunction(
+            name, AXES[name[0]], size, VARIABLES[name[2:]], further="aero/bi2vel" if name[2:] in RATES else ""
+        )
+        for name, size in sizes.items()
+        if size
+    ]

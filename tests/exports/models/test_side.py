@@ -1,0 +1,128 @@
+"""Roll and yaw in MATLAB's and JSBSim's formats, read back by Octave and by JSBSim itself."""
+
+import subprocess
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from advisor.aircraft.aircraft import SIDE_PARAMETERS
+from advisor.decision.lateral_qualification import peak_roll_rate
+from advisor.exports.models.flown import FlownModel, SideModel
+from advisor.exports.models.jsbsim.run import measure_side, model_of
+from advisor.exports.models.jsbsim.side import side_text
+from advisor.exports.models.jsbsim.side_slopes import SideRequest
+from advisor.exports.models.matlab_side import both_axes_text, matrices
+from advisor.model.lateral import Trim, state_matrix
+from advisor.words.problems import ConfigurationError
+from tests.campaign.side_builders import estimate
+from tests.exports.models.cases import improvement
+from tests.exports.models.test_jsbsim import placed, trimmed
+from tests.exports.models.test_matlab import OCTAVE, needs_octave
+from tests.oem.lateral_builders import JET
+
+JET_SIDE = SideModel(estimate("aileron", "rudder"), Trim(130.0, 0.07, 0.105), 0.0)
+ASKED = SideRequest(53.0, 1000.0)
+CESSNA = model_of("c172p")
+
+
+@needs_octave
+def test_octave_has_both_axes_and_the_modes_of_the_estimate(tmp_path):
+    script = tmp_path / "model.m"
+    script.write_text(both_axes_text(FlownModel("jet", improvement(), JET_SIDE)).text)
+    shown = "size(A), lateral.B(:), sort(abs(eig(lateral.A))), lateral.D(4, 2)"
+    code = f"run('{script}'); printf('%.12g\\n', {shown});"
+    assert OCTAVE is not None
+    said = subprocess.run(
+        [OCTAVE, "--norc", "--quiet", "--eval", code], capture_output=True, text=True, check=True
+    )
+    found = [float(line) for line in said.stdout.split()]
+    a, b, _, _ = matrices(JET_SIDE)
+    expected = [2, 2, *b.T.ravel(), *sorted(abs(np.linalg.eigvals(a))), 130.0 * JET["Y_delta_r"]]
+    assert found == pytest.approx(expected, rel=1e-6)
+
+
+def test_a_derivative_that_is_not_identifiable_has_its_reason_in_the_place_of_a_number():
+    untold = replace(JET_SIDE, found=estimate("aileron", untold={"Y_p": "fly a rudder doublet"}))
+    text = both_axes_text(FlownModel("jet", None, untold)).text
+    assert "% Y_p is not identifiable: fly a rudder doublet" in text
+    assert "parameters.Y_p" not in text
+    assert "lateral.parameters.L_p.value = -2.1;  % 1/s" in text
+
+
+@pytest.fixture(scope="module")
+def cessna():
+    """Slopes of the unchanged Cessna at 53 m/s."""
+    return measure_side(CESSNA.file.read_bytes(), CESSNA, ASKED)
+
+
+def believed(own, **factors):
+    """Return a lateral model that differs from the Cessna by factors, sure of each derivative."""
+    theta = np.array(
+        [
+            own.derivatives[name] * own.signs.get(name[2:], 1.0) * factors.get(name, 1.0)
+            for name in SIDE_PARAMETERS
+        ]
+    )
+    found = estimate("aileron", "rudder")
+    covariance = np.diag((1e-3 * np.maximum(np.abs(theta), 1e-3)) ** 2)
+    told = replace(found.estimate, theta=theta, covariance=covariance, airspeed_m_s=ASKED.airspeed_m_s)
+    return SideModel(replace(found, estimate=told), Trim(ASKED.airspeed_m_s, 0.03, 0.03), ASKED.height_m)
+
+
+CHANGED = {
+    "L_p": 0.6,
+    "L_delta_a": 1.3,
+    "N_beta": 1.5,
+    "N_r": 1.4,
+    "L_beta": 0.5,
+    "Y_beta": 1.2,
+    "N_delta_r": 0.7,
+}
+
+
+@pytest.fixture(scope="module")
+def corrected(cessna):
+    return side_text("Cessna", believed(cessna, **CHANGED), CESSNA)
+
+
+def test_measured_again_each_derivative_is_that_of_the_estimate(cessna, corrected):
+    again = measure_side(corrected.text.encode(), CESSNA, ASKED).derivatives
+    for name in SIDE_PARAMETERS:
+        own = cessna.derivatives[name]
+        size = max(abs(own), 0.02 * abs(cessna.derivatives[f"{name[0]}_beta"]))
+        assert again[name] == pytest.approx(own * CHANGED.get(name, 1.0), abs=5e-3 * size), name
+
+
+def test_the_exported_aircraft_rolls_as_the_estimate_does(cessna, corrected, tmp_path):
+    side = believed(cessna, **CHANGED)
+    rate, aileron = _rolled(placed(corrected.text, tmp_path, "c172p"))
+    theta = side.found.estimate.theta
+    expected = peak_roll_rate(theta, state_matrix(theta, side.trim), cessna.signs["delta_a"] * aileron, 1.0)
+    unchanged, _ = _rolled(CESSNA.file)
+    assert rate == pytest.approx(expected, rel=0.03)
+    assert abs(unchanged - expected) > 0.15 * abs(expected)
+
+
+def _rolled(file: Path) -> tuple[float, float]:
+    """Return the largest change of the roll rate within a second of aileron, rad/s, and the aileron, rad."""
+    fdm = trimmed(file, ASKED.airspeed_m_s)
+    before, rates = fdm["velocities/p-rad_sec"], []
+    neutral = fdm["fcs/left-aileron-pos-rad"]
+    fdm["fcs/aileron-cmd-norm"] += 0.3
+    for _ in range(240):
+        fdm.run()
+        rates.append(fdm["velocities/p-rad_sec"] - before)
+    return float(max(rates, key=abs)), float(fdm["fcs/left-aileron-pos-rad"]) - neutral
+
+
+def test_what_the_interval_holds_is_left_as_the_aircraft_has_it(cessna):
+    assert "aero/advisor" not in side_text("Cessna", believed(cessna), CESSNA).text
+
+
+def test_an_aircraft_without_an_axis_of_roll_is_refused(tmp_path):
+    plain = CESSNA.file.read_text().replace('name="ROLL"', 'name="SWAY"')
+    own = replace(CESSNA, file=placed(plain, tmp_path, "c172p"))
+    with pytest.raises(ConfigurationError, match="no axis ROLL"):
+        side_text("Cessna", JET_SIDE, own)

@@ -1,0 +1,99 @@
+"""Roll and yaw on the page of a flight and in the document."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import pytest
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.report.lateral import lateral_document, lateral_lines
+from advisor.report.page.blocks import Gallery, Listing, Paragraph
+from advisor.report.page.lateral import lateral
+from advisor.report.table import Table
+from tests.campaign.side_builders import AIRCRAFT, estimate, judged, state
+from tests.oem.lateral_builders import JET
+from tests.schemas import breaches
+
+UNTOLD = {"Y_p": "the record does not depend on it; fly a rudder doublet"}
+FLOWN = state(
+    judged(1, "aileron"), judged(2, "rudder"), judged(3, "rudder", accepted=False),
+    model=estimate(untold=UNTOLD),
+)  # fmt: skip
+OFF = replace(AIRCRAFT, model=JET | {"L_delta_a": 1.5 * JET["L_delta_a"]})
+
+
+def section(flown=FLOWN, aircraft=AIRCRAFT):
+    content = SimpleNamespace(
+        state=SimpleNamespace(lateral=flown), aircraft=aircraft, names=("flight.tlog",),
+        analysis={"lateral": lateral_document(flown, aircraft)},
+    )  # fmt: skip
+    return lateral(content)
+
+
+def table(name, **changed):
+    found = [b for b in section(**changed).blocks if isinstance(b, Table) and b.name == name]
+    return found[0].rows if found else None
+
+
+def test_a_flight_without_aileron_and_rudder_has_no_such_section():
+    assert section(flown=state()) is None
+
+
+def test_the_verdict_leads_and_every_manoeuvre_has_its_row():
+    first = section().blocks[0]
+    assert isinstance(first, Paragraph)
+    assert first.text.startswith(("■", "▶"))
+    assert [row[4].split("\N{NO-BREAK SPACE}")[1] for row in table("lateral-maneuvers")] == [
+        "accepted", "accepted", "rejected",
+    ]  # fmt: skip
+
+
+def test_a_derivative_stands_with_its_interval_and_the_file_s_number_or_with_its_reason():
+    rows = {row[0]: row for row in table("lateral-joint")}
+    assert rows["L_p"][1:] == ("−2.100 ± 0.082", "0.082", "−2.100", "1/s")
+    assert rows["Y_p"][1] == "–"
+    listed = [item for block in section().blocks if isinstance(block, Listing) for item in block.items]
+    assert listed == ["Not identifiable: Y_p; the record does not depend on it; fly a rudder doublet."]
+
+
+def test_modes_and_levels_of_both_groups_of_classes_are_given():
+    assert [row[0] for row in table("lateral-modes")] == [
+        "Dutch roll ω", "Dutch roll ζ", "roll time constant", "spiral pole",
+    ]  # fmt: skip
+    assert [row[1] for row in table("lateral-levels")] == ["A", "B", "C", "A", "B", "C"]
+
+
+def test_a_simulator_whose_aileron_is_half_too_strong_fails_the_roll_response_alone():
+    assert [row[-1] for row in table("lateral-qualification", aircraft=OFF)] == ["✗", "✓", "✓"]
+    assert [row[-1] for row in table("lateral-qualification")] == ["✓", "✓", "✓"]
+    assert table("lateral-qualification", aircraft=Aircraft()) is None
+
+
+def test_each_accepted_manoeuvre_has_a_picture_of_its_inputs_and_outputs():
+    figures = [figure for b in section().blocks if isinstance(b, Gallery) for figure in b.figures]
+    assert [figure.caption.partition(":")[0] for figure in figures] == [
+        "Manoeuvre 1, aileron doublet", "Manoeuvre 2, rudder doublet",
+    ]  # fmt: skip
+    drawn = figures[0].svg()
+    for label in ("δa [deg]", "δr [deg]", "p [deg/s]", "φ [deg]", "a_y"):
+        assert label in drawn
+
+
+def test_the_document_keeps_to_its_schema():
+    document = lateral_document(FLOWN, OFF)
+    assert [b for b in breaches("analyze", {"lateral": document}) if b.startswith("$.lateral")] == []
+    level = document["levels"]["by_class"]["I, II-C, IV"]["B"]
+    assert level["level"] == max(one["level"] for one in level["by_mode"].values())
+    assert [one["holds"] for one in document["qualification"]] == [False, True, True]
+
+
+def test_the_text_names_the_level_and_the_test_that_fails():
+    text = "\n".join(lateral_lines(FLOWN, OFF))
+    assert "Category B: Level" in text
+    assert "✗ peak roll rate: flown" in text
+
+
+@pytest.mark.parametrize("missing", ["L_p", "N_beta"])
+def test_a_file_without_a_derivative_is_not_compared(missing):
+    lacking = replace(AIRCRAFT, model={k: v for k, v in JET.items() if k != missing})
+    assert lateral_document(FLOWN, lacking)["qualification"] == []

@@ -1,0 +1,85 @@
+"""Roll and yaw on both screens: the axis is switched by a key."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from advisor.decision.inputs import StepInput
+from advisor.decision.verdict import NextInput
+from advisor.session.side_view import SideView
+from advisor.tui.panes.next_input import drawn
+from advisor.tui.settings import Settings
+from tests.campaign.side_builders import judged, state
+from tests.tui import flights
+from tests.tui.stage import stage
+from tests.tui.test_pilot_screen import view
+
+
+def both_axes(*side):
+    return replace(flights.state(3), lateral=state(*side))
+
+
+async def test_the_key_shows_the_verdict_on_aileron_and_rudder_and_then_the_elevator_again():
+    flown = both_axes(judged(1, "aileron"), judged(2, "rudder", accepted=False))
+    async with stage(flown, size=(100, 35)) as here:
+        await here.until(lambda: "roll, yaw" in here.words("CrewNotes"))
+        assert "CONTINUE: no accepted manoeuvre has moved the rudder" in here.words("CrewNotes")
+        await here.press("r")
+        assert "✗ REPEAT   manoeuvre 2: rudder doublet" in here.words()
+        assert "key r shows the elevator's" in here.words("CrewNotes")
+        assert "rudder doublet" in here.words("NextInput")
+        await here.press("r")
+        assert "rudder" not in here.words("NextInput")
+
+
+async def test_the_fit_has_the_control_that_moved_and_the_outputs_of_the_axis():
+    async with stage(
+        both_axes(judged(1, "aileron"), judged(2, "rudder")),
+        size=(180, 80),
+        settings=Settings(screen="engineer"),
+    ) as here:
+        await here.until(lambda: here.app.screen.query_one("Maneuvers DataTable").row_count == 3)
+        await here.press("r")
+        await here.until(lambda: here.app.screen.query_one("Maneuvers DataTable").row_count == 2)
+        shown = [plot.id for plot in here.app.screen.query("Fit Plot") if plot.display]
+        assert shown[:2] == ["fit-rudder", "fit-p"]
+        assert not any("elevator" in name or "alpha" in name for name in shown)
+        assert "δr [deg]" in here.page()
+
+
+async def test_what_is_decided_by_hand_is_not_offered_for_roll_and_yaw():
+    async with stage(
+        both_axes(judged(1, "aileron")), size=(120, 40), settings=Settings(screen="engineer")
+    ) as here:
+        assert here.app.screen.check_action("exclude", ()) is True
+        await here.press("r")
+        assert here.app.screen.check_action("exclude", ()) is False
+
+
+async def test_the_pane_of_roll_and_yaw_has_derivatives_modes_and_levels():
+    async with stage(
+        both_axes(judged(1, "aileron")), size=(120, 60), settings=Settings(screen="engineer")
+    ) as here:
+        await here.press("y")
+        await here.until(lambda: "Dutch roll ω" in here.words("LateralPane HangingLines"))
+        said = here.words("LateralPane HangingLines")
+        assert "L_p" in said
+        assert "Category B: Level" in said
+
+
+def test_equal_states_give_identical_parts_so_that_nothing_is_painted_again():
+    side, now = SideView(), view(both_axes(judged(1, "aileron")))
+    first, second = side.of(now), side.of(now)
+    assert first.state.maneuvers is second.state.maneuvers
+    assert first.state.model is second.state.model
+    assert first.elevator is now
+
+
+def test_a_lateral_input_is_drawn_with_right_above_and_left_below():
+    flown = StepInput("doublet", 1.0, np.radians(10.0), nose_up_first=True, control="aileron")
+    advised = NextInput(f"next: {flown.spoken(np.radians(25.0))}", None, None, flown, np.radians(25.0))
+    lines = drawn(advised, 60, large=True).split("\n")
+    said = " ".join(lines[0].split())
+    assert said == "next aileron doublet, 1.0 s steps, 40 % stick, ±10.0 deg of aileron"
+    assert [line.split()[0] for line in (lines[1], lines[3])] == ["right", "left"]
+    assert drawn(advised, 60, large=False).endswith("▔▔▁▁  right first")
