@@ -10,9 +10,8 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.aircraft_effects import LEAST
 from advisor.cli.group import COMMANDS
-from advisor.gap.candidates.traits import TRAITS
+from advisor.gap.effects import EFFECTS
 from advisor.gap.result import Trace
 from benchmarks.pages import (
     aircraft_file,
@@ -140,10 +139,10 @@ def page_of_effects():
     return effects.page()
 
 
-@pytest.mark.parametrize("effect", TRAITS)
+@pytest.mark.parametrize("effect", EFFECTS)
 def test_the_page_of_effects_has_every_parameter_of_an_effect(page_of_effects, effect):
     section = page_of_effects.split(f"### `{effect}`\n")[1].split("\n### ")[0]
-    assert re.findall(r"^  \| `(\w+)`", section, re.MULTILINE) == list(LEAST[effect])
+    assert re.findall(r"^  \| `(\w+)`", section, re.MULTILINE) == list(EFFECTS[effect].keys)
 
 
 def test_a_bound_that_no_flight_changes_is_a_number_and_one_that_does_is_the_flights(page_of_effects):

@@ -22,8 +22,8 @@ from advisor.aircraft.aircraft import (
     SideControl,
     TableColumns,
 )
-from advisor.aircraft.aircraft_effects import mistakes_in
 from advisor.aircraft.key import keys_of, sections_of
+from advisor.aircraft_file.effects import effects_schema, mistakes_in
 from advisor.process.yaml_file import read_yaml
 from advisor.words.printable import printable
 from advisor.words.problems import ConfigurationError
@@ -85,7 +85,9 @@ def parse_aircraft(content: Any, origin: str = "aircraft file", mend: str = "") 
 
 def aircraft_schema() -> dict[str, Any]:
     """Return the JSON schema of the aircraft file, with meaning and cost of each key, for an editor."""
-    return _reader().json_schema()
+    schema = _reader().json_schema()
+    schema["properties"]["effects"] |= effects_schema()
+    return schema
 
 
 def _without_empty(content: Any) -> Any:

@@ -122,7 +122,10 @@ class Examiner:
         limits = [_stopping(problem, vehicle) for problem in found if problem.code != "rate" or not complete]
         limits += distrust_limits([*still, *(d for m in self._maneuvers for d in m.distrusts)])
         instruments = together(self._maneuvers, self._stream.instruments)
-        limits += [Limit(f.code, f.sentence, f.fix, stops=f.refuses) for f in instruments]
+        told = {limit.text for limit in limits}
+        limits += [
+            Limit(f.code, f.sentence, f.fix, stops=f.refuses) for f in instruments if f.sentence not in told
+        ]
         if vehicle is not None and complete:
             limits += rate_limits(paced, assumed, vehicle, speed)
         period_s = 2.0 * np.pi / frequency(assumed.model)

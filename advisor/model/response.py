@@ -27,12 +27,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from advisor.flight.signals.messages import FloatArray
+from advisor.model import outputs
 from advisor.model.transition import WIDTH, divisions, fill
 from advisor.process.compiled import kernel
 
 Index = NDArray[np.int64]
 
-OUTPUTS = ("alpha", "q", "a_z", "theta")
+OUTPUTS = outputs.OUTPUTS
 SHARED = ("Z_alpha", "Z_q", "Z_delta_e", "M_alpha", "M_q", "M_delta_e", "airspeed_scale")
 LOCAL = ("Z_0", "M_0", "alpha_initial", "q_initial", "theta_initial", "q_bias", "a_z_bias")
 N_SHARED, N_LOCAL = len(SHARED), len(LOCAL)

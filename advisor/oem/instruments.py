@@ -43,6 +43,11 @@ jet's held step moves by a fiftieth of its interval. No derivative of an autopil
 interval."""
 
 
+VANE_PLACE_S = 0.1
+"""Standard deviation of a vane's arm, as the time in which the aircraft flies that distance, s. Vanes on
+record have 0.01 to 0.11; the longest is a nose boom of 13 m at 130 m/s."""
+
+
 @dataclass(frozen=True, slots=True)
 class Instrument:
     """One instrument parameter, and its place in a problem."""
@@ -243,6 +248,7 @@ def unknown_instruments(problem: OutputErrorProblem, aircraft: Aircraft) -> tupl
 
     A vane and an accelerometer at one place describe the motion of that place. Instruments at the centre of
     gravity describe the aircraft's equally well. One of the two places must be known to determine the other.
+    Without a specific force the priors alone tell where and when the angle of attack is measured.
     """
     command = COMMAND_DELAY.innocent(problem)
     commanded = [command] if command is not None else []
@@ -264,6 +270,13 @@ def unknown_instruments(problem: OutputErrorProblem, aircraft: Aircraft) -> tupl
             unknown.append(ACCELEROMETER_ARM)
         else:
             unknown.append(replace(VANE_ARM, stated=vane_m))
+    elif "alpha" in measured and _speed(problem) > 0.0:
+        # Without a specific force pitch rate and angle of attack fit as well for any place and delay.
+        late = ALPHA_DELAY.innocent(problem)
+        unknown += [late] if late is not None else []
+        if vane_m is None and not problem.alpha_is_computed:
+            prior = Prior(VANE_ARM.read(problem), VANE_PLACE_S * _speed(problem))
+            unknown.append(replace(VANE_ARM, prior=prior))
     return tuple(unknown)
 
 

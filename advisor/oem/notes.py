@@ -210,7 +210,7 @@ def _missing(solution: Solution, prepared: Prepared, priced: bool) -> str:
     if "a_z" not in prepared.missing:
         return ""
     return (
-        "No vertical acceleration was used, which needs a_z and air speed. Z_alpha, Z_q and Z_delta_e depend"
-        " on the angle of attack alone, and a late or scaled angle of attack biases them unnoticed."
+        "No vertical acceleration was used, which needs a_z and air speed. Z_alpha, Z_q, Z_delta_e and M_q"
+        " depend on the delay and the arm of the angle of attack. Give alpha.vane_arm_m for a vane."
         + in_words(price(solution) if priced else None)
     )

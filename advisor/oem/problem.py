@@ -62,6 +62,8 @@ class OutputErrorProblem:
     accelerometer_arm_m: float = 0.0
     alpha_delay_s: float = 0.0
     """Delay of the angle of attack, s."""
+    alpha_is_computed: bool = False
+    """Whether the angle of attack comes from inertial sensors, which have no arm, instead of from a vane."""
     steady_moment_rad: float = 0.0
     """Moment that does not scale with the square of the air speed, as the deflection that balances it at the
     reference speed, rad."""

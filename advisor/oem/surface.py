@@ -44,7 +44,7 @@ class Servo:
         run, start, arrival = self._driven(command_t, command, t, held)
         if self.lag_s <= 0.0:
             return start, start, arrival
-        surface = _lagged(np.diff(run), start[:-1], arrival, self.lag_s, start[0])[len(run) - len(t) :]
+        surface = lagged(np.diff(run), start[:-1], arrival, self.lag_s, start[0])[len(run) - len(t) :]
         return surface, surface, surface[1:]
 
     def changes(
@@ -141,7 +141,7 @@ def _changes(
 
 
 @kernel()
-def _lagged(
+def lagged(
     step: FloatArray, start: FloatArray, arrival: FloatArray, lag: float, initial: float
 ) -> FloatArray:
     """Return the first-order lag of a command that moves linearly from ``start`` to ``arrival`` in each

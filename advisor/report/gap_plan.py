@@ -88,7 +88,7 @@ def size_of(f: Foreseen) -> str:
     size = abs(factor * f.smallest)
     if f.share is not None:
         return f"{100.0 * f.share:.2g} % of {_OF_LINEAR[f.parameter]}"
-    if f.effect == "actuator_rate_limit":
+    if f.is_limit:
         return f"any limit below {_whole(size)} {unit}"
     if f.parameter in _IN_WORDS:
         return f"{size:.2g} {_IN_WORDS[f.parameter]}"

@@ -204,9 +204,12 @@ def _clock_of_rate(work: _Work) -> None:
     if late is None or not work.has("q", "theta"):
         return
     range_s = FILTER_S + _half_intervals(work, "q", "theta")
+    channel, other = ("q", "theta") if late.value > 0.0 else ("theta", "q")
+    if channel == "theta" and bool(np.all(np.isin(work.channels["theta"].t, work.channels["q"].t))):
+        # The autopilot integrates the rates of one message to the attitude of the same message.
+        range_s = FILTER_S
     if abs(late.value) - _SIGMAS * late.std <= range_s:
         return
-    channel, other = ("q", "theta") if late.value > 0.0 else ("theta", "q")
     measured = Measured(abs(late.value), late.std)
     # An attitude is integrated from the gyro. Its lateness enters gravity alone, and can be removed.
     _late(work, channel, _PLAIN[other], measured, used=channel == "theta", shifted=(channel,))

@@ -44,8 +44,8 @@ class Span:
     """Steps of the input: (onset in s, level in rad from trim) for each."""
     closed_by: str
     """Reason of the end: ``quiet``, ``mode change``, ``next input``, ``gap``, ``end of log``, ``air speed``,
-    ``no rest``. A marked stretch has ``marked by hand``, ``marked by a switch`` or ``marked by a text of
-    the vehicle``. A movement that is being flown has ``still flying``."""
+    ``no rest``. A marked stretch has ``marked by hand``, ``marked by a switch``, ``marked by a text of
+    the vehicle`` or ``marked by SystemID``. A movement that is being flown has ``still flying``."""
 
     @property
     def input_is_over(self) -> bool:
@@ -66,7 +66,8 @@ class Maneuver:
     mode: str = ""
     """Flight mode of the manoeuvre, by the autopilot's name or number."""
     distrusts: tuple[Distrust, ...] = ()
-    """Channels that cannot be right. A frozen specific force is left out of ``channels``."""
+    """Channels that cannot be right. A frozen specific force or angle of attack is left out of
+    ``channels``."""
     findings: tuple[InstrumentFinding, ...] = ()
     """Contradictions of the instruments, by all records of this power-on so far. ``channels`` are free of
     those that are used."""

@@ -1,4 +1,4 @@
-"""Stretches of flight marked as manoeuvres: by hand, by a switch, or by a text of the vehicle.
+"""Stretches of flight marked as manoeuvres: by hand, by a switch, by a text, or by the autopilot's SystemID.
 
 A mark replaces every input that the finder finds in its stretch. A mark set while the stream runs gives the
 manoeuvre that results when the mark is known before the stream begins.
@@ -15,7 +15,7 @@ from advisor.flight.maneuvers.maneuver import Span
 from advisor.words.problems import Problem
 from advisor.words.vehicle_time import between, clock
 
-Marker = Literal["hand", "switch", "text"]
+Marker = Literal["hand", "switch", "text", "system id"]
 
 LONGEST_S = 100.0
 """Longest mark, s. With its lead-in a mark must fit into the two minutes of channels that a stream keeps."""

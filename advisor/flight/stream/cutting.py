@@ -1,7 +1,7 @@
 """From elevator movements to manoeuvres with their channels, or to activities with their reasons."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -25,7 +25,7 @@ from advisor.flight.signals.record import AIR_UNITS, UNITS, Channel
 from advisor.flight.signals.renewal import counted_once
 from advisor.flight.signals.repair import repaired
 from advisor.flight.signals.tracks import Tracks
-from advisor.flight.signals.trust import distrusted
+from advisor.flight.signals.trust import Distrust, distrusted
 from advisor.flight.stream.identity import Identity
 from advisor.flight.vehicle.breaks import Breaks
 from advisor.flight.vehicle.modes import closes_pitch_loop
@@ -85,9 +85,7 @@ class Cutting:
         maneuver, evidence = self._cut(span, boot, up_to_order)
         because = self._not_an_input(maneuver, up_to_order)
         if because is not None:
-            self.activities[because.what] += 1
-            stay_s, _ = self._stay(_middle_s(span))
-            return [Activity(span.start_s, span.end_s, because.reason, because.text, stay_s, boot)]
+            return [self._activity(maneuver, because)]
         airspeed = maneuver.channels.get("airspeed")
         steady = at_steady_speed(maneuver.span, airspeed, self._limits.airspeed_change_percent)
         if steady is not maneuver.span:
@@ -95,9 +93,23 @@ class Cutting:
         return self._counted(maneuver, evidence)
 
     def marked(self, mark: Mark, boot: int, up_to_order: int | None) -> list[FlightEvent]:
-        """Return the manoeuvre of a marked stretch, which counts without the finder's criteria."""
+        """Return the manoeuvre of a marked stretch.
+
+        A crew's mark counts without the finder's criteria. SystemID moves any control, so that the elevator's
+        visible effect decides.
+        """
         elevator = self._tracks.cut("elevator", mark.start_s - LEAD_IN_S, mark.end_s, up_to_order)
-        return self._counted(*self._cut(marked_span(mark, elevator), boot, up_to_order))
+        maneuver, evidence = self._cut(marked_span(mark, elevator), boot, up_to_order)
+        if mark.by == "system id" and (because := self._not_an_input(maneuver, up_to_order)) is not None:
+            return [self._activity(maneuver, because)]
+        return self._counted(maneuver, evidence)
+
+    def _activity(self, maneuver: Maneuver, because: Because) -> Activity:
+        """Return the event of a movement that was no test input, and count the movement."""
+        self.activities[because.what] += 1
+        span = maneuver.span
+        stay_s, _ = self._stay(_middle_s(span))
+        return Activity(span.start_s, span.end_s, because.reason, because.text, stay_s, maneuver.boot)
 
     def _counted(self, maneuver: Maneuver, evidence: Evidence) -> list[FlightEvent]:
         self.maneuvers += 1
@@ -141,10 +153,7 @@ class Cutting:
             span = replace(span, record_from_s=min(earlier_s, span.start_s))
         channels, notes = self._recorded(span, up_to_order)
         distrusts = self._who.distrusts(distrusted(channels))
-        for still in distrusts:
-            if still.channel == "a_z":
-                # An estimate can do without a specific force; a frozen one would spoil the estimate.
-                del channels["a_z"]
+        channels = _trusted(channels, distrusts)
         examined = examine(channels, self._evidence)
         channels = {**examined.channels, **self._air(span, up_to_order)}
         mode = self._stay(_middle_s(span))[1]
@@ -204,6 +213,16 @@ class Cutting:
                 "If no sensor measured the air speed, wind makes the derivatives wrong."
             ]
         return []
+
+
+def _trusted(channels: Mapping[str, Channel], distrusts: Sequence[Distrust]) -> dict[str, Channel]:
+    """Return the channels without those that would spoil an estimate which can do without them."""
+    left_out = {distrust.channel for distrust in distrusts if distrust.left_out}
+    kept = {name: channel for name, channel in channels.items() if name not in left_out}
+    if "a_z" in left_out and "alpha" in kept and kept["alpha"].provenance == "derived":
+        # Nothing computes an angle of attack from an accelerometer that stands still.
+        kept["alpha"] = replace(kept["alpha"], provenance="unknown")
+    return kept
 
 
 def _middle_s(span: Span) -> float:

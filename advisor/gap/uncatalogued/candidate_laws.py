@@ -10,8 +10,8 @@ reduces lift and elevator power, but no effect reduces elevator power alone.
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.candidates.between import steps_in
-from advisor.gap.candidates.variant import Values, Variant
+from advisor.gap.kit.between import steps_in
+from advisor.gap.kit.variant import Values, Variant
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.search.acceptance import JudgedAddition
 from advisor.gap.simulator.layout import FILTER, INDEX, OUTPUTS

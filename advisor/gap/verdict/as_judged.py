@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from advisor.gap.alternative import Alternative
-from advisor.gap.candidates.traits import TRAITS
+from advisor.gap.effects import EFFECTS
 from advisor.gap.evidence.rows import stated_as
 from advisor.gap.judge.posterior import Posterior
 from advisor.gap.result import Cause, Diagnosis, spelled
@@ -77,7 +77,7 @@ def _with_rivals(cause: Cause, alike: Sequence[str]) -> Cause:
     """Return a cause with the effects that the evidence cannot exclude, and what distinguishes them."""
     rivals = [name for name in alike if name not in (cause.effect, *cause.cannot_be_told_from)]
     ways = [
-        way for name in rivals if cause.effect in TRAITS and (way := way_to_distinguish(cause.effect, name))
+        way for name in rivals if cause.effect in EFFECTS and (way := way_to_distinguish(cause.effect, name))
     ]
     way = "; ".join(dict.fromkeys(filter(None, (cause.tell_apart_by, *ways))))
     return replace(cause, cannot_be_told_from=(*cause.cannot_be_told_from, *rivals), tell_apart_by=way)

@@ -4,12 +4,9 @@ import math
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.candidates.known import stated_in
-from advisor.gap.candidates.traits import TRAITS
+from advisor.gap.effects import EFFECTS
 from advisor.gap.result import Cause
 from advisor.gap.search.acceptance import LEAST_SIGMA
-
-_CURVES = frozenset({"elevator_nonlinearity", "nonlinear_pitching_moment", "nonlinear_lift"})
-"""Curves that a simulator beyond eight parameters may have."""
 
 
 def what(cause: Cause, in_simulator: frozenset[str] = frozenset()) -> str:
@@ -24,16 +21,16 @@ def what(cause: Cause, in_simulator: frozenset[str] = frozenset()) -> str:
         sizes[f"{name}_deg"] = math.degrees(value.value)
         sizes[f"{name}_percent"] = 100.0 * value.value
         sizes[f"{name}_power"] = 2.0 + value.value
-    trait = TRAITS[cause.effect]
+    effect = EFFECTS[cause.effect]
     # A lag that is not significant is not mentioned.
     telling = (
         name
         for name, value in cause.parameters.items()
         if name != "lag_s" or abs(value.value) > LEAST_SIGMA * value.std
     )
-    put = next((trait.said_with[name] for name in telling if name in trait.said_with), trait.said)
+    put = next((effect.said_with[name] for name in telling if name in effect.said_with), effect.said)
     below = next(iter(sizes.values()), 0.0) < 0.0
-    beyond = trait.said_beyond
+    beyond = effect.said_beyond
     if cause.effect in in_simulator and beyond:
         put = beyond if isinstance(beyond, tuple) or not below else put
     if isinstance(put, str):
@@ -44,5 +41,11 @@ def what(cause: Cause, in_simulator: frozenset[str] = frozenset()) -> str:
 def in_simulator(aircraft: Aircraft) -> frozenset[str]:
     """Return the effects that the simulator has some of: from ``effects``, as a parameter, or as its own
     curves."""
-    curves = _CURVES if aircraft.simulator is not None else frozenset()
-    return curves | frozenset(aircraft.effects) | {effect for effect in TRAITS if stated_in(aircraft, effect)}
+    # A simulator beyond eight parameters may have curves.
+    return frozenset(
+        name
+        for name, effect in EFFECTS.items()
+        if name in aircraft.effects
+        or stated_in(aircraft, name)
+        or (effect.curve is not None and aircraft.simulator is not None)
+    )

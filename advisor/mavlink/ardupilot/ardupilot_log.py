@@ -23,6 +23,7 @@ from advisor.mavlink.ardupilot.body_rates import RATE_RECORDS, body_rates, calme
 from advisor.mavlink.ardupilot.former_records import SENSORS_APART, Clocked, in_todays_names
 from advisor.mavlink.ardupilot.log_health import HEALTH_RECORDS, health
 from advisor.mavlink.ardupilot.sensors import Said, flown, said, silent
+from advisor.mavlink.ardupilot.system_identification import SYSTEM_ID_RECORDS, lost_texts, sweeps
 from advisor.mavlink.px4.sdlog2 import SDLOG2_RECORDS, Sdlog2Messages, is_sdlog2
 from advisor.mavlink.records.dataflash import RecordTable, gps_time_base_s, read_logs, seconds
 from advisor.mavlink.records.equivalent import air_data, message, nearest
@@ -32,6 +33,7 @@ _RECORDS: dict[str, set[str]] = {
     **VEHICLE_RECORDS,
     **RATE_RECORDS,
     **HEALTH_RECORDS,
+    **SYSTEM_ID_RECORDS,
     "ACC": {"AccX", "AccY", "AccZ"},
     "AOA": {"AOA", "SSA"},
     "ARSP": {"Airspeed"},
@@ -146,7 +148,7 @@ class _Translation:
         self._tables = {name: table for name, table in self._tables.items() if len(table)}
         if "PARM" in self._tables:
             self._tables["PARM"] = in_todays_parameters(self._tables["PARM"])
-        self._said += health(self._tables)
+        self._said += [*health(self._tables), *sweeps(self._tables)]
         self._base_s = float(read.epoch_s) or gps_time_base_s(self._tables.get("GPS"))
         self._system = system_of(self._tables)
 
@@ -292,7 +294,10 @@ class _Translation:
         read = [
             (one.order + 2 + k, one.time_us, READER + one.text.encode()) for k, one in enumerate(self._said)
         ]
-        texts = np.array([*own, *read], dtype=[("order", "i8"), ("time_us", "i8"), ("text", "S256")])
+        texts = np.array(
+            [*own, *lost_texts(self._tables), *read],
+            dtype=[("order", "i8"), ("time_us", "i8"), ("text", "S256")],
+        )
         fields: dict[str, ArrayLike] = {"severity": _NOT_LOGGED, "text": texts["text"]}
         return self._made("STATUSTEXT", texts["order"], texts["time_us"], fields)
 
