@@ -14,6 +14,7 @@ from pydantic import ConfigDict, TypeAdapter, ValidationError, with_config
 
 from advisor.aircraft.aircraft import (
     PARAMETERS,
+    SIDE_PARAMETERS,
     Aircraft,
     Elevator,
     FmuVariables,
@@ -186,8 +187,8 @@ def _beyond_types(aircraft: Aircraft) -> Iterator[str]:
     yield from _source_mistakes("beta.source", aircraft.beta.source, ("auto", "aoa_ssa", "none"))
     yield from _out_of_bounds(aircraft)
     for name in aircraft.model:
-        if name not in PARAMETERS:
-            yield f"model.{name}: unknown key, the parameters are {' '.join(PARAMETERS)}"
+        if name not in (*PARAMETERS, *SIDE_PARAMETERS):
+            yield f"model.{name}: unknown key, the parameters are {' '.join((*PARAMETERS, *SIDE_PARAMETERS))}"
     yield from mistakes_in(aircraft.effects)
     plan = aircraft.campaign
     if not 2 <= plan.window <= _LONGEST_WINDOW:

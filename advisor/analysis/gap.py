@@ -8,11 +8,10 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.refused import without_refused
 from advisor.analysis.table_log import SUFFIXES, table_maneuvers
 from advisor.campaign.hand_decisions import ByHand
-from advisor.flight.maneuvers.events import ManeuverFlown, Notice
+from advisor.flight.maneuvers.events import READER_NOTICE, ManeuverFlown, Notice
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.repeated_maneuver import are_one, is_fuller
 from advisor.flight.signals.true_airspeed import true_over_read
-from advisor.flight.stream.identity import READER_NOTICE
 from advisor.flight.stream.stream import FlightStream
 from advisor.flight.vehicle.one_aircraft import OneAircraft
 from advisor.flight.vehicle.surfaces import Surface
@@ -30,7 +29,7 @@ from advisor.simulators.protocol import Simulator
 from advisor.simulators.specification import simulator_of
 from advisor.simulators.speed_kind import by_the_motion
 from advisor.simulators.static_errors import with_static_errors
-from advisor.simulators.unseen import changes_something, unseen_of, with_unseen_shrink
+from advisor.simulators.unseen import changes_something, other_finding, unseen_of, with_unseen_shrink
 from advisor.words.printable import printable
 from advisor.words.problems import Problem, UnusableInputError
 
@@ -189,7 +188,9 @@ def compare_logs(
         elif changes_something(told):
             progress("searching again without the manoeuvres kept apart", 0.9)
             unseen = unseen_of(whole, chosen.maneuvers, at_true_speed, holdout, prior)
-            told = told if unseen is None else with_unseen_shrink(whole, unseen, at_true_speed)
+            if unseen is not None:
+                told = with_unseen_shrink(whole, unseen, at_true_speed)
+                told = replace(told, notes=(*other_finding(whole.diagnosis, unseen), *told.notes))
         told = with_static_errors(told, whole)
         compared = Compared(told, aircraft)
     notes = [*chosen.notes, *flown.notes]

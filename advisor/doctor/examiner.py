@@ -21,11 +21,10 @@ from advisor.doctor.instruments import (
 )
 from advisor.doctor.pace import Paced, cost_of_missing, rate_limits, steadiness_limits
 from advisor.doctor.survey import Arrival, Survey, bank_name
-from advisor.flight.maneuvers.events import ManeuverFlown, Notice
+from advisor.flight.maneuvers.events import READER_NOTICE, ManeuverFlown, Notice
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import Columns
 from advisor.flight.signals.track import ChannelStatus
-from advisor.flight.stream.identity import READER_NOTICE
 from advisor.flight.stream.stream import FlightStream
 from advisor.flight.stream.suitability import problems
 from advisor.flight.vehicle.surfaces import Surface

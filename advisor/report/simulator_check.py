@@ -11,6 +11,7 @@ SCHEMA = "advisor.simulator/1"
 _LACKS = {
     "increments": "effects of force and moment stay on paper",
     "mass": "it flies at its own mass",
+    "wind": "it flies in still air",
     "throttle": "a moved throttle of the flight is not flown",
     "aileron": "the flight's aileron is not flown",
     "rudder": "the flight's rudder is not flown",

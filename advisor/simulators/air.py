@@ -1,4 +1,4 @@
-"""The air in which a simulator flies a manoeuvre.
+"""The air in which a simulator flies a manoeuvre: its density and its wind.
 
 A simulator computes forces with the true air speed V and the density ρ of its own standard atmosphere. The
 dynamic pressure ½·ρ·V² of the flight therefore needs two numbers. One is the true air speed. The other is the
@@ -7,10 +7,13 @@ height at which the standard atmosphere has the density flown in.
 
 from collections.abc import Mapping, Sequence
 
+import numpy as np
+
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.instruments.atmosphere import air_flown
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.standard_atmosphere import standard_height
+from advisor.simulators.protocol import Simulator
 from advisor.words.problems import UnusableInputError
 
 
@@ -25,6 +28,29 @@ def standard_heights(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Mappi
         known = air.source != "sea level"
         found[maneuver.number] = float(standard_height(air.density_kg_m3)) if known else None
     return found
+
+
+def winds(maneuvers: Sequence[Maneuver]) -> Mapping[int, tuple[float, float]]:
+    """Return the mean wind along and right of the heading before the first step, m/s, by manoeuvre number.
+
+    An autopilot's estimate follows a manoeuvre's own sideslip and air speed, so its course is not used.
+    Manoeuvres without an estimate are missing.
+    """
+    found = {}
+    for maneuver in maneuvers:
+        along, right = (maneuver.channels.get(name) for name in ("wind_along", "wind_right"))
+        if along is None or right is None:
+            continue
+        n = max(int(np.searchsorted(along.t, maneuver.span.start_s)), 1)
+        found[maneuver.number] = (float(np.mean(along.y[:n])), float(np.mean(right.y[:n])))
+    return found
+
+
+def still_air_said(simulator: Simulator, winds: Mapping[int, tuple[float, float]]) -> tuple[str, ...]:
+    """Return a sentence where a simulator would take a wind and the log has none."""
+    if winds or "wind" not in simulator.takes:
+        return ()
+    return (f"The log has no estimate of the wind: {simulator.description} flies in still air.",)
 
 
 def refuse_unknown_air(description: str, heights_m: Mapping[int, float | None]) -> None:

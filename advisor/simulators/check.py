@@ -14,7 +14,7 @@ from advisor.gap.records.prepare import prepare
 from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, natural_frequency
 from advisor.simulators.flying import Flying, refuse_unmoved
 from advisor.simulators.interface import InterfaceFault, interface_fault
-from advisor.simulators.protocol import CONTROLS, Condition, Inputs, Replay, Simulator
+from advisor.simulators.protocol import CONDITIONS, CONTROLS, Condition, Inputs, Replay, Simulator
 from advisor.simulators.surrogate import surrogate_of
 
 _STEP_S, _LEAD_S, _UNIT_S, _LASTS_S = 0.005, 1.0, 0.4, 9.0
@@ -44,7 +44,7 @@ class CheckedSimulator:
     """Largest pitch rate with resting controls."""
     takes: tuple[str, ...]
     lacks: tuple[str, ...]
-    """Controls, ``mass`` and ``increments`` of force and moment that the simulator does not take."""
+    """Controls, parts of the condition, and ``increments`` that the simulator does not take."""
     derivatives: Mapping[str, float] = field(default_factory=dict)
     lag_s: float = nan
     """First-order lag between the command and the motion, s."""
@@ -68,7 +68,7 @@ def check(simulator: Simulator, condition: Condition) -> CheckedSimulator:
     rest = t[t < _REST_S]
     still = simulator.replay(condition, Inputs(rest, np.zeros(rest.size)))
     flown = simulator.replay(condition, Inputs(t, _three_two_one_one(t)))
-    offered = {*CONTROLS, "mass"}
+    offered = {*CONTROLS, *CONDITIONS}
     takes = {*simulator.takes} | ({"increments"} if simulator.takes_increments else set())
     found = CheckedSimulator(
         simulator.description, condition.airspeed_m_s, condition.height_m, float(still.alpha[0]), still.trim,

@@ -23,7 +23,7 @@ from advisor.gap.records.unmeasured_alpha import alpha_by_motion, is_known
 from advisor.gap.result import Diagnosis, Trace, TrimDifference
 from advisor.gap.search.baseline import base_entries
 from advisor.gap.simulator.layout import DERIVATIVES, INDEX, NUISANCES, OUTPUTS
-from advisor.simulators.air import refuse_unknown_air, standard_heights
+from advisor.simulators.air import refuse_unknown_air, standard_heights, still_air_said, winds
 from advisor.simulators.around import COMMAND
 from advisor.simulators.by_log import IdentifiedSimulator
 from advisor.simulators.controls import other_controls
@@ -47,6 +47,7 @@ from advisor.simulators.trims import trim_differences
 from advisor.simulators.unseen import (
     UnseenManeuvers,
     changes_something,
+    other_finding,
     resaid,
     shrink_on,
     unseen_of,
@@ -105,7 +106,10 @@ def compare(
     trims: tuple[TrimDifference, ...] = ()
     replays: list[Replay] = []
     controls = other_controls(flights.flights, maneuvers)
-    flying = Flying(simulator, flights, heights_m, controls, mass_kg, lambda w, s: progress(w, _FLIES * s))
+    blown = winds(maneuvers)
+    flying = Flying(
+        simulator, flights, heights_m, controls, mass_kg, lambda w, s: progress(w, _FLIES * s), blown
+    )
     if isinstance(simulator, LinearSimulator):
         surrogate = Surrogate(simulator.derivatives, simulator.reference_m_s or flights.reference_m_s)
         known = simulator.as_file if isinstance(simulator, IdentifiedSimulator) else aircraft
@@ -138,7 +142,11 @@ def compare(
         mirror = mirrored(examined, maneuvers, flying, replays, aircraft)
         found = found if mirror is None else mirror.said(found)
     found = with_static_errors(found, examined, trims)
-    notes = getattr(simulator, "notes", ())
+    notes = (
+        *getattr(simulator, "notes", ()),
+        *still_air_said(simulator, blown),
+        *other_finding(examined.diagnosis, unseen),
+    )
     return Compared(replace(found, notes=(*notes, *found.notes)), as_file)
 
 

@@ -1,7 +1,7 @@
 """A simulator that flies the recorded inputs, and the difference to its linear surrogate."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -40,10 +40,13 @@ class Flying:
     """Manoeuvre number to the logged controls (``advisor.simulators.controls.other_controls``)."""
     mass_kg: float | None
     progress: Progress
+    winds: Mapping[int, tuple[float, float]] = field(default_factory=dict)
+    """Manoeuvre number to the wind (``Condition.wind_m_s``). Other manoeuvres are flown in still air."""
 
     def condition(self, flight: PreparedManeuver) -> Condition:
         """Return the steady flight at the start of a manoeuvre."""
-        return condition_of(flight, self.heights_m[flight.number], self.mass_kg)
+        steady = condition_of(flight, self.heights_m[flight.number], self.mass_kg)
+        return replace(steady, wind_m_s=self.winds.get(flight.number, steady.wind_m_s))
 
     def replays(
         self, command: FloatArray, held: bool, increments: tuple[Increments | None, ...] | None = None
@@ -230,7 +233,7 @@ def refuse_unmoved(description: str, replays: Sequence[Replay], flights: Prepare
     if max(float(np.ptp(replay.q)) for replay in replays) < noise:
         raise UnusableInputError(
             "simulator_elevator",
-            f"{description} does not answer the elevator: its pitch rate stays as it is.",
+            f"{description} does not respond to the elevator: its pitch rate stays as it is.",
             "Check which input of the model the elevator is, and its unit.",
         )
 

@@ -1,4 +1,4 @@
-"""``fmu:FILE.fmu``: a flight compared with a functional mock-up unit (FMI 2 or 3, co-simulation).
+"""``fmu:FILE.fmu``: a flight compared with a functional mock-up unit (FMI 2 or 3).
 
 An FMU is a program. The FMU runs in a process of its own, with a time limit and with the user's rights.
 """
@@ -14,13 +14,14 @@ from advisor.aircraft.aircraft import Aircraft, FmuVariables
 from advisor.flight.signals.messages import FloatArray
 from advisor.simulators.fmu_instance import Fmu, Use
 from advisor.simulators.isolated import Isolated
-from advisor.simulators.protocol import CONTROLS, Condition, Increments, Inputs, Replay, State
+from advisor.simulators.protocol import CONDITIONS, CONTROLS, Condition, Increments, Inputs, Replay, State
 from advisor.words.problems import ConfigurationError, UnusableInputError
 
 _STEP_S = 0.01
 _ANGULAR = ("elevator", "aileron", "rudder", "alpha", "q", "theta", "force_increment", "moment_increment")
 _OUTPUTS = ("alpha", "q", "theta", "a_z", "airspeed", "height")
 _INPUTS = ("elevator", "aileron", "rudder", "throttle", "force_increment", "moment_increment")
+_TRIM = ("airspeed", "height", "flight_path", "mass", "wind_along", "wind_right", "alpha", "theta")
 _DIFFERENCE_RAD = 1e-3
 _NEWTON_STEPS = 30
 _STEADY = 1e-4
@@ -81,7 +82,7 @@ class FmuSimulator:
         self._outputs = self._references(variables, _OUTPUTS, "output")
         self._trim = {
             name: self._fmu.reference(f"fmu.trim.{name}", variable, "start")
-            for name in ("airspeed", "height", "flight_path", "mass", "alpha", "theta")
+            for name in _TRIM
             if (variable := getattr(variables.trim, name)) is not None
         }
         angle = math.radians(1.0) if variables.units == "deg" else 1.0
@@ -92,8 +93,8 @@ class FmuSimulator:
         self._angle = angle
         self._step_s = variables.step_s or self._fmu.default_step_s or _STEP_S
         self.takes_increments = variables.force_increment is not None
-        mass = {"mass"} if "mass" in self._trim else set()
-        self.takes = frozenset({*self._inputs} & {*CONTROLS} | mass)
+        conditions = {name for name in CONDITIONS if any(one.startswith(name) for one in self._trim)}
+        self.takes = frozenset({*self._inputs} & {*CONTROLS} | conditions)
 
     def replay(self, condition: Condition, inputs: Inputs, increments: Increments | None = None) -> Replay:
         """Start at the condition, and fly the inputs as departures from their start values."""
@@ -124,7 +125,7 @@ class FmuSimulator:
         return Replay(t, alpha, q, theta, a_z, speed, height, trim=trim)
 
     def linearise(self, condition: Condition) -> Mapping[str, float] | None:
-        """Return None: FMUs for co-simulation have no common interface for a linearisation."""
+        """Return None: an FMU's states are not in general those of a short period."""
         return None
 
     def close(self) -> None:
@@ -158,6 +159,8 @@ class FmuSimulator:
             "height": condition.height_m / self._factor["height"],
             "flight_path": condition.flight_path_rad / self._angle,
             "mass": condition.mass_kg,
+            "wind_along": condition.wind_m_s[0],
+            "wind_right": condition.wind_m_s[1],
         }
         return {
             self._trim[name]: value

@@ -6,6 +6,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, Literal
 
+from advisor.simulators.fmu_model_exchange import EndedError, ModelExchange
 from advisor.words.problems import UnusableInputError
 
 _REAL = ("Real", "Float64")
@@ -14,13 +15,14 @@ Use = Literal["output", "input", "start"]
 
 
 class Fmu:
-    """An FMU for co-simulation, unpacked into the temporary folder of this process.
+    """An FMU, unpacked into the temporary folder of this process; co-simulation comes before model exchange.
 
     Raises
     ------
     UnusableInputError
-        The file is no FMU of FMI 2 or 3, holds no co-simulation, or no binary for this platform. The other
-        methods raise it where a variable is missing or no number, or where the FMU refuses a call.
+        The file is no FMU of FMI 2 or 3, holds neither co-simulation nor model exchange, or no binary for
+        this platform. The other methods raise it where a variable is missing or no number, or where the FMU
+        refuses a call.
     """
 
     def __init__(self, path: Path) -> None:
@@ -37,8 +39,10 @@ class Fmu:
         version = self._description.fmiVersion
         if not version.startswith(("2.", "3.")):
             raise self._unusable(f"is of FMI {version}", "Export it as FMI 2 or FMI 3.")
-        if self._description.coSimulation is None:
-            raise self._unusable("is for model exchange only", "Export it for co-simulation.")
+        if self._description.coSimulation is None and self._description.modelExchange is None:
+            mend = "Export it for one of them."
+            raise self._unusable("holds neither co-simulation nor model exchange", mend)
+        self._kind = "ModelExchange" if self._description.coSimulation is None else "CoSimulation"
         if fmpy.platform not in platforms and fmpy.platform_tuple not in platforms:
             has = ", ".join(platforms) or "none"
             raise self._unusable(
@@ -48,6 +52,7 @@ class Fmu:
         self._is_fmi3 = version.startswith("3.")
         self._variables = {one.name: one for one in self._description.modelVariables}
         self._instance: Any = None
+        self._solver: ModelExchange | None = None
 
     @property
     def default_step_s(self) -> float | None:
@@ -82,13 +87,15 @@ class Fmu:
 
         self.end()
         try:
-            instance = instantiate_fmu(self._folder, self._description, fmi_type="CoSimulation")
+            instance = instantiate_fmu(self._folder, self._description, fmi_type=self._kind)
             self._instance = instance
             if not self._is_fmi3:
                 instance.setupExperiment(startTime=0.0)
             self.write(start)
             instance.enterInitializationMode()
             instance.exitInitializationMode()
+            if self._kind == "ModelExchange":
+                self._solver = ModelExchange(instance, self._description)
         except UnusableInputError:
             raise
         except Exception as error:
@@ -115,17 +122,23 @@ class Fmu:
     def step(self, t: float, width: float) -> None:
         """Advance from ``t`` by ``width`` seconds."""
         try:
-            ended = self._instance.doStep(t, width)
+            if self._solver is not None:
+                self._solver.advance(t, width)
+            else:
+                ended = self._instance.doStep(t, width)
+                if self._is_fmi3 and ended[1]:
+                    raise EndedError
+        except EndedError as error:
+            told = f"ends its simulation at {t:.2f} s"
+            raise self._unusable(told, "Let it run as long as a manoeuvre.") from error
         except Exception as error:
             raise self._refused(f"at {t:.2f} s", error) from error
-        if self._is_fmi3 and ended[1]:
-            raise self._unusable(f"ends its simulation at {t:.2f} s", "Let it run as long as a manoeuvre.")
 
     def end(self) -> None:
         """Free the instance, if there is one."""
         if self._instance is None:
             return
-        instance, self._instance = self._instance, None
+        instance, self._instance, self._solver = self._instance, None, None
         # An FMU that refused a step may refuse to end, too.
         with suppress(Exception):
             instance.terminate()

@@ -11,7 +11,7 @@ from advisor.simulators.isolated import Isolated
 from advisor.simulators.jsbsim_flight import FOOT_M, STEP_S, JsbsimFlight, SteadyState
 from advisor.simulators.jsbsim_model import FORCE, MOMENT, find_model
 from advisor.simulators.jsbsim_trim import trim
-from advisor.simulators.protocol import CONTROLS, Condition, Increments, Inputs, Replay
+from advisor.simulators.protocol import CONDITIONS, CONTROLS, Condition, Increments, Inputs, Replay
 from advisor.simulators.protocol import State as Motion
 from advisor.words.problems import UnusableInputError
 
@@ -52,7 +52,7 @@ class Jsbsim:
     """
 
     takes_increments = True
-    takes = frozenset({*CONTROLS, "mass"})
+    takes = frozenset({*CONTROLS, *CONDITIONS})
     speed_limit_s = 20.0
 
     def __init__(self, path: Path) -> None:
@@ -152,8 +152,14 @@ class Jsbsim:
     def _rates(self) -> tuple[float, float]:
         """Return rates of α, rad/s, and of q, rad/s²."""
         fdm = self._flight.fdm
-        u, w = fdm["velocities/u-fps"], fdm["velocities/w-fps"]
-        u_dot, w_dot = fdm["accelerations/udot-ft_sec2"], fdm["accelerations/wdot-ft_sec2"]
+        u, v, w = (fdm[f"velocities/{axis}-aero-fps"] for axis in "uvw")
+        # The wind stands still over the ground, and turns in the axes of the body.
+        along, right, down = (
+            fdm[f"velocities/{axis}-fps"] - air for axis, air in zip("uvw", (u, v, w), strict=True)
+        )
+        p, q, r = (fdm[f"velocities/{rate}-rad_sec"] for rate in "pqr")
+        u_dot = fdm["accelerations/udot-ft_sec2"] + q * down - r * right
+        w_dot = fdm["accelerations/wdot-ft_sec2"] + p * right - q * along
         return (u * w_dot - w * u_dot) / (u * u + w * w), fdm["accelerations/qdot-rad_sec2"]
 
     def _throw(self, name: str) -> float:

@@ -4,6 +4,7 @@ The flight stands still while a state is sought (:meth:`Flight.freeze`): positio
 values, and engines and propellers settle. Lags of the flight control pass meanwhile.
 """
 
+from math import cos, sin
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -78,6 +79,8 @@ class JsbsimFlight:
         self.engines = int(self.fdm.get_propulsion().get_num_engines())
         self._curve: tuple[FloatArray, FloatArray] | None = None
         self._curves: dict[Condition, tuple[FloatArray, FloatArray] | None] = {}
+        self._airspeed_fps = 0.0
+        self._wind_fps = (0.0, 0.0)
         self._settling = 0
         self._resting = 0.0
         self.fdm["propulsion/fuel_freeze"] = 1.0
@@ -85,12 +88,14 @@ class JsbsimFlight:
         self._started = False
 
     def begin(self, condition: Condition) -> None:
-        """Set speed, height and mass, start the engines, and hold the flight still."""
+        """Set speed, height, mass and wind, start the engines, and hold the flight still."""
         fdm = self.fdm
+        along, right = condition.wind_m_s
+        self._airspeed_fps, self._wind_fps = condition.airspeed_m_s / FOOT_M, (along / FOOT_M, right / FOOT_M)
         fdm["ic/lat-geod-deg"] = _LATITUDE_DEG
         fdm["ic/terrain-elevation-ft"] = (condition.height_m - _CLEARANCE_M) / FOOT_M
         fdm["ic/h-sl-ft"] = condition.height_m / FOOT_M
-        fdm["ic/vt-fps"] = condition.airspeed_m_s / FOOT_M
+        fdm["ic/vt-fps"] = self._airspeed_fps
         self.freeze()
         fdm.run_ic()
         if not self._started:
@@ -146,21 +151,38 @@ class JsbsimFlight:
     def put(self, state: SteadyState, gamma: float, q: float = 0.0) -> None:
         """Put the aircraft into a state on a path of angle ``gamma``, with pitch rate ``q``."""
         fdm = self.fdm
+        fdm["ic/vt-fps"] = self._airspeed_fps
         fdm["ic/alpha-rad"] = state.alpha
         fdm["ic/beta-rad"] = 0.0
         fdm["ic/phi-rad"] = state.phi
         fdm["ic/theta-rad"] = state.alpha + gamma
+        fdm["ic/psi-true-rad"] = 0.0
         fdm["ic/q-rad_sec"] = q
         fdm["fcs/aileron-cmd-norm"] = state.aileron
         fdm["fcs/rudder-cmd-norm"] = state.rudder
         fdm[f"{AXIAL}/magnitude"] = state.axial
         self.elevator(state.elevator)
         self.throttle(state.throttle)
-        fdm.run_ic()
+        self._blow(state.phi, state.alpha + gamma)
         fdm.suspend_integration()
         for _ in range(_SETTLE_STEPS):
             fdm.run()
         fdm.resume_integration()
+
+    def _blow(self, phi: float, theta: float) -> None:
+        """Begin the flight in the wind. JSBSim's own initial wind changes the air speed twice."""
+        fdm, (along, right) = self.fdm, self._wind_fps
+        down = along * sin(theta)
+        of_the_body = {
+            "u": along * cos(theta),
+            "v": right * cos(phi) + down * sin(phi),
+            "w": down * cos(phi) - right * sin(phi),
+        }
+        through_air = {axis: fdm[f"ic/{axis}-fps"] for axis in of_the_body}
+        for axis, by in of_the_body.items() if any(self._wind_fps) else ():
+            fdm[f"ic/{axis}-fps"] = through_air[axis] + by
+        fdm.run_ic()
+        fdm["atmosphere/wind-north-fps"], fdm["atmosphere/wind-east-fps"] = along, right
 
     def run_engines(self) -> None:
         """Run engines and propellers for a second of frozen flight."""

@@ -16,6 +16,8 @@ from advisor.flight.signals.messages import FloatArray
 CONTROLS = ("aileron", "rudder", "throttle")
 """Inputs next to the elevator: ``aileron`` (positive rolls left) and ``rudder`` (positive yaws left) in rad,
 ``throttle`` from 0 to 1."""
+CONDITIONS = ("mass", "wind")
+"""Parts of the flight condition that a simulator may ignore."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,6 +31,9 @@ class Condition:
     flight_path_rad: float = 0.0
     mass_kg: float | None = None
     """Mass of the aircraft; None means the simulator's own."""
+    wind_m_s: tuple[float, float] = (0.0, 0.0)
+    """Horizontal velocity of the air along the aircraft's heading and to the right of the heading, m/s.
+    Autopilots estimate no vertical wind."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,7 +123,7 @@ class Simulator(Protocol):
 
     @property
     def takes(self) -> frozenset[str]:
-        """Inputs of ``CONTROLS`` that the simulator flies, and ``mass`` where it flies at the flown mass."""
+        """Inputs of ``CONTROLS`` and parts of ``CONDITIONS`` that the simulator flies."""
 
     @property
     def speed_limit_s(self) -> float:

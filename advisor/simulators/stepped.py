@@ -21,7 +21,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.simulators.protocol import CONTROLS, Condition, Increments, Inputs, Replay, State
+from advisor.simulators.protocol import CONDITIONS, CONTROLS, Condition, Increments, Inputs, Replay, State
 from advisor.words.problems import UnusableInputError
 
 _NEEDED = ("alpha", "q", "theta", "a_z")
@@ -37,8 +37,9 @@ _LONGEST_MOVE = 0.1
 class Environment(Protocol):
     """The least that an environment must do. Angles are in rad, α, q and θ positive nose up."""
 
-    def reset(self, speed: float, height: float, alpha: float, theta: float) -> Any:
-        """Begin at a true air speed (m/s), a height (m) and angles, at rest in rotation."""
+    def reset(self, speed: float, height: float, alpha: float, theta: float, **conditions: Any) -> Any:
+        """Begin at a true air speed (m/s), a height (m), angles and the conditions it takes, at rest in
+        rotation."""
 
     def step(self, dt: float, **controls: float) -> Any:
         """Advance by ``dt`` seconds with ``elevator`` (rad, trailing edge down) and the controls it takes."""
@@ -61,6 +62,9 @@ class Stepped:
         Step, s.
     controls
         Inputs next to the elevator that ``step`` takes by name, of ``protocol.CONTROLS``.
+    conditions
+        Parts of the flight condition that ``reset`` takes by name: ``mass`` in kg, ``wind`` as
+        ``protocol.Condition.wind_m_s``.
     trims_throttle
         Whether the throttle is trimmed for a steady speed; it must be one of ``controls``.
     increments
@@ -75,12 +79,13 @@ class Stepped:
         description: str = "the environment",
         dt: float = 0.01,
         controls: tuple[str, ...] = (),
+        conditions: tuple[str, ...] = (),
         trims_throttle: bool = False,
         increments: bool = False,
     ) -> None:
         self.description = description
         self.takes_increments = increments
-        self.takes = frozenset(controls) & frozenset(CONTROLS)
+        self.takes = frozenset(controls) & {*CONTROLS} | frozenset(conditions) & {*CONDITIONS}
         self._environment, self._dt = environment, dt
         self._unknowns = ("alpha", "elevator", *(("throttle",) if trims_throttle else ()))
 
@@ -115,9 +120,11 @@ class Stepped:
 
     def _begin(self, condition: Condition, trim: Mapping[str, float]) -> None:
         alpha = trim["alpha"]
+        flown = {"mass": condition.mass_kg, "wind": condition.wind_m_s}
+        taken = {name: flown[name] for name in CONDITIONS if name in self.takes and flown[name] is not None}
         self._environment.reset(
             speed=condition.airspeed_m_s, height=condition.height_m, alpha=alpha,
-            theta=condition.flight_path_rad + alpha,
+            theta=condition.flight_path_rad + alpha, **taken,
         )  # fmt: skip
 
     def _with_trim(self, trim: Mapping[str, float], controls: Mapping[str, float]) -> dict[str, float]:

@@ -48,10 +48,12 @@ class Surrogate:
 
     def aircraft(self, file: Aircraft) -> Aircraft:
         """Return the aircraft file with the surrogate as its model, and both servos in series."""
+        lag_s, delay_s = file.elevator.lag_s, file.elevator.delay_s
+        # What neither of the two states stays open.
         elevator = replace(
             file.elevator,
-            lag_s=(file.elevator.lag_s or 0.0) + self.lag_s,
-            delay_s=(file.elevator.delay_s or 0.0) + self.delay_s,
+            lag_s=(lag_s or 0.0) + self.lag_s if self.lag_s else lag_s,
+            delay_s=(delay_s or 0.0) + self.delay_s if self.delay_s else delay_s,
         )
         known = file.airspeed_m_s or file.reference_airspeed_m_s
         reference = self.reference_m_s if known is None else file.reference_airspeed_m_s or self.reference_m_s

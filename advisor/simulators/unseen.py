@@ -19,7 +19,7 @@ from advisor.gap.fitting.measure import shrink_interval, whole_gap
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.fitting.refit import own_refitted
 from advisor.gap.judge.prior import FIELD, FieldPrior
-from advisor.gap.result import Diagnosis, Shrink
+from advisor.gap.result import Diagnosis, Shrink, spelled
 from advisor.gap.verdict.holdout_numbers import over_maneuvers, with_offset
 from advisor.gap.verdict.statements import in_simulator
 from advisor.gap.verdict.text import sentence_of
@@ -186,6 +186,24 @@ def shrink_on(
         holdout=tuple(flights[i].number for i in kept),
         before=was, after=now, percent=percent, ci95_percent=(min(low, percent), max(high, percent)),
     )  # fmt: skip
+
+
+def other_finding(whole: Diagnosis, unseen: UnseenManeuvers | None) -> tuple[str, ...]:
+    """Return a sentence where the search without the manoeuvres kept apart has found something else."""
+    if unseen is None or _finding(whole) == _finding(unseen.found.diagnosis):
+        return ()
+    kept = {*whole.maneuvers} - {*unseen.found.diagnosis.maneuvers}
+    return (
+        f"Without manoeuvre {', '.join(map(str, sorted(kept)))} the search finds "
+        f"{_finding(unseen.found.diagnosis)} instead, and the shrink is that finding's: fly more manoeuvres.",
+    )
+
+
+def _finding(diagnosis: Diagnosis) -> str:
+    """Return what a diagnosis found first, in words."""
+    words = {"none": "no gap", "parameters": "wrong numbers", "unknown": "nothing with a name"}
+    named = next((c.effect for c in diagnosis.causes if c.present), "")
+    return words.get(diagnosis.verdict, spelled(named))
 
 
 def resaid(diagnosis: Diagnosis, shrink: Shrink | None, aircraft: Aircraft) -> Diagnosis:

@@ -1,5 +1,7 @@
 """The one sentence for the crew says what was found, and no more than is known."""
 
+from dataclasses import replace
+
 import pytest
 
 from advisor.aircraft.aircraft import Accelerometer, Aircraft, Alpha
@@ -68,3 +70,22 @@ def test_every_effect_of_the_catalogue_has_a_statement_for_either_sign(effect):
     for sign in (1.0, -1.0):
         sizes = dict.fromkeys(EFFECTS[effect].keys, sign * 0.02)
         assert "{" not in what(found(effect, **sizes))
+
+
+def test_a_lag_that_the_data_cannot_tell_from_a_delay_is_named_with_it():
+    lag = replace(found("actuator_lag", lag_s=0.05), present=False)
+    skew = replace(found("pitch_rate_skew", skew_s=0.04), present=False)
+    delay = replace(
+        found("transport_delay", delay_s=0.06), cannot_be_told_from=("pitch_rate_skew", "actuator_lag")
+    )
+    where = Where("input", 0.9, (("input", 1.0),))
+
+    def said(*causes):
+        return sentence_of("effect", diagnosis().gap, where, causes, None)
+
+    two = "a delay between command and surface, or a servo that lags by 50 ms; adding"
+    assert two in said(delay, lag, skew)
+    assert "real servo lags by 50 ms, or a delay of 60 ms; adding" in said(
+        replace(lag, present=True, cannot_be_told_from=("transport_delay",)), replace(delay, present=False)
+    )
+    assert ", or " not in said(replace(delay, cannot_be_told_from=()), lag, skew)

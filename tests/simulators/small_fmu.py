@@ -5,8 +5,8 @@ import zipfile
 from pathlib import Path
 
 import fmpy
-from fmpy.fmi2 import FMU2Slave
-from fmpy.fmi3 import FMU3Slave
+from fmpy.fmi2 import FMU2Model, FMU2Slave
+from fmpy.fmi3 import FMU3Model, FMU3Slave
 
 HERE = Path(__file__).parent
 HEADERS = Path(fmpy.__file__).parent / "c-code"
@@ -15,38 +15,56 @@ INPUTS, PARAMETERS = NAMES[:3], NAMES[3:7]
 STARTS = {"V": 30.0, "h": 500.0, "delta_e": -0.11}
 
 
+RATES = ("alpha_rate", "q_rate", "theta_rate", "surface_rate")
+CROSSING = "theta_beyond"
+
+
 def build(
-    folder: Path, fmi: int, fault: int | None = None, platform: str | None = None, lag_s: float | None = None
+    folder: Path,
+    fmi: int,
+    fault: int | None = None,
+    platform: str | None = None,
+    lag_s: float | None = None,
+    relay: float | None = None,
+    exchanges: bool = False,
 ) -> Path:
-    """Return an FMU in ``folder``; ``platform`` names another folder of binaries than this computer's."""
+    """Return an FMU in ``folder``; ``platform`` names another folder of binaries than this computer's.
+    Without its solver it ``exchanges`` its states."""
     library = folder / f"ShortPeriod{fmpy.sharedLibraryExtension}"
     source, rest = HERE / "short_period.c", folder / "rest.c"
     rest.write_text(_rest(fmi, source.read_text()))
     flags = [*(["-DFMI3"] if fmi == 3 else []), *([] if fault is None else [f"-DFAULT={fault}"])]
-    flags += [] if lag_s is None else [f"-DLAG={lag_s}"]
+    flags += [f"-D{name}={value}" for name, value in (("LAG", lag_s), ("RELAY", relay)) if value is not None]
     subprocess.run(
         ["cc", "-shared", "-fPIC", "-O1", *flags, f"-I{HEADERS}", source, rest, "-o", library], check=True
     )
     file = folder / "short_period.fmu"
     place = platform or (fmpy.platform if fmi == 2 else fmpy.platform_tuple)
     with zipfile.ZipFile(file, "w") as archive:
-        archive.writestr("modelDescription.xml", described(fmi))
+        archive.writestr("modelDescription.xml", described(fmi, exchanges))
         suffix = ".dylib" if "darwin" in place else library.suffix
         archive.write(library, f"binaries/{place}/ShortPeriod{suffix}")
     return file
 
 
-def described(fmi: int) -> str:
-    variables = "".join(_variable(fmi, i, name) for i, name in enumerate(NAMES))
+def described(fmi: int, exchanges: bool = False) -> str:
+    names = (*NAMES, *(*RATES, CROSSING) * exchanges)
+    variables = "".join(_variable(fmi, i, name) for i, name in enumerate(names))
+    rates = range(len(NAMES), len(NAMES) + len(RATES)) if exchanges else ()
     if fmi == 2:
         head = 'fmiVersion="2.0" modelName="s" guid="{s}"'
+        head += ' numberOfEventIndicators="1"' * exchanges
         structure = '<Outputs><Unknown index="8"/></Outputs>'
+        derived = "".join(f'<Unknown index="{i + 1}"/>' for i in rates)
+        structure += f"<Derivatives>{derived}</Derivatives>" * exchanges
     else:
         head = 'fmiVersion="3.0" modelName="s" instantiationToken="{s}"'
         structure = '<Output valueReference="7"/>'
+        structure += "".join(f'<ContinuousStateDerivative valueReference="{i}"/>' for i in rates)
+        structure += f'<EventIndicator valueReference="{len(names) - 1}"/>' * exchanges
     return (
         f'<?xml version="1.0" encoding="UTF-8"?><fmiModelDescription {head}>'
-        '<CoSimulation modelIdentifier="ShortPeriod"/>'
+        f'<{"ModelExchange" if exchanges else "CoSimulation"} modelIdentifier="ShortPeriod"/>'
         '<DefaultExperiment startTime="0" stepSize="0.02"/>'
         f"<ModelVariables>{variables}</ModelVariables><ModelStructure>{structure}</ModelStructure>"
         "</fmiModelDescription>"
@@ -55,8 +73,9 @@ def described(fmi: int) -> str:
 
 def _rest(fmi: int, source: str) -> str:
     """Return the source of the standard's functions that the small FMU has no use for: each refuses."""
-    slave = FMU2Slave if fmi == 2 else FMU3Slave
-    names = [name for name in dir(slave) if name.startswith(f"fmi{fmi}") and f" {name}(" not in source]
+    kinds = (FMU2Slave, FMU2Model) if fmi == 2 else (FMU3Slave, FMU3Model)
+    known = sorted({name for kind in kinds for name in dir(kind) if name.startswith(f"fmi{fmi}")})
+    names = [name for name in known if f" {name}(" not in source]
     return "".join(f"int {name}(void) {{ return 3; }}\n" for name in names)
 
 

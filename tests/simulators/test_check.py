@@ -35,7 +35,7 @@ def test_dead_time_lag_and_short_period_are_those_of_the_simulator():
     assert found.dead_time_s + found.lag_s == pytest.approx(0.125, abs=0.012)
     assert found.dead_time_s == pytest.approx(0.04, abs=0.015)
     assert found.omega_rad_s == pytest.approx(np.sqrt(25.0 + 0.5 * 3.0 + 3.0 * 3.5 - 1.5), rel=0.1)
-    assert found.lacks == ("aileron", "mass", "rudder", "throttle")
+    assert found.lacks == ("aileron", "mass", "rudder", "throttle", "wind")
     assert found.fault is None
 
 

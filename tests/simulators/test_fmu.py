@@ -220,11 +220,11 @@ def test_a_file_that_is_no_fmu_is_one_sentence(tmp_path: Path) -> None:
         make_fmu(str(tmp_path / "y.fmu"), Aircraft(fmu=NAMES))
 
 
-def test_model_exchange_alone_is_refused(tmp_path: Path) -> None:
-    file = tmp_path / "me.fmu"
+def test_neither_co_simulation_nor_model_exchange_is_refused(tmp_path: Path) -> None:
+    file = tmp_path / "scheduled.fmu"
     with zipfile.ZipFile(file, "w") as archive:
-        archive.writestr("modelDescription.xml", described(2).replace("<CoSimulation", "<ModelExchange"))
-    with pytest.raises(ConfigurationError, match=r"me.fmu is for model exchange only"):
+        archive.writestr("modelDescription.xml", described(3).replace("<CoSim", "<ScheduledExec"))
+    with pytest.raises(ConfigurationError, match=r"scheduled.fmu .*"):
         make_fmu(str(file), Aircraft(fmu=NAMES))
 
 

@@ -51,6 +51,23 @@ def test_moving_air_alone_changes_nothing_in_a_simulator():
     assert changes_something(said("air", verdict="parameters"))
 
 
+def test_another_finding_without_the_manoeuvres_kept_apart_is_said():
+    def told(effect, verdict="effect", maneuvers=(1, 3, 4)):
+        cause = SimpleNamespace(present=True, effect=effect)
+        return SimpleNamespace(verdict=verdict, causes=[cause], maneuvers=maneuvers)
+
+    whole = told("transport_delay", maneuvers=(1, 2, 3, 4))
+
+    def without(found):
+        return unseen.other_finding(whole, SimpleNamespace(found=SimpleNamespace(diagnosis=found)))
+
+    assert without(told("transport_delay")) == unseen.other_finding(whole, None) == ()
+    assert without(told("actuator_backlash"))[0].startswith(
+        "Without manoeuvre 2 the search finds actuator backlash instead"
+    )
+    assert "finds wrong numbers instead" in without(told("transport_delay", "parameters"))[0]
+
+
 def wrong_model() -> tuple[EffectProblem, SearchPoint]:
     """Return manoeuvres next to a model that diverges, from an initial state that no aircraft had."""
     flights = prepare(flown(maneuvers=2), Aircraft())

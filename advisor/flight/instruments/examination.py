@@ -369,7 +369,7 @@ def _late(
 ) -> None:
     """Contradict the clock of a channel, and set the stamps of the channels in ``shifted`` earlier."""
     name = _PLAIN[channel]
-    ms = f"{'at least ' if bound else ''}{1e3 * late.value:.0f} ± {1e3 * late.std:.0f} ms"
+    ms = f"{'at least ' if bound else ''}{1e3 * late.value:.0f} ± {1e3 * NORMAL_95 * late.std:.0f} ms"
     work.contradict(
         channel, "delay_s", None, late.value, late,
         f"{name} is {ms} late relative to {relative_to}" + (_ALLOWED if used else ""),

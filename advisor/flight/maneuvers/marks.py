@@ -12,6 +12,7 @@ import numpy as np
 
 from advisor.flight.maneuvers.events import Notice
 from advisor.flight.maneuvers.maneuver import Span
+from advisor.flight.maneuvers.segmentation import LEAD_IN_S
 from advisor.words.problems import Problem
 from advisor.words.vehicle_time import between, clock
 
@@ -44,6 +45,11 @@ class Mark:
     """Beginning of a sentence about the mark."""
     flight: int = 0
     """Number of the campaign's log or link, 0 for the first."""
+
+    @property
+    def reach(self) -> tuple[float, float]:
+        """Begin and end of the record, s since boot: the stretch, with a lead-in."""
+        return self.start_s - LEAD_IN_S, self.end_s
 
     def overlaps(self, start_s: float, end_s: float) -> bool:
         """Return whether the mark shares time with a stretch of its power-on."""
@@ -159,12 +165,16 @@ class Marks:
 
         A mark replaces the inputs that it touches, but not an input whose free response it ends.
         """
-        if any(m.overlaps(span.start_s, span.last_step_s) for m in (*self._waiting, *self._closed)):
+        if self.holds(span):
             return True
         waits = any(since_s < span.end_s for since_s in self._open.values())
         if waits:
             self._held.append((span, order))
         return waits
+
+    def holds(self, span: Span) -> bool:
+        """Return whether a mark that has ended touches the input of a span."""
+        return any(m.overlaps(span.start_s, span.last_step_s) for m in (*self._waiting, *self._closed))
 
     def before(self, span: Span) -> Span:
         """Return the span of an input outside of all marks, with its free response ended where a mark
@@ -239,7 +249,7 @@ class Marks:
             Problem(
                 "mark_outside",
                 f"{mark.name} lies outside of the log, which holds {heard or 'no'} vehicle time.",
-                "Give a stretch within the log, in seconds since boot or with + from its start (+12:+24).",
+                "Give a stretch within the log: seconds since power-on, or from its start with + (+12:+24).",
             )
             for mark in self._given
         ]

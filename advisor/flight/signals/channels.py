@@ -27,9 +27,10 @@ class Reading:
     channel: str
     message: str
     field: str
-    value: Callable[[NDArray[Any]], FloatArray]
-    """Conversion of the field's raw values to SI."""
+    value: Callable[..., FloatArray]
+    """Conversion of the raw values of ``field``, and of ``second`` where that is named, to SI."""
     provenance: str = "measured"
+    second: str = ""
 
     @property
     def source(self) -> str:
@@ -39,6 +40,12 @@ class Reading:
 
 def _scaled(factor: float) -> Callable[[NDArray[Any]], FloatArray]:
     return lambda raw: np.asarray(raw, dtype=np.float64) * factor
+
+
+def _towards(part: Callable[[FloatArray], FloatArray]) -> Callable[..., FloatArray]:
+    """Return a component of the air's velocity from the wind's speed and the direction from which it
+    blows."""
+    return lambda speed, from_deg: -np.asarray(speed, dtype=np.float64) * part(np.radians(from_deg))
 
 
 _FORCES = (("a_x", "xacc"), ("a_y", "yacc"), ("a_z", "zacc"))
@@ -73,6 +80,11 @@ READINGS = (
     Reading("altitude", "VFR_HUD", "alt", _scaled(1.0)),
     Reading("static_pressure", "SCALED_PRESSURE", "press_abs", _scaled(100.0)),
     Reading("static_pressure", "HIGHRES_IMU", "abs_pressure", _scaled(100.0)),
+    Reading("heading", "ATTITUDE", "yaw", _scaled(1.0)),
+    Reading("wind_north", "WIND", "speed", _towards(np.cos), "derived", "direction"),
+    Reading("wind_east", "WIND", "speed", _towards(np.sin), "derived", "direction"),
+    Reading("wind_north", "WIND_COV", "wind_x", _scaled(1.0), "derived"),
+    Reading("wind_east", "WIND_COV", "wind_y", _scaled(1.0), "derived"),
     Reading("groundspeed", "VFR_HUD", "groundspeed", _scaled(1.0)),
     Reading("landed_state", "EXTENDED_SYS_STATE", "landed_state", _scaled(1.0)),
     Reading("armed", "HEARTBEAT", "base_mode", lambda raw: (np.asarray(raw) & ARMED > 0).astype(np.float64)),
@@ -100,9 +112,11 @@ _STAMPS = {
     "NAMED_VALUE_FLOAT": _BOOT_MS,
     "RC_CHANNELS": _BOOT_MS,
     "VFR_HUD": _USEC,
+    "WIND": _USEC,
+    "WIND_COV": _USEC,
 }
-"""Message to its stamp's field. VFR_HUD of a link has no stamp and takes that of the last ATTITUDE.
-Autopilots' own logs stamp VFR_HUD."""
+"""Message to its stamp's field. VFR_HUD and WIND of a link have no stamp and take that of the last ATTITUDE.
+Autopilots' own logs stamp both."""
 
 GIVEN_AIRSPEED = "airspeed_m_s of the aircraft file"
 """Source of an air speed of the aircraft file."""
@@ -145,7 +159,8 @@ def quantities(columns: Columns, t: FloatArray) -> Iterator[Decoded]:
     """Yield every quantity of ``READINGS`` that these messages carry."""
     for reading in READINGS:
         if reading.message == columns.name and reading.field in columns.fields:
-            y = reading.value(columns.fields[reading.field])
+            fields = filter(None, (reading.field, reading.second))
+            y = reading.value(*(columns.fields[name] for name in fields))
             yield _decoded(reading.channel, reading.source, reading.provenance, t, y, columns)
 
 

@@ -30,7 +30,9 @@ UNITS = {
 }
 AIR_UNITS = {"altitude": "m", "static_pressure": "Pa"}
 """Channels that give only the density of the air. The altitude is above mean sea level."""
-ALL_UNITS = UNITS | AIR_UNITS
+WIND_UNITS = {"wind_along": "m/s", "wind_right": "m/s"}
+"""Horizontal velocity of the air along the aircraft's heading and to the right of the heading."""
+ALL_UNITS = UNITS | AIR_UNITS | WIND_UNITS
 """Every channel that a manoeuvre or a whole flight may hold."""
 
 

@@ -42,9 +42,10 @@ EFFECT = Effect(
         "The simulator's elevator is too slow: its servo lags by {lag_s_ms:.0f} ms too much",
     ),
     said_beyond="The simulator's elevator is too quick: the real servo lags by {lag_s_ms:.0f} ms more",
+    said_or="a servo that lags by {lag_s_ms:.0f} ms",
     distinguished_by={
         "transport_delay": "log the measured surface position",
-        "actuator_rate_limit": "fly two amplitudes: a rate limit answers larger steps later",
+        "actuator_rate_limit": "fly two amplitudes: a rate limit delays larger steps more",
     },
     stated=("elevator", "lag_s"),
     servo={"lag_s": ("lag_s", 1.0), "damping": ("damping", 1.0)},

@@ -26,6 +26,6 @@ EFFECT = Effect(
         "The real elevator moves no faster than {rate_rad_s_deg:.0f} deg/s",
         "The simulator's elevator moves no faster than {rate_rad_s_deg:.0f} deg/s, and the real one does",
     ),
-    distinguished_by={"transport_delay": "fly two amplitudes: a rate limit answers larger steps later"},
+    distinguished_by={"transport_delay": "fly two amplitudes: a rate limit delays larger steps more"},
     servo={"rate_rad_s": ("rate_rad_s", 1.0)},
 )

@@ -34,11 +34,12 @@ EFFECT = Effect(
     keys={"delay_s": 0.0},
     variants=_variants,
     said=(
-        "The simulator answers {delay_s_ms:.0f} ms too early: a delay between command and surface",
-        "The simulator answers {delay_s_ms:.0f} ms too late: its delay is too long",
+        "The simulator responds {delay_s_ms:.0f} ms too early: a delay between command and surface",
+        "The simulator responds {delay_s_ms:.0f} ms too late: its delay is too long",
     ),
-    said_beyond="The simulator answers {delay_s_ms:.0f} ms too early: the delay between command and "
+    said_beyond="The simulator responds {delay_s_ms:.0f} ms too early: the delay between command and "
     "surface is longer than its own",
+    said_or="a delay of {delay_s_ms:.0f} ms",
     imitated_by=("an equal delay of every logged stream", "log the measured surface position"),
     stated=("elevator", "delay_s"),
     servo={"delay_s": ("delay_s", 1.0)},

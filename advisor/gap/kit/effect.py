@@ -51,6 +51,8 @@ class Effect:
     said: Said
     said_with: Mapping[str, Said] = field(default_factory=dict)
     """Sentence by a parameter that only some variants of the effect have."""
+    said_or: str = ""
+    """Words for the effect as the second of two that look alike; empty: it is only listed."""
     said_beyond: Said = ""
     """Sentence where the simulator has some of the effect already; empty: ``said`` serves."""
     channel: str = ""

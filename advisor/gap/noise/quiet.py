@@ -17,6 +17,7 @@ from advisor.gap.fitting.problem import EffectProblem, SearchPoint, row_weights
 from advisor.gap.fitting.step import solve_blocks
 from advisor.gap.fitting.whitening import Weighting, Whitening, filters_for, rows_in_time
 from advisor.gap.noise.probes import probe_blocks
+from advisor.gap.noise.shown_gust import largest_gust
 from advisor.gap.noise.stamps import stamp_variance
 from advisor.gap.records.floor import stated_floor
 from advisor.gap.simulator.layout import DERIVATIVES, OUTPUTS, SPEED, short_period
@@ -35,8 +36,6 @@ _MARGIN = 1.03
 _FAINT, _FAINT_MARGIN = 3.0, 1.2
 """Power of a less loud manoeuvre over the quietest quarter, and the higher ratio of likelihoods that a gust
 there needs. A change of mass looks like moving air too."""
-_ANY_GUST = 0.2
-"""Prior standard deviation of the gust angle where no size is assumed, rad: far above any gust."""
 _NO_LESS = 0.98
 """Least weight of a sample with which its stamp counts as exact."""
 _LEAST_GAIN = 15.0
@@ -109,22 +108,8 @@ def gusts_in(
     likelier = {int(i): _likelier(problem, fitted, int(i), noise) for i in np.flatnonzero(louder > _FAINT)}
     gusty = {i for i, by in likelier.items() if by > (_MARGIN if louder[i] > _LONE else _FAINT_MARGIN)}
     suspects = {i for i in likelier if louder[i] > _LONE} if first_look and gusty else set()
-    return {i: replace(still, gust=largest_gust(problem, fitted)) for i in sorted(gusty | suspects)}
-
-
-def largest_gust(problem: EffectProblem, fitted: EffectFit) -> float:
-    """Return the largest gust angle that the flight shows, rad: the range of a vane, and that of the lift.
-
-    A vane reads a gust, and lift follows a gust. A wrong model asks for any gust.
-    """
-    flights, z_alpha = problem.flights, abs(float(fitted.point.derivatives[0]))
-    shown = [_ANY_GUST]
-    if "alpha" in problem.channels and not flights.alpha_is_derived:
-        shown.append(max(float(np.ptp(f.outputs["alpha"].y)) for f in flights.flights))
-    if "a_z" in problem.channels and z_alpha > 0.0:
-        forces = (float(np.ptp(f.outputs["a_z"].y) / np.mean(f.slow[SPEED])) for f in flights.flights)
-        shown.append(max(forces) / z_alpha)
-    return min(shown)
+    most = largest_gust(problem.flights, float(fitted.point.derivatives[0]))
+    return {i: replace(still, gust=most) for i in sorted(gusty | suspects)}
 
 
 def _begun_anew(problem: EffectProblem, fitted: EffectFit, noise: FloatArray) -> list[FloatArray]:

@@ -100,16 +100,26 @@ class JudgedAddition:
         certain = self.gain >= CERTAIN
         of_the_file = self.prior_gain >= LEAST_PRIOR_GAIN
         change = 0.0 if of_the_file else self.least_certain if certain else self.least
+        size, name = size_of(self.variant, self.value), self.variant.names[0]
+        inverse = self.variant.inverted  # The search has the reciprocal of the file's parameter.
         asked = [
-            ("likelihood", self.gain, self.least_gain, "log likelihood gained"),
-            ("change", self.removed, change, "mean square change over the noise"),
-            ("significance", self.sigmas, LEAST_SIGMA, "standard deviations"),
-            ("size", size_of(self.variant, self.value), self.smallest, f"of {self.variant.names[0]}"),
-            ("range", 0.0 if self.at_its_bounds else 1.0, 1.0, "inside the searched range"),
+            Decision(self.effect, "likelihood", self.gain, self.least_gain, "log likelihood gained"),
+            Decision(self.effect, "change", self.removed, change, "mean square change over the noise"),
+            Decision(self.effect, "significance", self.sigmas, LEAST_SIGMA, "standard deviations"),
+            Decision(self.effect, "size", size, self.smallest, f"of {name}", "" if inverse else name),
+            self._range(),
         ]
         if self.is_predictable:
-            asked.append((_HOLD_OUT, self.support, LEAST_SUPPORT, "standard errors of the gap removed"))
-        return tuple(Decision(self.effect, *question) for question in asked)
+            unit = "standard errors of the gap removed"
+            asked.append(Decision(self.effect, _HOLD_OUT, self.support, LEAST_SUPPORT, unit))
+        return tuple(asked)
+
+    def _range(self) -> Decision:
+        """Return the question whether every parameter lies inside its searched range."""
+        at = self._at_an_end()
+        inside = 1.0 if at is None else 0.0
+        about = () if at is None else (self.variant.names[at], self.variant.bounds[at])
+        return Decision(self.effect, "range", inside, 1.0, "inside the searched range", *about)
 
     @property
     def is_predictable(self) -> bool:
@@ -140,7 +150,11 @@ class JudgedAddition:
 
     @property
     def at_its_bounds(self) -> bool:
-        """Whether a parameter lies at the end of its range: the shape then only resembles the effect.
+        """Whether a parameter lies at the end of its range: the shape then only resembles the effect."""
+        return self._at_an_end() is not None
+
+    def _at_an_end(self) -> int | None:
+        """Return the index of the first parameter at an end of its range; None where all lie inside.
 
         A bound of zero does not count, because the effect exists without that parameter. Nor does a bound of
         the first parameter, its size: an effect larger than the searched range keeps its name.
@@ -148,7 +162,9 @@ class JudgedAddition:
         ends = np.array(self.variant.bounds[1:]).reshape(-1, 2)
         near = np.abs(ends - self.value[1:, None]) < 1e-3 * np.ptp(ends, axis=1, keepdims=True)
         near &= ends != 0.0
-        return bool(np.any(near)) and not self.variant.one_sided
+        if self.variant.one_sided or not np.any(near):
+            return None
+        return 1 + int(np.argmax(np.any(near, axis=1)))
 
     @property
     def large_enough(self) -> bool:

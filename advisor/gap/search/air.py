@@ -15,7 +15,8 @@ from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.holdout import mean_squares
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.noise.probes import KNOTS_S, DisturbanceCourse, disturbance_courses
-from advisor.gap.noise.quiet import instrument_noise, largest_gust, rows_of, system_of, with_floor
+from advisor.gap.noise.quiet import instrument_noise, rows_of, system_of, with_floor
+from advisor.gap.noise.shown_gust import largest_gust
 from advisor.model.response import OUTPUTS
 from advisor.oem.turbulence import Turbulence, find_turbulence
 
@@ -145,13 +146,16 @@ def _moving_in(problem: EffectProblem, fitted: EffectFit, maneuvers: Iterable[in
 def _of_a_gust(
     problem: EffectProblem, fitted: EffectFit, instruments: FloatArray, least: float
 ) -> DisturbanceCourse:
-    """Return the gentlest course of a gust that explains as much as one of any size.
+    """Return the gentlest course of a gust that explains as much as the largest one that the flight shows.
 
     A course of any size would wander far where the instruments hardly show it.
     """
-    most = largest_gust(problem, fitted)
+    most = largest_gust(problem.flights, float(fitted.point.derivatives[0]))
     sizes = [*np.geomspace(least, most, _TRIED)] if least < most else [most]
     courses = disturbance_courses(problem, fitted, instruments, "air", sizes)
+    # A prior of one size allows courses of several times that size.
+    shown = [c for c in courses if max(float(np.max(np.abs(knots))) for knots in c.knots) <= most]
+    courses = shown or courses[:1]
     powers = [float(np.sum(_mean_square(problem, c.residuals) / instruments**2)) for c in courses]
     before = float(np.sum(np.mean(mean_squares(problem, fitted.residuals), axis=0) / instruments**2))
     enough = before - _AS_MUCH * (before - powers[-1])

@@ -1,6 +1,7 @@
 """Statements about effects in a pilot's words, with their sizes."""
 
 import math
+from collections.abc import Sequence
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.candidates.known import stated_in
@@ -14,13 +15,7 @@ def what(cause: Cause, in_simulator: frozenset[str] = frozenset()) -> str:
 
     ``in_simulator`` has the effects that the simulator has some of; the size is then the difference.
     """
-    sizes = {}
-    for name, value in cause.parameters.items():
-        sizes[name] = value.value
-        sizes[f"{name}_ms"] = 1e3 * value.value
-        sizes[f"{name}_deg"] = math.degrees(value.value)
-        sizes[f"{name}_percent"] = 100.0 * value.value
-        sizes[f"{name}_power"] = 2.0 + value.value
+    sizes = _sizes(cause)
     effect = EFFECTS[cause.effect]
     # A lag that is not significant is not mentioned.
     telling = (
@@ -36,6 +31,26 @@ def what(cause: Cause, in_simulator: frozenset[str] = frozenset()) -> str:
     if isinstance(put, str):
         return put.format(**sizes)
     return put[1 if below else 0].format(**{name: abs(size) for name, size in sizes.items()})
+
+
+def or_else(first: Cause, causes: Sequence[Cause]) -> str:
+    """Return the other effects that the data cannot distinguish from the first one, as words after its
+    statement: a lag of the servo next to a delay, and the reverse."""
+    alike = [c for c in causes if c.effect in first.cannot_be_told_from and EFFECTS[c.effect].said_or]
+    others = alike if EFFECTS[first.effect].said_or else []
+    return "".join(f", or {EFFECTS[c.effect].said_or.format(**_sizes(c))}" for c in others)
+
+
+def _sizes(cause: Cause) -> dict[str, float]:
+    """Return the sizes of a cause in every unit of a statement."""
+    sizes = {}
+    for name, value in cause.parameters.items():
+        sizes[name] = value.value
+        sizes[f"{name}_ms"] = 1e3 * value.value
+        sizes[f"{name}_deg"] = math.degrees(value.value)
+        sizes[f"{name}_percent"] = 100.0 * value.value
+        sizes[f"{name}_power"] = 2.0 + value.value
+    return sizes
 
 
 def in_simulator(aircraft: Aircraft) -> frozenset[str]:

@@ -2,12 +2,13 @@
 
 from collections.abc import Sequence
 
+from advisor.gap.alternative import Alternative
 from advisor.gap.result import VISIBLE, Cause, Gap, GapVerdict, Shrink, Where, spelled
-from advisor.gap.verdict.statements import what
+from advisor.gap.verdict.statements import or_else, what
 
 _AS_LIKELY = 0.99
 """Score relative to the best block at which another block is equally likely."""
-_BLOCK = {
+BLOCKS = {
     "input": "between the command and the surface",
     "force_equation": "in the lift",
     "moment_equation": "in the pitching moment",
@@ -22,14 +23,22 @@ _BLOCK = {
 
 def place(block: str) -> str:
     """Return the place of a block in words."""
-    return _BLOCK[block]
+    return BLOCKS[block]
+
+
+def in_words(alternative: Alternative) -> str:
+    """Return an alternative in words: ``something without a name in the lift``."""
+    words = {"none": "no gap", "parameters": "wrong numbers"}
+    if alternative.kind == "unknown":
+        return f"something without a name {place(alternative.block)}"
+    return words.get(alternative.kind, spelled(alternative.name))
 
 
 def sentence_of_one_maneuver(where: Where) -> str:
     """Return the sentence of a single manoeuvre, which shows where a gap lies and proves no cause."""
     return (
         f"Something acts {place(where.block)} that the simulator does not have; one manoeuvre cannot prove "
-        "what: fly two more."
+        "the cause: fly two more."
     )
 
 
@@ -50,7 +59,7 @@ def sentence_of(
         return _of_wrong_parameters(present, shrink)
     if verdict == "unknown":
         return _of_unknown(where, causes, present)
-    return _of_effects(present, shrink, in_simulator)
+    return _of_effects(causes, shrink, in_simulator)
 
 
 def _of_no_gap(gap: Gap) -> str:
@@ -68,7 +77,7 @@ def _of_wrong_parameters(present: Sequence[Cause], shrink: Shrink | None) -> str
     removed = _removed(shrink)
     if shrink is not None and shrink.beyond_air_percent is not None:
         removed = f"{shrink.beyond_air_percent:.0f} % of the gap, and the air makes the rest"
-    wrong = f"wrong parameters: the eight fitted ones remove {removed}"
+    wrong = f"wrong numbers: the eight fitted derivatives remove {removed}"
     if shrink is not None and shrink.by_numbers_percent is not None and present:
         return f"The simulator has {wrong}; {_listed(present)} explains little of it."
     return f"The simulator has the right structure and {wrong}."
@@ -84,8 +93,10 @@ def _of_unknown(where: Where, causes: Sequence[Cause], present: Sequence[Cause])
     return f"Something acts {places} that no known effect explains{near}."
 
 
-def _of_effects(present: Sequence[Cause], shrink: Shrink | None, in_simulator: frozenset[str]) -> str:
-    named, beyond_air = what(present[0], in_simulator), None if shrink is None else shrink.beyond_air_percent
+def _of_effects(causes: Sequence[Cause], shrink: Shrink | None, in_simulator: frozenset[str]) -> str:
+    present = [c for c in causes if c.present]
+    named = f"{what(present[0], in_simulator)}{or_else(present[0], causes)}"
+    beyond_air = None if shrink is None else shrink.beyond_air_percent
     if present[0].block == "air" and len(present) == 1:
         also_wrong = ""
         if beyond_air is not None:

@@ -38,15 +38,16 @@ Series = tuple[IntArray, FloatArray]
 
 
 def air(topics: Topics) -> tuple[list[TimedMessages], list[str]]:
-    """Return VFR_HUD, and sentences on the source of the air speed."""
+    """Return VFR_HUD and WIND_COV, and sentences on the source of the air speed."""
     speed, said = _airspeed(topics)
     found = {"climb": _climb(topics), "throttle": _throttle(topics)}
     records = [{"time_usec": one[0], name: one[1]} for name, one in found.items() if one is not None]
     records = [*([speed] if speed is not None else []), *records]
+    blown = _wind(topics)
     if not records:
-        return [], said
+        return blown, said
     fields: dict[str, ArrayLike] = dict(air_data(*records))
-    return [TimedMessages("VFR_HUD", np.asarray(fields["time_usec"]), fields)], said
+    return [TimedMessages("VFR_HUD", np.asarray(fields["time_usec"]), fields), *blown], said
 
 
 def _airspeed(topics: Topics) -> tuple[Speed | None, list[str]]:
@@ -130,6 +131,16 @@ def _climb(topics: Topics) -> Series | None:
     if chosen is None:
         return None
     return sampled_us(chosen), -chosen["vz" if chosen is local else "vel_d"].astype(np.float64)
+
+
+def _wind(topics: Topics) -> list[TimedMessages]:
+    """Return WIND_COV: the estimated wind, of the topic since 1.12 or the one before."""
+    estimated = first(topics, "wind") or first(topics, "wind_estimate")
+    if estimated is None:
+        return []
+    at = sampled_us(estimated)
+    fields = {"wind_x": estimated["windspeed_north"], "wind_y": estimated["windspeed_east"]}
+    return [TimedMessages("WIND_COV", at, {"time_usec": at, **fields})]
 
 
 def _throttle(topics: Topics) -> Series | None:

@@ -31,6 +31,8 @@ TOPICS: dict[str, set[str]] = {
     "vehicle_status": {"nav_state"},
     "vehicle_thrust_setpoint": {"xyz[0]"},
     "vehicle_torque_setpoint": {"xyz[2]"},
+    "wind": {"windspeed_north", "windspeed_east"},
+    "wind_estimate": {"windspeed_north", "windspeed_east"},
 }
 """Topic to its necessary fields. Without them (another version) a topic counts as missing."""
 

@@ -1,0 +1,53 @@
+"""The largest gust that the instruments of a flight show, without aerodynamics.
+
+A vane turns with a gust, and the motion of the aircraft follows later. In still air α̇ equals the pitch rate
+and the turning of the path. What the vane reads beyond the integral of both is the gust angle w/V, next to
+errors of the instruments.
+"""
+
+import numpy as np
+
+from advisor.flight.signals.messages import FloatArray
+from advisor.flight.signals.motion import integrated, path_turning
+from advisor.gap.records.flights import PreparedManeuver, PreparedManeuvers
+from advisor.gap.simulator.layout import A_X, BANK, SPEED
+from advisor.oem.turbulence import LARGEST_GUST_RAD
+
+_NEEDED = ("alpha", "q", "a_z", "theta")
+
+
+def largest_gust(flights: PreparedManeuvers, z_alpha: float) -> float:
+    """Return the largest gust angle that the flight shows, rad: by its vane and motion, and by its lift.
+
+    A vane reads a gust, and lift follows a gust. A wrong model asks for any gust.
+
+    Parameters
+    ----------
+    flights
+        The manoeuvres.
+    z_alpha
+        Lift derivative, 1/s, of a model that may be wrong.
+    """
+    shown = [LARGEST_GUST_RAD]
+    if "alpha" in flights.channels and not flights.alpha_is_derived:
+        shown.append(max(float(np.ptp(_beyond_motion(flight))) for flight in flights.flights))
+    if "a_z" in flights.channels and z_alpha != 0.0:
+        forces = (float(np.ptp(f.outputs["a_z"].y) / np.mean(f.slow[SPEED])) for f in flights.flights)
+        shown.append(max(forces) / abs(z_alpha))
+    return min(shown)
+
+
+def _beyond_motion(flight: PreparedManeuver) -> FloatArray:
+    """Return α minus the angle of attack by the motion, rad, shape (n,); α alone without the motion.
+
+    A straight line is left out: the offsets of gyro and accelerometer.
+    """
+    t, alpha = flight.outputs["alpha"].t, flight.outputs["alpha"].y
+    if not all(name in flight.outputs for name in _NEEDED):
+        return alpha
+    q, a_z, theta = (np.interp(t, flight.outputs[n].t, flight.outputs[n].y) for n in _NEEDED[1:])
+    middles = (np.arange(flight.n) + 0.5) * flight.h
+    a_x, bank, speed = (np.interp(t, middles, flight.slow[row]) for row in (A_X, BANK, SPEED))
+    beyond = alpha - integrated(t, q + path_turning(a_x, a_z, theta, alpha, bank) / speed)
+    line = np.column_stack([np.ones_like(t), t])
+    return np.asarray(beyond - line @ np.linalg.lstsq(line, beyond)[0])
