@@ -72,7 +72,7 @@ def _cessna(**effects: dict[str, float]) -> Scenario:
 
 def _jet(**effects: dict[str, float]) -> Scenario:
     return Scenario(
-        aircraft="T37", engine="jsbsim", airspeed_m_s=130.0, height_m=2400.0, unit_s=0.4, amplitude_deg=1.5,
+        aircraft="T37", engine="jsbsim", airspeed_m_s=110.0, height_m=2400.0, unit_s=0.4, amplitude_deg=1.5,
         maneuvers=_PLAN, effects=effects,
     )  # fmt: skip
 
