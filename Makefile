@@ -147,7 +147,12 @@ damage: .venv/.developed ## 10,000 damaged logs and more, read and analysed (DAM
 	DAMAGE_CASES=$(DAMAGE_CASES) $(BIN)/python -m pytest --timeout 0 tests/test_damaged_logs.py
 
 .PHONY: site words pages examples
-site: .venv/.developed ## the documentation site, built strictly into build/site
+SAMPLE := build/samples/report.html
+$(SAMPLE): .venv/.developed logs/arduplane-calm.tlog logs/arduplane-calm.yaml $(shell find advisor -name '*.py' -o -name 'page.*')
+	mkdir -p $(@D)
+	$(BIN)/advisor report logs/arduplane-calm.tlog --aircraft logs/arduplane-calm.yaml --gap -o $@
+
+site: $(SAMPLE) ## the documentation site, built strictly into build/site
 	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict
 
 words: .venv/.developed ## words of the documentation written by hand, and their limit

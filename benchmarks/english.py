@@ -1,12 +1,12 @@
 """Check the English of docstrings, messages and pages against ``docs/developer/style.md``.
 
     python -m benchmarks.english [ROOM ...] [--list]
-    python -m benchmarks.english --sample 40 --seed 1 [ROOM ...]
+    python -m benchmarks.english --sample 40 --read --seed 1 [ROOM ...]
 
 A room is a file or a folder of the repository. The command reads the prose of ``benchmarks.prose``. The
 command prints a count for each room and fails where a room has more findings than ``ALLOWED``, whose limits
 only fall. With ``--list`` every finding is printed. With ``--sample`` sentences are drawn at random, so that
-a reader can judge each one.
+a reader can judge each one; ``--read`` leaves out docstrings, which no user reads.
 """
 
 import argparse
@@ -64,9 +64,12 @@ def main() -> int:
     parser.add_argument("rooms", nargs="*", default=ROOMS, help="files or folders of the repository")
     parser.add_argument("--list", action="store_true", help="print every finding")
     parser.add_argument("--sample", type=int, metavar="N", help="print N sentences drawn at random")
+    parser.add_argument("--read", action="store_true", help="sample only what users read: messages and pages")
     parser.add_argument("--seed", type=int, default=0, help="seed of the sample")
     options = parser.parse_args()
     texts = [text for room in options.rooms for text in texts_in(REPOSITORY / room)]
+    if options.read:
+        texts = [text for text in texts if text.kind in ("string", "page")]
     if options.sample:
         _print_sample(texts, options.sample, options.seed)
         return 0

@@ -4,7 +4,7 @@
 
 Counted over ``advisor/gap`` are lines of code, without docstrings, comments and blank lines, so that an
 explanation costs nothing; constants, which are names of numbers; comparisons with the name of an effect or a
-block; and functions of a cyclomatic complexity above 15 (McCabe 1976). A new effect does not count: the two
+block; and functions of a cyclomatic complexity above 15 (McCabe 1976). A new effect does not count: the
 folders that describe effects, ``EFFECTS``, are left out of all counts but the last. ``make check`` and
 ``.ci/run`` fail above a limit.
 """
@@ -16,15 +16,21 @@ import tokenize
 from collections.abc import Iterator
 from pathlib import Path
 
-from advisor.gap.candidates.traits import TRAITS
+from advisor.gap.effects import EFFECTS as CATALOGUE
+from advisor.gap.kit.effect import BLOCKS as BLOCKS_OF_EFFECTS
 from benchmarks.pages.constants import constants_in
 
 ROOM = Path(__file__).parents[1] / "advisor" / "gap"
-EFFECTS = (ROOM / "candidates", ROOM / "simulator", ROOM / "judge" / "weights.py")
+EFFECTS = (
+    ROOM / "candidates",
+    ROOM / "effects",
+    ROOM / "kit",
+    ROOM / "simulator",
+    ROOM / "judge" / "weights.py",
+)
 """Folders that describe effects, by their table and their equations; and the weights of ``make judge``."""
-BLOCKS = frozenset(trait.block for trait in TRAITS.values()) | {"attitude_sensor"}
-NAMES = frozenset(TRAITS) | BLOCKS
-LIMITS = {"lines of code": 7060, "constants": 298, "names compared": 20, "complex functions": 0}
+NAMES = frozenset(CATALOGUE) | frozenset(BLOCKS_OF_EFFECTS) | {"attitude_sensor"}
+LIMITS = {"lines of code": 7060, "constants": 289, "names compared": 16, "complex functions": 0}
 """Upper bound of each count. Lines have 2 % to spare, so that a mend needs no cut elsewhere. The evidence and
 the judge brought 500 of them. The ranges of nuisance parameters brought six constants."""
 MOST_COMPLEX = 15

@@ -65,6 +65,7 @@ FAULTS: Mapping[str, tuple[str, Change]] = {
     "a_z reversed": ("a_z", times(-1.0)),
     "a_z in g": ("a_z", times(1.0 / 9.80665)),
     "a_z 100 ms late": ("a_z", late),
+    "a_z stands still": ("a_z", times(0.0)),
     "air speed in knots": ("airspeed", times(1.9438)),
 }
 """Name of each fault to the channel and the change of its values."""

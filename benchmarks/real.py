@@ -22,6 +22,7 @@ from typing import Any
 import yaml
 
 from advisor.model.short_period import SPEED_EXPONENTS
+from advisor.words.quantities import symbol
 
 RECORDS = Path(__file__).with_name("real_records.yaml")
 NEAR_S = 1.5
@@ -104,7 +105,8 @@ def in_markdown(rows: Sequence[Row], measured: str) -> str:
     """The table, with its date and machine."""
     lines = ["| record | flown | asked | got | holds |", "|---|---|---|---|---|"]
     lines += [
-        f"| `{r.log}` | {r.what} | {r.asked} | {r.got} | {'yes' if r.holds else '**no**'} |" for r in rows
+        f"| `{r.log}` | {r.what} | {symbol(r.asked)} | {symbol(r.got)} | {'yes' if r.holds else '**no**'} |"
+        for r in rows
     ]
     held = sum(row.holds for row in rows)
     return "\n".join([*lines, "", f"{held} of {len(rows)} hold. Measured {measured}."])

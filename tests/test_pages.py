@@ -5,14 +5,15 @@ import re
 import shutil
 from dataclasses import fields, replace
 from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from mkdocs.exceptions import PluginError
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.aircraft_effects import LEAST
 from advisor.cli.group import COMMANDS
-from advisor.gap.candidates.traits import TRAITS
+from advisor.gap.effects import EFFECTS
 from advisor.gap.result import Trace
 from benchmarks.pages import (
     aircraft_file,
@@ -22,6 +23,7 @@ from benchmarks.pages import (
     documents,
     effects,
     fragments,
+    hooks,
     readme,
     results,
     words,
@@ -29,7 +31,9 @@ from benchmarks.pages import (
 from benchmarks.pages.__main__ import DATA, ROOT, main
 from benchmarks.pages.example import EXAMPLES, FILES, Part, shown, transcripts
 from benchmarks.pages.figure import errors, svg
+from benchmarks.pages.generated import SAMPLES
 from benchmarks.pages.hooks import on_page_content
+from benchmarks.pages.signs import signs
 from sim.sealed.judge import judge
 from sim.sealed.score import in_time, score
 from tests.gap.test_report_screen import diagnosis
@@ -140,10 +144,10 @@ def page_of_effects():
     return effects.page()
 
 
-@pytest.mark.parametrize("effect", TRAITS)
+@pytest.mark.parametrize("effect", EFFECTS)
 def test_the_page_of_effects_has_every_parameter_of_an_effect(page_of_effects, effect):
     section = page_of_effects.split(f"### `{effect}`\n")[1].split("\n### ")[0]
-    assert re.findall(r"^  \| `(\w+)`", section, re.MULTILINE) == list(LEAST[effect])
+    assert re.findall(r"^  \| `(\w+)`", section, re.MULTILINE) == list(EFFECTS[effect].keys)
 
 
 def test_a_bound_that_no_flight_changes_is_a_number_and_one_that_does_is_the_flights(page_of_effects):
@@ -329,3 +333,19 @@ def test_the_figure_has_both_errors_of_every_channel():
     drawn = svg(errors(replace(flown, traces=traces)))
     assert drawn.count("<polyline") == 4
     assert f"manoeuvre {number}" in drawn
+
+
+def test_a_sample_page_that_is_not_written_is_named_with_the_command(monkeypatch, tmp_path):
+    monkeypatch.setattr(hooks, "BUILT_SAMPLES", tmp_path)
+    with pytest.raises(PluginError, match="run `make site`"):
+        hooks.sample("report.html")
+
+
+def test_the_makefile_writes_every_sample_page_that_the_site_shows():
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    assert [name for name in SAMPLES if f"build/samples/{name}" not in makefile] == []
+
+
+def test_the_picture_of_the_signs_has_each_angle_rate_and_surface():
+    words = {text.text for text in ElementTree.fromstring(signs()).iter("text")}
+    assert {"+α", "+q", "+δe", "+a_z", "+β", "+p", "+r", "+δa", "+δr"} <= words

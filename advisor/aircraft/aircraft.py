@@ -15,6 +15,8 @@ Criterion = Literal["eq12", "eq13"]
 
 PARAMETERS = ("Z_0", "Z_alpha", "Z_q", "Z_delta_e", "M_0", "M_alpha", "M_q", "M_delta_e")
 """Names of the eight parameters θ, Eq. (3), in the order of every vector of parameters in this program."""
+SIDE_PARAMETERS = tuple(f"{y}_{x}" for y in "YLN" for x in ("beta", "p", "r", "delta_a", "delta_r"))
+"""Names of the fifteen derivatives of roll and yaw, in the order of every vector of theirs."""
 
 
 Pairs = tuple[tuple[float, float], ...]
@@ -45,7 +47,7 @@ class Elevator:
         example="auto",
         question="Servo output of the elevator: a number, several (1 2), or auto",
         answer="auto",
-        cost="The elevator is found by the autopilot's parameters; a log or link without them is refused.",
+        cost="The elevator is found by the autopilot's parameters; without them a log or link is refused.",
         mend="write the number of the servo output",
     )] = "auto"  # fmt: skip
     calibration: Annotated[Pairs | None, Key(
@@ -56,7 +58,7 @@ class Elevator:
             "Measured deflections of output {}, PWM:deg, trailing edge down positive (1100:-25 1500:0 "
             "1900:25)"
         ),
-        cost="The servo's end points count as 25 deg, so Z_delta_e and M_delta_e have an assumed scale.",
+        cost="The servo's end points count as 25 deg, so Z_δe and M_δe have an assumed scale.",
         mend="measure the deflection at three pulse widths",
     )] = None  # fmt: skip
     outputs: tuple[ElevatorOutput, ...] = ()
@@ -66,7 +68,7 @@ class Elevator:
         example="0.05",
         question="First-order lag of the elevator's servo, s",
         cost=(
-            "The lag is estimated with the derivatives: wider intervals, and M_alpha and M_delta_e too "
+            "The lag is estimated with the derivatives: wider intervals, and M_α and M_δe too "
             "small where a flight does not determine it."
         ),
         mend="film a step of the servo on the ground; the lag is the time to 63 % of the step",
@@ -76,7 +78,7 @@ class Elevator:
         "Delay between command and servo, s. None: unknown.",
         example="0.02",
         question="Delay from the logged command to the servo's first movement, s",
-        cost="The delay counts as zero; a real delay biases M_alpha and M_q.",
+        cost="The delay counts as zero; a real delay biases M_α and M_q.",
         mend="film a step of the servo on the ground; the delay ends when the arm begins to move",
         within=(0.0, 2.0),
     )] = None  # fmt: skip
@@ -159,7 +161,7 @@ class Alpha:
         "angles.",
         example="0.0",
         question="Distance of the vane ahead of the centre of gravity, m",
-        cost="The place of the vane is estimated with the derivatives: wider intervals of Z_alpha and Z_q.",
+        cost="The place of the vane is estimated with the derivatives: wider intervals of Z_α and Z_q.",
         mend="measure the distance along the fuselage",
     )] = None  # fmt: skip
 

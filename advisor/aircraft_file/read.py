@@ -14,6 +14,7 @@ from pydantic import ConfigDict, TypeAdapter, ValidationError, with_config
 
 from advisor.aircraft.aircraft import (
     PARAMETERS,
+    SIDE_PARAMETERS,
     Aircraft,
     Elevator,
     FmuVariables,
@@ -22,8 +23,8 @@ from advisor.aircraft.aircraft import (
     SideControl,
     TableColumns,
 )
-from advisor.aircraft.aircraft_effects import mistakes_in
 from advisor.aircraft.key import keys_of, sections_of
+from advisor.aircraft_file.effects import effects_schema, mistakes_in
 from advisor.process.yaml_file import read_yaml
 from advisor.words.printable import printable
 from advisor.words.problems import ConfigurationError
@@ -85,7 +86,9 @@ def parse_aircraft(content: Any, origin: str = "aircraft file", mend: str = "") 
 
 def aircraft_schema() -> dict[str, Any]:
     """Return the JSON schema of the aircraft file, with meaning and cost of each key, for an editor."""
-    return _reader().json_schema()
+    schema = _reader().json_schema()
+    schema["properties"]["effects"] |= effects_schema()
+    return schema
 
 
 def _without_empty(content: Any) -> Any:
@@ -184,8 +187,8 @@ def _beyond_types(aircraft: Aircraft) -> Iterator[str]:
     yield from _source_mistakes("beta.source", aircraft.beta.source, ("auto", "aoa_ssa", "none"))
     yield from _out_of_bounds(aircraft)
     for name in aircraft.model:
-        if name not in PARAMETERS:
-            yield f"model.{name}: unknown key, the parameters are {' '.join(PARAMETERS)}"
+        if name not in (*PARAMETERS, *SIDE_PARAMETERS):
+            yield f"model.{name}: unknown key, the parameters are {' '.join((*PARAMETERS, *SIDE_PARAMETERS))}"
     yield from mistakes_in(aircraft.effects)
     plan = aircraft.campaign
     if not 2 <= plan.window <= _LONGEST_WINDOW:

@@ -8,11 +8,10 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.refused import without_refused
 from advisor.analysis.table_log import SUFFIXES, table_maneuvers
 from advisor.campaign.hand_decisions import ByHand
-from advisor.flight.maneuvers.events import ManeuverFlown, Notice
+from advisor.flight.maneuvers.events import READER_NOTICE, ManeuverFlown, Notice
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.repeated_maneuver import are_one, is_fuller
 from advisor.flight.signals.true_airspeed import true_over_read
-from advisor.flight.stream.identity import READER_NOTICE
 from advisor.flight.stream.stream import FlightStream
 from advisor.flight.vehicle.one_aircraft import OneAircraft
 from advisor.flight.vehicle.surfaces import Surface

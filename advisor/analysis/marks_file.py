@@ -1,6 +1,6 @@
 """The file of decisions by hand: ``flight.maneuvers.yaml`` next to ``flight.tlog``.
 
-Times are seconds since boot. Every command that reads the log also reads this file.
+Times are seconds since power-on. Every command that reads the log also reads this file.
 """
 
 import os
@@ -23,7 +23,9 @@ _TEXT_KEYS = {"excluded": "because", "notes": "text", "remarks": "text"}
 """Section of sentences, named as the field of ``ByHand``, to the key that holds each sentence."""
 _SECTIONS = ("maneuvers", *_TEXT_KEYS)
 _MEND = "Fix the file, move it away, or give --no-marks."
-_HEADING = "# Decided by hand; times in vehicle seconds since boot. `advisor` reads this file with its log.\n"
+_HEADING = (
+    "# Decided by hand; times in vehicle seconds since power-on. `advisor` reads this file with its log.\n"
+)
 
 
 def path_beside(log: Path) -> Path:
@@ -142,7 +144,7 @@ def _refuse_unknown(path: Path, where: str, entry: dict[str, Any], known: Sequen
 def _number(path: Path, where: str, entry: dict[str, Any], key: str) -> float:
     value = entry.get(key)
     if isinstance(value, bool) or not isinstance(value, int | float) or not isfinite(value):
-        raise _mistake(path, f"{where}.{key}: must be a number of seconds since boot")
+        raise _mistake(path, f"{where}.{key}: must be a number of seconds since power-on")
     return float(value)
 
 

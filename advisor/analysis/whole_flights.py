@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.analysis.axes import Axis, left_out_of
 from advisor.analysis.log_series import LogSeries
 from advisor.campaign.campaign import Campaign
 from advisor.campaign.hand_decisions import NOTHING, ByHand
@@ -56,6 +57,7 @@ def read_whole(
     marks: Sequence[Mark] = (),
     *,
     no_marks: bool = False,
+    axis: Axis = "pitch",
 ) -> WholeFlights:
     """Read and analyze logs as one campaign, and keep every sample of their channels.
 
@@ -69,6 +71,8 @@ def read_whole(
         Further stretches marked as manoeuvres, on a single log.
     no_marks
         Whether to ignore earlier decisions by hand on the logs.
+    axis
+        Axes to judge.
 
     Raises
     ------
@@ -81,7 +85,10 @@ def read_whole(
     by_hand = NOTHING if no_marks else series.read_by_hand()
 
     def begin() -> tuple[Campaign, dict[int, FlightStream]]:
-        return Campaign(aircraft, target_system, by_hand=by_hand, marks=marks, names=series.names), {}
+        campaign = Campaign(
+            aircraft, target_system, by_hand=by_hand, marks=marks, names=series.names, lateral=axis != "pitch"
+        )
+        return campaign, {}
 
     def feed(heard: tuple[Campaign, dict[int, FlightStream]], columns: list[Columns]) -> None:
         campaign, streams = heard
@@ -98,7 +105,7 @@ def read_whole(
     }
     if len(left_out) < len(series.logs):
         campaign.finish()
-        left_out |= {one.flight: one.problems for one in campaign.state.flights if one.problems}
+        left_out |= left_out_of(axis, campaign.state)
     left_out = dict(sorted(left_out.items()))
     if len(left_out) == len(series.logs):
         raise UnusableInputError.of([problem for several in left_out.values() for problem in several])

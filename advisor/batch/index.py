@@ -1,23 +1,27 @@
 """The page of a batch: one row for each flight, and each derivative over the flights."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from html import escape
 from importlib.resources import files
 from math import inf
+from pathlib import Path
+from types import MappingProxyType
+from urllib.parse import quote
 
 from advisor import __version__
 from advisor.aircraft.aircraft import PARAMETERS
 from advisor.analysis.log_series import SINCE_1970_S
 from advisor.batch.flight import Analyzed
 from advisor.batch.picture import Point, trend_svg
-from advisor.batch.tables import aircraft_of, changes_of, estimates_of
+from advisor.batch.tables import called, changes_of, estimates_of
 from advisor.batch.trend import ChangeOverFlights, lying_apart
 from advisor.decision.pooling import DERIVATIVES, common_airspeed, posteriors_at_one_speed
 from advisor.exports.flights.found import PARAMETER_UNITS
 from advisor.oem.estimate import Estimate
 from advisor.words.printable import printable
 from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import symbol
 
 _COLUMNS = ("Flight", "Log", "Begun, UTC", "Aircraft", "Accepted", "Result")
 
@@ -25,18 +29,23 @@ _STYLE = "td:nth-child(3) { white-space: nowrap; }\n"
 """Style that keeps a date on one line."""
 
 
-def index_page(flights: Sequence[Analyzed]) -> str:
+def index_page(flights: Sequence[Analyzed], reports: Mapping[Path, str] = MappingProxyType({})) -> str:
     """Write the page: self-contained HTML without script, reproducible from equal flights.
 
     Parameters
     ----------
     flights
         Results in the order of flying, numbered from 1.
+    reports
+        Log to the place of its page, relative to this page.
     """
     failures = sum(not flight.usable for flight in flights)
     changes = changes_of(flights)
     style = files("advisor.report.page").joinpath("page.css").read_text(encoding="utf-8")
-    trends = [_trends(name, several, changes.get(name)) for name, several in estimates_of(flights).items()]
+    trends = [
+        _trends(called(flights[several[0][0] - 1]), several, changes.get(identity))
+        for identity, several in estimates_of(flights).items()
+    ]
     return "\n".join(
         [
             '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">',
@@ -45,7 +54,7 @@ def index_page(flights: Sequence[Analyzed]) -> str:
             "<h1>Flights of a batch</h1>",
             f"<p>Logs: {len(flights)}. Logs that cannot be used: {failures}.</p>",
             "<h2>Flights</h2>",
-            _table(flights),
+            _table(flights, reports),
             *trends,
             f'<p class="note">Written by the inflight advisor {escape(__version__)}.</p>\n</body></html>\n',
         ]
@@ -65,7 +74,7 @@ def _trends(name: str, flights: Sequence[tuple[int, Estimate]], change: ChangeOv
             for (number, _), posterior in zip(flights, posteriors, strict=True)
         ]
         since = change.since if change and PARAMETERS[k] in moved else None
-        picture = trend_svg(PARAMETERS[k], PARAMETER_UNITS[PARAMETERS[k]], points, since)
+        picture = trend_svg(symbol(PARAMETERS[k]), PARAMETER_UNITS[PARAMETERS[k]], points, since)
         pictures.append(f'<figure class="third">{picture}</figure>')
     at = f" brought to an air speed of {speed:.1f} m/s" if speed is not None else ""
     return (
@@ -90,13 +99,15 @@ def _sentence(flights: Sequence[tuple[int, Estimate]], change: ChangeOverFlights
     )
 
 
-def _table(flights: Sequence[Analyzed]) -> str:
+def _table(flights: Sequence[Analyzed], reports: Mapping[Path, str]) -> str:
     head = "".join(f"<th>{name}</th>" for name in _COLUMNS)
-    rows = "\n".join(_row(number, flight) for number, flight in enumerate(flights, start=1))
+    rows = "\n".join(
+        _row(number, flight, reports.get(Path(flight.log))) for number, flight in enumerate(flights, start=1)
+    )
     return f'<table id="flights"><thead><tr>{head}</tr></thead>\n<tbody>\n{rows}\n</tbody></table>'
 
 
-def _row(number: int, flight: Analyzed) -> str:
+def _row(number: int, flight: Analyzed, report: str | None) -> str:
     verdicts = [maneuver["verdict"] for maneuver in flight.document["maneuvers"]]
     dated = SINCE_1970_S <= flight.began_s < inf
     test = flight.document["flight_test"] or {}
@@ -104,13 +115,14 @@ def _row(number: int, flight: Analyzed) -> str:
         str(number),
         flight.log,
         f"{datetime.fromtimestamp(flight.began_s, UTC):%Y-%m-%d %H:%M}" if dated else "not dated",
-        aircraft_of(flight),
+        called(flight),
         f"{verdicts.count('accepted')} of {len(verdicts)}",
         test.get("sentence", "") if flight.usable else f"Cannot be used: {' '.join(flight.reasons)}",
     )
-    told = "".join(
-        f'<td data-label="{name}">{_shown(cell)}</td>' for name, cell in zip(_COLUMNS, cells, strict=True)
-    )
+    shown = [_shown(cell) for cell in cells]
+    if report is not None:
+        shown[1] = f'<a href="{quote(report)}">{shown[1]}</a>'
+    told = "".join(f'<td data-label="{name}">{cell}</td>' for name, cell in zip(_COLUMNS, shown, strict=True))
     return f"<tr>{told}</tr>"
 
 

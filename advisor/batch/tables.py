@@ -45,6 +45,12 @@ def aircraft_of(flight: Analyzed) -> str:
     return " ".join(filter(None, (flight.aircraft_file, vehicle.get("autopilot"), system)))
 
 
+def called(flight: Analyzed) -> str:
+    """Return the aircraft for people: its name, with the identity in brackets."""
+    identity = aircraft_of(flight)
+    return f"{flight.aircraft_name} ({identity})" if flight.aircraft_name else identity
+
+
 def mixed_up(flights: Sequence[Analyzed]) -> list[str]:
     """Return a sentence for each aircraft file that logs of several aircraft share."""
     by_file: dict[str, dict[str, str]] = {}

@@ -11,6 +11,7 @@ from advisor.decision.pooling import DERIVATIVES, posteriors_at_one_speed
 from advisor.oem.estimate import Estimate
 from advisor.words.digits import with_half
 from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import symbol
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +39,7 @@ def change_over_flights(flights: Sequence[tuple[int, Estimate]]) -> ChangeOverFl
         return None
     since = flights[change.after][0]
     moved = ", ".join(
-        f"{one.parameter} is {abs(one.percent):.0f} % {'larger' if one.percent > 0.0 else 'smaller'}"
+        f"{symbol(one.parameter)} is {abs(one.percent):.0f} % {'larger' if one.percent > 0.0 else 'smaller'}"
         for one in change.moved
     )
     cause = f"; it looks like {change.looks_like}" if change.looks_like else ""
@@ -67,5 +68,5 @@ def lying_apart(flights: Sequence[tuple[int, Estimate]]) -> str:
                     with_half(float(one.theta[k]), NORMAL_95 * float(one.std[k])) for one in (first, second)
                 )
                 numbers = f"{flights[i][0]} and {flights[j][0]}"
-                sentence = f"{PARAMETERS[k]} of flights {numbers} lies apart: {values}."
+                sentence = f"{symbol(PARAMETERS[k])} of flights {numbers} lies apart: {values}."
     return sentence

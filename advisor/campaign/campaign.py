@@ -9,7 +9,8 @@ from advisor.campaign.hand_decisions import NOTHING, ByHand, Remark
 from advisor.campaign.instruments import as_known_by, together, with_fit
 from advisor.campaign.joint_estimate import NEWEST, Together
 from advisor.campaign.journal import Journal
-from advisor.campaign.lateral import LateralCampaign
+from advisor.campaign.late_limits import recount
+from advisor.campaign.lateral import OF_ELEVATOR, JudgedLateral, LateralCampaign
 from advisor.campaign.learning import learnt as learnt_from
 from advisor.campaign.learning import may_learn, of_another_power_on, reserved, told
 from advisor.campaign.running_estimate import Settling
@@ -22,7 +23,9 @@ from advisor.decision.judge import judge_campaign
 from advisor.decision.stopping import flight_test
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.flight.maneuvers.events import (
+    READER_NOTICE,
     Activity,
+    ElevatorRescaled,
     FlightEvent,
     ManeuverAgain,
     ManeuverFlown,
@@ -34,7 +37,6 @@ from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.marks import MARK_NOTICES, Mark
 from advisor.flight.signals.messages import Columns
 from advisor.flight.stream.flights import Flights
-from advisor.flight.stream.identity import READER_NOTICE
 from advisor.flight.stream.stream import FlightStream
 from advisor.oem.estimator import lag_is_unknown
 from advisor.oem.solution import Method
@@ -50,7 +52,15 @@ class ManeuverJudged:
     flight_test: FlightTestVerdict
 
 
-CampaignEvent = FlightEvent | ManeuverJudged
+@dataclass(frozen=True, slots=True)
+class LateralJudged:
+    """A manoeuvre of aileron or rudder was estimated and judged, and their test was decided anew."""
+
+    judged: JudgedLateral
+    flight_test: FlightTestVerdict
+
+
+CampaignEvent = FlightEvent | ManeuverJudged | LateralJudged
 
 
 class Campaign:
@@ -197,8 +207,14 @@ class Campaign:
 
     @property
     def problems(self) -> list[Problem]:
-        """Reasons for which the stream so far cannot be used; empty for a usable stream."""
-        return self._flights.problems()
+        """Reasons for which the stream so far cannot be used; empty for a usable stream.
+
+        Manoeuvres of aileron and rudder need none of the elevator's.
+        """
+        found = self._flights.problems()
+        if self._lateral is None or not self._lateral.state.maneuvers:
+            return found
+        return [problem for problem in found if problem.code not in OF_ELEVATOR]
 
     def exclude(self, number: int, because: str) -> None:
         """Exclude a manoeuvre from every decision, and decide anew on all later manoeuvres."""
@@ -253,7 +269,7 @@ class Campaign:
                 case ManeuverFlown(maneuver):
                     told.append(self._judge(maneuver))
                 case SideManeuverFlown(maneuver):
-                    self._judge_lateral(maneuver)
+                    told += self._judge_lateral(maneuver)
                 case Activity():
                     joined = event.joined(self._activity[-1]) if self._activity else None
                     self._activity = (*self._activity[:-1], joined) if joined else (*self._activity, event)
@@ -261,6 +277,8 @@ class Campaign:
                     self._note_down(event)
                 case ManeuverAgain():
                     told += self._heard_again(event)
+                case ElevatorRescaled():
+                    told += self._count_anew(event)
         if self._tell is not None:
             for happened in told:
                 self._tell(happened)
@@ -281,10 +299,16 @@ class Campaign:
         self._journal.write_of_past(self._flight_test.sentence, span.end_s)
         return ManeuverJudged(self._judged[-1], self._flight_test)
 
-    def _judge_lateral(self, maneuver: Maneuver) -> None:
-        """Estimate and judge a lateral manoeuvre that has just been flown."""
-        if self._lateral is not None:
-            self._lateral.take(maneuver)
+    def _judge_lateral(self, maneuver: Maneuver) -> list[LateralJudged]:
+        """Estimate and judge a lateral manoeuvre that has just been flown, where that was asked for."""
+        if self._lateral is None:
+            return []
+        told = LateralJudged(self._lateral.take(maneuver), self._lateral.flight_test)
+        span = maneuver.span
+        called = f"roll and yaw, manoeuvre {maneuver.number} ({clock(span.start_s)}, {span.kind})"
+        self._journal.write_of_past(f"{called}: {told.judged.verdict.sentence}", span.end_s)
+        self._journal.write_of_past(f"roll and yaw: {told.flight_test.sentence}", span.end_s)
+        return [told]
 
     def _blame_instruments(self, newest: Maneuver) -> None:
         """Judge the earlier manoeuvres again where the newest one contradicts their instruments."""
@@ -325,6 +349,25 @@ class Campaign:
         self._decide()
         self._learn()
         return [ManeuverJudged(self._judged[i], self._flight_test)] if event.takes_place else []
+
+    def _count_anew(self, event: ElevatorRescaled) -> list[CampaignEvent]:
+        """Count earlier manoeuvres by a limit that is heard late, so that no two scales are pooled."""
+        again = recount(self._maneuvers, event)
+        if again.notice is None:
+            return []
+        for maneuver in again.anew:
+            i = self._index(maneuver.number)
+            self._maneuvers[i] = maneuver
+            known = self._history[i].excluded_because
+            self._history[i] = replace(self._assess(maneuver), excluded_because=known)
+        for i in map(self._index, again.lost):
+            known = self._history[i].excluded_because
+            self._history[i] = replace(self._history[i], excluded_because=known or event.heard)
+        self._note_down(again.notice)
+        self._journal.take(again.notice)
+        self._decide()
+        self._learn()
+        return [again.notice]
 
     @property
     def _stream(self) -> FlightStream:

@@ -28,7 +28,8 @@ def together(
     """Return each contradiction once, as the newest manoeuvre that shows it tells it."""
     found = {f.code: f for f in before_flying}
     for maneuver in maneuvers:
-        found |= {f.code: f for f in maneuver.findings}
+        frozen = (d.finding for d in maneuver.distrusts if d.left_out or d.stops)
+        found |= {f.code: f for f in (*maneuver.findings, *frozen)}
     return tuple(found.values())
 
 

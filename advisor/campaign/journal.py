@@ -52,7 +52,7 @@ class Journal:
         text
             One line.
         at_s
-            Vehicle time of the event, s since boot. NaN: the newest time so far.
+            Vehicle time of the event, s since power-on. NaN: the newest time so far.
         """
         when = f"at {clock(at_s)}, " if at_s < self._newest_s - _LATE_S else ""
         self._newest_s = max(self._newest_s, at_s) if isfinite(at_s) else self._newest_s
@@ -80,11 +80,11 @@ class Journal:
                 self._vehicle = vehicle
                 self._begin(f"following {vehicle}; times are {CLOCK}")
             case FlightBegan(flight, name):
-                self._begin(f"{name}: flight {flight + 1} begins; its times count from its own boot")
+                self._begin(f"{name}: flight {flight + 1} begins; its times count from its own power-on")
             case Rebooted(boot):
                 self._begin(
                     f"the vehicle's clock went back, as after a reboot: power-on {boot + 1}; "
-                    "times count from this boot"
+                    "times count from this power-on"
                 )
 
     def _begin(self, text: str) -> None:

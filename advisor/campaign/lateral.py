@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.decision.acceptance import MANEUVER_RULES
+from advisor.decision.lateral_advice import FlownInput
 from advisor.decision.lateral_quality import judge_lateral
 from advisor.decision.lateral_test import lateral_flight_test
 from advisor.decision.verdict import FlightTestVerdict, ManeuverVerdict, Reason
@@ -28,9 +29,15 @@ class LateralState:
     maneuvers: tuple[JudgedLateral, ...]
     flight_test: FlightTestVerdict
     model: LateralEstimate | None
-    """Joint estimate over the accepted manoeuvres. None before the end, or without any."""
+    """Joint estimate: over the newest accepted manoeuvres in flight, over all of them after the end."""
     estimate_from: tuple[int, ...]
     """Numbers of the manoeuvres that ``model`` is made from."""
+
+
+OF_ELEVATOR = frozenset({"no_maneuver", "no_elevator", "no_alpha"})
+"""Codes of problems that concern the elevator's axis alone."""
+NEWEST = 7
+"""Number of newest accepted manoeuvres that are estimated together during the flight, as of the elevator."""
 
 
 class LateralCampaign:
@@ -45,28 +52,54 @@ class LateralCampaign:
     def __init__(self, aircraft: Aircraft) -> None:
         self._aircraft = aircraft
         self._flown: list[tuple[Maneuver, LateralEstimate | NoEstimate, tuple[Reason, ...]]] = []
-        self._model: LateralEstimate | None = None
+        self._ended = False
+        self._state: LateralState | None = None
 
-    def take(self, maneuver: Maneuver) -> None:
+    def take(self, maneuver: Maneuver) -> JudgedLateral:
         """Estimate and examine a manoeuvre that has just been flown."""
         estimate = estimate_lateral([maneuver], self._aircraft)
         self._flown.append((maneuver, estimate, judge_lateral(maneuver, estimate, self._aircraft)))
+        self._state = None
+        return self._judged()[-1]
 
     def finish(self) -> None:
-        """Make the joint estimate over the accepted manoeuvres."""
-        accepted = [maneuver for maneuver, _, reasons in self._flown if not reasons]
-        model = estimate_lateral(accepted, self._aircraft)
-        self._model = None if isinstance(model, NoEstimate) else model
+        """Take the end of the flight, after which the joint estimate is over all accepted manoeuvres."""
+        self._ended = True
+        self._state = None
 
     @property
     def state(self) -> LateralState:
-        """State after the newest manoeuvre."""
+        """State after the newest manoeuvre; the identical object while none is added."""
+        if self._state is None:
+            joined = self._joined()
+            model = estimate_lateral(joined, self._aircraft)
+            found = model if isinstance(model, LateralEstimate) else None
+            numbers = tuple(maneuver.number for maneuver in joined) if found else ()
+            self._state = LateralState(self._judged(), self.flight_test, found, numbers)
+        return self._state
+
+    @property
+    def flight_test(self) -> FlightTestVerdict:
+        """Whether the test may stop, and the next input."""
+        history = [
+            None if reasons or isinstance(estimate, NoEstimate) else estimate
+            for _, estimate, reasons in self._flown
+        ]
+        inputs = [FlownInput.of(maneuver, reasons) for maneuver, _, reasons in self._flown]
+        return lateral_flight_test(history, self._aircraft, inputs)
+
+    def _joined(self) -> list[Maneuver]:
+        """Return the manoeuvres of the joint estimate: the newest accepted ones in flight, all at the end."""
+        accepted = [maneuver for maneuver, _, reasons in self._flown if not reasons]
+        return accepted if self._ended else accepted[-NEWEST:]
+
+    def _judged(self) -> tuple[JudgedLateral, ...]:
         costs = [
             None if reasons or isinstance(estimate, NoEstimate) else estimate.estimate.cost
             for _, estimate, reasons in self._flown
         ]
         rules = {rule: judge(costs) for rule, judge in MANEUVER_RULES.items()}
-        judged = tuple(
+        return tuple(
             JudgedLateral(
                 maneuver,
                 estimate,
@@ -79,14 +112,4 @@ class LateralCampaign:
                 ),
             )
             for i, (maneuver, estimate, reasons) in enumerate(self._flown)
-        )
-        history = [
-            None if reasons or isinstance(estimate, NoEstimate) else estimate
-            for _, estimate, reasons in self._flown
-        ]
-        return LateralState(
-            judged,
-            lateral_flight_test(history, self._aircraft.campaign),
-            self._model,
-            tuple(m.number for m, _, reasons in self._flown if not reasons) if self._model else (),
         )

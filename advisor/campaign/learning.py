@@ -125,7 +125,7 @@ def reserved(
     if abs(here - together) <= CONTRADICTS * np.hypot(std, error):
         return verdict
     sentence = (
-        f"ACCEPTED, but not its M_delta_e of {here:.3g}: with the servo's lag that all manoeuvres tell"
+        f"ACCEPTED, but not its M_δe of {here:.3g}: with the servo's lag that all manoeuvres tell"
         f" it is {together:.3g}"
     )
     return replace(verdict, sentence=sentence)

@@ -1,7 +1,7 @@
 """``advisor analyze``: verdicts on the manoeuvres of a log, as text or JSON."""
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Literal
 
@@ -14,14 +14,11 @@ from advisor.cli.stages import Stages
 from advisor.words.printable import printable
 from advisor.words.problems import Problem
 
-Axis = Literal["pitch", "lateral", "both"]
-
 if TYPE_CHECKING:
+    from advisor.analysis.axes import Axis
     from advisor.analysis.log_series import LogSeries
     from advisor.campaign.campaign import Campaign
-    from advisor.campaign.lateral import LateralState
     from advisor.campaign.state import CampaignState
-    from advisor.flight.stream.flights import FlightHeard
 
 
 @click.command
@@ -48,7 +45,7 @@ def command(
     asked: LogsAsked,
     method: Literal["gauss-newton", "nelder-mead"],
     every_movement: bool,
-    axis: Axis,
+    axis: "Axis",
     as_json: bool,
 ) -> int:
     """Print every manoeuvre's verdict, the estimates, and stop or continue.
@@ -113,10 +110,12 @@ def command(
 
 
 def _analyze(
-    series: "LogSeries", make_campaign: "Callable[[], Campaign]", axis: Axis
+    series: "LogSeries", make_campaign: "Callable[[], Campaign]", axis: "Axis"
 ) -> "tuple[CampaignState | None, dict[int, tuple[Problem, ...]]]":
     """Return the campaign at the end of its logs and, by flight, the reasons for which logs do not count. The
     campaign is None without a readable log."""
+    from advisor.analysis.axes import left_out_of
+
     campaign = series.fed_to(make_campaign, lambda campaign, columns: campaign.feed(columns))
     unreadable: dict[int, tuple[Problem, ...]] = {
         flight: (problem,) for flight, problem in series.unreadable.items()
@@ -125,48 +124,4 @@ def _analyze(
         return None, unreadable
     campaign.finish()
     state = campaign.state
-    left_out = {one.flight: one.problems for one in state.flights if one.problems}
-    if state.lateral is not None:
-        left_out = _of_axis(axis, state.lateral, left_out, state.flights)
-    return state, left_out | unreadable
-
-
-def _of_axis(
-    axis: Axis,
-    lateral: "LateralState",
-    left_out: dict[int, tuple[Problem, ...]],
-    flights: "Sequence[FlightHeard]",
-) -> dict[int, tuple[Problem, ...]]:
-    """Return the problems that remain by flight, given the lateral manoeuvres.
-
-    A flight with an accepted lateral manoeuvre needs none of the elevator's.
-    """
-    told = {one.maneuver.flight for one in lateral.maneuvers if axis == "lateral" or one.verdict.accepted}
-    elsewhere = {
-        flight: problems
-        for flight, problems in left_out.items()
-        if not all(p.code in _OF_ELEVATOR for p in problems)
-    }
-    if axis == "lateral":
-        silent = [one for one in flights if one.flight not in told and one.flight not in elsewhere]
-        return elsewhere | {one.flight: (_no_lateral(one),) for one in silent}
-    return {flight: problems for flight, problems in left_out.items() if flight not in told} | elsewhere
-
-
-_OF_ELEVATOR = ("no_maneuver", "no_elevator", "no_alpha")
-"""Codes of problems that concern the elevator's axis alone."""
-
-
-def _no_lateral(flight: "FlightHeard") -> Problem:
-    """Return why a flight has no lateral manoeuvre."""
-    if not {"aileron", "rudder"} & set(flight.channels):
-        return Problem(
-            "no_aileron",
-            "Nothing says which servo outputs are the aileron and the rudder.",
-            "State aileron.output and rudder.output in the aircraft file, or record the parameters.",
-        )
-    return Problem(
-        "no_maneuver",
-        "No test manoeuvre of the aileron or the rudder was found.",
-        "Fly an aileron doublet and a rudder doublet in MANUAL, hands and feet still before and after.",
-    )
+    return state, left_out_of(axis, state) | unreadable

@@ -1,6 +1,7 @@
 """``advisor batch``: many flights, each analyzed once."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
@@ -9,6 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.cli.batch_reports import ReportTask, page_of, write_reports
 from advisor.cli.options import (
     UNUSABLE,
     aircraft_option,
@@ -16,12 +18,14 @@ from advisor.cli.options import (
     refuse_unwritable_folder,
     writing,
 )
+from advisor.cli.report import refuse_missing_libraries
 from advisor.cli.running import Progress, runner_of, running_options
 from advisor.words.printable import printable
 from advisor.words.problems import ConfigurationError, Problem, UnusableInputError
 
 if TYPE_CHECKING:
     from advisor.batch.flight import Analyzed, BatchTask
+    from advisor.cli.batch_reports import Run as RunReports
 
     Run = Callable[[Sequence[BatchTask]], Iterator[tuple[BatchTask, Analyzed | Exception]]]
 
@@ -51,12 +55,14 @@ KEPT = "flights"
     metavar="MAP.yaml",
     help="For several aircraft: one line for each pattern of logs, with its aircraft file.",
 )
+@click.option("--reports", "with_reports", is_flag=True, help="Write the page of each flight as well.")
 @running_options
 def command(
     places: tuple[Path, ...],
     out: Path,
     aircraft_file: Path | None,
     map_file: Path | None,
+    with_reports: bool,
     workers: int | None,
     scheduler: str | None,
 ) -> int:
@@ -69,22 +75,34 @@ def command(
     \b
     Example:
       advisor batch flights/ -o results --aircraft my-aircraft.yaml --workers 8
-      advisor batch flights/ -o results --aircraft-map fleet.yaml
+      advisor batch flights/ -o results --aircraft-map fleet.yaml --reports
       advisor batch /shared/flights -o results --scheduler tcp://10.0.0.5:8786
     """
     if aircraft_file is not None and map_file is not None:
         raise ConfigurationError("Give --aircraft for one aircraft, or --aircraft-map for several, not both.")
     refuse_unwritable_folder("-o", out)
+    if with_reports:
+        refuse_missing_libraries("advisor batch --reports")
     from advisor.batch.flight import analyze, analyze_shared
     from advisor.batch.logs import find_logs
 
-    run = partial(runner_of(workers, scheduler), analyze if scheduler is None else analyze_shared)
+    runner = runner_of(workers, scheduler)
+    run = partial(runner, analyze if scheduler is None else analyze_shared)
     logs = find_logs(places if scheduler is None else [place.absolute() for place in places], out)
     tasks, results = _tasks(logs, aircraft_file, map_file)
     with writing("-o", out):
         (out / KEPT).mkdir(parents=True, exist_ok=True)
         results |= _analyzed(tasks, out, run)
-    return _told([results[log] for log in logs if log in results], out)
+        pages = _reports(tasks, results, out, partial(runner, page_of)) if with_reports else {}
+    return _told([results[log] for log in logs if log in results], out, pages)
+
+
+def _reports(
+    tasks: "Sequence[BatchTask]", results: "Mapping[Path, Analyzed]", out: Path, run: "RunReports"
+) -> Mapping[Path, str]:
+    """Write the pages of the logs that count, and return them by their log."""
+    usable = [task for task in tasks if results[task.log].usable]
+    return write_reports([ReportTask(t.log, t.aircraft, t.aircraft_path, t.key) for t in usable], out, run)
 
 
 def _tasks(
@@ -102,14 +120,14 @@ def _tasks(
         file = chosen.file_of(log) if chosen is not None else aircraft_file
         if file not in described:
             described[file] = read_aircraft(file)
-        task = BatchTask(log, described[file], file.name if file else "", "")
+        task = BatchTask(log, described[file], file.name if file else "", "", file)
         if chosen is not None and file is None:
             fix = "Add a line for the log, or a last one for '*'."
             problem = Problem("no_aircraft", f"{log} matches no pattern in {map_file}.", fix)
             results[log] = failed(task, [problem])
             continue
         try:
-            task = BatchTask(log, described[file], task.aircraft_file, sha256_of(log))
+            task = replace(task, sha256=sha256_of(log))
         except UnusableInputError as error:
             results[log] = failed(task, error.problems)
             continue
@@ -159,7 +177,7 @@ def _fault(task: "BatchTask", error: Exception) -> Problem:
     )
 
 
-def _told(results: "Sequence[Analyzed]", out: Path) -> int:
+def _told(results: "Sequence[Analyzed]", out: Path, pages: Mapping[Path, str]) -> int:
     """Write the tables, and print failures and changes."""
     from advisor.batch.index import index_page
     from advisor.batch.tables import changes_of, in_order, mixed_up, tables_of
@@ -170,7 +188,7 @@ def _told(results: "Sequence[Analyzed]", out: Path) -> int:
     form = "parquet" if find_spec("pyarrow") else "csv"
     with staged(out) as stage:
         write_formats(tables_of(flights), stage, [form])
-        (stage / INDEX).write_text(index_page(flights), encoding="utf-8")
+        (stage / INDEX).write_text(index_page(flights, pages), encoding="utf-8")
     failures = [flight for flight in flights if not flight.usable]
     for flight in failures:
         click.echo(printable(f"{flight.log}: {' '.join(flight.reasons)}"), err=True)

@@ -70,8 +70,8 @@ def maneuver_option(command: F) -> F:
         multiple=True,
         metavar="START:END",
         callback=lambda ctx, parameter, texts: parse_marks(texts),
-        help="Mark this stretch as a manoeuvre: seconds since boot, or with + since the log's first ATTITUDE "
-        "(+12:+24). Minutes and seconds are understood too (1:20.4:1:33). Repeatable.",
+        help="Mark this stretch as a manoeuvre: seconds since power-on, or with + since the log's first "
+        "ATTITUDE (+12:+24). Minutes and seconds are understood too (1:20.4:1:33). Repeatable.",
     )(command)
 
 
@@ -113,8 +113,9 @@ def parse_mark(text: str) -> "Mark":
     start_s, end_s = _seconds(parts[:half]), _seconds(parts[half:])
     if not (isfinite(start_s) and isfinite(end_s) and start_s >= 0.0 and relative[0] == relative[1]):
         raise ConfigurationError(
-            f"--maneuver {text}: give START:END in seconds since boot, or both with + from the start of the "
-            "log, e.g. --maneuver +12:+24; minutes:seconds are understood too, e.g. --maneuver 1:20.4:1:33."
+            f"--maneuver {text}: give START:END in seconds since power-on, or both with + from the start "
+            "of the log, e.g. --maneuver +12:+24; minutes:seconds are understood too, e.g. --maneuver "
+            "1:20.4:1:33."
         )
     if end_s <= start_s:
         raise ConfigurationError(f"--maneuver {text}: END must lie after START; exchange or correct them.")

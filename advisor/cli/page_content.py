@@ -33,7 +33,11 @@ _COUNTED = ("numpy", "scipy", "matplotlib", "jinja2", "pymavlink")
 
 
 def gather(
-    asked: LogsAsked, aircraft: Aircraft, with_gap: bool, tell: Progress = lambda *_: None
+    asked: LogsAsked,
+    aircraft: Aircraft,
+    with_gap: bool,
+    tell: Progress = lambda *_: None,
+    command: str | None = None,
 ) -> tuple[Content, list[str]]:
     """Return the content of the page, and sentences on logs that do not count.
 
@@ -41,6 +45,8 @@ def gather(
     ----------
     tell
         Receives each stage of the work as a sentence.
+    command
+        Command line that repeats the page; None: the one that this process was started with.
 
     Raises
     ------
@@ -50,7 +56,7 @@ def gather(
         As :func:`advisor.analysis.marks_file.read_by_hand`.
     """
     tell("reading and judging", 0.0)
-    flights = read_whole(asked.logs, aircraft, asked.target_system, no_marks=asked.no_marks)
+    flights = read_whole(asked.logs, aircraft, asked.target_system, no_marks=asked.no_marks, axis="both")
     said = flights.said
     tell("examining the telemetry", 0.5)
     doctor = tuple(_examined(log, aircraft, asked.target_system) for log in flights.logs)
@@ -68,7 +74,7 @@ def gather(
         origin=Origin(
             _hashes(flights, asked.aircraft_file),
             dict(_versions()),
-            printable(shlex.join(["advisor", *sys.argv[1:]])),
+            printable(command or shlex.join(["advisor", *sys.argv[1:]])),
         ),
     )
     return content, said

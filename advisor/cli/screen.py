@@ -111,7 +111,9 @@ def _campaign(
 ) -> "Campaign":
     from advisor.campaign.campaign import Campaign
 
-    return Campaign(aircraft, target_system, settle, tell, by_hand=by_hand, marks=marks, names=names)
+    return Campaign(
+        aircraft, target_system, settle, tell, by_hand=by_hand, marks=marks, names=names, lateral=True
+    )
 
 
 def _show(
@@ -126,17 +128,22 @@ def _show(
         app.run()
     if app.failure is not None:
         raise app.failure
-    for line in so_far(app.view.state):
+    for line in so_far(app.view.state, aircraft):
         click.echo(printable(line))
     if tempo is not None and app.view.problems:
         raise UnusableInputError.of(app.view.problems[:1])
 
 
-def so_far(state: "CampaignState") -> Iterator[str]:
-    """Yield each verdict of a flight test that was left, and stop or continue; nothing before the first."""
+def so_far(state: "CampaignState", aircraft: Aircraft) -> Iterator[str]:
+    """Yield each verdict of a flight test that was left, and stop or continue; nothing before the first
+    verdict of an axis."""
+    from advisor.report.lateral import lateral_lines
     from advisor.report.text import maneuver_line, next_line, stop_line
 
     if state.maneuvers:
         yield from map(maneuver_line, state.maneuvers)
         yield stop_line(state.flight_test)
         yield next_line(state.flight_test)
+    if state.lateral is not None and state.lateral.maneuvers:
+        yield "Roll and yaw"
+        yield from lateral_lines(state.lateral, aircraft)

@@ -18,9 +18,11 @@ from advisor.decision.verdict import NO_CURE_BY_INPUT, NextInput, Remaining
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.short_period import ShortPeriod
 
-_GENTLE = 0.1
+GENTLE = 0.1
 """Amplitude of the first input, as a share of the elevator's travel. Nothing is known of the aircraft yet.
 Larger inputs follow step by step (``conditions.BOLDER``)."""
+ENOUGH = NextInput("no further manoeuvre needed", Remaining(0, 0))
+"""Advice after the stop."""
 PASSING = {"separate": 0.5}
 """Share of equally good manoeuvres that pass the rule. Eq. (11) rejects half, Eq. (10) hardly any."""
 
@@ -38,7 +40,7 @@ def next_input(
     """
     plan = aircraft.campaign
     if stopped:
-        return NextInput("no further manoeuvre needed", Remaining(0, 0))
+        return ENOUGH
     course = course or CriterionCourse(plan)
     conditions = find_conditions(history, aircraft, course)
     mend = _mend(history[-1]) if history else ""
@@ -111,7 +113,7 @@ def _first_input(aircraft: Aircraft) -> NextInput:
         if np.isfinite(frequency) and frequency > 0.0:
             unit = max(round(0.5 * np.pi / frequency, 1), 0.2)
     travel = travel_of(aircraft, 0.0)
-    gentle = StepInput("3-2-1-1", unit, _GENTLE * travel, nose_up_first=True)
+    gentle = StepInput("3-2-1-1", unit, GENTLE * travel, nose_up_first=True)
     return NextInput(f"next: {gentle.spoken(travel)}, to begin gently", None, None, gentle, travel)
 
 

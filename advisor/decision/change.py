@@ -27,6 +27,7 @@ from advisor.decision.pooling import (
     posteriors_at_one_speed,
 )
 from advisor.flight.signals.messages import FloatArray
+from advisor.words.quantities import symbol
 
 FALSE_ALARM = 1e-5
 """Probability of a false alarm in one comparison. A campaign makes a few dozen comparisons, which are not
@@ -179,7 +180,7 @@ def _misfit(before: Shared, after: Shared, powers: FloatArray) -> float:
 
 
 def _told(last: int, first: int, confirmed: bool, moved: tuple[Moved, ...], looks_like: str) -> Change:
-    what = ", ".join(f"{m.parameter} {m.percent:+.0f} % ({abs(m.sigma):.0f} sigma)" for m in moved)
+    what = ", ".join(f"{symbol(m.parameter)} {m.percent:+.0f} % ({abs(m.sigma):.0f} sigma)" for m in moved)
     cause = f"; it looks like {looks_like}" if looks_like else ""
     if confirmed:
         sentence = (

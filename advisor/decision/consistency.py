@@ -1,7 +1,7 @@
 """Consistency of manoeuvres: outliers among them, and the factor by which scatter widens the intervals."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.special import chdtri
@@ -26,6 +26,16 @@ FEWEST = 4
 
 
 @dataclass(frozen=True, slots=True)
+class AlphaApart:
+    """Angle of attack of a manoeuvre whose middle lies beyond the range of the others."""
+
+    middle_rad: float
+    """Middle of the manoeuvre's range, about which its derivatives hold, rad."""
+    others_rad: tuple[float, float]
+    """Lowest and highest angle of attack of the others, rad."""
+
+
+@dataclass(frozen=True, slots=True)
 class Outlier:
     """Distance of an outlying manoeuvre from all others."""
 
@@ -33,15 +43,58 @@ class Outlier:
     """Mahalanobis distance of the manoeuvre's derivatives."""
     limit: float
     """Distance that chance exceeds once in a thousand cases."""
+    alpha: AlphaApart | None = None
+    """Angle of attack that separates the manoeuvre from the others. None: nothing known does."""
 
 
 def outliers(posteriors: Sequence[Posterior]) -> Mapping[int, Outlier]:
     """Return manoeuvres that contradict all the others, which agree with each other, by their index.
 
-    A search may end in a wrong minimum, or a gust may look like a response. Such an estimate has a small
-    stated error and would spoil every mean. At most a third of the manoeuvres are outliers. More
-    contradictions mean a change of the aircraft, or stated errors that are too small.
+    The aircraft may differ at the manoeuvre's angle of attack (`beyond_in_alpha`). A search may also end in a
+    wrong minimum, or a gust may look like a response. Such an estimate has a small stated error and would
+    spoil every mean. At most a third of the remaining manoeuvres are such outliers. More contradictions mean
+    a change of the aircraft, or stated errors that are too small.
     """
+    beyond = beyond_in_alpha(posteriors)
+    within = [i for i in range(len(posteriors)) if i not in beyond]
+    odd = _odd([posteriors[i] for i in within])
+    return dict(sorted({**beyond, **{within[k]: outlier for k, outlier in odd.items()}}.items()))
+
+
+def beyond_in_alpha(posteriors: Sequence[Posterior]) -> dict[int, Outlier]:
+    """Return manoeuvres beyond the angle of attack of most others, whose derivatives contradict the others'.
+
+    In buffet and in a stall the aircraft is another one. Neither fact alone tells that. An aircraft may be
+    linear beyond the others' range, and a contradiction may have other causes. A minority at one end of the
+    range is compared with all others, whose scatter widens the errors of both.
+    """
+    known = [i for i, posterior in enumerate(posteriors) if np.all(np.isfinite(posterior.alpha_rad))]
+    rising = sorted(known, key=lambda i: _middle(posteriors[i]))
+    found: dict[int, Outlier] = {}
+    for order in (rising, rising[::-1]):
+        for k in range(1, (len(order) + 1) // 2):
+            rest = [posteriors[i] for i in order[:-k]]
+            lowest = min(posterior.alpha_rad[0] for posterior in rest)
+            highest = max(posterior.alpha_rad[1] for posterior in rest)
+            nearest = _middle(posteriors[order[-k]])
+            if len(rest) < 2 or lowest <= nearest <= highest:
+                continue
+            factor = excess(rest)
+            others = widened(pool(rest), factor).shared
+            for i in order[-k:]:
+                apart = AlphaApart(_middle(posteriors[i]), (lowest, highest))
+                outlier = replace(_distance(widened(posteriors[i], factor), others), alpha=apart)
+                if outlier.sigma > outlier.limit:
+                    found[i] = outlier
+    return found
+
+
+def _middle(posterior: Posterior) -> float:
+    return 0.5 * sum(posterior.alpha_rad)
+
+
+def _odd(posteriors: Sequence[Posterior]) -> dict[int, Outlier]:
+    """Return manoeuvres whose removal makes the others agree, by their index."""
     inside = list(range(len(posteriors)))
     found: list[int] = []
     while len(inside) >= FEWEST and len(found) + 1 <= (len(posteriors) - 1) // 3:
@@ -82,7 +135,7 @@ def excess(posteriors: Sequence[Posterior]) -> float:
 
 def widened(posterior: Posterior, factor: float) -> Posterior:
     """Return the estimate with ``factor`` times its own variance. Scatter tells nothing of a common error."""
-    return Posterior(posterior.theta, factor * posterior.covariance, posterior.common)
+    return replace(posterior, covariance=factor * posterior.covariance)
 
 
 def consensus(posteriors: Sequence[Posterior]) -> tuple[Posterior, float, tuple[int, ...]]:

@@ -20,6 +20,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.oem.estimate import Estimate
 from advisor.words.digits import distinct_texts
 from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import symbol
 
 _JUDGED = ("M_alpha", "M_q", "M_delta_e", "Z_alpha")
 """Derivatives whose bias matters."""
@@ -65,7 +66,7 @@ def _beyond(estimate: Estimate, bias: FloatArray, code: str, what: str, cure: st
     if not name or share[name] <= 1.0:
         return []
     shown, most = distinct_texts(share[name], 1.0, 1)
-    text = f"{what} may move {name} by {shown} times its interval (limit {most}); {cure}"
+    text = f"{what} may move {symbol(name)} by {shown} times its interval (limit {most}); {cure}"
     return [Reason(code, text, share[name], 1.0)]
 
 

@@ -5,8 +5,9 @@ import numpy as np
 from advisor.aircraft.aircraft import PARAMETERS
 from advisor.decision.information import Knowledge
 from advisor.decision.pooling import DERIVATIVES
-from advisor.words.digits import distinct_texts
+from advisor.words.digits import distinct_texts, with_half
 from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import symbol
 
 SPOKEN = {"alpha": "angle of attack", "q": "pitch rate", "a_z": "normal acceleration"}
 """Predicted output to its name for people."""
@@ -47,8 +48,8 @@ def _held_back(known: Knowledge) -> str:
         return f"the response in {SPOKEN[name]} is known only to {size} % of its peak (limit {limit} %)"
     if np.isinf(share):
         reason = known.not_identifiable.get(name, "cannot be estimated from these manoeuvres")
-        return f"{name} {reason.removesuffix('.')}"
-    return f"the error of {name} is {times} times its tolerance"
+        return f"{symbol(name)} {reason.removesuffix('.')}"
+    return f"the error of {symbol(name)} is {times} times its tolerance"
 
 
 def evidence(known: Knowledge) -> tuple[str, ...]:
@@ -56,9 +57,10 @@ def evidence(known: Knowledge) -> tuple[str, ...]:
     tolerance."""
     share = known.share
     bands = ", ".join(f"{SPOKEN[name]} {band:.1f} %" for name, band in known.prediction_percent.items())
-    named = ", ".join(f"{name} {100.0 * share[name]:.0f} %" for name in known.named)
+    named = ", ".join(f"{symbol(name)} {100.0 * share[name]:.0f} %" for name in known.named)
     weak = ", ".join(
-        f"{PARAMETERS[k]} {known.posterior.theta[k]:.3g} ± {NORMAL_95 * known.posterior.std[k]:.2g}"
+        f"{symbol(PARAMETERS[k])} "
+        + with_half(float(known.posterior.theta[k]), NORMAL_95 * float(known.posterior.std[k]))
         for k in DERIVATIVES
         if PARAMETERS[k] not in known.named
     )

@@ -39,7 +39,9 @@ class StepInput:
     amplitude_rad: float
     """Distance of every step from trim."""
     nose_up_first: bool
-    """Direction of the first step. An input that begins nose down is called reverse."""
+    """Direction of the first step: nose up, or to the right. The other direction is called reverse."""
+    control: str = "elevator"
+    """Control that moves: ``elevator``, ``aileron`` or ``rudder``."""
 
     @property
     def duration_s(self) -> float:
@@ -48,7 +50,7 @@ class StepInput:
 
     @property
     def steps(self) -> tuple[tuple[bool, float], ...]:
-        """Steps in order: whether the step is nose up, and its duration, s."""
+        """Steps in order: whether the step is nose up or to the right, and its duration, s."""
         return tuple(
             (self.nose_up_first == (k % 2 == 0), units * self.unit_s)
             for k, units in enumerate(ORDERS[self.order])
@@ -68,8 +70,10 @@ class StepInput:
 
     def spoken(self, travel_rad: float) -> str:
         """Return the input as a pilot hears it: ``reverse 3-2-1-1, 0.4 s steps, 60 % stick``."""
-        reverse = "" if self.nose_up_first else "reverse "
-        return f"{reverse}{self.order}, {self.unit_s:.1f} s steps, {self.stick_percent(travel_rad)} % stick"
+        words = ["" if self.nose_up_first else "reverse", "" if self.control == "elevator" else self.control]
+        moved = "pedal" if self.control == "rudder" else "stick"
+        called = " ".join(filter(None, (*words, self.order)))
+        return f"{called}, {self.unit_s:.1f} s steps, {self.stick_percent(travel_rad)} % {moved}"
 
     def rounded(self, travel_rad: float) -> "StepInput":
         """Return the input with an amplitude that can be spoken, rounded down unless that gave zero."""

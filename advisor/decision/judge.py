@@ -1,7 +1,7 @@
 """Verdict on a manoeuvre: first objections to the manoeuvre itself, then the rule that the crew chose."""
 
 from collections.abc import Container, Mapping, Sequence
-from math import floor
+from math import degrees, floor
 
 from advisor.aircraft.aircraft import CampaignPlan, Rule
 from advisor.decision.acceptance import MANEUVER_RULES
@@ -147,6 +147,13 @@ def _of_limit(cost: float, limit: float) -> str:
 
 def _contradicts(outlier: Outlier) -> Reason:
     distance, limit = distinct_texts(outlier.sigma, outlier.limit, 1)
+    if (apart := outlier.alpha) is not None:
+        low, high = (degrees(alpha) for alpha in apart.others_rad)
+        where = (
+            f"flown about {degrees(apart.middle_rad):.1f} deg of alpha (the others: {low:.1f} to {high:.1f})"
+        )
+        text = f"{where}, {distance} sigma from them (limit {limit}); fly it at their angle of attack"
+        return Reason("alpha_range", text, outlier.sigma, outlier.limit)
     text = f"contradicts all the others, {distance} sigma from them (limit {limit}); fly it again"
     return Reason("odd", text, outlier.sigma, outlier.limit)
 

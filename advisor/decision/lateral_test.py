@@ -11,7 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.aircraft.aircraft import CampaignPlan
+from advisor.aircraft.aircraft import Aircraft
+from advisor.decision.advice import ENOUGH
+from advisor.decision.lateral_advice import FlownInput, next_lateral
 from advisor.decision.tolerance import SHARE
 from advisor.decision.verdict import (
     INFORMATION_LIMIT_PERCENT,
@@ -94,16 +96,21 @@ def _inverse(information: FloatArray) -> FloatArray:
     return np.asarray((vectors * kept) @ vectors.T * np.outer(scale, scale))
 
 
-def lateral_flight_test(history: Sequence[LateralEstimate | None], plan: CampaignPlan) -> FlightTestVerdict:
+def lateral_flight_test(
+    history: Sequence[LateralEstimate | None], aircraft: Aircraft, flown: Sequence[FlownInput] = ()
+) -> FlightTestVerdict:
     """Return whether the lateral test may stop, and the next input.
 
     Parameters
     ----------
     history
         Estimate of every manoeuvre in the order flown; None for one that was not accepted.
-    plan
-        Tolerance of the crew.
+    aircraft
+        The crew's aircraft file, with its tolerance.
+    flown
+        Inputs of all manoeuvres, accepted or not.
     """
+    plan = aircraft.campaign
     accepted: list[LateralEstimate] = []
     values: list[float | None] = []
     stopped_at = None
@@ -132,7 +139,7 @@ def lateral_flight_test(history: Sequence[LateralEstimate | None], plan: Campaig
                 parameter_percent={k: v if math.isfinite(v) else None for k, v in shares.items()},
             )
         },
-        next=None if stop else _next(shares, accepted),
+        next=ENOUGH if stop else _next(shares, accepted, flown, aircraft),
     )
 
 
@@ -155,19 +162,14 @@ def _sentence(shares: Mapping[str, float], accepted: Sequence[LateralEstimate], 
     return f"CONTINUE: the error of {worst} is {said}."
 
 
-def _next(shares: Mapping[str, float], accepted: Sequence[LateralEstimate]) -> NextInput:
+def _next(
+    shares: Mapping[str, float],
+    accepted: Sequence[LateralEstimate],
+    flown: Sequence[FlownInput],
+    aircraft: Aircraft,
+) -> NextInput:
     missing = _missing(accepted)
     worst = max(shares, key=lambda name: shares[name])
     control = missing[0] if missing else JUDGED[worst]
-    modes = [one.modes for one in accepted]
-    if control == "aileron":
-        known = [m.roll_time_constant.value for m in modes if m.roll_time_constant is not None]
-        step_s = max(2.0 * float(np.median(known)), 0.5) if known else 1.0
-        return NextInput(f"next: aileron doublet, {step_s:.1f} s steps, then stick still", None, worst)
-    omegas = [m.dutch_roll_omega.value for m in modes if m.dutch_roll_omega is not None]
-    period_s = 2.0 * math.pi / float(np.median(omegas)) if omegas else 2.0
-    advice = (
-        f"next: rudder doublet, {0.5 * period_s:.1f} s steps, then hands and feet still for "
-        f"{2.0 * period_s:.0f} s"
-    )
-    return NextInput(advice, None, worst)
+    percent = max(share for name, share in shares.items() if JUDGED[name] == control)
+    return next_lateral(control, percent, accepted, flown, aircraft, worst)

@@ -8,6 +8,7 @@ data, only estimates and covariances, so that every decision of a campaign is qu
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from math import nan
 from typing import NamedTuple
 
 import numpy as np
@@ -47,6 +48,8 @@ class Posterior:
     """Covariance for given instruments, shape (8, 8). Infinite on the diagonal for an unknown parameter."""
     common: FloatArray = field(default_factory=lambda: np.zeros((len(PARAMETERS), len(PARAMETERS))))
     """Covariance by the errors of given instruments, which all estimates share, shape (8, 8)."""
+    alpha_rad: tuple[float, float] = (nan, nan)
+    """Lowest and highest measured angle of attack of the manoeuvre, rad. NaN where not measured."""
 
     @property
     def std(self) -> FloatArray:
@@ -77,9 +80,15 @@ def posteriors_at_one_speed(estimates: Sequence[Estimate]) -> list[Posterior]:
     scale, values = _at_one_speed(estimates)
     factors = _widening_by_colour(estimates) * scale[:, :, None] * scale[:, None, :]
     return [
-        Posterior(value, e.own_covariance_cr * factor, e.common * np.outer(s, s))
+        Posterior(value, e.own_covariance_cr * factor, e.common * np.outer(s, s), _alpha_of(e))
         for e, value, factor, s in zip(estimates, values, factors, scale, strict=True)
     ]
+
+
+def _alpha_of(estimate: Estimate) -> tuple[float, float]:
+    """Return the range of the measured angle of attack, rad; NaN where not measured."""
+    alpha = estimate.fits[0].get("alpha")
+    return (nan, nan) if alpha is None else (float(alpha.measured.min()), float(alpha.measured.max()))
 
 
 def values_at_one_speed(estimates: Sequence[Estimate]) -> FloatArray:

@@ -18,6 +18,7 @@ from advisor.decision.verdict import FlightTestVerdict, RuleProgress, limit_perc
 from advisor.decision.warnings import warnings
 from advisor.oem.estimate import Estimate
 from advisor.words.digits import distinct_texts
+from advisor.words.quantities import symbol
 
 _NO_SCALE_PERCENT = 1000.0
 
@@ -140,4 +141,4 @@ def _scatter_sentence(
 def _scattered_most(accepted: Sequence[Estimate], plan: CampaignPlan) -> str:
     theta = window(accepted, plan)
     assert theta is not None
-    return scattered_most(theta, plan.criterion)
+    return symbol(scattered_most(theta, plan.criterion))

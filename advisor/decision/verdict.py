@@ -79,6 +79,11 @@ class RuleProgress:
     parameter_percent: Mapping[str, float | None] = field(default_factory=dict)
     """Under ``information``: named parameter to its 95 % half-width, % of its own tolerance."""
 
+    @property
+    def percent_of_limit(self) -> tuple[float | None, ...]:
+        """Criterion after each manoeuvre in per cent of the rule's limit, the one scale of all rules."""
+        return tuple(None if v is None else 100.0 * v / self.limit_percent for v in self.history_percent)
+
 
 @dataclass(frozen=True, slots=True)
 class Remaining:

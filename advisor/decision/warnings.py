@@ -14,6 +14,7 @@ from advisor.decision.scatter import SCATTER_FACTOR, window
 from advisor.decision.verdict import RuleProgress
 from advisor.oem.estimate import Estimate
 from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import symbol
 
 
 def warnings(
@@ -54,7 +55,7 @@ def _cannot_fall(accepted: Sequence[Estimate], plan: CampaignPlan) -> list[str]:
     error = np.sqrt(np.mean([np.diag(e.covariance) for e in accepted[-plan.window :]], axis=0))
     value = np.abs(theta.mean(axis=0))
     blocking = [
-        f"{name} ({v:.2g} ± {NORMAL_95 * std:.2g})"
+        f"{symbol(name)} ({v:.2g} ± {NORMAL_95 * std:.2g})"
         for name, v, std in zip(PARAMETERS, value, error, strict=True)
         if 100.0 * SCATTER_FACTOR * std > plan.limit_percent * v
     ]

@@ -21,11 +21,10 @@ from advisor.doctor.instruments import (
 )
 from advisor.doctor.pace import Paced, cost_of_missing, rate_limits, steadiness_limits
 from advisor.doctor.survey import Arrival, Survey, bank_name
-from advisor.flight.maneuvers.events import ManeuverFlown, Notice
+from advisor.flight.maneuvers.events import READER_NOTICE, ManeuverFlown, Notice
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import Columns
 from advisor.flight.signals.track import ChannelStatus
-from advisor.flight.stream.identity import READER_NOTICE
 from advisor.flight.stream.stream import FlightStream
 from advisor.flight.stream.suitability import problems
 from advisor.flight.vehicle.surfaces import Surface
@@ -122,7 +121,10 @@ class Examiner:
         limits = [_stopping(problem, vehicle) for problem in found if problem.code != "rate" or not complete]
         limits += distrust_limits([*still, *(d for m in self._maneuvers for d in m.distrusts)])
         instruments = together(self._maneuvers, self._stream.instruments)
-        limits += [Limit(f.code, f.sentence, f.fix, stops=f.refuses) for f in instruments]
+        told = {limit.text for limit in limits}
+        limits += [
+            Limit(f.code, f.sentence, f.fix, stops=f.refuses) for f in instruments if f.sentence not in told
+        ]
         if vehicle is not None and complete:
             limits += rate_limits(paced, assumed, vehicle, speed)
         period_s = 2.0 * np.pi / frequency(assumed.model)

@@ -136,7 +136,7 @@ def cost_of_missing(
 
 def _staircase(message: str, vehicle: Vehicle) -> str:
     return (
-        f"no setting helps: the sender itself renews {message} at this pace; a vane that sends "
+        f"no setting helps: the sender itself updates {message} at this pace; a vane that sends "
         f"{vehicle.mends.called('NAMED_VALUE_FLOAT')} (alpha.source: named_value:NAME) can be faster"
     )
 

@@ -194,8 +194,8 @@ class Survey:
         """Sentences on the stretches in which the autopilot wrote nothing into its own log."""
         because = " (LOG_DISARMED 0)" if self._carrier == "dataflash" else ""
         return [
-            f"The autopilot logged nothing from {between(p.start_s, p.end_s)} since boot, as it may while "
-            f"disarmed{because}: no link was lost."
+            f"The autopilot logged nothing from {between(p.start_s, p.end_s)} since power-on, as it may "
+            f"while disarmed{because}: no link was lost."
             for p in self._pauses()
         ]
 

@@ -15,6 +15,10 @@ class Decision:
     limit: float
     unit: str
     """Unit of the statistic and of the limit."""
+    parameter: str = ""
+    """Parameter of the effect that the question is about; empty for any other question."""
+    searched: tuple[float, float] | None = None
+    """Ends of that parameter's searched range, SI."""
 
     @property
     def margin(self) -> float:

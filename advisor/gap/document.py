@@ -8,6 +8,8 @@ import numpy as np
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.alternative import AlternativeEvidence
 from advisor.gap.result import Cause, ComparedDerivative, Diagnosis, InSimulator, Qualification
+from advisor.gap.verdict.as_judged import answered
+from advisor.gap.verdict.text import in_words
 from advisor.words.plain import picked, plain
 from advisor.words.problems import Problem
 
@@ -18,7 +20,7 @@ _NOTHING: Mapping[str, Any] = {
     "alpha_check": None, "yardsticks": None, "notes": [], "improved_model": None,
     "parameters_changed": [], "traces": [], "share_irreducible": None, "decisions": [], "simulator": None,
     "qualification": None, "static": [], "trims": [], "probabilities": None, "evidence": [], "why": [],
-    "rival": None,
+    "answer": None, "rival": None,
 }  # fmt: skip
 """Keys and values of a document without a diagnosis."""
 
@@ -72,12 +74,20 @@ def gap_document(
             {"name": f"{one.about} {one.name}", **picked(one, "about statistic limit margin unit holds")}
             for one in d.decisions
         ],
+        **_judged(d),
+    })  # fmt: skip
+    return document
+
+
+def _judged(d: Diagnosis) -> dict[str, Any]:
+    """Return the probabilities of all alternatives, their evidence, and the reasons for the answer."""
+    return {
         "probabilities": d.probabilities,
         "evidence": [_evidence(one) for one in d.evidence],
         "why": [{"name": c.name, "nats": c.nats, "text": c.sentence} for c in d.why],
+        "answer": answered(d).label if d.why else None,
         "rival": d.rival or None,
-    })  # fmt: skip
-    return document
+    }
 
 
 def _of_the_simulator(d: Diagnosis) -> dict[str, Any]:
@@ -113,6 +123,7 @@ def _cause(c: Cause) -> dict[str, Any]:
 def _evidence(one: AlternativeEvidence) -> dict[str, Any]:
     return {
         "alternative": one.alternative.label, **picked(one.alternative, "kind name block"),
+        "text": in_words(one.alternative),
         "probability": one.probability,
         "columns": [picked(column, "name value unit") for column in one.columns],
     }  # fmt: skip

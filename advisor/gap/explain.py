@@ -9,13 +9,13 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import beyond_known, beyond_servo
-from advisor.gap.candidates.variant import Variant
 from advisor.gap.evidence.found import Evidence
 from advisor.gap.fitting.fit import EffectFit, fit
 from advisor.gap.fitting.holdout import hold_out
 from advisor.gap.fitting.measure import file_model_of, whole_gap
 from advisor.gap.fitting.problem import EffectProblem, counts
 from advisor.gap.fitting.uncertainty import effective_samples, file_is_off
+from advisor.gap.kit.variant import Variant
 from advisor.gap.noise.quiet import quiet_rms
 from advisor.gap.noise.stamps import stamp_power
 from advisor.gap.records.floor import stated_floor, tolerance_of
@@ -137,7 +137,7 @@ def evidence_of_one_maneuver(problem: EffectProblem, baseline: EffectFit) -> Evi
 
 def _begun_where_it_rings(variant: Variant, problem: EffectProblem, baseline: EffectFit) -> Variant:
     """Return a structural mode with one more start, at the frequency where the pitch rate rings."""
-    if variant.effect != "structural_mode":
+    if "omega_rad_s" not in variant.names:
         return variant
     omega = variant.names.index("omega_rad_s")
     lowest, highest = (w / (2.0 * np.pi) for w in variant.bounds[omega])

@@ -280,5 +280,6 @@ class Diagnosis:
 
 
 def spelled(effect: str) -> str:
-    """Return the name of an effect as people write it."""
-    return effect.replace("_", " ")
+    """Return the name of an effect as people write it; a skew is a late time stamp."""
+    channel = effect.removesuffix("_skew")
+    return (effect if channel == effect else f"late_{channel}_stamps").replace("_", " ")

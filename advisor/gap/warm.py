@@ -4,7 +4,9 @@ import numpy as np
 
 from advisor.aircraft.aircraft import PARAMETERS, Aircraft
 from advisor.gap.foresight.plan import foresee_plan
+from advisor.gap.simulator.layout import ENTRIES, LAYOUT
 from advisor.gap.simulator.reading import differences, filtered, superposed
+from advisor.gap.simulator.right_sides import MOTION, right_sides
 
 _ANY_AIRCRAFT = dict(zip(PARAMETERS, (0.0, -4.0, 0.0, -0.3, 0.0, -30.0, -4.0, -50.0), strict=True))
 
@@ -12,6 +14,7 @@ _ANY_AIRCRAFT = dict(zip(PARAMETERS, (0.0, -4.0, 0.0, -0.3, 0.0, -30.0, -4.0, -5
 def warm_up() -> None:
     """Foresee a tiny plan, then compare, sum and filter some samples, so that every kernel is compiled."""
     foresee_plan(Aircraft(model=_ANY_AIRCRAFT), ("pulse", "pulse"), 50.0, 1.0)
+    right_sides(LAYOUT, np.zeros((2, len(ENTRIES))), np.ones(len(MOTION)), 1.0, np.ones(2), np.ones(2))
     none = np.zeros(2, dtype=np.int64)
     differences(np.ones((4, 2)), np.ones(4), none, np.ones(2))
     superposed(np.ones((4, 4)), 0.005, np.ones(2), np.ones(2))

@@ -27,12 +27,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from advisor.flight.signals.messages import FloatArray
+from advisor.model import outputs
 from advisor.model.transition import WIDTH, divisions, fill
 from advisor.process.compiled import kernel
 
 Index = NDArray[np.int64]
 
-OUTPUTS = ("alpha", "q", "a_z", "theta")
+OUTPUTS = outputs.OUTPUTS
 SHARED = ("Z_alpha", "Z_q", "Z_delta_e", "M_alpha", "M_q", "M_delta_e", "airspeed_scale")
 LOCAL = ("Z_0", "M_0", "alpha_initial", "q_initial", "theta_initial", "q_bias", "a_z_bias")
 N_SHARED, N_LOCAL = len(SHARED), len(LOCAL)
@@ -96,7 +97,7 @@ def respond(grid: Grid, shared: FloatArray, local: FloatArray, y: FloatArray, g:
     kinds = len(grid.step_s)
     table = np.empty((kinds, WIDTH))
     parts = np.empty(kinds, np.int64)
-    if not _fill_transitions(grid, shared, table, parts):
+    if not fill_transitions(grid, shared, table, parts):
         return False
     state = np.empty((3, N_PARAMETERS))
     attitude = grid.row[3].max() >= 0
@@ -107,7 +108,7 @@ def respond(grid: Grid, shared: FloatArray, local: FloatArray, y: FloatArray, g:
 
 
 @kernel()
-def _fill_transitions(grid: Grid, shared: FloatArray, table: FloatArray, parts: Index) -> bool:
+def fill_transitions(grid: Grid, shared: FloatArray, table: FloatArray, parts: Index) -> bool:
     """Write the exact solution over each kind of step.
 
     Parameters
@@ -149,7 +150,7 @@ def _respond_in(
     Parameters
     ----------
     shared : (7,), order of ``SHARED``; local : (7,), order of ``LOCAL``.
-    table, parts : as ``_fill_transitions`` writes them.
+    table, parts : as ``fill_transitions`` writes them.
     state : (3, 14), overwritten: derivatives of α, q and θ by all parameters.
     attitude : whether any manoeuvre measures θ.
     y, g : as ``respond`` takes them.
@@ -216,14 +217,58 @@ def _respond_in(
             v1, v2 = s * z_delta * slope[e], s * s * m_delta * slope[e]
             if wanted:
                 _carry(table[i], s, shared, alpha, q, u1, u2, v1, v2, delta, slope[e], state, attitude)
-            t = table[i]
-            theta += t[15] * alpha + t[16] * q + t[28] * u1 + t[29] * u2 + t[41] * v1 + t[42] * v2
-            alpha, q = (
-                t[0] * alpha + t[1] * q + t[13] * u1 + t[14] * u2 + t[26] * v1 + t[27] * v2,
-                t[2] * alpha + t[3] * q + t[15] * u1 + t[16] * u2 + t[28] * v1 + t[29] * v2,
-            )
+            alpha, q, theta = advanced(table[i], alpha, q, theta, u1, u2, v1, v2)
     finite: bool = abs(alpha) + abs(q) < 1e12
     return finite
+
+
+@kernel()
+def advanced(
+    t: FloatArray, alpha: float, q: float, theta: float, u1: float, u2: float, v1: float, v2: float
+) -> tuple[float, float, float]:
+    """Return α, q and θ after one step, with the row ``t`` of ``transition.fill``.
+
+    u + v·t is the part of the rates that does not depend on α and q.
+    """
+    return (
+        t[0] * alpha + t[1] * q + t[13] * u1 + t[14] * u2 + t[26] * v1 + t[27] * v2,
+        t[2] * alpha + t[3] * q + t[15] * u1 + t[16] * u2 + t[28] * v1 + t[29] * v2,
+        theta + t[15] * alpha + t[16] * q + t[28] * u1 + t[29] * u2 + t[41] * v1 + t[42] * v2,
+    )
+
+
+@kernel()
+def rates(
+    s: float, delta: float, known: float, shared: FloatArray, local: FloatArray, alpha: float, q: float
+) -> tuple[float, float]:
+    """Return α̇ and q̇ of the model."""
+    return (
+        s * shared[0] * alpha + (1.0 + shared[1]) * q + s * (shared[2] * delta + local[0]) + known,
+        s * s * shared[3] * alpha + s * shared[4] * q + s * s * (shared[5] * delta + local[1]),
+    )
+
+
+@kernel()
+def force_slopes(
+    s: float,
+    airspeed: float,
+    acceleration: float,
+    arm: float,
+    shared: FloatArray,
+    alpha: float,
+    turning: float,
+) -> tuple[float, float, float]:
+    """Return the derivatives of a_z by α, q and δe, where ``turning`` is α̇ - q."""
+    speed = (1.0 + shared[6]) * airspeed
+    lift = speed * math.cos(alpha)
+    return (
+        lift * s * shared[0]
+        - speed * math.sin(alpha) * turning
+        + acceleration * math.cos(alpha)
+        - arm * s * s * shared[3],
+        lift * shared[1] - arm * s * shared[4],
+        lift * s * shared[2] - arm * s * s * shared[5],
+    )
 
 
 @kernel()
@@ -308,17 +353,12 @@ def _specific_force(
 ) -> float:
     """Return a_z without gravity and bias, from α̇ and q̇ of the model; derivatives into ``row`` (14,) or
     (0,)."""
-    a11, a12, a21, a22 = s * shared[0], 1.0 + shared[1], s * s * shared[3], s * shared[4]
-    alpha_dot = a11 * alpha + a12 * q + s * (shared[2] * delta + local[0]) + known
-    q_dot = a21 * alpha + a22 * q + s * s * (shared[5] * delta + local[1])
-    cosine, sine = math.cos(alpha), math.sin(alpha)
-    speed = (1.0 + shared[6]) * airspeed
-    force: float = speed * cosine * (alpha_dot - q) + acceleration * sine - arm * q_dot
+    alpha_dot, q_dot = rates(s, delta, known, shared, local, alpha, q)
+    lift = (1.0 + shared[6]) * airspeed * math.cos(alpha)
+    force: float = lift * (alpha_dot - q) + acceleration * math.sin(alpha) - arm * q_dot
     if len(row) == 0:
         return force
-    lift = speed * cosine
-    by_alpha = lift * a11 - speed * sine * (alpha_dot - q) + acceleration * cosine - arm * a21
-    by_q = lift * (a12 - 1.0) - arm * a22
+    by_alpha, by_q, _ = force_slopes(s, airspeed, acceleration, arm, shared, alpha, alpha_dot - q)
     for j in range(N_PARAMETERS):
         row[j] = by_alpha * state[0, j] + by_q * state[1, j]
     row[0] += lift * s * alpha
@@ -327,7 +367,7 @@ def _specific_force(
     row[3] -= arm * s * s * alpha
     row[4] -= arm * s * q
     row[5] -= arm * s * s * delta
-    row[6] += airspeed * cosine * (alpha_dot - q)
+    row[6] += airspeed * math.cos(alpha) * (alpha_dot - q)
     row[7] += lift * s
     row[8] -= arm * s * s
     row[13] += 1.0

@@ -17,10 +17,9 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.model.short_period import NAMES
 from advisor.oem.colour import Colour, Stretch, find_colour, moved, product
 from advisor.oem.extra import Extra
+from advisor.oem.inverses import inverse_of
 from advisor.oem.rows import Laid
 
-LEAST_EIGENVALUE = 1e-13
-"""Least eigenvalue of a normalised information matrix. Round-off decides the inverse below it."""
 OPEN_SHARE = 0.01
 """Largest share of a parameter in undetermined directions. Above it the parameter is unresolved."""
 DIFFERENCE = 0.05
@@ -104,7 +103,7 @@ def influence(
         rows = slice(min(s.start for s in named.values()), max(s.stop for s in named.values()))
         mine = g[rows][:, own]
         weighted = (mine * weight[rows, None]).T
-        inverse, left_open = _inverse(weighted @ mine)
+        inverse, left_open = inverse_of(weighted @ mine)
         open_share[own] = np.maximum(open_share[own], left_open)
         mix = inverse @ (weighted @ shared_g[rows])
         projected[rows] = shared_g[rows] - mine @ mix
@@ -117,7 +116,7 @@ def influence(
     information[len(common) :, len(common) :] += np.diag(weights**2)
     if not np.all(np.isfinite(information)):
         return None
-    inverse, left_open = _inverse(information)
+    inverse, left_open = inverse_of(information)
     open_share[common] = left_open[: len(common)]
     columns = np.zeros((len(inverse), reported + len(inverse) - len(common)))
     columns[:, reported:] = inverse[:, len(common) :]
@@ -153,20 +152,6 @@ def influence(
         shared_inverse=columns[: len(common)],
         prior_rows=prior_rows,
     )
-
-
-def _inverse(information: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the inverse of a symmetric matrix, and the undetermined share of each unknown, 0 to 1.
-
-    Directions in which the matrix is singular to working precision are left out.
-    """
-    diagonal = np.diag(information)
-    scale = np.where(diagonal > 0.0, 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0)), 0.0)
-    values, vectors = np.linalg.eigh(information * np.outer(scale, scale))
-    dead = values <= LEAST_EIGENVALUE
-    kept = np.where(dead, 0.0, 1.0 / np.where(dead, 1.0, values))
-    result: FloatArray = (vectors * kept) @ vectors.T * np.outer(scale, scale)
-    return result, np.sum(vectors[:, dead] ** 2, axis=1)
 
 
 def cramer_rao(assembly: Laid, rows: FloatArray, noise: FloatArray) -> FloatArray:

@@ -38,7 +38,7 @@ class Doubt:
         share = share_of(solution)
         names = [weighed(x, share) for x in _with_priors(solution, aircraft)]
         optimum = solution.optimum
-        extra = extra_of(solution.problem, optimum.shared, optimum.local, names)
+        extra = extra_of(solution.problem, solution.assembly, optimum.shared, optimum.local, names)
         joint = evaluate(solution.problem, solution.assembly, optimum, extra)
         if not isinstance(joint, Solution):
             return cls(np.zeros(N), np.zeros((N, N)), np.zeros((N, N)))

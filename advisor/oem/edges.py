@@ -14,10 +14,11 @@ from scipy.special import chdtri
 
 from advisor.aircraft.aircraft import PARAMETERS
 from advisor.flight.signals.messages import FloatArray
-from advisor.model.response import N_PARAMETERS, Index, respond
+from advisor.model.input_response import N_READING, InputChange
 from advisor.oem.extra import Extra, Prior
 from advisor.oem.gauss_newton import CONVERGED, Optimum
-from advisor.oem.problem import OutputErrorProblem, Record, assemble
+from advisor.oem.instrument_columns import input_columns, stacked
+from advisor.oem.problem import Assembly, OutputErrorProblem, Record
 from advisor.oem.rows import Signal
 from advisor.oem.solution import Solution, evaluate, search
 from advisor.oem.weighing import Weighing
@@ -28,7 +29,6 @@ ISOLATED = 0.3
 """Largest change in the neighbouring intervals, as a share of the step."""
 WIDTH_S = 1e-4
 """Duration of a sharpened step, s."""
-DIFFERENCE_S = 2e-4
 ROUNDS = 2
 CHANCE = 1e-3
 """Largest probability of the gain by chance for which steps are sharpened, compared with arbitrary times."""
@@ -96,7 +96,7 @@ def with_edges(plain: Solution) -> Solution:
         gain = before - weighing.misfit(residual, g)
         if round_ == 0:
             upright = gain
-        columns = _by_edges(plain.problem, edges, records, optimum, assembly.owner)
+        columns = _by_edges(problem, assembly, optimum, edges)
         extra = own.joined(_within_intervals(edges, records, columns))
         if round_ == ROUNDS:
             break
@@ -147,34 +147,28 @@ def _moved(edges: Sequence[Edges], steps: FloatArray, records: Sequence[Record])
 
 
 def _by_edges(
-    problem: OutputErrorProblem,
-    edges: Sequence[Edges],
-    records: Sequence[Record],
-    optimum: Optimum,
-    owner: Index,
+    problem: OutputErrorProblem, assembly: Assembly, optimum: Optimum, edges: Sequence[Edges]
 ) -> FloatArray:
     """Return the derivatives of the outputs by the times of all edges, shape (N, k), manoeuvre by manoeuvre.
 
     The j-th edges of all manoeuvres are moved at once, because each affects its own manoeuvre only.
     """
     counts = [len(e.interval) for e in edges]
-    offsets = np.cumsum([0, *counts])
-    columns = np.zeros((len(owner), offsets[-1]))
-    for j in range(max(counts)):
-        sides = []
-        for sign in (-1.0, 1.0):
-            step = np.zeros(offsets[-1])
-            step[[offsets[m] + j for m in range(len(edges)) if counts[m] > j]] = sign * DIFFERENCE_S
-            shifted = [
-                Edges(e.interval, e.time + step[offsets[m] : offsets[m + 1]]) for m, e in enumerate(edges)
-            ]
-            grid = assemble(_edged(problem, shifted, records)).grid
-            y = np.empty(len(owner))
-            respond(grid, optimum.shared, optimum.local, y, np.empty((0, N_PARAMETERS)))
-            sides.append(y)
-        slope = (sides[1] - sides[0]) / (2.0 * DIFFERENCE_S)
-        for m in range(len(edges)):
-            if counts[m] > j:
-                mine = owner == m
-                columns[mine, offsets[m] + j] = slope[mine]
+    most = max(counts)
+
+    def changes(m: int, record: Record, t: FloatArray) -> InputChange:
+        # Two samples that draw an edge upright stand behind those of each edge before.
+        upright = [i + 1 + 2 * j for j, i in enumerate(edges[m].interval)]
+        late = [
+            problem.servo.changes(record.elevator.t, record.elevator.y, t, intervals=upright[j : j + 1])
+            for j in range(most)
+        ]
+        return InputChange(*(rows[:, ::2] for rows in stacked(late, axis=1)))
+
+    together = input_columns(problem, assembly, optimum.shared, optimum.local, changes)[:, N_READING:]
+    columns = np.zeros((len(assembly.z), sum(counts)))
+    first = np.cumsum([0, *counts])
+    for m, count in enumerate(counts):
+        mine = assembly.owner == m
+        columns[mine, first[m] : first[m + 1]] = together[mine, :count]
     return columns

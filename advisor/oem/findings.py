@@ -58,7 +58,7 @@ def _text(x: InstrumentEstimate, stated: float | None, value: float, std: float)
     half = 1.96 * std
     match x.name:
         case "servo_lag_s" if x.contradicts:
-            return f"the surface answers {abs(apart):.2f} s {later} than elevator.lag_s says"
+            return f"the surface responds {abs(apart):.2f} s {later} than elevator.lag_s says"
         case "servo_lag_s":
             agrees = "" if stated is None else ", as elevator.lag_s says"
             return f"the servo's lag is {value:.3f} ± {half:.3f} s{agrees}"

@@ -10,7 +10,7 @@ attack. The static margin is -C_mα/C_Lα = M_α·I_yy/(Z_α·m·V·c), with dra
 neglected.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import isfinite
 
@@ -23,6 +23,7 @@ from advisor.flight.instruments.atmosphere import AirFlown
 from advisor.model.mil_f_8785c import CATEGORIES, LevelFound, ShortPeriodFound, ShortPeriodLimits, assess
 from advisor.oem.estimate import Estimate
 from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import symbol
 
 UNITS: Mapping[str, str] = {
     "natural_frequency": "rad/s",
@@ -33,6 +34,8 @@ UNITS: Mapping[str, str] = {
     "static_margin": "% chord",
     "neutral_point": "% chord",
 }
+_OF_THE_CHART = ("natural_frequency", "n_alpha")
+"""The two axes of Figures 1 to 3 of MIL-F-8785C."""
 _STEP = 1e-30
 """Step of the complex-step derivative. The derivative has no cancellation, so any step that does not
 underflow will do."""
@@ -68,6 +71,8 @@ class FlyingQualities:
     """True air speed in n/α, CAP and the coefficients, m/s."""
     left_out: Mapping[str, str] = field(default_factory=dict)
     """By name, why a parameter of ``UNITS`` is missing."""
+    correlation: float | None = None
+    """Correlation of the errors of natural frequency and n/α; None where one of them is missing."""
 
 
 def flying_qualities(estimate: Estimate, air: AirFlown, reference: Reference) -> FlyingQualities:
@@ -86,13 +91,25 @@ def flying_qualities(estimate: Estimate, air: AirFlown, reference: Reference) ->
     speed = air.true_speed(logged) if logged is not None else None
     found: dict[str, Quality] = {}
     left_out: dict[str, str] = {}
-    for name, function in _functions(speed, reference).items():
+    functions = _functions(speed, reference)
+    for name, function in functions.items():
         quality = function if isinstance(function, str) else _with_error(function, estimate)
         if isinstance(quality, Quality):
             found[name] = quality
         else:
             left_out[name] = quality
-    return FlyingQualities(found, _levels(found), air, logged, speed, left_out)
+    together = [functions[name] for name in _OF_THE_CHART if name in found]
+    correlation = _correlation(together, estimate)
+    return FlyingQualities(found, _levels(found), air, logged, speed, left_out, correlation)
+
+
+def _correlation(functions: Sequence[_Function | str], estimate: Estimate) -> float | None:
+    """Return the correlation of the errors of two qualities; None where one is missing or has no error."""
+    gradients = [_gradient(function, estimate) for function in functions if not isinstance(function, str)]
+    if len(gradients) < len(_OF_THE_CHART):
+        return None
+    (a, between), (_, b) = np.array(gradients) @ estimate.covariance @ np.array(gradients).T
+    return float(between / (a * b) ** 0.5) if a > 0.0 and b > 0.0 else None
 
 
 def _levels(found: Mapping[str, Quality]) -> tuple[LevelFound, ...]:
@@ -158,16 +175,22 @@ def _turn_per_alpha(t: NDArray[np.complex128]) -> np.complex128:
 
 def _with_error(function: _Function, estimate: Estimate) -> Quality | str:
     """Return the value and standard deviation by the delta method, or why there is none."""
-    theta = estimate.theta.astype(np.complex128)
+    gradient = _gradient(function, estimate)
     with np.errstate(divide="ignore", invalid="ignore"):
-        value = float(function(theta).real)
-        gradient = np.array([function(theta + 1j * _STEP * unit).imag / _STEP for unit in np.eye(len(theta))])
+        value = float(function(estimate.theta.astype(np.complex128)).real)
     unknown = [
         n for n, g in zip(PARAMETERS, gradient, strict=True) if g != 0.0 and n in estimate.not_identifiable
     ]
     if unknown:
-        return f"{', '.join(unknown)} cannot be determined from these manoeuvres"
+        return f"{', '.join(map(symbol, unknown))} cannot be determined from these manoeuvres"
     variance = float(gradient @ estimate.covariance @ gradient)
     if not (isfinite(value) and isfinite(variance)):
         return "the short period is statically unstable (det A ≤ 0)"
     return Quality(value, variance**0.5)
+
+
+def _gradient(function: _Function, estimate: Estimate) -> NDArray[np.float64]:
+    """Return the derivatives of a quality with respect to the eight parameters, shape (8,)."""
+    theta = estimate.theta.astype(np.complex128)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.array([function(theta + 1j * _STEP * unit).imag / _STEP for unit in np.eye(len(theta))])

@@ -39,6 +39,9 @@ SETTLED = 1e-2
 is done."""
 CLOSE_ENOUGH = 1e-7
 """Promised change of log J per sample at which an intermediate search ends."""
+ROUGHLY = 1e-4
+"""Promised change of log J per sample at which a search ends whose end is only a start of the next one. The
+starts of a lag differ by hundreds of times as much."""
 CLEARLY = 9.0
 """Least gain in twice the log likelihood for a parameter: three standard deviations."""
 LEAST_SHARE = 0.01
@@ -142,13 +145,14 @@ def _clear_ones(
     names: tuple[Instrument, ...], best: _Fit, plain: Solution
 ) -> tuple[tuple[Instrument, ...], _Fit, Solution] | None:
     """Return the instruments without those open ones that the data do not clearly tell."""
+    known: dict[str, _Fit] = {}
     while True:
         solution = _solution(best, names)
         if solution is None:
             return None
         weighing = Weighing.by(solution.noise, solution.assembly)
         opens = [x for x in names if x.prior is None and x.stated is None]
-        rivals = [(x, _without(x, best, names, plain)) for x in opens]
+        rivals = [(x, _without(x, known.get(x.name) or _reset(x, best, plain), names)) for x in opens]
         std = {found.instrument.name: found.std for found in identified_at(solution, names)}
         gains = [
             0.0 if x.at_end(best.problem, std[x.name]) else _gain(weighing, x, best, rival, names)
@@ -161,6 +165,8 @@ def _clear_ones(
         others = tuple(x for x in names if x is not weakest)
         names = others if innocent is None else (*others, weighed(innocent, share_of(plain)))
         best = _descend(rival, names)
+        # A rival of all but the newest prior is near the next one, unless that instrument has left the fit.
+        known = {} if innocent is None else {x.name: fit for x, fit in rivals}
 
 
 def _with_statements(
@@ -200,12 +206,15 @@ def refreshed(identified: Sequence[Identified], solution: Solution) -> tuple[Ide
     )
 
 
-def _without(x: Instrument, best: _Fit, names: Sequence[Instrument], plain: Solution) -> _Fit:
-    """Return the optimum with one instrument set back to the aircraft file's value."""
-    begin = _Fit(plain.problem, plain.assembly, plain.optimum)
-    others = [other for other in names if other is not x]
+def _without(x: Instrument, begin: _Fit, names: Sequence[Instrument]) -> _Fit:
+    """Return the optimum of the other instruments, from a fit with this one at the aircraft file's value."""
+    return _descend(begin, [other for other in names if other is not x])
+
+
+def _reset(x: Instrument, best: _Fit, plain: Solution) -> _Fit:
+    """Return the fit with one instrument set back to the aircraft file's value."""
     reset = x.write(best.problem, x.read(plain.problem))
-    return _descend(_at(reset, best) or begin, others)
+    return _at(reset, best, ROUGHLY) or _Fit(plain.problem, plain.assembly, plain.optimum)
 
 
 def _gain(weighing: Weighing, x: Instrument, fit: _Fit, rival: _Fit, names: Sequence[Instrument]) -> float:
@@ -232,7 +241,7 @@ def _looked_about(begin: _Fit, names: Sequence[Instrument]) -> _Fit:
     for x in names:
         near, found = best, [best]
         for start in x.starts if x.stated != 0.0 and x.prior is None else ():
-            near = _at(x.write(best.problem, start), near) or near
+            near = _at(x.write(best.problem, start), near, ROUGHLY) or near
             found.append(near)
         best = min(found, key=lambda fit: fit.cost(()))
     return best
@@ -266,7 +275,7 @@ def _step(fit: _Fit, names: Sequence[Instrument]) -> tuple[FloatArray, float]:
     second value is the change of -2 log of the posterior that the quadratic model promises.
     """
     optimum = fit.optimum
-    extra = extra_of(fit.problem, optimum.shared, optimum.local, names)
+    extra = extra_of(fit.problem, fit.assembly, optimum.shared, optimum.local, names)
     effect = influence(fit.assembly, optimum.sensitivities, optimum.noise, extra)
     if effect is None:
         return np.zeros(len(names)), 0.0
@@ -282,9 +291,9 @@ def _step(fit: _Fit, names: Sequence[Instrument]) -> tuple[FloatArray, float]:
     return allowed, float(allowed @ (2.0 * slope - information @ allowed))
 
 
-def _at(problem: OutputErrorProblem, near: _Fit) -> _Fit | None:
+def _at(problem: OutputErrorProblem, near: _Fit, flat: float = CLOSE_ENOUGH) -> _Fit | None:
     begin = (near.optimum.shared, near.optimum.local)
-    assembly, optimum = search(problem, begin=begin, flat=CLOSE_ENOUGH)
+    assembly, optimum = search(problem, begin=begin, flat=flat)
     return _Fit(problem, assembly, optimum) if optimum.status == CONVERGED else None
 
 
@@ -311,6 +320,6 @@ def _identified(x: Instrument, problem: OutputErrorProblem, std: float) -> Ident
 
 
 def _solution(fit: _Fit, names: Sequence[Instrument]) -> Solution | None:
-    extra = extra_of(fit.problem, fit.optimum.shared, fit.optimum.local, names)
+    extra = extra_of(fit.problem, fit.assembly, fit.optimum.shared, fit.optimum.local, names)
     found = evaluate(*fit, extra)
     return found if isinstance(found, Solution) else None

@@ -21,10 +21,10 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.instruments.lateness import lateness_std
 from advisor.flight.signals.messages import FloatArray
-from advisor.model.response import N_PARAMETERS, respond
 from advisor.oem.extra import Extra, Prior
 from advisor.oem.found import FoundInstruments, InstrumentName, found_of
-from advisor.oem.problem import OutputErrorProblem, assemble
+from advisor.oem.instrument_columns import instrument_columns
+from advisor.oem.problem import Assembly, OutputErrorProblem
 from advisor.oem.surface import Servo
 
 KNOWN_TO = 0.1
@@ -43,6 +43,11 @@ jet's held step moves by a fiftieth of its interval. No derivative of an autopil
 interval."""
 
 
+VANE_PLACE_S = 0.1
+"""Standard deviation of a vane's arm, as the time in which the aircraft flies that distance, s. Vanes on
+record have 0.01 to 0.11; the longest is a nose boom of 13 m at 130 m/s."""
+
+
 @dataclass(frozen=True, slots=True)
 class Instrument:
     """One instrument parameter, and its place in a problem."""
@@ -50,8 +55,8 @@ class Instrument:
     name: InstrumentName
     read: Callable[[OutputErrorProblem], float]
     write: Callable[[OutputErrorProblem, float], OutputErrorProblem]
-    difference: float
-    """Step of central differences, in the parameter's unit."""
+    resolution: float
+    """Distance from an end of the range below which the search has reached it, in the parameter's unit."""
     lowest: float
     highest: float
     starts: tuple[float, ...]
@@ -79,7 +84,7 @@ class Instrument:
         Such a value is no estimate.
         """
         value = self.read(problem)
-        return not self.lowest + self.difference < value < self.highest - NORMAL_95 * std
+        return not self.lowest + self.resolution < value < self.highest - NORMAL_95 * std
 
 
 def _with_lag(problem: OutputErrorProblem, value: float) -> OutputErrorProblem:
@@ -209,23 +214,18 @@ BY_NAME: Mapping[InstrumentName, Instrument] = {
 
 
 def extra_of(
-    problem: OutputErrorProblem, shared: FloatArray, local: FloatArray, names: Sequence[Instrument]
+    problem: OutputErrorProblem,
+    assembly: Assembly,
+    shared: FloatArray,
+    local: FloatArray,
+    names: Sequence[Instrument],
 ) -> Extra:
     """Return the instruments as additional parameters of a fit; ``shared`` (7,), ``local`` (m, 7)."""
-    columns = []
-    for x in names:
-        sides = []
-        value = max(x.read(problem), x.lowest + 2.0 * x.difference)
-        for sign in (-1.0, 1.0):
-            assembly = assemble(x.write(problem, value + sign * x.difference))
-            y = np.empty(len(assembly.z))
-            respond(assembly.grid, shared, local, y, np.empty((0, N_PARAMETERS)))
-            sides.append(y)
-        columns.append((sides[1] - sides[0]) / (2.0 * x.difference))
-    if not columns:
-        return Extra.none(len(assemble(problem).z))
+    if not names:
+        return Extra.none(len(assembly.z))
+    columns = instrument_columns(problem, assembly, shared, local, [x.name for x in names])
     values = np.array([x.read(problem) for x in names])
-    return Extra.at(np.column_stack(columns), values, [x.prior for x in names])
+    return Extra.at(columns, values, [x.prior for x in names])
 
 
 def penalty(problem: OutputErrorProblem, names: Sequence[Instrument]) -> float:
@@ -248,6 +248,7 @@ def unknown_instruments(problem: OutputErrorProblem, aircraft: Aircraft) -> tupl
 
     A vane and an accelerometer at one place describe the motion of that place. Instruments at the centre of
     gravity describe the aircraft's equally well. One of the two places must be known to determine the other.
+    Without a specific force the priors alone tell where and when the angle of attack is measured.
     """
     command = COMMAND_DELAY.innocent(problem)
     commanded = [command] if command is not None else []
@@ -269,6 +270,13 @@ def unknown_instruments(problem: OutputErrorProblem, aircraft: Aircraft) -> tupl
             unknown.append(ACCELEROMETER_ARM)
         else:
             unknown.append(replace(VANE_ARM, stated=vane_m))
+    elif "alpha" in measured and _speed(problem) > 0.0:
+        # Without a specific force pitch rate and angle of attack fit as well for any place and delay.
+        late = ALPHA_DELAY.innocent(problem)
+        unknown += [late] if late is not None else []
+        if vane_m is None and not problem.alpha_is_computed:
+            prior = Prior(VANE_ARM.read(problem), VANE_PLACE_S * _speed(problem))
+            unknown.append(replace(VANE_ARM, prior=prior))
     return tuple(unknown)
 
 

@@ -1,7 +1,8 @@
 """Output error on the lateral axis: from records to derivatives, errors and identifiability.
 
 The search, the influence of every measurement and the noise model are those of the short period. Y_p and Y_r
-have priors: Y_p = ρ·S·b·C_Yp/(4·m), and likewise Y_r, are a few per cent on every aircraft.
+have priors: Y_p = ρ·S·b·C_Yp/(4·m), and likewise Y_r, are a few per cent on every aircraft. So do the
+derivatives of a control that hardly moves.
 """
 
 from collections.abc import Mapping, Sequence
@@ -23,6 +24,7 @@ from advisor.oem.covariance import (
     widening,
 )
 from advisor.oem.estimate import NoEstimate
+from advisor.oem.extra import Extra
 from advisor.oem.gauss_newton import CONVERGED, FLAT, OVERFLOW, SINGULAR, Optimum, descend
 from advisor.oem.identifiability import LARGEST_ERROR
 from advisor.oem.lateral_instruments import Nuisance, begun, extra_of, moved_by, penalty
@@ -43,7 +45,6 @@ CLOSE_ENOUGH = 1e-7
 """Promised change of log J per sample at which an intermediate search ends."""
 LEAST_SHARE = 0.01
 """Least share by which white noise weighs a prior; data without noise have no colour."""
-_PRIOR = np.array([SIDE_FORCE_STD**-2 if name in ("Y_p", "Y_r") else 0.0 for name in LATERAL.names.shared])
 WITHOUT_FORCE = (
     "neither a lateral acceleration nor a sideslip was recorded, so that only the modes are told; record a_y"
 )
@@ -61,16 +62,24 @@ class LateralSolution:
     influence: Influence
     covariance_cr: FloatArray
     """(15, 15) Cramér-Rao bound."""
-    covariance: FloatArray
-    """(15, 15) covariance corrected for coloured residuals and for the scatter between manoeuvres."""
+    joint: FloatArray
+    """(15 + k, 15 + k) covariance of the derivatives and of the k nuisance parameters, corrected for coloured
+    residuals and for the scatter between manoeuvres."""
+    extra: Extra
+    """Nuisance parameters at their values."""
     noise: Coloured
     nuisances: Mapping[str, tuple[float, float]]
-    """Name of each nuisance parameter to its value and standard deviation, s."""
+    """Name of each nuisance parameter to its value and standard deviation, in its unit."""
 
     @property
     def theta(self) -> FloatArray:
         """(15,) derivatives, in the order of ``LATERAL``."""
         return self.optimum.shared
+
+    @property
+    def covariance(self) -> FloatArray:
+        """(15, 15) covariance of the derivatives."""
+        return self.joint[: len(self.theta), : len(self.theta)]
 
     @property
     def cost(self) -> float:
@@ -85,6 +94,8 @@ class _Fit(NamedTuple):
     problem: LateralProblem
     assembly: LateralAssembly
     optimum: Optimum
+    prior: FloatArray
+    """(15,) inverse variance of each derivative about zero before the flight; 0 without a prior."""
 
     def cost(self, nuisances: Sequence[Nuisance]) -> float:
         """Return -2 log of the posterior up to a constant."""
@@ -100,7 +111,9 @@ def solve_lateral(
     ----------
     nuisances : servos and clocks that are estimated with the derivatives.
     """
-    fit = _at(begun(problem, nuisances), lateral_start(begun(problem, nuisances)))
+    first = begun(problem, nuisances)
+    start = lateral_start(first)
+    fit = _at(first, start, _prior(first, start[0]))
     refused = _refused(fit.optimum)
     if refused is not None:
         return refused
@@ -115,10 +128,28 @@ def solve_lateral(
     return _evaluated(_descended(fit, weighed), weighed)
 
 
-def _at(problem: LateralProblem, begin: tuple[FloatArray, FloatArray], flat: float = FLAT) -> _Fit:
+def _prior(problem: LateralProblem, start: FloatArray) -> FloatArray:
+    """Return the inverse variance of each derivative before the flight, shape (15,), given a start (15,).
+
+    A control that hardly moves would otherwise explain any error of the model. Its derivatives scatter about
+    zero by those of the control that is flown.
+    """
+    size = dict.fromkeys(LATERAL.names.shared, 0.0)
+    size |= {"Y_p": SIDE_FORCE_STD, "Y_r": SIDE_FORCE_STD}
+    power = natural_size(start)
+    flown = [suffix for suffix, name in _CONTROLS.items() if problem.flies(name)]
+    for suffix in _CONTROLS.keys() - flown:
+        for letter in "YLN":
+            size[f"{letter}_{suffix}"] = max((power[f"{letter}_{other}"] for other in flown), default=0.0)
+    return np.array([std**-2 if std > 0.0 else 0.0 for std in size.values()])
+
+
+def _at(
+    problem: LateralProblem, begin: tuple[FloatArray, FloatArray], prior: FloatArray, flat: float = FLAT
+) -> _Fit:
     assembly = assemble_lateral(problem)
     data = (assembly.grid, assembly.z, assembly.channel, assembly.owner, assembly.free)
-    return _Fit(problem, assembly, descend(*data, _floor(assembly), _PRIOR, *begin, flat))
+    return _Fit(problem, assembly, descend(*data, _floor(assembly), prior, *begin, flat), prior)
 
 
 def _floor(assembly: LateralAssembly) -> FloatArray:
@@ -148,15 +179,14 @@ def _descended(begin: _Fit, nuisances: Sequence[Nuisance]) -> _Fit:
     for _ in range(ROUNDS):
         optimum = best.optimum
         extra = extra_of(best.problem, optimum.shared, optimum.local, nuisances)
-        effect = influence(best.assembly, optimum.sensitivities, optimum.noise, extra, _PRIOR)
+        effect = influence(best.assembly, optimum.sensitivities, optimum.noise, extra, best.prior)
         if effect is None:
             break
         step = effect.step(best.assembly.z - optimum.fitted, extra)[len(LATERAL.shared) :]
         found = None
         for _ in range(4):
-            trial = _at(
-                moved_by(step, best.problem, nuisances), (optimum.shared, optimum.local), CLOSE_ENOUGH
-            )
+            moved = moved_by(step, best.problem, nuisances)
+            trial = _at(moved, (optimum.shared, optimum.local), best.prior, CLOSE_ENOUGH)
             if trial.optimum.status == CONVERGED and trial.cost(nuisances) < best.cost(nuisances):
                 found = trial
                 break
@@ -170,14 +200,14 @@ def _descended(begin: _Fit, nuisances: Sequence[Nuisance]) -> _Fit:
 
 
 def _evaluated(fit: _Fit, nuisances: Sequence[Nuisance]) -> LateralSolution | NoEstimate:
-    problem, assembly, optimum = fit
+    problem, assembly, optimum, prior = fit
     g, residual = optimum.sensitivities, assembly.z - optimum.fitted
     extra = extra_of(problem, optimum.shared, optimum.local, nuisances)
-    effect = influence(assembly, g, optimum.noise, extra, _PRIOR)
+    effect = influence(assembly, g, optimum.noise, extra, prior)
     if effect is None:
         return NoEstimate("singular", "The inputs do not excite roll and yaw enough.")
     free = assembly.free[assembly.free < len(LATERAL.shared)]
-    from_priors = (effect.shared_inverse * _PRIOR[free, None]).T @ effect.shared_inverse
+    from_priors = (effect.shared_inverse * prior[free, None]).T @ effect.shared_inverse
     from_priors = from_priors + effect.prior_covariance
     colours = colours_of(assembly, residual, g)
     noise = Coloured(colours, widening(assembly, effect.rows, colours))
@@ -185,14 +215,16 @@ def _evaluated(fit: _Fit, nuisances: Sequence[Nuisance]) -> LateralSolution | No
     bound = cramer_rao(assembly, effect.rows, optimum.noise) + from_priors
     told = widened_by_scatter(coloured(assembly, effect.rows, noise) + from_priors, pulls)
     n = len(LATERAL.shared)
-    std = np.sqrt(np.diag(told))
+    joint = _at_least(bound, told)
+    std = np.sqrt(np.diag(joint))
     return LateralSolution(
         problem,
         assembly,
         optimum,
         effect,
         bound[:n, :n],
-        _at_least(bound, told)[:n, :n],
+        joint,
+        extra,
         noise,
         {x.name: (x.read(problem), float(std[n + k])) for k, x in enumerate(nuisances)},
     )

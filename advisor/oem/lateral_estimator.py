@@ -15,7 +15,7 @@ from advisor.oem.lateral_estimate import LateralSolution, lateral_not_identifiab
 from advisor.oem.lateral_instruments import nuisances_of
 from advisor.oem.lateral_modes import LateralModes, lateral_modes
 from advisor.oem.lateral_prepare import prepare_lateral
-from advisor.words.quantiles import NORMAL_95
+from advisor.oem.prediction import widest_bands
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,18 +66,10 @@ def _reported(solution: LateralSolution) -> LateralEstimate:
 
 
 def _bands(solution: LateralSolution) -> Mapping[str, float]:
-    """Return the largest half-width of the 95 % band of roll and yaw rate, over the peak of each."""
-    found = {}
-    for name in ("p", "r"):
-        shares = []
-        for named in solution.assembly.rows:
-            rows = named[name]
-            g = solution.optimum.sensitivities[rows][:, : len(LATERAL.shared)]
-            std = np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", g, solution.covariance, g), 0.0))
-            peak = 0.5 * float(np.ptp(solution.optimum.fitted[rows]))
-            shares.append(NORMAL_95 * float(np.max(std)) / peak if peak > 0.0 else np.inf)
-        found[name] = max(shares)
-    return found
+    """Return the band of each output's response, by derivatives and nuisance parameters."""
+    derivatives = solution.optimum.sensitivities[:, : len(LATERAL.shared)]
+    columns = np.column_stack([derivatives, solution.extra.columns])
+    return widest_bands(solution.assembly, solution.optimum, columns, solution.joint)
 
 
 def _airspeed(solution: LateralSolution) -> float:

@@ -2,8 +2,9 @@
 
 The command acts up to half an interval and a filter's delay earlier or later than its stamps. The attitude
 may be late relative to the rates, and every time is relative to the rates. A servo that the aircraft file
-leaves open lags by an unknown time. An ignored lag of 0.08 s costs a quarter of L_p and L_δa. Each is one
-more parameter, and its error is part of every interval.
+leaves open lags by an unknown time. An ignored lag of 0.08 s costs a quarter of L_p and L_δa. A sideslip vane
+ahead of the centre of gravity reads β + (x/V)·r. A vane taken as at the centre of gravity shifts N_r by
+-N_β·x/V. Each is one more parameter, and its error is part of every interval.
 """
 
 from collections.abc import Sequence
@@ -27,6 +28,9 @@ KNOWN_TO = 0.1
 """Standard deviation of a stated lag, over the lag: as for the elevator's servo."""
 DIFFERENCE_S = 1e-3
 """Step of the differences, s: half of it is below the shortest interval of a command."""
+FARTHEST_S = 0.1
+"""Standard deviation of an unknown arm of the sideslip vane, over the air speed, s. A boom on record has 0.1 s
+(13 m at 130 m/s)."""
 LONGEST_LAG_S = 0.4
 FIRST_LAG_S = 0.01
 """Unknown lag with which the search begins, s."""
@@ -36,29 +40,37 @@ LARGEST_MOVE_S = 0.03
 
 @dataclass(frozen=True, slots=True)
 class Nuisance:
-    """One nuisance parameter, in s."""
+    """One nuisance parameter, in s, or in m for an arm."""
 
-    kind: Literal["lag", "delay", "command"]
-    """Lag of a control's servo, delay of an output relative to the rates, or delay of all commands."""
+    kind: Literal["lag", "delay", "command", "arm"]
+    """Lag of a control's servo, delay of an output relative to the rates, delay of all commands, or place of
+    the sideslip vane."""
     of: str
     """Control or output; empty for the commands."""
     prior: Prior
+    per_second: float = 1.0
+    """Change of the parameter that moves the outputs as one second does: the air speed for an arm, m."""
 
     @property
     def name(self) -> str:
         """Name of the parameter with its unit."""
-        return f"{self.of or 'command'}_{'lag' if self.kind == 'lag' else 'delay'}_s"
+        what = {"lag": "lag_s", "arm": "arm_m"}.get(self.kind, "delay_s")
+        return f"{self.of or 'command'}_{what}"
 
     def read(self, problem: LateralProblem) -> float:
-        """Return the value in a problem, s."""
+        """Return the value in a problem, s or m."""
         if self.kind == "lag":
             return problem.servos[self.of].lag_s
+        if self.kind == "arm":
+            return problem.beta_arm_m
         return problem.delays_s.get(self.of, 0.0) if self.kind == "delay" else problem.command_delay_s
 
     def write(self, problem: LateralProblem, value: float) -> LateralProblem:
-        """Return the problem with another value, s; a lag within its range."""
+        """Return the problem with another value, s or m; a lag within its range."""
         if self.kind == "command":
             return replace(problem, command_delay_s=value)
+        if self.kind == "arm":
+            return replace(problem, beta_arm_m=value)
         if self.kind == "delay":
             return replace(problem, delays_s={**problem.delays_s, self.of: value})
         servo = replace(problem.servos[self.of], lag_s=float(np.clip(value, 0.0, LONGEST_LAG_S)))
@@ -74,6 +86,9 @@ def nuisances_of(problem: LateralProblem, aircraft: Aircraft) -> tuple[Nuisance,
         measured = [record.outputs[name].t for record in problem.records if name in record.outputs]
         if measured:
             found.append(Nuisance("delay", name, Prior(0.0, lateness_std(measured))))
+            if name == "beta" and beta_arm_m(aircraft) is None:
+                speed = float(np.mean([np.mean(record.airspeed.y) for record in problem.records]))
+                found.append(Nuisance("arm", name, Prior(0.0, FARTHEST_S * speed), speed))
     for name in moving:
         stated = getattr(aircraft, name).lag_s
         if stated is None:
@@ -81,6 +96,15 @@ def nuisances_of(problem: LateralProblem, aircraft: Aircraft) -> tuple[Nuisance,
         elif stated > 0.0:
             found.append(Nuisance("lag", name, Prior(stated, KNOWN_TO * stated)))
     return tuple(found)
+
+
+def beta_arm_m(aircraft: Aircraft) -> float | None:
+    """Return the stated distance of the sideslip vane ahead of the centre of gravity, m; None where unknown.
+
+    A boom that carries both vanes has one distance.
+    """
+    stated = aircraft.beta.vane_arm_m
+    return aircraft.alpha.vane_arm_m if stated is None else stated
 
 
 def begun(problem: LateralProblem, nuisances: Sequence[Nuisance]) -> LateralProblem:
@@ -101,9 +125,10 @@ def extra_of(
     columns = []
     for x in nuisances:
         value = x.read(problem)
-        low = max(value - DIFFERENCE_S, 0.0) if x.kind == "lag" else value - DIFFERENCE_S
-        ends = [_outputs(x.write(problem, at), shared, local) for at in (low, value + DIFFERENCE_S)]
-        columns.append((ends[1] - ends[0]) / (value + DIFFERENCE_S - low))
+        step = DIFFERENCE_S * x.per_second
+        low = max(value - step, 0.0) if x.kind == "lag" else value - step
+        ends = [_outputs(x.write(problem, at), shared, local) for at in (low, value + step)]
+        columns.append((ends[1] - ends[0]) / (value + step - low))
     if not columns:
         return Extra.none(len(assemble_lateral(problem).z))
     values = np.array([x.read(problem) for x in nuisances])
@@ -118,9 +143,10 @@ def _outputs(problem: LateralProblem, shared: FloatArray, local: FloatArray) -> 
 
 
 def moved_by(step: FloatArray, problem: LateralProblem, nuisances: Sequence[Nuisance]) -> LateralProblem:
-    """Return the problem with its nuisance parameters moved by ``step`` (k,), s."""
+    """Return the problem with its nuisance parameters moved by ``step`` (k,), each in its unit."""
     for x, change in zip(nuisances, step, strict=True):
-        problem = x.write(problem, x.read(problem) + float(np.clip(change, -LARGEST_MOVE_S, LARGEST_MOVE_S)))
+        most = LARGEST_MOVE_S * x.per_second
+        problem = x.write(problem, x.read(problem) + float(np.clip(change, -most, most)))
     return problem
 
 

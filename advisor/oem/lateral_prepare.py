@@ -12,6 +12,7 @@ from advisor.model.lateral import LATERAL
 from advisor.oem.airspeed import airspeed
 from advisor.oem.alpha_use import FEWEST_SAMPLES, can_do_without, has, infer, why_left_out
 from advisor.oem.estimate import NoEstimate
+from advisor.oem.lateral_instruments import beta_arm_m
 from advisor.oem.lateral_problem import NEEDED, LateralProblem, LateralRecord
 from advisor.oem.prepare import constant_speed, reference_speed, signal_of, stated_reference
 from advisor.oem.rows import Signal
@@ -45,7 +46,6 @@ def prepare_lateral(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Latera
     )
     outputs = _outputs(maneuvers, aircraft)
     left_out = why_left_out(maneuvers, aircraft)
-    arm = aircraft.beta.vane_arm_m
     return LateralProblem(
         records=tuple(
             LateralRecord(
@@ -62,7 +62,7 @@ def prepare_lateral(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Latera
         ),
         reference_airspeed_m_s=reference,
         servos={name: _servo(getattr(aircraft, name)) for name in LATERAL.inputs},
-        beta_arm_m=(aircraft.alpha.vane_arm_m if arm is None else arm) or 0.0,
+        beta_arm_m=beta_arm_m(aircraft) or 0.0,
         accelerometer_arm_m=aircraft.accelerometer.arm_m or 0.0,
     )
 
@@ -89,16 +89,24 @@ def _missing(maneuver: Maneuver) -> NoEstimate | None:
 
 
 def _outputs(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> list[str]:
-    """Return the outputs that every manoeuvre has. An estimate of the autopilot's own is no sideslip."""
+    """Return the outputs that every manoeuvre has."""
     names = [*NEEDED]
-    if all(_moves(m, "a_y") for m in maneuvers):
-        names.append("a_y")
-    stated = aircraft.beta.source not in ("auto", "none")
-    wanted = aircraft.beta.source != "none" and all(
-        _moves(m, "beta") and (stated or m.channels["beta"].provenance in ("vane", "simulated"))
-        for m in maneuvers
-    )
-    return [*names, "beta"] if wanted else names
+    names += [name for name in ("a_y", "beta") if all(_moves(m, name) for m in maneuvers)]
+    if "beta" in names and not all(_is_measured(m.channels["beta"], aircraft) for m in maneuvers):
+        names.remove("beta")
+    return names
+
+
+def _is_measured(beta: Channel, aircraft: Aircraft) -> bool:
+    """Return whether a vane measures the sideslip. An estimate of the autopilot's own is no sideslip.
+
+    A crew that states the place of the vane of AOA_SSA knows that the message holds vane angles.
+    """
+    if aircraft.beta.source != "auto":
+        return aircraft.beta.source != "none"
+    if aircraft.alpha.source == "aoa_ssa" and aircraft.alpha.vane_arm_m is not None:
+        return True
+    return beta.provenance in ("vane", "simulated")
 
 
 def _moves(maneuver: Maneuver, name: str) -> bool:

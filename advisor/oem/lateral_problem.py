@@ -10,9 +10,9 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.model.axis_response import AxisGrid
 from advisor.model.lateral import LATERAL
 from advisor.model.response import Index
-from advisor.oem.problem import finite, merged, padded
+from advisor.oem.problem import finite, merged
 from advisor.oem.rows import Laid, Signal, lay_rows
-from advisor.oem.surface import Servo
+from advisor.oem.surface import Servo, padded
 
 _BETA, _P, _R, _BANK = range(len(LATERAL.states))
 LEAST_PART = 0.2

@@ -15,6 +15,7 @@ from advisor.oem.covariance import cramer_rao, influence
 from advisor.oem.problem import Assembly, assemble
 from advisor.oem.rows import Signal
 from advisor.oem.solution import Solution
+from advisor.words.quantities import symbol
 
 WORTH_NAMING = 1.05
 """Least factor on an error that is named."""
@@ -56,13 +57,14 @@ def in_words(factors: FloatArray | None) -> str:
     if factors is None:
         return ""
     named = [
-        f"{name} {factor:.2f}"
+        f"{symbol(name)} {factor:.2f}"
         for name, factor in zip(PARAMETERS, factors, strict=True)
         if factor > WORTH_NAMING
     ]
     if not named:
         return f" No error is more than {100.0 * (WORTH_NAMING - 1.0):.0f} % larger without it."
-    return f" With an a_z as clear as the pitch rate, errors would be smaller by factors: {', '.join(named)}."
+    listed = ", ".join(named)
+    return f" With an a_z as free of noise as the pitch rate, errors would be smaller by factors: {listed}."
 
 
 def _spread(assembly: Assembly, y: FloatArray, output: str) -> float:

@@ -15,6 +15,7 @@ from advisor.oem.missing import in_words, price
 from advisor.oem.prepare import Prepared
 from advisor.oem.solution import Solution
 from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import symbol
 
 N = len(PARAMETERS)
 NOTED_LAG_S = 0.05
@@ -124,7 +125,7 @@ def _servo(solution: Solution, lagged: FloatArray | None) -> str:
     for name in ("M_alpha", "M_delta_e"):
         j = PARAMETERS.index(name)
         if solution.theta[j] != 0.0:
-            changes.append(f"{name} by {100.0 * (lagged[j] / solution.theta[j] - 1.0):+.0f} %")
+            changes.append(f"{symbol(name)} by {100.0 * (lagged[j] / solution.theta[j] - 1.0):+.0f} %")
     return (
         f"Servo dynamics unknown (elevator.lag_s is not set): a lag of {SUPPOSED_LAG_S:g} s would"
         f" change {' and '.join(changes)}."
@@ -197,7 +198,7 @@ def _weighed(solution: Solution, best: Solution) -> str:
 
 
 def _correlated(solution: Solution) -> str:
-    pairs = [f"{a} and {b}" for a, b, _ in correlated(solution.covariance_cr[:N, :N])]
+    pairs = [f"{symbol(a)} and {symbol(b)}" for a, b, _ in correlated(solution.covariance_cr[:N, :N])]
     if not pairs:
         return ""
     return (
@@ -210,7 +211,7 @@ def _missing(solution: Solution, prepared: Prepared, priced: bool) -> str:
     if "a_z" not in prepared.missing:
         return ""
     return (
-        "No vertical acceleration was used, which needs a_z and air speed. Z_alpha, Z_q and Z_delta_e depend"
-        " on the angle of attack alone, and a late or scaled angle of attack biases them unnoticed."
+        "No vertical acceleration was used, which needs a_z and air speed. Z_alpha, Z_q, Z_delta_e and M_q"
+        " depend on the delay and the arm of the angle of attack. Give alpha.vane_arm_m for a vane."
         + in_words(price(solution) if priced else None)
     )

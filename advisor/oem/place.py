@@ -40,7 +40,7 @@ def at(
     y, g = np.empty(len(assembly.z)), np.empty((len(assembly.z), N_PARAMETERS))
     if not respond(assembly.grid, shared, local, y, g):
         return None
-    extra = extra_of(problem, shared, local, instruments)
+    extra = extra_of(problem, assembly, shared, local, instruments)
     return Linearization(problem, assembly, shared, local, assembly.z - y, g, extra)
 
 

@@ -12,7 +12,9 @@ import numpy as np
 
 from advisor.aircraft.aircraft import PARAMETERS
 from advisor.flight.signals.messages import FloatArray
-from advisor.model.response import N_SHARED, SHARED
+from advisor.model.response import SHARED
+from advisor.oem.gauss_newton import Optimum
+from advisor.oem.rows import Laid
 from advisor.oem.solution import Solution
 from advisor.words.quantiles import NORMAL_95
 
@@ -20,33 +22,48 @@ _DERIVATIVES = tuple(name for name in SHARED if name in PARAMETERS)
 
 
 def prediction_band(solution: Solution) -> Mapping[str, float]:
-    """Return by output name the largest half-width of the 95 % band over the peak of the response, in all
-    manoeuvres.
+    """Return the band of the short period's response by output name, as ``widest_bands``.
 
     Parameters
     ----------
     solution : an optimum with the covariance of its parameters.
     """
-    assembly, optimum = solution.assembly, solution.optimum
-    own = assembly.free[assembly.free >= N_SHARED]
     columns = solution.sensitivities[:, [SHARED.index(name) for name in _DERIVATIVES]]
     kept = solution.covariance.shape[0] - len(PARAMETERS)
     if kept and solution.extra is not None:
         columns = np.column_stack([columns, solution.extra.columns[:, :kept]])
     among = [PARAMETERS.index(name) for name in _DERIVATIVES]
     among += range(len(PARAMETERS), len(PARAMETERS) + columns.shape[1] - len(_DERIVATIVES))
-    covariance = solution.covariance[np.ix_(among, among)]
+    return widest_bands(
+        solution.assembly, solution.optimum, columns, solution.covariance[np.ix_(among, among)]
+    )
+
+
+def widest_bands(
+    assembly: Laid, optimum: Optimum, columns: FloatArray, covariance: FloatArray
+) -> Mapping[str, float]:
+    """Return by output name the largest half-width of the 95 % band over the peak of the response, in all
+    manoeuvres.
+
+    Parameters
+    ----------
+    columns
+        (N, k) derivatives of the outputs by the parameters that carry their errors to the response.
+    covariance
+        (k, k) covariance of these parameters.
+    """
+    own = assembly.free[assembly.free >= len(assembly.names.shared)]
     weight = 1.0 / optimum.noise[assembly.channel]
     widest: dict[str, float] = {}
     for named in assembly.rows:
         rows = np.concatenate([np.arange(s.start, s.stop) for s in named.values()])
-        left = _without(solution.sensitivities[rows][:, own], columns[rows], weight[rows])
+        left = _without(optimum.sensitivities[rows][:, own], columns[rows], weight[rows])
         half = half_widths(left, covariance)
         first = 0
         for name, s in named.items():
             band = float(np.max(half[first : first + s.stop - s.start]))
             first += s.stop - s.start
-            peak = float(np.max(np.abs(solution.fitted[s] - solution.fitted[s.start])))
+            peak = float(np.max(np.abs(optimum.fitted[s] - optimum.fitted[s.start])))
             widest[name] = max(widest.get(name, 0.0), band / peak if peak > 0.0 else np.inf)
     return widest
 

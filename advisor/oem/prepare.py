@@ -140,6 +140,7 @@ def _prepared(
         servo=_servo(aircraft.elevator),
         vane_arm_m=(aircraft.alpha.vane_arm_m or 0.0) if known else 0.0,
         accelerometer_arm_m=aircraft.accelerometer.arm_m or 0.0,
+        alpha_is_computed="alpha" in usable and all(_is_computed(m.channels["alpha"]) for m in maneuvers),
     )
     return Prepared(
         problem=restored(as_found(problem, found_of(aircraft))),
@@ -150,6 +151,11 @@ def _prepared(
         airspeed_lag_s=float(np.mean([speed.lag_s for speed in measured])) if measured else 0.0,
         airspeed_m_s=float(np.mean([signal.y.mean() for signal in known])) if known else None,
     )
+
+
+def _is_computed(alpha: Channel) -> bool:
+    """Return whether an angle of attack is computed, by an autopilot or a simulator."""
+    return alpha.provenance in ("derived", "simulated")
 
 
 def _servo(elevator: Elevator) -> Servo:

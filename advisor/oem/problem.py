@@ -9,7 +9,7 @@ from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import LOCAL, N_SHARED, OUTPUTS, SHARED, Grid, Index
 from advisor.oem.rows import STAMP_S, Laid, Signal, lay_rows
-from advisor.oem.surface import Servo
+from advisor.oem.surface import Servo, padded
 
 STAMP_DIGITS = 12
 """Decimals to which lengths of steps are distinguished: equal steps share their matrices."""
@@ -62,6 +62,8 @@ class OutputErrorProblem:
     accelerometer_arm_m: float = 0.0
     alpha_delay_s: float = 0.0
     """Delay of the angle of attack, s."""
+    alpha_is_computed: bool = False
+    """Whether the angle of attack comes from inertial sensors, which have no arm, instead of from a vane."""
     steady_moment_rad: float = 0.0
     """Moment that does not scale with the square of the air speed, as the deflection that balances it at the
     reference speed, rad."""
@@ -75,6 +77,8 @@ class Assembly(Laid):
     """A problem of the short period laid out for the kernel."""
 
     grid: Grid
+    events: FloatArray
+    """(E,) stamps of the events, s."""
 
 
 def assemble(problem: OutputErrorProblem) -> Assembly:
@@ -113,6 +117,7 @@ def assemble(problem: OutputErrorProblem) -> Assembly:
     )
     return Assembly(
         grid=grid,
+        events=joined("t"),
         **laid.measurements,
         free=_free(measured, problem.airspeed_may_be_off and {"alpha", "a_z"} <= measured),
     )
@@ -185,14 +190,13 @@ class _Piece:
         known = np.zeros(len(step))
         if record.airspeed is not None:
             airspeed = record.airspeed.at(t)
-            acceleration = np.gradient(airspeed, t)
+            acceleration = _slope(airspeed, t)
             speed = record.airspeed.at(middle)
             pull = GRAVITY_M_S2 / speed
             if problem.reference_airspeed_m_s is not None:
                 ratio = speed / problem.reference_airspeed_m_s
                 known = pull - ratio * GRAVITY_M_S2 / problem.reference_airspeed_m_s
-                excess = (problem.reference_airspeed_m_s / airspeed) ** 2 - 1.0
-                steady = problem.steady_moment_rad * excess
+                steady = problem.steady_moment_rad * steady_share(problem, airspeed)
                 at_event, start, arrival = at_event + steady, start + steady, arrival + steady[1:]
             if record.normal_gravity is not None:
                 known += pull * (record.normal_gravity.at(middle) - 1.0)
@@ -211,10 +215,27 @@ class _Piece:
         )
 
 
+def _slope(y: FloatArray, t: FloatArray) -> FloatArray:
+    """Return the slope at each stamp of the parabola through a sample and its neighbours, shape (n,)."""
+    step = np.diff(t)
+    rate = np.diff(y) / step
+    inside = (step[1:] * rate[:-1] + step[:-1] * rate[1:]) / (step[:-1] + step[1:])
+    slope: FloatArray = np.concatenate([rate[:1], inside, rate[-1:]])
+    return slope
+
+
+def steady_share(problem: OutputErrorProblem, airspeed: FloatArray) -> FloatArray:
+    """Return the deflections that act like a steady moment, shape (n,), over that at the reference speed."""
+    reference = problem.reference_airspeed_m_s
+    share: FloatArray = np.zeros(len(airspeed)) if reference is None else (reference / airspeed) ** 2 - 1.0
+    return share
+
+
 def finite(signal: Signal) -> Signal:
     """Return the finite samples of a signal."""
     keep = np.isfinite(signal.y) & np.isfinite(signal.t)
-    return Signal(np.ascontiguousarray(signal.t[keep], float), np.ascontiguousarray(signal.y[keep], float))
+    t, y = (signal.t, signal.y) if keep.all() else (signal.t[keep], signal.y[keep])
+    return Signal(np.ascontiguousarray(t, float), np.ascontiguousarray(y, float))
 
 
 def merged(stamps: FloatArray, pace: float) -> FloatArray:
@@ -228,9 +249,3 @@ def merged(stamps: FloatArray, pace: float) -> FloatArray:
     within = np.arange(len(cells)) - np.repeat(np.cumsum(parts) - parts, parts)
     merged: FloatArray = np.append(t[cells] + within * (np.diff(t) / parts)[cells], t[-1])
     return merged
-
-
-def padded(rows: FloatArray) -> FloatArray:
-    """Return the rows with the last one repeated, so that there are as many steps as events."""
-    padded: FloatArray = np.concatenate([rows, rows[-1:]])
-    return padded

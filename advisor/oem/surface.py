@@ -7,11 +7,13 @@ surface is exact at every stamp of the grid. Between two stamps it is taken as l
 for an error of about 0.1 % of a step's height at a lag of 0.1 s.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
+from advisor.model.input_response import InputChange
 from advisor.process.compiled import kernel
 
 LONGEST_STEP_S = 0.0105
@@ -39,6 +41,55 @@ class Servo:
         at the stamps (E,), just after the stamps (E,), and just before the next stamp (E - 1,);
         these differ only where a held command jumps.
         """
+        run, start, arrival = self._driven(command_t, command, t, held)
+        if self.lag_s <= 0.0:
+            return start, start, arrival
+        surface = lagged(np.diff(run), start[:-1], arrival, self.lag_s, start[0])[len(run) - len(t) :]
+        return surface, surface, surface[1:]
+
+    def changes(
+        self,
+        command_t: FloatArray,
+        command: FloatArray,
+        t: FloatArray,
+        held: bool = False,
+        intervals: Sequence[int] | None = None,
+    ) -> InputChange:
+        """Return the derivatives of the surface by the delay and by the lag, two columns.
+
+        A later command is the command minus its own rate, as the servo passes it. A longer lag takes away the
+        rate of the surface, lagged once more. The other arguments are those of ``move``.
+
+        Parameters
+        ----------
+        intervals
+            Only these intervals of the command are late, counted from 0. None: all of them.
+        """
+        run, start, arrival = self._driven(command_t, command, t, held)
+        step = np.diff(run)
+        rate, jump = (arrival - start[:-1]) / step, np.append(0.0, start[1:] - arrival)
+        if intervals is not None:
+            interval = np.searchsorted(command_t + self.delay_s, run[:-1] + step / 2.0) - 1
+            rate = np.where(np.isin(interval, intervals), rate, 0.0)
+        if self.lag_s <= 0.0:
+            late = np.column_stack([-rate, -rate])
+            return _change(late, late, step, -jump)
+        begin, end, slower = _changes(step, rate, jump, self.lag_s)
+        first = len(run) - len(t)
+        start, arrival = (
+            np.column_stack([begin, slower])[first:-1],
+            np.column_stack([end, slower])[first + 1 :],
+        )
+        return _change(start, arrival, step[first:], np.zeros(len(t)))
+
+    def _driven(
+        self, command_t: FloatArray, command: FloatArray, t: FloatArray, held: bool
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return the stamps of the run (n,), and the command just after (n,) and before the next (n - 1,).
+
+        A servo with a lag is at rest at the first known command, where its run starts. The run ends with
+        ``t``.
+        """
         stamps = command_t + self.delay_s
         if held:
             before = command[np.clip(np.searchsorted(stamps, t - 1e-9) - 1, 0, len(command) - 1)]
@@ -46,22 +97,51 @@ class Servo:
         else:
             before = after = np.interp(t, stamps, command)
         if self.lag_s <= 0.0:
-            return after, after, before[1:]
-        # The servo is at rest at the first known command, where the recursion starts.
+            return t, after, before[1:]
         early = stamps[stamps < t[0] - 1e-9]
-        run = np.concatenate([early, t])
-        if held:
-            start = np.concatenate([command[: len(early)], after])
-            arrival = np.concatenate([command[: len(early)], before])[1:]
-        else:
-            start = np.concatenate([command[: len(early)], after])
-            arrival = start[1:]
-        surface = _lagged(np.diff(run), start[:-1], arrival, self.lag_s, start[0])[len(early) :]
-        return surface, surface, surface[1:]
+        start = np.concatenate([command[: len(early)], after])
+        arrival = np.concatenate([command[: len(early)], before])[1:] if held else start[1:]
+        return np.concatenate([early, t]), start, arrival
+
+
+def _change(start: FloatArray, arrival: FloatArray, step: FloatArray, impulse: FloatArray) -> InputChange:
+    """Return changes from ``start`` to ``arrival`` (n, k) in each of n steps, with impulses (n + 1,)."""
+    after, before = np.concatenate([start, arrival[-1:]]), np.concatenate([start[:1], arrival])
+    slope = padded((arrival - start) / step[:, None])
+    return InputChange(
+        (after + before) / 2.0, after, slope, np.repeat(impulse[:, None], start.shape[1], axis=1)
+    )
+
+
+def padded(rows: FloatArray) -> FloatArray:
+    """Return the rows with the last one repeated, so that there are as many steps as events."""
+    padded: FloatArray = np.concatenate([rows, rows[-1:]])
+    return padded
 
 
 @kernel()
-def _lagged(
+def _changes(
+    step: FloatArray, rate: FloatArray, jump: FloatArray, lag: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return the derivatives of a lagged surface by the delay, after and before each stamp, and by the lag.
+
+    Parameters
+    ----------
+    rate : (n,) of the command in each step; jump : (n + 1,) of the command at each stamp.
+    """
+    begin, end, slower = np.zeros(len(jump)), np.zeros(len(jump)), np.zeros(len(jump))
+    for i in range(len(step)):
+        begin[i] = end[i] - jump[i] / lag
+        kept = np.exp(-step[i] / lag)
+        forgotten = (begin[i] + rate[i]) * kept
+        end[i + 1] = forgotten - rate[i]
+        slower[i + 1] = slower[i] * kept - rate[i] * (1.0 - kept) + forgotten * step[i] / lag
+    begin[-1] = end[-1]
+    return begin, end, slower
+
+
+@kernel()
+def lagged(
     step: FloatArray, start: FloatArray, arrival: FloatArray, lag: float, initial: float
 ) -> FloatArray:
     """Return the first-order lag of a command that moves linearly from ``start`` to ``arrival`` in each

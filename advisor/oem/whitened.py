@@ -11,6 +11,7 @@ import numpy as np
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import N_PARAMETERS, Index
 from advisor.oem.innovations import AirModel, Gains, gains_of
+from advisor.oem.inverses import inverse_of
 from advisor.oem.place import Linearization, free_of, in_time, speeds_of, system_of
 from advisor.oem.prior import precision
 
@@ -57,14 +58,13 @@ def whitened(place: Linearization, air: AirModel) -> Whitened | None:
         parts.append((basis, triangle, mine, residual))
     if not (np.all(np.isfinite(information)) and np.isfinite(cost)):
         return None
-    scale = np.sqrt(np.maximum(np.diag(information), 1e-300))
-    inverse = np.linalg.pinv(information / np.outer(scale, scale), rcond=1e-12, hermitian=True)
-    step = (inverse @ (gradient / scale)) / scale
+    covariance, _ = inverse_of(information)
+    step = covariance @ gradient
     own_steps = tuple(
         np.asarray(np.linalg.lstsq(triangle, basis.T @ (residual - mine @ step), rcond=1e-10)[0])
         for basis, triangle, mine, residual in parts
     )
-    return Whitened(cost, step, own_steps, np.sqrt(np.diag(inverse)) / scale)
+    return Whitened(cost, step, own_steps, np.sqrt(np.diag(covariance)))
 
 
 def gains_along(place: Linearization, air: AirModel) -> list[tuple[Index, Gains]]:

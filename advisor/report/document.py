@@ -66,7 +66,7 @@ def analysis_document(
         **({"logs": logs, "notes": list(notes)} if several else {}),
         **_OF_NO_CAMPAIGN,
         **(_campaign(state, aircraft, of_log) if state else {}),
-        **({"lateral": lateral_document(state.lateral)} if state and state.lateral else {}),
+        **({"lateral": lateral_document(state.lateral, aircraft)} if state and state.lateral else {}),
     }
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 
-from advisor.campaign.campaign import Campaign, CampaignEvent, ManeuverJudged
+from advisor.campaign.campaign import Campaign, CampaignEvent, LateralJudged, ManeuverJudged
 from advisor.campaign.state import CampaignState
 from advisor.flight.maneuvers.events import (
     DataAgain,
@@ -14,6 +14,7 @@ from advisor.flight.maneuvers.events import (
     VehicleFound,
 )
 from advisor.flight.signals.messages import Columns
+from advisor.report.lateral import lateral_maneuver_line
 from advisor.report.text import maneuver_line, next_line, stop_line
 from advisor.words.vehicle_time import CLOCK, clock
 
@@ -52,7 +53,7 @@ def follow(
 def _say(event: CampaignEvent, say: Callable[[str], object]) -> None:
     match event:
         case FlightBegan(_, name):
-            say(f"{name}: its times count from its own boot")
+            say(f"{name}: its times count from its own power-on")
         case ManeuverAgain(maneuver, takes_place):
             better = ", and this record replaces it" if takes_place else ""
             at = clock(maneuver.span.start_s)
@@ -60,7 +61,7 @@ def _say(event: CampaignEvent, say: Callable[[str], object]) -> None:
         case VehicleFound(vehicle):
             say(f"following {vehicle}; times are {CLOCK}")
         case Rebooted(boot):
-            say(f"power-on {boot + 1}: the vehicle's clock began anew, and times count from this boot")
+            say(f"power-on {boot + 1}: the vehicle's clock began anew, and times count from this power-on")
         case Notice(_, text):
             say(f"note: {text}")
         case NoData(problems):
@@ -70,5 +71,9 @@ def _say(event: CampaignEvent, say: Callable[[str], object]) -> None:
             say("DATA AGAIN: what arrives can serve.")
         case ManeuverJudged(judged, verdict):
             say(maneuver_line(judged))
+            say(f"    {stop_line(verdict)}")
+            say(f"    {next_line(verdict)}")
+        case LateralJudged(judged, verdict):
+            say(f"{lateral_maneuver_line(judged)}  (roll and yaw)")
             say(f"    {stop_line(verdict)}")
             say(f"    {next_line(verdict)}")

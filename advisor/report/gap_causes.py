@@ -9,18 +9,25 @@ from rich.table import Table
 from rich.text import Text
 
 from advisor.gap.result import Cause, Unseen, spelled
-from advisor.report.gap_sizes import short, sizes_of
+from advisor.report.gap_reasons import in_percent
+from advisor.report.gap_sizes import marked, sizes_of
 
 _LIKELY = 0.01
 """Probability below which alternatives share one line."""
 PRESENT = "●"
 
 
-def ranking(causes: Sequence[Cause]) -> Iterator[RenderableType]:
-    """Yield the causes as a table, the unlikely ones in a line, then every confusion as a sentence."""
+def ranking(causes: Sequence[Cause], before: float) -> Iterator[RenderableType]:
+    """Yield the causes as a table, the unlikely ones in a line, then every confusion as a sentence.
+
+    Parameters
+    ----------
+    before
+        Gap of the simulator as given; a larger gap is marked.
+    """
     likely = [c for c in causes if c.present or c.probability >= _LIKELY]
     if likely:
-        yield _table(likely)
+        yield _table(likely, before)
         kept = f"{PRESENT} part of the improved simulator; " if any(c.present for c in likely) else ""
         yield Text(f"{kept}prob.: that it is the main cause; ±: 95 %", style="dim")
     unlikely = [spelled(c.effect) for c in causes if c not in likely]
@@ -50,7 +57,7 @@ def unseen(effects: Sequence[Unseen]) -> Table:
     return table
 
 
-def _table(causes: Sequence[Cause]) -> Table:
+def _table(causes: Sequence[Cause], before: float) -> Table:
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
     table.add_column("cause", no_wrap=True)
     table.add_column("prob.", justify="right", no_wrap=True)
@@ -60,7 +67,8 @@ def _table(causes: Sequence[Cause]) -> Table:
         mark = PRESENT if c.present else " "
         table.add_row(
             Text(f"{mark} {spelled(c.effect)}", style="bold" if c.present else ""),
-            f"{100.0 * c.probability:.0f} %", Text("\n".join(sizes_of(c))), short(c.gap_after),
+            in_percent(c.probability), Text("\n".join(sizes_of(c.parameters))),
+            marked(c.gap_after, before),
         )  # fmt: skip
     return table
 

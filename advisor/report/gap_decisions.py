@@ -4,35 +4,67 @@ from collections.abc import Mapping
 
 from advisor.gap.decision import Decision
 from advisor.gap.result import spelled
+from advisor.gap.verdict.text import BLOCKS, place
+from advisor.report.gap_sizes import in_units, named
 
-_MEASURED: Mapping[str, str] = {
-    "likelihood": "the log likelihood rises by {value} (at least {limit})",
-    "change": "the error's mean square falls by {value} times the noise's (at least {limit})",
-    "significance": "the size is {value} standard deviations from zero (at least {limit})",
-    "hold-out": "held-out manoeuvres improve by {value} standard errors (at least {limit})",
-    "place": "the block explains a share of {value} of the residual (at least {limit})",
+_OF_AN_EFFECT: Mapping[str, str] = {
+    "likelihood": "it raises the log likelihood of the flight by {value} (at least {limit})",
+    "change": "it changes the motion by {value} times the noise, as mean squares (at least {limit})",
+    "significance": "its size is {value} standard deviations from zero (at least {limit})",
+    "size": "its size is {value} (at least {limit})",
+    "hold-out": "it improves held-out manoeuvres by {value} standard errors (at least {limit})",
+}
+_OF_A_BLOCK: Mapping[str, str] = {
+    "likelihood": "a disturbance there raises the log likelihood of the flight by {value} (at least {limit})",
+    "place": "a disturbance there explains a share of {value} of the residual (at least {limit})",
     "activity": "the residual is {value} times as strong as in quiet flight (at least {limit})",
-    "gap": "wrong derivatives make a gap of {value} times the noise (at least {limit})",
-    "clear gap": "wrong derivatives make a clear gap of {value} times the noise (at least {limit})",
-    "distance": "the six derivatives lie {value} in chi square from the flight's (at least {limit})",
+    "size": "the unexplained residual has {value} times the power of the noise (at least {limit})",
+}
+_OF_THE_NUMBERS: Mapping[str, str] = {
+    "gap": "the given derivatives leave a gap of {value} times the noise (at least {limit})",
+    "clear gap": "for a clear gap, the given derivatives leave {value} times the noise (at least {limit})",
+    "distance": "six given derivatives differ from the flight's by {value} in chi square (at least {limit})",
 }
 """Name of a decision to its sentence."""
-_INSIDE, _AT_THE_EDGE = (
-    "the value lies inside the searched range",
-    "the value lies at the edge of the searched range",
-)
 
 
-def in_words(decision: Decision) -> str:
-    """Return one decision as a line for people: ``structural mode: rejected, the value lies at the edge``."""
+def decision_in_words(decision: Decision) -> str:
+    """Return one decision as a line: ``structural mode: rejected, its frequency lies at the edge``."""
     verdict = "passed" if decision.holds else "rejected"
-    return f"{spelled(decision.about)}: {verdict}, {_found(decision)}"
+    return f"{_about(decision.about)}: {verdict}, {_found(decision)}"
+
+
+def _about(name: str) -> str:
+    if name == "parameters":
+        return "wrong numbers"
+    return f"something without a name {place(name)}" if name in BLOCKS else spelled(name)
 
 
 def _found(decision: Decision) -> str:
     if decision.name == "range":
-        return _INSIDE if decision.holds else _AT_THE_EDGE
-    value, limit = f"{decision.statistic:.3g}", f"{decision.limit:.3g}"
-    if decision.name in _MEASURED:
-        return _MEASURED[decision.name].format(value=value, limit=limit)
-    return f"the {decision.name} is {value} {decision.unit} (at least {limit})"
+        return _of_the_range(decision)
+    if decision.name == "size" and decision.parameter:
+        return _of_the_size(decision)
+    table = _OF_AN_EFFECT
+    if decision.about in BLOCKS:
+        table = _OF_A_BLOCK
+    elif decision.about == "parameters":
+        table = _OF_THE_NUMBERS
+    return table[decision.name].format(value=f"{decision.statistic:.3g}", limit=f"{decision.limit:.3g}")
+
+
+def _of_the_size(decision: Decision) -> str:
+    factor, unit = in_units(decision.parameter)
+    value, limit = (f"{factor * x:.3g} {unit}".rstrip() for x in (decision.statistic, decision.limit))
+    return f"its {named(decision.parameter)} is {value} (at least {limit})"
+
+
+def _of_the_range(decision: Decision) -> str:
+    if decision.searched is None:
+        return "its values lie inside the searched range"
+    factor, unit = in_units(decision.parameter)
+    low, high = (f"{factor * x:.2g}" for x in decision.searched)
+    return (
+        f"its {named(decision.parameter)} lies at the edge of the searched range "
+        f"({low} to {f'{high} {unit}'.rstrip()})"
+    )

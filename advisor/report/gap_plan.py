@@ -19,6 +19,7 @@ from advisor.gap.verdict.notes import unusual_signs
 from advisor.report.console import PlainConsole
 from advisor.report.gap_sizes import in_units
 from advisor.words.plain import picked, plain
+from advisor.words.quantities import symbol
 
 _OF_LINEAR = {"M_alpha2": "M_alpha", "Z_alpha2": "Z_alpha", "M_delta2": "M_delta_e"}
 
@@ -87,8 +88,8 @@ def size_of(f: Foreseen) -> str:
     factor, unit = in_units(f.parameter)
     size = abs(factor * f.smallest)
     if f.share is not None:
-        return f"{100.0 * f.share:.2g} % of {_OF_LINEAR[f.parameter]}"
-    if f.effect == "actuator_rate_limit":
+        return f"{100.0 * f.share:.2g} % of {symbol(_OF_LINEAR[f.parameter])}"
+    if f.is_limit:
         return f"any limit below {_whole(size)} {unit}"
     if f.parameter in _IN_WORDS:
         return f"{size:.2g} {_IN_WORDS[f.parameter]}"

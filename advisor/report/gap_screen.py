@@ -10,11 +10,12 @@ from rich.table import Table
 from rich.text import Text
 
 from advisor.gap.result import Diagnosis, spelled
-from advisor.gap.verdict.text import place
+from advisor.gap.verdict.text import in_words, place
 from advisor.process.installed import SIMULATOR
 from advisor.report.gap_causes import PRESENT, ranking, unseen
 from advisor.report.gap_fidelity import errors, peaks, worst_maneuver, yardsticks
 from advisor.report.gap_parameters import changes, limits_of
+from advisor.report.gap_reasons import how_sure
 from advisor.report.gap_simulator import simulated
 from advisor.report.gap_sizes import WORSE, before_after, short
 from advisor.report.gap_steps import GapStep
@@ -79,7 +80,7 @@ class GapScreen:
             yield Panel(_waterfall(d.gap.before, added), title=title, title_align="left")
         if d.causes:
             yield ""
-            yield from ranking(d.causes)
+            yield from ranking(d.causes, d.gap.before)
         if self.why:
             yield from why_of(d)
         title = f"error in manoeuvre {worst_maneuver(d)}, the one with the largest gap (its size, no sign)"
@@ -113,6 +114,8 @@ class GapScreen:
 def _answer(d: Diagnosis) -> Iterator[Text]:
     """Yield the sentence, the numbers that differ, the errors in an engineer's units, and the limits."""
     yield Text(d.sentence)
+    if sure := how_sure((in_words(one.alternative), one.probability) for one in d.evidence):
+        yield Text(sure)
     if d.verdict == "parameters":
         yield from (Text(f"  {line}") for line in changes(d.derivatives))
     if d.verdict not in ("none", "untested") and (told := peaks(d.traces)):

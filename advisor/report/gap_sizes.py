@@ -1,10 +1,12 @@
 """Sizes of effects in units for people: milliseconds, degrees, per cent, metres."""
 
 import math
+from collections.abc import Mapping
 
-from advisor.gap.result import Cause, Value
+from advisor.gap.result import Value
 from advisor.words.digits import with_half
 from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import PARAMETERS
 
 _DEG = math.degrees(1.0)
 _ENDINGS = {
@@ -17,6 +19,8 @@ _ENDINGS = {
     "_m": (1.0, "m"),
 }
 """Ending of a parameter's name to its factor from SI and its unit. The longest fitting ending counts."""
+_OWN_UNITS = {"at_s": (1.0, "s"), "over_s": (1.0, "s"), "omega_rad_s": (0.5 / math.pi, "Hz")}
+"""Parameters whose unit for people is not that of their ending."""
 _LEAST, _ROUNDING = 1e-3, 1e-9
 """Gap too small for a number, and gap that is only rounding."""
 _SHARES = frozenset({"scale", "step", "inertia", "change", "share", "damping", "lift_h"})
@@ -28,6 +32,13 @@ _OF_DERIVATIVES = {
     "M_alpha_dot": "s⁻¹", "M_thrust": "s⁻²", "M_throttle": "s⁻²", "M_h": "s⁻²",
     "gain": "s⁻¹", "displacement_gain": "s⁻¹", "sharpness": "rad⁻¹",
 }  # fmt: skip
+_SYMBOLS = {
+    "Z_alpha2": "Z_α²", "Z_alpha3": "Z_α³", "M_alpha2": "M_α²", "M_alpha3": "M_α³",
+    "M_delta2": "M_δe²", "M_delta3": "M_δe³", "M_alpha_dot": "M_α̇", "M_thrust": "M_thrust",
+    "M_throttle": "M_throttle", "M_h": "M_h", "Z_h": "Z_h", "omega_rad_s": "frequency",
+    "skew_s": "lateness", **{name: PARAMETERS[name].symbol for name in _ICE},
+}  # fmt: skip
+"""Parameter to its name for people, where the spelling of the aircraft file is none."""
 _SIGNED = frozenset({"scale", "step", "inertia", "change", "skew_s", "bias_rad", "bias_rad_s", *_ICE})
 """Parameters whose sign matters to the reader."""
 
@@ -54,8 +65,12 @@ WORSE = "▲"
 
 def before_after(before: float, after: float) -> str:
     """Return ``6.1 → 0.09``; with a mark where the gap has grown."""
-    worse = f" {WORSE}" if after > before else ""
-    return f"{short(before)} → {short(after)}{worse}"
+    return f"{short(before)} → {marked(after, before)}"
+
+
+def marked(after: float, before: float) -> str:
+    """Return a gap with the findings; with a mark where the gap has grown."""
+    return f"{short(after)} {WORSE}" if after > before else short(after)
 
 
 def in_units(parameter: str) -> tuple[float, str]:
@@ -64,8 +79,8 @@ def in_units(parameter: str) -> tuple[float, str]:
         return 100.0, "%"
     if parameter in _OF_DERIVATIVES:
         return 1.0, _OF_DERIVATIVES[parameter]
-    if parameter in ("at_s", "over_s"):
-        return 1.0, "s"
+    if parameter in _OWN_UNITS:
+        return _OWN_UNITS[parameter]
     for ending, shown in _ENDINGS.items():
         if parameter.endswith(ending):
             return shown
@@ -82,22 +97,20 @@ def with_error(parameter: str, value: Value) -> str:
     return f"{plus}{with_half(number, half)} {unit}".rstrip()
 
 
-def sizes_of(cause: Cause) -> list[str]:
+def sizes_of(parameters: Mapping[str, Value]) -> list[str]:
     """Return every parameter of a cause, one on each line, with its name only where there are several."""
-    words = [text for name, text in _IN_WORDS.items() if name in cause.parameters]
-    shown = {
-        name: with_error(name, value) for name, value in cause.parameters.items() if name not in _IN_WORDS
-    }
+    words = [text for name, text in _IN_WORDS.items() if name in parameters]
+    shown = {name: with_error(name, value) for name, value in parameters.items() if name not in _IN_WORDS}
     if len(shown) == 1:
         return [*shown.values(), *words]
-    return [*(f"{_named(name)} {text}" for name, text in shown.items()), *words]
+    return [*(f"{named(name)} {text}" for name, text in shown.items()), *words]
 
 
-def _named(parameter: str) -> str:
-    """Return a parameter's name without its unit."""
-    if parameter in _ICE or parameter in _OF_DERIVATIVES:
-        return parameter
+def named(parameter: str) -> str:
+    """Return a parameter's name for people, without its unit."""
+    if parameter in _SYMBOLS:
+        return _SYMBOLS[parameter]
     for ending in _ENDINGS:
         if parameter.endswith(ending):
             return parameter.removesuffix(ending).replace("_", " ")
-    return parameter
+    return parameter.replace("_", " ")

@@ -53,7 +53,9 @@ def _to_put(d: Diagnosis) -> str:
         return ", ".join(changed(one) for one in d.derivatives if one.differs) or "the fitted derivatives"
     if d.verdict != "effect":
         return ""
-    return ", ".join(f"{spelled(c.effect)} {', '.join(sizes_of(c))}" for c in d.causes if c.present)
+    return ", ".join(
+        f"{spelled(c.effect)} {', '.join(sizes_of(c.parameters))}" for c in d.causes if c.present
+    )
 
 
 def _against_the_rival(d: Diagnosis) -> str:

@@ -7,7 +7,7 @@ from typing import Any
 
 import yaml
 
-from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.aircraft import SIDE_PARAMETERS, Aircraft
 from advisor.gap.candidates.known import less_of_the_servo, together
 from advisor.gap.result import Diagnosis
 from advisor.process.atomic_file import write_atomically
@@ -23,7 +23,8 @@ def improved_file(diagnosis: Diagnosis, aircraft: Aircraft) -> Mapping[str, Any]
     if diagnosis.reference_airspeed_m_s is not None:
         as_read = diagnosis.reference_airspeed_m_s / diagnosis.true_over_read
         content["reference_airspeed_m_s"] = round(as_read, 4)
-    content["model"] = {name: _digits(v.value) for name, v in diagnosis.model.items()}
+    side = {name: value for name, value in aircraft.model.items() if name in SIDE_PARAMETERS}
+    content["model"] = side | {name: _digits(v.value) for name, v in diagnosis.model.items()}
     content["effects"] = {
         effect: {name: _digits(value) for name, value in values.items()} for effect, values in effects.items()
     }

@@ -3,17 +3,28 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from advisor.aircraft.aircraft import Aircraft
 from advisor.campaign.lateral import JudgedLateral, LateralState
+from advisor.decision.lateral_levels import GROUPS, SOURCE
+from advisor.model.mil_f_8785c import CATEGORIES, MANNED
 from advisor.oem.estimate import Estimate
 from advisor.oem.flying_qualities import Quality
 from advisor.oem.lateral_estimator import LateralEstimate
 from advisor.oem.lateral_modes import LateralModes
+from advisor.report.lateral_qualities import (
+    MODES,
+    levels_document,
+    levels_of,
+    modes_told,
+    tests_document,
+    tests_of,
+)
 from advisor.words.plain import picked, plain
 from advisor.words.quantiles import NORMAL_95
 from advisor.words.vehicle_time import clock
 
 
-def lateral_document(state: LateralState) -> dict[str, Any]:
+def lateral_document(state: LateralState, aircraft: Aircraft) -> dict[str, Any]:
     """Return the block ``lateral`` of ``advisor analyze --json``, in SI units."""
     verdict, model = state.flight_test, state.model
     return {
@@ -28,6 +39,8 @@ def lateral_document(state: LateralState) -> dict[str, Any]:
         },
         "model": _model(model),
         "modes": _modes(model.modes) if model else None,
+        "levels": levels_document(levels_of(state)),
+        "qualification": tests_document(tests_of(state, aircraft)),
         "not_identifiable": dict(model.estimate.not_identifiable) if model else {},
         "estimate_from": list(state.estimate_from),
     }
@@ -101,25 +114,33 @@ def _one(quality: Quality | None) -> dict[str, Any] | None:
     }
 
 
-def lateral_lines(state: LateralState) -> Iterator[str]:
-    """Yield the lines of the lateral half: verdicts, derivatives, modes, stop or continue."""
+def lateral_maneuver_line(judged: JudgedLateral) -> str:
+    """Return one line on a manoeuvre of aileron or rudder: number, start, input, verdict."""
+    span, verdict = judged.maneuver.span, judged.verdict
+    mark = "✓" if verdict.accepted else "✗"
+    at = clock(span.start_s)
+    return f"{judged.maneuver.number:2d}  {at:>7}  {span.kind:<18}  {mark} {verdict.sentence}"
+
+
+def lateral_lines(state: LateralState, aircraft: Aircraft) -> Iterator[str]:
+    """Yield the lines of the lateral half: verdicts, derivatives, modes, levels, stop or continue."""
     if not state.maneuvers:
         yield "No test input of the aileron or the rudder was found."
         return
-    for judged in state.maneuvers:
-        span, verdict = judged.maneuver.span, judged.verdict
-        mark = "✓" if verdict.accepted else "✗"
-        yield (
-            f"{judged.maneuver.number:2d}  {clock(span.start_s):>7}  {span.kind:<18}  {mark} "
-            f"{verdict.sentence}"
-        )
-    if state.model is not None:
-        yield ""
-        yield from _model_lines(state.model)
+    yield from map(lateral_maneuver_line, state.maneuvers)
+    yield ""
+    yield from lateral_results(state, aircraft)
     yield ""
     yield state.flight_test.sentence
     if state.flight_test.next is not None:
         yield f"  {state.flight_test.next.advice}"
+
+
+def lateral_results(state: LateralState, aircraft: Aircraft) -> Iterator[str]:
+    """Yield derivatives, modes, levels and tests of the joint estimate; nothing without one."""
+    if state.model is not None:
+        yield from _model_lines(state.model)
+        yield from _quality_lines(state, aircraft)
 
 
 def _model_lines(model: LateralEstimate) -> Iterator[str]:
@@ -129,17 +150,27 @@ def _model_lines(model: LateralEstimate) -> Iterator[str]:
             yield f"  {name:<10} {value:10.4g} ± {NORMAL_95 * std:.2g}"
     for text, names in _by_reason(estimate.not_identifiable).items():
         yield f"  not identifiable: {', '.join(names)} ({text})"
-    shown = {
-        "Dutch roll frequency": (model.modes.dutch_roll_omega, "rad/s"),
-        "Dutch roll damping": (model.modes.dutch_roll_zeta, ""),
-        "roll time constant": (model.modes.roll_time_constant, "s"),
-        "spiral pole": (model.modes.spiral_pole, "1/s"),
-    }
-    for name, (quality, unit) in shown.items():
-        if quality is not None:
-            yield f"  {name:<21} {quality.value:8.3g} ± {NORMAL_95 * quality.std:.2g} {unit}".rstrip()
+    for name, quality in modes_told(model.modes).items():
+        words, unit = MODES[name]
+        half = NORMAL_95 * quality.std
+        yield f"  {words:<21} {quality.value:8.3g} ± {half:.2g} {unit}".rstrip()
     for mode, text in model.modes.left_out.items():
         yield f"  no {mode.replace('_', ' ')}: {text}"
+
+
+def _quality_lines(state: LateralState, aircraft: Aircraft) -> Iterator[str]:
+    """Yield the levels of light aircraft, and the tests of the aircraft file's model."""
+    levels = [one for one in levels_of(state) if one.group == next(iter(GROUPS))]
+    if levels:
+        yield f"  {SOURCE}, Classes {levels[0].group}:"
+        yield from (f"    {one.governing.sentence} ({CATEGORIES[one.category]})" for one in levels)
+        yield f"  {MANNED}"
+    for one in tests_of(state, aircraft):
+        mark = "✓" if one.holds else "✗"
+        yield (
+            f"  {mark} {one.name}: flown {one.flown:.3g}, simulator {one.simulated:.3g} {one.unit}".rstrip()
+            + f" (14 CFR Part 60 {one.entry}: ± {one.limit:.2g})"
+        )
 
 
 def _by_reason(reasons: Mapping[str, str]) -> dict[str, list[str]]:

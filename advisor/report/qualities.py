@@ -9,6 +9,7 @@ from advisor.flight.instruments.atmosphere import AirFlown, air_flown
 from advisor.model.mil_f_8785c import CATEGORIES, MANNED, SOURCE
 from advisor.oem.coefficients import CONVENTION, Coefficient, coefficients
 from advisor.oem.flying_qualities import UNITS, FlyingQualities, flying_qualities
+from advisor.words.digits import with_half
 from advisor.words.plain import picked
 from advisor.words.quantiles import NORMAL_95
 
@@ -57,6 +58,7 @@ def qualities_document(found: FlyingQualities | None) -> dict[str, Any] | None:
             name: {**picked(one, "value std ci95"), "unit": UNITS[name]}
             for name, one in found.qualities.items()
         },
+        "correlation": found.correlation,
         "left_out": dict(found.left_out),
         "levels": {
             one.category: {
@@ -85,8 +87,8 @@ def quality_lines(found: FlyingQualities, coefficients: Mapping[str, Coefficient
     """Yield flying qualities and coefficients, one on each line, with half the 95 % interval."""
     yield f"Flying qualities at {_speeds(found)}:"
     for name, one in found.qualities.items():
-        half = NORMAL_95 * one.std
-        yield f"  {NAMES[name]:<17} {one.value:8.4g} ± {half:.2g} {UNITS[name].replace('1', '')}"
+        shown = with_half(one.value, NORMAL_95 * one.std)
+        yield f"  {NAMES[name]:<17} {shown} {UNITS[name].removesuffix('1')}".rstrip()
     for name, why in found.left_out.items():
         yield f"  {NAMES[name]:<17} not given: {why}"
     if found.levels:
@@ -96,7 +98,7 @@ def quality_lines(found: FlyingQualities, coefficients: Mapping[str, Coefficient
     if coefficients:
         yield f"Coefficients {CONVENTION}:"
         listed = "  ".join(
-            f"{name} {c.value:.4g} ± {NORMAL_95 * c.std:.2g}" for name, c in coefficients.items()
+            f"{name} {with_half(c.value, NORMAL_95 * c.std)}" for name, c in coefficients.items()
         )
         yield f"  {listed}"
     yield f"note: {found.air.sentence[0].upper()}{found.air.sentence[1:]}."

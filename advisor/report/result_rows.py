@@ -5,14 +5,16 @@ from dataclasses import dataclass
 from math import isfinite, nan
 from typing import Any
 
-from advisor.aircraft.aircraft import PARAMETERS
 from advisor.flight.signals.track import ChannelStatus
 from advisor.oem.estimate import Estimate
 from advisor.report.table import Table, digits
 from advisor.words.digits import decimals_for, signed, with_half
 from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import DEG, Quantity
-from advisor.words.quantities import PARAMETERS as QUANTITIES
+from advisor.words.quantities import PARAMETERS as PITCH
+from advisor.words.quantities import SIDE_PARAMETERS as SIDE
+
+_QUANTITIES = {**PITCH, **SIDE}
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,13 +58,13 @@ class ParameterRow:
 
 def parameter_row(name: str, estimate: object, prior: Mapping[str, float]) -> ParameterRow:
     """Return one parameter of an estimate against the aircraft file's model, which may lack it."""
-    quantity, stated = QUANTITIES[name], prior.get(name)
+    quantity, stated = _QUANTITIES[name], prior.get(name)
     known = None if stated is None else stated * quantity.factor
     if not isinstance(estimate, Estimate):
         return ParameterRow(quantity, nan, nan, nan, known)
     if name in estimate.not_identifiable:
         return ParameterRow(quantity, nan, nan, nan, known, estimate.not_identifiable[name])
-    k, half = PARAMETERS.index(name), NORMAL_95 * quantity.factor
+    k, half = estimate.names.index(name), NORMAL_95 * quantity.factor
     value = float(estimate.theta[k]) * quantity.factor
     return ParameterRow(
         quantity, value, half * float(estimate.std[k]), half * float(estimate.std_cr[k]), known

@@ -131,7 +131,7 @@ class AnalysisText:
         if self.state.lateral is not None:
             yield Text()
             yield Text("Roll and yaw", style="bold")
-            yield from (Text(line) for line in lateral_lines(self.state.lateral))
+            yield from (Text(line) for line in lateral_lines(self.state.lateral, self.aircraft))
 
     def _movements(self) -> Iterator[Text]:
         """Yield the manoeuvres and, on request, all other elevator movements, in the order of time."""

@@ -106,7 +106,7 @@ class LinkSource:
         """Keep the decisions next to the recording."""
         recording = self._link.statistics.recording if self._link is not None else None
         if recording is None:
-            return "decisions by hand are not kept, for nothing is recorded: they hold until you quit"
+            return "decisions by hand are not kept, because nothing is recorded: they hold until you quit"
         return keep_by_hand(recording, by_hand)
 
     def close(self) -> None:

@@ -32,6 +32,8 @@ class View:
     """Number of the manoeuvre chosen by hand; None: always the newest."""
     logs: tuple[Path, ...] = ()
     """Logs and recordings, flight by flight, next to which files are written. Empty: the current folder."""
+    elevator: "View | None" = None
+    """View of the elevator's axis, where this one shows roll and yaw. None: this one shows the elevator's."""
 
     @property
     def obstacles(self) -> tuple[Problem, ...]:

@@ -4,6 +4,7 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.simulator.layout import EFFECT_ENTRIES, INDEX, SKEWS
+from advisor.oem.surface import lagged
 
 COMMAND = EFFECT_ENTRIES[: EFFECT_ENTRIES.index("M_delta2")]
 """Entries between command and surface."""
@@ -63,13 +64,7 @@ def lagging(y: FloatArray, h: float, lag_s: float) -> FloatArray:
     leads."""
     if lag_s <= 0.0:
         return y - lag_s * np.gradient(y, h) if lag_s < 0.0 else y
-    keep = np.exp(-h / lag_s)
-    trail = lag_s / h * (1.0 - keep)
-    out = np.empty_like(y)
-    out[0] = y[0]
-    for i in range(1, len(y)):
-        out[i] = keep * (out[i - 1] - y[i - 1]) + y[i] - trail * (y[i] - y[i - 1])
-    return out
+    return lagged(np.full(len(y) - 1, h), y[:-1], y[1:], lag_s, float(y[0]))
 
 
 def second_order_response(

@@ -13,8 +13,8 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import with_known
-from advisor.gap.candidates.traits import TRAITS
 from advisor.gap.diagnose import DiagnosisEvidence, examine
+from advisor.gap.effects import EFFECTS
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.judge.prior import FIELD, FieldPrior
 from advisor.gap.records.as_stamped import as_stamped
@@ -212,7 +212,7 @@ def _surrogate_and_rest(
     derivatives = np.array([surrogate.derivatives[name] for name in DERIVATIVES])
     own = np.zeros((len(flights), len(NUISANCES)))
     p = EffectProblem(flights, base).driving(SearchPoint(derivatives, own))
-    if any(TRAITS[effect].block in EQUATIONS for effect in aircraft.effects):
+    if any(EFFECTS[effect].block in EQUATIONS for effect in aircraft.effects):
         replays = flying.replays(command, False, added(flown, p, derivatives))
     grids = beyond(flying, replays, p)
     return surrogate, {f.number: AsGiven(f, grid) for f, grid in zip(flown, grids, strict=True)}, replays
@@ -220,7 +220,7 @@ def _surrogate_and_rest(
 
 def _without_equations(aircraft: Aircraft) -> Aircraft:
     """Return the aircraft file without effects of the force and of the moment."""
-    kept = {e: sizes for e, sizes in aircraft.effects.items() if TRAITS[e].block not in EQUATIONS}
+    kept = {e: sizes for e, sizes in aircraft.effects.items() if EFFECTS[e].block not in EQUATIONS}
     return replace(aircraft, effects=kept)
 
 

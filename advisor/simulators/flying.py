@@ -14,7 +14,7 @@ from advisor.gap.records.flights import PreparedManeuver, PreparedManeuvers
 from advisor.gap.records.usable import DEPARTED_RAD
 from advisor.gap.simulator.layout import BANK, DERIVATIVES, HEIGHT, INDEX, OUTPUTS
 from advisor.simulators.around import instruments, skewed
-from advisor.simulators.increments import SimulatorIncrements, entries_of
+from advisor.simulators.increments import SimulatorIncrements, carried
 from advisor.simulators.inputs import as_flight, condition_of, inputs_of, on_grid, surface_of
 from advisor.simulators.interface import elevator_fault, interface_fault
 from advisor.simulators.protocol import Condition, Increments, Inputs, Replay, Simulator
@@ -150,16 +150,9 @@ def added(
     plain[: len(as_given)] = as_given
     increments = []
     for there, with_effects in zip(flown, found, strict=True):
-        changed, unchanged = (entries_of(trimmed_at(p, there)) for p in (with_effects, plain))
-        increments.append(
-            SimulatorIncrements(
-                changed,
-                unchanged,
-                there.alpha_trim,
-                there.reference_m_s,
-                float(there.slow[HEIGHT, 0]),
-            )
-        )
+        numbers = np.stack([carried(trimmed_at(p, there)) for p in (with_effects, plain)])
+        height_m = float(there.slow[HEIGHT, 0])
+        increments.append(SimulatorIncrements(numbers, there.alpha_trim, there.reference_m_s, height_m))
     return tuple(increments)
 
 
@@ -240,7 +233,7 @@ def refuse_unmoved(description: str, replays: Sequence[Replay], flights: Prepare
     if max(float(np.ptp(replay.q)) for replay in replays) < noise:
         raise UnusableInputError(
             "simulator_elevator",
-            f"{description} does not answer the elevator: its pitch rate stays as it is.",
+            f"{description} does not respond to the elevator: its pitch rate stays as it is.",
             "Check which input of the model the elevator is, and its unit.",
         )
 

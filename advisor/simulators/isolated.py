@@ -135,7 +135,7 @@ class Isolated:
             raise UnusableInputError(
                 "simulator_failed",
                 f"{self.description} fails in {task}: {value}.",
-                "Run the simulator by itself with the same input, and mend what it says there.",
+                "Run the simulator by itself with the same input, and fix what the simulator reports.",
             )
         return value
 
@@ -259,7 +259,7 @@ def _columns(replay: Any) -> dict[str, list[float] | None]:
     if len(lengths) != 1 or min(lengths) < 2:
         raise _NoReplayError(f"its replay's channels need equal lengths of at least 2, not {sorted(lengths)}")
     if not np.all(np.diff(np.array(rows["t"])) > 0.0):
-        raise ValueError("its replay's t does not ascend")
+        raise ValueError("the times t of its replay do not ascend")
     return rows
 
 

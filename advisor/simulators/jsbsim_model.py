@@ -100,7 +100,7 @@ def _unloadable(path: Path, why: str) -> UnusableInputError:
     return UnusableInputError(
         "simulator_model",
         f"{path.name} does not load as a JSBSim aircraft: {why[:300].rstrip('. ')}.",
-        "Load the file in JSBSim itself, and mend what JSBSim prints.",
+        "Load the file in JSBSim itself, and fix what JSBSim reports.",
     )
 
 

@@ -14,7 +14,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.instruments.atmosphere import air_flown
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.standard_atmosphere import SEA_LEVEL_DENSITY_KG_M3
-from advisor.gap.candidates.sensors import TRUE_AIR_SPEED
+from advisor.gap.candidates.nuisances import TRUE_AIR_SPEED
 from advisor.gap.records.airspeed import measures_speed
 from advisor.gap.records.prepare import prepare
 from advisor.gap.records.unmeasured_alpha import alpha_by_motion

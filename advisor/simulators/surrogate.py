@@ -8,7 +8,8 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.candidates.input import DELAY, LAG
+from advisor.gap.effects.actuator_lag import LAG
+from advisor.gap.effects.transport_delay import DELAY
 from advisor.gap.fitting.fit import EffectFit, fit
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.fitting.regression import regressions

@@ -12,7 +12,7 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.candidates.moment import PROPELLER
+from advisor.gap.candidates.nuisances import PROPELLER
 from advisor.gap.diagnose import DiagnosisEvidence, examine
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.measure import shrink_interval, whole_gap

@@ -56,4 +56,8 @@ def _elevator(view: View) -> str:
     if view.obstacles[0].code != "no_elevator" or view.tempo is not None:
         return ""
     guess = view.state.elevator_guess
-    return f" {str(guess).capitalize()}; key g takes it." if guess else " Key a asks the vehicle for it."
+    return (
+        f" {str(guess).capitalize()}; key g takes it."
+        if guess
+        else " Key a asks the vehicle for its elevator output."
+    )

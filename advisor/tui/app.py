@@ -17,6 +17,7 @@ from textual.worker import Worker, WorkerState
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.session.conducting import Conducting, SessionReport
+from advisor.session.side_view import SideView
 from advisor.session.source import Tempo
 from advisor.session.view import View, view_before_first
 from advisor.tui import keys, link_actions, replay_actions
@@ -108,6 +109,8 @@ class AdvisorApp(replay_actions.ReplayActions, link_actions.LinkActions, HandAct
         self._report: SessionReport | None = None
         """Newest report, while it waits."""
         self._garbage = Garbage()
+        self._side: SideView | None = None
+        """Views of roll and yaw, while that axis is shown."""
         self._sheets = Sheets(THEMES)
         self._voice = Voice()
         self._sound = Sound(self.bell, self._speak)
@@ -202,10 +205,11 @@ class AdvisorApp(replay_actions.ReplayActions, link_actions.LinkActions, HandAct
     def show(self, view: View) -> None:
         """Show another moment on the screens."""
         self.view = view
-        self._sound.hear(view)
+        shown = self._side.of(view) if self._side is not None else view
+        self._sound.hear(shown)
         for screen in self.screen_stack:
             if isinstance(screen, Face):
-                screen.show(self.view)
+                screen.show(shown)
 
     def say(self, text: str, seconds: float = 3.0) -> None:
         """Show a text on the last line of the screen, for a while; over a dialog, next to it."""
@@ -216,6 +220,8 @@ class AdvisorApp(replay_actions.ReplayActions, link_actions.LinkActions, HandAct
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Offer the replay's actions only in a replay, the link's only on a link."""
+        if self._side is not None and action in ("jump", "jump_by"):
+            return False
         only_elsewhere = link_actions.ACTIONS if self.view.tempo is not None else replay_actions.ACTIONS
         return action not in only_elsewhere
 
@@ -230,6 +236,13 @@ class AdvisorApp(replay_actions.ReplayActions, link_actions.LinkActions, HandAct
         """Switch to the pilot's or the engineer's screen."""
         await self.switch_mode(name)
         self.show(self.view)
+
+    def action_other_axis(self) -> None:
+        """Show roll and yaw in the place of the elevator's axis, or the elevator's axis again."""
+        self._side = SideView() if self._side is None else None
+        self.show(self.view)
+        self.refresh_bindings()
+        self.say("axis: elevator" if self._side is None else "axis: roll and yaw")
 
     def delay_update(self, delay: float = _AT_ONCE_S) -> None:
         """Paint at once. Textual alone would hide transitions for 50 ms, which mounted screens do not

@@ -33,6 +33,7 @@ SELDOM: list[BindingType] = [
     _key("m", "mark", "Mark", id="mark", show=True),
     _key("b", "begin_maneuver", "Begin manoeuvre", id="begin_maneuver", show=True),
     _key("f", "end_maneuver", "Finish manoeuvre", id="end_maneuver", show=True),
+    _key("r", "other_axis", "Elevator, or roll and yaw", id="axis"),
     _key("k", "sound", "Bell and voice", id="sound"),
     _key("v", "follow_another", "Follow another vehicle", id="follow"),
     _key("a", "ask_for_outputs", "Ask for the elevator's output", id="outputs"),
@@ -54,6 +55,7 @@ PANES = (
     ("u", "flying qualities"),
     ("i", "whole flight"),
     ("d", "gap to the simulator"),
+    ("y", "roll and yaw"),
 )
 """Key and name of each pane, in the order of their numbers."""
 

@@ -35,16 +35,16 @@ class Sound:
     def __init__(self, ring: Callable[[], object], speak: Callable[[str], object]) -> None:
         self._ring, self._speak = ring, speak
         self.on = True
-        self._last: tuple[int, str] | None = None
+        self._last: tuple[bool, int, str] | None = None
 
     def hear(self, view: View) -> None:
         """Compare a moment with the last one."""
-        now = len(view.state.maneuvers), advise(view).word
+        now = view.elevator is None, len(view.state.maneuvers), advise(view).word
         last, self._last = self._last, now
-        if last is None or last == now or not self.on or _hurries(view):
+        if last is None or last[0] != now[0] or last == now or not self.on or _hurries(view):
             return
         self._ring()
-        self._speak(_spoken(view, more=now[0] > last[0]))
+        self._speak(_spoken(view, more=now[1] > last[1]))
 
 
 def _hurries(view: View) -> bool:

@@ -7,19 +7,23 @@ _UNIT_COLUMNS = 6
 _LEAD = 3
 """Columns of trim before the first step and after the last."""
 _PULL, _TRIM, _PUSH = 0, 1, 2
-_SIDES = {_PULL: "pull", _TRIM: "", _PUSH: "push"}
+_LEVELS = (_PULL, _TRIM, _PUSH)
 _SIDE_COLUMNS = 6
 
 
-def stick_drawing(steps: Sequence[tuple[bool, float]], width: int) -> str:
+def stick_drawing(
+    steps: Sequence[tuple[bool, float]], width: int, sides: tuple[str, str] = ("pull", "push")
+) -> str:
     """Draw the steps as a line above and below trim, with the duration of each step below.
 
     Parameters
     ----------
     steps
-        Steps in order: whether the step is nose up (stick back), and its duration, s.
+        Steps in order: whether the step is nose up (stick back) or to the right, and its duration, s.
     width
         Columns of the drawing. Without room the drawing is empty.
+    sides
+        Names of the directions above and below trim.
     """
     shortest = min(duration for _, duration in steps)
     lengths = [round(_UNIT_COLUMNS * duration / shortest) for _, duration in steps]
@@ -31,7 +35,8 @@ def stick_drawing(steps: Sequence[tuple[bool, float]], width: int) -> str:
     seconds = " " * _LEAD + "".join(
         f"{duration:.1f} s".center(length) for (_, duration), length in zip(steps, lengths, strict=True)
     )
-    drawn = [f"{_SIDES[level]:<{_SIDE_COLUMNS}}{row}".rstrip() for level, row in enumerate(rows)]
+    names = (sides[0], "", sides[1])
+    drawn = [f"{names[level]:<{_SIDE_COLUMNS}}{row}".rstrip() for level, row in enumerate(rows)]
     return "\n".join([*drawn, f"{'':<{_SIDE_COLUMNS}}{seconds}".rstrip()])
 
 
@@ -45,10 +50,10 @@ def stick_line(steps: Sequence[tuple[bool, float]]) -> str:
 
 def _line(levels: Sequence[int], columns: Sequence[int]) -> list[str]:
     """Return three rows with a line that runs through the levels, each for its number of columns."""
-    rows = [""] * len(_SIDES)
+    rows = [""] * len(_LEVELS)
     before = levels[0]
     for level, length in zip(levels, columns, strict=True):
-        for row in _SIDES:
+        for row in _LEVELS:
             edge = _edge(row, before, level)
             rows[row] += edge + ("─" if row == level else " ") * (length - 1)
         before = level

@@ -28,6 +28,13 @@ CHANNELS: dict[str, Quantity] = {
     "q": Quantity("q", "deg/s", DEG),
     "theta": Quantity("θ", "deg", DEG),
     "a_z": Quantity("a_z", "m/s²"),
+    "aileron": Quantity("δa", "deg", DEG),
+    "rudder": Quantity("δr", "deg", DEG),
+    "p": Quantity("p", "deg/s", DEG),
+    "r": Quantity("r", "deg/s", DEG),
+    "bank": Quantity("φ", "deg", DEG),
+    "a_y": Quantity("a_y", "m/s²"),
+    "beta": Quantity("β", "deg", DEG),
     "airspeed": Quantity("V", "m/s"),
     "height": Quantity("h", "m"),
 }
@@ -43,6 +50,20 @@ PARAMETERS: Mapping[str, Quantity] = {
     "M_delta_e": Quantity("M_δe", "1/s²"),
 }
 """Parameter to its quantity. Only Z_0 and M_0 carry an angle."""
+
+_SIDE_UNITS = {"beta": ("β", 2), "p": ("p", 1), "r": ("r", 1), "delta_a": ("δa", 2), "delta_r": ("δr", 2)}
+"""Factor of a lateral derivative: its symbol, and the power of 1/s of the moment per unit of the factor."""
+SIDE_PARAMETERS: Mapping[str, Quantity] = {
+    f"{y}_{x}": Quantity(f"{y}_{symbol}", ("1", "1/s", "1/s²")[power - (y == "Y")])
+    for y in "YLN"
+    for x, (symbol, power) in _SIDE_UNITS.items()
+}
+"""Derivative of roll and yaw to its quantity."""
+
+
+def symbol(parameter: str) -> str:
+    """Return the symbol of a parameter in a sentence for people: ``M_δe``."""
+    return parameter.replace("_alpha", "_α").replace("_beta", "_β").replace("_delta_", "_δ")
 
 
 def channel(name: str) -> Quantity:

@@ -1,23 +1,23 @@
 """Vehicle time for people: one form on every screen, in every text, in every report.
 
-Documents and files for programs give the vehicle's time in seconds since its boot.
+Documents and files for programs give the vehicle's time in seconds since power-on.
 """
 
 from math import isfinite
 
-CLOCK = "minutes:seconds since the vehicle's boot"
+CLOCK = "minutes:seconds since power-on"
 """Unit and origin of the times that `clock` writes, for headings and help."""
 
 
 def clock(seconds: float) -> str:
-    """Write a time since the vehicle's boot: ``3:07.5``; ``–`` where the time is not known.
+    """Write a time since power-on: ``3:07.5``; ``–`` where the time is not known.
 
     Minutes continue beyond 60, so that one multiplication gives the seconds of a document.
 
     Parameters
     ----------
     seconds
-        Vehicle time, s since boot; NaN before the vehicle's clock is heard.
+        Vehicle time, s since power-on; NaN before the vehicle's clock is heard.
     """
     if not isfinite(seconds):
         return "–"
@@ -26,5 +26,5 @@ def clock(seconds: float) -> str:
 
 
 def between(start_s: float, end_s: float) -> str:
-    """Write a stretch of vehicle time, s since boot: ``3:07.5 to 3:19.0``."""
+    """Write a stretch of vehicle time, s since power-on: ``3:07.5 to 3:19.0``."""
     return f"{clock(start_s)} to {clock(end_s)}"

@@ -1,21 +1,19 @@
 """``reference/effects.md``: the table of effects, from its traits and from what the fit is given of each."""
 
-import re
 from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from advisor.aircraft.aircraft_effects import LEAST
-from advisor.gap.candidates.trait import Said, Trait
-from advisor.gap.candidates.traits import TRAITS
-from advisor.gap.candidates.variant import Variant
+from advisor.gap.effects import EFFECTS
+from advisor.gap.kit.effect import BLOCKS, Effect, Said, without_sizes
+from advisor.gap.kit.variant import Variant
 from advisor.gap.verdict.causes import parameters_of
 from advisor.report.gap_sizes import in_units, short
 from benchmarks.pages.planned import PLANS, Plan, described
 
 _HEAD = """# The effects that a diagnosis can name
 
-This page is made from `advisor/gap/candidates`.
+This page is made from `advisor/gap/effects`.
 
 {count} effects, by the block of the simulator. Each entry says:
 
@@ -28,9 +26,9 @@ This page is made from `advisor/gap/candidates`.
 - *Apart from*: an effect that looks alike, and how to distinguish the two.
 
 "By the flight" marks a bound that depends on the length, the heights or the air speed of the flight. Where an
-autopilot has filtered the channels, times of sensors are named at `_FILTERED_S` or more.
+autopilot has filtered the channels, times of sensors are named at `FILTERED_S` or more.
 """
-_BLOCKS = {
+_TITLES = {
     "input": "between command and surface",
     "moment_equation": "pitching moment",
     "force_equation": "lift",
@@ -63,42 +61,42 @@ _BY_FLIGHT = "by the flight"
 
 def page() -> str:
     """The page as Markdown."""
-    parts = [_HEAD.format(count=len(TRAITS))]
-    for block, title in _BLOCKS.items():
+    parts = [_HEAD.format(count=len(EFFECTS))]
+    for block in BLOCKS:
+        title = _TITLES[block]
         parts.append(f"## {title[0].upper()}{title[1:]} (`{block}`)\n")
-        parts += [_section(name, trait) for name, trait in TRAITS.items() if trait.block == block]
+        parts += [_section(effect) for effect in EFFECTS.values() if effect.block == block]
     return "\n".join(parts)
 
 
-def _section(effect: str, trait: Trait) -> str:
-    lines = [f"### `{effect}`\n", *(f"- {said}" for said in _said(trait)), *_parameters(effect)]
-    lines += [f"- *Named from*: {size}." for size in _named_from(effect)]
-    lines += [f"- *Needs*: {need}." for need in _needs(effect, trait)]
-    lines += [f"- *Apart from* {other}: {way}." for other, way in _apart(effect, trait)]
-    lines += [f"- {sentence}" for flag, sentence in _KINDS.items() if getattr(trait, flag)]
+def _section(effect: Effect) -> str:
+    lines = [f"### `{effect.name}`\n", *(f"- {said}" for said in _said(effect)), *_parameters(effect)]
+    lines += [f"- *Named from*: {size}." for size in _named_from(effect.name)]
+    lines += [f"- *Needs*: {need}." for need in _needs(effect)]
+    lines += [f"- *Apart from* {other}: {way}." for other, way in _apart(effect)]
+    lines += [f"- {sentence}" for flag, sentence in _KINDS.items() if getattr(effect, flag)]
     return "\n".join(lines) + "\n"
 
 
-def _said(trait: Trait) -> Iterator[str]:
-    yield f"*Said*: {_sentences(trait.said)}"
-    for parameter, said in trait.said_with.items():
+def _said(effect: Effect) -> Iterator[str]:
+    yield f"*Said*: {_sentences(effect.said)}"
+    for parameter, said in effect.said_with.items():
         yield f"*Said*, with `{parameter}`: {_sentences(said)}"
-    if trait.said_beyond:
-        yield f"*Said*, where the simulator has some of it: {_sentences(trait.said_beyond)}"
-    if trait.stated is not None:
-        yield f"*Stated* in the aircraft file as `{'.'.join(trait.stated)}`."
+    if effect.said_beyond:
+        yield f"*Said*, where the simulator has some of it: {_sentences(effect.said_beyond)}"
+    if effect.stated is not None:
+        yield f"*Stated* in the aircraft file as `{'.'.join(effect.stated)}`."
 
 
 def _sentences(said: Said) -> str:
-    both = (said,) if isinstance(said, str) else said
-    return " / ".join(re.sub(r"\{\w+:[^}]*\}", "*x*", text) + "." for text in both)
+    return " / ".join(f"{text}." for text in without_sizes(said, "*x*"))
 
 
-def _parameters(effect: str) -> Iterator[str]:
+def _parameters(effect: Effect) -> Iterator[str]:
     yield "- *Parameters*:\n"
     yield "  | parameter | unit | searched from | to |\n  |---|---|---|---|"
-    for parameter in LEAST[effect]:
-        low, high = _range(effect, parameter)
+    for parameter in effect.keys:
+        low, high = _range(effect.name, parameter)
         yield f"  | `{parameter}` | {_unit(parameter)} | {low} | {high} |"
     yield ""
 
@@ -170,31 +168,33 @@ def _rounded(size: float) -> str:
     return short(float(f"{size:.2g}"))
 
 
-def _needs(effect: str, trait: Trait) -> Iterator[str]:
+def _needs(effect: Effect) -> Iterator[str]:
     reasons: dict[str, list[str]] = {}
-    if trait.need is not None:
-        reasons.setdefault(trait.need.add, []).append(trait.need.because)
-    if trait.unrecorded is not None:
-        _, because, add = trait.unrecorded
+    if effect.need is not None:
+        reasons.setdefault(effect.need.add, []).append(effect.need.because)
+    if effect.unrecorded is not None:
+        _, because, add = effect.unrecorded
         reasons.setdefault(add, []).append(because)
     yield from (f"{add}; without that: “{'” or “'.join(because)}”" for add, because in reasons.items())
-    if trait.need is None and trait.channel:
-        yield f"the channel {_CHANNELS[trait.channel]}"
-    if trait.unrecorded is None:
-        yield from sorted({f"the {need} in the log" for v in described(effect, PLANS[0]) for need in v.needs})
-    if not trait.of_the_stick:
+    if effect.need is None and effect.channel:
+        yield f"the channel {_CHANNELS[effect.channel]}"
+    if effect.unrecorded is None:
+        yield from sorted(
+            {f"the {need} in the log" for v in described(effect.name, PLANS[0]) for need in v.needs}
+        )
+    if not effect.of_the_stick:
         yield "something besides the elevator that varies"
 
 
-def _apart(effect: str, trait: Trait) -> Iterator[tuple[str, str]]:
-    yield from ((f"`{other}`", way) for other, way in trait.distinguished_by.items())
+def _apart(effect: Effect) -> Iterator[tuple[str, str]]:
+    yield from ((f"`{other}`", way) for other, way in effect.distinguished_by.items())
     yield from (
-        (f"`{other}`", t.distinguished_by[effect])
-        for other, t in TRAITS.items()
-        if effect in t.distinguished_by
+        (f"`{other}`", its.distinguished_by[effect.name])
+        for other, its in EFFECTS.items()
+        if effect.name in its.distinguished_by
     )
-    if trait.imitated_by is not None:
-        yield trait.imitated_by
-    if trait.imitated_without is not None:
-        output, other, way = trait.imitated_without
+    if effect.imitated_by is not None:
+        yield effect.imitated_by
+    if effect.imitated_without is not None:
+        output, other, way = effect.imitated_without
         yield f"{other}, without the {_CHANNELS[output]}", way

@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from html import escape
 
+from advisor.words.quantities import symbol
 from benchmarks.real import Row
 
 _VALUE = re.compile(r"([A-Za-z]\w*) (-?[\d.]+) ± ([\d.]+)")
@@ -33,7 +34,7 @@ def compared(records: Sequence[Row]) -> Iterator[Compared]:
         for name, value, half in _VALUE.findall(record.got):
             known, known_half = published.get(name, (0.0, 0.0))
             if known:
-                label = f"{record.what.partition(',')[0]}: {name}"
+                label = f"{record.what.partition(',')[0]}: {symbol(name)}"
                 yield Compared(label, abs(known_half / known), float(value) / known, abs(float(half) / known))
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from benchmarks import real
 from benchmarks.pages import results
 from benchmarks.pages.forest import forest
+from benchmarks.pages.signs import signs
 
 DATA = Path(__file__).parents[2] / "docs" / "data"
 GAP_RESULTS = DATA / "gap-results.json"
@@ -16,6 +17,7 @@ _MARK = re.compile(r"^<!-- made: ([a-z-]+) -->$", re.MULTILINE)
 FRAGMENTS: Mapping[str, Callable[[], str]] = {
     "real": lambda: real.in_markdown(*real.read(REAL)),
     "real-forest": lambda: forest(real.read(REAL)[0]),
+    "signs": signs,
     "gap-figures": lambda: results.figures_table(results.read(GAP_RESULTS)),
     "gap-sets": lambda: results.sets_table(results.read(GAP_RESULTS)),
 }

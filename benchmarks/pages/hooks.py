@@ -9,11 +9,12 @@ from pathlib import Path
 
 from latex2mathml.converter import convert
 from mkdocs.config.defaults import MkDocsConfig
+from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File, Files
 from mkdocs.structure.pages import Page
 
 from benchmarks.pages.fragments import filled
-from benchmarks.pages.generated import PAGES, SECTIONS
+from benchmarks.pages.generated import BUILT_SAMPLES, PAGES, SAMPLES, SECTIONS
 
 _EQUATION = re.compile(r'<(div|span) class="arithmatex">(.*?)</\1>', re.DOTALL)
 _ROLE = re.compile(r":(?:func|class|meth|attr|mod):(?=<code>)")
@@ -35,7 +36,23 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
     """Add the pages that the code makes."""
     for uri, make in PAGES.items():
         files.append(File.generated(config, uri, content=make()))
+    for name in SAMPLES:
+        files.append(File.generated(config, f"samples/{name}", abs_src_path=str(sample(name))))
     return files
+
+
+def sample(name: str) -> Path:
+    """Return the place of a sample page.
+
+    Raises
+    ------
+    PluginError
+        The sample is not written yet.
+    """
+    place = BUILT_SAMPLES / name
+    if not place.is_file():
+        raise PluginError(f"{place} is missing: run `make site`, which writes the sample pages first.")
+    return place
 
 
 def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Files) -> str:

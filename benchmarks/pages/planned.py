@@ -10,7 +10,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.record import Channel
 from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.candidates.variant import Variant
+from advisor.gap.kit.variant import Variant
 from advisor.gap.records.prepare import prepare
 
 

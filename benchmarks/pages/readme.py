@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
+from advisor.words.quantities import symbol
 from benchmarks import real
 from benchmarks.pages import results
 from benchmarks.pages.fragments import DATA, GAP_RESULTS, REAL
@@ -20,7 +21,8 @@ def _records() -> str:
     rows, measured = real.read(REAL)
     shown = [next(row for row in rows if row.log == log) for log in _RECORDS]
     lines = [
-        f"| {row.what} | {row.asked} | {row.got} | {'yes' if row.holds else '**no**'} |" for row in shown
+        f"| {row.what} | {symbol(row.asked)} | {symbol(row.got)} | {'yes' if row.holds else '**no**'} |"
+        for row in shown
     ]
     held = sum(row.holds for row in rows)
     last = f"{held} of {len(rows)} records hold. Measured {measured}."

@@ -43,7 +43,8 @@ ARM_M = {"uav": 0.6, "linear": 6.0}
 HEARD_EVERY_S = 2.0
 """Time between two looks at a log, s: less than the shortest time between two manoeuvres."""
 FAR_OFF = 0.3
-"""Relative error of a stated lag from which no stop may be said."""
+"""Relative error of a stated lag from which no false stop may be said. A wrong lag is off by once to twice as
+much, either way."""
 Statement = Literal["unknown", "right", "wrong"]
 STATEMENTS: tuple[Statement, ...] = ("unknown", "right", "wrong")
 ORDINARY = {"sign": 1.0, "scale": 1.0}
@@ -104,7 +105,9 @@ class Drawn:
         rng = np.random.default_rng(self.seed)
         lag_s = float(rng.uniform(0.03, 0.2))
         vane = bool(rng.integers(2))
-        stated = {"unknown": None, "right": lag_s, "wrong": lag_s * (1.0 + float(rng.uniform(-0.5, 0.5)))}
+        off = float(rng.uniform(-1.0, 1.0))
+        wrong = lag_s * (1.0 + np.copysign(FAR_OFF, off) * (1.0 + abs(off)))
+        stated = {"unknown": None, "right": lag_s, "wrong": float(wrong)}
         return Errors(
             noise_percent=float(np.exp(rng.uniform(np.log(0.5), np.log(5.0)))),
             lag_s=lag_s,

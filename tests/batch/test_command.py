@@ -3,6 +3,7 @@
 import json
 import resource
 import shutil
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from advisor.aircraft.aircraft import PARAMETERS, Aircraft
 from advisor.batch.flight import Analyzed, BatchTask, failed, kept, sha256_of
 from advisor.batch.logs import AircraftMap, find_logs, read_map
 from advisor.batch.tables import aircraft_of, is_whole, mixed_up
+from advisor.cli.batch_reports import ReportTask, write_reports
 from advisor.words.problems import ConfigurationError, Problem, UnusableInputError
 from sim.effects.fitting import flight_of
 from sim.record import record
@@ -94,10 +96,7 @@ def test_a_centre_of_gravity_that_has_moved_is_told_since_its_first_flight(
         scenario = Scenario(aircraft="uav", noise=noise, seed=number, maneuvers=TWO, effects=aft)
         record(flight_of(scenario), tmp_path / f"flight-{number}.tlog")
     run = advisor("batch", tmp_path, "-o", tmp_path / "out", "--workers", 1)
-    assert (
-        "Since flight 4 M_alpha is 35 % smaller; it looks like a shift of the centre of gravity."
-        in run.stdout
-    )
+    assert "Since flight 4 M_α is 35 % smaller; it looks like a shift of the centre of gravity." in run.stdout
     (row,) = pq.read_table(tmp_path / "out" / "changes.parquet").to_pylist()
     assert (row["since_flight"], row["parameter"], row["confirmed"]) == (4, "M_alpha", True)
 
@@ -264,3 +263,18 @@ def test_results_below_a_file_are_refused_in_one_sentence(
     assert run.returncode == 2
     assert run.stderr.startswith("-o: ")
     assert f"lies below the file {tmp_path / 'file'}" in run.stderr
+
+
+def test_each_flight_that_counts_has_a_report_that_is_written_once(tmp_path: Path) -> None:
+    log, other = tmp_path / "one.tlog", tmp_path / "two.tlog"
+    tasks = [ReportTask(one, Aircraft(), None, one.stem) for one in (log, other)]
+    asked: list[str] = []
+
+    def run(tasks: Sequence[ReportTask]) -> Iterator[tuple[ReportTask, str | Exception]]:
+        asked.extend(task.key for task in tasks)
+        yield from ((task, "page" if task.log == log else ValueError("no fit")) for task in tasks)
+
+    for _ in range(2):
+        assert write_reports(tasks, tmp_path, run) == {log: "reports/one.html"}
+    assert (tmp_path / "reports/one.html").read_text() == "page"
+    assert asked == ["one", "two", "two"]

@@ -32,7 +32,8 @@ def flown(number: int, elevator: float = 1.0) -> Analyzed:
         "airspeed_m_s": 25.0,
     }
     began_s = 1.8e9 + 86400.0 * number
-    return Analyzed(f"/logs/of a/campaign/flight-{number}.bin", "a.yaml", "", began_s, document, joint)
+    log = f"/logs/of a/campaign/flight-{number}.bin"
+    return Analyzed(log, "a.yaml", "", began_s, document, joint, "Talon")
 
 
 def unusable(log: str) -> Analyzed:
@@ -58,7 +59,7 @@ def test_a_row_is_a_flight_with_its_day_and_what_came_of_it(page: Page) -> None:
         "1",
         "/logs/of a/campaign/flight-1.bin",
         "2027-01-16 08:00",
-        "a.yaml px4 system 1",
+        "Talon (a.yaml px4 system 1)",
         "1 of 2",
         "Continue: the criterion is 40 %.",
     ]
@@ -75,13 +76,13 @@ def test_names_of_logs_and_reasons_are_text_only_and_nothing_is_asked_for(page: 
 
 def test_each_derivative_has_a_picture_with_every_flight(page: Page) -> None:
     pictures = [value for tag, name, value in page.attributes if (tag, name) == ("svg", "aria-label")]
-    assert pictures[0] == "Z_alpha, 1/s over flights"
+    assert pictures[0] == "Z_α, 1/s over flights"
     assert len(pictures) == 6
     assert page.attributes.count(("g", "class", "flight")) == 6 * 10
 
 
 def test_the_sentence_of_the_change_test_stands_with_a_mark_in_its_picture_only(page: Page) -> None:
-    assert "Since flight 6 M_delta_e is 21 % smaller" in page.text
+    assert "Since flight 6 M_δe is 21 % smaller" in page.text
     assert [name for _, name, _ in page.attributes].count("stroke-dasharray") == 1
 
 
@@ -100,8 +101,8 @@ def test_without_a_change_the_page_says_so(flights: int, sentence: str) -> None:
 def test_each_aircraft_has_trends_of_its_own() -> None:
     two = [flown(1), replace(flown(2), aircraft_file="b.yaml")]
     text = index_page(two)
-    assert "<h2>a.yaml px4 system 1</h2>" in text
-    assert "<h2>b.yaml px4 system 1</h2>" in text
+    assert "<h2>Talon (a.yaml px4 system 1)</h2>" in text
+    assert "<h2>Talon (b.yaml px4 system 1)</h2>" in text
     assert text.count("<svg") == 12
 
 
@@ -131,3 +132,10 @@ def test_the_page_overflows_nowhere_on_a_screen_and_on_a_phone(tmp_path: Path) -
 def test_the_table_of_flights_comes_before_the_courses() -> None:
     text = index_page(FLIGHTS)
     assert 0 < text.index('id="flights"') < text.index('class="gallery"')
+
+
+def test_a_flight_with_a_report_links_to_its_page() -> None:
+    log = Path(FLIGHTS[1].log)
+    page = Page.read(index_page(FLIGHTS, {log: "reports/a b.html"}))
+    assert [value for _, name, value in page.attributes if name == "href"] == ["reports/a%20b.html"]
+    assert page.tables["flights"][2][1] == str(log)

@@ -27,7 +27,7 @@ def test_a_loss_of_the_elevators_moment_is_told_since_its_first_flight() -> None
     assert found is not None
     assert found.since == 17
     assert [moved.parameter for moved in found.change.moved] == ["M_delta_e"]
-    assert found.sentence.startswith("Since flight 17 M_delta_e is 15 % smaller")
+    assert found.sentence.startswith("Since flight 17 M_δe is 15 % smaller")
     assert "a loss of the elevator's moment" in found.sentence
 
 
@@ -41,7 +41,7 @@ def test_two_flights_are_too_few_for_a_change() -> None:
 
 def test_two_flights_whose_intervals_lie_apart_are_told() -> None:
     told = lying_apart([(4, flight(1)), (7, flight(2, 0.5))])
-    assert told.startswith("M_delta_e of flights 4 and 7 lies apart: −7.")
+    assert told.startswith("M_δe of flights 4 and 7 lies apart: −7.")
     assert told.count("±") == 2
 
 

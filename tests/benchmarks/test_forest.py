@@ -16,7 +16,7 @@ TURBOPROP = Row(
 
 def test_an_estimate_stands_relative_to_its_published_value() -> None:
     (row,) = compared([TURBOPROP])
-    assert row.label == "twin turboprop: M_alpha"
+    assert row.label == "twin turboprop: M_α"
     assert (row.value, row.half, row.published_half) == pytest.approx((0.9, 0.02, 0.05))
 
 

@@ -6,6 +6,7 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft, SideControl
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.campaign.campaign import Campaign
+from advisor.flight.maneuvers.marks import Mark
 from advisor.flight.vehicle.imu_filters import filter_delay_s
 from advisor.report.lateral import lateral_document, lateral_lines
 from tests.flight.columns import Wire, heartbeat, plane_parameters
@@ -96,7 +97,7 @@ def test_the_joint_estimate_has_the_truth_in_its_intervals(state):
 
 
 def test_a_derivative_is_told_or_not_identifiable_and_never_both(state):
-    document = lateral_document(state)
+    document = lateral_document(state, AIRCRAFT)
     told = set(document["model"]) - {"reference_airspeed_m_s", "instruments"}
     assert told.isdisjoint(document["not_identifiable"])
     assert told | set(document["not_identifiable"]) == set(state.model.estimate.names)
@@ -104,7 +105,7 @@ def test_a_derivative_is_told_or_not_identifiable_and_never_both(state):
 
 
 def test_the_text_says_every_verdict_and_the_decision(state):
-    lines = list(lateral_lines(state))
+    lines = list(lateral_lines(state, AIRCRAFT))
     assert sum("doublet" in line and "✓" in line for line in lines) == 2
     assert any(line.startswith(("STOP", "CONTINUE")) for line in lines)
 
@@ -117,7 +118,7 @@ def test_the_result_does_not_depend_on_the_batches(both, state):
 
 def test_without_a_rudder_input_the_advice_is_a_rudder_doublet():
     state = ended(wired(rudder=False))
-    assert lateral_document(state)["not_identifiable"]["N_delta_r"].endswith("fly a rudder doublet")
+    assert lateral_document(state, AIRCRAFT)["not_identifiable"]["N_delta_r"].endswith("fly a rudder doublet")
     assert state.flight_test.next.advice.startswith("next: rudder doublet")
 
 
@@ -128,7 +129,7 @@ def test_a_campaign_that_is_not_asked_has_no_lateral_half(both):
 
 
 def test_every_interval_is_that_of_95_percent(state):
-    document = lateral_document(state)
+    document = lateral_document(state, AIRCRAFT)
     told = [
         one for name, one in document["model"].items() if "ci95" in (one if isinstance(one, dict) else {})
     ]
@@ -137,3 +138,31 @@ def test_every_interval_is_that_of_95_percent(state):
         assert one["ci95"] == pytest.approx(
             [one["value"] - 1.96 * one["std"], one["value"] + 1.96 * one["std"]], rel=1e-4
         )
+
+
+def marked(wire, *marks):
+    campaign = Campaign(AIRCRAFT, marks=marks, lateral=True)
+    campaign.feed(wire.columns(list(range(len(wire)))))
+    campaign.finish()
+    return campaign.state
+
+
+def test_a_mark_of_an_aileron_input_replaces_the_one_that_was_found(both, state):
+    told = marked(both, Mark(102.5, 112.0))
+    spans = [one.maneuver.span for one in told.lateral.maneuvers]
+    assert [span.kind for span in spans] == ["aileron doublet", "rudder doublet"]
+    assert spans[0].end_s == 112.0
+    assert spans[0].closed_by == "marked by hand"
+    assert spans[1] == state.maneuvers[1].maneuver.span
+
+
+def test_a_mark_without_elevator_is_no_manoeuvre_of_the_elevator(both):
+    assert marked(both, Mark(102.5, 112.0)).maneuvers == ()
+
+
+def test_an_uncalibrated_aileron_is_per_assumed_degree(both):
+    notes = marked(both).elevator_notes
+    said = [note for note in notes if note.startswith("No aileron.calibration")]
+    assert len(said) == 1
+    assert "Y_δa, L_δa and N_δa are per assumed degree." in said[0]
+    assert any(note.startswith("No rudder.calibration") for note in notes)

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from advisor.cli.analyze import _no_lateral
+from advisor.analysis.axes import no_lateral
 from advisor.flight.stream.flights import FlightHeard
 from tests.conftest import Advisor
 from tests.flights import TWO, recorded
@@ -17,7 +17,7 @@ def test_a_log_whose_ailerons_did_not_move_asks_for_aileron_and_rudder_inputs(ad
 
 
 def test_a_log_that_names_no_aileron_asks_for_its_output() -> None:
-    asked = _no_lateral(FlightHeard(0, "flight.tlog", None, 60.0, channels={}))
+    asked = no_lateral(FlightHeard(0, "flight.tlog", None, 60.0, channels={}))
     assert "State aileron.output and rudder.output" in asked.fix
 
 

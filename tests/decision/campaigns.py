@@ -56,6 +56,13 @@ def with_residual(estimate: Estimate, residual: FloatArray) -> Estimate:
     return replace(estimate, fits=(fits,))
 
 
+def at_alpha(estimate: Estimate, low_deg: float, high_deg: float) -> Estimate:
+    """The same estimate from a manoeuvre between these angles of attack."""
+    measured = np.radians(np.linspace(low_deg, high_deg, SAMPLES))
+    alpha = replace(estimate.fits[0]["alpha"], measured=measured)
+    return replace(estimate, fits=({**estimate.fits[0], "alpha": alpha},))
+
+
 def with_change(parameter: str, factor: float) -> FloatArray:
     """The reference aircraft with one parameter multiplied."""
     theta = THETA.copy()

@@ -131,7 +131,7 @@ def test_the_flight_test_warns_whichever_rule_decides(rng: np.random.Generator) 
     history = flown(rng, THETA, THETA, THETA, less, less)
     for rule in ("continuous", "separate", "information"):
         warnings = flight_test(history, CampaignPlan(rule=rule)).warnings
-        assert any(w.startswith("Something changed after manoeuvre 3: M_alpha -20 %") for w in warnings)
+        assert any(w.startswith("Something changed after manoeuvre 3: M_α -20 %") for w in warnings)
 
 
 def test_manoeuvres_are_numbered_as_flown_even_with_unusable_ones_between(rng: np.random.Generator) -> None:

@@ -104,9 +104,9 @@ def test_the_band_of_the_response_must_be_within_the_tolerance() -> None:
 def test_a_weak_parameter_that_moves_no_prediction_holds_nobody_up() -> None:
     weak = estimate(THETA * [1, 1, 1, 1e-3, 1, 1, 1, 1], std_percent=1.0)
     verdict = flight_test(campaign([weak] * 3), PLAN)
-    interval = next(line for line in verdict.evidence if "Z_delta_e" in line)
+    interval = next(line for line in verdict.evidence if "Z_δe" in line)
     assert verdict.decision == "stop"
-    assert "Z_delta_e 0.000676 ± 0.0076" in interval  # eleven times its value
+    assert "Z_δe 0.0007 ± 0.0076" in interval  # eleven times its value
 
 
 def test_a_named_parameter_must_be_within_its_own_tolerance() -> None:
@@ -206,7 +206,7 @@ def test_a_small_error_of_what_no_manoeuvre_could_tell_is_no_knowledge() -> None
     blind = replace(estimate(), not_identifiable={"M_alpha": "not identifiable while the servo is unknown"})
     verdict = flight_test([CandidateManeuver(blind)] * 3, PLAN)
     assert verdict.decision == "continue"
-    assert verdict.sentence == "CONTINUE: M_alpha not identifiable while the servo is unknown."
+    assert verdict.sentence == "CONTINUE: M_α not identifiable while the servo is unknown."
     assert (
         flight_test(
             [CandidateManeuver(blind), CandidateManeuver(estimate()), CandidateManeuver(estimate())], PLAN

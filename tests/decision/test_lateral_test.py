@@ -1,6 +1,6 @@
 import numpy as np
 
-from advisor.aircraft.aircraft import CampaignPlan
+from advisor.aircraft.aircraft import Aircraft
 from advisor.decision.lateral_test import lateral_flight_test, lateral_knowledge
 from advisor.model.lateral import LATERAL, Trim
 from advisor.oem.estimate import Estimate
@@ -9,7 +9,7 @@ from advisor.oem.lateral_modes import lateral_modes
 from tests.oem.lateral_builders import JET, vector
 
 N = len(LATERAL.shared)
-PLAN = CampaignPlan()
+AIRCRAFT = Aircraft()
 
 
 def told(*flown, percent=2.0, off=0.0):
@@ -26,30 +26,32 @@ def told(*flown, percent=2.0, off=0.0):
 
 
 def test_aileron_and_rudder_within_their_tolerance_stop_the_test():
-    verdict = lateral_flight_test([told("aileron"), told("rudder")], PLAN)
+    verdict = lateral_flight_test([told("aileron"), told("rudder")], AIRCRAFT)
     assert verdict.decision == "stop"
     assert verdict.stopped_at == 2
-    assert verdict.next is None
+    assert verdict.next.advice == "no further manoeuvre needed"
 
 
 def test_the_aileron_alone_does_not_stop_the_test_and_the_rudder_is_advised():
-    verdict = lateral_flight_test([told("aileron")] * 5, PLAN)
+    verdict = lateral_flight_test([told("aileron")] * 5, AIRCRAFT)
     assert verdict.decision == "continue"
     assert verdict.criterion_percent is None
     assert verdict.sentence == "CONTINUE: no accepted manoeuvre has moved the rudder."
-    assert verdict.next.advice.startswith("next: rudder doublet, 1.8 s steps, then hands and feet still")
+    assert verdict.next.advice.startswith(
+        "next: rudder doublet, 1.8 s steps, 10 % pedal, to begin gently, then hands"
+    )
 
 
 def test_without_any_manoeuvre_the_aileron_comes_first():
-    assert lateral_flight_test([], PLAN).next.advice.startswith("next: aileron doublet")
+    assert lateral_flight_test([], AIRCRAFT).next.advice.startswith("next: aileron doublet")
 
 
 def test_a_rejected_manoeuvre_tells_nothing():
-    assert lateral_flight_test([told("aileron"), None], PLAN).decision == "continue"
+    assert lateral_flight_test([told("aileron"), None], AIRCRAFT).decision == "continue"
 
 
 def test_a_wide_error_delays_the_stop_and_is_named():
-    verdict = lateral_flight_test([told("aileron", percent=20.0), told("rudder", percent=20.0)], PLAN)
+    verdict = lateral_flight_test([told("aileron", percent=20.0), told("rudder", percent=20.0)], AIRCRAFT)
     assert verdict.decision == "continue"
     assert verdict.criterion_percent > 100.0
     assert "of its tolerance" in verdict.sentence

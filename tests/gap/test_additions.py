@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.gap.candidates.variant import Variant
+from advisor.gap.kit.variant import Variant
 from advisor.gap.search.acceptance import JudgedAddition, least_offset_rad
 
 LAG = Variant(
@@ -61,6 +61,11 @@ def test_a_certain_effect_needs_a_smaller_change(gain, accepted):
 @pytest.mark.parametrize(("gain", "accepted"), [(19.0, False), (21.0, True)])
 def test_an_effect_that_one_manoeuvre_shows_needs_more_likelihood(gain, accepted):
     assert replace(PLAIN, gain=gain, sole_maneuver=2, support=0.0).is_accepted == accepted
+
+
+@pytest.mark.parametrize(("gain", "accepted"), [(29.0, False), (31.0, True)])
+def test_what_moves_with_the_air_needs_more_likelihood(gain, accepted):
+    assert replace(PLAIN, gain=gain, with_the_air=True).is_accepted == accepted
 
 
 @pytest.mark.parametrize(

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.gap.candidates.traits import OF_ONE_IMU
 from advisor.gap.diagnose import diagnose
+from advisor.gap.effects import EFFECTS
 from tests.gap.generator import Setup, fly
 
 # One diagnosis serves two tests.
@@ -40,7 +40,8 @@ def test_the_lateness_of_an_autopilots_own_angle_of_attack_is_no_gap(alike):
 
 def test_what_one_imu_cannot_show_of_itself_is_said_to_be_unseen(alike):
     unseen = {u.effect: u.would_need for u in alike.cannot_see}
-    assert {effect: unseen[effect] for effect in OF_ONE_IMU} == dict.fromkeys(OF_ONE_IMU, "a vane")
+    hidden = [name for name, effect in EFFECTS.items() if effect.of_one_imu]
+    assert {name: unseen[name] for name in hidden} == dict.fromkeys(hidden, "a vane")
 
 
 @pytest.mark.study

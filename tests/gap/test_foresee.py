@@ -11,8 +11,8 @@ from rich.console import Console
 
 from advisor.aircraft.aircraft import PARAMETERS, Aircraft
 from advisor.cli.group import advisor
-from advisor.gap.candidates.traits import TRAITS
 from advisor.gap.diagnose import diagnose
+from advisor.gap.effects import EFFECTS
 from advisor.gap.foresight.needs import need_of
 from advisor.gap.foresight.plan import foresee_flights, foresee_plan
 from advisor.gap.records.prepare import prepare
@@ -34,7 +34,7 @@ def foreseen():
 
 
 def test_every_effect_of_the_catalogue_is_foreseen_in_its_order(foreseen):
-    assert tuple(foreseen) == tuple(TRAITS)
+    assert tuple(foreseen) == tuple(EFFECTS)
 
 
 @pytest.mark.parametrize(
@@ -47,7 +47,7 @@ def test_every_effect_of_the_catalogue_is_foreseen_in_its_order(foreseen):
 )
 def test_what_the_aircraft_file_has_is_foreseen_beyond_it_or_taken_as_it_stands(known, sought):
     found = {f.effect: f for f in foresee_plan(replace(PLANE, effects=known), PLAN, 50.0, 2.0)}
-    assert tuple(found) == tuple(TRAITS)
+    assert tuple(found) == tuple(EFFECTS)
     effect = found[next(iter(known))]
     assert np.isfinite(effect.smallest) == sought
     assert ("in the aircraft file" in effect.add) != sought
@@ -161,7 +161,7 @@ def test_json_has_every_effect_in_si_and_null_for_what_cannot_be_seen(tmp_path):
     document = json.loads(result.stdout)
     assert breaches("foresee", document) == []
     effects = {e["effect"]: e for e in document["effects"]}
-    assert set(effects) == set(TRAITS)
+    assert set(effects) == set(EFFECTS)
     assert effects["ground_effect"]["smallest"] is None
     assert 0.005 < effects["transport_delay"]["smallest"] < 0.05
     assert {"effect", "parameter", "smallest", "add", "confused_with"} <= set(effects["gust"])

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from advisor.gap.alternative import Alternative
-from advisor.gap.candidates.traits import TRAITS
 from advisor.gap.document import gap_document
+from advisor.gap.effects import EFFECTS
 from advisor.gap.evidence.course import drift_and_step
 from advisor.gap.evidence.measured import FullFit, Measured, QuickFit, Residual
 from advisor.gap.evidence.quantities import QUANTITIES
-from advisor.gap.evidence.rows import BLOCKS, Row, rows_of
+from advisor.gap.evidence.rows import UNKNOWN_IN, Row, rows_of
 from advisor.gap.judge.logit import Logit
 from advisor.gap.judge.posterior import posterior
 from advisor.gap.judge.prior import FIELD, FieldPrior, field_prior
@@ -40,7 +40,7 @@ def residual(power=1.0, probes=0.0, of_peak=0.002):
     """Return a residual with equal power in all channels and manoeuvres."""
     return Residual(
         power=np.full(4, power), by_maneuver=np.full((6, 4), power), of_peak=np.full(4, of_peak),
-        activity=np.full(4, power), probes={b: (probes, 0.1) for b in BLOCKS if b != "timing"},
+        activity=np.full(4, power), probes={b: (probes, 0.1) for b in UNKNOWN_IN if b != "timing"},
     )  # fmt: skip
 
 
@@ -50,7 +50,7 @@ def still(**changes):
     measured = Measured(
         channels=CHANNELS, samples=np.full((6, 4), 300.0), base=calm, last=calm, base_gap=0.0,
         base_held=np.full((6, 4), 1.0), named_gain=0.0, fitted={}, added={}, has_file=True,
-        screened={e: QuickFit(-3.0, 0.0, 0.1) for e, t in TRAITS.items() if t.block != "air"},
+        screened={e: QuickFit(-3.0, 0.0, 0.1) for e, t in EFFECTS.items() if t.block != "air"},
         file_distance=3.0,
     )  # fmt: skip
     return replace(measured, **changes)
@@ -76,14 +76,14 @@ def delayed():
 def test_every_alternative_has_a_row_and_every_row_the_same_columns():
     rows = posterior(rows_of(delayed()), FIELD).evidence
     labels = {one.alternative.label for one in rows}
-    assert labels == {"none", "parameters", *TRAITS, *(f"unknown@{block}" for block in BLOCKS)}
+    assert labels == {"none", "parameters", *EFFECTS, *(f"unknown@{block}" for block in UNKNOWN_IN)}
     names = [quantity.name for quantity in QUANTITIES]
     assert all([column.name for column in one.columns] == names for one in rows)
     assert all(column.sentence.endswith(".") for column in rows[0].columns)
 
 
 def test_no_column_names_an_effect():
-    assert not {quantity.name for quantity in QUANTITIES} & set(TRAITS)
+    assert not {quantity.name for quantity in QUANTITIES} & set(EFFECTS)
 
 
 def test_no_row_has_a_value_without_a_column():

@@ -38,8 +38,8 @@ def test_a_late_alpha_is_measured_with_its_error(late_s):
     found = checked(skew={"alpha": late_s})
     assert abs(found.lag_s - late_s) < 0.002 + 3 * found.lag_std_s
     assert found.finding == ("late" if late_s > 0 else "early")
-    assert all(name in found.sentence for name in ("Z_delta_e", "Z_q", "Z_alpha", "M_q"))
-    assert "not M_alpha and M_delta_e" in found.sentence
+    assert all(name in found.sentence for name in ("Z_δe", "Z_q", "Z_α", "M_q"))
+    assert "not M_α and M_δe" in found.sentence
 
 
 def test_a_scale_error_is_not_taken_for_a_lag():

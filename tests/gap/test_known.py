@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft, Elevator
-from advisor.aircraft.aircraft_effects import LEAST, mistakes_in
+from advisor.aircraft_file.effects import mistakes_in
 from advisor.aircraft_file.read import parse_aircraft
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import beyond_known, together, with_known
-from advisor.gap.candidates.traits import OF_ONE_FLIGHT, TRAITS
 from advisor.gap.diagnose import diagnose
+from advisor.gap.effects import EFFECTS
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.records.prepare import prepare
 from advisor.gap.simulator.layout import ENTRIES, INDEX
@@ -74,7 +74,7 @@ def test_numbers_of_the_file_become_the_simulations_own(late):
         assert np.count_nonzero(row) == len(expected)
 
 
-@pytest.mark.parametrize("effect", LEAST)
+@pytest.mark.parametrize("effect", EFFECTS)
 def test_a_file_may_have_any_effect_of_the_catalogue(effect):
     flown = fly(Setup(maneuvers=3, heights_m=(5.0, 9.0, 7.0), thrust_amplitude=1.0, speed_change=0.1))
     moved = [
@@ -84,7 +84,7 @@ def test_a_file_may_have_any_effect_of_the_catalogue(effect):
         for k, m in enumerate(flown)
     ]
     flights = prepare(moved, Aircraft())
-    effects = {effect: dict.fromkeys(LEAST[effect], 0.02)}
+    effects = {effect: dict.fromkeys(EFFECTS[effect].keys, 0.02)}
     problem = EffectProblem(
         flights, with_known(np.zeros(len(ENTRIES)), effects, flights, variants_for(flights))
     )
@@ -105,7 +105,7 @@ def everything_tried():
 def test_what_was_found_is_read_back_from_the_improved_file_as_it_was_fitted():
     flights, tried = everything_tried()
     assert {"about_rad"} <= {name for v in tried for name in v.fixed}
-    for variant in [v for v in tried if v.effect not in OF_ONE_FLIGHT]:
+    for variant in [v for v in tried if not EFFECTS[v.effect].of_one_flight]:
         sizes = np.array(variant.starts[0]) + 0.01 * np.array([1.0, 2.0, 3.0, 4.0])[: len(variant.names)]
         in_file = parameters_of(variant, sizes, np.zeros(len(sizes)))
         fitted = np.zeros((len(flights), len(ENTRIES)))
@@ -126,8 +126,8 @@ def test_every_description_of_an_effect_is_one_that_the_simulator_can_fly():
 
 def test_every_effect_stands_in_the_block_that_the_catalogue_says():
     _, tried = everything_tried()
-    assert {v.effect for v in tried} == TRAITS.keys() - {"alpha_bias", "turbulence", "gust"}
-    assert all(v.block == TRAITS[v.effect].block for v in tried)
+    assert {v.effect for v in tried} == EFFECTS.keys() - {"alpha_bias", "turbulence", "gust"}
+    assert all(v.block == EFFECTS[v.effect].block for v in tried)
 
 
 def test_a_curve_keeps_the_angle_that_the_file_states_wherever_it_is_flown():

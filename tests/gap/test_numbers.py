@@ -84,7 +84,7 @@ def test_wrong_numbers_that_make_nearly_all_of_a_gap_are_the_answer_though_a_mom
     found = diagnose(fly(Setup(maneuvers=6, switches={"cm_a2": 1.6}, seed=5)), wrong)
     assert [c.effect for c in found.causes if c.present] == ["nonlinear_pitching_moment"]
     assert found.verdict == "parameters"
-    assert "wrong parameters" in found.sentence
+    assert "wrong numbers" in found.sentence
     assert "nonlinear pitching moment" in found.sentence
     assert found.shrink.by_numbers_percent > 98.0
 

@@ -10,7 +10,7 @@ from advisor.flight.instruments.lateness import lateness_std
 from advisor.flight.signals.derived_alpha import DERIVED_ALPHA
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.candidates.input import latency
+from advisor.gap.candidates.nuisances import latency
 from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.noise.shown_gust import largest_gust

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from advisor.gap.candidates.variant import Variant
+from advisor.gap.kit.variant import Variant
 from advisor.gap.search.score import price_of
 
 

@@ -1,20 +1,23 @@
 """The answer of a diagnosis as an engineer reads it: which numbers, how large, what limits it, what next."""
 
 from dataclasses import replace
+from math import pi
 from pathlib import Path
 
 import pytest
 
+from advisor.gap.alternative import Contribution
 from advisor.gap.decision import Decision
 from advisor.gap.document import gap_document
 from advisor.gap.result import ComparedDerivative, Shrink, Value
-from advisor.report.gap_decisions import in_words
+from advisor.report.gap_decisions import decision_in_words
 from advisor.report.gap_fidelity import peaks
 from advisor.report.gap_parameters import changed, changes, limits_of
+from advisor.report.gap_reasons import alternatives_of, heading_of, how_sure, in_percent, weighed
 from advisor.report.gap_steps import next_steps
 from advisor.report.page.gap import shown_causes
 from advisor.report.page.gap_picture import write_gap_picture
-from tests.gap.test_report_screen import DELAY, UNLIKELY, diagnosis, printed
+from tests.gap.test_report_screen import DELAY, EVIDENCE, UNLIKELY, diagnosis, printed
 
 STIFFER = ComparedDerivative("M_alpha", -44.6, Value(-34.3, 0.36))
 SAME = ComparedDerivative("Z_alpha", -8.0, Value(-8.1, 0.2))
@@ -115,18 +118,56 @@ def test_an_effect_of_no_probability_has_no_row_on_the_page():
     ("decision", "said"),
     [
         (
-            Decision("structural_mode", "range", 0.0, 1.0, "inside the searched range"),
-            "structural mode: rejected, the value lies at the edge of the searched range",
+            Decision("structural_mode", "range", 0.0, 1.0, "", "omega_rad_s", (2 * pi * 2.0, 2 * pi * 9.0)),
+            "structural mode: rejected, its frequency lies at the edge of the searched range (2 to 9 Hz)",
         ),
         (
-            Decision("attitude_skew", "hold-out", 0.75, 1.0, "standard errors"),
-            "attitude skew: rejected, held-out manoeuvres improve by 0.75 standard errors (at least 1)",
+            Decision("actuator_lag", "range", 1.0, 1.0, ""),
+            "actuator lag: passed, its values lie inside the searched range",
         ),
         (
-            Decision("actuator_lag", "size", 0.125, 0.01, "of lag_s"),
-            "actuator lag: passed, the size is 0.125 of lag_s (at least 0.01)",
+            Decision("attitude_skew", "hold-out", 0.75, 1.0, ""),
+            "late attitude stamps: rejected, it improves held-out manoeuvres by 0.75 standard errors "
+            "(at least 1)",
+        ),
+        (
+            Decision("actuator_lag", "size", 0.125, 0.01, "", "lag_s"),
+            "actuator lag: passed, its lag is 125 ms (at least 10 ms)",
+        ),
+        (
+            Decision("actuator_rate_limit", "size", 0.125, 0.01, ""),
+            "actuator rate limit: passed, its size is 0.125 (at least 0.01)",
+        ),
+        (
+            Decision("force_equation", "place", 0.3, 0.5, ""),
+            "something without a name in the lift: rejected, a disturbance there explains a share of 0.3 of "
+            "the residual (at least 0.5)",
+        ),
+        (
+            Decision("parameters", "gap", 0.01, 0.05, ""),
+            "wrong numbers: rejected, the given derivatives leave a gap of 0.01 times the noise "
+            "(at least 0.05)",
         ),
     ],
 )
 def test_a_decision_is_a_sentence_with_its_number_and_its_limit(decision: Decision, said: str):
-    assert in_words(decision) == said
+    assert decision_in_words(decision) == said
+
+
+@pytest.mark.parametrize(
+    ("probability", "said"), [(0.999, ">99 %"), (0.934, "93 %"), (0.006, "1 %"), (0.004, "<1 %")]
+)
+def test_a_probability_is_never_shown_as_0_or_100_percent(probability: float, said: str):
+    assert in_percent(probability) == said
+
+
+def test_the_reasons_of_the_document_end_with_their_sum_in_odds():
+    reasons = (Contribution("fit_gain", 2.0, "gain"), Contribution("rest", -0.5, "rest"))
+    found = gap_document(diagnosis(why=reasons, rival="actuator_lag", evidence=EVIDENCE))
+    assert heading_of(found).startswith("why transport delay, and not actuator lag")
+    assert weighed((one["nats"], one["text"]) for one in found["why"]) == [
+        ("+2.0", "gain"),
+        ("−0.5", "rest"),
+        ("+1.5", "together: 4.5 to 1 for the answer"),
+    ]
+    assert how_sure(alternatives_of(found)).startswith("Probability by the evidence: transport delay 82 %,")

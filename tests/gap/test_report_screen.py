@@ -8,7 +8,7 @@ import pytest
 from rich.console import Console
 
 from advisor.flight.instruments.kinematics import KinematicCheck
-from advisor.gap.alternative import Contribution
+from advisor.gap.alternative import Alternative, AlternativeEvidence, Contribution
 from advisor.gap.result import Cause, Diagnosis, Gap, Shrink, Trace, Unseen, Value, Where, Yardsticks
 from advisor.report.gap_causes import confusion_sentence
 from advisor.report.gap_screen import GapScreen
@@ -25,6 +25,13 @@ CURVED = Cause(
 )  # fmt: skip
 UNLIKELY = Cause(
     "elevator_nonlinearity", "moment_equation", 0.002, {"M_delta2": Value(1.0, 1.0)}, (), "", 9.0
+)
+
+
+EVIDENCE = (
+    AlternativeEvidence(Alternative("effect", "transport_delay", "input"), (), 0.818),
+    AlternativeEvidence(Alternative("effect", "actuator_lag", "input"), (), 0.18),
+    AlternativeEvidence(Alternative("unknown", "unknown", "force_equation"), (), 0.002),
 )
 
 
@@ -69,10 +76,17 @@ def test_why_sets_the_answer_against_its_rival_with_the_odds_of_the_sum():
         Contribution("fit_gain", 2.0, "gain in the fit: 9 against 4"),
         Contribution("rest", -0.5, "rest"),
     )
-    lines = printed(diagnosis(why=reasons, rival="actuator_lag"), 100, why=True)
-    assert any("transport delay against actuator lag" in line for line in lines)
+    found = diagnosis(why=reasons, rival="actuator_lag", evidence=EVIDENCE)
+    lines = printed(found, 100, why=True)
+    assert any("why transport delay, and not actuator lag" in line for line in lines)
     assert any("+2.0  gain in the fit: 9 against 4" in line for line in lines)
+    assert any("−0.5  rest" in line for line in lines)
     assert any("+1.5  together: 4.5 to 1 for the answer" in line for line in lines)
+
+
+def test_the_box_says_how_sure_the_answer_is_without_alternatives_of_0_percent():
+    text = " ".join(printed(diagnosis(evidence=EVIDENCE), 140))
+    assert "Probability by the evidence: transport delay 82 %, actuator lag 18 %." in text
 
 
 @pytest.mark.parametrize("columns", [80, 140])
@@ -211,13 +225,12 @@ def test_sizes_have_units_and_the_digits_of_their_interval(parameter, value, std
 
 
 def test_several_sizes_of_one_cause_are_named():
-    assert [line.split()[0] for line in sizes_of(CURVED)] == ["M_alpha2", "M_alpha3"]
+    assert [line.split()[0] for line in sizes_of(CURVED.parameters)] == ["M_α²", "M_α³"]
 
 
 def test_a_parameter_that_only_says_that_something_is_so_is_put_in_words():
     sizes = {"skew_s": Value(0.06, 0.002), "with_pitch_rate": Value(1.0, 0.0)}
-    late = Cause("attitude_skew", "timing", 0.9, sizes, (), "", 0.1)
-    assert sizes_of(late) == ["+60.0 ± 3.9 ms", "the pitch rate, too"]
+    assert sizes_of(sizes) == ["+60.0 ± 3.9 ms", "the pitch rate, too"]
 
 
 @pytest.mark.parametrize(

@@ -31,15 +31,6 @@ def late():
     return problem, held, addition(problem, plain, held, fitted, variant.effect, effective)
 
 
-def test_stamps_that_jitter_hide_a_time_unless_it_is_plain(late):
-    *_, judged = late
-    hidden = replace(judged, value=np.array([0.012]), smallest=0.013)
-    assert replace(hidden, gain=200.0, removed=6.0 * judged.least).large_enough
-    assert not replace(hidden, gain=50.0, removed=20.0 * judged.least).large_enough
-    assert not replace(hidden, gain=200.0, removed=2.0 * judged.least).large_enough
-    assert not replace(hidden, gain=200.0, removed=20.0 * judged.least, value=np.array([0.006])).large_enough
-
-
 def test_ice_takes_lift_and_what_leaves_the_lift_alone_is_none(late):
     problem, _, judged = late
     ice = next(v for v in variants_for(problem.flights) if v.effect == "icing")
@@ -77,17 +68,6 @@ def test_ice_that_explains_nearly_as_much_as_more_mass_is_tied_with_it(late, les
     names, ways = indistinguishable_from(mass, [mass, ice], ("alpha", "q", "a_z", "theta"))
     assert names == (("icing",) if tied else ())
     assert ("fuel" in ways) == tied
-
-
-def test_what_moves_with_the_air_is_named_beside_it_where_it_is_certain_or_plain_and_alone(late):
-    *_, judged = late
-    plain = replace(judged, with_the_air=True, gain=18.0, removed=20.0 * judged.least)
-    assert plain.is_accepted
-    assert replace(plain, alone=False, gain=35.0).is_accepted
-    assert not replace(plain, alone=False).is_accepted
-    assert not replace(plain, removed=2.0 * judged.least).is_accepted
-    assert not replace(plain, sigmas=4.0).is_accepted
-    assert not replace(plain, sole_maneuver=2).is_accepted
 
 
 def test_predictions_are_alike_where_they_differ_by_less_than_any_description_errs(late):

@@ -5,8 +5,7 @@ from dataclasses import replace
 import pytest
 
 from advisor.aircraft.aircraft import Accelerometer, Aircraft, Alpha
-from advisor.aircraft.aircraft_effects import LEAST
-from advisor.gap.candidates.traits import TRAITS
+from advisor.gap.effects import EFFECTS
 from advisor.gap.result import Cause, Value, Where
 from advisor.gap.verdict.statements import in_simulator, what
 from advisor.gap.verdict.text import sentence_of
@@ -29,7 +28,7 @@ def test_two_places_that_are_as_likely_are_both_said(moment, places):
 
 def found(effect, **sizes):
     parameters = {name: Value(size, 0.0) for name, size in sizes.items()}
-    return Cause(effect, TRAITS[effect].block, 1.0, parameters, (), "", 0.0, True)
+    return Cause(effect, EFFECTS[effect].block, 1.0, parameters, (), "", 0.0, True)
 
 
 @pytest.mark.parametrize(
@@ -66,10 +65,10 @@ def test_what_the_simulator_has_some_of_already_is_said_as_what_it_lacks(aircraf
     assert what(found("alpha_vane_offset", arm_m=0.1), in_simulator(aircraft)) == f"The vane {expected}"
 
 
-@pytest.mark.parametrize("effect", TRAITS)
+@pytest.mark.parametrize("effect", EFFECTS)
 def test_every_effect_of_the_catalogue_has_a_statement_for_either_sign(effect):
     for sign in (1.0, -1.0):
-        sizes = dict.fromkeys(LEAST[effect], sign * 0.02)
+        sizes = dict.fromkeys(EFFECTS[effect].keys, sign * 0.02)
         assert "{" not in what(found(effect, **sizes))
 
 

@@ -192,10 +192,9 @@ def test_what_the_air_speed_tells_takes_more_in_air_that_moves_with_it():
         power = [v for v in variants_for(problem.flights) if v.effect == "airspeed_variation"]
         found = Screen(problem, plain).quick_fits(power)
         [judged] = judge(problem, plain, hold_out(problem, plain), found)
-        needed[gust_std] = judged.least_gain, replace(judged, alone=False).least_gain
-    assert needed[0.0] == (LEAST_GAIN, LEAST_GAIN)
-    # Less where nothing else was named and the forces are as plainly off as here.
-    assert needed[0.3][1] >= 4.0 * LEAST_GAIN > needed[0.3][0] >= 2.0 * LEAST_GAIN
+        needed[gust_std] = judged.least_gain
+    assert needed[0.0] == LEAST_GAIN
+    assert needed[0.3] >= 4.0 * LEAST_GAIN
 
 
 def test_a_power_of_the_speed_is_not_looked_for_where_the_speed_hardly_moved():

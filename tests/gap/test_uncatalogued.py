@@ -7,9 +7,9 @@ import pytest
 from scipy.signal import butter, lfilter, sosfiltfilt
 
 from advisor.aircraft.aircraft import PARAMETERS, Aircraft, Alpha
-from advisor.gap.candidates.between import shift_moments
 from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.prior import ERROR_IF_WRONG, log_prior, prior_precision
+from advisor.gap.kit.between import shift_moments
 from advisor.gap.records.prepare import prepare
 from advisor.gap.records.smoothness import is_filtered, is_smoothed
 from advisor.gap.simulator.layout import ENTRIES, INDEX

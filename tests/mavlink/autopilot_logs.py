@@ -21,6 +21,8 @@ FORMATS = {
     "GPS": (14, "QBBIHBcLLeffffB", "TimeUS,I,Status,GMS,GWk,NSats,HDop,Lat,Lng,Alt,Spd,GCrs,VZ,Yaw,U"),
     "POS": (15, "QLLfff", "TimeUS,Lat,Lng,Alt,RelHomeAlt,RelOriginAlt"),
     "RCIN": (16, "QHHHHHHHHHHHHHH", "TimeUS,C1,C2,C3,C4,C5,C6,C7,C8,C9,C10,C11,C12,C13,C14"),
+    "SIDS": (17, "QBfffffff", "TimeUS,Ax,Mag,FSt,FSp,TFin,TC,TR,TFout"),
+    "SIDD": (18, "Qfffffffff", "TimeUS,Time,Targ,F,Gx,Gy,Gz,Ax,Ay,Az"),
 }
 _STRUCT = {
     "B": "B", "M": "B", "h": "h", "H": "H", "i": "i", "I": "I", "Q": "Q", "f": "f",

@@ -20,7 +20,7 @@ def test_an_excluded_lag_is_said_with_its_size_and_the_line_for_the_file():
     told = InstrumentEstimate("servo_lag_s", 0.22, 0.004, 0.14, 0.22, 0.004, contradicts=True)
     found = only(told, Aircraft(elevator=Elevator(lag_s=0.14)))
     assert (found.code, found.stated, found.value) == ("elevator_lag_s", 0.14, 0.22)
-    assert found.text == "the surface answers 0.08 s later than elevator.lag_s says"
+    assert found.text == "the surface responds 0.08 s later than elevator.lag_s says"
     assert found.fix == "elevator: {lag_s: 0.220}"
     assert found.contradicts
     assert not found.refuses

@@ -133,7 +133,7 @@ def test_natural_sizes_follow_the_poles_and_the_control_power():
 def test_correlated_errors_are_named_in_words_and_in_the_document():
     found = estimate(flown(UAV, unit_s=0.4, noise=0.02), AIRCRAFT)
     assert [pair[:2] for pair in found.correlated] == [("M_q", "M_delta_e")]
-    assert any("correlated above 0.9: M_q and M_delta_e" in note for note in found.notes)
+    assert any("correlated above 0.9: M_q and M_δe" in note for note in found.notes)
     document = identifiability(found)
     assert document["condition"] > 1.0
     assert document["correlated"][0]["parameters"] == ["M_q", "M_delta_e"]

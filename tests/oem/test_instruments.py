@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Accelerometer, Aircraft, Alpha, Elevator
+from advisor.aircraft.aircraft import PARAMETERS, Accelerometer, Aircraft, Alpha, Elevator
 from advisor.flight.signals.record import Channel
 from advisor.oem.airspeed import airspeed
 from advisor.oem.estimate import Estimate, NoEstimate
@@ -109,6 +109,31 @@ def test_a_vane_ahead_of_the_centre_of_gravity_is_moved_back_when_its_arm_is_kno
     assert left.fits[0]["alpha"].r2 > 0.999999
     np.testing.assert_allclose(left.theta[[5, 7]], UAV[[5, 7]], rtol=2e-3)
     assert left.value("Z_delta_e") == pytest.approx(UAV[3] - 0.8 / SPEED * UAV[7], rel=1e-2)
+
+
+def without_force(flight, provenance):
+    """The flight without a specific force, its angle of attack of this provenance."""
+    channels = {name: c for name, c in flight.channels.items() if name != "a_z"}
+    alpha = replace(channels["alpha"], provenance=provenance)
+    return replace(flight, channels={**channels, "alpha": alpha})
+
+
+def test_without_a_force_the_intervals_hold_a_vane_of_unknown_arm():
+    found = estimate(without_force(equipped(vane_m=2.5, noise=0.01), "vane"), aircraft())
+    for name in ("Z_alpha", "M_alpha", "M_q", "M_delta_e"):
+        true = UAV[PARAMETERS.index(name)]
+        assert abs(found.value(name) - true) < 1.96 * found.std[PARAMETERS.index(name)]
+    assert any("give alpha.vane_arm_m" in note for note in found.notes)
+
+
+def test_without_a_force_a_known_arm_or_a_computed_alpha_keeps_the_intervals_narrow():
+    q = PARAMETERS.index("M_q")
+    flight = equipped(noise=0.01)
+    open_arm = estimate(without_force(flight, "vane"), aircraft()).std[q]
+    computed = estimate(without_force(flight, "derived"), aircraft()).std[q]
+    stated = estimate(without_force(flight, "vane"), aircraft(alpha=Alpha(vane_arm_m=0.0))).std[q]
+    assert computed < 0.5 * open_arm
+    assert stated < 0.5 * open_arm
 
 
 def test_a_known_servo_is_applied_to_the_command_before_the_fit():

@@ -4,15 +4,17 @@ import numpy as np
 import pytest
 
 from advisor.model.lateral import LATERAL
+from advisor.oem.extra import Prior
 from advisor.oem.lateral_estimate import (
     SIDE_FORCE_STD,
     LateralSolution,
     lateral_not_identifiable,
     solve_lateral,
 )
+from advisor.oem.lateral_instruments import FARTHEST_S, Nuisance
 from advisor.oem.lateral_problem import LateralProblem
 from advisor.oem.rows import Signal
-from tests.oem.lateral_builders import JET, aileron_doublet, both_inputs, flown, rudder_doublet, vector
+from tests.oem.lateral_builders import JET, aileron_doublet, both_inputs, flown, rudder_doublet, steps, vector
 
 T = np.arange(0.0, 15.0, 0.025)
 WITHOUT_VANE = ("p", "r", "bank", "a_y")
@@ -90,3 +92,47 @@ def test_feet_that_move_a_fifth_of_the_hands_fly_no_rudder_test(share, flown_too
     problem = LateralProblem((flown(JET, aileron=aileron_doublet(T), rudder=feet),))
     assert problem.flies("aileron")
     assert problem.flies("rudder") == flown_too
+
+
+def test_a_control_that_hardly_moves_takes_less_of_the_models_error_than_a_flown_one():
+    twitch = steps(T, (14.85,), (0.002,))
+    record = flown(JET, aileron=aileron_doublet(T), rudder=twitch, rng=np.random.default_rng(1))
+    rate = record.outputs["r"]
+    gust = Signal(rate.t, rate.y + 0.2 * np.maximum(rate.t - 14.85, 0.0))
+    solution = solved(LateralProblem((replace(record, outputs={**record.outputs, "r": gust}),)))
+    # A fit without the prior gives 188.
+    assert abs(solution.theta[place("N_delta_r")]) < 100.0
+    assert solution.theta[place("L_delta_a")] == pytest.approx(JET["L_delta_a"], rel=0.01)
+
+
+ARM_M, SPEED_M_S = 13.0, 130.0
+
+
+def on_a_boom():
+    """Return two doublets whose sideslip is read ahead of the centre of gravity."""
+    problem = both_inputs(JET, np.random.default_rng(5))
+    boomed = []
+    for record in problem.records:
+        beta, rate = record.outputs["beta"], record.outputs["r"]
+        read = Signal(beta.t, beta.y + ARM_M / SPEED_M_S * rate.y)
+        boomed.append(replace(record, outputs={**record.outputs, "beta": read}))
+    return LateralProblem(tuple(boomed))
+
+
+def test_a_boom_taken_as_the_centre_of_gravity_shifts_the_yaw_damping():
+    without_force = tuple(
+        replace(record, outputs={n: s for n, s in record.outputs.items() if n != "a_y"})
+        for record in on_a_boom().records
+    )
+    taken = solved(LateralProblem(without_force)).theta[place("N_r")]
+    assert taken == pytest.approx(JET["N_r"] - JET["N_beta"] * ARM_M / SPEED_M_S, abs=0.02)
+    placed = solved(LateralProblem(without_force, beta_arm_m=ARM_M)).theta[place("N_r")]
+    assert placed == pytest.approx(JET["N_r"], abs=0.02)
+
+
+def test_an_unknown_boom_is_estimated_and_leaves_the_yaw_damping_true():
+    boom = Nuisance("arm", "beta", Prior(0.0, FARTHEST_S * SPEED_M_S), SPEED_M_S)
+    solution = solve_lateral(on_a_boom(), (boom,))
+    arm, std = solution.nuisances["beta_arm_m"]
+    assert abs(arm - ARM_M) < 3.0 * std < 2.0
+    assert solution.theta[place("N_r")] == pytest.approx(JET["N_r"], abs=0.02)

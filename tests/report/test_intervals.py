@@ -24,8 +24,8 @@ def test_flying_qualities_and_coefficients_are_shown_with_half_their_interval() 
         air=SimpleNamespace(speed_kind="true", sentence="dry air."),
     )
     text = "\n".join(quality_lines(found, {"C_L_alpha": Coefficient(5.0, 1.0)}))  # type: ignore[arg-type]
-    assert "7.5 ± 0.2 rad/s" in text
-    assert "C_L_alpha 5 ± 2" in text
+    assert "7.50 ± 0.20 rad/s" in text
+    assert "C_L_alpha 5.0 ± 2.0" in text
 
 
 def test_a_trim_is_shown_in_degrees_with_half_its_interval() -> None:

@@ -8,6 +8,7 @@ import pytest
 from advisor.aircraft.aircraft import PARAMETERS
 from advisor.report.page.render import page
 from advisor.report.qualities import coefficients_of, qualities_of, quality_lines
+from advisor.words.digits import with_half
 from advisor.words.vehicle_time import clock
 from tests.report.conftest import Reported
 from tests.report.page_reader import with_interval
@@ -119,9 +120,10 @@ def test_the_text_of_analyze_says_the_flying_qualities_and_their_conventions(rep
     said = "\n".join(quality_lines(qualities, coefficients_of(reported.content.state, reference)))
     found = reported.analysis["flying_qualities"]
     for name in ("natural_frequency", "n_alpha", "neutral_point"):
-        assert f"{found[name]['value']:.4g} ±" in said
+        assert with_half(found[name]["value"], HALF * found[name]["std"]) in said
     for level in found["levels"].values():
         assert level["text"] in said
-    assert f"C_m_alpha {reported.analysis['coefficients']['C_m_alpha']['value']:.4g}" in said
+    moment = reported.analysis["coefficients"]["C_m_alpha"]
+    assert f"C_m_alpha {with_half(moment['value'], HALF * moment['std'])}" in said
     for convention in ("m/s true", "q·c/(2·V)", "written for manned aeroplanes"):
         assert convention in said

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import yaml
 
-from advisor.aircraft.aircraft_effects import LEAST
+from advisor.gap.effects import EFFECTS
 from sim.compare import distances
 from sim.effects.fitting import flight_of
 from sim.linear import RESEARCH_JET
@@ -116,12 +116,13 @@ def test_every_kind_of_added_term_can_be_flown(plain, tmp_path, effect, sizes):
     assert (moved > 1e-4) == (effect != "thrust_moment")
 
 
-NO_SIZE = {effect: dict.fromkeys(sizes, 0.0) for effect, sizes in LEAST.items()}
+KEYS = {name: effect.keys for name, effect in EFFECTS.items()}
+NO_SIZE = {effect: dict.fromkeys(sizes, 0.0) for effect, sizes in KEYS.items()}
 NO_SIZE["actuator_rate_limit"]["rate_rad_s"] = 1e9
 
 
 # A file that names the air speed has it known to the simulator, whatever its power.
-@pytest.mark.parametrize("effect", [effect for effect in LEAST if effect != "airspeed_variation"])
+@pytest.mark.parametrize("effect", [effect for effect in KEYS if effect != "airspeed_variation"])
 def test_an_effect_of_no_size_is_no_effect(plain, tmp_path, effect):
     path = aircraft_file(tmp_path / "none.yaml", effects={effect: NO_SIZE[effect]})
     same = [s.reading for s in modelled_flight(QUIET, path).samples()]

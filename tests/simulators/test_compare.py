@@ -154,7 +154,7 @@ def test_a_simulator_that_does_not_answer_the_elevator_is_refused():
         def replay(self, condition, inputs, increments=None):
             return super().replay(condition, replace(inputs, elevator=0.0 * inputs.elevator), increments)
 
-    with pytest.raises(UnusableInputError, match="does not answer the elevator"):
+    with pytest.raises(UnusableInputError, match="does not respond to the elevator"):
         compare(flown(maneuvers=3), Deaf(), Aircraft())
 
 

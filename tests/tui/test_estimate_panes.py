@@ -11,6 +11,7 @@ from advisor.campaign.state import CampaignState
 from advisor.session.view import View, view_before_first
 from advisor.tui.panes.correlation import Correlation
 from advisor.tui.panes.courses import Courses
+from advisor.tui.panes.criterion import Criterion
 from advisor.tui.panes.history import course, history_chart
 from advisor.tui.panes.residuals import Residuals
 from advisor.tui.plot.widget import Plot
@@ -110,3 +111,15 @@ async def test_a_fit_without_room_for_a_residual_keeps_its_time_axis():
         fit = here.app.screen.query_one("#fit-alpha", Plot)
         assert fit.chart.foot
         assert not here.app.screen.query_one("#residual-alpha").display
+
+
+async def test_the_lines_and_the_curves_of_the_criterion_have_one_scale_and_the_deciding_rule_is_first():
+    async with stage(flights.state(4), settings=ENGINEER, size=(140, 45)) as here:
+        await here.press("6")
+        pane = here.app.screen.query_one(Criterion)
+        series = pane.query_one(Plot).chart.series
+        assert [one.name for one in series] == ["continuous", "separate", "information"]
+        lines = [line.split() for line in here.words("Criterion HangingLines").splitlines()]
+        for one in series:
+            (line,) = [words for words in lines if one.name in words]
+            assert f"{float(one.y[-1]):.0f} % of its limit" in " ".join(line)

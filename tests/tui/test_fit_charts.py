@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 from advisor.tui.panes.fit_charts import (
-    elevator_chart,
+    ELEVATOR_AXIS,
     extent,
     fit_chart,
+    input_chart,
     residual_chart,
     rows_of_fit,
     since_start,
@@ -28,7 +29,7 @@ def test_manoeuvres_flown_at_different_times_are_aligned_at_the_start_of_their_i
 
 
 def test_equal_inputs_lie_over_one_another():
-    first, second = elevator_chart(FIRST, FOURTH).series
+    first, second = input_chart("elevator", FIRST, FOURTH).series
     assert first.x == pytest.approx(second.x)
     assert first.y == pytest.approx(second.y)
     assert (first.name, second.name) == ("elevator 4", "elevator 1")
@@ -51,7 +52,7 @@ def test_the_longer_of_two_records_sets_the_time_axis():
 
 
 def test_the_rows_hold_every_sample_in_the_unit_that_they_name():
-    rows = list(csv.DictReader(StringIO(rows_of_fit(FIRST, None).csv())))
+    rows = list(csv.DictReader(StringIO(rows_of_fit(FIRST, None, ELEVATOR_AXIS).csv())))
     of_q = [row for row in rows if row["channel"] == "q"]
     fit = FIRST.estimate.fits[0]["q"]
     assert {row["unit"] for row in of_q} == {"deg/s"}

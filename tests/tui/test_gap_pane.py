@@ -5,20 +5,24 @@ from pathlib import Path
 
 import pytest
 
+from advisor.gap.alternative import Contribution
 from advisor.gap.document import gap_document
 from advisor.session.diagnosis import GapTask, diagnose_elsewhere
 from advisor.tui.panes import gap as pane
 from advisor.tui.plot.widget import Plot
 from advisor.tui.settings import Settings
 from tests.gap.test_report_answer import DERIVATIVES
-from tests.gap.test_report_screen import diagnosis
+from tests.gap.test_report_screen import EVIDENCE, diagnosis
 from tests.tui import flights
 from tests.tui.stage import stage
 
 ENGINEER = Settings(screen="engineer")
-GAP = replace(diagnosis().gap, by_maneuver=((2, 5.0, 0.2),))
+GAP = replace(diagnosis().gap, by_maneuver=((2, 5.0, 0.2), (3, 0.1, 0.4)))
+REASONS = (Contribution("fit_gain", 2.0, "gain in the fit"), Contribution("rest", -0.5, "rest"))
 DOCUMENT = {
-    **gap_document(diagnosis(gap=GAP, derivatives=DERIVATIVES)),
+    **gap_document(
+        diagnosis(gap=GAP, derivatives=DERIVATIVES, evidence=EVIDENCE, why=REASONS, rival="actuator_lag")
+    ),
     "next": [{"text": "Put it there.", "command": "advisor gap x"}],
 }
 
@@ -31,10 +35,14 @@ async def test_choosing_the_pane_diagnoses_the_flight_and_shows_the_worst_manoeu
     async with stage(flights.state(4), settings=ENGINEER, size=(140, 45), logs=[tmp_path / "a.tlog"]) as here:
         await here.press("d")
         await here.until(lambda: "answers 30 ms too early" in here.words("#gap-text"))
-        said = here.words("#gap-text")
+        said = " ".join(here.words("#gap-text").split())
         assert "M_α −44.60 → −34.30 ± 0.71 1/s²" in said
         assert "99.9 % less" in said
         assert "1. Put it there. advisor gap x" in said
+        assert "Probability by the evidence: transport delay 82 %, actuator lag 18 %." in said
+        assert "▲ larger than before in manoeuvre 3" in said
+        assert "+2.0 gain in the fit" in said
+        assert "+1.5 together: 4.5 to 1 for the answer" in said
         chart = here.app.screen.query_one("#gap-alpha", Plot).chart
         assert [series.name for series in chart.series] == ["measured", "before", "after"]
         await here.press("4", "d")

@@ -128,7 +128,7 @@ def test_nothing_is_marked_before_the_vehicles_clock_is_heard():
 
 def test_without_a_recording_a_link_says_that_decisions_are_not_kept():
     said = LinkSource(None).keep(ByHand())  # type: ignore[arg-type]
-    assert "not kept, for nothing is recorded" in said
+    assert "not kept, because nothing is recorded" in said
 
 
 def test_a_replay_without_marks_keeps_none():

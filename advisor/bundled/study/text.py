@@ -10,6 +10,7 @@ from advisor.bundled.study.flaws import NOISE_PERCENT, Flaws
 from advisor.bundled.study.flying import NOISE_READINGS, NoiseReading, Scene
 from advisor.bundled.study.readings import ReadingResult
 from advisor.bundled.study.table import Row
+from advisor.words.quantities import symbol
 
 COMMON = (5.0, 95.0)
 """Percentiles of our campaigns between which a single realisation is ordinary."""
@@ -43,7 +44,7 @@ def heading(campaigns: int, scene: Scene, reading: NoiseReading) -> list[str]:
 
 def table(rows: Sequence[Row]) -> list[str]:
     """Return three lines for each row: the median error, the range of the middle 80 %, the paper's error."""
-    names = "".join(f"{_symbol(name):>{_CELL}}" for name in PARAMETERS)
+    names = "".join(f"{symbol(name):>{_CELL}}" for name in PARAMETERS)
     lines = [
         *wrapped(
             "Nominal error in % at the stop: median, 10 % and 90 % of the campaigns, and the paper's. "
@@ -62,11 +63,6 @@ def table(rows: Sequence[Row]) -> list[str]:
         if row.paper is not None:
             lines.append(_numbers("paper", [row.paper.error_percent[name] for name in PARAMETERS]))
     return [*lines, ""]
-
-
-def _symbol(name: str) -> str:
-    """Return a parameter's symbol, short enough for a column: ``M_δe``."""
-    return name.replace("_alpha", "_α").replace("_delta_e", "_δe")
 
 
 def _numbers(label: str, values: Iterable[float]) -> str:
@@ -132,8 +128,8 @@ def flaws(found: Flaws) -> list[str]:
 def readings(results: Iterable[ReadingResult]) -> list[str]:
     """Return lines on other readings of the paper."""
     lines = wrapped(
-        "Other readings of the rules: median needed, never, share of campaigns that need exactly what the "
-        "paper's did"
+        "Other readings of the rules: the median number of manoeuvres that the rule needs, the share of "
+        "campaigns that never stop, and the share that stops at the paper's number"
     )
     lines += [
         f"  {r.reading:<25}{r.rule:<11}{r.noise_percent:>4g} %{count(r.median):>6}  never "

@@ -113,7 +113,7 @@ def estimates(state: CampaignState) -> FlightTable:
     for k, name in enumerate(PARAMETERS):
         unit = f"{_BY_ROW} times {PARAMETER_UNITS[name]}"
         columns.append(Column(f"covariance_{name}", told("covariance", k), unit, f"covariance with {name}"))
-    about = "A row is one parameter of one estimate; instruments follow the derivatives."
+    about = "A row is one parameter of one estimate: the derivatives, then the instruments."
     return FlightTable("estimates", about, tuple(columns))
 
 
@@ -158,7 +158,7 @@ def residuals(state: CampaignState, record_of: Mapping[tuple[int, int], int]) ->
                 "",
                 "number of the record",
             ),
-            Column("t_boot_s", joined("t"), "s", "vehicle time since boot"),
+            Column("t_boot_s", joined("t"), "s", "vehicle time since power-on"),
             Column("measured", joined("measured"), unit, f"measured {output}"),
             Column("fitted", joined("fitted"), unit, f"{output} of the fit of lowest cost"),
             Column("residual", joined("residual"), unit, "measured minus fitted"),

@@ -24,12 +24,12 @@ def on_one_grid(channels: Mapping[str, Channel]) -> FlightTable:
         Column(name, on_grid(c, t), ALL_UNITS[name], f"{name} from {c.source}")
         for name, c in channels.items()
     ]
-    time = Column("t_boot_s", t, "s", "vehicle time since boot")
+    time = Column("t_boot_s", t, "s", "vehicle time since power-on")
     return FlightTable("grid", f"All channels on one grid: {GRID}.", (time, *columns))
 
 
 def grid_times(channels: Mapping[str, Channel]) -> FloatArray:
-    """Return the times of the grid, shape (n,), s since boot."""
+    """Return the times of the grid, shape (n,), s since power-on."""
     paced = {name: c for name, c in channels.items() if len(c) > 1}
     if not paced:
         return np.empty(0)

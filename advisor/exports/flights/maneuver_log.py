@@ -57,7 +57,7 @@ def log_of_maneuver(
 
 
 def _stretch(maneuver: Maneuver, every: list[Maneuver]) -> tuple[float, float]:
-    """Return the vehicle times between which the packets are taken, s since boot."""
+    """Return the vehicle times between which the packets are taken, s since power-on."""
     span = maneuver.span
     others = [m.span for m in every if m.power_on == maneuver.power_on and m.number != maneuver.number]
     earlier = [s.end_s for s in others if s.end_s <= span.start_s]

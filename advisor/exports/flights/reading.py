@@ -43,7 +43,7 @@ def _recording(number: int, power_on: PowerOn) -> Recording:
             name,
             f"{name} at its own stamps.",
             (
-                Column("t_boot_s", channel.t, "s", "vehicle time since boot"),
+                Column("t_boot_s", channel.t, "s", "vehicle time since power-on"),
                 Column(
                     name, channel.y, ALL_UNITS[name], f"{name} from {channel.source}, {channel.provenance}"
                 ),

@@ -5,9 +5,10 @@ from dataclasses import dataclass, field
 
 from advisor.aircraft.aircraft import Aircraft, Elevator, Reference
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
-from advisor.exports.models.servo import OF_THE_SERVO, ExportedServo, servo_of
+from advisor.exports.models.servo import ExportedServo, servo_of
 from advisor.flight.signals.standard_atmosphere import standard_density, standard_pressure
 from advisor.gap.candidates.known import less_of_the_servo, together
+from advisor.gap.effects import EFFECTS
 from advisor.gap.result import Diagnosis, Value
 from advisor.oem.coefficients import Coefficient, scales
 from advisor.words.problems import ConfigurationError
@@ -103,7 +104,7 @@ def improvement_of(diagnosis: Diagnosis, aircraft: Aircraft) -> Improvement:
         prior=aircraft.model,
         airspeed_m_s=diagnosis.reference_airspeed_m_s,
         servo=servo_of(flown.elevator, effects),
-        effects={name: values for name, values in effects.items() if name not in OF_THE_SERVO},
+        effects={name: values for name, values in effects.items() if not EFFECTS[name].servo},
         reference=aircraft.reference,
         elevator=aircraft.elevator,
         height_m=diagnosis.height_m,

@@ -4,11 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from advisor.aircraft.aircraft import Elevator
-
-OF_THE_SERVO = (
-    "transport_delay", "actuator_lag", "actuator_rate_limit", "actuator_backlash", "actuator_deadband",
-)  # fmt: skip
-"""Effects that belong to the servo and its linkage."""
+from advisor.gap.effects import EFFECTS
 
 
 @dataclass(frozen=True)
@@ -49,14 +45,9 @@ class ExportedServo:
 
 def servo_of(elevator: Elevator, effects: Mapping[str, Mapping[str, float]]) -> ExportedServo:
     """Return the servo of the aircraft file, with the further effects found."""
-    lag = effects.get("actuator_lag", {})
-    band = effects.get("actuator_deadband", {})
-    return ExportedServo(
-        delay_s=(elevator.delay_s or 0.0) + effects.get("transport_delay", {}).get("delay_s", 0.0),
-        lag_s=(elevator.lag_s or 0.0) + lag.get("lag_s", 0.0),
-        damping=lag.get("damping"),
-        rate_rad_s=effects.get("actuator_rate_limit", {}).get("rate_rad_s"),
-        play_rad=2.0 * effects.get("actuator_backlash", {}).get("half_width_rad", 0.0),
-        deadband_rad=2.0 * band.get("half_width_rad", 0.0),
-        neutral_rad=band.get("neutral_rad", 0.0),
-    )
+    found = {"delay_s": elevator.delay_s or 0.0, "lag_s": elevator.lag_s or 0.0}
+    for effect, sizes in effects.items():
+        for key, (part, factor) in EFFECTS[effect].servo.items():
+            if key in sizes:
+                found[part] = found.get(part, 0.0) + factor * sizes[key]
+    return ExportedServo(**found)

@@ -13,11 +13,13 @@ from advisor.flight.vehicle.wiring import ELEVATOR, Role, Wiring
 from advisor.words.problems import Problem
 
 _CANCELS = {
-    "elevon": "what they do in roll cancels",
-    "V-tail": "what they do in yaw cancels",
-    "A-tail": "what they do in yaw cancels",
-    "differential spoiler": "what they do in roll and yaw cancels",
+    "elevon": "their effects in roll cancel",
+    "V-tail": "their effects in yaw cancel",
+    "A-tail": "their effects in yaw cancel",
+    "differential spoiler": "their effects in roll and yaw cancel",
 }
+
+_OF_ELEVATOR = "Z_δe and M_δe"
 
 
 def find_elevator(
@@ -152,31 +154,29 @@ def _carried_over(
 
 
 def _uncalibrated(part: Part, why: str, wiring: Wiring) -> Surface:
-    doubts = _doubts([part], wiring)
-    said = (
-        f"No elevator.calibration: output {part.output} ({why}) is scaled by {_limits(doubts, wiring)} "
-        "as full travel of 25 deg, so Z_δe and M_δe are per assumed degree."
-    )
-    return Surface((part,), False, " ".join([said, *map(str, doubts)]), doubts)
+    begin = f"No elevator.calibration: output {part.output} ({why}) is"
+    return without_calibration((part,), begin, _OF_ELEVATOR, wiring)
 
 
 def _scaled(parts: tuple[Part, ...], formed: str, wiring: Wiring) -> Surface:
     """Return the surface of several outputs without a calibration."""
-    doubts = _doubts(parts, wiring)
-    said = (
-        f"No calibration: they are scaled by {_limits(doubts, wiring)} as full travel of 25 deg, so "
-        "Z_δe and M_δe are per assumed degree."
-    )
-    return Surface(parts, False, " ".join([formed, said, *map(str, doubts)]), doubts)
+    return without_calibration(parts, f"{formed} No calibration: they are", _OF_ELEVATOR, wiring)
 
 
-def _doubts(parts: Sequence[Part], wiring: Wiring) -> tuple[Problem, ...]:
-    """Return the problems of limits that are assumed."""
-    return tuple(doubt for n in _numbers(parts) if (doubt := wiring.doubt(n)) is not None)
+def without_calibration(parts: tuple[Part, ...], begin: str, derivatives: str, wiring: Wiring) -> Surface:
+    """Return a control whose outputs have no calibration, with a sentence on its assumed scale.
 
-
-def _limits(doubts: Sequence[Problem], wiring: Wiring) -> str:
-    return "assumed limits" if doubts else wiring.words.limits
+    Parameters
+    ----------
+    begin
+        Beginning of the sentence, up to the verb.
+    derivatives
+        Derivatives that the scale divides.
+    """
+    doubts = tuple(doubt for n in _numbers(parts) if (doubt := wiring.doubt(n)) is not None)
+    limits = "assumed limits" if doubts else wiring.words.limits
+    said = f"{begin} scaled by {limits} as full travel of 25 deg, so {derivatives} are per assumed degree."
+    return Surface(parts, False, " ".join([said, *map(str, doubts)]), doubts)
 
 
 def _is_half(n: int, wiring: Wiring) -> bool:

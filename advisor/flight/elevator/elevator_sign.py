@@ -29,6 +29,7 @@ class ElevatorSign:
     """
 
     def __init__(self) -> None:
+        self._direction: bool | None = None
         self.backwards: bool | None = None
         """Whether the sign is reversed. None before the first conclusive manoeuvre."""
 
@@ -36,10 +37,13 @@ class ElevatorSign:
         """Return the manoeuvre with the elevator's sign corrected, and a notice when a reversed sign is
         found."""
         found = []
-        if self.backwards is None:
-            self.backwards = answers_backwards(maneuver)
-            if self.backwards:
-                found = [Notice("elevator_backwards", SAID)]
+        stated = maneuver.scale is not None and maneuver.scale.reversed
+        if self._direction is not None:
+            # A parameter that is heard after the answer may state another direction. The answer stays.
+            self.backwards = stated != self._direction
+        elif (backwards := answers_backwards(maneuver)) is not None:
+            self._direction, self.backwards = stated != backwards, backwards
+            found = [Notice("elevator_backwards", SAID)] if backwards else []
         return (turned(maneuver) if self.backwards else maneuver), found
 
 
@@ -51,8 +55,12 @@ def turned(maneuver: Maneuver) -> Maneuver:
         kind=_OTHER.get(maneuver.span.kind, maneuver.span.kind),
         steps=tuple((onset, -level) for onset, level in maneuver.span.steps),
     )
+    scale = maneuver.scale and replace(maneuver.scale, reversed=not maneuver.scale.reversed)
     return replace(
-        maneuver, span=span, channels={**maneuver.channels, "elevator": replace(elevator, y=-elevator.y)}
+        maneuver,
+        span=span,
+        scale=scale,
+        channels={**maneuver.channels, "elevator": replace(elevator, y=-elevator.y)},
     )
 
 

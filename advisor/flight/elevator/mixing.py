@@ -58,7 +58,7 @@ class Mixing:
             return self._answered
         listed = joined_numbers(surface.unsure)
         moves = f"outputs {listed} move" if len(surface.unsure) > 1 else f"output {listed} moves"
-        return f"Nothing says which way {moves} the nose; the aircraft's answer in MANUAL decides."
+        return f"Nothing says which way {moves} the nose; the aircraft's response in MANUAL decides."
 
     def take(self, new: Commanded, loop_is_closed: bool) -> Iterator[Decoded | Notice]:
         """Yield the elevator's samples with known signs, and notices on the signs.
@@ -143,15 +143,15 @@ class Mixing:
         listed = joined_numbers(turned)
         if surface.unsure:
             self._answered = (
-                f"The aircraft's answer in pitch decides: the sign of output {listed} is turned."
+                f"The aircraft's response in pitch decides: the sign of output {listed} is turned."
                 if turned
-                else "The aircraft's answer in pitch decides: no output's sign is turned."
+                else "The aircraft's response in pitch decides: no output's sign is turned."
             )
         elif turned and len(turned) < len(surface.outputs):
             others = joined_numbers([n for n in surface.outputs if n not in turned])
             self._answered = (
-                f"The aircraft answers in pitch to output {listed} the other way than to output {others}, so "
-                "they cancel."
+                f"The aircraft pitches one way by output {listed} and the other way by output {others}, so "
+                "the outputs cancel."
             )
             self.contradiction = Problem("elevator_signs", self._answered, _CHECK_SIGNS)
         return [Notice("elevator_mixing", self._answered)] if self._answered else []

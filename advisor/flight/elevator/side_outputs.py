@@ -12,7 +12,8 @@ from dataclasses import replace
 from typing import Literal
 
 from advisor.aircraft.aircraft import SideControl
-from advisor.flight.vehicle.surfaces import Calibration, Part, Surface, in_shares
+from advisor.flight.elevator.elevator_outputs import without_calibration
+from advisor.flight.vehicle.surfaces import Calibration, Part, Surface, in_shares, joined_numbers
 from advisor.flight.vehicle.wiring import AILERON, RUDDER, Role, Wiring
 
 Side = Literal["aileron", "rudder"]
@@ -37,7 +38,7 @@ def find_side_control(name: Side, stated: SideControl, wiring: Wiring) -> Surfac
     given = None if stated.calibration is None else Calibration(stated.calibration)
     if stated.output != "auto":
         part = Part(stated.output, given or wiring.scale(stated.output))
-        return Surface((part,), given is not None, "")
+        return Surface((part,), True, "") if given else _uncalibrated((part,), name, wiring)
     parts = [Part(n, wiring.scale(n), side=name) for n in wiring.outputs_of(_PLAIN[name])]
     parts += [
         Part(n, wiring.scale(n), 1.0 if side == positive else -1.0, side=f"{kind} {side}")
@@ -49,9 +50,17 @@ def find_side_control(name: Side, stated: SideControl, wiring: Wiring) -> Surfac
     if not parts:
         return None
     ordered = in_shares(parts)
-    if given is not None:
-        ordered = tuple(_calibrated(part, ordered[0], given, wiring) for part in ordered)
-    return Surface(ordered, given is not None, "")
+    if given is None:
+        return _uncalibrated(ordered, name, wiring)
+    return Surface(tuple(_calibrated(part, ordered[0], given, wiring) for part in ordered), True, "")
+
+
+def _uncalibrated(parts: tuple[Part, ...], name: Side, wiring: Wiring) -> Surface:
+    outputs = joined_numbers([part.output for part in parts])
+    several = len(parts) > 1
+    begin = f"No {name}.calibration: output{'s' if several else ''} {outputs} {'are' if several else 'is'}"
+    derivatives = "Y_{0}, L_{0} and N_{0}".format("δa" if name == "aileron" else "δr")
+    return without_calibration(parts, begin, derivatives, wiring)
 
 
 def _calibrated(part: Part, first: Part, given: Calibration, wiring: Wiring) -> Part:

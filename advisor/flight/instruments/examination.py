@@ -204,9 +204,12 @@ def _clock_of_rate(work: _Work) -> None:
     if late is None or not work.has("q", "theta"):
         return
     range_s = FILTER_S + _half_intervals(work, "q", "theta")
+    channel, other = ("q", "theta") if late.value > 0.0 else ("theta", "q")
+    if channel == "theta" and bool(np.all(np.isin(work.channels["theta"].t, work.channels["q"].t))):
+        # The autopilot integrates the rates of one message to the attitude of the same message.
+        range_s = FILTER_S
     if abs(late.value) - _SIGMAS * late.std <= range_s:
         return
-    channel, other = ("q", "theta") if late.value > 0.0 else ("theta", "q")
     measured = Measured(abs(late.value), late.std)
     # An attitude is integrated from the gyro. Its lateness enters gravity alone, and can be removed.
     _late(work, channel, _PLAIN[other], measured, used=channel == "theta", shifted=(channel,))
@@ -366,7 +369,7 @@ def _late(
 ) -> None:
     """Contradict the clock of a channel, and set the stamps of the channels in ``shifted`` earlier."""
     name = _PLAIN[channel]
-    ms = f"{'at least ' if bound else ''}{1e3 * late.value:.0f} ± {1e3 * late.std:.0f} ms"
+    ms = f"{'at least ' if bound else ''}{1e3 * late.value:.0f} ± {1e3 * NORMAL_95 * late.std:.0f} ms"
     work.contradict(
         channel, "delay_s", None, late.value, late,
         f"{name} is {ms} late relative to {relative_to}" + (_ALLOWED if used else ""),

@@ -26,6 +26,8 @@ from advisor.flight.signals.inferred_alpha import alpha_rate
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.motion import integrated
 from advisor.flight.signals.renewal import renewed
+from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import symbol
 
 NEEDED = ("alpha", "q", "theta", "a_z")
 _FOLLOW_S = np.array([0.08, 0.2, 0.5, 1.2])
@@ -203,16 +205,20 @@ def _judge(
     if abs(lag) > max(SMALLEST_LAG_S, 3.0 * lag_std):
         word: Finding = "late" if lag > 0 else "early"
         return word, (
-            f"alpha is {abs(lag) * 1e3:.0f} ± {lag_std * 1e3:.0f} ms {word}: its fit gets "
-            f"{', '.join(CORRUPTED_BY_LAG)} wrong, not M_alpha and M_delta_e; "
+            f"alpha is {abs(lag) * 1e3:.0f} ± {NORMAL_95 * lag_std * 1e3:.0f} ms {word}: its fit gets "
+            f"{', '.join(map(symbol, CORRUPTED_BY_LAG))} wrong, not M_α and M_δe; "
             "give alpha.vane_arm_m if it is a vane."
         )
     if abs(scale) > max(SMALLEST_SCALE, 3.0 * scale_std, 0.05):
         return (
             "scaled",
-            f"alpha reads {100 * scale:+.0f} ± {100 * scale_std:.0f} % off in scale against the motion.",
+            f"alpha reads {100 * scale:+.0f} ± {100 * NORMAL_95 * scale_std:.0f} % off in scale against the "
+            "motion.",
         )
-    return "consistent", f"alpha follows the motion (lag {lag * 1e3:+.0f} ± {lag_std * 1e3:.0f} ms)."
+    return (
+        "consistent",
+        f"alpha follows the motion (lag {lag * 1e3:+.0f} ± {NORMAL_95 * lag_std * 1e3:.0f} ms).",
+    )
 
 
 def combine(checks: Sequence[KinematicCheck]) -> KinematicCheck:

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 from math import nan
 
 from advisor.flight.maneuvers.maneuver import InputKind, Maneuver
+from advisor.flight.vehicle.surfaces import Surface
 from advisor.flight.vehicle.vehicle import Vehicle
 from advisor.words.printable import printable
 from advisor.words.problems import Problem
@@ -11,6 +12,10 @@ from advisor.words.problems import Problem
 _SOON_S = 30.0
 """Largest time between similar movements that are listed as one, s. Nobody reads a list of single
 corrections."""
+
+
+READER_NOTICE = "log_reader"
+"""Code of a notice with a log reader's sentence, or with the treatment of a parameter heard in flight."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,6 +128,18 @@ class Notice:
 
 
 @dataclass(frozen=True, slots=True)
+class ElevatorRescaled:
+    """A parameter of the elevator is heard late, for which another value was assumed."""
+
+    before: Surface
+    after: Surface
+    heard: str
+    """Name and value of the parameter, with the time of its arrival."""
+    flight: int = 0
+    """Number of the campaign's log or link, 0 for the first."""
+
+
+@dataclass(frozen=True, slots=True)
 class VehicleSaid:
     """A vehicle, or another sender on the link, said something in words (STATUSTEXT)."""
 
@@ -165,6 +182,7 @@ FlightEvent = (
     | ManeuverAgain
     | Activity
     | Notice
+    | ElevatorRescaled
     | VehicleSaid
     | NoData
     | DataAgain

@@ -11,6 +11,7 @@ from math import radians
 
 import numpy as np
 
+from advisor.aircraft.aircraft import Limits
 from advisor.flight.maneuvers.maneuver import Span
 from advisor.flight.signals.derived_alpha import SLOWEST_FLIGHT_M_S
 from advisor.flight.signals.record import Channel
@@ -32,7 +33,7 @@ Cut = Callable[[str, float, float], Channel | None]
 """Function that cuts a stretch of a channel by name, start and end, s since boot."""
 
 
-def why_on_ground(span: Span, cut: Cut) -> str | None:
+def why_on_ground(span: Span, cut: Cut, limits: Limits) -> str | None:
     """Return in words the evidence that the aircraft did not fly; None where it flew, or without evidence.
 
     Parameters
@@ -41,6 +42,8 @@ def why_on_ground(span: Span, cut: Cut) -> str | None:
         The movement of the elevator.
     cut
         Gives ``landed_state``, ``armed``, ``groundspeed``, ``airspeed``, ``height`` and ``q`` where received.
+    limits
+        Limits of the model. An air speed within its limit of change is one of flight, however slow.
     """
     said = _lately("landed_state", span, cut)
     if _ON_GROUND in said:
@@ -54,7 +57,9 @@ def why_on_ground(span: Span, cut: Cut) -> str | None:
         if height_m is not None and abs(height_m) < NEAR_GROUND_M:
             return "it stands at the height of take-off"
     ends = [_median("airspeed", span, cut, at_s) for at_s in (span.start_s, span.last_step_s)]
-    if any(speed is not None and 0.0 < speed < SLOWEST_FLIGHT_M_S for speed in ends):
+    steady = 1.0 - 0.01 * limits.airspeed_change_percent
+    least = min(SLOWEST_FLIGHT_M_S, steady * (_median("airspeed", span, cut) or np.inf))
+    if any(speed is not None and 0.0 < speed < least for speed in ends):
         return "it has no flying speed at one end of the movement"
     return None
 

@@ -4,9 +4,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Literal
 
+import numpy as np
+
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.record import Channel
 from advisor.flight.signals.trust import Distrust
+from advisor.flight.vehicle.surfaces import Scale
 
 InputKind = Literal[
     "3-2-1-1",
@@ -44,8 +47,8 @@ class Span:
     """Steps of the input: (onset in s, level in rad from trim) for each."""
     closed_by: str
     """Reason of the end: ``quiet``, ``mode change``, ``next input``, ``gap``, ``end of log``, ``air speed``,
-    ``no rest``. A marked stretch has ``marked by hand``, ``marked by a switch`` or ``marked by a text of
-    the vehicle``. A movement that is being flown has ``still flying``."""
+    ``no rest``. A marked stretch has ``marked by hand``, ``marked by a switch``, ``marked by a text of
+    the vehicle`` or ``marked by SystemID``. A movement that is being flown has ``still flying``."""
 
     @property
     def input_is_over(self) -> bool:
@@ -66,7 +69,8 @@ class Maneuver:
     mode: str = ""
     """Flight mode of the manoeuvre, by the autopilot's name or number."""
     distrusts: tuple[Distrust, ...] = ()
-    """Channels that cannot be right. A frozen specific force is left out of ``channels``."""
+    """Channels that cannot be right. A frozen specific force or angle of attack is left out of
+    ``channels``."""
     findings: tuple[InstrumentFinding, ...] = ()
     """Contradictions of the instruments, by all records of this power-on so far. ``channels`` are free of
     those that are used."""
@@ -78,6 +82,9 @@ class Maneuver:
     """Time within the record, or at its end, in which the advisor itself did not listen, s."""
     leapt_s: float = 0.0
     """Leap of the vehicle's stamps within the record, or at its begin or end, s."""
+    scale: Scale | None = None
+    """Scale of the elevator's pulses, in the direction that was found. None for a calibration, and for
+    several outputs."""
 
     @property
     def power_on(self) -> tuple[int, int]:
@@ -96,3 +103,24 @@ class Maneuver:
         )
         channels = {name: replace(c, t=c.t + by_s) for name, c in self.channels.items()}
         return replace(self, span=span, channels=channels)
+
+    def rescaled(self, scale: Scale) -> "Maneuver":
+        """Return the manoeuvre with the elevator's pulses counted by another scale, in the direction that was
+        found. The manoeuvre has a scale."""
+        assert self.scale is not None
+        before, after = self.scale, replace(scale, reversed=self.scale.reversed)
+        elevator = self.channels.get("elevator")
+        if elevator is None or before == after:
+            return replace(self, scale=after)
+        y = after.deflection(before.pulses(elevator.y))
+        levels = elevator.y[0] + np.array([0.0, *(level for _, level in self.span.steps)])
+        trim, *stepped = after.deflection(before.pulses(levels)).tolist()
+        steps = tuple(
+            (onset, level - trim) for (onset, _), level in zip(self.span.steps, stepped, strict=True)
+        )
+        return replace(
+            self,
+            scale=after,
+            span=replace(self.span, steps=steps),
+            channels={**self.channels, "elevator": replace(elevator, y=y)},
+        )

@@ -7,7 +7,14 @@ from advisor.flight.maneuvers.rest import SMALLEST_RAD, is_still, median, withou
 from advisor.flight.maneuvers.segmentation import LEAD_IN_S
 from advisor.flight.signals.record import Channel
 
-MARKED = {"hand": "marked by hand", "switch": "marked by a switch", "text": "marked by a text of the vehicle"}
+SWEPT = "marked by SystemID"
+"""Reason of the end of a stretch in which the autopilot itself moved a control, for any of its axes."""
+MARKED = {
+    "hand": "marked by hand",
+    "switch": "marked by a switch",
+    "text": "marked by a text of the vehicle",
+    "system id": SWEPT,
+}
 """Kind of marker to the reason of the end of a marked stretch."""
 _RESTING_S = 0.5
 """Time before the end of a mark that counts as rest, s."""

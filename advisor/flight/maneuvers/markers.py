@@ -5,12 +5,12 @@ from collections.abc import Iterator
 import numpy as np
 
 from advisor.aircraft.aircraft import Markers
-from advisor.flight.maneuvers.marks import Switched
+from advisor.flight.maneuvers.marks import Marker, Switched
 from advisor.flight.signals.messages import Columns, FloatArray
 
 HEARD = ("RC_CHANNELS", "STATUSTEXT")
 """Messages that may hold a mark."""
-_SYSTEM_ID = (b"SystemID Starting", b"SystemID stopped")
+SYSTEM_ID_BEGINS, SYSTEM_ID_ENDS = b"SystemID Starting", b"SystemID stopped"
 """Texts that ArduPlane sends when its system identification begins and ends (``AP_SystemID`` of
 ArduPlane)."""
 _NO_PULSE_US = (0, 65535)
@@ -22,10 +22,10 @@ class MarkerWatch:
 
     def __init__(self, markers: Markers) -> None:
         self._markers = markers
-        self._texts = [_SYSTEM_ID]
+        self._texts: list[tuple[Marker, bytes, bytes]] = [("system id", SYSTEM_ID_BEGINS, SYSTEM_ID_ENDS)]
         if markers.text is not None:
             begins, ends = markers.text
-            self._texts.append((begins.encode(), ends.encode()))
+            self._texts.append(("text", begins.encode(), ends.encode()))
         self._is_on = False
 
     def start_boot(self) -> None:
@@ -60,9 +60,9 @@ class MarkerWatch:
         for i, raw in enumerate(columns.fields["text"].tolist()):
             if not np.isfinite(t[i]):
                 continue
-            for begins, ends in self._texts:
+            for by, begins, ends in self._texts:
                 # The end comes first, because the text that begins a mark may have the other text as its
                 # beginning.
                 said = [on for on, text in ((False, ends), (True, begins)) if raw.startswith(text)]
                 if said:
-                    yield Switched(int(columns.order[i]), float(t[i]), "text", said[0])
+                    yield Switched(int(columns.order[i]), float(t[i]), by, said[0])

@@ -1,4 +1,4 @@
-"""Stretches of flight marked as manoeuvres: by hand, by a switch, or by a text of the vehicle.
+"""Stretches of flight marked as manoeuvres: by hand, by a switch, by a text, or by the autopilot's SystemID.
 
 A mark replaces every input that the finder finds in its stretch. A mark set while the stream runs gives the
 manoeuvre that results when the mark is known before the stream begins.
@@ -12,10 +12,11 @@ import numpy as np
 
 from advisor.flight.maneuvers.events import Notice
 from advisor.flight.maneuvers.maneuver import Span
+from advisor.flight.maneuvers.segmentation import LEAD_IN_S
 from advisor.words.problems import Problem
 from advisor.words.vehicle_time import between, clock
 
-Marker = Literal["hand", "switch", "text"]
+Marker = Literal["hand", "switch", "text", "system id"]
 
 LONGEST_S = 100.0
 """Longest mark, s. With its lead-in a mark must fit into the two minutes of channels that a stream keeps."""
@@ -44,6 +45,11 @@ class Mark:
     """Beginning of a sentence about the mark."""
     flight: int = 0
     """Number of the campaign's log or link, 0 for the first."""
+
+    @property
+    def reach(self) -> tuple[float, float]:
+        """Begin and end of the record, s since boot: the stretch, with a lead-in."""
+        return self.start_s - LEAD_IN_S, self.end_s
 
     def overlaps(self, start_s: float, end_s: float) -> bool:
         """Return whether the mark shares time with a stretch of its power-on."""
@@ -159,12 +165,16 @@ class Marks:
 
         A mark replaces the inputs that it touches, but not an input whose free response it ends.
         """
-        if any(m.overlaps(span.start_s, span.last_step_s) for m in (*self._waiting, *self._closed)):
+        if self.holds(span):
             return True
         waits = any(since_s < span.end_s for since_s in self._open.values())
         if waits:
             self._held.append((span, order))
         return waits
+
+    def holds(self, span: Span) -> bool:
+        """Return whether a mark that has ended touches the input of a span."""
+        return any(m.overlaps(span.start_s, span.last_step_s) for m in (*self._waiting, *self._closed))
 
     def before(self, span: Span) -> Span:
         """Return the span of an input outside of all marks, with its free response ended where a mark
@@ -239,7 +249,7 @@ class Marks:
             Problem(
                 "mark_outside",
                 f"{mark.name} lies outside of the log, which holds {heard or 'no'} vehicle time.",
-                "Give a stretch within the log, in seconds since boot or with + from its start (+12:+24).",
+                "Give a stretch within the log: seconds since power-on, or from its start with + (+12:+24).",
             )
             for mark in self._given
         ]

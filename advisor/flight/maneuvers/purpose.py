@@ -17,6 +17,7 @@ from advisor.flight.maneuvers.feedback import explained_by_feedback
 from advisor.flight.maneuvers.hand_flying import EDGE_S, flown_elsewhere, motion_of
 from advisor.flight.maneuvers.loop import PITCH, Loop
 from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.maneuvers.marked_input import SWEPT
 from advisor.flight.maneuvers.rest import SMALLEST_RAD
 from advisor.flight.signals.derived_alpha import SLOWEST_FLIGHT_M_S
 from advisor.flight.signals.record import Channel
@@ -109,7 +110,8 @@ def not_an_input(
         return Because("hover", f"the {control} moved in {maneuver.mode}, where rotors carry the aircraft")
     because = _tells_nothing(maneuver, maneuver.channels if motion is None else motion, loop)
     if closes_pitch_loop(maneuver.mode) and (lacks := _lacks_in_a_loop(maneuver, because, control)):
-        return Because("autopilot", f"the {control} moved in {maneuver.mode}{lacks}; not a test input")
+        what = "SystemID ran" if _is_swept(maneuver) else f"the {control} moved"
+        return Because("autopilot", f"{what} in {maneuver.mode}{lacks}; not a test input")
     if (
         because is None
         and loop is PITCH
@@ -123,7 +125,7 @@ def _lacks_in_a_loop(maneuver: Maneuver, because: Because | None, control: str) 
     """Return in words what a movement in a closed loop lacks for a test input; empty for a test input."""
     if has_an_errand(maneuver.mode):
         return " by the autopilot's own task"
-    if not _is_external(maneuver, control):
+    if not _is_swept(maneuver) and not _is_external(maneuver, control):
         return " without the sharp steps of a test"
     return f", and {because.text.partition('; ')[0]}" if because else ""
 
@@ -134,6 +136,8 @@ def _tells_nothing(maneuver: Maneuver, motion: Mapping[str, Channel], loop: Loop
     control = loop.control
     if maneuver.span.closed_by == "no rest":
         return Because("unsettled", f"the {control} never came to rest; not a test input")
+    if _is_swept(maneuver) and not maneuver.span.steps:
+        return Because("small", f"the {control} stood still; not a test input")
     found = excitation(maneuver, loop)
     if found is None:
         return None
@@ -152,6 +156,8 @@ def _tells_nothing(maneuver: Maneuver, motion: Mapping[str, Channel], loop: Loop
             shown, most = distinct_texts(100.0 * error, 100.0 * LARGEST_ERROR)
             known = f"to {shown} % only (limit {most})"
         return Because("no_information", f"the {control}'s effect on the {loop.rate_said} is known {known}")
+    if _is_swept(maneuver):
+        return None
     answers = explained_by_feedback(maneuver.span, maneuver.channels[control], motion, found.effect, loop)
     if answers > _MOSTLY:
         shown, most = distinct_texts(100.0 * answers, 100.0 * _MOSTLY)
@@ -161,6 +167,11 @@ def _tells_nothing(maneuver: Maneuver, motion: Mapping[str, Channel], loop: Loop
         same = f"the {control} moved no faster than in the second before"
         return Because("small", f"a correction: {same}; not a test input")
     return None
+
+
+def _is_swept(maneuver: Maneuver) -> bool:
+    """Return whether the autopilot said that its SystemID moved a control."""
+    return maneuver.span.closed_by == SWEPT
 
 
 def _stands_out(maneuver: Maneuver, control: str) -> bool:

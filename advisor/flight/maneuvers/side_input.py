@@ -34,7 +34,7 @@ _LONGER = (1.5, 3.5)
 
 @dataclass(frozen=True, slots=True)
 class SideMovement:
-    """A movement of the aileron or of the rudder."""
+    """A movement of one control."""
 
     loop: Loop
     span: Span
@@ -81,9 +81,15 @@ def first_input(pending: Sequence[SideMovement]) -> tuple[SideInput, list[SideMo
     for one in others:
         if one.span.start_s <= max(member.span.last_step_s for member in group) + TOGETHER_S:
             group.append(one)
-    largest = max(one.amplitude for one in group)
-    members = sorted((m for m in group if m.amplitude >= BESIDE * largest), key=lambda m: -m.amplitude)
-    return SideInput(tuple(members)), [one for one in others if one not in group]
+    return SideInput(part_of_input(group)), [one for one in others if one not in group]
+
+
+def part_of_input(group: Sequence[SideMovement]) -> tuple[SideMovement, ...]:
+    """Return the movements that are part of an input, the largest first; small ones next to it are none."""
+    largest = max((one.amplitude for one in group), default=0.0)
+    return tuple(
+        sorted((m for m in group if 0.0 < m.amplitude >= BESIDE * largest), key=lambda m: -m.amplitude)
+    )
 
 
 def input_span(

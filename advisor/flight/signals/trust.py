@@ -11,6 +11,7 @@ from math import degrees, radians
 import numpy as np
 
 from advisor.flight.signals.derived_alpha import SLOWEST_FLIGHT_M_S
+from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.record import Channel
 
 MOVED_RAD = radians(2.0)
@@ -54,9 +55,28 @@ class Distrust:
 
     @property
     def stops(self) -> bool:
-        """Whether nothing can be estimated. The pitch rate is needed; any other frozen channel is left
-        out."""
+        """Whether nothing can be estimated. The pitch rate is needed."""
         return self.channel == "q"
+
+    @property
+    def left_out(self) -> bool:
+        """Whether estimates do without the channel. One of specific force and angle of attack suffices."""
+        return self.channel in ("a_z", "alpha")
+
+    @property
+    def finding(self) -> InstrumentFinding:
+        """The defect as a property of the instrument: its values are renewed at a rate of zero."""
+        return InstrumentFinding(
+            self.channel,
+            "rate",
+            None,
+            0.0,
+            0.0,
+            contradicts=True,
+            text=self.text,
+            fix=self.fix,
+            used=self.left_out,
+        )
 
 
 def frozen(ranges: Mapping[str, tuple[float, float]]) -> list[Distrust]:

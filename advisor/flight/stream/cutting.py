@@ -1,7 +1,7 @@
 """From elevator movements to manoeuvres with their channels, or to activities with their reasons."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -11,21 +11,22 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.elevator.elevator_sign import ElevatorSign, turned
 from advisor.flight.instruments.examination import examine
 from advisor.flight.instruments.measured import Evidence, pooled
-from advisor.flight.maneuvers.events import Activity, FlightEvent, ManeuverFlown, Notice
+from advisor.flight.maneuvers.events import Activity, FlightEvent, ManeuverFlown, Notice, SideManeuverFlown
 from advisor.flight.maneuvers.feedback import HISTORY_S
 from advisor.flight.maneuvers.ground import why_on_ground
+from advisor.flight.maneuvers.loop import PITCH, ROLL, YAW
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.maneuvers.marked_input import marked_span
 from advisor.flight.maneuvers.marks import Mark
 from advisor.flight.maneuvers.purpose import Because, not_an_input
-from advisor.flight.maneuvers.segmentation import LEAD_IN_S
+from advisor.flight.maneuvers.side_input import SideInput, SideMovement, named, part_of_input
 from advisor.flight.maneuvers.steady_speed import at_steady_speed
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.record import AIR_UNITS, UNITS, Channel
 from advisor.flight.signals.renewal import counted_once
 from advisor.flight.signals.repair import repaired
 from advisor.flight.signals.tracks import Tracks
-from advisor.flight.signals.trust import distrusted
+from advisor.flight.signals.trust import Distrust, distrusted
 from advisor.flight.signals.wind import along_heading
 from advisor.flight.stream.identity import Identity
 from advisor.flight.vehicle.breaks import Breaks
@@ -43,9 +44,13 @@ class Cutting:
         The aircraft file: the elevator's sign, and the limits of the model.
     breaks
         Breaks in the stamps.
+    lateral
+        Whether marks of aileron and rudder count, too.
     """
 
-    def __init__(self, tracks: Tracks, who: Identity, aircraft: Aircraft, breaks: Breaks) -> None:
+    def __init__(
+        self, tracks: Tracks, who: Identity, aircraft: Aircraft, breaks: Breaks, lateral: bool = False
+    ) -> None:
         self._tracks, self._who, self._limits, self._breaks = tracks, who, aircraft.limits, breaks
         self._sign = None if aircraft.elevator.is_calibrated else ElevatorSign()
         self._modes = [(-np.inf, who.mode)]
@@ -53,8 +58,11 @@ class Cutting:
         self._evidence: Evidence = {}
         self.findings: tuple[InstrumentFinding, ...] = ()
         """Contradictions of the instruments by all manoeuvres of this power-on."""
+        self._lateral = lateral
         self.maneuvers = 0
         """Number of manoeuvres found."""
+        self.side_maneuvers = 0
+        """Number of lateral manoeuvres found."""
         self.activities: Counter[str] = Counter()
         """Movements that were no test inputs: their description to their number."""
 
@@ -86,9 +94,7 @@ class Cutting:
         maneuver, evidence = self._cut(span, boot, up_to_order)
         because = self._not_an_input(maneuver, up_to_order)
         if because is not None:
-            self.activities[because.what] += 1
-            stay_s, _ = self._stay(_middle_s(span))
-            return [Activity(span.start_s, span.end_s, because.reason, because.text, stay_s, boot)]
+            return [self._activity(maneuver, because)]
         airspeed = maneuver.channels.get("airspeed")
         steady = at_steady_speed(maneuver.span, airspeed, self._limits.airspeed_change_percent)
         if steady is not maneuver.span:
@@ -96,9 +102,40 @@ class Cutting:
         return self._counted(maneuver, evidence)
 
     def marked(self, mark: Mark, boot: int, up_to_order: int | None) -> list[FlightEvent]:
-        """Return the manoeuvre of a marked stretch, which counts without the finder's criteria."""
-        elevator = self._tracks.cut("elevator", mark.start_s - LEAD_IN_S, mark.end_s, up_to_order)
-        return self._counted(*self._cut(marked_span(mark, elevator), boot, up_to_order))
+        """Return the manoeuvres of a marked stretch, which count without the finder's criteria.
+
+        The stretch is a manoeuvre of the elevator, of aileron and rudder, or of both, by the controls that
+        moved. A stretch without any movement is one of the elevator. SystemID moves any control, so that the
+        elevator's visible effect decides.
+        """
+        spans = {
+            loop: marked_span(mark, self._tracks.cut(loop.control, *mark.reach, up_to_order))
+            for loop in (PITCH, ROLL, YAW)
+        }
+        moved = part_of_input([SideMovement(loop, span) for loop, span in spans.items()])
+        sides = tuple(one for one in moved if one.loop is not PITCH) if self._lateral else ()
+        events: list[FlightEvent] = []
+        if not sides or len(sides) < len(moved):
+            maneuver, evidence = self._cut(spans[PITCH], boot, up_to_order)
+            because = self._not_an_input(maneuver, up_to_order) if mark.by == "system id" else None
+            events += (
+                self._counted(maneuver, evidence) if because is None else [self._activity(maneuver, because)]
+            )
+        if sides:
+            self.side_maneuvers += 1
+            found = SideInput(sides)
+            span = replace(
+                found.main.span, start_s=found.start_s, last_step_s=found.last_step_s, kind=named(found)
+            )
+            events.append(SideManeuverFlown(self.side(span, boot, self.side_maneuvers, up_to_order)))
+        return events
+
+    def _activity(self, maneuver: Maneuver, because: Because) -> Activity:
+        """Return the event of a movement that was no test input, and count the movement."""
+        self.activities[because.what] += 1
+        span = maneuver.span
+        stay_s, _ = self._stay(_middle_s(span))
+        return Activity(span.start_s, span.end_s, because.reason, because.text, stay_s, maneuver.boot)
 
     def _counted(self, maneuver: Maneuver, evidence: Evidence) -> list[FlightEvent]:
         self.maneuvers += 1
@@ -114,7 +151,7 @@ class Cutting:
 
     def why_on_ground(self, span: Span, up_to_order: int | None = None) -> str | None:
         """Return evidence that the aircraft was on the ground during a movement; None without evidence."""
-        return why_on_ground(span, partial(self._tracks.cut, up_to_order=up_to_order))
+        return why_on_ground(span, partial(self._tracks.cut, up_to_order=up_to_order), self._limits)
 
     def _not_an_input(self, maneuver: Maneuver, up_to_order: int | None) -> Because | None:
         span = maneuver.span
@@ -142,10 +179,7 @@ class Cutting:
             span = replace(span, record_from_s=min(earlier_s, span.start_s))
         channels, notes = self._recorded(span, up_to_order)
         distrusts = self._who.distrusts(distrusted(channels))
-        for still in distrusts:
-            if still.channel == "a_z":
-                # An estimate can do without a specific force; a frozen one would spoil the estimate.
-                del channels["a_z"]
+        channels = _trusted(channels, distrusts)
         examined = examine(channels, self._evidence)
         channels = {**examined.channels, **self._air(span, up_to_order)}
         mode = self._stay(_middle_s(span))[1]
@@ -160,8 +194,9 @@ class Cutting:
             data_notes=tuple(notes),
             missed_s=self._breaks.missed_s(span.record_from_s, span.end_s),
             leapt_s=self._breaks.leapt_s(span.record_from_s, span.end_s),
+            scale=counted.scale if (counted := self._who.surfaces.get("elevator")) else None,
         )
-        return maneuver, examined.evidence
+        return self._who.rescaled(maneuver), examined.evidence
 
     def side(self, span: Span, boot: int, number: int, up_to_order: int | None) -> Maneuver:
         """Return the record of a lateral manoeuvre with this number."""
@@ -212,6 +247,16 @@ class Cutting:
                 "If no sensor measured the air speed, wind makes the derivatives wrong."
             ]
         return []
+
+
+def _trusted(channels: Mapping[str, Channel], distrusts: Sequence[Distrust]) -> dict[str, Channel]:
+    """Return the channels without those that would spoil an estimate which can do without them."""
+    left_out = {distrust.channel for distrust in distrusts if distrust.left_out}
+    kept = {name: channel for name, channel in channels.items() if name not in left_out}
+    if "a_z" in left_out and "alpha" in kept and kept["alpha"].provenance == "derived":
+        # Nothing computes an angle of attack from an accelerometer that stands still.
+        kept["alpha"] = replace(kept["alpha"], provenance="unknown")
+    return kept
 
 
 def _middle_s(span: Span) -> float:

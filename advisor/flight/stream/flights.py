@@ -7,6 +7,7 @@ from itertools import groupby
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.events import (
     Activity,
+    ElevatorRescaled,
     FlightBegan,
     FlightEvent,
     ManeuverAgain,
@@ -186,7 +187,7 @@ class Flights:
                     through.append(self._once(replace(maneuver, flight=self.flight)))
                 case SideManeuverFlown(maneuver):
                     through += self._side_once(replace(maneuver, flight=self.flight))
-                case Activity():
+                case Activity() | ElevatorRescaled():
                     through.append(replace(event, flight=self.flight))
                 case VehicleFound(vehicle):
                     through += [event, *self._compare_vehicles(vehicle)]

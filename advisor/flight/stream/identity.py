@@ -1,26 +1,24 @@
 """Identity of the vehicle by its own messages: autopilot, firmware, mode, and roles of its outputs."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from math import isfinite, nan
+from math import nan
 
-from advisor.aircraft.aircraft import Aircraft, Elevator
-from advisor.flight.elevator.elevator_outputs import find_elevator
-from advisor.flight.elevator.side_outputs import find_side_control
-from advisor.flight.maneuvers.events import FlightEvent, Notice, VehicleFound
+from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.maneuvers.events import READER_NOTICE, FlightEvent, Notice, VehicleFound
+from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import Columns
 from advisor.flight.signals.record import Channel
 from advisor.flight.signals.trust import Distrust
+from advisor.flight.stream.surfaces_heard import SurfacesHeard, speakers
 from advisor.flight.vehicle.following import FOLLOW, TAKE, Following, chosen
 from advisor.flight.vehicle.imu_filters import filter_delay_s
 from advisor.flight.vehicle.modes import in_hover, mode_name
-from advisor.flight.vehicle.parameters import AIRSPEED_SENSOR, Parameters, read_by
-from advisor.flight.vehicle.surfaces import Surface, listed
+from advisor.flight.vehicle.parameters import AIRSPEED_SENSOR, Parameters
+from advisor.flight.vehicle.surfaces import Surface
 from advisor.flight.vehicle.vehicle import Vehicle, VehicleFinder
-from advisor.flight.vehicle.wiring import Wiring
 from advisor.words.printable import printable
 from advisor.words.problems import Problem
-from advisor.words.vehicle_time import clock
 
 _BUNDLED = b"Bundled aircraft"
 """Beginning of the STATUSTEXT with which this project's simulator introduces itself."""
@@ -32,12 +30,8 @@ users."""
 READER = b"Log reader: "
 """Beginning of a STATUSTEXT with which a reader of logs gives a sentence to the user."""
 
-READER_NOTICE = "log_reader"
-"""Code of the notice with such a sentence, or with the treatment of a parameter's change in flight."""
 _ON_ROTORS = (1, 2, 3)
 """MAV_VTOL_STATE: transition to forward flight, transition to hover, hover; 4 is forward flight."""
-_GROUND_STATION = 190
-"""Component (MAV_COMP_ID_MISSIONPLANNER) under which a ground station stores parameters fetched as a file."""
 
 
 class Identity:
@@ -52,22 +46,33 @@ class Identity:
     """
 
     def __init__(self, aircraft: Aircraft, target_system: int | None) -> None:
-        self._aircraft, self._elevator = aircraft, aircraft.elevator
         self._finder = VehicleFinder(target_system)
         self._firmware: dict[int, str] = {}
         self._parameters = Parameters()
-        self._taken: Elevator | None = None
-        self._said = ""
         self._mode = ""
         self._hovers = False
-        self._changes_said: set[tuple[str, float]] = set()
-        self._following = Following(self._has_elevator)
+        self._outputs = SurfacesHeard(aircraft, self._parameters, self._finder)
+        self._following = Following(self._outputs.serves)
         self.simulated = False
         """Whether the bundled aircraft has introduced itself, whose vane is simulated."""
-        self.elevator: Surface | Problem = find_elevator(self._elevator, self._wiring())
-        """Outputs and scale of the elevator, or the reason for their absence."""
-        self.surfaces: dict[str, Surface] = {}
-        """Elevator, aileron and rudder, where known."""
+
+    @property
+    def elevator(self) -> Surface | Problem:
+        """Outputs and scale of the elevator by all that was heard, or the reason for their absence."""
+        return self._outputs.elevator
+
+    @property
+    def surfaces(self) -> Mapping[str, Surface]:
+        """Elevator, aileron and rudder as their pulses are counted now, where known."""
+        return self._outputs.counted
+
+    def rescaled(self, maneuver: Maneuver) -> Maneuver:
+        """Return a manoeuvre whose pulses are counted by all limits heard."""
+        return self._outputs.rescaled(maneuver)
+
+    def begin(self) -> None:
+        """Begin another power-on."""
+        self._outputs.begin()
 
     @property
     def vehicle(self) -> Vehicle | None:
@@ -104,7 +109,7 @@ class Identity:
         vehicle, provenance = self.vehicle, self.provenance(channel.source, channel.provenance)
         if vehicle is None:
             return replace(channel, provenance=provenance)
-        stated = self._parameters.stated(_speakers(vehicle), vehicle.autopilot)
+        stated = self._parameters.stated(speakers(vehicle), vehicle.autopilot)
         delay_s = filter_delay_s(channel.name, channel.source, vehicle.autopilot, stated)
         return replace(channel, provenance=provenance, delay_s=delay_s)
 
@@ -114,7 +119,7 @@ class Identity:
         vehicle = self._finder.vehicle
         if vehicle is None:
             return ""
-        stated = self._parameters.stated(_speakers(vehicle), vehicle.autopilot)
+        stated = self._parameters.stated(speakers(vehicle), vehicle.autopilot)
         off = next((name for name in AIRSPEED_SENSOR if stated.get(name) == 0.0), None)
         if off is None:
             return ""
@@ -145,7 +150,7 @@ class Identity:
             if columns.name == "HEARTBEAT":
                 events += self._heartbeat(columns)
             elif columns.name == "PARAM_VALUE":
-                events += self._parameter(columns, now_s, flown)
+                events += self._outputs.hear(columns, now_s, flown)
             elif columns.name == "EXTENDED_SYS_STATE":
                 self._flies_on(columns)
             elif columns.name == "AUTOPILOT_VERSION":
@@ -171,7 +176,6 @@ class Identity:
         before = self._finder.vehicle
         assert before is not None
         self._finder.follow(vehicle)
-        self._taken = None
         self._mode, self._hovers = "", False
         return [
             VehicleFound(vehicle),
@@ -180,19 +184,15 @@ class Identity:
                 f"Vehicle {vehicle.system} is now followed in place of vehicle {before.system}; "
                 f"--target-system {before.system} keeps to that one.",
             ),
-            *self._settle_surfaces(),
+            *self._outputs.follow(),
         ]
-
-    def _has_elevator(self, vehicle: Vehicle) -> bool:
-        wiring = self._parameters.wiring(_speakers(vehicle), vehicle.autopilot)
-        return isinstance(find_elevator(self._elevator, wiring), Surface)
 
     def _heartbeat(self, columns: Columns) -> list[FlightEvent]:
         events: list[FlightEvent] = []
         known = len(self._finder.others)
         if self._finder.hear(columns):
             assert self._finder.vehicle is not None
-            events += [VehicleFound(self._finder.vehicle), *self._settle_surfaces()]
+            events += [VehicleFound(self._finder.vehicle), *self._outputs.follow()]
         if len(self._finder.others) > known:
             others = ", ".join(str(n) for n in sorted(self._finder.others))
             events.append(
@@ -206,92 +206,6 @@ class Identity:
             custom = int(columns.fields["custom_mode"][0])
             self._mode = mode_name(vehicle.autopilot, vehicle.type, custom)
         return events
-
-    def _parameter(self, columns: Columns, now_s: float, flown: bool) -> list[FlightEvent]:
-        vehicle, sender = self._finder.vehicle, (columns.system, columns.component)
-        autopilot = vehicle.autopilot if vehicle else ""
-        events: list[FlightEvent] = []
-        changed = False
-        late: list[str] = []
-        for name, before, stated in self._parameters.news(columns):
-            self._parameters.keep(sender, name, stated)
-            if before is None and flown:
-                late.append(f"{name} {read_by(autopilot, stated):g}")
-            if before is not None and self._scales_elevator():
-                was, is_ = read_by(autopilot, before), read_by(autopilot, stated)
-                events += self._rescaled(name, was, is_, now_s, flown)
-                if flown:
-                    self._parameters.keep(sender, name, before)
-                    continue
-            changed = True
-        if changed and vehicle and (columns.system, columns.component) in _speakers(vehicle):
-            before_it = self.elevator
-            events += self._settle_surfaces()
-            events += self._heard_late(before_it, late, now_s)
-        return events
-
-    def _heard_late(self, before: Surface | Problem, late: Sequence[str], now_s: float) -> list[FlightEvent]:
-        """Return a notice on limits that stood in for parameters while manoeuvres were flown."""
-        now = self.elevator
-        if not late or not isinstance(before, Surface) or not isinstance(now, Surface):
-            return []
-        if before.parts == now.parts:
-            return []
-        at = f" at {clock(now_s)}" if isfinite(now_s) else ""
-        text = (
-            f"{listed(late)} {'is' if len(late) == 1 else 'are'} heard only{at}: another value was assumed "
-            "in the manoeuvres before, so their Z_delta_e and M_delta_e have another scale. Exclude these "
-            "manoeuvres by hand; advisor analyze counts the whole recording with the value heard."
-        )
-        return [Notice(READER_NOTICE, text)]
-
-    def _wiring(self) -> Wiring:
-        vehicle = self._finder.vehicle
-        if vehicle is None:
-            return self._parameters.wiring((), "")
-        return self._parameters.wiring(_speakers(vehicle), vehicle.autopilot)
-
-    def _scales_elevator(self) -> bool:
-        """Return whether parameters have changed the scale of the elevator's pulses."""
-        return (
-            isinstance(self.elevator, Surface)
-            and find_elevator(self._elevator, self._wiring()) != self.elevator
-        )
-
-    def _rescaled(
-        self, name: str, before: float, value: float, now_s: float, flown: bool
-    ) -> list[FlightEvent]:
-        """Return a notice on the change of a known parameter of the elevator, once for each value."""
-        if (name, value) in self._changes_said:
-            return []
-        self._changes_said.add((name, value))
-        at = f" at {clock(now_s)}" if isfinite(now_s) else ""
-        used = (
-            f"the elevator is counted with {before:g} all the same, for its linkage has not changed"
-            if flown
-            else f"the elevator is counted with {value:g} after that"
-        )
-        return [Notice(READER_NOTICE, f"{name} changed from {before:g} to {value:g}{at}: {used}.")]
-
-    def _settle_surfaces(self) -> list[FlightEvent]:
-        wiring, vehicle = self._wiring(), self._finder.vehicle
-        self.elevator = (vehicle and vehicle.no_elevator) or find_elevator(self._elevator, wiring)
-        if vehicle is not None and vehicle.is_multicopter:
-            self.surfaces = {}
-            return []
-        if isinstance(self.elevator, Problem) and self._taken is not None:
-            self.elevator = find_elevator(self._taken, wiring, "by a guess that a hand has taken")
-        found = {
-            "elevator": self.elevator,
-            "aileron": find_side_control("aileron", self._aircraft.aileron, wiring),
-            "rudder": find_side_control("rudder", self._aircraft.rudder, wiring),
-        }
-        self.surfaces = {name: surface for name, surface in found.items() if isinstance(surface, Surface)}
-        said = self.elevator.said if isinstance(self.elevator, Surface) else ""
-        if not said or said == self._said:
-            return []
-        self._said = said
-        return [Notice("elevator_scale", said)]
 
     def _flies_on(self, columns: Columns) -> None:
         vehicle = self._finder.vehicle
@@ -317,8 +231,7 @@ class Identity:
             return [Notice(READER_NOTICE, f"{said}.")]
         taken = chosen(text, TAKE)
         if taken is not None and self._finder.vehicle is not None:
-            self._taken = replace(self._elevator, output=taken)
-            return self._settle_surfaces()
+            return self._outputs.take(taken)
         other = self._finder.heard.get(chosen(text, FOLLOW) or 0)
         if other is not None and other != self._finder.vehicle:
             return self._follow(other)
@@ -330,9 +243,3 @@ class Identity:
             if told.startswith(self._firmware.get(columns.system, "")):
                 self._version_told(columns.system, told)
         return []
-
-
-def _speakers(vehicle: Vehicle) -> tuple[tuple[int, int], ...]:
-    """Return the senders (system, component) that state the vehicle's parameters. The vehicle comes last and
-    overrides."""
-    return (vehicle.system, _GROUND_STATION), (vehicle.system, vehicle.component)

@@ -11,6 +11,7 @@ from advisor.flight.elevator.elevator_watch import SETTLE_S, ElevatorWatch
 from advisor.flight.maneuvers.events import FlightEvent, SideManeuverFlown
 from advisor.flight.maneuvers.loop import ROLL, YAW, Loop
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
+from advisor.flight.maneuvers.marks import Marks
 from advisor.flight.maneuvers.purpose import not_an_input
 from advisor.flight.maneuvers.side_input import (
     BESIDE,
@@ -36,14 +37,14 @@ class SidePath:
     ----------
     tracks
         Channels of the vehicle.
+    marks
+        Marked stretches. A movement in a marked stretch is not found separately.
     cutting
         Gives the record of a manoeuvre.
     """
 
-    def __init__(self, tracks: Tracks, cutting: Cutting) -> None:
-        self._tracks, self._cutting = tracks, cutting
-        self.maneuvers = 0
-        """Number of lateral manoeuvres found."""
+    def __init__(self, tracks: Tracks, marks: Marks, cutting: Cutting) -> None:
+        self._tracks, self._marks, self._cutting = tracks, marks, cutting
         self.begin(0)
 
     def begin(self, boot: int) -> None:
@@ -98,6 +99,8 @@ class SidePath:
         """Return whether nothing can join or shorten the first input any more."""
         found, _ = first_input(self._pending)
         last_s = found.last_step_s
+        if self._marks.since_s(self._newest_s) is not None:
+            return False
         if self._newest_s >= last_s + TAIL_S[1] + SETTLE_S:
             return not any(
                 watch.onset_s is not None and watch.onset_s <= last_s + TOGETHER_S
@@ -120,10 +123,11 @@ class SidePath:
         ]
         span = input_span(found, sorted(ahead, key=_onset), self._newest_s, yaw_rate)
         self._pending = [one for one in self._pending if not _is_hidden(one, found, span)]
-        maneuver = self._cutting.side(span, self._boot, self.maneuvers + 1, up_to_order)
-        if self._is_no_input(maneuver, found, up_to_order):
+        span = self._marks.before(span)
+        maneuver = self._cutting.side(span, self._boot, self._cutting.side_maneuvers + 1, up_to_order)
+        if self._marks.holds(span) or self._is_no_input(maneuver, found, up_to_order):
             return []
-        self.maneuvers += 1
+        self._cutting.side_maneuvers += 1
         return [SideManeuverFlown(replace(maneuver, span=replace(span, kind=named(found))))]
 
     def _is_no_input(self, maneuver: Maneuver, found: SideInput, up_to_order: int | None) -> bool:

@@ -37,7 +37,7 @@ from advisor.flight.stream.elevator_path import ElevatorPath
 from advisor.flight.stream.identity import Identity
 from advisor.flight.stream.instrument_watch import InstrumentWatch
 from advisor.flight.stream.service import Service
-from advisor.flight.stream.side_path import SidePath
+from advisor.flight.stream.side_path import LOOPS, SidePath
 from advisor.flight.stream.suitability import problems, with_guess
 from advisor.flight.stream.vehicle_texts import VehicleTexts
 from advisor.flight.vehicle.boots import Master, by_boot
@@ -101,13 +101,13 @@ class FlightStream:
             aircraft.beta.source,
         )
         self._breaks = Breaks()
-        self._cutting = Cutting(self._tracks, self._who, aircraft, self._breaks)
+        self._cutting = Cutting(self._tracks, self._who, aircraft, self._breaks, lateral)
         self._mixing = Mixing(self._tracks)
         self.marks = Marks(marks)
         """Marks by hand, by a switch and by texts."""
         self._markers = MarkerWatch(aircraft.markers)
         self._path = ElevatorPath(self._tracks, self._mixing, self.marks, self._cutting)
-        self._side = SidePath(self._tracks, self._cutting) if lateral else None
+        self._side = SidePath(self._tracks, self.marks, self._cutting) if lateral else None
         self._over = False
         self.boot = 0
         """Number of the power-on, 0 for the first in the stream."""
@@ -132,6 +132,7 @@ class FlightStream:
         self._breaks.begin()
         self._mixing.begin()
         self._cutting.begin(self._who.mode)
+        self._who.begin()
         self._first_s = np.nan
         self._flown_before = self._cutting.maneuvers
         self._master_s = np.nan
@@ -169,11 +170,13 @@ class FlightStream:
 
     @property
     def elevator_notes(self) -> tuple[str, ...]:
-        """Composition of the elevator and assumptions about its scale and sign, as sentences."""
-        backwards = SAID if self._cutting.is_backwards else ""
-        if not isinstance(self.elevator, Surface):
-            return (backwards,) if backwards else ()
-        sentences = (self.elevator.said, self._mixing.said(self.elevator), backwards)
+        """Composition of the elevator and assumptions about its scale and sign, as sentences; those about
+        aileron and rudder follow a lateral manoeuvre."""
+        sentences = [SAID] if self._cutting.is_backwards else []
+        if isinstance(self.elevator, Surface):
+            sentences = [self.elevator.said, self._mixing.said(self.elevator), *sentences]
+        if self._cutting.side_maneuvers:
+            sentences += [surface.said for name, surface in self._who.surfaces.items() if name in LOOPS]
         return tuple(said for said in sentences if said)
 
     @property

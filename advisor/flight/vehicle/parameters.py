@@ -59,9 +59,13 @@ class Parameters:
             if tells_of_outputs(name) and before != stated:
                 yield name, before, stated
 
-    def keep(self, sender: Sender, name: str, stated: Stated) -> None:
-        """Keep a value as the sender's present one."""
-        self._known.setdefault(sender, {})[name] = stated
+    def keep(self, sender: Sender, name: str, stated: Stated | None) -> None:
+        """Keep a value as the sender's present one; None: as if none had been heard."""
+        known = self._known.setdefault(sender, {})
+        if stated is None:
+            known.pop(name, None)
+        else:
+            known[name] = stated
 
     def stated(self, senders: Sequence[Sender], autopilot: str) -> dict[str, float]:
         """Return the known values of these senders by name. The last sender overrides."""

@@ -29,10 +29,26 @@ class Scale:
     high_us: float = 1900.0
     reversed: bool = False
 
+    @property
+    def _full_rad(self) -> float:
+        """Surface angle at ``high_us``, rad."""
+        return float(_FULL_STROKE_RAD if self.reversed else -_FULL_STROKE_RAD)
+
     def deflection(self, pwm_us: FloatArray) -> FloatArray:
-        """Return the surface angle in rad, trailing edge down positive, clipped at the ends."""
-        up = np.interp(pwm_us, [self.low_us, self.trim_us, self.high_us], [-1.0, 0.0, 1.0])
-        return np.asarray((_FULL_STROKE_RAD if self.reversed else -_FULL_STROKE_RAD) * up)
+        """Return the surface angle in rad, trailing edge down positive, linear beyond the ends.
+
+        The autopilot keeps to the limits, not the linkage: a pulse beyond them shows that they are assumed.
+        """
+        away = pwm_us - self.trim_us
+        stroke = np.where(away < 0.0, self.trim_us - self.low_us, self.high_us - self.trim_us)
+        up = np.divide(away, stroke, out=np.zeros(np.shape(away)), where=stroke > 0.0)
+        return np.asarray(self._full_rad * up)
+
+    def pulses(self, angle_rad: FloatArray) -> FloatArray:
+        """Return the pulses in us that give these surface angles."""
+        up = angle_rad / self._full_rad
+        stroke = np.where(up < 0.0, self.trim_us - self.low_us, self.high_us - self.trim_us)
+        return np.asarray(self.trim_us + stroke * up)
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,6 +119,12 @@ class Surface:
         """Servo outputs 1..32. Elevons, a V-tail, a split elevator or a stabilator with a tab have
         several."""
         return tuple(part.output for part in self.parts)
+
+    @property
+    def scale(self) -> Scale | None:
+        """Scale of a single output without a calibration, from whose angle the pulse follows; else None."""
+        scale = self.parts[0].scale
+        return scale if len(self.parts) == 1 and isinstance(scale, Scale) else None
 
     @property
     def ports(self) -> tuple[int, ...]:

@@ -12,10 +12,10 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.candidates.bent import as_in_file
-from advisor.gap.candidates.moment import PROPELLER
-from advisor.gap.candidates.traits import OF_ONE_FLIGHT, TRAITS
-from advisor.gap.candidates.variant import Values, Variant
+from advisor.gap.candidates.nuisances import PROPELLER
+from advisor.gap.effects import EFFECTS
+from advisor.gap.kit.curve import as_in_file
+from advisor.gap.kit.variant import Values, Variant
 from advisor.gap.records.flights import PreparedManeuvers
 
 Effects = Mapping[str, Mapping[str, float]]
@@ -29,12 +29,12 @@ def with_known(
     effects."""
     numbers = np.tile(base, (len(flights), 1))
     for effect, parameters in effects.items():
-        if effect in OF_ONE_FLIGHT:
+        if EFFECTS[effect].of_one_flight:
             continue
         described = [w for v in variants if v.effect == effect for w in (v, *v.likewise)]
         meant = [w for w in described if _says(w, parameters)]
         for variant in sorted(meant, key=lambda v: (-len(v.fixed), -len(v.names)))[:1]:
-            as_said = as_in_file(variant, parameters, flights)
+            as_said = as_in_file(variant, EFFECTS[effect].curve, parameters, flights)
             as_said.apply(numbers, _values(variant, parameters), flights)
     return numbers
 
@@ -44,7 +44,7 @@ def beyond_known(effects: Effects, variants: Sequence[Variant]) -> list[Variant]
     is."""
     left = []
     for variant in variants:
-        known = effects.get(variant.effect, {}) if variant.effect not in OF_ONE_FLIGHT else {}
+        known = {} if EFFECTS[variant.effect].of_one_flight else effects.get(variant.effect, {})
         if known.keys().isdisjoint(variant.names):
             left.append(variant)
         elif len(variant.names) == 1 and not variant.inverted and _is_meant(variant, known, variants):
@@ -75,7 +75,7 @@ def less_of_the_servo(
     rest = dict(effects)
     changed: dict[str, Any] = {}
     for effect, values in effects.items():
-        where, stated = TRAITS[effect].stated, stated_in(aircraft, effect)
+        where, stated = EFFECTS[effect].stated, stated_in(aircraft, effect)
         less = 0.0 if where is None or where[0] != "elevator" else values.get(where[1], 0.0)
         if where is not None and stated and less < 0.0:
             changed[where[1]] = max(stated + less, 0.0)
@@ -85,14 +85,14 @@ def less_of_the_servo(
 
 def stated_in(aircraft: Aircraft, effect: str) -> float | None:
     """Return the number that the aircraft file states of an effect; None where it states nothing."""
-    where = TRAITS[effect].stated
+    where = EFFECTS[effect].stated
     stated: float | None = None if where is None else getattr(getattr(aircraft, where[0]), where[1])
     return stated
 
 
 def left_aside(effects: Effects) -> tuple[str, ...]:
     """Return the file's effects that belong to one flight alone."""
-    return tuple(effect for effect in effects if effect in OF_ONE_FLIGHT)
+    return tuple(effect for effect in effects if EFFECTS[effect].of_one_flight)
 
 
 def together(known: Effects, found: Effects) -> dict[str, dict[str, float]]:
@@ -103,7 +103,7 @@ def together(known: Effects, found: Effects) -> dict[str, dict[str, float]]:
     """
     both = {effect: dict(values) for effect, values in known.items()}
     for effect, values in found.items():
-        before = both.get(effect, {}) if effect not in OF_ONE_FLIGHT else {}
+        before = {} if EFFECTS[effect].of_one_flight else both.get(effect, {})
         both[effect] = before | dict(values)
         for size in [name for name in values if name not in PROPELLER.names][:1]:
             both[effect][size] += before.get(size, 0.0)
@@ -129,9 +129,8 @@ def _beyond(variant: Variant, known: float) -> Variant:
 
 def _says(variant: Variant, parameters: Mapping[str, float]) -> bool:
     same = all(parameters.get(name) == value for name, value in variant.fixed.items())
-    if variant.effect == "structural_mode":
-        return same and "frequency_hz" in parameters
-    return same and all(name in parameters for name in variant.names)
+    needed = list(variant.in_file)[:1] or variant.names
+    return same and all(name in parameters for name in needed)
 
 
 def _is_meant(variant: Variant, parameters: Mapping[str, float], variants: Sequence[Variant]) -> bool:
@@ -143,10 +142,9 @@ def _is_meant(variant: Variant, parameters: Mapping[str, float], variants: Seque
 
 def _values(variant: Variant, parameters: Mapping[str, float]) -> list[float]:
     """Return the variant's parameters from the file's: the inverse of ``causes.parameters_of``."""
-    if variant.effect == "structural_mode":
-        return [
-            parameters.get("displacement_gain", 0.0), parameters.get("gain", 0.0),
-            2.0 * np.pi * parameters["frequency_hz"], parameters.get("damping", 0.0),
-        ]  # fmt: skip
+    spelled = {name: (key, factor) for key, (name, factor) in variant.in_file.items()}
+    if spelled:
+        keys = [spelled[name] for name in variant.names]
+        return [factor * parameters.get(key, 0.0) for key, factor in keys]
     values = [parameters[name] for name in variant.names]
     return [1.0 / max(values[0], 1e-9), *values[1:]] if variant.inverted else values

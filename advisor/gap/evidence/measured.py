@@ -7,7 +7,6 @@ import numpy as np
 
 from advisor.flight.instruments.kinematics import KinematicCheck
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.candidates.traits import TRAITS
 from advisor.gap.evidence.course import courses_of, drift_and_step
 from advisor.gap.evidence.found import Evidence
 from advisor.gap.fitting.fit import EffectFit, rms_of
@@ -118,7 +117,6 @@ class Measured:
     courses: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     """By block: gain of a drift and of a step of trims, offsets and estimates."""
     alpha_is_estimated: bool = False
-    blocks: tuple[str, ...] = tuple(dict.fromkeys(trait.block for trait in TRAITS.values()))
 
 
 def measured(e: Evidence, kinematics: KinematicCheck) -> Measured:
@@ -210,7 +208,7 @@ def _full(e: Evidence, j: JudgedAddition, noise: FloatArray) -> FullFit:
         support=j.support,
         change=j.removed / max(j.least, 1e-12),
         sigmas=float(j.sigmas),
-        size=size_of(j.variant, j.value) / j.least_size if j.least_size > 0.0 else 0.0,
+        size=size_of(j.variant, j.value) / j.smallest if j.smallest > 0.0 else 0.0,
         at_bound=j.at_its_bounds,
         removed=j.removed,
         gap=whole_gap(j.held_out.mean_square, e.floor),

@@ -16,6 +16,11 @@ def _folded(value: float) -> float:
     return math.copysign(math.log1p(abs(value)), value)
 
 
+def _figures(value: float) -> str:
+    """Return three digits, never in powers of ten below ten million."""
+    return f"{value:,.0f}" if 1e3 <= abs(value) < 1e7 else f"{value:.3g}"
+
+
 @dataclass(frozen=True, slots=True)
 class Quantity:
     """One column of the evidence. A value of zero means that the alternative has no such evidence."""
@@ -33,49 +38,56 @@ class Quantity:
 
     def written(self, value: float) -> str:
         """Return a value with its unit."""
-        return f"{value:.3g} {self.unit}".rstrip()
+        return f"{_figures(value)} {self.unit}".rstrip()
+
+    def compared(self, value: float, other: float) -> str:
+        """Return two values with their unit; one where they read as equal."""
+        first, second = _figures(value), _figures(other)
+        return self.written(value) if first == second else f"{first} against {second} {self.unit}".rstrip()
 
 
 QUANTITIES: tuple[Quantity, ...] = (
     Quantity("answer", "", "mark of the answer that the search ends with"),
     Quantity("tried", "", "mark of an alternative that this flight can show"),
-    Quantity("screen_gain", "nats", "gain in the screening, less the price of parameters", _folded),
-    Quantity("screen_share", "", "gain in the screening relative to the best alternative"),
-    Quantity("screen_lead", "", "lead in the screening over the best other alternative"),
-    Quantity("file_agreement", "nats", "gain in agreement with the file's numbers", _folded),
-    Quantity("fit_gain", "nats", "gain in the fit, less the price of parameters", _folded),
-    Quantity("fit_share", "", "gain in the fit relative to the best alternative"),
+    Quantity("screen_gain", "nats", "gain in the quick fit, less the price of parameters", _folded),
+    Quantity("screen_share", "", "gain in the quick fit relative to the best alternative"),
+    Quantity("screen_lead", "", "lead in the quick fit over the best other alternative"),
+    Quantity("file_agreement", "nats", "gain in agreement with the file's derivatives", _folded),
+    Quantity("fit_gain", "nats", "gain in the full fit, less the price of parameters", _folded),
+    Quantity("fit_share", "", "gain in the full fit relative to the best alternative"),
     Quantity("heldout_gain", "nats", "gain on held-out manoeuvres", _folded),
     Quantity("heldout_sigmas", "standard errors", "held-out gain over its error over manoeuvres", _folded),
     Quantity("support", "standard errors", "gap removed on held-out manoeuvres over its error", _folded),
-    Quantity("gap_removed", "", "share of the held-out gap that is removed"),
+    Quantity("gap_removed", "", "share of the held-out gap that the cause removes"),
     Quantity("change", "", "change of the motion over the least visible one", _folded),
     Quantity("size_sigmas", "standard deviations", "size over its standard deviation", _folded),
     Quantity("size", "", "size over the smallest physical size", _folded),
     Quantity("at_bound", "", "mark of a parameter at the end of its range"),
-    Quantity("model_gain", "nats", "loss of the final model without it", _folded),
+    Quantity("model_gain", "nats", "loss of the final model without the cause", _folded),
     Quantity("model_share", "", "share of what the final model's effects remove"),
-    Quantity("misfit", "", "largest misfit that is left, over the noise", _folded),
-    Quantity("misfit_alpha", "", "misfit of the angle of attack that is left, over the noise", _folded),
-    Quantity("misfit_q", "", "misfit of the pitch rate that is left, over the noise", _folded),
-    Quantity("misfit_a_z", "", "misfit of the acceleration that is left, over the noise", _folded),
-    Quantity("misfit_theta", "", "misfit of the attitude that is left, over the noise", _folded),
+    Quantity("misfit", "", "largest misfit of the final model, over the noise", _folded),
+    Quantity("misfit_alpha", "", "misfit of the final model in the angle of attack, over the noise", _folded),
+    Quantity("misfit_q", "", "misfit of the final model in the pitch rate, over the noise", _folded),
+    Quantity("misfit_a_z", "", "misfit of the final model in the acceleration, over the noise", _folded),
+    Quantity("misfit_theta", "", "misfit of the final model in the attitude, over the noise", _folded),
     Quantity("of_peak", "%", "largest misfit in per cent of a channel's peak", _folded),
-    Quantity("activity", "", "misfit while the stick moves over that in quiet", _folded),
+    Quantity("activity", "", "misfit while the stick moves over the misfit in quiet flight", _folded),
     Quantity("block_gain", "nats", "gain of a free disturbance in the block", _folded),
-    Quantity("block_share", "", "gain of that disturbance relative to the best block"),
+    Quantity("block_share", "", "gain of a free disturbance relative to the best block"),
     Quantity("block_left", "nats", "gain of a free disturbance in the block, after the effects", _folded),
-    Quantity("block_left_share", "", "that gain after the effects, relative to the best block"),
-    Quantity("block_explains", "", "share of the residual that the disturbance explains"),
+    Quantity("block_left_share", "", "gain of a disturbance after the effects, relative to the best block"),
+    Quantity("block_explains", "", "share of the residual that a free disturbance explains"),
     Quantity("law_gain", "nats", "gain of the best simple law without a name", _folded),
-    Quantity("law_lead", "nats", "lead of that law over all named effects", _folded),
+    Quantity("law_lead", "nats", "lead of the best law without a name over all named effects", _folded),
     Quantity("few_maneuvers", "", "concentration of the residual in a few manoeuvres, as expected"),
     Quantity("shape", "", "mark of the air's course: 1 as expected, -1 otherwise"),
     Quantity("kinematics", "standard deviations", "finding of the kinematics alone", _folded),
     Quantity("kinematic_size", "", "finding of the kinematics over the smallest physical size", _folded),
-    Quantity("estimated", "", "mark of a channel that the autopilot estimates itself"),
-    Quantity("file_gap", "", "gap of the file's numbers beyond that of fitted ones", _folded),
-    Quantity("file_distance", "standard deviations", "distance of the file's numbers", _folded),
+    Quantity("estimated", "", "mark of a channel that the autopilot estimates"),
+    Quantity("file_gap", "", "gap of the file's derivatives beyond the gap of fitted ones", _folded),
+    Quantity(
+        "file_distance", "standard deviations", "distance of the file's derivatives from fitted ones", _folded
+    ),
     Quantity("drift", "nats", "gain of a steady drift of trims and offsets", _folded),
     Quantity("step", "nats", "gain of a step of trims and offsets", _folded),
 )  # fmt: skip

@@ -8,21 +8,20 @@ import numpy as np
 from advisor.flight.instruments.kinematics import SMALLEST_LAG_S, SMALLEST_SCALE
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.alternative import Alternative, Kind
-from advisor.gap.candidates.traits import OF_ONE_FLIGHT, TRAITS
+from advisor.gap.effects import EFFECTS
 from advisor.gap.evidence.measured import FullFit, Measured, Residual
+from advisor.gap.kit.effect import BLOCKS, Effect
 from advisor.gap.noise.probes import DYNAMIC, SENSOR_CHANNELS
 from advisor.gap.search.acceptance import LEAST_OFFSET_RAD
 from advisor.gap.search.air import LEAST_GUST_ANGLE
 
 Values = dict[str, float]
-BLOCKS = (*dict.fromkeys(trait.block for trait in TRAITS.values()), "attitude_sensor")
+UNKNOWN_IN = (*BLOCKS, "attitude_sensor")
 """Blocks in which an effect without a name may lie."""
 _KINDS: Mapping[str, Kind] = {"air": "air"}
 """Kind of the effects of a block, where it is not ``effect``."""
 _WEIGHTY = 20.0
 """Least gain in log likelihood, nats, to which other gains are relative: relative to less, chance decides."""
-_ONCE = {"gust": 1.0, "turbulence": -1.0}
-"""Effects that are expected in a few manoeuvres (1), or in all (-1)."""
 
 
 @dataclass(frozen=True)
@@ -46,14 +45,14 @@ def rows_of(m: Measured, answer: Alternative | None = None) -> tuple[Row, ...]:
         numbers = together | _of_the_file(m) | _of_fitted_numbers(m)
         rows.append(Row(Alternative("parameters", "parameters"), numbers))
     screened = _of_screening(m)
-    for effect, trait in TRAITS.items():
-        values = _of_residual(m, m.base) | probed[_probed_in(effect)] | screened[effect]
-        values |= _of_fits(m, effect) | _of_kinematics(m, effect) | _of_air(m, effect)
-        values |= _of_courses(m, trait.block) if effect in OF_ONE_FLIGHT else {}
-        values["estimated"] = float(trait.channel == "alpha" and m.alpha_is_estimated)
-        rows.append(Row(stated_as(effect), values))
+    for name, effect in EFFECTS.items():
+        values = _of_residual(m, m.base) | probed[_probed_in(effect)] | screened[name]
+        values |= _of_fits(m, name) | _of_kinematics(m, effect) | _of_air(m, effect)
+        values |= _of_courses(m, effect.block) if effect.of_one_flight else {}
+        values["estimated"] = float(effect.channel == "alpha" and m.alpha_is_estimated)
+        rows.append(Row(stated_as(name), values))
     lead = max(m.laws.values(), default=0.0) - m.named_gain
-    for block in BLOCKS:
+    for block in UNKNOWN_IN:
         # A free disturbance of the air has a name: turbulence.
         values = _of_residual(m, m.last) | _of_courses(m, block) | ({} if block in _KINDS else probed[block])
         values |= {"law_gain": m.laws.get(block, 0.0), "few_maneuvers": _concentration(m.last), "tried": 1.0}
@@ -69,7 +68,7 @@ def rows_of(m: Measured, answer: Alternative | None = None) -> tuple[Row, ...]:
 
 def stated_as(effect: str) -> Alternative:
     """Return an effect of the catalogue as an alternative."""
-    block = TRAITS[effect].block
+    block = EFFECTS[effect].block
     return Alternative(_KINDS.get(block, "effect"), effect, block)
 
 
@@ -96,7 +95,7 @@ def _of_blocks(m: Measured) -> dict[str, Values]:
             "block_left_share": max(last.get(block, 0.0), 0.0) / best_left,
             "block_explains": m.last.probes.get(block, (0.0, 0.0))[1],
         }
-        for block in BLOCKS
+        for block in UNKNOWN_IN
     }
 
 
@@ -105,12 +104,11 @@ def _gains(residual: Residual) -> dict[str, float]:
     return gains | {"timing": max((gains.get(block, 0.0) for block in SENSOR_CHANNELS), default=0.0)}
 
 
-def _probed_in(effect: str) -> str:
+def _probed_in(effect: Effect) -> str:
     """Return the block whose free disturbance resembles the effect: a sensor's for a wrong stamp."""
-    trait = TRAITS[effect]
-    if trait.block in DYNAMIC or trait.block in SENSOR_CHANNELS:
-        return trait.block
-    channel = trait.channel or "q"
+    if effect.block in DYNAMIC or effect.block in SENSOR_CHANNELS:
+        return effect.block
+    channel = effect.channel or "q"
     return next(block for block, its in SENSOR_CHANNELS.items() if its == channel)
 
 
@@ -119,7 +117,7 @@ def _of_screening(m: Measured) -> dict[str, Values]:
     gains = {effect: found.gain for effect, found in m.screened.items()}
     best = max([*gains.values(), _WEIGHTY])
     values: dict[str, Values] = {}
-    for effect in TRAITS:
+    for effect in EFFECTS:
         if effect not in m.screened:
             values[effect] = {}
             continue
@@ -171,24 +169,23 @@ def _held_out_gain(m: Measured, fit: FullFit) -> tuple[float, float]:
     return float(np.sum(each)), error
 
 
-def _of_kinematics(m: Measured, effect: str) -> Values:
+def _of_kinematics(m: Measured, effect: Effect) -> Values:
     """Return the finding of the kinematics that speaks of the effect.
 
     An offset shows in the kinematics alone. Its gain is that of a measurement z standard deviations from
     zero, z²/2.
     """
     findings = {
-        "alpha_bias": (m.offset_rad, LEAST_OFFSET_RAD),
-        "alpha_lag": (m.lag_s, SMALLEST_LAG_S),
-        "alpha_skew": (m.lag_s, SMALLEST_LAG_S),
-        "alpha_scale": (m.scale, SMALLEST_SCALE),
+        "offset": (m.offset_rad, LEAST_OFFSET_RAD),
+        "lag": (m.lag_s, SMALLEST_LAG_S),
+        "scale": (m.scale, SMALLEST_SCALE),
     }
-    if effect not in findings:
+    if effect.kinematics not in findings:
         return {}
-    (value, std), smallest = findings[effect]
+    (value, std), smallest = findings[effect.kinematics]
     z, size = abs(value) / max(std, 1e-9), abs(value) / smallest
     found = {"kinematics": z, "kinematic_size": size}
-    if effect in m.screened or std <= 0.0:
+    if effect.name in m.screened or std <= 0.0:
         return found
     gain = 0.5 * z**2
     share = m.offset_gap / max(m.offset_gap + m.base_gap, 1e-9)
@@ -199,10 +196,11 @@ def _of_kinematics(m: Measured, effect: str) -> Values:
     }  # fmt: skip
 
 
-def _of_air(m: Measured, effect: str) -> Values:
+def _of_air(m: Measured, effect: Effect) -> Values:
     """Return the moving air, for the effects of the air."""
-    if effect not in _ONCE or "alpha" not in m.channels:
+    if effect.block != "air" or "alpha" not in m.channels:
         return {}
+    once = 1.0 if effect.comes_once else -1.0
     shape = 0.0 if m.air_is_gust is None else 1.0 if m.air_is_gust else -1.0
     share = m.air_gain / max(m.air_gain + m.named_gain, _WEIGHTY)
     removed = m.last_gap - m.air_gap
@@ -211,8 +209,8 @@ def _of_air(m: Measured, effect: str) -> Values:
         "fit_gain": m.air_gain, "fit_share": share, "size": m.air_angle / LEAST_GUST_ANGLE,
         "gap_removed": removed / m.base_gap if m.base_gap > 0.0 else 0.0,
         "model_share": removed / max(m.base_gap - m.air_gap, 1e-9) if removed > 0.0 else 0.0,
-        "few_maneuvers": _ONCE[effect] * _concentration(m.last),
-        "shape": _ONCE[effect] * shape,
+        "few_maneuvers": once * _concentration(m.last),
+        "shape": once * shape,
     }  # fmt: skip
 
 

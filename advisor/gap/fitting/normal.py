@@ -21,7 +21,7 @@ def factored(normal: FloatArray) -> FloatArray:
     """
     factor, info = dpotrf(normal, lower=1, clean=0)
     if info != 0 or not np.isfinite(factor[-1, -1]):
-        raise np.linalg.LinAlgError("the manoeuvre's own numbers are not determined")
+        raise np.linalg.LinAlgError("the data do not determine the manoeuvre's trim and initial state")
     return np.asarray(factor)
 
 

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
+from advisor.gap.effects import effect_named
 from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.model.response import SHARED
 from advisor.oem.prior import precision_without_alpha
@@ -29,9 +30,6 @@ _CHI_SQUARE_999, _CHI_SQUARE_500 = 22.46, 5.35
 _LOG_ODDS_OTHER_STATED = -4.0
 """Log prior odds of an arm that the aircraft file states, relative to an equivalent arm that it leaves open.
 They also hold for a vane's arm where α is an estimate."""
-_LOG_ODDS_BACKWARD = {"alpha_vane_offset": -5.0, "accelerometer_offset": -2.5}
-"""Log prior odds of an arm that points backwards. The two arms are equivalent in the data. A vane behind the
-centre of gravity is hardly ever found, an accelerometer there less often than a vane ahead."""
 
 
 def derivative_scale(prior: FloatArray) -> FloatArray:
@@ -85,10 +83,6 @@ def log_prior(derivatives: FloatArray, covariance: FloatArray, prior: FloatArray
     return float(np.logaddexp(densities[0], densities[1]) - np.log(2.0))
 
 
-ARMS = frozenset(_LOG_ODDS_BACKWARD)
-"""Effects that are an arm."""
-
-
 @dataclass(frozen=True, slots=True)
 class Distance:
     """Distance of fitted derivatives from the aircraft file's, relative to prior error and covariance."""
@@ -120,15 +114,16 @@ def _distance(off: FloatArray, covariance_of_error: FloatArray) -> float:
     return float(off @ np.linalg.solve(covariance_of_error, off))
 
 
-def log_odds_of_arm(effect: str, arm_m: float, in_file: frozenset[str], alpha_is_derived: bool) -> float:
+def log_odds_of_arm(name: str, arm_m: float, in_file: frozenset[str], alpha_is_derived: bool) -> float:
     """Return the log prior odds between the two arms that are equivalent in the data; 0 for other effects.
 
     ``in_file`` has the effects whose arm the aircraft file states.
     """
-    if effect not in _LOG_ODDS_BACKWARD:
+    effect = effect_named(name)
+    if not effect.is_arm:
         return 0.0
-    only_one_stated = len(in_file) == 1 and effect in in_file
-    no_vane = effect == "alpha_vane_offset" and alpha_is_derived
-    return (_LOG_ODDS_BACKWARD[effect] if arm_m < 0.0 else 0.0) + (
+    only_one_stated = len(in_file) == 1 and name in in_file
+    no_vane = effect.channel == "alpha" and alpha_is_derived
+    return (effect.log_odds_backward if arm_m < 0.0 else 0.0) + (
         _LOG_ODDS_OTHER_STATED if only_one_stated or no_vane else 0.0
     )

@@ -7,7 +7,6 @@ from itertools import accumulate, pairwise
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.prior import (
     ERROR_IF_FIXED,
     ERROR_IF_RIGHT,
@@ -16,6 +15,7 @@ from advisor.gap.fitting.prior import (
     small_without_alpha,
 )
 from advisor.gap.fitting.whitening import Filters, Whitening
+from advisor.gap.kit.variant import Variant
 from advisor.gap.records.flights import PreparedManeuver, PreparedManeuvers
 from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, FILTER, INDEX, LAYOUT, NUISANCES, SKEWS
 from advisor.gap.simulator.pack import LANES

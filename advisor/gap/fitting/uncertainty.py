@@ -9,6 +9,7 @@ from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.prior import ERROR_IF_RIGHT, Distance, distance_of, log_prior, prior_precision
 from advisor.gap.fitting.problem import EffectProblem, counts
 from advisor.gap.records.floor import effective_sample_size
+from advisor.oem.inverses import inverse_of
 
 CLEAR_GAP = 0.5
 """Gap that fitted derivatives remove from the file's, above which a smaller distance is enough to reject the
@@ -92,6 +93,4 @@ def covariance(
         n = len(problem.prior_derivatives)
         tolerance = prior_precision(problem.prior_derivatives, ERROR_IF_RIGHT)
         information[:n, :n] += np.diag(np.maximum(tolerance - expected[:n], 0.0))
-    scale = np.sqrt(np.maximum(np.diag(information), 1e-300))
-    normal = information / np.outer(scale, scale)
-    return np.asarray(np.linalg.pinv(normal, rcond=1e-12, hermitian=True) / np.outer(scale, scale))
+    return inverse_of(information)[0]

@@ -10,13 +10,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.candidates.traits import OF_ONE_IMU
-from advisor.gap.candidates.variant import Variant
+from advisor.gap.effects import EFFECTS
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.problem import EffectProblem
-from advisor.gap.foresight.needs import NEEDS, ONE_IMU, OTHERWISE, hidden_from, need_of
+from advisor.gap.foresight.needs import ONE_IMU, OTHERWISE, hidden_from, need_of
 from advisor.gap.foresight.signatures import Signatures
-from advisor.gap.records.flights import SPEED_CHANGE
+from advisor.gap.kit.variant import Variant
 from advisor.gap.records.floor import floor_margins
 from advisor.gap.result import Unseen, spelled
 from advisor.gap.search.acceptance import LEAST_GAIN
@@ -36,12 +35,6 @@ _GROWTH = 3.0
 _CLOSE = 0.02
 """Factor on a size without a signature, and relative difference of two sizes in a row at which the refinement
 ends."""
-_CURVES = {
-    "M_alpha2": ("M_alpha", "alpha"),
-    "Z_alpha2": ("Z_alpha", "alpha"),
-    "M_delta2": ("M_delta_e", "elevator"),
-}
-"""Nonlinear terms: the linear term that they modify, and the channel of their argument."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +49,8 @@ class Foreseen:
     """Similar effects, each with the cosine between the signatures."""
     add: str = ""
     """Channel or manoeuvre that would distinguish the effect, or make it visible."""
+    is_limit: bool = False
+    """Whether the effect is a limit, which shows where it is smaller than the size."""
     share: float | None = None
     """Smallest size of a nonlinear term as a share of the linear term, at the plan's amplitude."""
 
@@ -118,13 +113,14 @@ def unseen_effects(
     present: set[str],
 ) -> tuple[Unseen, ...]:
     """Return the effects that this flight could not have shown, each with the reason."""
-    tried = {v.effect for v in variants} | {"alpha_bias", "airspeed_variation", "turbulence", "gust"}
-    if "climb_rate" not in problem.flights.has:
-        tried.discard("alpha_bias")
-    if problem.flights.speed_moves < SPEED_CHANGE:
-        tried.discard("airspeed_variation")
     flights = problem.flights
-    needed = {e: need_of(e, flights) for e in NEEDS if e not in tried and e not in present}
+    tried = {v.effect for v in variants} | present
+    tried |= {e.name for e in EFFECTS.values() if e.outside_fits is not None and e.outside_fits(flights)}
+    needed = {
+        name: need_of(name, flights)
+        for name, effect in EFFECTS.items()
+        if effect.need is not None and name not in tried
+    }
     out = [Unseen(effect, need.because, need.add) for effect, need in needed.items()]
     for seen in foresee(problem, fitted, variants, noise, rounds=1):
         twins = [name for name, cosine in seen.confused_with if cosine > CONFUSED_AT]
@@ -134,8 +130,9 @@ def unseen_effects(
             alike = " or ".join(map(spelled, twins))
             out.append(Unseen(seen.effect, f"when small it looks like {alike}", seen.add))
     if flights.alpha_is_derived:
-        out = [unseen for unseen in out if unseen.effect not in OF_ONE_IMU]
-        out += [Unseen(effect, *ONE_IMU) for effect in OF_ONE_IMU if effect not in present]
+        out = [unseen for unseen in out if not EFFECTS[unseen.effect].of_one_imu]
+        hidden = [name for name, effect in EFFECTS.items() if effect.of_one_imu and name not in present]
+        out += [Unseen(effect, *ONE_IMU) for effect in hidden]
     return tuple(out)
 
 
@@ -250,7 +247,9 @@ def _foreseen(
     if signature.parameter in shares and np.isfinite(smallest):
         share = smallest * shares[signature.parameter]
     size = 1.0 / smallest if signature.inverted and np.isfinite(smallest) else smallest
-    return Foreseen(signature.effect, signature.parameter, size, tuple(confused), add, share)
+    return Foreseen(
+        signature.effect, signature.parameter, size, tuple(confused), add, signature.inverted, share
+    )
 
 
 def _shares(problem: EffectProblem, fitted: EffectFit) -> Mapping[str, float]:
@@ -262,13 +261,17 @@ def _shares(problem: EffectProblem, fitted: EffectFit) -> Mapping[str, float]:
     p = problem.driving(fitted.point)
     flights = problem.flights.flights
     reached = {
-        "elevator": max(float(np.max(np.abs(f.u - f.u_trim))) for f in flights),
+        "delta_e": max(float(np.max(np.abs(f.u - f.u_trim))) for f in flights),
         "alpha": max(
             float(np.max(np.abs(problem.fly(f, p[i])[0] - f.alpha_trim))) for i, f in enumerate(flights)
         ),
     }
-    terms = {term: (abs(float(p[0, INDEX[linear]])), over) for term, (linear, over) in _CURVES.items()}
-    return {term: reached[over] / linear for term, (linear, over) in terms.items() if linear > 0.0}
+    shares: dict[str, float] = {}
+    for curve in [effect.curve for effect in EFFECTS.values() if effect.curve is not None]:
+        for square in [term for term, power in curve.powers.items() if power == 2]:
+            linear = abs(float(p[0, INDEX[curve.slope]]))
+            shares |= {square: reached[curve.variable] / linear} if linear > 0.0 else {}
+    return shares
 
 
 def _cosine(a: FloatArray, b: FloatArray) -> float:

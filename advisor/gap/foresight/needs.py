@@ -2,11 +2,10 @@
 
 from dataclasses import replace
 
-from advisor.gap.candidates.trait import Need
-from advisor.gap.candidates.traits import TRAITS
+from advisor.gap.effects import EFFECTS
+from advisor.gap.kit.effect import Need
 from advisor.gap.records.flights import PreparedManeuvers
 
-NEEDS = {effect: trait.need for effect, trait in TRAITS.items() if trait.need is not None}
 OTHERWISE = "fly another time unit and another amplitude"
 """Advice where nothing particular is known that would distinguish two effects."""
 _CHANNELS = {"alpha": "AOA_SSA at 50 Hz", "a_z": "RAW_IMU at 50 Hz", "theta": "ATTITUDE at 50 Hz"}
@@ -14,21 +13,23 @@ ONE_IMU = ("the angle of attack is made of the same inertial sensors", "a vane")
 """Why an autopilot's own angle of attack cannot show some effects, and what would show them."""
 
 
-def need_of(effect: str, flights: PreparedManeuvers) -> Need:
+def need_of(name: str, flights: PreparedManeuvers) -> Need:
     """Return why these flights cannot show an effect: its channel was not recorded, or did not vary."""
-    need = NEEDS[effect]
-    if (unrecorded := TRAITS[effect].unrecorded) is not None:
-        channel, because, add = unrecorded
+    effect = EFFECTS[name]
+    assert effect.need is not None
+    if effect.unrecorded is not None:
+        channel, because, add = effect.unrecorded
         if channel not in flights.has:
-            return replace(need, because=because, add=add)
-    if effect == "airspeed_variation" and not flights.speed_measured:
-        return replace(need, because="the air speed reads next to nothing", add="check the air speed sensor")
-    return need
+            return replace(effect.need, because=because, add=add)
+    if effect.without_speed is not None and not flights.speed_measured:
+        because, add = effect.without_speed
+        return replace(effect.need, because=because, add=add)
+    return effect.need
 
 
 def hidden_from(effect: str, flights: PreparedManeuvers) -> tuple[str, str]:
     """Return why an effect that was sought has no signature of its own, and what to add."""
-    if not TRAITS[effect].of_the_stick:
+    if not EFFECTS[effect].of_the_stick:
         need = need_of(effect, flights)
         return need.because, need.add
     missing = [message for channel, message in _CHANNELS.items() if channel not in flights.channels]

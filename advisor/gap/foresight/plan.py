@@ -10,7 +10,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.record import Channel
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import beyond_known, with_known
-from advisor.gap.candidates.traits import TRAITS
+from advisor.gap.effects import EFFECTS
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.linear import linearise
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
@@ -125,7 +125,7 @@ def foresee_flights(
     in_file = {v.effect: v.names[0] for v in variants if v.effect not in sought}
     found += [Foreseen(effect, name, float("inf"), (), _IN_FILE) for effect, name in in_file.items()]
     by_effect = {f.effect: f for f in found}
-    return [by_effect.get(effect) or impossible(effect, flights) for effect in TRAITS]
+    return [by_effect.get(effect) or impossible(effect, flights) for effect in EFFECTS]
 
 
 def _refuse(plan: Sequence[str], rate_hz: float, amplitude_deg: float, without: Sequence[str]) -> None:

@@ -11,9 +11,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.problem import EffectProblem, row_weights
+from advisor.gap.kit.variant import Variant
 
 _RANK = 1e-7
 """Relative singular value of a direction of the shared parameters below which the direction is ignored."""

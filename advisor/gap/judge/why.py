@@ -25,20 +25,20 @@ def reasons(logit: Logit, answer: Row, rival: Row, prior: FieldPrior) -> tuple[C
         for quantity in QUANTITIES
         if quantity.name in nats
     ]
-    lines.append(Contribution("prior", ahead, "before the flight is looked at"))
+    lines.append(Contribution("prior", ahead, "how often each is right, before the flight is looked at"))
     lines.sort(key=lambda line: -abs(line.nats))
     kept, others = lines[: MOST_LINES - 1], lines[MOST_LINES - 1 :]
-    rest = Contribution("rest", sum(line.nats for line in others), "all smaller differences together")
+    rest = Contribution("rest", sum(line.nats for line in others), "all smaller parts together")
     return (*kept, rest)
 
 
 def _line(
     quantity: Quantity, nats: float, answer: Mapping[str, float], rival: Mapping[str, float]
 ) -> Contribution:
-    a, b = (quantity.written(values.get(quantity.name, 0.0)) for values in (answer, rival))
+    said = quantity.compared(*(values.get(quantity.name, 0.0) for values in (answer, rival)))
     # A value that both share may still be likelier under one of them: their kinds have weights of their own.
-    values_said = f"{a} against {b}" if a != b else f"{a}, as expected of the {_favoured(nats)}"
-    return Contribution(quantity.name, nats, f"{quantity.words}: {values_said}")
+    both = "" if " against " in said else f" for both, as expected of the {_favoured(nats)}"
+    return Contribution(quantity.name, nats, f"{quantity.words}: {said}{both}")
 
 
 def _favoured(nats: float) -> str:

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.candidates.traits import TAKES
-from advisor.gap.candidates.variant import Variant
 from advisor.gap.decision import Decision
+from advisor.gap.effects import effect_named
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.holdout import HeldOut
+from advisor.gap.kit.variant import Variant
 
 MOST_EFFECTS = 3
 """Most effects named in one flight. More names in one flight are hardly ever right."""
@@ -18,20 +18,13 @@ LEAST_GAIN = 6.0
 _UNCONFIRMED = 20.0
 """Least gain in log likelihood where one manoeuvre alone determines the effect, and no other can confirm
 it."""
-_WITH_THE_AIR = 30.0
-"""Least gain in log likelihood, in moving air, of an effect that air speed, throttle or height determine.
-These channels move with the air too."""
-_CLEAR_GAIN, _CLEAR_SIGMAS = 15.0, 5.0
-"""Least gain in log likelihood, and least significance in standard deviations, of the first effect in moving
-air. Its change must be clear too."""
 LEAST_SIGMA = 3.0
 """Least significance of an effect: number of standard deviations by which some parameter differs from
 zero."""
 CERTAIN = 30.0
 """Gain in log likelihood above which something like the effect is certainly present."""
-BEYOND_DOUBT, _VISIBLE_CHANGE, _CLEAR_CHANGE = 100.0, 5.0, 10.0
-"""Gain in log likelihood beyond doubt; and two changes, in multiples of the least change. Above the first,
-jitter of the stamps hides no time. Above the second, moving air cannot imitate the effect."""
+BEYOND_DOUBT = 100.0
+"""Gain in log likelihood beyond doubt."""
 LEAST_OFFSET_RAD = 0.003
 """Least offset of α that is removed before the fit, and that is named, rad."""
 _SET_WITHIN_RAD = 0.007
@@ -45,9 +38,6 @@ OFFSET_SIGMAS, _SMALL_OFFSET_SIGMAS = 5.0, 7.0
 small offset."""
 LEAST_PRIOR_GAIN = 8.0
 """Least gain in log prior probability for which an effect is named on that ground alone."""
-_PRIOR_GAIN_IF_CERTAIN = 4.0
-"""Least gain in log prior probability on whose ground an effect is named that is certain for its
-likelihood."""
 _HOLD_OUT = "hold-out"
 LEAST_SUPPORT = 1.0
 """Least reduction of the gap on held-out manoeuvres, in standard errors over the manoeuvres. Of two
@@ -88,8 +78,6 @@ class JudgedAddition:
     fit."""
     with_the_air: bool = False
     """Whether the air moves, and with it the channel that determines the effect."""
-    alone: bool = True
-    """Whether no other effect was added before."""
 
     @property
     def effect(self) -> str:
@@ -110,18 +98,28 @@ class JudgedAddition:
     def decisions(self) -> tuple[Decision, ...]:
         """Questions that decide on acceptance; all must hold."""
         certain = self.gain >= CERTAIN
-        of_the_file = self.prior_gain >= (_PRIOR_GAIN_IF_CERTAIN if certain else LEAST_PRIOR_GAIN)
+        of_the_file = self.prior_gain >= LEAST_PRIOR_GAIN
         change = 0.0 if of_the_file else self.least_certain if certain else self.least
+        size, name = size_of(self.variant, self.value), self.variant.names[0]
+        inverse = self.variant.inverted  # The search has the reciprocal of the file's parameter.
         asked = [
-            ("likelihood", self.gain, self.least_gain, "log likelihood gained"),
-            ("change", self.removed, change, "mean square change over the noise"),
-            ("significance", self.sigmas, LEAST_SIGMA, "standard deviations"),
-            ("size", size_of(self.variant, self.value), self.least_size, f"of {self.variant.names[0]}"),
-            ("range", 0.0 if self.at_its_bounds else 1.0, 1.0, "inside the searched range"),
+            Decision(self.effect, "likelihood", self.gain, self.least_gain, "log likelihood gained"),
+            Decision(self.effect, "change", self.removed, change, "mean square change over the noise"),
+            Decision(self.effect, "significance", self.sigmas, LEAST_SIGMA, "standard deviations"),
+            Decision(self.effect, "size", size, self.smallest, f"of {name}", "" if inverse else name),
+            self._range(),
         ]
         if self.is_predictable:
-            asked.append((_HOLD_OUT, self.support, LEAST_SUPPORT, "standard errors of the gap removed"))
-        return tuple(Decision(self.effect, *question) for question in asked)
+            unit = "standard errors of the gap removed"
+            asked.append(Decision(self.effect, _HOLD_OUT, self.support, LEAST_SUPPORT, unit))
+        return tuple(asked)
+
+    def _range(self) -> Decision:
+        """Return the question whether every parameter lies inside its searched range."""
+        at = self._at_an_end()
+        inside = 1.0 if at is None else 0.0
+        about = () if at is None else (self.variant.names[at], self.variant.bounds[at])
+        return Decision(self.effect, "range", inside, 1.0, "inside the searched range", *about)
 
     @property
     def is_predictable(self) -> bool:
@@ -143,21 +141,20 @@ class JudgedAddition:
     def least_gain(self) -> float:
         """Least value of ``gain``. Where the data leave a choice and the file decides, a positive gain is
         enough."""
-        confirmed = LEAST_GAIN if self.sole_maneuver is None else _UNCONFIRMED
         if self.with_the_air:
-            return max(confirmed, _CLEAR_GAIN) if self.alone and self.changes_clearly else _WITH_THE_AIR
+            # Air speed, throttle and height move with the air too.
+            return CERTAIN
         if self.sole_maneuver is not None:
-            return confirmed
+            return _UNCONFIRMED
         return 0.0 if self.variant.twin is not None and self.prior_gain >= LEAST_PRIOR_GAIN else LEAST_GAIN
 
     @property
-    def changes_clearly(self) -> bool:
-        """Whether the change is ten times the least one, by a parameter that differs clearly from zero."""
-        return self.removed >= _CLEAR_CHANGE * self.least and self.sigmas > _CLEAR_SIGMAS
-
-    @property
     def at_its_bounds(self) -> bool:
-        """Whether a parameter lies at the end of its range: the shape then only resembles the effect.
+        """Whether a parameter lies at the end of its range: the shape then only resembles the effect."""
+        return self._at_an_end() is not None
+
+    def _at_an_end(self) -> int | None:
+        """Return the index of the first parameter at an end of its range; None where all lie inside.
 
         A bound of zero does not count, because the effect exists without that parameter. Nor does a bound of
         the first parameter, its size: an effect larger than the searched range keeps its name.
@@ -165,19 +162,14 @@ class JudgedAddition:
         ends = np.array(self.variant.bounds[1:]).reshape(-1, 2)
         near = np.abs(ends - self.value[1:, None]) < 1e-3 * np.ptp(ends, axis=1, keepdims=True)
         near &= ends != 0.0
-        return bool(np.any(near)) and not self.variant.one_sided
+        if self.variant.one_sided or not np.any(near):
+            return None
+        return 1 + int(np.argmax(np.any(near, axis=1)))
 
     @property
     def large_enough(self) -> bool:
         """Whether the size is at least the physical minimum."""
-        return size_of(self.variant, self.value) >= self.least_size
-
-    @property
-    def least_size(self) -> float:
-        """The physical minimum. Jitter of the stamps does not raise it much where the effect is beyond
-        doubt."""
-        clear = self.gain >= BEYOND_DOUBT and self.removed >= _VISIBLE_CHANGE * self.least
-        return min(self.smallest, 2.0 * self.variant.smallest) if clear else self.smallest
+        return size_of(self.variant, self.value) >= self.smallest
 
 
 def least_offset_rad(std_rad: float, derived: bool = False, alone: bool = True) -> float:
@@ -199,4 +191,4 @@ def least_offset_rad(std_rad: float, derived: bool = False, alone: bool = True) 
 def size_of(variant: Variant, value: FloatArray) -> float:
     """Return the size of an effect that is compared with its physical minimum."""
     # Ice reduces lift: a change that keeps the lift slope is another effect.
-    return float(-value[0] if variant.effect in TAKES else abs(value[0]))
+    return float(-value[0] if effect_named(variant.effect).takes else abs(value[0]))

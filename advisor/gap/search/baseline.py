@@ -6,11 +6,11 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.candidates import input, moment, sensors, timing
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import stated_in, with_known
+from advisor.gap.candidates.nuisances import LOOP, OWN_ALPHA, PROPELLER, TRUE_AIR_SPEED, filters, latency
+from advisor.gap.effects import EFFECTS
 from advisor.gap.fitting.fit import EffectFit, fit, rms_of
-from advisor.gap.fitting.prior import ARMS
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.fitting.regression import regressions
 from advisor.gap.fitting.whitening import Weighting
@@ -44,20 +44,20 @@ def everywhere(point: SearchPoint, flights: PreparedManeuvers, latency_s: float 
 
     The latency is that of a loop; ``with_telemetry`` widens it once the reading of the command is known.
     """
-    late = point.with_effect(input.LOOP, (latency_s,))
+    late = point.with_effect(LOOP, (latency_s,))
     if flights.alpha_is_derived:
-        filters = timing.filters(flights)
-        late = late.with_effect(filters, (0.0,) * len(filters.names))
-        late = late.with_effect(sensors.OWN_ALPHA, (0.0, 0.0))
+        own = filters(flights)
+        late = late.with_effect(own, (0.0,) * len(own.names))
+        late = late.with_effect(OWN_ALPHA, (0.0, 0.0))
     if {"alpha", "a_z"} <= set(flights.channels):
-        late = late.with_effect(sensors.TRUE_AIR_SPEED, (0.0,))
-    return late.with_effect(moment.PROPELLER, (0.0, 0.0, 0.0)) if flights.speed_measured else late
+        late = late.with_effect(TRUE_AIR_SPEED, (0.0,))
+    return late.with_effect(PROPELLER, (0.0, 0.0, 0.0)) if flights.speed_measured else late
 
 
 def with_telemetry(point: SearchPoint, flights: PreparedManeuvers) -> SearchPoint:
     """Return the point with the delay that telemetry may put between the stamps of the command and its
     effect."""
-    effects = tuple(input.latency(flights) if e is input.LOOP else e for e in point.effects)
+    effects = tuple(latency(flights) if e is LOOP else e for e in point.effects)
     return replace(point, effects=effects)
 
 
@@ -67,7 +67,7 @@ def fit_telemetry(problem: EffectProblem, fitted: EffectFit, noise: FloatArray) 
     Edges of the command follow a delay, so that the cost has local minima in between.
     """
     point = with_telemetry(fitted.point, problem.flights)
-    k = point.index_of(input.LOOP.effect)
+    k = point.index_of(LOOP.effect)
     best = fit(problem, point, noise)
     for start in point.effects[k].bounds[0]:
         values = (*point.values[:k], np.array([start]), *point.values[k + 1 :])
@@ -95,7 +95,9 @@ def prior_derivatives(aircraft: Aircraft) -> FloatArray | None:
 
 def arms_in(aircraft: Aircraft) -> frozenset[str]:
     """Return the effects whose arm the aircraft file states."""
-    return frozenset(effect for effect in ARMS if stated_in(aircraft, effect) is not None)
+    return frozenset(
+        effect for effect in EFFECTS if EFFECTS[effect].is_arm and stated_in(aircraft, effect) is not None
+    )
 
 
 def first_fit(problem: EffectProblem, aircraft: Aircraft) -> EffectFit:

@@ -4,7 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.gap.candidates import input
+from advisor.gap.candidates.nuisances import LOOP
+from advisor.gap.effects.actuator_lag import LAG
+from advisor.gap.effects.transport_delay import DELAY
 from advisor.gap.fitting.fit import EffectFit, evidence_of, fit
 from advisor.gap.fitting.problem import EffectProblem, counts
 from advisor.gap.search.screen import Screen
@@ -28,12 +30,10 @@ def read_command(linear: EffectProblem, fitted: EffectFit) -> tuple[EffectProble
     The choice is made with a delay and a lag in the model. Otherwise a held command would pass for a delay of
     half an interval, and a delay for a held command.
     """
-    best = min(
-        Screen(linear, fitted).quick_fits((input.DELAY, input.LAG)), key=lambda s: s.cost, default=None
-    )
+    best = min(Screen(linear, fitted).quick_fits((DELAY, LAG)), key=lambda s: s.cost, default=None)
     if best is None:
         return linear, fitted
-    other = input.LAG if best.variant is input.DELAY else input.DELAY
+    other = LAG if best.variant is DELAY else DELAY
     held, plainly_held = read_otherwise(linear, fitted)
     plain = {False: evidence_of(linear, fitted), True: evidence_of(held, plainly_held)}
     price = 2.0 * float(np.log(np.sum(counts(linear))))
@@ -60,7 +60,7 @@ def read_command(linear: EffectProblem, fitted: EffectFit) -> tuple[EffectProble
     delays = {p.held: _delay_of(f) for p, f in ((linear, both_linear), (held, both_held))}
     without_delay = delays[True] < _HALF_S and abs(delays[False] - half) < _HALF_S
     # Steps of a fast loop, all at one place of their interval, are late by up to a whole interval together.
-    in_step = half - _HALF_S < late < 2.0 * half + input.LOOP.bounds[0][1]
+    in_step = half - _HALF_S < late < 2.0 * half + LOOP.bounds[0][1]
     nearest = best_of_all + _ALL_LATE_ALIKE * (max(plain.values()) - best_of_all)
     steps_alike = in_step and plain[True] < min(nearest, plain[False])
     if is_held or looks_held or steps_alike or (without_delay and both[True] < both[False] + price):
@@ -77,4 +77,4 @@ def read_otherwise(problem: EffectProblem, fitted: EffectFit) -> tuple[EffectPro
 
 def _delay_of(fitted: EffectFit) -> float:
     delays = zip(fitted.point.effects, fitted.point.values, strict=True)
-    return sum(float(values[0]) for effect, values in delays if effect.effect == "transport_delay")
+    return sum(float(values[0]) for effect, values in delays if effect.effect == DELAY.effect)

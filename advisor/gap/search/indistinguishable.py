@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from advisor.gap.candidates.traits import TRAITS
+from advisor.gap.effects import EFFECTS
 from advisor.gap.search.acceptance import JudgedAddition
 
 NEAR = 5.0
@@ -13,12 +13,12 @@ _LITTLE = 0.1
 
 def way_to_distinguish(effect: str, other: str) -> str:
     """Return what would distinguish two effects; empty when nothing particular is known."""
-    return TRAITS[effect].distinguished_by.get(other) or TRAITS[other].distinguished_by.get(effect, "")
+    return EFFECTS[effect].distinguished_by.get(other) or EFFECTS[other].distinguished_by.get(effect, "")
 
 
 def _is_as_good(a: JudgedAddition, b: JudgedAddition) -> bool:
     """Return whether two effects are equally good; twins may differ by a share of their gain."""
-    twins = TRAITS[a.effect].twin == b.effect or TRAITS[b.effect].twin == a.effect
+    twins = EFFECTS[a.effect].twin == b.effect or EFFECTS[b.effect].twin == a.effect
     return abs(a.gain - b.gain) < (max(NEAR, _LITTLE * abs(b.gain)) if twins else NEAR)
 
 
@@ -32,10 +32,10 @@ def indistinguishable_from(
         found = way_to_distinguish(best.effect, name)
         if found:
             ways.append(found)
-    trait = TRAITS[best.effect]
-    alike = [] if trait.imitated_by is None else [trait.imitated_by]
-    if trait.imitated_without is not None and trait.imitated_without[0] not in channels:
-        alike.append(trait.imitated_without[1:])
+    effect = EFFECTS[best.effect]
+    alike = [] if effect.imitated_by is None else [effect.imitated_by]
+    if effect.imitated_without is not None and effect.imitated_without[0] not in channels:
+        alike.append(effect.imitated_without[1:])
     for looks, way in alike:
         names.append(looks)
         ways.append(way)

@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.fit import EffectFit, fit
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.prior import log_prior
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint, counts
 from advisor.gap.fitting.uncertainty import covariance, effective_samples, log_prior_of
+from advisor.gap.kit.variant import Variant
 from advisor.gap.search.acceptance import LEAST_GAIN, LEAST_PRIOR_GAIN, JudgedAddition, size_of
 from advisor.gap.search.score import addition, is_baseline, predict_alike, smallest_of
 from advisor.gap.search.screen import Screen, Screened, likeliest_first

@@ -3,8 +3,7 @@
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.candidates.traits import BY_NATURE
-from advisor.gap.candidates.variant import Variant
+from advisor.gap.effects import effect_named
 from advisor.gap.fitting.fit import EffectFit, rms_of
 from advisor.gap.fitting.holdout import (
     HeldOut,
@@ -16,6 +15,7 @@ from advisor.gap.fitting.holdout import (
 from advisor.gap.fitting.prior import log_odds_of_arm
 from advisor.gap.fitting.problem import EffectProblem, counts
 from advisor.gap.fitting.uncertainty import covariance, log_prior_of, sigmas_of
+from advisor.gap.kit.variant import Variant
 from advisor.gap.records.floor import floor_margins
 from advisor.gap.search.acceptance import (
     BEYOND_DOUBT,
@@ -101,7 +101,7 @@ def addition(
         least=least, least_certain=least * _share_enough(problem, before, variant, value),
         smallest=smallest_of(problem, variant, gain),
         prior_gain=prior_gain, prior_terms=prior_terms, value=value, sole_maneuver=sole_maneuver,
-        with_the_air=bool(variant.needs) and problem.knows_the_noise, alone=is_baseline(before),
+        with_the_air=bool(variant.needs) and problem.knows_the_noise,
         std=np.sqrt(np.maximum(np.diag(known_numbers), 0.0)), sigmas=sigmas_of(value, known_numbers, located),
     )  # fmt: skip
 
@@ -151,7 +151,8 @@ def log_likelihood_gained(
 
 def _share_enough(problem: EffectProblem, before: EffectFit, variant: Variant, value: FloatArray) -> float:
     """Return the share of the least change that is enough where an effect is certain."""
-    if not is_baseline(before) or problem.knows_the_noise or variant.effect in BY_NATURE:
+    by_nature = effect_named(variant.effect).by_nature
+    if not is_baseline(before) or problem.knows_the_noise or by_nature:
         return 1.0
     times = 2.0 if variant.names[0] in TIMES or variant.comes_at_any_time else 1.0
     return _FAINT if size_of(variant, value) >= times * smallest_of(problem, variant) else 1.0

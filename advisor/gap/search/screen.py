@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.neighbourhood import Neighbourhood, SimulatedPoint
 from advisor.gap.fitting.prior import derivative_scale
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
+from advisor.gap.kit.variant import Variant
 
 _STEPS = 4
 """Most Gauss-Newton steps of a quick fit."""

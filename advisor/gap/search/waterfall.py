@@ -3,12 +3,12 @@
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-from advisor.gap.candidates.traits import LEFT_OPEN
-from advisor.gap.candidates.variant import Variant
+from advisor.gap.effects import effect_named
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.holdout import hold_out, measured_in
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.fitting.uncertainty import effective_samples, shared_std
+from advisor.gap.kit.variant import Variant
 from advisor.gap.search.acceptance import BEYOND_DOUBT, LEAST_PRIOR_GAIN, MOST_EFFECTS, JudgedAddition
 from advisor.gap.search.ranking import candidates_for, judge
 from advisor.gap.search.score import addition
@@ -140,7 +140,7 @@ def _rank_of(problem: EffectProblem, effect: str) -> float:
     An accelerometer's position that the file leaves open is to be measured. It comes last, unless other
     effects are tiny.
     """
-    return _OPEN if effect in LEFT_OPEN and effect not in problem.arms_in_file else 1.0
+    return _OPEN if effect_named(effect).left_open and effect not in problem.arms_in_file else 1.0
 
 
 def reduced_to(problem: EffectProblem, stages: Sequence[Stage], names: Sequence[str]) -> list[Stage]:

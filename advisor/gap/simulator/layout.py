@@ -13,7 +13,7 @@ from zlib import crc32
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.model import response
+from advisor.model import outputs
 
 DERIVATIVES = ("Z_alpha", "Z_q", "Z_delta_e", "M_alpha", "M_q", "M_delta_e")
 NUISANCES = ("alpha_start", "q_start", "Z_trim", "M_trim")
@@ -52,10 +52,12 @@ EFFECT_ENTRIES = (
     # 1: the attitude contains the structural mode too
     "mode_attitude",
 )  # fmt: skip
+EQUATION_ENTRIES = EFFECT_ENTRIES[EFFECT_ENTRIES.index("M_delta2") : EFFECT_ENTRIES.index("alpha_lag_s")]
+"""Parameters of effects in Eqs. (1)-(2)."""
 ENTRIES = (*DERIVATIVES, *NUISANCES, *EFFECT_ENTRIES)
 INDEX = {name: i for i, name in enumerate(ENTRIES)}
 
-OUTPUTS = response.OUTPUTS
+OUTPUTS = outputs.OUTPUTS
 """Names of the simulated and compared outputs, in their order."""
 SKEWS = ("alpha_skew_s", "q_skew_s", "a_z_skew_s", "theta_skew_s")
 """Entries that shift the stamps of each output, in the order of ``OUTPUTS``."""

@@ -143,6 +143,41 @@ def stall(x: FloatArray, lanes: int, h: float, d_air: float) -> None:
 
 
 @_inlined
+def normal_force(x: FloatArray, m: int, a: float, q: float, da: float, behind: float) -> float:
+    """Return the normal force over m·V in rad/s: Eq. (1) without its kinematics.
+
+    Parameters
+    ----------
+    a, q
+        Angle of attack (rad) and pitch rate (rad/s).
+    da, behind
+        Angle of attack relative to trim, and relative to the lagging one, rad.
+    """
+    lagged = da - x[AT.lift_share, m] * behind
+    wing = (
+        x[AT.Z_trim, m]
+        + (x[AT.Z_alpha, m] + (x[AT.Z_alpha2, m] + x[AT.Z_alpha3, m] * lagged) * lagged) * lagged
+    )
+    wing += x[AT.Z_memory, m] * (a - x[row.FOLLOWED, m]) + x[AT.Z_separated, m] * x[row.MISSING, m]
+    normal: float = x[row.Z_REST, m] + x[row.LIFTING, m] * x[row.ATTACHED, m] * wing + x[AT.Z_q, m] * q
+    return normal
+
+
+@_inlined
+def moment(x: FloatArray, m: int, q: float, alpha_dot: float, da: float, behind: float) -> float:
+    """Return the pitch acceleration in rad/s²: Eq. (2). ``normal_force`` has the other arguments."""
+    turned = da - x[AT.moment_share, m] * behind
+    v = x[row.RATIO, m]
+    bent = (x[AT.M_alpha2, m] + x[AT.M_alpha3, m] * da) * da
+    bent += x[AT.M_alpha_delta_e, m] * x[row.DEFLECTION, m]
+    slope = x[row.MOMENT_SLOPE, m] + x[row.TURNING, m] * v * v * bent
+    damping = x[AT.M_q, m] + x[AT.M_alpha_q, m] * da + x[AT.M_q_q, m] * abs(q)
+    damped = damping * q + x[AT.M_q_abs, m] * abs(q)
+    pitching: float = x[row.M_REST, m] + slope * turned + v * (damped + x[AT.M_alpha_dot, m] * alpha_dot)
+    return pitching
+
+
+@_inlined
 def rates(x: FloatArray, lanes: int, h: float, d_air: float, alpha_trim: float, first: bool) -> None:
     """Write α̇ and q̇ by Eqs. (1)-(2), half a step ahead of the state by the rates known so far.
 
@@ -154,21 +189,9 @@ def rates(x: FloatArray, lanes: int, h: float, d_air: float, alpha_trim: float, 
         q = x[row.Q, m] + 0.5 * h * x[row.KQ, m]
         da = a - alpha_trim
         behind = a - x[row.LIFT, m]
-        lagged, turned = da - x[AT.lift_share, m] * behind, da - x[AT.moment_share, m] * behind
-        wing = (
-            x[AT.Z_trim, m]
-            + (x[AT.Z_alpha, m] + (x[AT.Z_alpha2, m] + x[AT.Z_alpha3, m] * lagged) * lagged) * lagged
-        )
-        wing += x[AT.Z_memory, m] * (a - x[row.FOLLOWED, m]) + x[AT.Z_separated, m] * x[row.MISSING, m]
-        normal = x[row.Z_REST, m] + x[row.LIFTING, m] * x[row.ATTACHED, m] * wing + x[AT.Z_q, m] * q
+        normal = normal_force(x, m, a, q, da, behind)
         ka = q + x[row.GRAVITY, m] + normal
-        v = x[row.RATIO, m]
-        bent = (x[AT.M_alpha2, m] + x[AT.M_alpha3, m] * da) * da
-        bent += x[AT.M_alpha_delta_e, m] * x[row.DEFLECTION, m]
-        slope = x[row.MOMENT_SLOPE, m] + x[row.TURNING, m] * v * v * bent
-        damping = x[AT.M_q, m] + x[AT.M_alpha_q, m] * da + x[AT.M_q_q, m] * abs(q)
-        damped = damping * q + x[AT.M_q_abs, m] * abs(q)
-        kq = x[row.M_REST, m] + slope * turned + v * (damped + x[AT.M_alpha_dot, m] * ka)
+        kq = moment(x, m, q, ka, da, behind)
         x[row.KA, m], x[row.KQ, m] = ka, kq
         if first:
             x[row.NORMAL_0, m] += normal

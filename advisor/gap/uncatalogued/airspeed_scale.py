@@ -7,7 +7,7 @@ the air speed is an indicated one in thin air.
 
 from dataclasses import dataclass
 
-from advisor.gap.candidates.sensors import TRUE_AIR_SPEED
+from advisor.gap.candidates.nuisances import TRUE_AIR_SPEED
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.fitting.uncertainty import effective_samples, shared_std

@@ -10,8 +10,8 @@ reduces lift and elevator power, but no effect reduces elevator power alone.
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.candidates.between import steps_in
-from advisor.gap.candidates.variant import Values, Variant
+from advisor.gap.kit.between import steps_in
+from advisor.gap.kit.variant import Values, Variant
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.search.acceptance import JudgedAddition
 from advisor.gap.simulator.layout import FILTER, INDEX, OUTPUTS
@@ -109,8 +109,8 @@ _SENTENCES = {
     "further.",
     _STICKS: "The surface sticks till the command is {degrees_first} deg away, then breaks loose: friction.",
     _RINGS: "The surface overshoots its command: a servo of second order that is hardly damped.",
-    FLOW_LETS_GO: "The flow lets go at one angle and comes back at a lower one: a stall with a memory.",
-    LIFT_MEMORY: "The lift is another on the way up than on the way down: a stall that lets go late.",
+    FLOW_LETS_GO: "The flow separates at one angle and reattaches at a lower one: a stall with hysteresis.",
+    LIFT_MEMORY: "The lift differs between rising and falling angle of attack: a stall with hysteresis.",
     _WEAKER: "In flight the elevator's power changed by {percent:+.0f} %: a horn slipped, or a part is gone.",
     _PULLED: "The pitch rate feels the acceleration.",
     **{

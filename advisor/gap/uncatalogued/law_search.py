@@ -10,11 +10,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.candidates.variant import Variant
 from advisor.gap.fitting.fit import EffectFit, fit
 from advisor.gap.fitting.holdout import HeldOut, hold_out, mean_squares
 from advisor.gap.fitting.problem import EffectProblem, counts
 from advisor.gap.fitting.uncertainty import effective_samples, log_prior_of
+from advisor.gap.kit.variant import Variant
 from advisor.gap.search.acceptance import CERTAIN, JudgedAddition
 from advisor.gap.search.score import (
     addition,

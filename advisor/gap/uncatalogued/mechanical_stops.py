@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.candidates.variant import Values, Variant
+from advisor.gap.kit.variant import Values, Variant
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX
 

@@ -8,7 +8,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.instruments.kinematics import KinematicCheck
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.candidates.moment import PROPELLER
+from advisor.gap.candidates.nuisances import PROPELLER
 from advisor.gap.evidence.found import Evidence
 from advisor.gap.evidence.measured import measured
 from advisor.gap.evidence.rows import rows_of

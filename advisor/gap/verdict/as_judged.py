@@ -4,12 +4,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from advisor.gap.alternative import Alternative
-from advisor.gap.candidates.traits import TRAITS
+from advisor.gap.effects import EFFECTS
 from advisor.gap.evidence.rows import stated_as
 from advisor.gap.judge.posterior import Posterior
-from advisor.gap.result import Cause, Diagnosis, spelled
+from advisor.gap.result import Cause, Diagnosis
 from advisor.gap.search.indistinguishable import way_to_distinguish
-from advisor.gap.verdict.text import place
+from advisor.gap.verdict.text import in_words
 
 MOST_CAUSES = 5
 """Most causes that are stated, so that a reader sees the likely ones."""
@@ -56,28 +56,21 @@ def doubtful(credible: Sequence[tuple[Alternative, float]], answer: tuple[Altern
     if answer[0] not in [alternative for alternative, _ in credible]:
         likelier, p = credible[0]
         return (
-            f"By the evidence {_said(likelier)} ({100.0 * p:.0f} %) is likelier than this answer "
+            f"By the evidence {in_words(likelier)} ({100.0 * p:.0f} %) is likelier than this answer "
             f"({100.0 * answer[1]:.0f} %)."
         )
     if len(credible) < 2:
         return ""
-    listed = [f"{_said(a)} ({100.0 * p:.0f} %)" for a, p in credible[:3]]
+    listed = [f"{in_words(a)} ({100.0 * p:.0f} %)" for a, p in credible[:3]]
     more = " and others" if len(credible) > 3 else ""
     return f"The evidence does not decide between {', '.join(listed[:-1])} and {listed[-1]}{more}."
-
-
-def _said(alternative: Alternative) -> str:
-    words = {"none": "no gap", "parameters": "wrong numbers"}
-    if alternative.kind == "unknown":
-        return f"something without a name {place(alternative.block)}"
-    return words.get(alternative.kind, spelled(alternative.name))
 
 
 def _with_rivals(cause: Cause, alike: Sequence[str]) -> Cause:
     """Return a cause with the effects that the evidence cannot exclude, and what distinguishes them."""
     rivals = [name for name in alike if name not in (cause.effect, *cause.cannot_be_told_from)]
     ways = [
-        way for name in rivals if cause.effect in TRAITS and (way := way_to_distinguish(cause.effect, name))
+        way for name in rivals if cause.effect in EFFECTS and (way := way_to_distinguish(cause.effect, name))
     ]
     way = "; ".join(dict.fromkeys(filter(None, (cause.tell_apart_by, *ways))))
     return replace(cause, cannot_be_told_from=(*cause.cannot_be_told_from, *rivals), tell_apart_by=way)

@@ -6,9 +6,10 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.candidates.variant import Variant
+from advisor.gap.effects import EFFECTS
 from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.fitting.problem import EffectProblem
+from advisor.gap.kit.variant import Variant
 from advisor.gap.result import Cause, Value
 from advisor.gap.search.acceptance import JudgedAddition
 from advisor.gap.search.indistinguishable import indistinguishable_from
@@ -17,8 +18,6 @@ from advisor.gap.search.stage import Stage
 
 _SHAPE_ERROR = 0.03
 """Relative error of a size for the low-order description of its effect."""
-_TIMING = {"transport_delay": "delay_s", "actuator_lag": "lag_s"}
-"""Effects that a common shift of all steps of the command would imitate, and their parameter."""
 
 
 def causes_of(stages: Sequence[Stage], floor: FloatArray, channels: Sequence[str]) -> tuple[Cause, ...]:
@@ -46,12 +45,11 @@ def parameters_of(v: Variant, values: FloatArray, std: FloatArray) -> dict[str, 
     if v.inverted:
         x = max(float(values[0]), 1e-9)
         found[v.names[0]] = Value(1.0 / x, float(std[0]) / x**2)
-    if v.effect == "structural_mode":
-        to_hz = 1.0 / (2.0 * np.pi)
+    if v.in_file:
         found = {
-            "frequency_hz": Value(found["omega_rad_s"].value * to_hz, found["omega_rad_s"].std * to_hz),
-            "damping": found["damping"], "gain": found["rate_gain"], "displacement_gain": found["gain"],
-        }  # fmt: skip
+            key: Value(found[name].value * (1.0 / factor), found[name].std * (1.0 / factor))
+            for key, (name, factor) in v.in_file.items()
+        }
     for name, value in v.fixed.items():
         found[name] = Value(value, 0.0)
     return found
@@ -77,10 +75,10 @@ def _with_edge_error(cause: Cause, problem: EffectProblem) -> Cause:
     """Return a delay or lag with the error of steps that may lie anywhere between two stamps of the
     command."""
     intervals = [flight.edges[:, 2] for flight in problem.flights.flights if len(flight.edges)]
-    if problem.held or not intervals or cause.effect not in _TIMING:
+    section, name = EFFECTS[cause.effect].stated or ("", "")
+    if problem.held or not intervals or section != "elevator":
         return cause
     edge_std = float(np.median(np.concatenate(intervals))) / np.sqrt(12.0)
-    name = _TIMING[cause.effect]
     value = cause.parameters[name]
     parameters = {**cause.parameters, name: Value(value.value, float(np.hypot(value.std, edge_std)))}
     return replace(cause, parameters=parameters)

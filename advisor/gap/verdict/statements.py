@@ -5,12 +5,9 @@ from collections.abc import Sequence
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.candidates.known import stated_in
-from advisor.gap.candidates.traits import TRAITS
+from advisor.gap.effects import EFFECTS
 from advisor.gap.result import Cause
 from advisor.gap.search.acceptance import LEAST_SIGMA
-
-_CURVES = frozenset({"elevator_nonlinearity", "nonlinear_pitching_moment", "nonlinear_lift"})
-"""Curves that a simulator beyond eight parameters may have."""
 
 
 def what(cause: Cause, in_simulator: frozenset[str] = frozenset()) -> str:
@@ -19,16 +16,16 @@ def what(cause: Cause, in_simulator: frozenset[str] = frozenset()) -> str:
     ``in_simulator`` has the effects that the simulator has some of; the size is then the difference.
     """
     sizes = _sizes(cause)
-    trait = TRAITS[cause.effect]
+    effect = EFFECTS[cause.effect]
     # A lag that is not significant is not mentioned.
     telling = (
         name
         for name, value in cause.parameters.items()
         if name != "lag_s" or abs(value.value) > LEAST_SIGMA * value.std
     )
-    put = next((trait.said_with[name] for name in telling if name in trait.said_with), trait.said)
+    put = next((effect.said_with[name] for name in telling if name in effect.said_with), effect.said)
     below = next(iter(sizes.values()), 0.0) < 0.0
-    beyond = trait.said_beyond
+    beyond = effect.said_beyond
     if cause.effect in in_simulator and beyond:
         put = beyond if isinstance(beyond, tuple) or not below else put
     if isinstance(put, str):
@@ -39,9 +36,9 @@ def what(cause: Cause, in_simulator: frozenset[str] = frozenset()) -> str:
 def or_else(first: Cause, causes: Sequence[Cause]) -> str:
     """Return the other effects that the data cannot distinguish from the first one, as words after its
     statement: a lag of the servo next to a delay, and the reverse."""
-    alike = [c for c in causes if c.effect in first.cannot_be_told_from and TRAITS[c.effect].said_or]
-    others = alike if TRAITS[first.effect].said_or else []
-    return "".join(f", or {TRAITS[c.effect].said_or.format(**_sizes(c))}" for c in others)
+    alike = [c for c in causes if c.effect in first.cannot_be_told_from and EFFECTS[c.effect].said_or]
+    others = alike if EFFECTS[first.effect].said_or else []
+    return "".join(f", or {EFFECTS[c.effect].said_or.format(**_sizes(c))}" for c in others)
 
 
 def _sizes(cause: Cause) -> dict[str, float]:
@@ -59,5 +56,11 @@ def _sizes(cause: Cause) -> dict[str, float]:
 def in_simulator(aircraft: Aircraft) -> frozenset[str]:
     """Return the effects that the simulator has some of: from ``effects``, as a parameter, or as its own
     curves."""
-    curves = _CURVES if aircraft.simulator is not None else frozenset()
-    return curves | frozenset(aircraft.effects) | {effect for effect in TRAITS if stated_in(aircraft, effect)}
+    # A simulator beyond eight parameters may have curves.
+    return frozenset(
+        name
+        for name, effect in EFFECTS.items()
+        if name in aircraft.effects
+        or stated_in(aircraft, name)
+        or (effect.curve is not None and aircraft.simulator is not None)
+    )

@@ -2,12 +2,13 @@
 
 from collections.abc import Sequence
 
+from advisor.gap.alternative import Alternative
 from advisor.gap.result import VISIBLE, Cause, Gap, GapVerdict, Shrink, Where, spelled
 from advisor.gap.verdict.statements import or_else, what
 
 _AS_LIKELY = 0.99
 """Score relative to the best block at which another block is equally likely."""
-_BLOCK = {
+BLOCKS = {
     "input": "between the command and the surface",
     "force_equation": "in the lift",
     "moment_equation": "in the pitching moment",
@@ -22,14 +23,22 @@ _BLOCK = {
 
 def place(block: str) -> str:
     """Return the place of a block in words."""
-    return _BLOCK[block]
+    return BLOCKS[block]
+
+
+def in_words(alternative: Alternative) -> str:
+    """Return an alternative in words: ``something without a name in the lift``."""
+    words = {"none": "no gap", "parameters": "wrong numbers"}
+    if alternative.kind == "unknown":
+        return f"something without a name {place(alternative.block)}"
+    return words.get(alternative.kind, spelled(alternative.name))
 
 
 def sentence_of_one_maneuver(where: Where) -> str:
     """Return the sentence of a single manoeuvre, which shows where a gap lies and proves no cause."""
     return (
         f"Something acts {place(where.block)} that the simulator does not have; one manoeuvre cannot prove "
-        "what: fly two more."
+        "the cause: fly two more."
     )
 
 
@@ -68,7 +77,7 @@ def _of_wrong_parameters(present: Sequence[Cause], shrink: Shrink | None) -> str
     removed = _removed(shrink)
     if shrink is not None and shrink.beyond_air_percent is not None:
         removed = f"{shrink.beyond_air_percent:.0f} % of the gap, and the air makes the rest"
-    wrong = f"wrong parameters: the eight fitted ones remove {removed}"
+    wrong = f"wrong numbers: the eight fitted derivatives remove {removed}"
     if shrink is not None and shrink.by_numbers_percent is not None and present:
         return f"The simulator has {wrong}; {_listed(present)} explains little of it."
     return f"The simulator has the right structure and {wrong}."

@@ -1,5 +1,6 @@
 """An ArduPilot log as the messages that its telemetry would have carried."""
 
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -20,18 +21,20 @@ from advisor.mavlink.ardupilot.ardupilot_vehicle import (
     version_fields,
 )
 from advisor.mavlink.ardupilot.body_rates import RATE_RECORDS, body_rates, calmed
-from advisor.mavlink.ardupilot.former_records import SENSORS_APART, Clocked, in_todays_names
+from advisor.mavlink.ardupilot.former_records import RENAMED, SENSORS_APART, Clocked, in_todays_names
 from advisor.mavlink.ardupilot.log_health import HEALTH_RECORDS, health
 from advisor.mavlink.ardupilot.sensors import Said, flown, said, silent
+from advisor.mavlink.ardupilot.system_identification import SYSTEM_ID_RECORDS, lost_texts, sweeps
 from advisor.mavlink.px4.sdlog2 import SDLOG2_RECORDS, Sdlog2Messages, is_sdlog2
 from advisor.mavlink.records.dataflash import RecordTable, gps_time_base_s, read_logs, seconds
-from advisor.mavlink.records.equivalent import air_data, message, nearest
+from advisor.mavlink.records.equivalent import air_data, message, nearest, side_by_side
 from advisor.words.problems import UnusableInputError
 
 _RECORDS: dict[str, set[str]] = {
     **VEHICLE_RECORDS,
     **RATE_RECORDS,
     **HEALTH_RECORDS,
+    **SYSTEM_ID_RECORDS,
     "ACC": {"AccX", "AccY", "AccZ"},
     "AOA": {"AOA", "SSA"},
     "ARSP": {"Airspeed"},
@@ -54,6 +57,16 @@ _RECORDS: dict[str, set[str]] = {
 }
 """Record to its necessary fields. Without them (another kind of vehicle, an older version) a record counts as
 missing."""
+_FIELDS = frozenset[str]().union(*_RECORDS.values(), *SDLOG2_RECORDS.values()) | {
+    *("TimeUS", "TimeMS", "T", "I", "C"),
+    *("As", "BU", "H", "Press", "Pri", "ThO", "U"),
+    *(former for renamed in RENAMED.values() for former in renamed),
+    *(today for renamed in RENAMED.values() for today in renamed.values()),
+}
+"""Fields that are read: the necessary ones, the stamps, the number of a sensor, and those that some versions
+have."""
+_NUMBERED = re.compile(r"(?:C|Ch|Chan|Out)\d+")
+"""Fields of one output or channel each."""
 _TEXTS = {"Name", "Message"}
 """Fields that hold text. All others are numbers."""
 _SENSORS = {"ARSP": "Air speed", "IMU": "Angular rates and specific force"}
@@ -74,7 +87,7 @@ def read_dataflash(path: Path, wanted: Iterable[str] | None = None) -> Iterator[
     apart = (name for names in SENSORS_APART.values() for name in names)
     names = None if wanted is None else set(wanted)
     is_log, newest = False, -1
-    for every in read_logs(path, (*_RECORDS, *SDLOG2_RECORDS, *apart)):
+    for every in read_logs(path, (*_RECORDS, *SDLOG2_RECORDS, *apart), _is_read):
         messages = _messages({name: _believable(every.pop(name)) for name in list(every)})
         if messages is not None:
             is_log = True
@@ -88,6 +101,10 @@ def read_dataflash(path: Path, wanted: Iterable[str] | None = None) -> Iterator[
             f"{path.name} holds no ATT, IMU or RCOU records.",
             "Set LOG_BITMASK so that attitude, IMU and RC output are logged, or give a .tlog.",
         )
+
+
+def _is_read(field: str) -> bool:
+    return field in _FIELDS or _NUMBERED.fullmatch(field) is not None
 
 
 def _after(newest: int, batch: Sequence[Columns], columns: Columns) -> Columns:
@@ -148,15 +165,17 @@ class _Translation:
         self._tables = {name: table for name, table in self._tables.items() if len(table)}
         if "PARM" in self._tables:
             self._tables["PARM"] = in_todays_parameters(self._tables["PARM"])
-        self._said += health(self._tables)
+        self._said += [*health(self._tables), *sweeps(self._tables)]
         self._base_s = float(read.epoch_s) or gps_time_base_s(self._tables.get("GPS"))
         self._system = system_of(self._tables)
 
     def columns(self) -> Iterator[Columns]:
+        """Yield the messages of each type. Records that no later message needs are dropped on the way."""
         order, time_us, fields = heartbeats(self._tables)
         yield self._made("HEARTBEAT", order, time_us, fields)
         yield from self._attitude()
         yield from self._highres_imu()
+        self._drop("ATT", "IMU", "ACC", *RATE_RECORDS)
         translations = {
             "AOA": self._aoa_ssa,
             "POS": self._global_position_int,
@@ -164,7 +183,7 @@ class _Translation:
         }
         for name, translate in translations.items():
             if name in self._tables:
-                yield translate(self._tables[name])
+                yield translate(self._tables.pop(name))
         if "PARM" in self._tables:
             yield self._message("PARAM_VALUE", self._tables["PARM"], parameter_fields(self._tables["PARM"]))
         if "VER" in self._tables:
@@ -172,11 +191,16 @@ class _Translation:
         if "BARO" in self._tables and "Press" in self._tables["BARO"].fields:
             yield self._scaled_pressure(self._tables["BARO"].first_instance())
         yield from self._servo_outputs()
+        self._drop("RCOU", "RCO2", "RCO3")
         yield from self._vfr_hud()
         blown = next((self._tables[name] for name in ("XKF2", "NKF2") if name in self._tables), None)
         if blown is not None:
             yield self._wind(blown.first_instance())
         yield self._statustext()
+
+    def _drop(self, *names: str) -> None:
+        for name in names:
+            self._tables.pop(name, None)
 
     def _message(
         self, name: str, table: RecordTable, fields: dict[str, ArrayLike], place: int = 0
@@ -191,26 +215,22 @@ class _Translation:
 
     def _attitude(self) -> Iterator[Columns]:
         """Yield angles at the stamps of ATT, rates at those of their own records."""
-        blocks: list[tuple[IntArray, IntArray, NDArray[np.float64]]] = []
+        blocks: list[dict[str, NDArray[Any]]] = []
         if "ATT" in self._tables:
             att = self._tables["ATT"]
-            angles = np.radians([att.fields[axis] for axis in ("Roll", "Pitch", "Yaw")])
-            blocks.append((att.order, att.time_us, np.vstack([angles, np.full_like(angles, np.nan)])))
+            angles = {axis.lower(): np.radians(att.fields[axis]) for axis in ("Roll", "Pitch", "Yaw")}
+            blocks.append({"order": att.order, "time_us": att.time_us, **angles})
         rates = body_rates(self._tables)
         if rates is not None:
-            nothing = np.full_like(rates.values, np.nan)
-            blocks.append((rates.order, rates.time_us, np.vstack([nothing, rates.values])))
+            turned = dict(zip(("rollspeed", "pitchspeed", "yawspeed"), rates.values, strict=True))
+            blocks.append({"order": rates.order, "time_us": rates.time_us, **turned})
             if rates.said:
                 text = f"The log holds no IMU records: the angular rates are {rates.said}"
                 self._said.append(Said(int(rates.order[0]), int(rates.time_us[0]), text))
-        if not blocks:
-            return
-        order, time_us = (np.concatenate([block[k] for block in blocks]) for k in (0, 1))
-        values = np.hstack([block[2] for block in blocks])
-        names = ("roll", "pitch", "yaw", "rollspeed", "pitchspeed", "yawspeed")
-        fields: dict[str, Any] = dict(zip(names, values, strict=True))
-        fields["time_boot_ms"] = _milliseconds(time_us)
-        yield self._made("ATTITUDE", order, time_us, fields)
+        if blocks:
+            fields: dict[str, Any] = side_by_side(*blocks)
+            order, time_us = fields.pop("order"), fields.pop("time_us")
+            yield self._made("ATTITUDE", order, time_us, fields | {"time_boot_ms": _milliseconds(time_us)})
 
     def _highres_imu(self) -> Iterator[Columns]:
         if "IMU" in self._tables:
@@ -307,7 +327,10 @@ class _Translation:
         read = [
             (one.order + 2 + k, one.time_us, READER + one.text.encode()) for k, one in enumerate(self._said)
         ]
-        texts = np.array([*own, *read], dtype=[("order", "i8"), ("time_us", "i8"), ("text", "S256")])
+        texts = np.array(
+            [*own, *lost_texts(self._tables), *read],
+            dtype=[("order", "i8"), ("time_us", "i8"), ("text", "S256")],
+        )
         fields: dict[str, ArrayLike] = {"severity": _NOT_LOGGED, "text": texts["text"]}
         return self._made("STATUSTEXT", texts["order"], texts["time_us"], fields)
 

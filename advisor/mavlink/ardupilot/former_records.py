@@ -21,11 +21,12 @@ SENSORS_APART = {
     "ACC": ("ACC1", "ACC2", "ACC3"),
 }
 """Today's record, with a sensor's number in the field I, to the former records of the further sensors."""
-_RENAMED = {
+RENAMED = {
     "CTUN": {"ThrOut": "ThO"},
     "GPS": {"Week": "GWk", "TimeMS": "GMS"},
     "IMU": {"GyHlt": "GH", "AcHlt": "AH"},
 }
+"""Record to the former names of its fields, each with today's."""
 _CHANNEL = re.compile(r"(?:Chan|Ch)(\d+)")
 _1970_US = 10**15
 """Least stamp, us, that counts from 1970 and not from boot: 31 years."""
@@ -65,7 +66,7 @@ def _renamed(name: str, table: RecordTable) -> RecordTable:
         stated = "T" if name == "GPS" else "TimeMS"
         if stated in fields:
             fields["TimeUS"] = 1000 * fields[stated].astype(np.int64)
-    renamed = _RENAMED.get(name, {})
+    renamed = RENAMED.get(name, {})
     channels = name in ("RCOU", "RCIN")
     found = {}
     for field, values in fields.items():
@@ -78,8 +79,8 @@ def _timed(tables: Mapping[str, RecordTable]) -> dict[str, RecordTable]:
     """Return the tables with a time for each record. A record without time takes that of the stamped record
     before it."""
     stamped = [table for table in tables.values() if "TimeUS" in table.fields]
-    if not stamped:
-        return {}
+    if not stamped or len(stamped) == len(tables):
+        return {**tables} if stamped else {}
     order = np.concatenate([table.order for table in stamped])
     time_us = np.concatenate([table.time_us for table in stamped])
     rows = np.argsort(order)

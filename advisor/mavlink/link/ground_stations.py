@@ -29,8 +29,8 @@ def who_sets_rates(stations: Collection[int]) -> str:
         System ids of the ground stations heard.
     """
     if not stations:
-        return f"another ground station may set them, though none is heard here; {CURE}"
+        return f"another ground station may set the rates, though none is heard here; {CURE}"
     which = ", ".join(map(str, sorted(stations)))
     several = len(stations) > 1
     who = f"ground stations {which} are" if several else f"ground station {which} is"
-    return f"{who} at work on this link and may set them; {CURE}"
+    return f"{who} at work on this link and may set the rates; {CURE}"

@@ -4,7 +4,7 @@ A record is two bytes of header, a type, and the fields that the type's FMT reco
 AP_Logger, "Log message formats").
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -74,16 +74,41 @@ class RecordTable:
         return RecordTable(self.order[rows], {name: values[rows] for name, values in self.fields.items()})
 
 
-def read_logs(path: Path, names: Iterable[str]) -> Iterator[dict[str, RecordTable]]:
+def read_logs(
+    path: Path, names: Iterable[str], is_read: Callable[[str], bool] = lambda field: True
+) -> Iterator[dict[str, RecordTable]]:
     """Yield the records of the named types, for each log that was joined into the file.
 
     Two logs may number their types differently. A type without records is left out. Only records of the named
-    types are kept in memory.
+    types are kept in memory, of these only the fields that ``is_read`` names.
     """
-    collected = _Collected(frozenset(names))
+    collected = _Collected(frozenset(names), is_read)
     for window in windows(path):
         yield from collected.take(window)
     yield from collected.finish()
+
+
+class _Growing:
+    """An array that grows at its end, where the system moves its pages instead of copying them."""
+
+    def __init__(self) -> None:
+        self._values: NDArray[Any] = np.empty(0)
+        self._size = 0
+
+    def extend(self, values: NDArray[Any]) -> None:
+        """Append values of one type."""
+        if self._size == 0:
+            self._values = np.empty(len(values), values.dtype)
+        size = self._size + len(values)
+        if size > len(self._values):
+            self._values.resize(size + size // 8, refcheck=False)
+        self._values[self._size : size] = values
+        self._size = size
+
+    def values(self) -> NDArray[Any]:
+        """Return all values; nothing can be appended after that."""
+        self._values.resize(self._size, refcheck=False)
+        return self._values
 
 
 class _Collected:
@@ -93,15 +118,15 @@ class _Collected:
     of its run.
     """
 
-    def __init__(self, wanted: frozenset[str]) -> None:
-        self._wanted = wanted
+    def __init__(self, wanted: frozenset[str], is_read: Callable[[str], bool]) -> None:
+        self._wanted, self._is_read = wanted, is_read
         self._known: dict[int, bytes] = {}
         self._run: list[bytes] = []
         self._begin([])
 
     def _begin(self, definitions: list[bytes]) -> None:
         self._definitions = definitions
-        self._rows: dict[tuple[int, int], list[tuple[IntArray, NDArray[np.uint8]]]] = {}
+        self._rows: dict[tuple[int, np.dtype[np.void]], dict[str, _Growing]] = {}
         self._count = 0
 
     def take(self, window: Window) -> Iterator[dict[str, RecordTable]]:
@@ -152,8 +177,11 @@ class _Collected:
         for number, layout in self._layouts.items():
             mine = starts[types == number]
             if len(mine):
-                rows = bodies(stream, mine, layout.itemsize)
-                self._rows.setdefault((number, layout.itemsize), []).append((mine + offset, rows))
+                records = bodies(stream, mine, layout.itemsize).view(layout)[:, 0]
+                kept = self._rows.setdefault((number, layout), {})
+                kept.setdefault("", _Growing()).extend(mine + offset)
+                for name in filter(self._is_read, layout.names or ()):
+                    kept.setdefault(name, _Growing()).extend(records[name])
 
     def _defined(self) -> Iterator[tuple[int, str, "np.dtype[np.void] | None", list[float | None]]]:
         """Yield type, name, layout and divisors of each definition."""
@@ -166,15 +194,15 @@ class _Collected:
         for number, name, layout, divisors in self._defined():
             if layout is None or name not in self._wanted:
                 continue
-            pieces = self._rows.pop((number, layout.itemsize), None)
-            if pieces is None:
+            kept = self._rows.pop((number, layout), None)
+            if kept is None:
                 continue
-            records = np.concatenate([rows for _, rows in pieces]).view(layout)[:, 0]
-            fields = {
-                field: records[field] if divisor is None else records[field] / divisor
-                for field, divisor in zip(layout.names or (), divisors, strict=True)
-            }
-            tables[name] = RecordTable(np.concatenate([order for order, _ in pieces]), fields)
+            order, fields = kept.pop("").values(), {}
+            for field, divisor in zip(layout.names or (), divisors, strict=True):
+                if field in kept:
+                    values = kept.pop(field).values()
+                    fields[field] = values if divisor is None else values / divisor
+            tables[name] = RecordTable(order, fields)
         self._begin([])
         return tables
 

@@ -48,20 +48,21 @@ def message(
     """
     n = len(order)
     layout = DEFINITIONS[name].layout
-    rows = np.argsort(order)
+    is_sorted = n < 2 or bool(np.all(order[1:] > order[:-1]))
+    rows = slice(None) if is_sorted else np.argsort(order)
     columns: dict[str, NDArray[Any]] = {}
     for field in layout.names or ():
         wire = layout[field]
         if field not in fields:
             nothing = np.nan if wire.base.kind == "f" else np.zeros((), wire.base)
-            columns[field] = np.full((n, *wire.shape), nothing)
+            columns[field] = np.broadcast_to(nothing, (n, *wire.shape))
             continue
         values = np.asarray(fields[field])
         if wire.base.kind in "iu" and values.dtype.kind != "f":
             values = values.astype(wire.base)
         if values.dtype.kind == "f" and np.isinf(values).any():
             values = np.where(np.isinf(values), np.nan, values)
-        columns[field] = np.broadcast_to(values, (n, *wire.shape))[rows]
+        columns[field] = np.broadcast_to(values, (n, *wire.shape))[rows if values.ndim else slice(None)]
     for field in fields.keys() - columns.keys():
         columns[field] = np.asarray(fields[field])[rows]
     return Columns(name, system, AUTOPILOT_COMPONENT, order[rows], arrival_s[rows], columns, carrier)

@@ -19,8 +19,8 @@ _HEADER_0, _HEADER_1 = HEADER
 FMT = 0x80
 """Type of the records that define the other types."""
 FMT_LENGTH = 89
-WINDOW_BYTES = 32 << 20
-"""Bytes of a file that are looked at together."""
+WINDOW_BYTES = 4 << 20
+"""Bytes of a file that are looked at together. Their records take six times as much memory."""
 
 Bytes = NDArray[np.uint8]
 

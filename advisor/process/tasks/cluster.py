@@ -115,7 +115,7 @@ def _connected(address: str) -> "Iterator[Client]":
     except (OSError, ValueError) as error:
         raise ConfigurationError(
             f"--scheduler: no Dask scheduler answers at {address} ({_cause(error)}). Start one with"
-            " 'dask scheduler', or mend the address."
+            " 'dask scheduler', or correct the address."
         ) from None
     with client:
         yield client

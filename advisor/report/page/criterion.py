@@ -1,7 +1,7 @@
 """The stop criterion against the number of manoeuvres, rule by rule: the paper's Figure 5 for this flight."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from math import ceil, floor, log10, sqrt
+from math import sqrt
 from typing import Any
 
 from matplotlib.figure import Figure as Drawing
@@ -10,10 +10,9 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, MaxNLocator, NullLoca
 from advisor.decision.verdict import limit_percent
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section
 from advisor.report.page.content import Content
-from advisor.report.page.drawing import BLACK, BLUE, picture
+from advisor.report.page.drawing import BLACK, BLUE, log_ticks, picture
 from advisor.report.table import Table
 
-_MOST_TICKS = 8
 _NEWEST = 12
 """Most rows of the table of values. The figures show the whole course."""
 _EXPLAINED = (
@@ -77,7 +76,7 @@ def _paint(drawing: Drawing, one: Mapping[str, Any], limit: float) -> None:
     low, high = _range([limit, *(v for _, v in history)])
     axes.set_yscale("log")
     axes.set_ylim(low, high)
-    axes.yaxis.set_major_locator(FixedLocator(_ticks(low, high)))
+    axes.yaxis.set_major_locator(FixedLocator(log_ticks(low, high)))
     axes.yaxis.set_major_formatter(
         FuncFormatter(lambda value, _: f"{value:,.0f}" if value >= 1.0 else f"{value:g}")
     )
@@ -92,10 +91,3 @@ def _range(values: Sequence[float]) -> tuple[float, float]:
     low, high = 0.6 * min(values), 1.8 * max(values)
     widen = max(1.0, sqrt(10.0 * low / high))
     return low / widen, high * widen
-
-
-def _ticks(low: float, high: float) -> list[float]:
-    """Return the values at 1, 2 and 5 times powers of ten, or at powers of ten alone where those are many."""
-    decades = range(floor(log10(low)), ceil(log10(high)) + 1)
-    fine = [m * 10.0**k for k in decades for m in (1.0, 2.0, 5.0) if low <= m * 10.0**k <= high]
-    return fine if len(fine) <= _MOST_TICKS else [v for v in fine if 10.0 ** round(log10(v)) == v]

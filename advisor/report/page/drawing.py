@@ -3,6 +3,7 @@
 import io
 import re
 from collections.abc import Callable
+from math import ceil, floor, log10
 from pathlib import Path
 from typing import Any, TypeVarTuple
 
@@ -36,6 +37,8 @@ _STYLE: Any = {
     "path.simplify": True,
     "path.simplify_threshold": 0.2,
 }
+_MOST_TICKS = 8
+"""Most labels at 1, 2 and 5 times powers of ten; a longer axis has the powers alone."""
 _DPI = 150
 """Dots per inch of a picture in dots: sharp on a screen of twice the usual density."""
 Shown = TypeVarTuple("Shown")
@@ -101,6 +104,13 @@ def draw(
         out = io.StringIO()
         figure.savefig(out, format="svg", metadata=_NO_METADATA)
     return _inline(out.getvalue(), width_in)
+
+
+def log_ticks(low: float, high: float) -> list[float]:
+    """Return the values at 1, 2 and 5 times powers of ten, or at powers of ten alone where those are many."""
+    decades = range(floor(log10(low)), ceil(log10(high)) + 1)
+    fine = [m * 10.0**k for k in decades for m in (1.0, 2.0, 5.0) if low <= m * 10.0**k <= high]
+    return fine if len(fine) <= _MOST_TICKS else [v for v in fine if 10.0 ** round(log10(v)) == v]
 
 
 def _inline(svg: str, width_in: float) -> str:

@@ -98,10 +98,10 @@ def _start(judged: JudgedManeuver) -> float:
 def _paint_large(drawing: Drawing, elevator: Channel, outputs: Sequence[ChannelFit], start_s: float) -> None:
     heights = [1.0, *(h for _ in outputs for h in (1.5, 0.8))]
     rows = drawing.subplots(len(heights), 1, sharex=True, height_ratios=heights)
-    _paint_input(rows[0], elevator, start_s)
+    paint_input(rows[0], "elevator", elevator, start_s)
     for k, fit in enumerate(outputs):
         curves, below = rows[1 + 2 * k], rows[2 + 2 * k]
-        _paint_output(curves, fit, start_s)
+        paint_output(curves, fit, start_s)
         quantity = CHANNELS[fit.name]
         half = NORMAL_95 * fit.noise * quantity.factor
         below.axhspan(-half, half, facecolor="#cfe0ef", edgecolor=BLUE, linewidth=0.5, linestyle=":")
@@ -115,9 +115,9 @@ def _paint_large(drawing: Drawing, elevator: Channel, outputs: Sequence[ChannelF
 
 def _paint_small(drawing: Drawing, elevator: Channel, outputs: Sequence[ChannelFit], start_s: float) -> None:
     rows = drawing.subplots(1 + len(outputs), 1, sharex=True, squeeze=False)[:, 0]
-    _paint_input(rows[0], elevator, start_s)
+    paint_input(rows[0], "elevator", elevator, start_s)
     for axes, fit in zip(rows[1:], outputs, strict=True):
-        _paint_output(axes, fit, start_s)
+        paint_output(axes, fit, start_s)
     for axes in rows:
         axes.tick_params(labelsize=6)
         axes.yaxis.label.set_size(6)
@@ -125,13 +125,15 @@ def _paint_small(drawing: Drawing, elevator: Channel, outputs: Sequence[ChannelF
     drawing.align_ylabels(list(rows))
 
 
-def _paint_input(axes: Axes, elevator: Channel, start_s: float) -> None:
-    quantity = CHANNELS["elevator"]
-    axes.plot(elevator.t - start_s, elevator.y * quantity.factor, color=BLACK, linewidth=0.9)
+def paint_input(axes: Axes, name: str, moved: Channel, start_s: float) -> None:
+    """Draw a control over the time since the first step."""
+    quantity = CHANNELS[name]
+    axes.plot(moved.t - start_s, moved.y * quantity.factor, color=BLACK, linewidth=0.9)
     axes.set_ylabel(quantity.label)
 
 
-def _paint_output(axes: Axes, fit: ChannelFit, start_s: float) -> None:
+def paint_output(axes: Axes, fit: ChannelFit, start_s: float) -> None:
+    """Draw an output, measured and fitted, over the time since the first step."""
     quantity, t = CHANNELS[fit.name], fit.t - start_s
     axes.plot(t, fit.measured * quantity.factor, color=GREY, linewidth=1.8, label="measured")
     axes.plot(

@@ -2,8 +2,9 @@
 
 from collections.abc import Iterator
 
-from advisor.report.page.blocks import Block, Paragraph, Section, listing
+from advisor.report.page.blocks import Block, Gallery, Paragraph, Section, listing
 from advisor.report.page.content import Content, Document
+from advisor.report.page.flying_chart import flying_chart
 from advisor.report.qualities import NAMES
 from advisor.report.table import Table
 from advisor.words.digits import with_half
@@ -29,6 +30,8 @@ def _blocks(content: Content) -> Iterator[Block]:
     )  # fmt: skip
     yield from listing([f"{NAMES[name]} is not given: {why}." for name, why in found["left_out"].items()])
     if found["levels"]:
+        if chart := flying_chart(found):
+            yield Gallery((chart,))
         yield Table(
             "levels", f"Levels by {found['source']}.", ("category", "flight phases", "level"),
             tuple((c, one["phases"], one["text"].partition(": ")[2]) for c, one in found["levels"].items()),

@@ -1,27 +1,24 @@
 """The sim-to-real gap, where requested: verdict, size, steps, causes."""
 
 from collections.abc import Iterator, Mapping
+from math import nan
 from typing import Any
 
 from matplotlib.figure import Figure as Drawing
 from matplotlib.ticker import FuncFormatter
 
-from advisor.gap.result import spelled
+from advisor.gap.result import Value, spelled
 from advisor.gap.verdict.text import place
-from advisor.report.gap_sizes import WORSE
-from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, listing
+from advisor.report.gap_reasons import alternatives_of, heading_of, how_sure, in_percent, is_shown, weighed
+from advisor.report.gap_sizes import WORSE, marked, short, sizes_of
+from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, Verbatim, listing
 from advisor.report.page.content import Content, Document
 from advisor.report.page.drawing import BLUE, picture
 from advisor.report.page.gap_picture import caption, gap_picture
 from advisor.report.table import Table
 from advisor.words.digits import decimals_for, signed, with_half
-from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import CHANNELS, PARAMETERS
 
-_ROUNDING = 1e-9
-"""Gap below which a number is only rounding and is shown as 0."""
-_NOTHING = 0.005
-"""Probability that rounds to nothing with two decimals, so that its row says nothing."""
 _LINEAR = 10.0
 """Largest gap on a linear axis."""
 
@@ -39,6 +36,8 @@ def _blocks(found: Document) -> Iterator[Block]:
         yield from listing([f"{p['text']} {p['fix']}" for p in found["problems"]])
         return
     yield Paragraph(found["sentence"], "verdict")
+    if sure := how_sure(alternatives_of(found)):
+        yield Paragraph(sure)
     size, shrink = found["gap"], found["shrink"]
     if found["traces"]:
         close, phone = gap_picture("gap-picture", found), gap_picture("gap-phone", found, across=1)
@@ -51,7 +50,8 @@ def _blocks(found: Document) -> Iterator[Block]:
         )  # fmt: skip
     yield Paragraph(_size(size, untested=found["verdict"] is None) + _shrink(shrink))
     yield Table(
-        "gap-channels", "Gap by channel.", ("channel", "before", "after", "noise floor"),
+        "gap-channels", f"Gap by channel. {WORSE}: larger than before.",
+        ("channel", "before", "after", "noise floor"),
         tuple(_channel(name, size) for name in size["by_channel"]), frozenset({1, 2, 3}),
     )  # fmt: skip
     where = found["where"]
@@ -67,18 +67,31 @@ def _blocks(found: Document) -> Iterator[Block]:
         yield Table(
             "causes", "Causes, the most probable first.",
             ("effect", "probability", "values ± 95 %", "gap after", "cannot be told from"),
-            tuple(map(_cause, causes)), frozenset({1, 3}),
+            tuple(_cause(cause, size["before"]) for cause in causes), frozenset({1, 3}),
         )  # fmt: skip
+    if found["why"]:
+        reasons = weighed((one["nats"], one["text"]) for one in found["why"])
+        title = heading_of(found)
+        yield Table(
+            "gap-why",
+            f"{title[0].upper()}{title[1:]}.",
+            ("nats", "reason: value of the answer against value of the rival"),
+            tuple(reasons),
+            frozenset({0}),
+        )
     yield from listing(
         [f"Cannot be seen: {spelled(u['effect'])}, {u['because']}." for u in found["cannot_see"]]
     )
     yield from listing(list(found["notes"]))
-    yield from listing([" ".join(filter(None, step.values())) for step in found["next"]])
+    for number, step in enumerate(found["next"], start=1):
+        yield Paragraph(f"{number}. {step['text']}")
+        if step["command"]:
+            yield Verbatim(step["command"])
 
 
 def shown_causes(found: Document) -> list[Mapping[str, Any]]:
-    """Return the causes with a row: part of the improved simulator, or of a probability above 0.00."""
-    return [cause for cause in found["causes"] if cause["in_model"] or cause["probability"] >= _NOTHING]
+    """Return the causes with a row: part of the improved simulator, or of a probability above 0 %."""
+    return [cause for cause in found["causes"] if cause["in_model"] or is_shown(cause["probability"])]
 
 
 def _changed(one: Mapping[str, Any]) -> tuple[str, ...]:
@@ -93,21 +106,15 @@ def _changed(one: Mapping[str, Any]) -> tuple[str, ...]:
 def _size(size: Mapping[str, Any], untested: bool) -> str:
     what = "mean square of the simulator's error over the noise floor's, minus 1"
     if untested:
-        return f"The fitted model leaves {_short(size['after'])} ({what})."
-    return f"Gap ({what}): before {_short(size['before'])}, after {_short(size['after'])}."
-
-
-def _short(value: float) -> str:
-    """Return a number with three digits; 0 for a value that is only rounding."""
-    return f"{value:.3g}" if abs(value) > _ROUNDING else "0"
+        return f"The fitted model leaves {short(size['after'])} ({what})."
+    return f"Gap ({what}): before {short(size['before'])}, after {short(size['after'])}."
 
 
 def _channel(name: str, size: Mapping[str, Any]) -> tuple[str, ...]:
     after, quantity = size["by_channel_after"].get(name), CHANNELS[name]
     floor = f"{size['floor'][name] * quantity.factor:.2g} {quantity.unit}"
     before = size["by_channel"][name]
-    worse = f" {WORSE}" if after is not None and after > before else ""
-    return quantity.symbol, _short(before), "–" if after is None else f"{_short(after)}{worse}", floor
+    return quantity.symbol, short(before), "–" if after is None else marked(after, before), floor
 
 
 def _shrink(shrink: Mapping[str, Any] | None) -> str:
@@ -119,23 +126,21 @@ def _shrink(shrink: Mapping[str, Any] | None) -> str:
     return f" {shrink['percent']:.1f} % less{interval} on held-out manoeuvres {held_out}."
 
 
-def _cause(cause: Mapping[str, Any]) -> tuple[str, ...]:
-    values = ", ".join(f"{name} {_with_interval(one)}" for name, one in cause["parameters"].items())
+def _cause(cause: Mapping[str, Any], before: float) -> tuple[str, ...]:
+    known = {name: one for name, one in cause["parameters"].items() if one["value"] is not None}
+    sizes = {name: Value(one["value"], _or_nan(one["std"])) for name, one in known.items()}
     after = cause["gap_after"]
     return (
         spelled(cause["effect"]),
-        f"{cause['probability']:.2f}",
-        values,
-        "–" if after is None else _short(after),
+        in_percent(cause["probability"]),
+        ", ".join(sizes_of(sizes)),
+        "–" if after is None else marked(after, before),
         ", ".join(map(spelled, cause["cannot_be_told_from"])) or "–",
     )
 
 
-def _with_interval(one: Mapping[str, Any]) -> str:
-    value, std = one["value"], one["std"]
-    if value is None:
-        return "–"
-    return f"{value:.4g}" if std is None else with_half(value, NORMAL_95 * std)
+def _or_nan(value: float | None) -> float:
+    return nan if value is None else value
 
 
 def _paint(drawing: Drawing, rows: list[tuple[str, float]]) -> None:
@@ -144,7 +149,7 @@ def _paint(drawing: Drawing, rows: list[tuple[str, float]]) -> None:
     axes.barh(range(len(rows)), [max(value, 0.0) for _, value in rows], color=BLUE, height=0.6)
     axes.set_yticks(range(len(rows)), [name for name, _ in rows])
     for row, (_, value) in enumerate(rows):
-        axes.annotate(f" {_short(value)}", (max(value, 0.0), row), va="center")
+        axes.annotate(f" {short(value)}", (max(value, 0.0), row), va="center")
     axes.invert_yaxis()
     axes.grid(visible=False, axis="y")
     largest = max(value for _, value in rows)

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from advisor.report.gap_reasons import alternatives_of, how_sure
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, listing
 from advisor.report.page.content import Content
 from advisor.report.page.estimates import joint_table
@@ -31,12 +32,17 @@ def _blocks(content: Content) -> Iterator[Block]:
     if following is not None:
         yield Paragraph(f"Next: {following['advice'].removeprefix('next: ')}.".replace("..", "."))
     yield from listing([f"Warning: {warning}" for warning in verdict["warnings"]])
+    side = content.state.lateral
+    if side is not None and side.maneuvers:
+        yield Paragraph(f"Roll and yaw: {side.flight_test.sentence}")
     joint = joint_table(content)
     if joint is not None:
         yield joint
     found = content.gap
     if found is not None and found["usable"]:
         yield Paragraph(found["sentence"], "verdict")
+        if sure := how_sure(alternatives_of(found)):
+            yield Paragraph(sure)
         glance = gap_picture("gap-glance", found, across=_GLANCE)
         yield Gallery((Figure(glance, caption(found), narrow=gap_picture("gap-narrow", found, across=1)),))
 

@@ -10,26 +10,28 @@ from advisor.report.text import caution_lines
 from advisor.words.vehicle_time import CLOCK, clock
 
 _HYPHEN, _SPACE = "\N{NON-BREAKING HYPHEN}", "\N{NO-BREAK SPACE}"
-_HEAD = ("no.", "start", "input", "mode", "verdict", "why")
+HEAD = ("no.", "start", "input", "mode", "verdict", "why")
 
 
 def maneuvers(content: Content) -> Section:
     """Return a table with a row for each manoeuvre, then cautions that do not reject a manoeuvre."""
     found = content.analysis["maneuvers"]
-    rows = tuple(_row(maneuver, len(content.names) > 1) for maneuver in found)
+    rows = tuple(maneuver_row(maneuver, several=len(content.names) > 1) for maneuver in found)
     table = Table(
-        "maneuver-list", f"Every manoeuvre in the order flown; times are {CLOCK}.", _HEAD, rows,
+        "maneuver-list", f"Every manoeuvre in the order flown; times are {CLOCK}.", HEAD, rows,
         frozenset({0, 1}),
     )  # fmt: skip
     return Section("maneuvers", "Manoeuvres", (table, *listing(caution_lines(content.state.maneuvers))))
 
 
-def _row(maneuver: Mapping[str, Any], several: bool) -> tuple[str, ...]:
+def maneuver_row(maneuver: Mapping[str, Any], *, several: bool) -> tuple[str, ...]:
+    """Return number, start, input, mode, verdict and sentence of a manoeuvre; its log where there are
+    several."""
     accepted = maneuver["verdict"] == "accepted"
-    why = [maneuver["sentence"], *(f"note: {note}" for note in maneuver["notes"])]
-    if maneuver["excluded_because"] is not None:
+    why = [maneuver["sentence"], *(f"note: {note}" for note in maneuver.get("notes", ()))]
+    if maneuver.get("excluded_because") is not None:
         why.append(f"excluded by hand: {maneuver['excluded_because']}")
-    if several:
+    if several and "log" in maneuver:
         why.append(f"({maneuver['log']})")
     return (
         str(maneuver["number"]),

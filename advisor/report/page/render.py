@@ -16,6 +16,7 @@ from advisor.report.page.flight_picture import flight_picture
 from advisor.report.page.flying import flying
 from advisor.report.page.gap import gap
 from advisor.report.page.headline import headline
+from advisor.report.page.lateral import lateral
 from advisor.report.page.maneuvers import maneuvers
 from advisor.report.page.prediction import prediction
 from advisor.report.page.provenance import provenance
@@ -23,8 +24,8 @@ from advisor.report.page.telemetry import telemetry
 
 PageFormat = Literal["html", "md"]
 _PARTS = (
-    headline, gap, estimates, criterion, flying, flight_picture, maneuvers, fits, prediction, telemetry,
-    assumptions, provenance,
+    headline, gap, estimates, criterion, flying, flight_picture, maneuvers, fits, prediction, lateral,
+    telemetry, assumptions, provenance,
 )  # fmt: skip
 
 

@@ -15,6 +15,8 @@ TONES = ("good", "warn", "bad", "quiet")
 class BigWord(Part, Lines):
     """One word in block letters."""
 
+    EITHER_AXIS = True
+
     def __init__(self) -> None:
         super().__init__()
         self.word = ""
@@ -40,6 +42,8 @@ class BigWord(Part, Lines):
 
 class Why(Part, Lines):
     """The sentence under the word."""
+
+    EITHER_AXIS = True
 
     def show(self, view: View) -> None:
         """Write the sentence of the advice."""

@@ -18,13 +18,26 @@ def flying_in_words(view: View) -> str:
 class CrewNotes(Part, HangingLines):
     """The manoeuvre in the air, a fault of the link, and the number of warnings."""
 
+    EITHER_AXIS = True
+
     def show(self, view: View) -> None:
         """Write one line each; warnings last, each with its sign."""
         self.write_rows(_rows(view))
 
 
+def _other_axis(view: View) -> Iterator[Labelled]:
+    """Yield the state of the axis that is not shown, once one of its manoeuvres was flown."""
+    lateral = view.state.lateral
+    if view.elevator is not None and view.elevator.state.maneuvers:
+        yield "elevator    ", f"{view.elevator.state.flight_test.sentence} Key r shows it."
+    elif view.elevator is None and lateral is not None and lateral.maneuvers:
+        yield "roll, yaw   ", f"{lateral.flight_test.sentence} Key r shows it."
+
+
 def _rows(view: View) -> Iterator[Labelled]:
-    yield "in the air  ", flying_in_words(view)
+    if view.elevator is None:
+        yield "in the air  ", flying_in_words(view)
+    yield from _other_axis(view)
     if view.health.condition in ("poor", "lost"):
         yield "link        ", view.health.sentence
     corrected = [found for found in view.state.instruments if found.contradicts and found.used]

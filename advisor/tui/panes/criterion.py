@@ -21,12 +21,13 @@ class Criterion(TextPane):
 
     TITLE = "6 Criterion"
     SHORT = "6Cri"
+    EITHER_AXIS = True
     HELP = """\
 # Criterion
 
-The stop criterion after each manoeuvre for the three rules side by side, each as a share of its own limit, on
-a logarithmic axis: the test may stop below the dashed line, at 100 %. The rule that decides is marked **►**;
-the other rules are always shown as well.
+The stop criterion after each manoeuvre for the three rules, each in per cent of its own limit, as a line and
+as a curve on a logarithmic axis: the test may stop below the dashed line, at 100 %. The rule that decides is
+marked **►**; the other rules are always shown as well.
 
 The rule information stops when the 95 % band of the predicted response, each named derivative and the
 prediction of the newest manoeuvre are within their tolerances; the lines above the curves tell how far.
@@ -49,24 +50,23 @@ prediction of the newest manoeuvre are within their tolerances; the lines above 
 def _rows(verdict: FlightTestVerdict) -> list[Labelled]:
     rows: list[Labelled] = []
     for rule, progress in verdict.by_rule.items():
-        known = [value for value in progress.history_percent if value is not None]
-        limit = progress.limit_percent
-        now, most = distinct_texts(known[-1], limit) if known else ("", f"{limit:.0f}")
-        so_far = f"{now} %" if known else "too few"
+        known = [value for value in progress.percent_of_limit if value is not None]
+        share = distinct_texts(known[-1], 100.0)[0] if known else ""
+        so_far = f"{share:>6} % of its limit" if known else f"{'too few manoeuvres':>21}"
         says = f"stop since {progress.stopped_at}" if progress.stopped_at else "continue"
         mark = "►" if rule == verdict.rule else " "
-        rows.append((f"{mark} ", f"{rule:<12} {so_far:>8}  (limit {most:>3} %)  {says}"))
+        rows.append((f"{mark} ", f"{rule:<12}{so_far}  {says}"))
     rows += [("  ", line) for line in verdict.evidence]
     return rows + [("! ", warning) for warning in verdict.warnings]
 
 
 def _chart(verdict: FlightTestVerdict | None) -> Chart:
     series = []
-    for rule, progress in verdict.by_rule.items() if verdict else ():
-        history = np.array([np.nan if v is None else v for v in progress.history_percent], dtype=np.float64)
-        if np.isfinite(history).any():
-            numbers = np.arange(1.0, len(history) + 1.0)
-            share = history / progress.limit_percent * 100.0
+    rules = verdict.by_rule.items() if verdict else ()
+    for rule, progress in sorted(rules, key=lambda one: verdict is None or one[0] != verdict.rule):
+        share = np.array([np.nan if v is None else v for v in progress.percent_of_limit], dtype=np.float64)
+        if np.isfinite(share).any():
+            numbers = np.arange(1.0, len(share) + 1.0)
             ink = RULE_INKS.get(rule, "prior")
             series.append(Series(rule, numbers, share, ink, "joined"))
     if verdict is None or not series:

@@ -23,7 +23,7 @@ Verdicts, marks, notes, changes by hand, what the vehicle said in words (STATUST
 its sender where that is not the vehicle) and what the link reported, newest at the bottom. **m** adds a mark
 at this moment.
 
-Times are minutes:seconds since the vehicle's boot, as in the table of manoeuvres and in the replay bar. They
+Times are minutes:seconds since power-on, as in the table of manoeuvres and in the replay bar. They
 begin anew where a line says that another power-on, flight or vehicle begins.
 """
 

@@ -1,4 +1,4 @@
-"""The elevator over measured, fitted and residual, for every output of the selected manoeuvre."""
+"""The controls over measured, fitted and residual, for every output of the selected manoeuvre."""
 
 import numpy as np
 from textual.app import ComposeResult
@@ -9,13 +9,13 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.session.view import View
 from advisor.tui import keys
 from advisor.tui.panes.fit_charts import (
-    ELEVATOR,
-    OUTPUTS,
-    elevator_chart,
+    ELEVATOR_AXIS,
+    SIDE_AXIS,
     extent,
     fit_chart,
     fits_of,
     in_sight,
+    input_chart,
     measured,
     no_fit,
     residual_chart,
@@ -32,17 +32,20 @@ _ROWS_FOR_ONE = 11
 """Rows that an output and its residual need where several stand above one another."""
 _LEAST_ROWS_FOR_BOTH = 8
 """Rows below which an output has no room for its residual."""
-_ROWS_OF_ELEVATOR = 3
-_SHARE_OF_ELEVATOR = 8
-"""The elevator takes one row in eight, and never less than ``_ROWS_OF_ELEVATOR``."""
+_ROWS_OF_INPUT = 3
+_SHARE_OF_INPUT = 8
+"""A control takes one row in eight, and never less than ``_ROWS_OF_INPUT``."""
+_INPUTS = (*ELEVATOR_AXIS.inputs, *SIDE_AXIS.inputs)
+_OUTPUTS = (*ELEVATOR_AXIS.outputs, *SIDE_AXIS.outputs)
 
 
 class Fit(Pane):
-    """The elevator, then two plots for each output: measured with fitted, and the residual."""
+    """The controls, then two plots for each output: measured with fitted, and the residual."""
 
     BINDINGS = keys.FIT
     TITLE = "4 Fit"
     SHORT = "4Fit"
+    EITHER_AXIS = True
     OF_SELECTED = True
     HELP = """\
 # Fit
@@ -63,8 +66,9 @@ with 0 takes the second away.
 
     def compose(self) -> ComposeResult:
         """Lay out all plots; those without room are hidden."""
-        yield Plot(no_fit(ELEVATOR, ""), id="fit-elevator")
-        for name in OUTPUTS:
+        for name in _INPUTS:
+            yield Plot(no_fit(name, ""), id=f"fit-{name}", classes="input")
+        for name in _OUTPUTS:
             yield Plot(no_fit(name, "no manoeuvre has ended yet."), id=f"fit-{name}", classes="fit")
             yield Plot(no_fit(name, ""), id=f"residual-{name}", classes="residual")
 
@@ -72,6 +76,7 @@ with 0 takes the second away.
         """Begin with the angle of attack."""
         super().on_mount()
         self._first = 0
+        self._axis = ELEVATOR_AXIS
         self._judged: JudgedManeuver | None = None
         self._over: JudgedManeuver | None = None
         self._over_number: int | None = None
@@ -85,6 +90,7 @@ with 0 takes the second away.
         if judged is self._judged and over is self._over:
             return
         self._judged, self._over = judged, over
+        self._axis = ELEVATOR_AXIS if view.elevator is None else SIDE_AXIS
         if judged is not None:
             first, last = extent(judged, over)
             before = self._sight or Sight(Window.whole(first, last))
@@ -102,7 +108,7 @@ with 0 takes the second away.
 
     def rows(self) -> TableRows | None:
         """Give one row for each sample of each channel, in sight or not."""
-        return rows_of_fit(self._judged, self._over) if self._judged is not None else None
+        return rows_of_fit(self._judged, self._over, self._axis) if self._judged is not None else None
 
     def on_resize(self, event: Resize) -> None:
         """Show as many outputs as have room."""
@@ -143,9 +149,9 @@ with 0 takes the second away.
             self._draw()
 
     def _stamps(self) -> FloatArray:
-        """Return the stamps on which the cursor stands: of the output at the top, else of the elevator."""
+        """Return the stamps on which the cursor stands: of the output at the top, else of the control."""
         there = self._outputs()
-        for name in (there[self._first % len(there)], ELEVATOR):
+        for name in (there[self._first % len(there)], *self._axis.inputs):
             curve = measured(self._judged, name) if self._judged is not None else None
             if curve is not None:
                 return curve[0]
@@ -153,14 +159,17 @@ with 0 takes the second away.
 
     def _draw(self) -> None:
         """Give the room to as many outputs as fit, and draw them."""
-        elevator = max(_ROWS_OF_ELEVATOR, self.size.height // _SHARE_OF_ELEVATOR)
+        inputs = [name for name in self._axis.inputs if self._has(name)] or self._axis.inputs[:1]
+        each = max(_ROWS_OF_INPUT, self.size.height // _SHARE_OF_INPUT)
+        above = each * len(inputs)
         there = self._outputs()
-        count = min(max(1, (self.size.height - elevator) // _ROWS_FOR_ONE), len(there))
+        count = min(max(1, (self.size.height - above) // _ROWS_FOR_ONE), len(there))
         shown = [there[(self._first + k) % len(there)] for k in range(count)]
-        lowest = max(shown, key=OUTPUTS.index)
-        residuals = self.size.height - elevator >= _LEAST_ROWS_FOR_BOTH
-        self._draw_elevator(elevator)
-        for name in OUTPUTS:
+        lowest = max(shown, key=_OUTPUTS.index)
+        residuals = self.size.height - above >= _LEAST_ROWS_FOR_BOTH
+        for name in _INPUTS:
+            self._draw_input(name, name in inputs, each)
+        for name in _OUTPUTS:
             self._draw_output(name, name in shown, lowest=name == lowest, with_residual=residuals)
         aligned = "  both from the start of the input" if self._over is not None else ""
         more = "" if count == len(there) else "  (o: next output)"
@@ -170,14 +179,20 @@ with 0 takes the second away.
     def _outputs(self) -> list[str]:
         """List the outputs of the fit; without a fit, the one output that says why."""
         fits = fits_of(self._judged) if self._judged is not None else {}
-        return [name for name in OUTPUTS if name in fits] or [OUTPUTS[0]]
+        outputs = self._axis.outputs
+        return [name for name in outputs if name in fits] or [outputs[0]]
 
-    def _draw_elevator(self, rows: int) -> None:
-        plot = self.query_one("#fit-elevator", Plot)
-        plot.display = self._judged is not None
+    def _has(self, name: str) -> bool:
+        """Return whether a control is recorded and moves in the selected manoeuvre."""
+        curve = measured(self._judged, name) if self._judged is not None else None
+        return curve is not None and bool(np.ptp(curve[1]) > 0.0)
+
+    def _draw_input(self, name: str, shown: bool, rows: int) -> None:
+        plot = self.query_one(f"#fit-{name}", Plot)
+        plot.display = shown and self._judged is not None
         plot.styles.height = rows
-        if self._judged is not None and self._sight is not None:
-            chart = elevator_chart(self._judged, self._over)
+        if shown and self._judged is not None and self._sight is not None:
+            chart = input_chart(name, self._judged, self._over)
             plot.chart = in_sight(chart, self._sight.window.shown, self._sight.cursor, foot=False)
 
     def _draw_output(self, name: str, shown: bool, *, lowest: bool, with_residual: bool) -> None:

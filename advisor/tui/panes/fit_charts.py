@@ -1,24 +1,36 @@
 """Charts of a manoeuvre for the fit pane, alone and with a second manoeuvre laid over it."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from advisor.campaign.state import JudgedManeuver
 from advisor.flight.signals.messages import FloatArray
+from advisor.model.lateral import LATERAL
 from advisor.oem.estimate import ChannelFit, Estimate
 from advisor.tui.plot.chart import Chart, Ink, Mark, Series
 from advisor.tui.rows import TableRows
 from advisor.words.quantities import channel
 
 OUTPUTS = ("alpha", "q", "a_z", "theta")
-ELEVATOR = "elevator"
 _T = "t [s]"
 _GUTTER = 7
 """Columns left of the canvas, wide enough for ``-12.50``: all plots of the pane begin in one column."""
 
 Curve = tuple[FloatArray, FloatArray]
 """Seconds since the start of the input, shape (n,), and values in the unit for people, shape (n,)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """Channels of the axis that the pane shows."""
+
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+
+
+ELEVATOR_AXIS = Shown(("elevator",), OUTPUTS)
+SIDE_AXIS = Shown(LATERAL.inputs, LATERAL.outputs)
 
 
 def since_start(judged: JudgedManeuver, t: FloatArray) -> FloatArray:
@@ -57,10 +69,10 @@ def in_sight(chart: Chart, x_range: tuple[float, float], cursor: float | None, *
     return replace(chart, x_range=x_range, cursor=cursor, foot=foot, gutter=_GUTTER)
 
 
-def elevator_chart(judged: JudgedManeuver, over: JudgedManeuver | None) -> Chart:
-    """Draw the elevator of one manoeuvre, or of two."""
-    curves = _overlaid("elevator", measured(judged, ELEVATOR), judged, over, ELEVATOR, "input", "line")
-    return Chart(channel(ELEVATOR).label, _T, series=curves, why_empty="the record has none.")
+def input_chart(name: str, judged: JudgedManeuver, over: JudgedManeuver | None) -> Chart:
+    """Draw a control of one manoeuvre, or of two."""
+    curves = _overlaid(name, measured(judged, name), judged, over, name, "input", "line")
+    return Chart(channel(name).label, _T, series=curves, why_empty="the record has none.")
 
 
 def fit_chart(name: str, judged: JudgedManeuver, over: JudgedManeuver | None) -> Chart:
@@ -99,15 +111,17 @@ def no_fit(name: str, why: str) -> Chart:
     return Chart(channel(name).label, _T, why_empty=why)
 
 
-def rows_of_fit(judged: JudgedManeuver, over: JudgedManeuver | None) -> TableRows:
-    """Write the elevator and all outputs, sample by sample, of one manoeuvre or of two."""
+def rows_of_fit(judged: JudgedManeuver, over: JudgedManeuver | None, axis: Shown) -> TableRows:
+    """Write the controls and all outputs, sample by sample, of one manoeuvre or of two."""
     header = ("manoeuvre", "channel", "unit", "t_s", "measured", "fitted", "residual")
-    return TableRows(header, tuple(row for one in (judged, over) if one is not None for row in _samples(one)))
+    return TableRows(
+        header, tuple(row for one in (judged, over) if one is not None for row in _samples(one, axis))
+    )
 
 
-def _samples(judged: JudgedManeuver) -> list[tuple[object, ...]]:
+def _samples(judged: JudgedManeuver, axis: Shown) -> list[tuple[object, ...]]:
     number, rows = judged.maneuver.number, []
-    for name in (ELEVATOR, *OUTPUTS):
+    for name in (*axis.inputs, *axis.outputs):
         curve, fit, unit = measured(judged, name), fits_of(judged).get(name), channel(name).unit
         if curve is None:
             continue

@@ -41,7 +41,7 @@ In a replay, a click jumps to the manoeuvre there. The upright line is the prese
 """
 
     class Sought(Message):
-        """A time of the flight was pointed at, s since boot."""
+        """A time of the flight was pointed at, s since power-on."""
 
         def __init__(self, at_s: float) -> None:
             super().__init__()

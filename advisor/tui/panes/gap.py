@@ -9,6 +9,8 @@ from textual.app import ComposeResult
 from textual.containers import VerticalScroll
 from textual.events import Resize
 
+from advisor.report.gap_reasons import alternatives_of, heading_of, how_sure, weighed
+from advisor.report.gap_sizes import WORSE
 from advisor.session.diagnosis import Document, GapTask, diagnose_elsewhere
 from advisor.session.view import View
 from advisor.tui.panes.hanging import HangingLines, Labelled
@@ -38,8 +40,11 @@ class GapPane(Pane):
 Why the aircraft does not fly like its simulator. Choosing the pane starts the diagnosis of the flight so
 far, in a process of its own; choosing it again after further manoeuvres starts it again.
 
-The text has the answer, the derivatives that differ with their 95 % intervals, and the next steps. The plots
-show the manoeuvre with the largest gap: measured (dots), the simulator before, and with the findings.
+The text has the answer with its probability, the derivatives that differ with their 95 % intervals, the
+next steps, and the reasons against the strongest rival. Scroll for more.
+
+The plots show the manoeuvre with the largest gap: measured (dots), the simulator before, and with the
+findings.
 """
 
     def compose(self) -> ComposeResult:
@@ -97,18 +102,39 @@ show the manoeuvre with the largest gap: measured (dots), the simulator before, 
 
 
 def answer_rows(document: Document) -> Iterator[Labelled]:
-    """Yield the answer, what differs, the shrink, and the numbered steps."""
+    """Yield the answer with its probability, what differs, the shrink, the numbered steps, the reasons."""
     if not document["usable"]:
         yield from (("✗ ", f"{problem['text']} {problem['fix']}") for problem in document["problems"])
         return
     yield "", document["sentence"]
+    if sure := how_sure(alternatives_of(document)):
+        yield "", sure
     yield from (("  ", _changed(one)) for one in document["parameters_changed"])
     shrink = document["shrink"]
     if shrink is not None:
         low, high = shrink["ci95_percent"]
         yield "", f"gap {shrink['percent']:.1f} % less (95 %: {low:.1f} to {high:.1f}) on held-out manoeuvres"
+    if worse := _worse(document["gap"]):
+        yield f"{WORSE} ", worse
     for number, step in enumerate(document["next"], start=1):
         yield f"{number}. ", " ".join(filter(None, (step["text"], step["command"])))
+    if document["why"]:
+        yield "", heading_of(document)
+        reasons = weighed((one["nats"], one["text"]) for one in document["why"])
+        yield from ((f"{nats:>6}  ", said) for nats, said in reasons)
+
+
+def _worse(size: Mapping[str, Any]) -> str:
+    """Return the channels and manoeuvres whose gap has grown; empty where none has."""
+    channels = [
+        channel(name).symbol
+        for name, after in size["by_channel_after"].items()
+        if after > size["by_channel"][name]
+    ]
+    numbers = [str(one["number"]) for one in size["by_maneuver"] if one["after"] > one["before"]]
+    noun = "manoeuvre" if len(numbers) == 1 else "manoeuvres"
+    grown = [*channels, *([f"{noun} {', '.join(numbers)}"] if numbers else [])]
+    return f"larger than before in {', '.join(grown)}" if grown else ""
 
 
 def _changed(one: Mapping[str, Any]) -> str:

@@ -18,6 +18,8 @@ def bar(share: float, width: int) -> str:
 class Gauge(Part, HangingLines):
     """The bar of the way to the end, and the manoeuvres so far."""
 
+    EITHER_AXIS = True
+
     def show(self, view: View) -> None:
         """Write the two lines."""
         self.write_rows((("how far     ", how_far(view)), ("manoeuvres  ", _flown(view))))

@@ -37,6 +37,8 @@ def for_the_pilot(judged: JudgedManeuver, test_is_complete: bool) -> tuple[str, 
 class LastVerdict(Part, Vertical):
     """The newest manoeuvre's verdict."""
 
+    EITHER_AXIS = True
+
     def compose(self) -> ComposeResult:
         """Yield the word, large where there is room; a line that names the manoeuvre; and the sentence."""
         yield Lines(id="verdict-block")

@@ -35,6 +35,7 @@ class Maneuvers(Pane):
 
     TITLE = "1 Manoeuvres"
     SHORT = "1Man"
+    EITHER_AXIS = True
     can_focus = False
     HELP = """\
 # Manoeuvres
@@ -45,7 +46,7 @@ parameter panes show; on the last row they follow the newest.
 - **x** excludes the selected manoeuvre from every decision, or includes it again; the reason is recorded.
 - **n** adds a note to it.
 
-*start*: minutes:seconds since the vehicle's boot. *csi*: what the rules **c**ontinuous, **s**eparate and
+*start*: minutes:seconds since power-on. *csi*: what the rules **c**ontinuous, **s**eparate and
 **i**nformation say of it. *reason*: the most important one in a word, and how many more there are; the
 verdict pane has them in sentences, with the cost J (det R of Eq. 7) and each rule's limit.
 """

@@ -11,10 +11,14 @@ from advisor.tui.panes.part import Part
 from advisor.tui.stick_drawing import stick_drawing, stick_line
 
 _LABEL = "next        "
+SIDES = {"elevator": ("pull", "push"), "aileron": ("right", "left"), "rudder": ("right", "left")}
+"""Control to the names of both directions: above trim in the drawing, and below."""
 
 
 class NextInput(Part, Lines):
     """The advice in words over its drawing. A low terminal has one line of drawing next to the words."""
+
+    EITHER_AXIS = True
 
     def __init__(self) -> None:
         super().__init__()
@@ -40,10 +44,11 @@ def drawn(advised: Advised, width: int, *, large: bool) -> str:
     flown = advised.input
     if flown is None:
         return words
-    words = f"{words}, ±{degrees(flown.amplitude_rad):.1f} deg of elevator"
+    words = f"{words}, ±{degrees(flown.amplitude_rad):.1f} deg of {flown.control}"
+    sides = SIDES[flown.control]
     if not large:
-        first = "pull" if flown.nose_up_first else "push"
+        first = sides[0] if flown.nose_up_first else sides[1]
         return f"{words}\n{'':<{len(_LABEL)}}{stick_line(flown.steps)}  {first} first"
     indent = " " * len(_LABEL)
-    picture = stick_drawing(flown.steps, width - len(_LABEL))
+    picture = stick_drawing(flown.steps, width - len(_LABEL), sides)
     return "\n".join([words, *(f"{indent}{line}" for line in picture.split("\n") if picture)])

@@ -17,6 +17,8 @@ CONDITIONS = {
 class StatusLine(Part, Lines):
     """Condition of the link by symbol and word, recording, aircraft, vehicle, mode and source."""
 
+    EITHER_AXIS = True
+
     def show(self, view: View) -> None:
         """Write the line. Its colour follows the link's condition."""
         state = view.state
@@ -28,6 +30,7 @@ class StatusLine(Part, Lines):
             vehicle,
             state.mode,
             view.title,
+            "ROLL AND YAW" if view.elevator is not None else "",
         ]
         self.write("  ·  ".join(part for part in parts if part))
         for condition in CONDITIONS:

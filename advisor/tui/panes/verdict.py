@@ -18,6 +18,7 @@ class VerdictPane(TextPane):
 
     TITLE = "2 Verdict"
     SHORT = "2Ver"
+    EITHER_AXIS = True
     OF_SELECTED = True
     HELP = """\
 # Verdict
@@ -43,7 +44,10 @@ def _rows(judged: JudgedManeuver, of: str) -> list[Labelled]:
     symbol, word = symbol_and_word(judged)
     rows = [
         (f"{symbol} ", f"{word}  manoeuvre {judged.maneuver.number}{of}: {without_word(verdict.sentence)}"),
-        ("  ", f"flown {between(span.start_s, span.end_s)} since boot, mode {judged.maneuver.mode or '-'}"),
+        (
+            "  ",
+            f"flown {between(span.start_s, span.end_s)} since power-on, mode {judged.maneuver.mode or '-'}",
+        ),
     ]
     if judged.excluded_because:
         rows.append(("  ", f"excluded by hand: {judged.excluded_because}"))

@@ -20,6 +20,7 @@ from advisor.tui.panes.fit import Fit
 from advisor.tui.panes.flight import WholeFlightPane
 from advisor.tui.panes.gap import GapPane
 from advisor.tui.panes.keys_line import KeysLine
+from advisor.tui.panes.lateral import LateralPane
 from advisor.tui.panes.live import Live
 from advisor.tui.panes.maneuvers import Maneuvers
 from advisor.tui.panes.pane import Pane
@@ -36,13 +37,15 @@ from advisor.tui.screens.pane_actions import PaneActions
 # In the order of their numbers.
 PANES: tuple[type[Pane], ...] = (
     Maneuvers, VerdictPane, ParametersPane, Fit, Live, Criterion, Channels, EventLogPane, Residuals,
-    Correlation, Courses, Qualities, WholeFlightPane, GapPane,
+    Correlation, Courses, Qualities, WholeFlightPane, GapPane, LateralPane,
 )  # fmt: skip
 _COLUMNS: dict[str, tuple[type[Pane], ...]] = {
     "left": (Maneuvers, VerdictPane, ParametersPane),
-    "middle": (Fit, Residuals, Correlation, Courses, Qualities, WholeFlightPane, GapPane),
+    "middle": (Fit, Residuals, Correlation, Courses, Qualities, WholeFlightPane, GapPane, LateralPane),
     "right": (Live, Criterion, Channels, EventLogPane),
 }
+_OF_ELEVATOR = ("exclude", "note")
+"""Actions on manoeuvres of the elevator alone."""
 _WIDE, _MEDIUM = (160, 42), (110, 30)
 _LOW = 7
 """Rows of the manoeuvres above a pane that stands alone."""
@@ -51,7 +54,7 @@ _LOW_TABLE = 38
 
 
 class EngineerScreen(Face, PaneActions):
-    """Fourteen panes: eight at once on a wide terminal, one next to or below the manoeuvres on a small one.
+    """Fifteen panes: eight at once on a wide terminal, one next to or below the manoeuvres on a small one.
 
     The panes of the middle column share one place: fit, residuals, correlation, history, whole flight.
     """
@@ -67,6 +70,10 @@ residuals, correlation and history share one place.
 **c** copies the pane that has the focus to the clipboard: its numbers as CSV, its words as text. **s**
 saves them into a file next to the log or the recording, and its plots as a picture (SVG). A browser
 is offered the files instead.
+
+**r** shows roll and yaw in the panes of manoeuvres, verdict, fit and criterion, and the elevator again.
+The pane **y** has the derivatives and modes of roll and yaw. **x** and **n** work on the elevator's
+manoeuvres alone.
 """
 
     def __init__(self) -> None:
@@ -107,7 +114,8 @@ is offered the files instead.
 
     def show(self, view: View) -> None:
         """Update what is visible."""
-        selected = self._view.selected if self._view else None
+        same_axis = self._view is not None and (self._view.elevator is None) == (view.elevator is None)
+        selected = self._view.selected if self._view is not None and same_axis else None
         self._view = replace(view, selected=selected)
         self._refresh_panes()
 
@@ -151,6 +159,10 @@ is offered the files instead.
             column.display = any(pane.display for pane in column.children)
         alone = narrow and self._chosen not in _COLUMNS["left"]
         self.query_one("#left").styles.height = _LOW if alone else "1fr"
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        """Offer decisions by hand for the elevator's manoeuvres alone."""
+        return action not in _OF_ELEVATOR or self._view is None or self._view.elevator is None
 
     def pane_in_front(self) -> Pane:
         """Return the pane that has the focus, else the one chosen last."""

@@ -51,4 +51,4 @@ class Face(Screen[None]):
         with suppress(NoMatches):
             for node in self.walk_children():
                 if isinstance(node, Part) and node.wants_showing:
-                    node.show(view)
+                    node.show(view if node.EITHER_AXIS else view.elevator or view)

@@ -41,7 +41,8 @@ The large word is what to do now:
 
 *next*: the stick over time, pull above, push below, with the seconds of each step; per cent of the stick's
 travel, and degrees of elevator. *before it*: bank, air speed and angle of attack now, against their limits.
-*how far*: manoeuvres flown, of those expected in all. **k** turns bell and voice off and on.
+*how far*: manoeuvres flown, of those expected in all. **r** shows roll and yaw instead of the elevator: the
+drawing has right above and left below. **k** turns bell and voice off and on.
 """
 
     def compose(self) -> ComposeResult:

@@ -19,10 +19,8 @@ def finding(quantity: Any, stated: float | str | None, value: float | str) -> In
     return InstrumentFinding("elevator", quantity, stated, value, contradicts=True)
 
 
-def drawn(statement: covered.Statement, far_off: bool = False) -> Drawn:
-    """A campaign whose stated lag is off by at least 30 %, or by less."""
-    candidates = (Drawn("uav", statement, (0, k)) for k in range(100))
-    return next(d for d in candidates if Outcome(d, 7, HELD, None, (), ()).far_off is far_off)
+def drawn(statement: covered.Statement) -> Drawn:
+    return Drawn("uav", statement, (0, 1))
 
 
 def report(*outcomes: Outcome) -> dict[str, Any]:
@@ -34,13 +32,15 @@ def test_equal_seeds_give_equal_errors_and_other_seeds_others() -> None:
     assert not {d.errors for d in draws(12, 3)} & {d.errors for d in draws(12, 4)}
 
 
-def test_a_third_of_the_campaigns_states_no_lag_a_third_the_true_one_a_third_one_off_by_up_to_half() -> None:
+def test_a_third_of_the_campaigns_states_no_lag_a_third_the_true_one_a_third_one_that_is_far_off() -> None:
     errors = {said: [d.errors for d in draws(60, 1) if d.statement == said] for said in covered.STATEMENTS}
     assert {said: len(found) for said, found in errors.items()} == dict.fromkeys(covered.STATEMENTS, 20)
     assert all(e.stated_lag_s is None for e in errors["unknown"])
     assert all(e.stated_lag_s == e.lag_s for e in errors["right"])
-    off = [abs((e.stated_lag_s or 0.0) / e.lag_s - 1.0) for e in errors["wrong"]]
-    assert 0.4 < max(off) <= 0.5
+    off = [(e.stated_lag_s or 0.0) / e.lag_s - 1.0 for e in errors["wrong"]]
+    assert all(0.3 <= abs(error) <= 0.6 for error in off)
+    assert min(off) < -0.4 < 0.4 < max(off)
+    assert all(Outcome(d, 7, HELD, None, (), ()).far_off is (d.statement == "wrong") for d in draws(60, 1))
 
 
 def test_every_error_stays_within_its_prior() -> None:
@@ -82,8 +82,8 @@ def test_the_report_counts_intervals_that_hold_among_campaigns_with_a_model() ->
 
 
 def test_the_report_counts_stops_and_contradictions_where_the_stated_lag_is_far_off() -> None:
-    near = Outcome(drawn("wrong"), 7, HELD, GOOD, (), ("alpha_scale",))
-    believed = Outcome(drawn("wrong", far_off=True), 7, HELD, Stop(2, 3.0, 2.0), (), ())
+    near = Outcome(drawn("right"), 7, HELD, GOOD, (), ("alpha_scale",))
+    believed = Outcome(drawn("wrong"), 7, HELD, Stop(2, 3.0, 2.0), (), ())
     seen = replace(believed, stop=None, right=("elevator_lag_s",))
     document = report(near, believed, seen)
     counts = {"campaigns": 2, "stops": 1, "false_stops": 1, "contradicted": 1}

@@ -67,7 +67,7 @@ KINDS = {
     "elevons by their parameters": Kind(ELEVONS, NOTHING_TOLD, PAIR),
     "elevons by one calibration": Kind(ELEVONS, Aircraft(elevator=Elevator(calibration=DOWN)), PAIR),
     "elevons by a list": Kind(ELEVONS, listed(ElevatorOutput(1, DOWN), ElevatorOutput(2, UP))),
-    "elevons by the aircraft's answer": Kind(ELEVONS, listed(ElevatorOutput(1), ElevatorOutput(2))),
+    "elevons by the aircraft's response": Kind(ELEVONS, listed(ElevatorOutput(1), ElevatorOutput(2))),
     "elevons whose REVERSED is not recorded": Kind(ELEVONS, NOTHING_TOLD, FUNCTIONS_ONLY),
     "V-tail": Kind(
         {2: turned(left), 4: turned(right)},
@@ -138,14 +138,14 @@ def test_before_the_aircraft_has_answered_it_is_said_that_nothing_is_known() -> 
 
 
 def test_what_the_aircraft_answered_is_said_once() -> None:
-    stream, _, notices = estimated("elevons by the aircraft's answer")
+    stream, _, notices = estimated("elevons by the aircraft's response")
     assert notices.count("elevator_mixing") == 1
     assert "the sign of output 1 is turned" in stream.elevator_notes[1]
     assert len(stream.elevator_notes) == 2
     assert "elevator_backwards" not in notices
 
 
-@pytest.mark.parametrize("kind", ["elevons by the aircraft's answer", "elevons in two banks"])
+@pytest.mark.parametrize("kind", ["elevons by the aircraft's response", "elevons in two banks"])
 def test_live_and_replay_see_the_same_elevator(kind: str) -> None:
     made = KINDS[kind]
     whole, _, _ = estimated(kind)
@@ -171,7 +171,7 @@ def test_signs_with_which_the_outputs_cancel_are_a_problem_that_names_them() -> 
     assert not found
     problem, *_ = stream.problems()
     assert problem.code == "elevator_signs"
-    assert "output 2 the other way than to output 1" in problem.text
+    assert "one way by output 2 and the other way by output 1" in problem.text
     assert "elevator.outputs" in problem.fix
 
 

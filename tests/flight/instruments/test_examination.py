@@ -143,6 +143,27 @@ def test_a_late_alpha_is_left_to_the_fit(by_s: float) -> None:
     assert codes(late(by_s, "alpha")(flight())) == []
 
 
+def slow(channels: Channels) -> Channels:
+    """Return every fifth sample, at 10 Hz."""
+    return {name: replace(c, t=c.t[::5], y=c.y[::5]) for name, c in channels.items()}
+
+
+def delayed(by_s: float, name: str, channels: Channels) -> Channels:
+    """Return the flight with earlier values of a channel at the same stamps, as a late filter gives them."""
+    old = channels[name]
+    return channels | {name: replace(old, y=np.interp(old.t - by_s, old.t, old.y))}
+
+
+def test_an_attitude_later_than_the_rates_of_its_own_message_is_set_right_at_any_rate() -> None:
+    (wrong,) = examine(delayed(0.1, "theta", slow(flight()))).findings
+    assert (wrong.code, wrong.used) == ("theta_delay_s", True)
+    assert wrong.value == pytest.approx(0.1, abs=0.01)
+
+
+def test_half_an_interval_between_two_messages_is_no_late_attitude() -> None:
+    assert codes(late(0.05, "theta")(slow(flight()))) == []
+
+
 @pytest.mark.parametrize("arm_m", [0.5, 2.0])
 def test_a_vane_ahead_of_the_centre_of_gravity_is_no_contradiction(arm_m: float) -> None:
     sound = flight(provenance="vane")

@@ -94,3 +94,9 @@ def test_what_is_flown_on_the_ground_is_not_settled_either():
     flying.feed(movement(landed=2).columns(rows))
     assert flying.so_far() is not None
     assert np.isfinite(flying.now_s)
+
+
+@pytest.mark.parametrize(("slow", "flies"), [(3.9, True), (3.7, False)])
+def test_a_slow_aircraft_flies_as_long_as_its_speed_is_within_the_limit_of_change(slow, flies):
+    wire = movement(speed=lambda t: slow if 3.0 < t < 4.5 else 4.5, over_ground=4.0)
+    assert (found(wire) is None) == flies

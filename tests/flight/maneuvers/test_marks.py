@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from advisor.aircraft.aircraft import Aircraft, Markers
-from advisor.flight.maneuvers.events import Notice
+from advisor.flight.maneuvers.events import Activity, Notice
 from advisor.flight.maneuvers.marks import LONGEST_S, Mark
 from advisor.flight.stream.stream import FlightStream
 from tests.flight.columns import Wire, attitude, fly, heartbeat, hud, plane_parameters, servo, switch, text
@@ -204,20 +204,36 @@ def test_a_switch_left_on_for_too_long_is_told_and_hides_nothing():
 
 
 @pytest.mark.parametrize(
-    ("aircraft", "begins", "ends"),
+    ("aircraft", "begins", "ends", "closed_by"),
     [
-        (Aircraft(), "SystemID Starting: axis=21", "SystemID stopped"),
-        (Aircraft(markers=Markers(text=("MARK", "MARK OFF"))), "MARK", "MARK OFF"),
+        (Aircraft(), "SystemID Starting: axis=21", "SystemID stopped", "marked by SystemID"),
+        (
+            Aircraft(markers=Markers(text=("MARK", "MARK OFF"))),
+            "MARK",
+            "MARK OFF",
+            "marked by a text of the vehicle",
+        ),
     ],
 )
-def test_texts_of_the_vehicle_mark_a_manoeuvre(aircraft: Aircraft, begins: str, ends: str):
+def test_texts_of_the_vehicle_mark_a_manoeuvre(aircraft: Aircraft, begins: str, ends: str, closed_by: str):
     wire = one_input()
     text(wire, 1003.0, begins)
     text(wire, 1010.0, ends)
     _, events = flown(wire, aircraft)
     (maneuver,) = maneuvers(events)
-    assert maneuver.span.closed_by == "marked by a text of the vehicle"
+    assert maneuver.span.closed_by == closed_by
     assert maneuver.span.end_s == pytest.approx(60.0, abs=0.05)
+
+
+def test_a_sweep_of_system_id_without_an_effect_of_the_elevator_is_told_and_no_manoeuvre():
+    wire = Wire()
+    fly(wire, 1000.0, 50.0, [], 14.0)
+    text(wire, 1003.0, "SystemID Starting: axis=20")
+    text(wire, 1010.0, "SystemID stopped")
+    _, events = flown(wire)
+    assert maneuvers(events) == []
+    (told,) = (event for event in events if isinstance(event, Activity))
+    assert told.reason == "small"
 
 
 def test_texts_of_a_ground_station_mark_nothing():

@@ -42,3 +42,11 @@ def test_what_stands_still_on_the_ground_is_left_alone() -> None:
 
 def test_nothing_flies_at_rest_so_a_carried_aircraft_has_no_dead_tube() -> None:
     assert frozen({"theta": (0.0, 0.3), "airspeed": (0.0, 0.0), "alpha": (0.0, 0.0)}) == []
+
+
+@pytest.mark.parametrize(("name", "refuses"), [("a_z", False), ("alpha", False), ("q", True)])
+def test_a_channel_that_stands_still_is_an_instrument_that_contradicts(name: str, refuses: bool) -> None:
+    (still,) = frozen({"theta": (0.0, 0.3), name: (1.0, 1.0)})
+    found = still.finding
+    assert (found.code, found.contradicts, found.refuses) == (f"{name}_rate", True, refuses)
+    assert "stands still" in found.text

@@ -3,7 +3,8 @@
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.flight.stream.identity import READER_NOTICE, Identity
+from advisor.flight.maneuvers.events import READER_NOTICE, ElevatorRescaled
+from advisor.flight.stream.identity import Identity
 from advisor.flight.vehicle.surfaces import Surface
 from tests.flight.columns import Wire, heartbeat, parameter
 
@@ -70,12 +71,41 @@ def test_a_change_after_a_test_input_moves_no_linkage_and_is_said(name, value):
     assert "all the same" in told[0]
 
 
-def test_a_limit_that_is_heard_after_a_manoeuvre_is_not_pooled_with_the_assumed_one_in_silence():
-    surface, told = after_a_change("SERVO2_MIN", 1000.0, flown=True)
-    assert surface == elevator(*BEFORE, (1, "SERVO2_MIN", 1000.0))
-    (sentence,) = told
-    assert sentence.startswith("SERVO2_MIN 1000 is heard only at 0:10.0: another value was assumed")
-    assert "Exclude these manoeuvres by hand" in sentence
+def heard_late(*before, late):
+    """The identity after a limit that arrives behind a test input, and the events of its arrival."""
+    identity, wire = Identity(Aircraft(), None), Wire()
+    heartbeat(wire, 0.0)
+    for at_s, (name, value) in enumerate((*before, late), start=1):
+        parameter(wire, float(at_s), name, value)
+    events = [identity.learn(wire.columns([row]), 10.0, row == len(wire) - 1) for row in range(len(wire))]
+    return identity, events[-1]
+
+
+def test_a_limit_of_a_single_output_that_is_heard_late_counts_and_leaves_the_pulses_as_they_are_counted():
+    identity, events = heard_late(("SERVO2_FUNCTION", 19.0), late=("SERVO2_MIN", 1000.0))
+    (rescaled,) = (event for event in events if isinstance(event, ElevatorRescaled))
+    assert rescaled.heard == "SERVO2_MIN 1000 is heard only at 0:10.0"
+    assert rescaled.after == identity.elevator
+    assert identity.elevator.scale.low_us == 1000.0
+    assert identity.surfaces["elevator"].scale.low_us == 1100.0
+    identity.begin()
+    assert identity.surfaces["elevator"] == identity.elevator
+
+
+@pytest.mark.parametrize("function", [77.0, 19.0])
+def test_a_late_limit_of_one_of_several_outputs_waits_for_the_next_power_on_and_is_said(function):
+    pair = (("SERVO1_FUNCTION", function), ("SERVO2_FUNCTION", 78.0 if function == 77.0 else 19.0))
+    identity, events = heard_late(*pair, late=("SERVO2_MIN", 1000.0))
+    (notice,) = events
+    assert notice.text.startswith("SERVO2_MIN 1000 is heard only at 0:10.0: the value assumed before counts")
+    assert identity.elevator == identity.surfaces["elevator"]
+    assert identity.elevator.parts[1].scale.low_us == 1100.0
+
+
+def test_a_direction_that_is_heard_late_waits_for_the_next_power_on():
+    identity, (notice,) = heard_late(("SERVO2_FUNCTION", 19.0), late=("SERVO2_REVERSED", 1.0))
+    assert "SERVO2_REVERSED 1 is heard only" in notice.text
+    assert not identity.elevator.scale.reversed
 
 
 @pytest.mark.parametrize("flown", [False, True])

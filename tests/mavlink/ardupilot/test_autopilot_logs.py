@@ -33,6 +33,8 @@ from tests.mavlink.autopilot_logs import (
 G = 9.80665
 FLIGHT_S = 40.0
 FIRST_STEP_S = 20.0
+SWEEP_S = (19.0, 26.0)
+"""Begin and end of SystemID's run, s."""
 HEALTHY = (0, 0, 30.0, 1, 1)
 """Errors, temperature and health of gyro and accelerometer, as IMU has them."""
 
@@ -58,9 +60,13 @@ def motion(t: float) -> tuple[float, float]:
 
 
 def dataflash_flight(
-    seconds: float = FLIGHT_S, changes: Mapping[float, int] | None = None, switched: bool = False
+    seconds: float = FLIGHT_S,
+    changes: Mapping[float, int] | None = None,
+    switched: bool = False,
+    swept_axis: int | None = None,
 ) -> bytes:
-    """A flight; ``changes`` has the modes that it is put into, by the time in s."""
+    """A flight; ``changes`` has the modes that it is put into, by the time in s. The texts of SystemID on
+    ``swept_axis``, around the manoeuvre, are lost."""
     log = [dataflash_head()]
     log.append(dataflash_record("VER", 900, 0, 0, 4, 5, 6, 255, 0, b"ArduPlane V4.5.6", 0, 3, 0))
     log.append(dataflash_record("MSG", 1000, b"ArduPlane V4.5.6 (0123abcd)"))
@@ -79,6 +85,10 @@ def dataflash_flight(
         log.append(dataflash_record("IMU", us, 0, 0.0, q, 0.0, 0.1, 0.0, -G, *HEALTHY))
         log.append(dataflash_record("IMU", us, 1, 9.0, 9.0, 9.0, 9.0, 9.0, 9.0, *HEALTHY))
         log.append(dataflash_record("RCOU", us + 300, 1500, elevator_us(t), 1400, 1500))
+        if swept_axis is not None and SWEEP_S[0] <= t < SWEEP_S[1]:
+            if t < SWEEP_S[0] + 0.02:
+                log.append(dataflash_record("SIDS", us + 400, swept_axis, 5.0, 0.5, 5.0, 2.0, 4.0, 7.0, 1.0))
+            log.append(dataflash_record("SIDD", us + 400, t - SWEEP_S[0]))
         if i % 2 == 0:
             log.append(dataflash_record("ATT", us + 600, 0.0, 1.0, 0.0, math.degrees(theta), 0.0, 90.0))
             log.append(dataflash_record("AOA", us + 700, 3.5, 0.2))
@@ -254,7 +264,8 @@ class TestArduPilot:
         content = bytearray(dataflash_flight())
         whole = read(tmp_path, bytes(content))["AOA_SSA"]
         middle = len(content) // 2
-        content[middle : middle + 300] = bytes(300)
+        # Two loops with one AOA record between them hold less than 600 bytes.
+        content[middle : middle + 600] = bytes(600)
         del content[middle + 5000 : middle + 5037]
         damaged = read(tmp_path, bytes(content[:-7]))["AOA_SSA"]
         assert len(whole) - 10 < len(damaged) < len(whole)

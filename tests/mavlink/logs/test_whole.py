@@ -10,10 +10,16 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.gap import maneuvers_of
 from advisor.analysis.log_series import LogSeries
-from advisor.flight.maneuvers.events import FlightEvent, ManeuverAgain, ManeuverFlown, Notice, VehicleFound
+from advisor.flight.maneuvers.events import (
+    READER_NOTICE,
+    FlightEvent,
+    ManeuverAgain,
+    ManeuverFlown,
+    Notice,
+    VehicleFound,
+)
 from advisor.flight.signals.messages import Columns
 from advisor.flight.stream.flights import Flights
-from advisor.flight.stream.identity import READER_NOTICE
 from advisor.flight.vehicle.parameters import names_in
 from advisor.mavlink.logs.logs import open_log
 from advisor.mavlink.logs.whole import read_whole_log

@@ -9,13 +9,7 @@ from collections.abc import Mapping
 
 from advisor.exports.models.jsbsim.slopes import Slopes
 from advisor.exports.models.jsbsim.source import AXES, PLAIN, SURFACES, AddedFunction
-
-CURVES = {
-    "nonlinear_pitching_moment": ("alpha", {"M_alpha2": 2, "M_alpha3": 3}),
-    "nonlinear_lift": ("alpha", {"Z_alpha2": 2, "Z_alpha3": 3}),
-    "elevator_nonlinearity": ("delta_e", {"M_delta2": 2, "M_delta3": 3}),
-}
-"""Effect to its variable, and to its parameters with their powers of that variable."""
+from advisor.gap.effects import EFFECTS
 
 
 def functions_of(
@@ -35,16 +29,19 @@ def functions_of(
     functions: list[AddedFunction] = []
     carried = []
     for effect, values in effects.items():
-        variable, powers = CURVES.get(effect, ("", {}))
+        curve = EFFECTS[effect].curve
+        if curve is None or not values.keys() <= {*curve.powers, "about_rad"}:
+            # A separated flow has further parameters, which no square and no cube expresses.
+            continue
+        variable, powers = curve.variable, curve.powers
         unit = SURFACES.get(surface) if variable == "delta_e" else 1.0
-        if effect == "alpha_dot":
+        if variable == "alpha_dot":
             strength = values["M_alpha_dot"] * slopes.inertia / slopes.pressure_psf / slopes.chord_time_s
             functions.append(
                 AddedFunction(effect, "PITCH", strength, "aero/alphadot-rad_sec", further="aero/ci2vel")
             )
             carried.append(effect)
-        elif powers and values.keys() <= {*powers, "about_rad"} and unit is not None:
-            # A separated flow has further parameters, which no square and no cube expresses.
+        elif unit is not None:
             about = unit * values["about_rad"] if "about_rad" in values else slopes.trim[variable]
             functions += [
                 AddedFunction(

@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.candidates.variant import Values, Variant
+from advisor.gap.kit.effect import ANY
+from advisor.gap.kit.variant import Values, Variant
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX
 
@@ -18,6 +19,8 @@ Course = Callable[[FloatArray, Values, FloatArray], None]
 """Function that changes driving numbers, given an effect's parameters and each manoeuvre's share of the
 effect."""
 
+ONSET = {"rate_per_s": ANY, "step": ANY, "at_s": ANY, "over_s": 0.0}
+"""Parameters of a change in the aircraft file, each with its least allowed value."""
 _FOR_GRADUAL = 4
 """Least number of manoeuvres for a change that begins and ends in flight. With fewer, a step or a drift
 describes it."""

@@ -61,6 +61,9 @@ class Variant:
     parameters."""
     sets: bool = False
     """Whether the parameter replaces the value of the simulation instead of adding to it."""
+    in_file: Mapping[str, tuple[str, float]] = field(default_factory=dict)
+    """Names in the aircraft file, each with the parameter and the factor from the file to the parameter.
+    Empty: the file has the parameters as they are."""
     inverted: bool = False
     """Whether the aircraft file holds the reciprocal of the first parameter, as for a rate limit."""
 

@@ -5,54 +5,68 @@ differ too, and each manoeuvre is flown on another part of the same curve.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.candidates.variant import Values, Variant
+from advisor.gap.kit.variant import Values, Variant
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX
 
 _TRIMS_DIFFER = 0.1
 """Least difference of the trims, as a share of the largest deviation from trim, that distinguishes the two
 kinds of curve."""
-_SLOPES = {"Z_alpha2": "Z_alpha", "M_alpha2": "M_alpha", "M_delta2": "M_delta_e"}
-"""The square of an angle, and the derivative of the linear term in that angle."""
 
 
-def bent(variant: Variant, flights: PreparedManeuvers) -> Variant:
+@dataclass(frozen=True, slots=True)
+class Curve:
+    """Terms of a force or of the pitching moment in powers of one variable, at constant dynamic pressure."""
+
+    variable: str
+    """``alpha``, ``delta_e`` or ``alpha_dot``, in rad or rad/s."""
+    powers: Mapping[str, int]
+    """Parameters, each with its power of the variable. The first letter is Z for force, M for moment."""
+
+    @property
+    def slope(self) -> str:
+        """Derivative of the linear term in the variable."""
+        return f"{next(iter(self.powers))[0]}_{self.variable}"
+
+
+def bent(variant: Variant, curve: Curve, flights: PreparedManeuvers) -> Variant:
     """Return ``variant``, a square and a cube about each trim, with a curve about one common angle as
     alternative."""
-    if variant.entries[0] == "M_delta2":
+    if curve.variable == "delta_e":
         moved = [f.u - f.u_trim for f in flights.flights]
     elif "alpha" in flights.channels:
         moved = [f.outputs["alpha"].y - f.alpha_trim for f in flights.flights]
     else:
         return variant
-    trims = _trims_of(variant, flights)
+    trims = _trims_of(curve, flights)
     usual = float(np.median(trims))
     if np.max(np.abs(np.array(trims) - usual)) < _TRIMS_DIFFER * max(float(np.max(np.abs(m))) for m in moved):
         return variant
-    return replace(variant, likewise=(_about(usual, variant, trims),))
+    return replace(variant, likewise=(_about(usual, variant, curve, trims),))
 
 
-def as_in_file(variant: Variant, parameters: Mapping[str, float], flights: PreparedManeuvers) -> Variant:
+def as_in_file(
+    variant: Variant, curve: Curve | None, parameters: Mapping[str, float], flights: PreparedManeuvers
+) -> Variant:
     """Return a curve about the angle that an aircraft file states, whatever the trims of these flights."""
-    if "about_rad" not in parameters or not _SLOPES.keys() & set(variant.entries):
+    if curve is None or "about_rad" not in parameters or variant.names != tuple(curve.powers):
         return variant
-    return _about(parameters["about_rad"], variant, _trims_of(variant, flights))
+    return _about(parameters["about_rad"], variant, curve, _trims_of(curve, flights))
 
 
-def _trims_of(variant: Variant, flights: PreparedManeuvers) -> list[float]:
-    of_elevator = variant.entries[0] == "M_delta2"
-    return [f.u_trim if of_elevator else f.alpha_trim for f in flights.flights]
+def _trims_of(curve: Curve, flights: PreparedManeuvers) -> list[float]:
+    return [f.u_trim if curve.variable == "delta_e" else f.alpha_trim for f in flights.flights]
 
 
-def _about(angle_rad: float, variant: Variant, trims: Sequence[float]) -> Variant:
+def _about(angle_rad: float, variant: Variant, curve: Curve, trims: Sequence[float]) -> Variant:
     """Return a variant with (x + D)² and (x + D)³ expanded in x, where D is a manoeuvre's trim minus the
     angle."""
-    slope, (square, cube) = INDEX[_SLOPES[variant.entries[0]]], (INDEX[entry] for entry in variant.entries)
+    slope, square, cube = (INDEX[entry] for entry in (curve.slope, *curve.powers))
     offset = np.array(trims) - angle_rad
 
     def bend(p: FloatArray, values: Values, _: PreparedManeuvers) -> None:

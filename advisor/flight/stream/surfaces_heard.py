@@ -1,0 +1,183 @@
+"""Outputs and scales of the surfaces, by the parameters heard so far.
+
+The first test input of a power-on fixes how its pulses are counted: no linkage changes in flight. A limit
+that is heard only later applies to whole manoeuvres, so that none has a step where the limit arrived.
+"""
+
+from dataclasses import replace
+from math import isfinite
+
+from advisor.aircraft.aircraft import Aircraft, Elevator
+from advisor.flight.elevator.elevator_outputs import find_elevator
+from advisor.flight.elevator.side_outputs import find_side_control
+from advisor.flight.maneuvers.events import READER_NOTICE, ElevatorRescaled, FlightEvent, Notice
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.messages import Columns
+from advisor.flight.vehicle.parameters import Parameters, read_by
+from advisor.flight.vehicle.surfaces import Surface
+from advisor.flight.vehicle.vehicle import Vehicle, VehicleFinder
+from advisor.flight.vehicle.wiring import Wiring
+from advisor.words.problems import Problem
+from advisor.words.vehicle_time import clock
+
+_GROUND_STATION = 190
+"""Component (MAV_COMP_ID_MISSIONPLANNER) under which a ground station stores parameters fetched as a file."""
+
+
+def speakers(vehicle: Vehicle) -> tuple[tuple[int, int], ...]:
+    """Return the senders (system, component) that state the vehicle's parameters. The vehicle comes last and
+    overrides."""
+    return (vehicle.system, _GROUND_STATION), (vehicle.system, vehicle.component)
+
+
+class SurfacesHeard:
+    """Finds elevator, aileron and rudder among the outputs.
+
+    Parameters
+    ----------
+    aircraft
+        The aircraft file, for its elevator, aileron and rudder.
+    parameters
+        Parameters heard, which this object extends.
+    finder
+        Vehicle that is followed.
+    """
+
+    def __init__(self, aircraft: Aircraft, parameters: Parameters, finder: VehicleFinder) -> None:
+        self._aircraft, self._parameters, self._finder = aircraft, parameters, finder
+        self._taken: Elevator | None = None
+        self._held: Surface | None = None
+        self._said = ""
+        self._said_of: set[tuple[str, float]] = set()
+        self.elevator: Surface | Problem = self._found()
+        """Outputs and scale of the elevator by all that was heard, or the reason for their absence."""
+        self.counted: dict[str, Surface] = {}
+        """Elevator, aileron and rudder as their pulses are counted now, where known."""
+
+    def follow(self) -> list[FlightEvent]:
+        """Find the surfaces of another vehicle."""
+        self._taken, self._held = None, None
+        return self._settle()
+
+    def begin(self) -> None:
+        """Begin another power-on, whose pulses are counted by all limits heard."""
+        self._held = None
+        self._settle()
+
+    def take(self, output: int) -> list[FlightEvent]:
+        """Take the output that a hand has accepted as the elevator."""
+        self._taken = replace(self._aircraft.elevator, output=output)
+        return self._settle()
+
+    def serves(self, vehicle: Vehicle) -> bool:
+        """Return whether the elevator's outputs of a vehicle are known."""
+        return isinstance(find_elevator(self._aircraft.elevator, self._wiring(vehicle)), Surface)
+
+    def rescaled(self, maneuver: Maneuver) -> Maneuver:
+        """Return a manoeuvre whose pulses are counted by all limits heard."""
+        scale = self.elevator.scale if isinstance(self.elevator, Surface) else None
+        return maneuver if scale is None or maneuver.scale is None else maneuver.rescaled(scale)
+
+    def hear(self, columns: Columns, now_s: float, flown: bool) -> list[FlightEvent]:
+        """Take parameters.
+
+        Parameters
+        ----------
+        columns
+            PARAM_VALUE messages.
+        now_s
+            Vehicle time of the newest sample, s since boot.
+        flown
+            Whether this power-on has a test input, after which its pulses are counted as they are.
+        """
+        vehicle, sender = self._vehicle, (columns.system, columns.component)
+        events: list[FlightEvent] = []
+        for name, before, stated in self._parameters.news(columns):
+            self._parameters.keep(sender, name, stated)
+            if vehicle is None or sender not in speakers(vehicle):
+                continue
+            was, now = self.elevator, self._found()
+            if isinstance(was, Surface) and (isinstance(now, Problem) or now.parts != was.parts):
+                at = f" at {clock(now_s)}" if isfinite(now_s) else ""
+                value = read_by(vehicle.autopilot, stated)
+                counts = not flown or (before is None and _follows(was, now))
+                if before is not None:
+                    known = read_by(vehicle.autopilot, before)
+                    events += self._notice(name, value, _changed(name, known, value, at, counts))
+                elif not counts:
+                    events += self._notice(name, value, _too_late(name, value, at))
+                elif isinstance(now, Surface):
+                    events.append(ElevatorRescaled(was, now, f"{name} {value:g} is heard only{at}"))
+                if not counts:
+                    self._parameters.keep(sender, name, before)
+                    continue
+                if flown:
+                    self._held = self.counted.get("elevator")
+            events += self._settle()
+        return events
+
+    def _notice(self, name: str, value: float, text: str) -> list[FlightEvent]:
+        """Return a notice on a parameter's value, once."""
+        if (name, value) in self._said_of:
+            return []
+        self._said_of.add((name, value))
+        return [Notice(READER_NOTICE, text)]
+
+    @property
+    def _vehicle(self) -> Vehicle | None:
+        return self._finder.vehicle
+
+    def _wiring(self, vehicle: Vehicle | None) -> Wiring:
+        if vehicle is None:
+            return self._parameters.wiring((), "")
+        return self._parameters.wiring(speakers(vehicle), vehicle.autopilot)
+
+    def _found(self) -> Surface | Problem:
+        wiring, vehicle = self._wiring(self._vehicle), self._vehicle
+        if vehicle is not None and vehicle.no_elevator is not None:
+            return vehicle.no_elevator
+        found = find_elevator(self._aircraft.elevator, wiring)
+        if isinstance(found, Problem) and self._taken is not None:
+            return find_elevator(self._taken, wiring, "by a guess that a hand has taken")
+        return found
+
+    def _settle(self) -> list[FlightEvent]:
+        self.elevator, wiring = self._found(), self._wiring(self._vehicle)
+        if self._vehicle is not None and self._vehicle.is_multicopter:
+            self.counted = {}
+            return []
+        found = {
+            "elevator": self._held or self.elevator,
+            "aileron": find_side_control("aileron", self._aircraft.aileron, wiring),
+            "rudder": find_side_control("rudder", self._aircraft.rudder, wiring),
+        }
+        self.counted = {name: surface for name, surface in found.items() if isinstance(surface, Surface)}
+        said = self.elevator.said if isinstance(self.elevator, Surface) else ""
+        if not said or said == self._said:
+            return []
+        self._said = said
+        return [Notice("elevator_scale", said)]
+
+
+def _follows(was: Surface, now: Surface | Problem) -> bool:
+    """Return whether the angle on the new scale follows from the angle on the old one: the same single
+    output, in the same direction."""
+    if isinstance(now, Problem) or now.outputs != was.outputs or now.scale is None or was.scale is None:
+        return False
+    return now.scale.reversed == was.scale.reversed
+
+
+def _changed(name: str, known: float, value: float, at: str, counts: bool) -> str:
+    used = (
+        f"the elevator is counted with {value:g} after that"
+        if counts
+        else f"the elevator is counted with {known:g} all the same, for its linkage has not changed"
+    )
+    return f"{name} changed from {known:g} to {value:g}{at}: {used}."
+
+
+def _too_late(name: str, value: float, at: str) -> str:
+    return (
+        f"{name} {value:g} is heard only{at}: the value assumed before counts until it starts again. "
+        "Z_delta_e and M_delta_e have another scale; advisor analyze counts the whole recording anew."
+    )

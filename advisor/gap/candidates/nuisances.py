@@ -1,0 +1,80 @@
+"""Nuisance parameters: natural delays, filters and scales that are part of every model and never named."""
+
+from advisor.flight.instruments.evidence import COMPUTED_WIDTH
+from advisor.flight.instruments.lateness import lateness_std
+from advisor.gap.kit.variant import Variant
+from advisor.gap.records.flights import PreparedManeuvers
+from advisor.gap.simulator.layout import OUTPUTS, SKEWS
+
+_FILTERS_S = {"a_z": 0.01, "theta": 0.01}
+"""Prior standard deviation, by channel, of the delay of an autopilot's filters relative to the pitch rate,
+s."""
+_REACH = 2.0
+"""Largest delay of an autopilot's own channel, in standard deviations of its prior."""
+_OWN_FILTER_S = 0.045
+"""Prior standard deviation of the lag of an angle of attack that an autopilot computes, s. Such angles are 20
+to 90 ms late."""
+
+LOOP = Variant(
+    "latency", "input", ("latency_s",), ((0.001,),), (5e-4,), ((-0.004, 0.005),), 0.0,
+    entries=("latency_s",), is_nuisance=True,
+)  # fmt: skip
+"""Nuisance parameter until the motion of the command between its stamps is known. Stamps have a resolution,
+and a command takes effect within a loop of the autopilot."""
+
+PROPELLER = Variant(
+    "propeller", "moment_equation", ("M_thrust", "washed_share", "blown_share"), ((0.0, 0.0, 0.0),),
+    (0.05, 0.05, 0.05), ((-100.0, 100.0), (-1.0, 2.0), (-10.0, 10.0)), 0.0,
+    entries=("M_thrust", "washed_share", "blown_share"), prior_std=(5.0, 0.5, 3.0), is_nuisance=True,
+)  # fmt: skip
+"""Nuisance parameters of every model with a measured air speed. The thrust's share of the trim does not grow
+with V². An elevator in the propeller's wake meets more than the dynamic pressure of the stream, by thrust
+over disk area (Glauert's momentum theory). Thrust is drag, which grows with V², plus the acceleration along
+the path. In a light single the wake adds about a fifth of the elevator's power."""
+
+TRUE_AIR_SPEED = Variant(
+    "true_air_speed", "accelerometer", ("scale",), ((0.0,),), (0.002,), ((-0.7, 3.0),), 0.0,
+    entries=("speed_scale",), prior_std=(0.02,), is_nuisance=True,
+)  # fmt: skip
+"""Nuisance parameter of every model with α and a_z: the relative excess of the true over the read air speed.
+The read speed may be an indicated one, and a static port reads a pressure that the wing changes."""
+
+OWN_ALPHA = Variant(
+    "own_alpha", "alpha_sensor", ("lag_s", "scale"), ((0.0, 0.0),), (1e-3, 0.002),
+    ((0.0, 2.0 * _OWN_FILTER_S), (-2.0 * COMPUTED_WIDTH, 2.0 * COMPUTED_WIDTH)), 0.0,
+    entries=("alpha_lag_s", "alpha_scale"), prior_std=(_OWN_FILTER_S, COMPUTED_WIDTH), is_nuisance=True,
+)  # fmt: skip
+"""Nuisance parameters of every model with an angle of attack that an autopilot computes: its filter, and its
+scale."""
+
+
+def latency(flights: PreparedManeuvers) -> Variant:
+    """Return the delay of the command behind its stamps, a nuisance parameter of every model.
+
+    An autopilot renews the command at one rate and a stream samples it at another, with a phase that differs
+    from flight to flight. The prior is that of the estimate (``lateness``). Its standard deviation is also
+    the largest such delay, because the 28 flights behind it stay within.
+    """
+    std = lateness_std([flight.t_u for flight in flights.flights])
+    return Variant(
+        "latency", "input", ("latency_s",), ((0.001,),), (5e-4,), ((-std, std),), 0.0,
+        entries=LOOP.entries, prior_std=(std,), is_nuisance=True,
+    )  # fmt: skip
+
+
+def filters(flights: PreparedManeuvers) -> Variant:
+    """Return the delays of an autopilot's own channels relative to its pitch rate, as nuisance parameters.
+
+    The autopilot's own angle of attack is as late as the estimate assumes (``lateness``): held over an
+    interval, and up to 90 ms late.
+    """
+    std = dict(_FILTERS_S)
+    if "alpha" in flights.channels:
+        std["alpha"] = lateness_std([flight.outputs["alpha"].t for flight in flights.flights])
+    channels = [c for c in flights.channels if c in std]
+    return Variant(
+        "filters", "timing", tuple(f"{c}_late_s" for c in channels), ((0.0,) * len(channels),),
+        (1e-3,) * len(channels), tuple((-_REACH * std[c], _REACH * std[c]) for c in channels), 0.0,
+        entries=tuple(SKEWS[OUTPUTS.index(c)] for c in channels),
+        prior_std=tuple(std[c] for c in channels), is_nuisance=True,
+    )  # fmt: skip

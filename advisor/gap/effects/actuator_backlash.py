@@ -1,0 +1,34 @@
+"""The linkage between servo and surface has play."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from advisor.gap.kit.effect import Effect
+from advisor.gap.kit.least import IF_BEYOND_DOUBT, SMALL_ANGLE_RAD
+from advisor.gap.kit.variant import Variant
+from advisor.gap.records.flights import PreparedManeuvers
+
+_BACKLASH = Variant(
+    "actuator_backlash", "input", ("half_width_rad",), ((0.003,), (0.008,), (0.02,)), (2e-4,),
+    ((0.0, 0.1),), SMALL_ANGLE_RAD, IF_BEYOND_DOUBT, entries=("half_play_rad",),
+    sides=("play_side", tuple(np.linspace(-1.0, 1.0, 8))),
+)  # fmt: skip
+
+
+def _variants(_: PreparedManeuvers) -> Sequence[Variant]:
+    return (_BACKLASH,)
+
+
+EFFECT = Effect(
+    name="actuator_backlash",
+    block="input",
+    keys={"half_width_rad": 0.0},
+    variants=_variants,
+    said=(
+        "The real elevator has play of {half_width_rad_deg:.2f} deg to either side",
+        "The simulator's elevator has {half_width_rad_deg:.2f} deg too much play to either side",
+    ),
+    distinguished_by={"actuator_deadband": "fly two amplitudes, and steps short of neutral"},
+    servo={"half_width_rad": ("play_rad", 2.0)},
+)

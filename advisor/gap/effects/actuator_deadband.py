@@ -1,0 +1,68 @@
+"""The surface ignores small commands about a neutral deflection."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from advisor.flight.signals.messages import FloatArray
+from advisor.gap.kit.effect import ANY, Effect
+from advisor.gap.kit.least import IF_BEYOND_DOUBT, SMALL_ANGLE_RAD
+from advisor.gap.kit.variant import Values, Variant
+from advisor.gap.records.flights import PreparedManeuvers
+from advisor.gap.simulator.layout import INDEX
+
+_TRIMS_DIFFER_RAD = 0.005
+"""Least range of the trims in rad that distinguishes a dead band moving with the trim from a fixed one."""
+
+
+def _about_neutral(p: FloatArray, values: Values, flights: PreparedManeuvers) -> None:
+    """Set a dead band about one neutral deflection of the aircraft, whatever the trim of each manoeuvre.
+
+    The band need not lie about the trim, because pilots and autopilots trim to one edge of the band.
+    """
+    trims = np.array([flight.u_trim for flight in flights.flights])
+    p[:, INDEX["half_deadband_rad"]] += values[0]
+    p[:, INDEX["neutral_rad"]] = np.median(trims) + values[1] - trims
+
+
+def _about_trim(p: FloatArray, values: Values, _: PreparedManeuvers) -> None:
+    """Set a dead band that moves with the trim, about the command before each manoeuvre."""
+    p[:, INDEX["half_deadband_rad"]] += values[0]
+    p[:, INDEX["neutral_rad"]] = values[1]
+
+
+_DEADBAND = Variant(
+    "actuator_deadband", "input", ("half_width_rad", "neutral_rad"),
+    ((0.0012, 0.0), (0.004, 0.0), (0.015, 0.0), (0.035, 0.0), (0.01, 0.006), (0.01, -0.006)), (2e-4, 2e-4),
+    ((0.0, 0.1), (-0.1, 0.1)), SMALL_ANGLE_RAD, IF_BEYOND_DOUBT, apply_with=_about_neutral,
+    places=("neutral_rad",),
+)  # fmt: skip
+_DEADBAND_ABOUT_TRIM = replace(
+    _DEADBAND,
+    starts=((0.0012, 0.0), (0.004, 0.0), (0.015, 0.0), (0.035, 0.0)),
+    apply_with=_about_trim,
+    fixed={"about_trim": 1.0},
+)
+
+
+def _variants(flights: PreparedManeuvers) -> Sequence[Variant]:
+    moves = float(np.ptp([f.u_trim for f in flights.flights])) > _TRIMS_DIFFER_RAD
+    return (_DEADBAND, _DEADBAND_ABOUT_TRIM) if moves else (_DEADBAND,)
+
+
+EFFECT = Effect(
+    name="actuator_deadband",
+    block="input",
+    keys={"half_width_rad": 0.0, "neutral_rad": ANY, "about_trim": 0.0},
+    variants=_variants,
+    said=(
+        "The real elevator ignores the first {half_width_rad_deg:.2f} deg around neutral",
+        "The simulator's elevator ignores {half_width_rad_deg:.2f} deg too much around neutral",
+    ),
+    said_with={
+        "about_trim": "The real elevator ignores the first {half_width_rad_deg:.2f} deg around its trim"
+    },
+    imitated_by=("lower elevator effectiveness, at one amplitude", "fly two amplitudes"),
+    servo={"half_width_rad": ("deadband_rad", 2.0), "neutral_rad": ("neutral_rad", 1.0)},
+)

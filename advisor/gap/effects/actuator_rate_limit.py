@@ -1,0 +1,31 @@
+"""The servo moves no faster than a limit."""
+
+from collections.abc import Sequence
+
+from advisor.gap.kit.effect import Effect
+from advisor.gap.kit.variant import Variant
+from advisor.gap.records.flights import PreparedManeuvers
+
+# The search uses the slowness 1/ρ: zero means no limit, and the cost is smooth there.
+_RATE_LIMIT = Variant(
+    "actuator_rate_limit", "input", ("rate_rad_s",), ((0.4,), (1.2,), (3.0,)), (0.02,), ((0.0, 30.0),), 0.05,
+    entries=("slowness_s_rad",), inverted=True,
+)  # fmt: skip
+
+
+def _variants(_: PreparedManeuvers) -> Sequence[Variant]:
+    return (_RATE_LIMIT,)
+
+
+EFFECT = Effect(
+    name="actuator_rate_limit",
+    block="input",
+    keys={"rate_rad_s": 0.0},
+    variants=_variants,
+    said=(
+        "The real elevator moves no faster than {rate_rad_s_deg:.0f} deg/s",
+        "The simulator's elevator moves no faster than {rate_rad_s_deg:.0f} deg/s, and the real one does",
+    ),
+    distinguished_by={"transport_delay": "fly two amplitudes: a rate limit delays larger steps more"},
+    servo={"rate_rad_s": ("rate_rad_s", 1.0)},
+)

@@ -1,0 +1,32 @@
+"""The angle of attack reads too much or too little."""
+
+from collections.abc import Sequence
+
+from advisor.gap.kit.effect import ANY, Effect, Need
+from advisor.gap.kit.variant import Variant
+from advisor.gap.records.flights import PreparedManeuvers
+
+_SCALE = Variant(
+    "alpha_scale", "alpha_sensor", ("scale",), ((0.0,),), (0.002,), ((-0.8, 3.0),), 0.01,
+    entries=("alpha_scale",),
+)  # fmt: skip
+
+
+def _variants(_: PreparedManeuvers) -> Sequence[Variant]:
+    return (_SCALE,)
+
+
+EFFECT = Effect(
+    name="alpha_scale",
+    block="alpha_sensor",
+    keys={"scale": ANY},
+    variants=_variants,
+    channel="alpha",
+    kinematics="scale",
+    said=(
+        "The angle of attack channel reads {scale_percent:.0f} % too much",
+        "The angle of attack channel reads {scale_percent:.0f} % too little",
+    ),
+    need=Need("scale", "no angle of attack", "AOA_SSA at 50 Hz, or a vane"),
+    imitated_without=("a_z", "Z_q of the model", "log the accelerometer (RAW_IMU) at 50 Hz"),
+)

@@ -1,0 +1,28 @@
+"""The angle of attack is stamped later or earlier than the other channels."""
+
+from collections.abc import Sequence
+
+from advisor.gap.kit.effect import ANY, Effect, Need
+from advisor.gap.kit.skew import skew_of
+from advisor.gap.kit.variant import Variant
+from advisor.gap.records.flights import PreparedManeuvers
+
+
+def _variants(flights: PreparedManeuvers) -> Sequence[Variant]:
+    return (skew_of("alpha_skew", "alpha", flights),)
+
+
+EFFECT = Effect(
+    name="alpha_skew",
+    block="timing",
+    keys={"skew_s": ANY},
+    variants=_variants,
+    channel="alpha",
+    kinematics="lag",
+    of_one_imu=True,
+    said=(
+        "The angle of attack is stamped {skew_s_ms:.0f} ms too late",
+        "The angle of attack is stamped {skew_s_ms:.0f} ms too early",
+    ),
+    need=Need("skew_s", "no angle of attack", "AOA_SSA at 50 Hz, or a vane"),
+)

@@ -1,0 +1,46 @@
+"""The surface answers its command after a delay."""
+
+from collections.abc import Sequence
+
+from advisor.flight.signals.messages import FloatArray
+from advisor.gap.kit.effect import Effect
+from advisor.gap.kit.least import LEAST_S
+from advisor.gap.kit.variant import Values, Variant
+from advisor.gap.records.flights import PreparedManeuvers
+from advisor.gap.simulator.layout import INDEX
+
+
+def _delay(p: FloatArray, values: Values, _: PreparedManeuvers) -> None:
+    """Set the whole delay: where the delay is free, it includes that between command and telemetry."""
+    p[:, INDEX["delay_s"]] += values[0]
+    p[:, INDEX["latency_s"]] = 0.0
+
+
+DELAY = Variant(
+    "transport_delay", "input", ("delay_s",), ((0.005,), (0.03,), (0.1,)), (1e-3,), ((0.0, 0.5),), LEAST_S,
+    apply_with=_delay,
+)  # fmt: skip
+"""The whole delay of the command. The model without it has the delay of telemetry (``latency``), so that only
+a longer one changes anything."""
+
+
+def _variants(_: PreparedManeuvers) -> Sequence[Variant]:
+    return (DELAY,)
+
+
+EFFECT = Effect(
+    name="transport_delay",
+    block="input",
+    keys={"delay_s": 0.0},
+    variants=_variants,
+    said=(
+        "The simulator responds {delay_s_ms:.0f} ms too early: a delay between command and surface",
+        "The simulator responds {delay_s_ms:.0f} ms too late: its delay is too long",
+    ),
+    said_beyond="The simulator responds {delay_s_ms:.0f} ms too early: the delay between command and "
+    "surface is longer than its own",
+    said_or="a delay of {delay_s_ms:.0f} ms",
+    imitated_by=("an equal delay of every logged stream", "log the measured surface position"),
+    stated=("elevator", "delay_s"),
+    servo={"delay_s": ("delay_s", 1.0)},
+)

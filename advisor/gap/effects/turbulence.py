@@ -1,0 +1,15 @@
+"""The air moves throughout the flight."""
+
+from advisor.gap.kit.effect import Effect, Need, not_fitted
+
+EFFECT = Effect(
+    name="turbulence",
+    block="air",
+    keys={"sigma_w_m_s": 0.0, "length_m": 0.0},
+    variants=not_fitted,
+    outside_fits=lambda _: True,
+    of_one_flight=True,
+    said="The air was not still: gusts of about {sigma_w_m_s:.2g} m/s",
+    need=Need("sigma_w_m_s", "no angle of attack", "AOA_SSA at 50 Hz, or a vane"),
+    distinguished_by={"gust": "fly more manoeuvres: a gust does not come back, turbulence does"},
+)

@@ -1,0 +1,28 @@
+"""The stamps of one channel, earlier or later than those of the others."""
+
+from functools import partial
+
+from advisor.flight.signals.messages import FloatArray
+from advisor.gap.kit.least import least_delay_s
+from advisor.gap.kit.variant import Values, Variant
+from advisor.gap.records.flights import PreparedManeuvers
+from advisor.gap.simulator.layout import INDEX, OUTPUTS, SKEWS
+
+UNFILTERED = (
+    "a filter of that channel that delays as much",
+    "log the channel as its sensor reads it, before any filter",
+)
+"""Cause that looks like a late channel, and what distinguishes the two."""
+
+
+def skew_of(effect: str, channel: str, flights: PreparedManeuvers) -> Variant:
+    """Return the skew of one channel, positive is late."""
+    return Variant(
+        effect, "timing", ("skew_s",), ((0.02,), (-0.02,), (0.1,), (-0.1,)), (1e-3,), ((-0.4, 0.4),),
+        least_delay_s(flights), apply_with=partial(_whole_skew, SKEWS[OUTPUTS.index(channel)]), sets=True,
+    )  # fmt: skip
+
+
+def _whole_skew(entry: str, p: FloatArray, values: Values, _: PreparedManeuvers) -> None:
+    """Set the whole skew of a stream, including the delay of a filter."""
+    p[:, INDEX[entry]] = values[0]

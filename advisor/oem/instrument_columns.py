@@ -1,0 +1,96 @@
+"""Derivatives of the outputs of a fit by instruments and by the times of the command's steps.
+
+Instruments of the outputs read the motion, and instruments of the command change the surface. One pass over
+the motion of a fit gives all of them (``model.input_response``).
+"""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from advisor.flight.signals.messages import FloatArray
+from advisor.model.input_response import (
+    BY_ACCELEROMETER,
+    BY_ALPHA_DELAY,
+    BY_VANE,
+    N_READING,
+    InputChange,
+    respond_to_change,
+)
+from advisor.oem.found import InstrumentName
+from advisor.oem.problem import Assembly, OutputErrorProblem, Record, steady_share
+from advisor.oem.surface import padded
+
+READING = {
+    "vane_arm_m": BY_VANE,
+    "accelerometer_arm_m": BY_ACCELEROMETER,
+    "alpha_delay_s": BY_ALPHA_DELAY,
+}
+"""Column of each instrument of an output."""
+OF_COMMAND = ("command_delay_s", "servo_lag_s", "steady_moment_rad")
+"""Instruments that change the motion of the surface, or act as if they did."""
+
+
+def instrument_columns(
+    problem: OutputErrorProblem,
+    assembly: Assembly,
+    shared: FloatArray,
+    local: FloatArray,
+    names: Sequence[InstrumentName],
+) -> FloatArray:
+    """Return the derivatives of the outputs by instruments, shape (N, k), with everything else fixed.
+
+    Parameters
+    ----------
+    assembly
+        Layout of ``problem``.
+    shared, local
+        Shapes (7,) and (m, 7).
+    """
+
+    def of_command(m: int, record: Record, t: FloatArray) -> InputChange:
+        servo = problem.servo.changes(record.elevator.t, record.elevator.y, t, record.held)
+        return stacked([servo, _steady(problem, assembly, m)], axis=1)
+
+    columns = input_columns(problem, assembly, shared, local, of_command)
+    places = {**READING, **{name: N_READING + i for i, name in enumerate(OF_COMMAND)}}
+    return columns[:, [places[name] for name in names]]
+
+
+def input_columns(
+    problem: OutputErrorProblem,
+    assembly: Assembly,
+    shared: FloatArray,
+    local: FloatArray,
+    change: Callable[[int, Record, FloatArray], InputChange],
+) -> FloatArray:
+    """Return the derivatives by the three instruments that read the motion, and by changes of the surface.
+
+    Parameters
+    ----------
+    change
+        Returns the changes of one record: its number, the record, and the stamps of its events.
+
+    Returns
+    -------
+    FloatArray
+        Shape (N, 3 + k), manoeuvre by manoeuvre.
+    """
+    events = np.split(assembly.events, assembly.grid.first[1:-1])
+    parts = [change(m, record, t) for m, (record, t) in enumerate(zip(problem.records, events, strict=True))]
+    moved = stacked(parts, axis=0)
+    columns = np.empty((len(assembly.z), N_READING + moved.at.shape[1]))
+    respond_to_change(assembly.grid, shared, local, moved, columns)
+    return columns
+
+
+def stacked(changes: Sequence[InputChange], axis: int) -> InputChange:
+    """Return changes one after the other (axis 0) or side by side (axis 1)."""
+    return InputChange(*(np.concatenate(parts, axis=axis) for parts in zip(*changes, strict=True)))
+
+
+def _steady(problem: OutputErrorProblem, assembly: Assembly, m: int) -> InputChange:
+    grid, events = assembly.grid, slice(assembly.grid.first[m], assembly.grid.first[m + 1])
+    share = steady_share(problem, grid.airspeed[events])
+    slope = padded(np.diff(share) / np.diff(assembly.events[events]))
+    return InputChange(*(x[:, None] for x in (share, share, slope, np.zeros(len(share)))))

@@ -1,0 +1,72 @@
+"""How sure the answer of a diagnosis is, and what speaks for it: sentences for every face."""
+
+import math
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+_SAYABLE_NATS = 12.0
+"""Log odds, nats, above which odds are no longer written as a number: 160,000 to 1."""
+_NOTHING = 0.005
+"""Probability that rounds to 0 %, so that its row says nothing."""
+_MOST = 4
+"""Most alternatives of one sentence."""
+
+
+def is_shown(probability: float) -> bool:
+    """Return whether a probability is more than 0 % when it is rounded to per cent."""
+    return probability >= _NOTHING
+
+
+def in_percent(probability: float) -> str:
+    """Return a probability as ``93 %``, with ``<1 %`` and ``>99 %`` at the ends."""
+    if probability >= 1.0 - _NOTHING:
+        return ">99 %"
+    return f"{100.0 * probability:.0f} %" if is_shown(probability) else "<1 %"
+
+
+def how_sure(alternatives: Iterable[tuple[str, float]]) -> str:
+    """Return a sentence with the likeliest alternatives; empty without probabilities.
+
+    Parameters
+    ----------
+    alternatives
+        Alternative in words, and its probability; likeliest first.
+    """
+    shown = [f"{words} {in_percent(p)}" for words, p in alternatives if is_shown(p)]
+    if not shown:
+        return ""
+    more = ", others less" if len(shown) > _MOST else ""
+    return f"Probability by the evidence: {', '.join(shown[:_MOST])}{more}."
+
+
+def alternatives_of(found: Mapping[str, Any]) -> list[tuple[str, float]]:
+    """Return the alternatives in words and their probabilities from ``advisor.gap/1``, likeliest first."""
+    return [(one["text"], one["probability"]) for one in found["evidence"]]
+
+
+def heading_of(found: Mapping[str, Any]) -> str:
+    """Return the heading of the reasons from ``advisor.gap/1``."""
+    words = {one["alternative"]: one["text"] for one in found["evidence"]}
+    return heading(words[found["answer"]], words[found["rival"]])
+
+
+def heading(answer: str, rival: str) -> str:
+    """Return the heading of the reasons."""
+    return f"why {answer}, and not {rival}: parts of the log odds, in nats"
+
+
+def weighed(reasons: Iterable[tuple[float, str]]) -> list[tuple[str, str]]:
+    """Return the reasons with their nats as text, and a last row with the sum and the odds."""
+    rows = [(f"{nats:+.1f}", said, nats) for nats, said in reasons]
+    total = sum(nats for *_, nats in rows)
+    return [
+        *((number.replace("-", "−"), said) for number, said, _ in rows),
+        (f"{total:+.1f}".replace("-", "−"), f"together: {_odds(total)}"),
+    ]
+
+
+def _odds(nats: float) -> str:
+    if abs(nats) > _SAYABLE_NATS:
+        return "as good as certain" if nats > 0.0 else "as good as excluded"
+    odds = math.exp(abs(nats))
+    return f"{odds:.1f} to 1 for the answer" if nats >= 0.0 else f"{odds:.1f} to 1 against the answer"
