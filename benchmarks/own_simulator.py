@@ -134,7 +134,9 @@ def own_shrink(case: Case, found: Effects, folder: Path, seed: int) -> float | N
         for name in ("plain", "improved")
     ]
     before, after = map(np.array, gaps)
-    return 100.0 * (1.0 - float(np.sum(after**2 / before**2)) / len(before))
+    # An instrument's effect leaves the other channels as they are.
+    changed = before > 0.0
+    return 100.0 * (1.0 - float(np.mean(after[changed] ** 2 / before[changed] ** 2)))
 
 
 def answer_of(diagnosis: Diagnosis) -> tuple[str, float | None]:
