@@ -103,8 +103,9 @@ def mirrored(
     beside = [without_difference(m, grids) for m in maneuvers]
     found = examine(beside, as_file).diagnosis
     gap = whole.diagnosis.gap
-    # What is unknown explains nothing, whatever of it the likeliest course of the air removes.
-    rival = gap.before if whole.diagnosis.verdict == "unknown" else gap.after
+    # What is unknown explains nothing, whatever of it the likeliest course of the air removes. Fitted numbers
+    # of the aircraft imitate a dead band of the simulator, whose own size no flight has fitted.
+    rival = gap.after if whole.diagnosis.verdict == "effect" else gap.before
     if found.gap.before > _CLEARLY * rival:
         return None
     return Mirrored(tuple(map(_negative, causes)), gap.before, found.gap.before)
@@ -115,7 +116,9 @@ def _may_be(diagnosis: Diagnosis) -> bool:
     first = next((c for c in diagnosis.causes if c.present), None)
     of_around = first is not None and first.block in _BLOCKS
     leaves_a_gap = diagnosis.gap.after >= VISIBLE
-    return diagnosis.verdict == "unknown" or (diagnosis.verdict == "effect" and of_around and leaves_a_gap)
+    if diagnosis.verdict == "effect":
+        return of_around and leaves_a_gap
+    return diagnosis.verdict in ("unknown", "parameters")
 
 
 def _as_flights(maneuvers: Sequence[Maneuver], flying: Flying, replays: Sequence[Replay]) -> list[Maneuver]:

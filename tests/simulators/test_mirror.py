@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
@@ -21,6 +22,23 @@ class Filtered(Nonlinear):
         return replace(flown, alpha=lagging(flown.alpha, STEP_S, 0.12))
 
 
+class Dull(Nonlinear):
+    """Ignores the first 0.46 deg of the elevator about its trim."""
+
+    def replay(self, condition, inputs, increments=None):
+        u = inputs.elevator
+        beyond = np.sign(u) * np.maximum(np.abs(u) - 0.008, 0.0)
+        return super().replay(condition, replace(inputs, elevator=beyond), increments)
+
+
+class Late(Nonlinear):
+    """Hands its specific force out 60 ms late."""
+
+    def replay(self, condition, inputs, increments=None):
+        flown = super().replay(condition, inputs, increments)
+        return replace(flown, a_z=np.interp(flown.t - 0.06, flown.t, flown.a_z))
+
+
 def test_a_cause_of_the_simulator_is_said_as_what_it_has_too_much_of():
     limit = Cause("actuator_rate_limit", "input", 0.9, {"rate_rad_s": Value(0.3, 0.01)}, (), "", 0.0, True)
     play = Cause("actuator_backlash", "input", 0.9, {"half_width_rad": Value(0.006, 1e-4)}, (), "", 0.0, True)
@@ -36,12 +54,16 @@ def test_a_cause_of_the_simulator_is_said_as_what_it_has_too_much_of():
         (Nonlinear(half_play_rad=0.009), "actuator_backlash"),
         (Filtered(), "alpha_lag"),
         (Nonlinear(lag_s=0.1), "actuator_lag"),
+        (Nonlinear(delay_s=0.06), "transport_delay"),
+        (Dull(), "actuator_deadband"),
+        (Late(), "accelerometer_skew"),
     ],
-    ids=["rate limit", "play", "filter", "lag"],
+    ids=["rate limit", "play", "filter", "lag", "delay", "dead band", "late accelerometer"],
 )
 def test_an_effect_that_only_the_simulator_has_is_named_first_and_with_its_size(simulator, effect):
     found = compare(flown(maneuvers=5), simulator, Aircraft()).diagnosis
     assert found.causes[0].effect == effect
     assert next(iter(found.causes[0].parameters.values())).value < 0.0
     assert found.in_simulator.percent == 0.0
+    # The simulator cannot be made quicker or sharper than it is.
     assert {effect, "its own servo"} & set(found.in_simulator.on_paper)
