@@ -37,7 +37,8 @@ class LateralState:
 OF_ELEVATOR = frozenset({"no_maneuver", "no_elevator", "no_alpha"})
 """Codes of problems that concern the elevator's axis alone."""
 NEWEST = 7
-"""Number of newest accepted manoeuvres that are estimated together during the flight, as of the elevator."""
+"""Number of newest accepted manoeuvres that are estimated together during the flight; the elevator has the same
+number."""
 
 
 class LateralCampaign:

@@ -29,8 +29,8 @@ KNOWN_TO = 0.1
 DIFFERENCE_S = 1e-3
 """Step of the differences, s: half of it is below the shortest interval of a command."""
 FARTHEST_S = 0.1
-"""Standard deviation of an unknown arm of the sideslip vane, over the air speed, s. A boom on record has 0.1 s
-(13 m at 130 m/s)."""
+"""Standard deviation of an unknown arm of the sideslip vane, over the air speed, s. A boom on record has
+0.1 s (13 m at 130 m/s)."""
 LONGEST_LAG_S = 0.4
 FIRST_LAG_S = 0.01
 """Unknown lag with which the search begins, s."""

@@ -179,5 +179,5 @@ def _changed(name: str, known: float, value: float, at: str, counts: bool) -> st
 def _too_late(name: str, value: float, at: str) -> str:
     return (
         f"{name} {value:g} is heard only{at}: the value assumed before counts until it starts again. "
-        "Z_delta_e and M_delta_e have another scale; advisor analyze counts the whole recording anew."
+        "Z_δe and M_δe have another scale; advisor analyze counts the whole recording anew."
     )

@@ -34,8 +34,10 @@ def what(cause: Cause, in_simulator: frozenset[str] = frozenset()) -> str:
 
 
 def or_else(first: Cause, causes: Sequence[Cause]) -> str:
-    """Return the other effects that the data cannot distinguish from the first one, as words after its
-    statement: a lag of the servo next to a delay, and the reverse."""
+    """Return words for the other effects that the data cannot distinguish from the first one.
+
+    A lag of the servo looks like a delay, and the reverse.
+    """
     alike = [c for c in causes if c.effect in first.cannot_be_told_from and EFFECTS[c.effect].said_or]
     others = alike if EFFECTS[first.effect].said_or else []
     return "".join(f", or {EFFECTS[c.effect].said_or.format(**_sizes(c))}" for c in others)
