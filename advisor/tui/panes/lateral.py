@@ -18,9 +18,9 @@ class LateralPane(TextPane):
 # Roll and yaw
 
 The joint estimate over the accepted manoeuvres of aileron and rudder. Each derivative stands with half its
-95 % interval. One that is not identifiable stands with the input that would tell it. Below are the modes: Dutch
-roll, roll and spiral, with the levels of MIL-F-8785C. Where the aircraft file states the derivatives, the tests
-of 14 CFR Part 60 compare the two.
+95 % interval. One that is not identifiable stands with the input that would tell it. Below are the modes:
+Dutch roll, roll and spiral, with the levels of MIL-F-8785C. Where the aircraft file states the derivatives,
+the tests of 14 CFR Part 60 compare the two.
 """
 
     def show(self, view: View) -> None:
