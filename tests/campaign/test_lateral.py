@@ -6,7 +6,10 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft, SideControl
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.campaign.campaign import Campaign
+from advisor.flight.maneuvers.events import SideManeuverFlown
+from advisor.flight.maneuvers.marked_input import SWEPT
 from advisor.flight.maneuvers.marks import Mark
+from advisor.flight.stream.stream import FlightStream
 from advisor.flight.vehicle.imu_filters import filter_delay_s
 from advisor.report.lateral import lateral_document, lateral_lines
 from tests.flight.columns import Wire, heartbeat, plane_parameters
@@ -18,7 +21,7 @@ KNOWN = SideControl(lag_s=0.0, delay_s=0.0)
 AIRCRAFT = Aircraft(aileron=KNOWN, rudder=KNOWN)
 
 
-def wired(*, rudder=True):
+def wired(*, rudder=True, mode=0):
     """Return the messages of a jet that flies an aileron doublet and, on request, a rudder doublet."""
     aileron = steps(T, (3.0, 4.0, 5.0), (0.06, -0.06, 0.0))
     feet = steps(T, (20.0, 21.6, 23.2), (0.05, -0.05, 0.0))
@@ -35,12 +38,12 @@ def wired(*, rudder=True):
     p, r, bank = read("p", late_s), read("r", late_s), read("bank")
     force = read("a_y", late_s) / GRAVITY_M_S2 * 1000.0
     wire = Wire()
-    heartbeat(wire, 0.0)
+    heartbeat(wire, 0.0, mode)
     plane_parameters(wire, 1e-3)
     for k, since in enumerate(T):
         now, boot = 0.01 + since, 100.0 + since
         if k % 25 == 0:
-            heartbeat(wire, now)
+            heartbeat(wire, now, mode)
         wire.send(
             "ATTITUDE", now, time_boot_ms=round(boot * 1000), roll=bank[k], pitch=0.105, yaw=0.0,
             rollspeed=p[k], pitchspeed=0.01 + 1e-4 * (k % 2), yawspeed=r[k],
@@ -158,6 +161,25 @@ def test_a_mark_of_an_aileron_input_replaces_the_one_that_was_found(both, state)
 
 def test_a_mark_without_elevator_is_no_manoeuvre_of_the_elevator(both):
     assert marked(both, Mark(102.5, 112.0)).maneuvers == ()
+
+
+def kinds_swept(wire):
+    """Return the kinds of lateral manoeuvres in a stretch that SystemID has marked."""
+    stream = FlightStream(AIRCRAFT, marks=[Mark(102.5, 112.0, by="system id")], lateral=True)
+    events = stream.feed(wire.columns(list(range(len(wire))))) + stream.finish()
+    return [
+        event.maneuver.span.kind
+        for event in events
+        if isinstance(event, SideManeuverFlown) and event.maneuver.span.closed_by == SWEPT
+    ]
+
+
+def test_a_sweep_of_system_id_by_the_ailerons_is_a_lateral_manoeuvre(both):
+    assert kinds_swept(both) == ["aileron doublet"]
+
+
+def test_a_sweep_of_system_id_in_hover_is_no_lateral_manoeuvre():
+    assert kinds_swept(wired(mode=18)) == []
 
 
 def test_an_uncalibrated_aileron_is_per_assumed_degree(both):

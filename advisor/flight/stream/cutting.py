@@ -109,8 +109,8 @@ class Cutting:
         """Return the manoeuvres of a marked stretch, which count without the finder's criteria.
 
         The stretch is a manoeuvre of the elevator, of aileron and rudder, or of both, by the controls that
-        moved. A stretch without any movement is one of the elevator. SystemID moves any control, so that the
-        elevator's visible effect decides.
+        moved. A stretch without any movement is one of the elevator. SystemID moves any control, also in
+        hover, so that the visible effect of each decides.
         """
         spans = {
             loop: marked_span(mark, self._tracks.cut(loop.control, *mark.reach, up_to_order))
@@ -118,10 +118,11 @@ class Cutting:
         }
         moved = part_of_input([SideMovement(loop, span) for loop, span in spans.items()])
         sides = tuple(one for one in moved if one.loop is not PITCH) if self._lateral else ()
+        swept = mark.by == "system id"
         events: list[FlightEvent] = []
         if not sides or len(sides) < len(moved):
             maneuver, evidence = self._cut(spans[PITCH], boot, up_to_order)
-            because = self._not_an_input(maneuver, up_to_order) if mark.by == "system id" else None
+            because = self._not_an_input(maneuver, up_to_order) if swept else None
             events += (
                 self._counted(maneuver, evidence) if because is None else [self._activity(maneuver, because)]
             )
@@ -130,8 +131,23 @@ class Cutting:
             span = replace(
                 found.main.span, start_s=found.start_s, last_step_s=found.last_step_s, kind=named(found)
             )
-            events += self.side_counted(*self.side(span, boot, up_to_order))
+            side, of_side = self.side(span, boot, up_to_order)
+            if not swept or not self.is_no_side_input(side, found, up_to_order):
+                events += self.side_counted(side, of_side)
         return events
+
+    def is_no_side_input(self, maneuver: Maneuver, found: SideInput, up_to_order: int | None) -> bool:
+        """Return whether no movement of an input of aileron and rudder is a test input."""
+        on_ground = self.why_on_ground(maneuver.span, up_to_order)
+        for one in found.movements:
+            if one.loop.control not in maneuver.channels:
+                continue
+            names = [name for name in (one.loop.rate, one.loop.angle) if name]
+            alone = replace(one.span, record_from_s=maneuver.span.record_from_s, end_s=maneuver.span.end_s)
+            motion = self.motion_before(alone, names, up_to_order)
+            if not_an_input(replace(maneuver, span=alone), on_ground, motion, None, one.loop) is None:
+                return False
+        return True
 
     def _activity(self, maneuver: Maneuver, because: Because) -> Activity:
         """Return the event of a movement that was no test input, and count the movement."""

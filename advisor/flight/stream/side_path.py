@@ -10,9 +10,8 @@ from dataclasses import replace
 from advisor.flight.elevator.elevator_watch import SETTLE_S, ElevatorWatch
 from advisor.flight.maneuvers.events import FlightEvent
 from advisor.flight.maneuvers.loop import ROLL, YAW, Loop
-from advisor.flight.maneuvers.maneuver import Maneuver, Span
+from advisor.flight.maneuvers.maneuver import Span
 from advisor.flight.maneuvers.marks import Marks
-from advisor.flight.maneuvers.purpose import not_an_input
 from advisor.flight.maneuvers.side_input import (
     BESIDE,
     TAIL_S,
@@ -125,23 +124,10 @@ class SidePath:
         self._pending = [one for one in self._pending if not _is_hidden(one, found, span)]
         span = self._marks.before(span)
         maneuver, evidence = self._cutting.side(span, self._boot, up_to_order)
-        if self._marks.holds(span) or self._is_no_input(maneuver, found, up_to_order):
+        if self._marks.holds(span) or self._cutting.is_no_side_input(maneuver, found, up_to_order):
             return []
         named_one = replace(maneuver, span=replace(span, kind=named(found)))
         return self._cutting.side_counted(named_one, evidence)
-
-    def _is_no_input(self, maneuver: Maneuver, found: SideInput, up_to_order: int | None) -> bool:
-        """Return whether no movement of the input is a test input."""
-        on_ground = self._cutting.why_on_ground(maneuver.span, up_to_order)
-        for one in found.movements:
-            if one.loop.control not in maneuver.channels:
-                continue
-            names = [name for name in (one.loop.rate, one.loop.angle) if name]
-            alone = replace(one.span, record_from_s=maneuver.span.record_from_s, end_s=maneuver.span.end_s)
-            motion = self._cutting.motion_before(alone, names, up_to_order)
-            if not_an_input(replace(maneuver, span=alone), on_ground, motion, None, one.loop) is None:
-                return False
-        return True
 
 
 def _is_hidden(movement: SideMovement, found: SideInput, span: Span) -> bool:
