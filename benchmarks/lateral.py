@@ -17,16 +17,20 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from advisor.aircraft.aircraft import Aircraft, SideControl
+from advisor.aircraft.aircraft import Aircraft, Alpha, Beta, SideControl
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.aircraft_file.read import load_aircraft
 from advisor.analysis.log_series import LogSeries
 from advisor.campaign.campaign import Campaign
 from advisor.campaign.lateral import LateralState
 from advisor.model.lateral import LATERAL
+from advisor.oem.estimate import NoEstimate
 from advisor.oem.lateral_estimate import LateralSolution, solve_lateral
+from advisor.oem.lateral_estimator import LateralEstimate
+from advisor.oem.lateral_prediction import predicted_lateral
 from advisor.oem.lateral_problem import LateralProblem, LateralRecord
 from advisor.oem.rows import Signal
+from benchmarks.public.segments import is_rolled, maneuver_of, read_segments, rolled
 
 FORTY = ((500.0, -25.0), (1500.0, 0.0), (2500.0, 25.0))
 """Calibration of 40 us a degree, both positive as in the records."""
@@ -35,6 +39,9 @@ MODES = {
     "zeta": "dutch_roll_zeta",
     "T_roll": "roll_time_constant",
 }
+
+
+WITHOUT_VANE = Beta("none")
 
 
 @dataclass(frozen=True)
@@ -46,9 +53,14 @@ class Known:
     rudder: SideControl
     truth: Mapping[str, tuple[float, float]]
     """Derivative or mode to its value and relative tolerance; a tolerance below 0 is absolute."""
+    beta: Beta = WITHOUT_VANE
+    said: str = ""
+    """What the row says after the name of the log."""
+    withheld: str = ""
+    """File with manoeuvres that the fit has not seen, of which roll and yaw rate are predicted."""
 
 
-def _control(output: int, pairs: tuple[tuple[float, float], ...], lag_s: float) -> SideControl:
+def _control(output: int, pairs: tuple[tuple[float, float], ...], lag_s: float | None) -> SideControl:
     return SideControl(output, pairs, lag_s, 0.0)
 
 
@@ -75,6 +87,17 @@ KNOWN = (
         },
     ),
     Known(
+        "lateral-cub",
+        _control(1, FORTY, None),
+        _control(4, FORTY, None),
+        {
+            "N_beta": (14.0, 0.3), "N_r": (-3.2, 0.3), "N_delta_r": (13.1, 0.3), "N_delta_a": (-10.8, 0.3),
+            "L_p": (-4.8, 0.3), "L_delta_a": (32.1, 0.3),
+        },
+        Beta("aoa_ssa", 0.0),
+        withheld="public/sportcub_validation.npz",
+    ),
+    Known(
         "lateral-business-jet",
         _control(1, FORTY, 0.0),
         _control(4, FORTY, 0.0),
@@ -90,6 +113,7 @@ KNOWN = (
         },
     ),
 )  # fmt: skip
+KNOWN = (*KNOWN, replace(KNOWN[1], beta=Beta("aoa_ssa", 13.08), said=" with its sideslip vane"))
 
 
 def analyzed(log: Path, aircraft: Aircraft) -> LateralState:
@@ -106,12 +130,13 @@ def analyzed(log: Path, aircraft: Aircraft) -> LateralState:
 def rows_of(known: Known, folder: Path) -> Iterator[str]:
     """Yield the rows of one record."""
     aircraft = load_aircraft(folder / f"{known.log}.yaml")
-    aircraft = replace(aircraft, aileron=known.aileron, rudder=known.rudder)
+    aircraft = replace(aircraft, aileron=known.aileron, rudder=known.rudder, beta=known.beta)
     state = analyzed(folder / f"{known.log}.tlog", aircraft)
+    name_of_row = f"{known.log}{known.said}"
     accepted = sum(one.verdict.accepted for one in state.maneuvers)
-    yield f"| {known.log} | {accepted} of {len(state.maneuvers)} accepted | | | | |"
+    yield f"| {name_of_row} | {accepted} of {len(state.maneuvers)} accepted | | | | |"
     if state.model is None:
-        yield f"| {known.log} | no joint estimate | | | | |"
+        yield f"| {name_of_row} | no joint estimate | | | | |"
         return
     estimate = state.model.estimate
     for name, (truth, tolerance) in known.truth.items():
@@ -119,7 +144,7 @@ def rows_of(known: Known, folder: Path) -> Iterator[str]:
             mode = getattr(state.model.modes, MODES[name])
             value, std = (np.nan, np.nan) if mode is None else (mode.value, mode.std)
         elif name in estimate.not_identifiable:
-            yield f"| {known.log} | {name} | {truth:g} | not identifiable | | yes |"
+            yield f"| {name_of_row} | {name} | {truth:g} | not identifiable | | yes |"
             continue
         else:
             value = estimate.value(name)
@@ -128,7 +153,35 @@ def rows_of(known: Known, folder: Path) -> Iterator[str]:
         holds = abs(value - truth) <= max(within, 1.96 * std)
         percent = 100.0 * (value / truth - 1.0)
         row = f"{truth:g} | {value:.4g} ± {1.96 * std:.2g} | {percent:+.1f} % | {'yes' if holds else 'NO'} |"
-        yield f"| {known.log} | {name} | {row}"
+        yield f"| {name_of_row} | {name} | {row}"
+    if known.withheld:
+        yield from _predicted(name_of_row, state.model, folder / known.withheld)
+
+
+LEAST_R2 = 0.90
+"""Share of roll and yaw rate of withheld manoeuvres that the model must explain."""
+
+
+def _predicted(name_of_row: str, model: LateralEstimate, file: Path) -> Iterator[str]:
+    """Yield the shares of roll and yaw rate that a model explains in each withheld manoeuvre, and in all."""
+    aircraft = Aircraft(alpha=Alpha("aoa_ssa", 0.0), beta=Beta("aoa_ssa", 0.0))
+    wanted = [s for s in read_segments(file) if not s.name.startswith(("elev", "throttle"))]
+    segments = list(map(rolled, wanted)) if is_rolled([maneuver_of(s, 1) for s in wanted]) else wanted
+    left, whole = np.zeros(2), np.zeros(2)
+    for number, segment in enumerate(segments, 1):
+        fits = predicted_lateral(maneuver_of(segment, number), model, aircraft)
+        assert not isinstance(fits, NoEstimate)
+        power = np.array([np.sum((fits[n].measured - np.mean(fits[n].measured)) ** 2) for n in ("p", "r")])
+        lost = np.array([np.sum(fits[n].residual ** 2) for n in ("p", "r")])
+        left, whole = left + lost, whole + power
+        yield _share(name_of_row, segment.name, 1.0 - lost / power)
+    yield _share(name_of_row, "all withheld", 1.0 - left / whole)
+
+
+def _share(name_of_row: str, what: str, shares: NDArray[np.float64]) -> str:
+    holds = "yes" if min(shares) >= LEAST_R2 else "NO"
+    found = f"{shares[0]:.3f}, {shares[1]:.3f}"
+    return f"| {name_of_row} | R² of p, r: {what} | ≥ {LEAST_R2:.2f} | {found} | | {holds} |"
 
 
 JET = {

@@ -14,13 +14,13 @@ from advisor.aircraft.aircraft import PARAMETERS
 from advisor.analysis.log_series import SINCE_1970_S
 from advisor.batch.flight import Analyzed
 from advisor.batch.picture import Point, trend_svg
-from advisor.batch.tables import called, changes_of, estimates_of
+from advisor.batch.tables import aircraft_of, changes_of, estimates_of, names_of
 from advisor.batch.trend import ChangeOverFlights, lying_apart
 from advisor.decision.pooling import DERIVATIVES, common_airspeed, posteriors_at_one_speed
-from advisor.exports.flights.found import PARAMETER_UNITS
 from advisor.oem.estimate import Estimate
 from advisor.words.printable import printable
 from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import PARAMETERS as QUANTITIES
 from advisor.words.quantities import symbol
 
 _COLUMNS = ("Flight", "Log", "Begun, UTC", "Aircraft", "Accepted", "Result")
@@ -40,10 +40,10 @@ def index_page(flights: Sequence[Analyzed], reports: Mapping[Path, str] = Mappin
         Log to the place of its page, relative to this page.
     """
     failures = sum(not flight.usable for flight in flights)
-    changes = changes_of(flights)
+    changes, names = changes_of(flights), names_of(flights)
     style = files("advisor.report.page").joinpath("page.css").read_text(encoding="utf-8")
     trends = [
-        _trends(called(flights[several[0][0] - 1]), several, changes.get(identity))
+        _trends(names[identity], several, changes.get(identity))
         for identity, several in estimates_of(flights).items()
     ]
     return "\n".join(
@@ -54,7 +54,7 @@ def index_page(flights: Sequence[Analyzed], reports: Mapping[Path, str] = Mappin
             "<h1>Flights of a batch</h1>",
             f"<p>Logs: {len(flights)}. Logs that cannot be used: {failures}.</p>",
             "<h2>Flights</h2>",
-            _table(flights, reports),
+            _table(flights, names, reports),
             *trends,
             f'<p class="note">Written by the inflight advisor {escape(__version__)}.</p>\n</body></html>\n',
         ]
@@ -74,7 +74,7 @@ def _trends(name: str, flights: Sequence[tuple[int, Estimate]], change: ChangeOv
             for (number, _), posterior in zip(flights, posteriors, strict=True)
         ]
         since = change.since if change and PARAMETERS[k] in moved else None
-        picture = trend_svg(symbol(PARAMETERS[k]), PARAMETER_UNITS[PARAMETERS[k]], points, since)
+        picture = trend_svg(symbol(PARAMETERS[k]), QUANTITIES[PARAMETERS[k]].unit, points, since)
         pictures.append(f'<figure class="third">{picture}</figure>')
     at = f" brought to an air speed of {speed:.1f} m/s" if speed is not None else ""
     return (
@@ -99,15 +99,16 @@ def _sentence(flights: Sequence[tuple[int, Estimate]], change: ChangeOverFlights
     )
 
 
-def _table(flights: Sequence[Analyzed], reports: Mapping[Path, str]) -> str:
+def _table(flights: Sequence[Analyzed], names: Mapping[str, str], reports: Mapping[Path, str]) -> str:
     head = "".join(f"<th>{name}</th>" for name in _COLUMNS)
     rows = "\n".join(
-        _row(number, flight, reports.get(Path(flight.log))) for number, flight in enumerate(flights, start=1)
+        _row(number, flight, names[aircraft_of(flight)], reports.get(Path(flight.log)))
+        for number, flight in enumerate(flights, start=1)
     )
     return f'<table id="flights"><thead><tr>{head}</tr></thead>\n<tbody>\n{rows}\n</tbody></table>'
 
 
-def _row(number: int, flight: Analyzed, report: str | None) -> str:
+def _row(number: int, flight: Analyzed, aircraft: str, report: str | None) -> str:
     verdicts = [maneuver["verdict"] for maneuver in flight.document["maneuvers"]]
     dated = SINCE_1970_S <= flight.began_s < inf
     test = flight.document["flight_test"] or {}
@@ -115,7 +116,7 @@ def _row(number: int, flight: Analyzed, report: str | None) -> str:
         str(number),
         flight.log,
         f"{datetime.fromtimestamp(flight.began_s, UTC):%Y-%m-%d %H:%M}" if dated else "not dated",
-        called(flight),
+        aircraft,
         f"{verdicts.count('accepted')} of {len(verdicts)}",
         test.get("sentence", "") if flight.usable else f"Cannot be used: {' '.join(flight.reasons)}",
     )

@@ -1,5 +1,6 @@
 """The results of a batch as tables: flights, manoeuvres, changes."""
 
+from collections import Counter
 from collections.abc import Sequence
 from math import inf
 from typing import Any
@@ -45,10 +46,16 @@ def aircraft_of(flight: Analyzed) -> str:
     return " ".join(filter(None, (flight.aircraft_file, vehicle.get("autopilot"), system)))
 
 
-def called(flight: Analyzed) -> str:
-    """Return the aircraft for people: its name, with the identity in brackets."""
-    identity = aircraft_of(flight)
-    return f"{flight.aircraft_name} ({identity})" if flight.aircraft_name else identity
+def names_of(flights: Sequence[Analyzed]) -> dict[str, str]:
+    """Return each aircraft's identity to its name for people.
+
+    Aircraft that share a name have their identity in brackets behind the name. Without a name the identity
+    serves.
+    """
+    names = {aircraft_of(flight): flight.aircraft_name for flight in flights}
+    often = Counter(names.values())
+    shared = {identity: f"{name} ({identity})" for identity, name in names.items() if often[name] > 1}
+    return {identity: (name and shared.get(identity, name)) or identity for identity, name in names.items()}
 
 
 def mixed_up(flights: Sequence[Analyzed]) -> list[str]:

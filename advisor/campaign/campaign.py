@@ -181,7 +181,7 @@ class Campaign:
             no_data=stream.no_data,
             serves=stream.serves,
             instruments=with_fit(
-                together(self._maneuvers, stream.instruments),
+                together((*self._maneuvers, *self._side_maneuvers), stream.instruments),
                 model,
                 (flown.estimate for flown in self._history),
                 self._aircraft,
@@ -298,6 +298,11 @@ class Campaign:
         self._journal.write_of_past(verdict, span.end_s)
         self._journal.write_of_past(self._flight_test.sentence, span.end_s)
         return ManeuverJudged(self._judged[-1], self._flight_test)
+
+    @property
+    def _side_maneuvers(self) -> tuple[Maneuver, ...]:
+        """Lateral manoeuvres, where they were asked for."""
+        return self._lateral.maneuvers if self._lateral is not None else ()
 
     def _judge_lateral(self, maneuver: Maneuver) -> list[LateralJudged]:
         """Estimate and judge a lateral manoeuvre that has just been flown, where that was asked for."""

@@ -37,8 +37,8 @@ class LateralState:
 OF_ELEVATOR = frozenset({"no_maneuver", "no_elevator", "no_alpha"})
 """Codes of problems that concern the elevator's axis alone."""
 NEWEST = 7
-"""Number of newest accepted manoeuvres that are estimated together during the flight. The elevator's axis has
-the same number."""
+"""Number of newest accepted manoeuvres that are estimated together during the flight. The elevator has the
+same number."""
 
 
 class LateralCampaign:
@@ -62,6 +62,11 @@ class LateralCampaign:
         self._flown.append((maneuver, estimate, judge_lateral(maneuver, estimate, self._aircraft)))
         self._state = None
         return self._judged()[-1]
+
+    @property
+    def maneuvers(self) -> tuple[Maneuver, ...]:
+        """Manoeuvres in the order flown."""
+        return tuple(maneuver for maneuver, _, _ in self._flown)
 
     def finish(self) -> None:
         """Take the end of the flight, after which the joint estimate is over all accepted manoeuvres."""

@@ -136,7 +136,7 @@ def _left_alone(start: Start) -> RunningLink | None:
             said = (
                 f"an advisor that ended without being asked to had left {running.master} open; it is closed"
             )
-            again = f"; --resume {running.recording} takes its flight test up" if running.recording else ""
+            again = f"; --resume {running.recording} continues its flight test" if running.recording else ""
             click.echo(said + again, err=True)
     return mine
 

@@ -25,7 +25,7 @@ from advisor.words.problems import ConfigurationError, UnusableInputError
 _OF_A_FLIGHT = {
     "holdout": "--holdout", "out": "--out", "target_system": "--target-system", "marks": "--maneuver",
     "no_marks": "--no-marks", "why": "--why", "prior": "--prior", "exports": "--export",
-    "specification": "--simulator", "figure": "--figure",
+    "specification": "--simulator", "figure": "--figure", "axis": "--axis",
 }  # fmt: skip
 _OF_A_PLAN = {
     "plan": "--plan", "rate_hz": "--rate", "amplitude_deg": "--amplitude-deg", "without": "--without"
@@ -56,6 +56,13 @@ _OF_A_PLAN = {
     help="File for the picture: measured, simulated before and after. Ends in .svg or .png.",
 )
 @export_option()
+@click.option(
+    "--axis",
+    type=click.Choice(["pitch", "lateral"]),
+    default="pitch",
+    show_default=True,
+    help="Axis that is diagnosed. On the lateral one, numbers alone are compared.",
+)
 @click.option("--why", is_flag=True, help="Print what speaks for the answer, and every decision on the way.")
 @click.option(
     "--prior",
@@ -86,6 +93,7 @@ def command(
     out: Path | None,
     figure: Path | None,
     exports: tuple[str, ...],
+    axis: str,
     why: bool,
     prior: str | None,
     foresee: bool,
@@ -104,6 +112,7 @@ def command(
       advisor gap flight.tlog --maneuver +12:+24
       advisor gap flight.tlog --aircraft my-aircraft.yaml --export matlab:short-period.m
       advisor gap flight.tlog --simulator jsbsim:c172p
+      advisor gap flight.tlog --aircraft my-aircraft.yaml --axis lateral
       advisor gap --foresee --aircraft my-aircraft.yaml --rate 20 --without a_z
     """
     _refuse_foreign(foresee)
@@ -119,6 +128,10 @@ def command(
         return print_foresight(aircraft, plan, rate_hz, amplitude_deg, without, as_json)
     if not asked.logs:
         raise ConfigurationError("advisor gap needs at least one log, or --foresee with an aircraft file.")
+    if axis == "lateral":
+        from advisor.cli.side_gap import compare_lateral
+
+        return compare_lateral(asked, aircraft, as_json)
     decided = [decided_on(log, asked.no_marks) for log in asked.logs]
     by_hand = [replace(before, marks=(*asked.marks, *before.marks)) for before in decided]
     if out is not None:

@@ -135,6 +135,7 @@ def command(
             names=[*(printable(log.name) for log in start.earlier), start.campaign.master],
             logs=[*start.earlier, *recordings],
             show=show,
+            aircraft_file=asked.aircraft_file,
         )
     if recordings and show is None and not headless():
         command = ["advisor", "report", *map(str, (*start.earlier, *recordings)), "-o", "flight.html"]

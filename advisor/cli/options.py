@@ -196,7 +196,7 @@ def refuse_unwritable(option: str, path: Path) -> None:
         raise ConfigurationError(f"{option}: {path} is a folder; name a file in it.")
     if not path.parent.is_dir():
         raise ConfigurationError(
-            f"{option}: there is no folder {path.parent}; make it, or name a file elsewhere."
+            f"{option}: there is no folder {path.parent}; make the folder, or name a file elsewhere."
         )
     if not os.access(path if path.exists() else path.parent, os.W_OK):
         raise ConfigurationError(f"{option}: {path} cannot be written to; name a file elsewhere.")

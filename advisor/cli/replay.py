@@ -74,4 +74,5 @@ def command(
         names=series.names,
         logs=series.logs,
         show=show,
+        aircraft_file=asked.aircraft_file,
     )

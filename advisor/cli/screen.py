@@ -52,6 +52,7 @@ def advise(
     names: Sequence[str] = (),
     logs: "Sequence[Path]" = (),
     show: "Show | None" = None,
+    aircraft_file: "Path | None" = None,
 ) -> None:
     """Run a campaign on a source: on screens, as lines of text, or as ``show`` does.
 
@@ -78,6 +79,8 @@ def advise(
         Logs and recordings, flight by flight; panes are saved into the folder of theirs.
     show
         Shows the campaign elsewhere; None: the terminal does, or lines of text come without a terminal.
+    aircraft_file
+        File of the aircraft, for the commands that the screens name.
 
     Raises
     ------
@@ -92,7 +95,7 @@ def advise(
     make_campaign = partial(_campaign, aircraft, target_system, tell, tuple(marks), tuple(names))
     if show is not None or not headless():
         task = ConductorTask(open_source, partial(make_campaign, True), before, kept)
-        (show or partial(_show, tuple(logs)))(task, aircraft, title, tempo)
+        (show or partial(_show, tuple(logs), aircraft_file))(task, aircraft, title, tempo)
     elif kept is not None:
         task = ConductorTask(open_source, partial(make_campaign, False), before, kept)
         narrate(task, click.echo, partial(click.echo, err=True))
@@ -119,13 +122,18 @@ def _campaign(
 
 
 def _show(
-    logs: "Sequence[Path]", task: "ConductorTask", aircraft: Aircraft, title: str, tempo: Tempo | None
+    logs: "Sequence[Path]",
+    aircraft_file: "Path | None",
+    task: "ConductorTask",
+    aircraft: Aircraft,
+    title: str,
+    tempo: Tempo | None,
 ) -> None:
     from advisor.session.remote import RemoteConductor
     from advisor.tui.app import AdvisorApp
     from advisor.tui.settings import load_settings
 
-    app = AdvisorApp(RemoteConductor(task), aircraft, title, tempo, load_settings(), logs)
+    app = AdvisorApp(RemoteConductor(task), aircraft, title, tempo, load_settings(), logs, aircraft_file)
     with in_order():
         app.run()
     if app.failure is not None:

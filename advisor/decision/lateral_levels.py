@@ -1,9 +1,9 @@
 """The lateral requirements of MIL-F-8785C, *Flying Qualities of Piloted Airplanes* (5 November 1980).
 
-Paragraph 3.3.1.1 (Table VI) bounds frequency ω, damping ζ and ζ·ω of the Dutch roll from below. Paragraph
-3.3.1.2 (Table VII) bounds the time constant of the roll mode from above. Paragraph 3.3.1.3 (Table VIII)
-bounds the time in which the bank doubles in the spiral from below. Left out are ζ of 0.4 for air combat and
-ground attack, and the larger ζ·ω where ω²·|φ/β| exceeds 20 rad²/s².
+Paragraph 3.3.1.1 (Table VI) bounds frequency ω, damping ζ and ζ·ω of the Dutch roll from below.
+Paragraph 3.3.1.2 (Table VII) bounds the time constant of the roll mode from above.
+Paragraph 3.3.1.3 (Table VIII) bounds the time in which the spiral doubles the bank from below.
+Left out are ζ of 0.4 for air combat and ground attack, and the larger ζ·ω where ω²·|φ/β| exceeds 20 rad²/s².
 """
 
 from collections.abc import Mapping, Sequence

@@ -21,7 +21,7 @@ from advisor.decision.envelope import (
     too_slow,
     with_gap,
 )
-from advisor.decision.quality import LEAST_R2, WIDEST_PREDICTION_PERCENT
+from advisor.decision.quality import LEAST_R2, WIDEST_PREDICTION_PERCENT, refusals
 from advisor.decision.verdict import UNTRUSTED, Reason
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.estimate import NoEstimate
@@ -63,6 +63,8 @@ def judge_lateral(
     reasons = [*too_slow(needed, period_s), *with_gap(needed, maneuver, period_s)]
     if {reason.code for reason in reasons} & UNTRUSTED:
         return tuple(reasons)
+    if refused := refusals(maneuver.findings):
+        return refused
     reasons += banked(maneuver, max(BANK_DEG, aircraft.limits.bank_deg), "less aileron, or shorter")
     for name in controls:
         reasons += saturated(maneuver, name, getattr(aircraft, name).ends_deg)

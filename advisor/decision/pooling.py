@@ -86,8 +86,8 @@ def posteriors_at_one_speed(estimates: Sequence[Estimate]) -> list[Posterior]:
 
 
 def _alpha_of(estimate: Estimate) -> tuple[float, float]:
-    """Return the range of the measured angle of attack, rad; NaN where not measured."""
-    alpha = estimate.fits[0].get("alpha")
+    """Return the range of the measured angle of attack, rad; NaN where not measured, or without a fit."""
+    alpha = estimate.fits[0].get("alpha") if estimate.fits else None
     return (nan, nan) if alpha is None else (float(alpha.measured.min()), float(alpha.measured.max()))
 
 

@@ -60,7 +60,7 @@ def gap_document(
             **picked(d.kinematics, "finding lag_s lag_std_s scale"),
             "text": d.kinematics.sentence, "bias_rad": d.kinematics.offset.rad,
         },
-        "parameters_changed": [_changed(one) for one in d.derivatives if one.differs],
+        "parameters_changed": [changed_document(one) for one in d.derivatives if one.differs],
         "traces": [
             {
                 **picked(trace, "number channel t"),
@@ -100,7 +100,8 @@ def _of_the_simulator(d: Diagnosis) -> dict[str, Any]:
     }
 
 
-def _changed(one: ComparedDerivative) -> dict[str, Any]:
+def changed_document(one: ComparedDerivative) -> dict[str, Any]:
+    """Return a derivative of the simulator and of the flight."""
     return {
         "derivative": one.name,
         "simulator": one.given,

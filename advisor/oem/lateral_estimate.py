@@ -25,12 +25,12 @@ from advisor.oem.covariance import (
 )
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.extra import Extra
-from advisor.oem.gauss_newton import CONVERGED, FLAT, OVERFLOW, SINGULAR, Optimum, descend
+from advisor.oem.gauss_newton import CONVERGED, FLAT, Optimum, descend
 from advisor.oem.identifiability import LARGEST_ERROR
 from advisor.oem.lateral_instruments import Nuisance, begun, extra_of, moved_by, penalty
 from advisor.oem.lateral_problem import LateralAssembly, LateralProblem, assemble_lateral
 from advisor.oem.lateral_start import lateral_start
-from advisor.oem.solution import contributions_of, noise_floor
+from advisor.oem.solution import contributions_of, noise_floor, refused
 
 SIDE_FORCE_STD = 0.05
 """Standard deviation of Y_p and Y_r about zero, 1. C_Yp and C_Yr of 0.4 give 0.01 for a jet of 15 t and 0.04
@@ -45,6 +45,7 @@ CLOSE_ENOUGH = 1e-7
 """Promised change of log J per sample at which an intermediate search ends."""
 LEAST_SHARE = 0.01
 """Least share by which white noise weighs a prior; data without noise have no colour."""
+_NOTHING_TO_TELL = "The inputs do not excite roll and yaw enough."
 WITHOUT_FORCE = (
     "neither a lateral acceleration nor a sideslip was recorded, so that only the modes are told; record a_y"
 )
@@ -63,7 +64,7 @@ class LateralSolution:
     covariance_cr: FloatArray
     """(15, 15) Cramér-Rao bound."""
     joint: FloatArray
-    """(15 + k, 15 + k) covariance of the derivatives and of the k nuisance parameters, corrected for coloured
+    """(15 + k, 15 + k) covariance of derivatives and of k nuisance parameters. It is corrected for coloured
     residuals and for the scatter between manoeuvres."""
     extra: Extra
     """Nuisance parameters at their values."""
@@ -114,9 +115,8 @@ def solve_lateral(
     first = begun(problem, nuisances)
     start = lateral_start(first)
     fit = _at(first, start, _prior(first, start[0]))
-    refused = _refused(fit.optimum)
-    if refused is not None:
-        return refused
+    if (why := refused(fit.optimum, _NOTHING_TO_TELL)) is not None:
+        return why
     plain = _evaluated(fit, ())
     if isinstance(plain, NoEstimate) or not nuisances:
         return plain
@@ -157,22 +157,6 @@ def _floor(assembly: LateralAssembly) -> FloatArray:
     return np.asarray(np.maximum(noise_floor(assembly), least))
 
 
-def _refused(optimum: Optimum) -> NoEstimate | None:
-    if optimum.status == OVERFLOW:
-        return NoEstimate(
-            "diverged", "The model runs away from its first guess: the record is too long or too noisy."
-        )
-    if optimum.status == SINGULAR:
-        return NoEstimate("singular", "The inputs do not excite roll and yaw enough.")
-    if optimum.status != CONVERGED:
-        return NoEstimate(
-            "not_converged",
-            f"The search for the best fit did not converge in {optimum.iterations} iterations:"
-            " very different values explain this record equally well.",
-        )
-    return None
-
-
 def _descended(begin: _Fit, nuisances: Sequence[Nuisance]) -> _Fit:
     """Minimise the cost over the nuisance parameters, with everything else refitted at each step."""
     best = begin
@@ -205,7 +189,7 @@ def _evaluated(fit: _Fit, nuisances: Sequence[Nuisance]) -> LateralSolution | No
     extra = extra_of(problem, optimum.shared, optimum.local, nuisances)
     effect = influence(assembly, g, optimum.noise, extra, prior)
     if effect is None:
-        return NoEstimate("singular", "The inputs do not excite roll and yaw enough.")
+        return NoEstimate("singular", _NOTHING_TO_TELL)
     free = assembly.free[assembly.free < len(LATERAL.shared)]
     from_priors = (effect.shared_inverse * prior[free, None]).T @ effect.shared_inverse
     from_priors = from_priors + effect.prior_covariance

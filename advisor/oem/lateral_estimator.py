@@ -29,6 +29,8 @@ class LateralEstimate:
     """Lag or delay by name, to its value and standard deviation, s."""
     flown: tuple[str, ...]
     """Controls of the test: ``aileron``, ``rudder``."""
+    scales_with_speed: bool = False
+    """Whether the derivatives hold at their air speed and grow with the measured one."""
 
 
 def estimate_lateral(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> LateralEstimate | NoEstimate:
@@ -62,7 +64,8 @@ def _reported(solution: LateralSolution) -> LateralEstimate:
     )
     modes = lateral_modes(solution.theta, solution.covariance, _trim(solution))
     flown = tuple(name for name in LATERAL.inputs if problem.flies(name))
-    return LateralEstimate(estimate, modes, solution.nuisances, flown)
+    scales = problem.reference_airspeed_m_s is not None
+    return LateralEstimate(estimate, modes, solution.nuisances, flown, scales)
 
 
 def _bands(solution: LateralSolution) -> Mapping[str, float]:

@@ -136,8 +136,9 @@ def extra_of(
 
 
 def _outputs(problem: LateralProblem, shared: FloatArray, local: FloatArray) -> FloatArray:
+    """Return the outputs (N,); NaN from where the model runs away."""
     assembly = assemble_lateral(problem)
-    y = np.empty(len(assembly.z))
+    y = np.full(len(assembly.z), np.nan)
     respond_axis(assembly.grid, shared, local, y, np.empty((0, len(shared) + local.shape[1])))
     return y
 

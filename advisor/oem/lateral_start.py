@@ -16,6 +16,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.motion import integrated
 from advisor.model.lateral import LATERAL
 from advisor.oem.lateral_problem import LateralProblem, LateralRecord
+from advisor.oem.regression import Equations, regressed
 
 _GUESSED_Y_BETA = -0.3
 """Y_β, 1/s, where neither a vane nor a_y is measured: jets have -0.2, small aircraft -0.5."""
@@ -33,16 +34,18 @@ def lateral_start(problem: LateralProblem) -> tuple[FloatArray, FloatArray]:
     for letter in "LN":
         output = {"L": "p", "N": "r"}[letter]
         columns = [k for k, name in enumerate(names.shared) if name.startswith(f"{letter}_")]
-        found, own = _regressed([(m.integrals(letter), m.signals[output], m.own()) for m in prepared])
+        found, own = regressed([Equations(m.integrals(letter), m.signals[output], m.own()) for m in prepared])
         shared[columns] = found
-        local[:, names.local.index(f"{letter}_0")] = own
+        local[:, names.local.index(f"{letter}_0")] = [coefficients[0] for coefficients in own]
     columns = [k for k, name in enumerate(names.shared) if name.startswith("Y_")]
     forces = [m.force() for m in prepared if m.has_force]
     if forces:
-        found, own = _regressed(forces)
+        found, own = regressed(forces)
         kept = np.array([name not in ("Y_p", "Y_r") for name in np.array(names.shared)[columns]])
         shared[columns] = np.where(kept, found, 0.0)
-        local[[m.has_force for m in prepared], names.local.index("Y_0")] = own
+        local[[m.has_force for m in prepared], names.local.index("Y_0")] = [
+            coefficients[0] for coefficients in own
+        ]
     else:
         shared[columns[0]] = _GUESSED_Y_BETA
     for i, motion in enumerate(prepared):
@@ -98,8 +101,8 @@ class _Motion:
         since = self.t - self.t[0]
         return np.column_stack([integrated(self.t, self.ratio**2), np.ones(len(since)), since**2])
 
-    def force(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return columns (n, 5) of Y, the force per mass and speed (n,), and the own columns."""
+    def force(self) -> Equations:
+        """Return the equations of Y: five columns, the force per mass and speed, and the own columns."""
         columns = np.column_stack(
             [
                 self.ratio**term.power * self.signals[term.factor]
@@ -108,7 +111,7 @@ class _Motion:
             ]
         )
         since = self.t - self.t[0]
-        return columns, self.force_rate, np.column_stack([self.ratio, since, since**2])
+        return Equations(columns, self.force_rate, np.column_stack([self.ratio, since, since**2]))
 
 
 def _leaking(t: FloatArray, rate: FloatArray) -> FloatArray:
@@ -117,21 +120,3 @@ def _leaking(t: FloatArray, rate: FloatArray) -> FloatArray:
     for i, step in enumerate(np.diff(t)):
         beta[i + 1] = beta[i] + step * (_GUESSED_Y_BETA * beta[i] + 0.5 * (rate[i] + rate[i + 1]))
     return beta
-
-
-def _regressed(parts: list[tuple[FloatArray, FloatArray, FloatArray]]) -> tuple[FloatArray, FloatArray]:
-    """Return the common coefficients (k,), and the first own coefficient of each manoeuvre (m,).
-
-    Each part holds common columns (n, k), the left side (n,) and own columns (n, l). The own columns are
-    removed from both by regression, manoeuvre by manoeuvre.
-    """
-    left, right = [], []
-    for common, y, own in parts:
-        basis, _ = np.linalg.qr(own)
-        left.append(common - basis @ (basis.T @ common))
-        right.append(y - basis @ (basis.T @ y))
-    stacked = np.concatenate(left)
-    size = np.maximum(np.linalg.norm(stacked, axis=0), 1e-12)
-    found = np.linalg.lstsq(stacked / size, np.concatenate(right), rcond=1e-6)[0] / size
-    own_first = [np.linalg.lstsq(own, y - common @ found, rcond=None)[0][0] for common, y, own in parts]
-    return found, np.array(own_first)

@@ -97,19 +97,27 @@ def solve(
     flat : promised change of log J per sample at which Gauss-Newton stops.
     """
     assembly, optimum = search(problem, method=method, begin=begin, flat=flat)
+    return refused(optimum, NOTHING_TO_TELL) or evaluate(problem, assembly, optimum, noise=noise)
+
+
+def refused(optimum: Optimum, nothing_to_tell: str) -> NoEstimate | None:
+    """Return why a search found no optimum; None where it found one.
+
+    ``nothing_to_tell`` is the sentence for inputs that do not excite the motion enough.
+    """
     if optimum.status == OVERFLOW:
         return NoEstimate(
             "diverged", "The model runs away from its first guess: the record is too long or too noisy."
         )
     if optimum.status == SINGULAR:
-        return NoEstimate("singular", NOTHING_TO_TELL)
+        return NoEstimate("singular", nothing_to_tell)
     if optimum.status != CONVERGED:
         text = (
             f"The search for the best fit did not converge in {optimum.iterations} iterations:"
             " very different values explain this record equally well."
         )
         return NoEstimate("not_converged", text)
-    return evaluate(problem, assembly, optimum, noise=noise)
+    return None
 
 
 def search(

@@ -16,6 +16,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.motion import integrated
 from advisor.model.response import N_LOCAL, N_SHARED
 from advisor.oem.problem import OutputErrorProblem, Record
+from advisor.oem.regression import Equations, regressed
 from advisor.oem.rows import Signal
 from advisor.oem.surface import Servo
 
@@ -39,18 +40,15 @@ def start(
     shared = np.zeros(N_SHARED)
     for output, first in (("alpha", 0), ("q", 1)):
         moment = output == "q"
-        stacks, sides, own = [], [], []
+        parts = []
         for record in problem.records:
             side = _usable(record.outputs["q"] if moment else record.alpha)
             common, constants = _regressors(record, problem, side.t, moment)
-            known = np.zeros(len(side.t))
             if lift_from_alpha_only and not moment:
-                common, known = common[:, :1], common[:, 1]
-            gain = np.linalg.pinv(constants)
-            stacks.append(common - constants @ (gain @ common))
-            sides.append(side.y - known - constants @ (gain @ (side.y - known)))
-            own.append((gain, common, side.y - known))
-        found = np.linalg.lstsq(np.concatenate(stacks), np.concatenate(sides), rcond=1e-12)[0]
+                parts.append(Equations(common[:, :1], side.y - common[:, 1], constants))
+            else:
+                parts.append(Equations(common, side.y, constants))
+        found, own = regressed(parts)
         if moment:
             shared[3:6] = found
         elif lift_from_alpha_only:
@@ -58,9 +56,7 @@ def start(
         else:
             shared[0:3] = found
             shared[1] -= 1.0
-        for m, (gain, common, y) in enumerate(own):
-            initial, constant = gain @ (y - common @ found)
-            local[m, 2 + first], local[m, first] = initial, constant
+        local[:, [2 + first, first]] = own
     for m, record in enumerate(problem.records):
         if "theta" in record.outputs:
             local[m, 4] = _usable(record.outputs["theta"]).y[0]
@@ -75,7 +71,7 @@ def _from_force(problem: OutputErrorProblem) -> tuple[FloatArray, FloatArray]:
     is Z_α; a parabola in time removes its drift.
     """
     shared, local = np.zeros(N_SHARED), np.zeros((len(problem.records), N_LOCAL))
-    moments, rates, slopes, forces, own = [], [], [], [], []
+    moments, slopes, forces, levels = [], [], [], []
     for record in problem.records:
         q, force = _usable(record.outputs["q"]), _usable(record.outputs["a_z"])
         surface, ratio = _surface(record, problem.servo), _ratio(record, problem, q.t)
@@ -85,25 +81,21 @@ def _from_force(problem: OutputErrorProblem) -> tuple[FloatArray, FloatArray]:
             _integral(Signal(x.t, x.y * ratio.at(x.t) ** power), begin, q.t)
             for x, power in ((n, 1), (q, 1), (surface, 2))
         ]
-        common = np.column_stack(columns)
         constants = np.column_stack([np.ones(len(q.t)), _integral(Signal(ratio.t, ratio.y**2), begin, q.t)])
-        gain = np.linalg.pinv(constants)
-        moments.append(common - constants @ (gain @ common))
-        rates.append(q.y - constants @ (gain @ q.y))
+        moments.append(Equations(np.column_stack(columns), q.y, constants))
         alpha, lift = record.alpha.at(n.t), n.y / ratio.at(n.t)
         drift = np.vander((n.t - n.t.mean()) / max(float(np.ptp(n.t)), 1e-9), 3)
         free = np.linalg.pinv(drift)
         slopes.append(alpha - drift @ (free @ alpha))
         forces.append(lift - drift @ (free @ lift))
-        own.append((gain, common, q.y, float(np.mean(lift)), float(np.mean(alpha)), float(alpha[0])))
-    stiffness, damping, control = np.linalg.lstsq(
-        np.concatenate(moments), np.concatenate(rates), rcond=1e-12
-    )[0]
+        levels.append((float(np.mean(lift)), float(np.mean(alpha)), float(alpha[0])))
+    (stiffness, damping, control), own = regressed(moments)
     moved, lifted = np.concatenate(slopes), np.concatenate(forces)
     z_alpha = min(float(moved @ lifted) / max(float(moved @ moved), 1e-300), 0.0)
     shared[[0, 3, 4, 5]] = z_alpha, stiffness * z_alpha, damping, control
-    for m, (gain, common, q_m, lift_mean, alpha_mean, alpha_first) in enumerate(own):
-        initial, constant = gain @ (q_m - common @ np.array([stiffness, damping, control]))
+    for m, ((initial, constant), (lift_mean, alpha_mean, alpha_first)) in enumerate(
+        zip(own, levels, strict=True)
+    ):
         z_0 = lift_mean - z_alpha * alpha_mean
         local[m, :4] = z_0, constant + stiffness * z_0, alpha_first, initial
     return shared, local

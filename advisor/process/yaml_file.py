@@ -76,7 +76,9 @@ def _look_over(text: str) -> None:
             raise _Refused(f"more than {_MOST_VALUES} values, which no file of this kind needs")
         line = event.start_mark.line + 1  # type: ignore[union-attr]
         if isinstance(event, yaml.AliasEvent):
-            raise _Refused(f"line {line}: the reference *{event.anchor} is not read; write its content out")
+            raise _Refused(
+                f"line {line}: the reference *{event.anchor} is not read; write the values there instead"
+            )
         if isinstance(event, yaml.CollectionStartEvent):
             depth += 1
         elif isinstance(event, yaml.CollectionEndEvent):

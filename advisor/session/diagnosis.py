@@ -30,6 +30,8 @@ class GapTask:
 
     logs: tuple[Path, ...]
     aircraft: Aircraft
+    aircraft_file: Path | None = None
+    """File of the aircraft, for the commands of the next steps; None without one."""
 
     def done(self) -> Document:
         """Diagnose here, and return ``advisor.gap/1`` with the next steps."""
@@ -50,7 +52,8 @@ class GapTask:
         finally:
             if simulator is not None:
                 simulator.close()
-        steps = next_steps(found, list(map(str, self.logs)), None, self.aircraft.simulator)
+        file = str(self.aircraft_file) if self.aircraft_file else None
+        steps = next_steps(found, list(map(str, self.logs)), file, self.aircraft.simulator)
         return {**gap_document(found), "next": plain(steps)}
 
 

@@ -32,6 +32,8 @@ class View:
     """Number of the manoeuvre chosen by hand; None: always the newest."""
     logs: tuple[Path, ...] = ()
     """Logs and recordings, flight by flight, next to which files are written. Empty: the current folder."""
+    aircraft_file: Path | None = None
+    """Aircraft file, for commands to type afterwards; None without one."""
     elevator: "View | None" = None
     """View of the elevator's axis, where this one shows roll and yaw. None: this one shows the elevator's."""
 
@@ -57,7 +59,11 @@ class View:
 
 
 def view_before_first(
-    aircraft: Aircraft, title: str, tempo: Tempo | None, logs: tuple[Path, ...] = ()
+    aircraft: Aircraft,
+    title: str,
+    tempo: Tempo | None,
+    logs: tuple[Path, ...] = (),
+    aircraft_file: Path | None = None,
 ) -> View:
     """Return the view before the first report: nothing flown, nothing heard."""
     plan = aircraft.campaign
@@ -73,4 +79,5 @@ def view_before_first(
         flight_test=verdict,
         model=None,
     )
-    return View(state, LinkHealth("waiting", f"Opening {title}."), None, aircraft, title, tempo, logs=logs)
+    waiting = LinkHealth("waiting", f"Opening {title}.")
+    return View(state, waiting, None, aircraft, title, tempo, logs=logs, aircraft_file=aircraft_file)

@@ -1,7 +1,7 @@
 """An FMU for model exchange, which has equations but no solver: SciPy integrates the states.
 
-The states are integrated from one event to the next. An event is a crossing of an indicator or a time that the
-FMU has named. The FMU may also ask for one after a step (FMI 2.0.4, 3.2; FMI 3.0.2, 3.2).
+The states are integrated from one event to the next. An event is a crossing of an indicator or a time
+that the FMU has named. The FMU may also ask for one after a step (FMI 2.0.4, 3.2; FMI 3.0.2, 3.2).
 """
 
 from ctypes import POINTER, c_double

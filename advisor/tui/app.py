@@ -62,6 +62,8 @@ class AdvisorApp(replay_actions.ReplayActions, link_actions.LinkActions, HandAct
         Theme, first screen, keys.
     logs : sequence of Path
         Logs and recordings, flight by flight, next to which panes are saved. Empty: in the current folder.
+    aircraft_file : Path, optional
+        File of the aircraft, for the commands that the gap's pane names.
     """
 
     TITLE = "inflight advisor"
@@ -98,10 +100,11 @@ class AdvisorApp(replay_actions.ReplayActions, link_actions.LinkActions, HandAct
         tempo: Tempo | None = None,
         settings: Settings | None = None,
         logs: Sequence[Path] = (),
+        aircraft_file: Path | None = None,
     ) -> None:
         super().__init__()
         self.settings = settings or Settings()
-        self.view = view_before_first(aircraft, title, tempo, tuple(logs))
+        self.view = view_before_first(aircraft, title, tempo, tuple(logs), aircraft_file)
         self.conductor = conductor
         self.failure: BaseException | None = None
         """Error for the caller: the thread's failure, or the reason for which the input could not be used."""

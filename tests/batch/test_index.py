@@ -59,7 +59,7 @@ def test_a_row_is_a_flight_with_its_day_and_what_came_of_it(page: Page) -> None:
         "1",
         "/logs/of a/campaign/flight-1.bin",
         "2027-01-16 08:00",
-        "Talon (a.yaml px4 system 1)",
+        "Talon",
         "1 of 2",
         "Continue: the criterion is 40 %.",
     ]
@@ -139,3 +139,7 @@ def test_a_flight_with_a_report_links_to_its_page() -> None:
     page = Page.read(index_page(FLIGHTS, {log: "reports/a b.html"}))
     assert [value for _, name, value in page.attributes if name == "href"] == ["reports/a%20b.html"]
     assert page.tables["flights"][2][1] == str(log)
+
+
+def test_an_aircraft_is_called_by_its_name_alone_where_no_other_shares_it() -> None:
+    assert "<h2>Talon</h2>" in index_page([flown(1)])

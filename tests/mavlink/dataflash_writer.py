@@ -21,7 +21,7 @@ def _definition(number: int, name: str, form: str, columns: str) -> bytes:
     return _HEAD + b"\x80" + body
 
 
-def _records(log: bytes) -> list[tuple[str, bytes]]:
+def records_of(log: bytes) -> list[tuple[str, bytes]]:
     by_number = {number: name for name, (number, _, _) in FORMATS.items()}
     lengths = {
         number: 3 + sum(_SIZES[character] for character in form) for number, form, _ in FORMATS.values()
@@ -86,7 +86,7 @@ def rewritten(
     out += [_definition(40, "IMU2", *apart), _definition(41, "IMU", *apart)] if good_imu_apart else []
     for k, (name, (form, columns, _)) in enumerate((add or {}).items()):
         out.append(_definition(50 + k, name, form, columns))
-    for name, record in _records(log):
+    for name, record in records_of(log):
         counted[name] += 1
         if name == "FMT" or name in drop or counted[name] % (every or {}).get(name, 1):
             continue

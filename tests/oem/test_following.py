@@ -9,7 +9,6 @@ from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import estimate
 from advisor.oem.following import Follower
 from advisor.oem.identifiability import natural_size
-from advisor.oem.warm import warm
 from advisor.report.document import identifiability
 from tests.oem.builders import JET, UAV, elevator_3211, flown, maneuver, trim_alpha, trim_elevator
 
@@ -144,7 +143,3 @@ def test_errors_that_are_not_correlated_need_no_words():
     found = estimate(flown(JET, amplitude=0.1, noise=0.02), AIRCRAFT)
     assert found.correlated == ()
     assert not any("correlated" in note for note in found.notes)
-
-
-def test_everything_can_be_compiled_ahead():
-    warm()

@@ -123,7 +123,7 @@ def test_without_a_force_the_intervals_hold_a_vane_of_unknown_arm():
     for name in ("Z_alpha", "M_alpha", "M_q", "M_delta_e"):
         true = UAV[PARAMETERS.index(name)]
         assert abs(found.value(name) - true) < 1.96 * found.std[PARAMETERS.index(name)]
-    assert any("give alpha.vane_arm_m" in note for note in found.notes)
+    assert any("Give alpha.vane_arm_m" in note for note in found.notes)
 
 
 def test_without_a_force_a_known_arm_or_a_computed_alpha_keeps_the_intervals_narrow():

@@ -11,7 +11,7 @@ from advisor.oem.lateral_estimate import (
     lateral_not_identifiable,
     solve_lateral,
 )
-from advisor.oem.lateral_instruments import FARTHEST_S, Nuisance
+from advisor.oem.lateral_instruments import FARTHEST_S, Nuisance, extra_of
 from advisor.oem.lateral_problem import LateralProblem
 from advisor.oem.rows import Signal
 from tests.oem.lateral_builders import JET, aileron_doublet, both_inputs, flown, rudder_doublet, steps, vector
@@ -136,3 +136,12 @@ def test_an_unknown_boom_is_estimated_and_leaves_the_yaw_damping_true():
     arm, std = solution.nuisances["beta_arm_m"]
     assert abs(arm - ARM_M) < 3.0 * std < 2.0
     assert solution.theta[place("N_r")] == pytest.approx(JET["N_r"], abs=0.02)
+
+
+def test_where_the_model_runs_away_a_nuisance_has_no_derivative_instead_of_an_arbitrary_one():
+    problem = both_inputs(JET, np.random.default_rng(1))
+    unstable = vector({**JET, "L_p": 60.0})
+    local = np.ones((len(problem.records), len(LATERAL.names.local)))
+    command = Nuisance("command", "", Prior(0.0, 0.01))
+    columns = extra_of(problem, unstable, local, [command]).columns
+    assert np.isnan(columns[-1, 0])

@@ -23,13 +23,13 @@ def test_the_ellipse_holds_95_percent_of_many_draws() -> None:
     centre = document()
     x, y = (np.log(curve) for curve in ellipse(centre))
     middle = np.log([centre["n_alpha"]["value"], centre["natural_frequency"]["value"]])
-    drawn = THETA * (1.0 + 0.02 * rng.standard_normal((2000, len(THETA))))
+    drawn = THETA * (1.0 + 0.02 * rng.standard_normal((500, len(THETA))))
     one = [flying_qualities(estimate(theta), TRUE, HEAVY).qualities for theta in drawn]
     points = np.log([[q["n_alpha"].value, q["natural_frequency"].value] for q in one])
     # The ellipse is the image of a circle, whose points at 0 and 90 degrees are two conjugate radii.
     radii = np.column_stack([[x[0], y[0]], [x[45], y[45]]]) - middle[:, None]
     inside = np.linalg.norm(np.linalg.solve(radii, (points - middle).T), axis=0) < 1.0
-    assert np.mean(inside) == pytest.approx(0.95, abs=0.02)
+    assert np.mean(inside) == pytest.approx(0.95, abs=0.03)
 
 
 def test_the_ellipse_reaches_beyond_the_interval_of_each_quality_alone() -> None:

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -60,3 +61,10 @@ def test_the_other_process_gives_a_document_also_of_a_log_that_does_not_exist(tm
     assert found["schema"] == "advisor.gap/1"
     assert not found["usable"]
     assert found["problems"]
+
+
+def test_the_commands_of_the_steps_name_the_aircraft_file(monkeypatch: pytest.MonkeyPatch) -> None:
+    compared = SimpleNamespace(diagnosis=diagnosis(gap=GAP))
+    monkeypatch.setattr("advisor.analysis.gap.compare_logs", lambda *_, **__: compared)
+    task = GapTask((Path("flight.tlog"),), flights.AIRCRAFT, Path("mine.yaml"))
+    assert "--aircraft mine.yaml" in task.done()["next"][0]["command"]

@@ -59,11 +59,11 @@ def rate_against_attitude(channels: Channels) -> Evidence:
 
     The delay in s is that of the pitch rate relative to the attitude. Empty where the angle hardly moves.
     """
-    if not _usable(channels, "q", "theta"):
+    if not usable(channels, "q", "theta"):
         return {}
     q, theta = channels["q"], channels["theta"]
     bank = bank_at(q.t, channels)
-    pitching, yawing = q.y * np.cos(bank), _at("r", q.t, channels) * np.sin(bank)
+    pitching, yawing = q.y * np.cos(bank), channel_at("r", q.t, channels) * np.sin(bank)
     if np.ptp(theta.y) < MOVED_RAD and np.ptp(np.cumsum(pitching)) / q.rate_hz < MOVED_RAD:
         return {}
     if float(np.std(yawing)) > _YAW_SHARE * float(np.std(pitching)):
@@ -83,11 +83,11 @@ def force_against_climb(channels: Channels) -> Evidence:
     The climb rate is the integral of the vertical force less gravity. A climb rate may be late and is never
     early, so that the force is at least this late.
     """
-    if not _usable(channels, "a_x", "a_z", "theta", "climb_rate"):
+    if not usable(channels, "a_x", "a_z", "theta", "climb_rate"):
         return {}
     force, climb = channels["a_z"], channels["climb_rate"]
-    theta, bank = _at("theta", force.t, channels), bank_at(force.t, channels)
-    along = _at("a_x", force.t, channels)
+    theta, bank = channel_at("theta", force.t, channels), bank_at(force.t, channels)
+    along = channel_at("a_x", force.t, channels)
     rising = along * np.sin(theta) - force.y * np.cos(theta) * np.cos(bank) - GRAVITY_M_S2
     fit = fit_delays(climb.t, climb.y, [Summand(force.t, rising)])
     if fit is None:
@@ -97,20 +97,20 @@ def force_against_climb(channels: Channels) -> Evidence:
 
 def force_against_gravity(channels: Channels) -> Evidence:
     """Return ``a_z_scale``, the mean vertical specific force over that of the motion; empty where unknown."""
-    if not _usable(channels, "a_z", "theta"):
+    if not usable(channels, "a_z", "theta"):
         return {}
     force, t = channels["a_z"], channels["a_z"].t
     length_s = float(t[-1] - t[0])
     if length_s < _SHORTEST_S:
         return {}
-    theta, bank = _at("theta", t, channels), bank_at(t, channels)
-    down = force.y * np.cos(theta) * np.cos(bank) - _at("a_x", t, channels) * np.sin(theta)
+    theta, bank = channel_at("theta", t, channels), bank_at(t, channels)
+    down = force.y * np.cos(theta) * np.cos(bank) - channel_at("a_x", t, channels) * np.sin(theta)
     climb = channels.get("climb_rate")
     gained, unsure = 0.0, _CLIMB_M_S
     if climb is not None and len(climb) > 1:
         gained = float(climb.y[-1] - climb.y[0])
     else:
-        unsure += float(np.max(_at("airspeed", t, channels))) * abs(float(theta[-1] - theta[0]))
+        unsure += float(np.max(channel_at("airspeed", t, channels))) * abs(float(theta[-1] - theta[0]))
     per_g = 1.0 / (length_s * GRAVITY_M_S2)
     motion = 1.0 + gained * per_g
     mean = float(np.sum(np.diff(t) * (down[1:] + down[:-1])) / (2.0 * length_s))
@@ -124,12 +124,15 @@ def speed_against_force(channels: Channels) -> Evidence:
 
     V̇ = a_x cos α + a_z sin α − g sin γ holds in steadily moving air. An error of α cancels to first order.
     """
-    if not _usable(channels, "a_x", "a_z", "theta", "airspeed"):
+    if not usable(channels, "a_x", "a_z", "theta", "airspeed"):
         return {}
     force, speed = channels["a_z"], channels["airspeed"]
-    t, alpha = force.t, np.clip(_at("alpha", force.t, channels), -_LARGEST_ALPHA_RAD, _LARGEST_ALPHA_RAD)
-    theta = _at("theta", t, channels)
-    rate = speed_rate(_at("a_x", t, channels), force.y, theta, alpha, bank_at(t, channels))
+    t, alpha = (
+        force.t,
+        np.clip(channel_at("alpha", force.t, channels), -_LARGEST_ALPHA_RAD, _LARGEST_ALPHA_RAD),
+    )
+    theta = channel_at("theta", t, channels)
+    rate = speed_rate(channel_at("a_x", t, channels), force.y, theta, alpha, bank_at(t, channels))
     fit = fit_delays(speed.t, speed.y, [Summand(t, rate)], drift=1)
     if fit is None:
         return {}
@@ -203,22 +206,22 @@ def _parts(
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray] | None:
     """Return stamps, pitch rate and turning rate of the path, then stamps and values of α; None without
     them."""
-    if not _usable(channels, "q", "theta", "a_z", "alpha", "airspeed"):
+    if not usable(channels, "q", "theta", "a_z", "alpha", "airspeed"):
         return None
     q, source = channels["q"], channels["alpha"]
-    t, speed = q.t, _at("airspeed", q.t, channels)
+    t, speed = q.t, channel_at("airspeed", q.t, channels)
     if np.min(speed) < SLOWEST_FLIGHT_M_S or np.ptp(channels["theta"].y) < MOVED_RAD:
         return None
     t_alpha, alpha = renewed(source.t, source.y)
-    theta, bank = _at("theta", t, channels), bank_at(t, channels)
-    along = _at("a_x", t, channels) if "a_x" in channels else GRAVITY_M_S2 * np.sin(theta)
+    theta, bank = channel_at("theta", t, channels), bank_at(t, channels)
+    along = channel_at("a_x", t, channels) if "a_x" in channels else GRAVITY_M_S2 * np.sin(theta)
     # A reading in another unit may give any angle; the force's direction takes a possible one.
     angle = np.clip(np.interp(t, t_alpha, alpha), -_LARGEST_ALPHA_RAD, _LARGEST_ALPHA_RAD)
-    turning = path_turning(along, _at("a_z", t, channels), theta, angle, bank) / speed
+    turning = path_turning(along, channel_at("a_z", t, channels), theta, angle, bank) / speed
     return t, q.y, turning, t_alpha, alpha
 
 
-def _usable(channels: Channels, *names: str) -> bool:
+def usable(channels: Channels, *names: str) -> bool:
     """Return whether all these channels hold enough samples without a long gap."""
     return all(
         name in channels
@@ -228,7 +231,7 @@ def _usable(channels: Channels, *names: str) -> bool:
     )
 
 
-def _at(name: str, t: FloatArray, channels: Channels) -> FloatArray:
+def channel_at(name: str, t: FloatArray, channels: Channels) -> FloatArray:
     """Return a channel at times ``t`` in s, shape (n,); zero where the log has none."""
     channel = channels.get(name)
     return np.zeros(len(t)) if channel is None or len(channel) == 0 else np.interp(t, channel.t, channel.y)

@@ -5,7 +5,7 @@ clocks, angle of attack, air speed.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import degrees, pi
 
 import numpy as np
@@ -22,12 +22,23 @@ from advisor.flight.instruments.evidence import (
     speed_against_force,
 )
 from advisor.flight.instruments.hypotheses import ANY, Weighed, weigh
-from advisor.flight.instruments.measured import Evidence, Measured, pooled
-from advisor.flight.signals.instrument_finding import InstrumentFinding, Quantity
+from advisor.flight.instruments.measured import Evidence, Measured
+from advisor.flight.instruments.work import (
+    ALLOWED,
+    FILTER_S,
+    PLAIN,
+    REVERSED,
+    SIGMAS,
+    Examined,
+    Work,
+    be_late,
+    half_intervals,
+    hold_clocks,
+    with_error,
+)
+from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.record import Channel
-from advisor.words.quantiles import NORMAL_95
 
-REVERSED = "reversed"
 _GYRO_WIDTH = 0.05
 """Standard deviation of the ratio of pitch angle and integrated pitch rate, as a share. The manoeuvres on
 record have 0.92 to 1.05."""
@@ -36,12 +47,7 @@ _FORCE_WIDTH = 0.05
 _AIRSPEED_WIDTH, _AIRSPEED_MEAN = 0.12, 0.95
 """Ratio of a logged to the true air speed: its standard deviation and mean. An indicated air speed is 1.00 of
 the true one at sea level and 0.86 at 3,000 m; position error is some 5 %."""
-FILTER_S = 0.015
-"""Longest delay, s, that an autopilot's filters give a gyro or an accelerometer: 11 ms for ArduPlane's 20 Hz,
-15 ms for 15 Hz."""
-_SIGMAS = 3.0
-"""Distance from the innocent range, in standard deviations, of a delay that contradicts."""
-_FORCE_UNITS_M_S2 = {
+FORCE_UNITS_M_S2 = {
     "m/s^2": 1.0,
     "g": GRAVITY_M_S2,
     "mg": GRAVITY_M_S2 / 1000.0,
@@ -50,18 +56,6 @@ _FORCE_UNITS_M_S2 = {
 """Units in which accelerometers are sent, m/s². Counts are those of 16-bit sensors with ranges of 16, 8, 4
 and 2 g."""
 _SPEED_UNITS_M_S = {"knots": 0.514444, "km/h": 1.0 / 3.6, "mph": 0.44704, "ft/s": 0.3048}
-
-
-@dataclass(frozen=True, slots=True)
-class Examined:
-    """Result of an examination."""
-
-    channels: Mapping[str, Channel]
-    """Channels with the errors removed that are marked as used in ``findings``."""
-    evidence: Evidence
-    """Evidence of this record alone."""
-    findings: tuple[InstrumentFinding, ...]
-    """Contradictions of the instruments, by all evidence."""
 
 
 def examine(channels: Mapping[str, Channel], earlier: Evidence | None = None) -> Examined:
@@ -74,64 +68,16 @@ def examine(channels: Mapping[str, Channel], earlier: Evidence | None = None) ->
     earlier
         Pooled evidence of earlier records of the same instruments.
     """
-    work = _Work(dict(channels), earlier or {})
-    if _attitude_and_rate(work) and _force_unit(work):
-        _clock_of_rate(work)
+    work = Work(dict(channels), earlier or {})
+    if _attitude_and_rate(work) and hold_force_unit(work):
+        hold_clocks(work, "q", "theta")
         if _speed_unit(work):
             _alpha_and_force(work)
         _force_behind_climb(work)
     return Examined(work.channels, work.evidence, tuple(work.findings))
 
 
-class _Work:
-    """Channels so far corrected, with evidence and findings so far."""
-
-    def __init__(self, channels: dict[str, Channel], earlier: Evidence) -> None:
-        self.channels = channels
-        self._earlier = earlier
-        self.evidence: dict[str, Measured] = {}
-        self.findings: list[InstrumentFinding] = []
-
-    def has(self, *names: str) -> bool:
-        """Return whether the record holds these channels."""
-        return all(name in self.channels and len(self.channels[name]) > 1 for name in names)
-
-    def learn(self, new: Evidence) -> Mapping[str, Measured]:
-        """Take evidence; return all evidence, pooled with the earlier."""
-        self.evidence |= new
-        return pooled((self._earlier, self.evidence))
-
-    def shift(self, name: str, by_s: float) -> None:
-        """Set the stamps of a channel earlier."""
-        if name in self.channels:
-            self.channels[name] = replace(self.channels[name], t=self.channels[name].t - by_s)
-
-    def divide(self, name: str, by: float) -> None:
-        """Divide a channel's values."""
-        if name in self.channels:
-            self.channels[name] = replace(self.channels[name], y=self.channels[name].y / by)
-
-    def contradict(
-        self,
-        channel: str,
-        quantity: Quantity,
-        stated: float | str | None,
-        found: float | str,
-        measured: Measured,
-        text: str,
-        fix: str,
-        used: bool = False,
-        removed_s: float = 0.0,
-    ) -> None:
-        """Add a contradiction."""
-        self.findings.append(
-            InstrumentFinding(
-                channel, quantity, stated, found, measured.std, True, text, fix, used, removed_s
-            )
-        )
-
-
-def _attitude_and_rate(work: _Work) -> bool:
+def _attitude_and_rate(work: Work) -> bool:
     """Hold the pitch rate against the attitude; return whether sense and unit agree."""
     known = work.learn(rate_against_attitude(work.channels)).get("theta_scale")
     if known is None or not work.has("q", "theta"):
@@ -141,10 +87,10 @@ def _attitude_and_rate(work: _Work) -> bool:
     )
     if not weighed.contradicts:
         return True
-    told = f"the pitch angle moves {_with_error(known)} times as far as the pitch rate says"
+    told = f"the pitch angle moves {with_error(known)} times as far as the pitch rate says"
     if weighed.best == REVERSED:
         channel = "theta" if rate_moves_alpha(work.channels) else "q"
-        name = _PLAIN[channel]
+        name = PLAIN[channel]
         work.contradict(
             channel, "sign", "nose up", "nose down", known, f"{name} has the wrong sign: {told}",
             f"check the sign of {name}, positive nose up",
@@ -158,27 +104,32 @@ def _attitude_and_rate(work: _Work) -> bool:
         channel, _, unit = weighed.best.partition(" in ")
         stated = {"q": "rad/s", "theta": "rad"}[channel]
         work.contradict(
-            channel, "unit", stated, unit, known, f"{_PLAIN[channel]} is in {unit}: {told}",
-            f"send {_PLAIN[channel]} in {stated}",
+            channel, "unit", stated, unit, known, f"{PLAIN[channel]} is in {unit}: {told}",
+            f"send {PLAIN[channel]} in {stated}",
         )  # fmt: skip
     return False
 
 
-def _force_unit(work: _Work) -> bool:
+def stated_force_unit(source: str) -> str:
+    """Return the unit that the definition of an accelerometer's message states."""
+    return "m/s^2" if source.startswith("HIGHRES_IMU") else "mg"
+
+
+def hold_force_unit(work: Work) -> bool:
     """Hold the mean vertical force against gravity, and correct a known unit or sense; return whether the
     force has a known unit."""
     known = work.learn(force_against_gravity(work.channels)).get("a_z_scale")
     if known is None or not work.has("a_z"):
         return True
     source = work.channels["a_z"].source
-    stated = "m/s^2" if source.startswith("HIGHRES_IMU") else "mg"
-    units = {name: _FORCE_UNITS_M_S2[stated] / size for name, size in _FORCE_UNITS_M_S2.items()}
+    stated = stated_force_unit(source)
+    units = {name: FORCE_UNITS_M_S2[stated] / size for name, size in FORCE_UNITS_M_S2.items()}
     factors = {name: factor for name, factor in units.items() if name != stated}
     factors |= {f"{REVERSED}, {name}": -factor for name, factor in units.items()}
     weighed = weigh(known, factors, _FORCE_WIDTH)
     if not weighed.contradicts:
         return True
-    told = f"in the mean it reads {_with_error(known)} g where the motion is 1 g"
+    told = f"in the mean it reads {with_error(known)} g where the motion is 1 g"
     if weighed.best == ANY:
         work.contradict(
             "a_z", "scale", 1.0, known.value, known, f"a_z has an unknown unit: {told}",
@@ -194,28 +145,12 @@ def _force_unit(work: _Work) -> bool:
         f"send {source} in {stated}, z down", used=True,
     )  # fmt: skip
     work.divide("a_z", weighed.factor)
-    work.divide("a_x", abs(weighed.factor))
+    for name in ("a_x", "a_y"):
+        work.divide(name, abs(weighed.factor))
     return True
 
 
-def _clock_of_rate(work: _Work) -> None:
-    """Hold the clock of the pitch rate against that of the attitude, and set the late one earlier."""
-    late = work.learn({}).get("q_delay")
-    if late is None or not work.has("q", "theta"):
-        return
-    range_s = FILTER_S + _half_intervals(work, "q", "theta")
-    channel, other = ("q", "theta") if late.value > 0.0 else ("theta", "q")
-    if channel == "theta" and bool(np.all(np.isin(work.channels["theta"].t, work.channels["q"].t))):
-        # The autopilot integrates the rates of one message to the attitude of the same message.
-        range_s = FILTER_S
-    if abs(late.value) - _SIGMAS * late.std <= range_s:
-        return
-    measured = Measured(abs(late.value), late.std)
-    # An attitude is integrated from the gyro. Its lateness enters gravity alone, and can be removed.
-    _late(work, channel, _PLAIN[other], measured, used=channel == "theta", shifted=(channel,))
-
-
-def _alpha_and_force(work: _Work) -> None:
+def _alpha_and_force(work: Work) -> None:
     """Hold angle of attack, specific force and air speed against each other."""
     if not work.has("alpha"):
         return
@@ -232,7 +167,7 @@ def _alpha_and_force(work: _Work) -> None:
         _name_alpha(work, weighed, known)
 
 
-def _unwrap_alpha(work: _Work) -> None:
+def _unwrap_alpha(work: Work) -> None:
     """Turn an angle of attack that is counted from 0 to 360 deg into one about zero."""
     alpha = work.channels["alpha"]
     near_zero = (alpha.y >= 0.0) & (np.abs(alpha.y - pi) > pi / 2.0) & (alpha.y < 2.01 * pi)
@@ -258,9 +193,9 @@ def _weighed_alpha(known: Measured) -> Weighed:
     return weigh(known, factors, VANE_WIDTH)
 
 
-def _name_alpha(work: _Work, weighed: Weighed, known: Measured) -> None:
+def _name_alpha(work: Work, weighed: Weighed, known: Measured) -> None:
     source = work.channels["alpha"].source
-    told = f"it moves {_with_error(known)} times as far as pitch rate and specific force say"
+    told = f"it moves {with_error(known)} times as far as pitch rate and specific force say"
     if weighed.best == ANY:
         work.contradict(
             "alpha", "scale", 1.0, known.value, known, f"alpha is no angle of attack: {told}",
@@ -280,40 +215,40 @@ def _name_alpha(work: _Work, weighed: Weighed, known: Measured) -> None:
         )  # fmt: skip
 
 
-def _clock_of_force(work: _Work, told: Mapping[str, Measured]) -> bool:
+def _clock_of_force(work: Work, told: Mapping[str, Measured]) -> bool:
     """Hold the clock of the specific force against that of the pitch rate; return whether they differ."""
     least, most = told.get("a_z_least"), told.get("a_z_most")
-    range_s = FILTER_S + _half_intervals(work, "q", "a_z")
+    range_s = FILTER_S + half_intervals(work, "q", "a_z")
     exact = least is not None and most is not None and most.value - least.value < range_s
     late_rate = next((f for f in work.findings if f.code == "q_delay_s"), None)
-    if least is not None and least.value - _SIGMAS * least.std > range_s:
+    if least is not None and least.value - SIGMAS * least.std > range_s:
         late = most if exact and most is not None else least
-        other = _PLAIN["q" if late_rate is None else "theta"]
+        other = PLAIN["q" if late_rate is None else "theta"]
         shifted = ("a_z", "a_x") if exact else ()
-        _late(work, "a_z", other, late, used=exact, bound=not exact, shifted=shifted)
+        be_late(work, "a_z", other, late, used=exact, bound=not exact, shifted=shifted)
         return True
-    if most is not None and most.value + _SIGMAS * most.std < -range_s:
-        _late(work, "q", _PLAIN["a_z"], Measured(-most.value, most.std), used=False)
+    if most is not None and most.value + SIGMAS * most.std < -range_s:
+        be_late(work, "q", PLAIN["a_z"], Measured(-most.value, most.std), used=False)
         return True
     # A force as late as the pitch rate would have shown: nothing else but the pitch rate is late.
-    if late_rate is not None and exact and most is not None and _SIGMAS * most.std < FILTER_S + range_s:
+    if late_rate is not None and exact and most is not None and SIGMAS * most.std < FILTER_S + range_s:
         work.findings[work.findings.index(late_rate)] = _used(late_rate)
     return False
 
 
-def _force_behind_climb(work: _Work) -> None:
+def _force_behind_climb(work: Work) -> None:
     """Hold the clock of the specific force against that of the climb rate, where nothing else has told it."""
     if any(f.code == "a_z_delay_s" for f in work.findings):
         return
     least = work.learn(force_against_climb(work.channels)).get("a_z_behind_climb")
     if least is None or not work.has("a_z", "climb_rate"):
         return
-    range_s = FILTER_S + _half_intervals(work, "a_z", "climb_rate")
-    if least.value - _SIGMAS * least.std > range_s:
-        _late(work, "a_z", "the climb rate", least, used=False, bound=True)
+    range_s = FILTER_S + half_intervals(work, "a_z", "climb_rate")
+    if least.value - SIGMAS * least.std > range_s:
+        be_late(work, "a_z", "the climb rate", least, used=False, bound=True)
 
 
-def _speed_unit(work: _Work) -> bool:
+def _speed_unit(work: Work) -> bool:
     """Hold the change of the air speed against the accelerometers; return whether its unit is as stated."""
     known = work.learn(speed_against_force(work.channels)).get("speed_scale")
     if known is None or not work.has("airspeed"):
@@ -331,7 +266,7 @@ def _weighed_speed(known: Measured) -> Weighed:
     return weigh(known, factors, _AIRSPEED_WIDTH, _AIRSPEED_MEAN)
 
 
-def _airspeed(work: _Work, told: Mapping[str, Measured]) -> bool:
+def _airspeed(work: Work, told: Mapping[str, Measured]) -> bool:
     """Hold the air speed against the motion; return whether they contradict."""
     known = told.get("airspeed_scale")
     if known is None:
@@ -343,8 +278,8 @@ def _airspeed(work: _Work, told: Mapping[str, Measured]) -> bool:
     return weighed.contradicts
 
 
-def _name_speed(work: _Work, weighed: Weighed, known: Measured, by: str) -> None:
-    told_so = by.format(_with_error(known))
+def _name_speed(work: Work, weighed: Weighed, known: Measured, by: str) -> None:
+    told_so = by.format(with_error(known))
     if weighed.best == ANY:
         work.contradict(
             "airspeed", "scale", 1.0, known.value, known, f"the air speed is wrong: {told_so}",
@@ -357,45 +292,5 @@ def _name_speed(work: _Work, weighed: Weighed, known: Measured, by: str) -> None
         )  # fmt: skip
 
 
-def _late(
-    work: _Work,
-    channel: str,
-    relative_to: str,
-    late: Measured,
-    *,
-    used: bool,
-    bound: bool = False,
-    shifted: tuple[str, ...] = (),
-) -> None:
-    """Contradict the clock of a channel, and set the stamps of the channels in ``shifted`` earlier."""
-    name = _PLAIN[channel]
-    ms = f"{'at least ' if bound else ''}{1e3 * late.value:.0f} ± {1e3 * NORMAL_95 * late.std:.0f} ms"
-    work.contradict(
-        channel, "delay_s", None, late.value, late,
-        f"{name} is {ms} late relative to {relative_to}" + (_ALLOWED if used else ""),
-        f"check the stamps of {name} ({work.channels[channel].source})", used,
-        late.value if shifted else 0.0,
-    )  # fmt: skip
-    for one in shifted:
-        work.shift(one, late.value)
-
-
 def _used(finding: InstrumentFinding) -> InstrumentFinding:
-    return replace(finding, used=True, text=finding.text + _ALLOWED)
-
-
-def _half_intervals(work: _Work, *names: str) -> float:
-    """Return half of the longest sampling interval, s: a sample may stand for any time within it."""
-    return 0.5 / min(work.channels[name].rate_hz for name in names)
-
-
-def _with_error(measured: Measured) -> str:
-    """Return the value with half its 95 % interval."""
-    half = NORMAL_95 * measured.std
-    digits = max(0, int(np.ceil(-np.log10(max(half, 1e-6))))) if half < 1.0 else 0
-    return f"{measured.value:.{digits}f} ± {half:.{digits}f}"
-
-
-_ALLOWED = "; estimates use the shifted stamps"
-_PLAIN = {"q": "the pitch rate", "theta": "the pitch angle", "a_z": "the specific force", "alpha": "alpha"}
-"""Channel to its name in a sentence."""
+    return replace(finding, used=True, text=finding.text + ALLOWED)

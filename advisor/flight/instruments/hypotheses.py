@@ -17,7 +17,7 @@ ANY = "any other scale"
 _DECADES = 4.0
 """Decades of scale, from 0.01 to 100 on both sides of zero, over which "any other scale" is spread evenly.
 The ratio of any two units in use lies within."""
-_EXCLUDED = 0.01
+EXCLUDED = 0.01
 """Largest posterior probability of an excluded hypothesis: the usual level of 99 %."""
 _RESOLVED_SIGMAS = 3.0
 """Least distance of a measured scale from zero, in standard deviations. A smaller scale may be noise, which
@@ -42,7 +42,7 @@ class Weighed:
     @property
     def contradicts(self) -> bool:
         """Whether the measured scale excludes the stated one."""
-        return self.resolved and self.stated_probability < _EXCLUDED
+        return self.resolved and self.stated_probability < EXCLUDED
 
 
 def weigh(measured: Measured, factors: Mapping[str, float], width: float, stated: float = 1.0) -> Weighed:

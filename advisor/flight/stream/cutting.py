@@ -11,6 +11,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.elevator.elevator_sign import ElevatorSign, turned
 from advisor.flight.instruments.examination import examine
 from advisor.flight.instruments.measured import Evidence, pooled
+from advisor.flight.instruments.side_examination import examine_side
 from advisor.flight.maneuvers.events import Activity, FlightEvent, ManeuverFlown, Notice, SideManeuverFlown
 from advisor.flight.maneuvers.feedback import HISTORY_S
 from advisor.flight.maneuvers.ground import why_on_ground
@@ -56,8 +57,11 @@ class Cutting:
         self._modes = [(-np.inf, who.mode)]
         self._released = (0, -np.inf)
         self._evidence: Evidence = {}
+        self._side_evidence: Evidence = {}
         self.findings: tuple[InstrumentFinding, ...] = ()
         """Contradictions of the instruments by all manoeuvres of this power-on."""
+        self.side_findings: tuple[InstrumentFinding, ...] = ()
+        """Contradictions by all lateral manoeuvres of this power-on."""
         self._lateral = lateral
         self.maneuvers = 0
         """Number of manoeuvres found."""
@@ -74,8 +78,8 @@ class Cutting:
     def begin(self, mode: str) -> None:
         """Begin a power-on in a flight mode, without earlier manoeuvres."""
         self._modes = [(-np.inf, mode)]
-        self._evidence = {}
-        self.findings = ()
+        self._evidence, self._side_evidence = {}, {}
+        self.findings, self.side_findings = (), ()
 
     def change(self, mode: str, since_s: float) -> None:
         """Begin another flight mode."""
@@ -122,12 +126,11 @@ class Cutting:
                 self._counted(maneuver, evidence) if because is None else [self._activity(maneuver, because)]
             )
         if sides:
-            self.side_maneuvers += 1
             found = SideInput(sides)
             span = replace(
                 found.main.span, start_s=found.start_s, last_step_s=found.last_step_s, kind=named(found)
             )
-            events.append(SideManeuverFlown(self.side(span, boot, self.side_maneuvers, up_to_order)))
+            events += self.side_counted(*self.side(span, boot, up_to_order))
         return events
 
     def _activity(self, maneuver: Maneuver, because: Because) -> Activity:
@@ -140,8 +143,7 @@ class Cutting:
     def _counted(self, maneuver: Maneuver, evidence: Evidence) -> list[FlightEvent]:
         self.maneuvers += 1
         self._evidence = pooled((self._evidence, evidence))
-        known = {f.code for f in self.findings}
-        news = [Notice(f.code, str(f.problem)) for f in maneuver.findings if f.code not in known]
+        news = _news(maneuver, self.findings)
         self.findings = maneuver.findings
         self._released = (maneuver.boot, maneuver.span.end_s)
         if self._sign is None or "elevator" not in maneuver.channels:
@@ -198,12 +200,30 @@ class Cutting:
         )
         return self._who.rescaled(maneuver), examined.evidence
 
-    def side(self, span: Span, boot: int, number: int, up_to_order: int | None) -> Maneuver:
-        """Return the record of a lateral manoeuvre with this number."""
+    def side(self, span: Span, boot: int, up_to_order: int | None) -> tuple[Maneuver, Evidence]:
+        """Return the record of a lateral manoeuvre, and what it tells of the instruments."""
         channels, notes = self._recorded(span, up_to_order)
-        channels |= self._air(span, up_to_order)
+        examined = examine_side(channels, self._side_evidence)
+        channels = {**examined.channels, **self._air(span, up_to_order)}
         mode = self._stay(_middle_s(span))[1]
-        return Maneuver(number, boot, span, channels, mode, data_notes=tuple(notes))
+        maneuver = Maneuver(
+            self.side_maneuvers + 1,
+            boot,
+            span,
+            channels,
+            mode,
+            findings=examined.findings,
+            data_notes=tuple(notes),
+        )
+        return maneuver, examined.evidence
+
+    def side_counted(self, maneuver: Maneuver, evidence: Evidence) -> list[FlightEvent]:
+        """Return the event of a lateral manoeuvre, after the news on its instruments."""
+        self.side_maneuvers += 1
+        self._side_evidence = pooled((self._side_evidence, evidence))
+        news = _news(maneuver, self.side_findings)
+        self.side_findings = maneuver.findings
+        return [*news, SideManeuverFlown(maneuver)]
 
     def motion_before(self, span: Span, names: Sequence[str], up_to_order: int | None) -> dict[str, Channel]:
         """Return channels of a movement and of the time before."""
@@ -247,6 +267,12 @@ class Cutting:
                 "If no sensor measured the air speed, wind makes the derivatives wrong."
             ]
         return []
+
+
+def _news(maneuver: Maneuver, known: Sequence[InstrumentFinding]) -> list[Notice]:
+    """Return a notice for every contradiction of a manoeuvre's instruments that was not known before."""
+    codes = {f.code for f in known}
+    return [Notice(f.code, str(f.problem)) for f in maneuver.findings if f.code not in codes]
 
 
 def _trusted(channels: Mapping[str, Channel], distrusts: Sequence[Distrust]) -> dict[str, Channel]:

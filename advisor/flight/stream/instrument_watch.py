@@ -6,6 +6,7 @@ import numpy as np
 
 from advisor.flight.instruments.examination import examine
 from advisor.flight.instruments.measured import Evidence, pooled
+from advisor.flight.instruments.side_examination import examine_side
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.record import UNITS, Channel
 
@@ -35,7 +36,10 @@ class InstrumentWatch:
         """Begin another power-on, or another vehicle."""
         self.findings: tuple[InstrumentFinding, ...] = ()
         """Contradictions by all stretches so far. None is used, because nothing is estimated from them."""
+        self.side_findings: tuple[InstrumentFinding, ...] = ()
+        """Contradictions in roll and yaw, likewise."""
         self._evidence: Evidence = {}
+        self._side_evidence: Evidence = {}
         self._at_s = -np.inf
         self._moving = 0
 
@@ -59,8 +63,13 @@ class InstrumentWatch:
 
     def _examine(self, start_s: float, end_s: float) -> None:
         found = {name: self._cut(name, start_s, end_s) for name in UNITS}
-        examined = examine({name: c for name, c in found.items() if c is not None}, self._evidence)
+        channels = {name: c for name, c in found.items() if c is not None}
+        examined = examine(channels, self._evidence)
         self._moving += "theta_scale" in examined.evidence
         self._evidence = pooled((self._evidence, examined.evidence))
         if examined.evidence:
             self.findings = examined.findings
+        sideways = examine_side(channels, self._side_evidence)
+        self._side_evidence = pooled((self._side_evidence, sideways.evidence))
+        if sideways.evidence:
+            self.side_findings = sideways.findings

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from advisor.flight.elevator.elevator_watch import SETTLE_S, ElevatorWatch
-from advisor.flight.maneuvers.events import FlightEvent, SideManeuverFlown
+from advisor.flight.maneuvers.events import FlightEvent
 from advisor.flight.maneuvers.loop import ROLL, YAW, Loop
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.maneuvers.marks import Marks
@@ -124,11 +124,11 @@ class SidePath:
         span = input_span(found, sorted(ahead, key=_onset), self._newest_s, yaw_rate)
         self._pending = [one for one in self._pending if not _is_hidden(one, found, span)]
         span = self._marks.before(span)
-        maneuver = self._cutting.side(span, self._boot, self._cutting.side_maneuvers + 1, up_to_order)
+        maneuver, evidence = self._cutting.side(span, self._boot, up_to_order)
         if self._marks.holds(span) or self._is_no_input(maneuver, found, up_to_order):
             return []
-        self._cutting.side_maneuvers += 1
-        return [SideManeuverFlown(replace(maneuver, span=replace(span, kind=named(found))))]
+        named_one = replace(maneuver, span=replace(span, kind=named(found)))
+        return self._cutting.side_counted(named_one, evidence)
 
     def _is_no_input(self, maneuver: Maneuver, found: SideInput, up_to_order: int | None) -> bool:
         """Return whether no movement of the input is a test input."""

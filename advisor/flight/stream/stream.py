@@ -263,9 +263,14 @@ class FlightStream:
     @property
     def instruments(self) -> tuple[InstrumentFinding, ...]:
         """Contradictions of the instruments: by the manoeuvres, and before the first by any motion."""
-        return self._cutting.findings or (
+        pitch = self._cutting.findings or (
             self._instruments.findings if self._cutting.maneuvers == self._flown_before else ()
         )
+        sideways = self._cutting.side_findings or (
+            () if self._cutting.side_maneuvers else self._instruments.side_findings
+        )
+        known = {f.code for f in pitch}
+        return (*pitch, *(f for f in sideways if f.code not in known))
 
     def recent(self, name: str, seconds: float) -> Channel | None:
         """Return the newest stretch of a channel; None without samples."""

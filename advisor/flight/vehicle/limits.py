@@ -71,7 +71,9 @@ def _contradiction(names: Names, known: list[float | None]) -> str:
         if low > high:
             return f"{lower} {low:g} is above {upper} {high:g}"
     if len(given) > 1 and given[0][1] == given[-1][1]:
-        return f"{given[0][0]} and {given[-1][0]} are both {given[0][1]:g}, which leaves no stroke"
+        return (
+            f"{given[0][0]} and {given[-1][0]} are both {given[0][1]:g}, which leaves the surface no travel"
+        )
     return ""
 
 

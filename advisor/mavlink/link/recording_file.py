@@ -101,7 +101,7 @@ def take_up(path: Path) -> tuple[Path, BinaryIO]:
     except OSError as error:
         raise UnusableInputError(
             "recording",
-            f"The recording {path} cannot be taken up: {error.strerror}.",
+            f"The recording {path} cannot be resumed: {error.strerror}.",
             "Name another recording with --resume, or a new place with --record.",
         ) from None
     return path, file

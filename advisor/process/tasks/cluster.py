@@ -24,6 +24,8 @@ CONNECT_S = 5.0
 """Time within which a scheduler must answer, s, and a cluster's workers must start."""
 _SAME = ("advisor", "python")
 """Packages whose version must be equal in every worker. Otherwise its results differ or cannot be read."""
+_ADVISOR = ("inflight-advisor", "advisor")
+"""Names under which Dask may know the advisor: the distribution's since 2025, the module's before."""
 _TOLD = ("distributed", "numba", "numpy", "scipy")
 """Packages of which another version may change the last digits of a result."""
 
@@ -63,8 +65,8 @@ def run_on_cluster(
                 f"--scheduler: the cluster at {address} has no workers;"
                 f" start some with 'dask worker {address}'."
             )
-        workers = {worker: there["packages"] for worker, there in found["workers"].items()}
-        if caution := compare_versions(found["client"]["packages"], workers):
+        workers = {worker: _named(there["packages"]) for worker, there in found["workers"].items()}
+        if caution := compare_versions(_named(found["client"]["packages"]), workers):
             tell(caution)
         pool = client.get_executor(pure=False)
         try:
@@ -128,7 +130,8 @@ def _versions_on(client: "Client") -> dict[str, Any]:
     """
     end = time.monotonic() + CONNECT_S
     while True:
-        found: dict[str, Any] = client.get_versions(packages=[*_SAME, *_TOLD])
+        # Dask tells Python's version unasked, and none where it is asked for a package of that name.
+        found: dict[str, Any] = client.get_versions(packages=[*_ADVISOR, *_TOLD])
         if found["workers"] or time.monotonic() > end:
             return found
         time.sleep(0.1)
@@ -150,6 +153,11 @@ def _cause(error: BaseException) -> str:
     if isinstance(error, TimeoutError):
         return f"nothing within {CONNECT_S:.0f} s"
     return str(error).splitlines()[0] if str(error) else type(error).__name__
+
+
+def _named(packages: Versions) -> Versions:
+    """Return versions with the advisor's under one name."""
+    return {**packages, "advisor": next(filter(None, map(packages.get, _ADVISOR)), None)}
 
 
 def compare_versions(here: Versions, workers: Mapping[str, Versions]) -> str:
@@ -176,7 +184,7 @@ def compare_versions(here: Versions, workers: Mapping[str, Versions]) -> str:
     for worker, there in workers.items():
         for name in (*_SAME, *_TOLD):
             mine, other = _version(here, name), _version(there, name)
-            if mine != other:
+            if mine != other or (other is None and name in _SAME):
                 told = f"{name} {other} on {worker}, {mine} here" if other else f"no {name} on {worker}"
                 differing.setdefault(name, told)
     refused = [told for name, told in differing.items() if name in _SAME]

@@ -71,7 +71,7 @@ findings.
         elif numbers != self._asked:
             self._asked = numbers
             self._say([("", _ASKING)])
-            task = GapTask(tuple(view.logs), view.aircraft)
+            task = GapTask(tuple(view.logs), view.aircraft, view.aircraft_file)
             self.run_worker(partial(self._work, task), thread=True, exclusive=True, exit_on_error=False)
 
     def _work(self, task: GapTask) -> None:

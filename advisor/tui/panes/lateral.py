@@ -17,10 +17,10 @@ class LateralPane(TextPane):
     HELP = """\
 # Roll and yaw
 
-From the joint estimate over the accepted manoeuvres of aileron and rudder: the derivatives, each with half
-its 95 % interval; those that are not identifiable, with the input that would tell them; frequency and damping
-of the Dutch roll, time constant of the roll, pole of the spiral; the levels of MIL-F-8785C. Where the
-aircraft file states the derivatives, the tests of 14 CFR Part 60 compare it with the flight.
+The joint estimate over the accepted manoeuvres of aileron and rudder. Each derivative stands with half its
+95 % interval. One that is not identifiable stands with the input that would tell it. Below are the modes:
+Dutch roll, roll and spiral, with the levels of MIL-F-8785C. Where the aircraft file states the derivatives,
+the tests of 14 CFR Part 60 compare the two.
 """
 
     def show(self, view: View) -> None:

@@ -185,7 +185,7 @@ def test_a_new_flight_test_on_the_connection_of_a_lost_one_ends_it_and_says_how_
     advising.kill()
     other = advising.folder / "other.tlog"
     advising.start("--master", f"udpin:127.0.0.1:{advising.port}", "--record", str(other))
-    assert f"--resume {advising.recording} takes its flight test up" in advising.warned
+    assert f"--resume {advising.recording} continues its flight test" in advising.warned
     assert advising.end() == 130
     assert other.exists()
 

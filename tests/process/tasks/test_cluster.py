@@ -17,7 +17,7 @@ from threadpoolctl import threadpool_info
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.batch.flight import BatchTask, analyze_shared, sha256_of
-from advisor.process.tasks.cluster import compare_versions, run_on_cluster
+from advisor.process.tasks.cluster import _connected, _named, _versions_on, compare_versions, run_on_cluster
 from advisor.words.problems import ConfigurationError
 from tests.batch.test_command import folder as folder
 from tests.conftest import Advisor
@@ -199,6 +199,24 @@ def test_processes_here_and_a_cluster_exclude_each_other(
 def test_workers_of_another_advisor_or_python_are_refused(there: dict[str, str | None], told: str) -> None:
     with pytest.raises(ConfigurationError, match=told):
         compare_versions(SAME, {"tcp://a:1": SAME, "tcp://b:1": {**SAME, **there}})
+
+
+def test_the_versions_of_advisor_and_python_on_a_worker_are_known(scheduler: str) -> None:
+    with _connected(scheduler) as client:
+        found = _versions_on(client)
+    for packages in (
+        found["client"]["packages"],
+        *(there["packages"] for there in found["workers"].values()),
+    ):
+        known = _named(packages)
+        assert known["python"] == ".".join(map(str, sys.version_info))
+        assert known["advisor"]
+
+
+def test_workers_without_a_known_version_are_refused() -> None:
+    nothing = {"advisor": None, "python": None}
+    with pytest.raises(ConfigurationError, match="there is no advisor on tcp://a:1; no python on tcp://a:1"):
+        compare_versions(nothing, {"tcp://a:1": nothing})
 
 
 def test_workers_of_another_numpy_are_told_with_their_version() -> None:

@@ -1,0 +1,144 @@
+"""The gap of the lateral axis: the simulator's derivatives of roll and yaw against those of the flight.
+
+The diagnosis of the short period searches effects. On this axis only numbers are compared: derivatives with
+their intervals, and servos and clocks that the fit estimates with them. The gap is measured on manoeuvres
+that the fit has not seen, of which only trims, initial states and biases are refitted.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from scipy.stats import chi2
+
+from advisor.aircraft.aircraft import SIDE_PARAMETERS, Aircraft
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.messages import FloatArray
+from advisor.gap.result import ComparedDerivative, Value
+from advisor.oem.estimate import NoEstimate
+from advisor.oem.lateral_estimator import LateralEstimate, estimate_lateral
+from advisor.oem.lateral_prediction import predicted_lateral
+
+LEVEL = 0.95
+"""Level of the joint test that the simulator's numbers are those of the flight: that of every interval."""
+HELD_OUT = 3
+"""One in so many manoeuvres is held out, from the end."""
+
+
+@dataclass(frozen=True, slots=True)
+class SideGap:
+    """Comparison of the aircraft file's lateral derivatives with the flight."""
+
+    verdict: Literal["none", "parameters"] | None
+    """None: the file states no derivative that the flight tells."""
+    sentence: str
+    derivatives: tuple[ComparedDerivative, ...]
+    statistic: float
+    """Square of the distance of all stated derivatives together, in standard deviations."""
+    limit: float
+    """Largest ``statistic`` at which the numbers are those of the flight."""
+    instruments: Mapping[str, Value]
+    """Lag or delay of servos and clocks, as the fit tells it."""
+    not_identifiable: Mapping[str, str]
+    maneuvers: tuple[int, ...]
+    holdout: tuple[int, ...]
+    """Numbers of the manoeuvres that the fit for the gap has not seen; empty where too few were flown."""
+    before: Mapping[str, float]
+    """Output to the simulator's gap on those manoeuvres."""
+    after: Mapping[str, float]
+    """Output to the gap with the derivatives of the flight."""
+
+
+def compare_side(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> SideGap | NoEstimate:
+    """Compare the aircraft file's lateral derivatives with those of accepted manoeuvres.
+
+    A derivative that the file does not state counts as that of the flight.
+    """
+    model = estimate_lateral(maneuvers, aircraft)
+    if isinstance(model, NoEstimate):
+        return model
+    estimate = model.estimate
+    stated = [
+        k
+        for k, name in enumerate(SIDE_PARAMETERS)
+        if name in aircraft.model and name not in estimate.not_identifiable
+    ]
+    derivatives = tuple(
+        ComparedDerivative(
+            SIDE_PARAMETERS[k],
+            aircraft.model[SIDE_PARAMETERS[k]],
+            Value(float(estimate.theta[k]), float(estimate.std[k])),
+        )
+        for k in stated
+    )
+    off = np.array([one.given - one.found.value for one in derivatives])
+    covariance = estimate.covariance[np.ix_(stated, stated)]
+    statistic = float(off @ np.linalg.pinv(covariance, hermitian=True) @ off) if stated else 0.0
+    limit = float(chi2.ppf(LEVEL, len(stated))) if stated else 0.0
+    verdict: Literal["none", "parameters"] | None = None
+    if stated:
+        verdict = "parameters" if statistic > limit else "none"
+    holdout, before, after = _held_out(maneuvers, aircraft)
+    return SideGap(
+        verdict,
+        _sentence(verdict, derivatives),
+        derivatives,
+        statistic,
+        limit,
+        {name: Value(*told) for name, told in model.nuisances.items()},
+        estimate.not_identifiable,
+        tuple(m.number for m in maneuvers),
+        holdout,
+        before,
+        after,
+    )
+
+
+def _held_out(
+    maneuvers: Sequence[Maneuver], aircraft: Aircraft
+) -> tuple[tuple[int, ...], Mapping[str, float], Mapping[str, float]]:
+    """Return the manoeuvres held out, and their gap by output before and after; empty where the others do
+    not fly every control."""
+    kept = maneuvers[: -(len(maneuvers) // HELD_OUT)] if len(maneuvers) >= HELD_OUT else maneuvers[:0]
+    unseen = maneuvers[len(kept) :]
+    model, whole = estimate_lateral(kept, aircraft), estimate_lateral(maneuvers, aircraft)
+    if isinstance(model, NoEstimate) or isinstance(whole, NoEstimate) or set(model.flown) != set(whole.flown):
+        return (), {}, {}
+    given = np.array(
+        [
+            aircraft.model.get(name, value)
+            for name, value in zip(SIDE_PARAMETERS, model.estimate.theta, strict=True)
+        ]
+    )
+    return (
+        tuple(m.number for m in unseen),
+        _gap(unseen, model, aircraft, given),
+        _gap(unseen, model, aircraft, model.estimate.theta),
+    )
+
+
+def _gap(
+    maneuvers: Sequence[Maneuver], model: LateralEstimate, aircraft: Aircraft, theta: FloatArray
+) -> Mapping[str, float]:
+    """Return by output the mean square of the error over that of the noise, minus 1 and at least 0."""
+    squares: dict[str, list[float]] = {}
+    for maneuver in maneuvers:
+        fits = predicted_lateral(maneuver, model, aircraft, theta)
+        if not isinstance(fits, NoEstimate):
+            for name, fit in fits.items():
+                squares.setdefault(name, []).append((fit.rms / fit.noise) ** 2)
+    return {name: max(0.0, float(np.mean(values)) - 1.0) for name, values in squares.items()}
+
+
+def _sentence(verdict: str | None, derivatives: Sequence[ComparedDerivative]) -> str:
+    if verdict is None:
+        return (
+            "The aircraft file states no derivative of roll and yaw that the flight tells: give model.L_p "
+            "and the like."
+        )
+    if verdict == "none":
+        return "The simulator's derivatives of roll and yaw lie within the flight's joint 95 % region."
+    wrong = [one.name for one in derivatives if one.differs]
+    listed = f": {', '.join(wrong)}" if wrong else " together, though none alone"
+    return f"The simulator's derivatives of roll and yaw are not those of the flight{listed}."

@@ -1,0 +1,85 @@
+"""``advisor gap --axis lateral``: the simulator's derivatives of roll and yaw against the flight's."""
+
+import json
+from collections.abc import Iterator
+from typing import Any
+
+import click
+import numpy as np
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.analysis.side_comparison import SideGap
+from advisor.analysis.side_gap import side_gap_of
+from advisor.cli.log_options import LogsAsked
+from advisor.cli.options import UNUSABLE
+from advisor.cli.stages import Stages
+from advisor.gap.document import changed_document, gap_document
+from advisor.words.plain import picked, plain
+from advisor.words.problems import UnusableInputError
+from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import symbol
+
+
+def compare_lateral(asked: LogsAsked, aircraft: Aircraft, as_json: bool) -> int:
+    """Compare the lateral derivatives of the aircraft file with the flight, and print the result."""
+    try:
+        with Stages() as tell:
+            tell("reading and comparing", 0.0)
+            found = side_gap_of(
+                asked.logs, aircraft, asked.target_system, asked.marks, no_marks=asked.no_marks
+            )
+    except UnusableInputError as error:
+        if as_json:
+            click.echo(json.dumps(gap_document(None, error.problems), indent=1))
+        click.echo(str(error), err=True)
+        return UNUSABLE
+    if as_json:
+        document = gap_document(None) | {"usable": True, "lateral": side_gap_document(found)}
+        click.echo(json.dumps(document, allow_nan=False, indent=1))
+    else:
+        click.echo("\n".join(side_gap_lines(found)))
+    return 0
+
+
+def side_gap_lines(found: SideGap) -> Iterator[str]:
+    """Yield the sentence, each stated derivative with that of the flight, instruments, and the gap."""
+    yield found.sentence
+    for one in found.derivatives:
+        differs = "  outside" if one.differs else ""
+        yield (
+            f"  {symbol(one.name):<6} simulator {one.given:8.4g}   flight {one.found.value:8.4g} ± "
+            f"{one.half:.2g}{differs}"
+        )
+    for name, told in found.instruments.items():
+        yield f"  {name}: {told.value:.3f} ± {NORMAL_95 * told.std:.3f}"
+    if found.holdout:
+        listed = ", ".join(map(str, found.holdout))
+        yield f"Gap on the held-out manoeuvres {listed}, mean square over that of the noise, minus 1:"
+        for name, before in found.before.items():
+            yield f"  {name:<5} {before:8.2f} before, {found.after[name]:.2f} after"
+
+
+def side_gap_document(found: SideGap) -> dict[str, Any]:
+    """Return the block ``lateral`` of ``advisor gap --json``, in SI units."""
+    before, after = (float(np.mean(list(g.values()))) if g else None for g in (found.before, found.after))
+    shrink = None
+    if before is not None and after is not None:
+        percent = 100.0 * (1.0 - after / before) if before > 0.0 else None
+        shrink = {"holdout": list(found.holdout), "before": before, "after": after, "percent": percent}
+    told: dict[str, Any] = plain({
+        **picked(found, "verdict sentence maneuvers not_identifiable"),
+        "gap": {"before": before, "by_channel": found.before, "by_channel_after": found.after},
+        "parameters_changed": [changed_document(one) for one in found.derivatives if one.differs],
+        "parameters_compared": [changed_document(one) for one in found.derivatives],
+        "instruments": {n: {"value": v.value, "std": v.std} for n, v in found.instruments.items()},
+        "shrink": shrink,
+        "decisions": [
+            {
+                "name": "the simulator's derivatives of roll and yaw",
+                "statistic": found.statistic,
+                "limit": found.limit,
+                "margin": found.limit - found.statistic,
+            }
+        ],
+    })  # fmt: skip
+    return told

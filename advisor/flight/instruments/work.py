@@ -1,0 +1,137 @@
+"""State of an examination of the instruments: channels so far corrected, evidence and findings."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from advisor.flight.instruments.measured import Evidence, Measured, pooled
+from advisor.flight.signals.instrument_finding import InstrumentFinding, Quantity
+from advisor.flight.signals.record import Channel
+from advisor.words.quantiles import NORMAL_95
+
+REVERSED = "reversed"
+FILTER_S = 0.015
+"""Longest delay, s, that an autopilot's filters give a gyro or an accelerometer: 11 ms for ArduPlane's 20 Hz,
+15 ms for 15 Hz."""
+SIGMAS = 3.0
+"""Distance from the innocent range, in standard deviations, of a delay that contradicts."""
+ALLOWED = "; estimates use the shifted stamps"
+PLAIN = {
+    "q": "the pitch rate", "theta": "the pitch angle", "a_z": "the specific force", "alpha": "alpha",
+    "p": "the roll rate", "bank": "the bank angle", "r": "the yaw rate", "a_y": "the side force",
+    "beta": "the sideslip",
+}  # fmt: skip
+"""Channel to its name in a sentence."""
+
+
+@dataclass(frozen=True, slots=True)
+class Examined:
+    """Result of an examination."""
+
+    channels: Mapping[str, Channel]
+    """Channels with the errors removed that are marked as used in ``findings``."""
+    evidence: Evidence
+    """Evidence of this record alone."""
+    findings: tuple[InstrumentFinding, ...]
+    """Contradictions of the instruments, by all evidence."""
+
+
+class Work:
+    """Channels so far corrected, with evidence and findings so far."""
+
+    def __init__(self, channels: dict[str, Channel], earlier: Evidence) -> None:
+        self.channels = channels
+        self._earlier = earlier
+        self.evidence: dict[str, Measured] = {}
+        self.findings: list[InstrumentFinding] = []
+
+    def has(self, *names: str) -> bool:
+        """Return whether the record holds these channels."""
+        return all(name in self.channels and len(self.channels[name]) > 1 for name in names)
+
+    def learn(self, new: Evidence) -> Mapping[str, Measured]:
+        """Take evidence; return all evidence, pooled with the earlier."""
+        self.evidence |= new
+        return pooled((self._earlier, self.evidence))
+
+    def shift(self, name: str, by_s: float) -> None:
+        """Set the stamps of a channel earlier."""
+        if name in self.channels:
+            self.channels[name] = replace(self.channels[name], t=self.channels[name].t - by_s)
+
+    def divide(self, name: str, by: float) -> None:
+        """Divide a channel's values."""
+        if name in self.channels:
+            self.channels[name] = replace(self.channels[name], y=self.channels[name].y / by)
+
+    def contradict(
+        self,
+        channel: str,
+        quantity: Quantity,
+        stated: float | str | None,
+        found: float | str,
+        measured: Measured,
+        text: str,
+        fix: str,
+        used: bool = False,
+        removed_s: float = 0.0,
+    ) -> None:
+        """Add a contradiction."""
+        self.findings.append(
+            InstrumentFinding(
+                channel, quantity, stated, found, measured.std, True, text, fix, used, removed_s
+            )
+        )
+
+
+def hold_clocks(work: Work, rate: str, angle: str) -> None:
+    """Hold the clock of a rate against that of its angle, and set the late one earlier."""
+    late = work.learn({}).get(f"{rate}_delay")
+    if late is None or not work.has(rate, angle):
+        return
+    range_s = FILTER_S + half_intervals(work, rate, angle)
+    channel, other = (rate, angle) if late.value > 0.0 else (angle, rate)
+    if channel == angle and bool(np.all(np.isin(work.channels[angle].t, work.channels[rate].t))):
+        # The autopilot integrates the rates of one message to the attitude of the same message.
+        range_s = FILTER_S
+    if abs(late.value) - SIGMAS * late.std <= range_s:
+        return
+    measured = Measured(abs(late.value), late.std)
+    # An attitude is integrated from the gyro. Its lateness can be removed.
+    be_late(work, channel, PLAIN[other], measured, used=channel == angle, shifted=(channel,))
+
+
+def be_late(
+    work: Work,
+    channel: str,
+    relative_to: str,
+    late: Measured,
+    *,
+    used: bool,
+    bound: bool = False,
+    shifted: tuple[str, ...] = (),
+) -> None:
+    """Contradict the clock of a channel, and set the stamps of the channels in ``shifted`` earlier."""
+    name = PLAIN[channel]
+    ms = f"{'at least ' if bound else ''}{1e3 * late.value:.0f} ± {1e3 * NORMAL_95 * late.std:.0f} ms"
+    work.contradict(
+        channel, "delay_s", None, late.value, late,
+        f"{name} is {ms} late relative to {relative_to}" + (ALLOWED if used else ""),
+        f"check the stamps of {name} ({work.channels[channel].source})", used,
+        late.value if shifted else 0.0,
+    )  # fmt: skip
+    for one in shifted:
+        work.shift(one, late.value)
+
+
+def half_intervals(work: Work, *names: str) -> float:
+    """Return half of the longest sampling interval, s: a sample may stand for any time within it."""
+    return 0.5 / min(work.channels[name].rate_hz for name in names)
+
+
+def with_error(measured: Measured) -> str:
+    """Return the value with half its 95 % interval."""
+    half = NORMAL_95 * measured.std
+    digits = max(0, int(np.ceil(-np.log10(max(half, 1e-6))))) if half < 1.0 else 0
+    return f"{measured.value:.{digits}f} ± {half:.{digits}f}"

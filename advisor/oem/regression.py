@@ -1,0 +1,40 @@
+"""Linear regression of all manoeuvres together, each with constants of its own."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from advisor.flight.signals.messages import FloatArray
+
+_INDIFFERENT = 1e-6
+"""Relative singular value below which a direction of the common coefficients is left out. Integrals over a
+motion that is excited at all have 1e-3 or more."""
+
+
+class Equations(NamedTuple):
+    """The equations of one manoeuvre."""
+
+    common: FloatArray
+    """(n, k) columns whose coefficients all manoeuvres share."""
+    side: FloatArray
+    """(n,) left side."""
+    own: FloatArray
+    """(n, l) columns whose coefficients are the manoeuvre's own."""
+
+
+def regressed(parts: Sequence[Equations]) -> tuple[FloatArray, list[FloatArray]]:
+    """Return the common coefficients (k,), and the own coefficients (l,) of each manoeuvre.
+
+    The own columns are removed from both sides by regression, manoeuvre by manoeuvre. The numbers are always
+    finite: without information the solution is that of least norm.
+    """
+    gains = [np.linalg.pinv(part.own) for part in parts]
+    rest = [
+        (part.common - part.own @ (gain @ part.common), part.side - part.own @ (gain @ part.side))
+        for part, gain in zip(parts, gains, strict=True)
+    ]
+    stacked, sides = (np.concatenate(columns) for columns in zip(*rest, strict=True))
+    size = np.maximum(np.linalg.norm(stacked, axis=0), 1e-12)
+    found = np.linalg.lstsq(stacked / size, sides, rcond=_INDIFFERENT)[0] / size
+    return found, [gain @ (part.side - part.common @ found) for part, gain in zip(parts, gains, strict=True)]
