@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.aircraft import Aircraft, SideControl
 from advisor.process.interrupt import in_order
 from advisor.session.source import Source, Tempo
 from advisor.words.printable import printable
@@ -114,8 +114,10 @@ def _campaign(
 ) -> "Campaign":
     from advisor.campaign.campaign import Campaign
 
+    # One estimate of roll and yaw takes up to half a minute, in which no elevator manoeuvre is judged.
+    lateral = SideControl() not in (aircraft.aileron, aircraft.rudder)
     return Campaign(
-        aircraft, target_system, settle, tell, by_hand=by_hand, marks=marks, names=names, lateral=True
+        aircraft, target_system, settle, tell, by_hand=by_hand, marks=marks, names=names, lateral=lateral
     )
 
 
