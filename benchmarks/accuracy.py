@@ -30,6 +30,7 @@ from advisor.model.response import N_LOCAL, N_PARAMETERS, respond
 from advisor.oem.covariance import influence
 from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import estimate, estimate_jointly
+from advisor.oem.instruments import extra_of, unknown_instruments
 from advisor.oem.problem import OutputErrorProblem, Record, assemble
 from advisor.oem.rows import Signal
 
@@ -105,8 +106,8 @@ def study(count: int, memory: float, together: int, seed: int = 1) -> Row:
     rng = np.random.default_rng(seed)
     response = clean()[2]
     spread = NOISE * response.std(axis=0)
-    reference = influence_at_truth(memory, together, spread)
     aircraft = Aircraft(elevator=Elevator(lag_s=0.0))
+    reference = influence_at_truth(memory, together, spread, aircraft)
     found, least = [], []
     for _ in range(count):
         noises = [spread * noise(rng, response.shape, memory) for _ in range(together)]
@@ -141,23 +142,33 @@ def white(v: Array, memory: float) -> Array:
     return result
 
 
-def influence_at_truth(memory: float, together: int, spread: Array) -> Array:
-    """(N, 8) error of the reference for each unit of whitened noise; squares of a column sum to the bound."""
+def influence_at_truth(memory: float, together: int, spread: Array, aircraft: Aircraft) -> Array:
+    """(N, 8) error of the reference for each unit of whitened noise; squares of a column sum to the bound.
+
+    The reference leaves open what the estimator leaves open: the aircraft file does not tell when a command
+    arrives, or where instruments are.
+    """
     t, u, response = clean()
     outputs = {"alpha": Signal(t, response[:, 0]), "q": Signal(t, response[:, 1])}
-    assembly = assemble(OutputErrorProblem((Record(Signal(t, u), outputs),) * together))
+    problem = OutputErrorProblem((Record(Signal(t, u), outputs),) * together)
+    assembly = assemble(problem)
     y, g = np.empty(len(assembly.z)), np.empty((len(assembly.z), N_PARAMETERS))
     local = np.zeros((together, N_LOCAL))
     local[:, 0], local[:, 1] = JET[0], JET[4]
     local[:, 2:4] = response[0]
-    respond(assembly.grid, np.append(JET[[1, 2, 3, 5, 6, 7]], 0.0), local, y, g)
+    shared = np.append(JET[[1, 2, 3, 5, 6, 7]], 0.0)
+    respond(assembly.grid, shared, local, y, g)
+    extra = extra_of(problem, assembly, shared, local, unknown_instruments(problem, aircraft))
+    columns = extra.columns.copy()
     for named in assembly.rows:
         for output, size in zip(("alpha", "q"), spread, strict=True):
-            g[named[output]] = white(g[named[output]] / size, memory)
+            rows = named[output]
+            g[rows] = white(g[rows] / size, memory)
+            columns[rows] = white(columns[rows] / size, memory)
     # White and of unit variance now: the influence's own covariance is the bound.
-    found = influence(assembly, g, np.ones(4))
+    found = influence(assembly, g, np.ones(4), extra.whitened(columns))
     assert found is not None
-    return found.rows
+    return found.rows[:, : len(JET)]
 
 
 def table(rows: list[Row]) -> str:
