@@ -151,7 +151,7 @@ def _missing(accepted: Sequence[LateralEstimate]) -> list[str]:
 def _sentence(shares: Mapping[str, float], accepted: Sequence[LateralEstimate], stop: bool) -> str:
     if stop:
         return (
-            f"STOP TESTING: roll and yaw are known within their tolerance from {len(accepted)} accepted "
+            f"TEST COMPLETE: roll and yaw are known within their tolerance from {len(accepted)} accepted "
             "manoeuvres."
         )
     missing = _missing(accepted)
