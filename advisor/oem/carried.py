@@ -23,7 +23,7 @@ from advisor.oem.estimate import ChannelFit, Estimate
 from advisor.oem.prepare import Prepared
 from advisor.oem.prior import precision
 from advisor.oem.problem import merged
-from advisor.oem.rows import STAMP_S, Signal
+from advisor.oem.rows import STAMP_S, Signal, nearest_event
 from advisor.oem.solution import Solution, noise_floor, reported
 from advisor.oem.sums import Sums
 
@@ -150,8 +150,7 @@ class UpdatableSolution:
         step = np.diff(t)
         row, n = np.full((len(OUTPUTS), len(t)), -1, np.int64), 0
         for name, signal in new.items():
-            at = np.searchsorted(t, signal.t - STAMP_S)
-            row[OUTPUTS.index(name), at] = np.arange(n, n + len(signal.t))
+            row[OUTPUTS.index(name), nearest_event(t, signal.t)] = np.arange(n, n + len(signal.t))
             n += len(signal.t)
         gravity = np.full(len(t), last.gravity[-1])
         theta = maneuver.channels.get("theta")

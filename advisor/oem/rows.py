@@ -82,6 +82,15 @@ class LaidRows(NamedTuple):
     measurements: Measurements
 
 
+def nearest_event(events: FloatArray, stamps: FloatArray) -> Index:
+    """Return the index of the nearest event of each stamp; ``events`` (E,) are in order, ``stamps`` (n,).
+
+    An event may differ from its stamp by more than ``STAMP_S``, where stamps follow each other more closely.
+    """
+    index: Index = np.searchsorted((events[1:] + events[:-1]) / 2.0, stamps).astype(np.int64)
+    return index
+
+
 def lay_rows(pieces: Sequence[Stamped], outputs: Sequence[str]) -> LaidRows:
     """Lay measurements manoeuvre by manoeuvre, within one output by output; ``outputs`` are the model's."""
     first = np.concatenate([[0], np.cumsum([len(piece.t) for piece in pieces])]).astype(np.int64)
@@ -92,7 +101,7 @@ def lay_rows(pieces: Sequence[Stamped], outputs: Sequence[str]) -> LaidRows:
         rows.append({})
         for name, signal in piece.outputs.items():
             rows[m][name] = slice(n, n + len(signal.t))
-            at = first[m] + np.searchsorted(piece.t, signal.t - STAMP_S)
+            at = first[m] + nearest_event(piece.t, signal.t)
             row[outputs.index(name), at] = np.arange(n, n + len(signal.t))
             n += len(signal.t)
     signals = [(m, name, signal) for m, p in enumerate(pieces) for name, signal in p.outputs.items()]

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.gap.candidates import sensors
 from advisor.gap.candidates.catalogue import variants_for
+from advisor.gap.effects import EFFECTS
 from advisor.gap.fitting.fit import fit
 from advisor.gap.fitting.holdout import held_out, hold_out
 from advisor.gap.fitting.step import bounds_of
@@ -96,7 +96,7 @@ def test_no_derivative_makes_an_aircraft_that_nobody_can_fly(late):
 
 def test_a_value_at_the_end_of_its_range_names_the_parameter_and_the_range(late):
     _, judged = late
-    mode = next(v for v in sensors.variants(0.004, late[0].flights) if v.effect == "structural_mode")
+    mode = EFFECTS["structural_mode"].variants(late[0].flights)[0]
     value = np.array([1.0, 1.0, 80.0, 0.05])
     at_the_end = replace(judged, variant=mode, value=value)
     (question,) = [one for one in at_the_end.decisions if one.name == "range"]

@@ -5,7 +5,7 @@ from scipy.linalg import expm
 from advisor.model.response import LOCAL, N_PARAMETERS, SHARED, respond
 from advisor.model.transition import WIDTH, divisions, fill
 from advisor.oem.problem import OutputErrorProblem, Record, assemble
-from advisor.oem.rows import Signal
+from advisor.oem.rows import STAMP_S, Signal
 from tests.oem.builders import JET, UAV, simulate
 
 MATRICES = [
@@ -113,3 +113,16 @@ def test_parameters_that_run_away_are_reported_not_returned():
     y = np.empty(len(assembly.z))
     shared = np.array([90.0, 0.0, 0.0, 50.0, 90.0, 1.0, 0.0])
     assert not respond(assembly.grid, shared, np.ones((2, 7)), y, np.empty((0, N_PARAMETERS)))
+
+
+def test_a_sample_at_the_end_of_a_chain_of_nearly_equal_stamps_keeps_its_row():
+    t = np.arange(0.0, 1.0, 0.02)
+    late = t + 1.6 * STAMP_S
+    outputs = {
+        "alpha": Signal(t, 0.0 * t),
+        "q": Signal(late, 0.0 * t),
+        "a_z": Signal(t + 0.8 * STAMP_S, 0.0 * t),
+    }
+    assembly = assemble(OutputErrorProblem((Record(Signal(t, 0.0 * t), outputs),)))
+    assert np.max(np.abs(assembly.events[assembly.grid.row[1] >= 0] - late)) < 2.0 * STAMP_S
+    assert sorted(assembly.grid.row[assembly.grid.row >= 0]) == list(range(3 * len(t)))

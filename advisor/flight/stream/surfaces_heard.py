@@ -62,7 +62,7 @@ class SurfacesHeard:
     def begin(self) -> None:
         """Begin another power-on, whose pulses are counted by all limits heard."""
         self._held = None
-        self._settle()
+        self._count()
 
     def take(self, output: int) -> list[FlightEvent]:
         """Take the output that a hand has accepted as the elevator."""
@@ -141,17 +141,22 @@ class SurfacesHeard:
             return find_elevator(self._taken, wiring, "by a guess that a hand has taken")
         return found
 
-    def _settle(self) -> list[FlightEvent]:
+    def _count(self) -> None:
+        """Find the surfaces by all that was heard."""
         self.elevator, wiring = self._found(), self._wiring(self._vehicle)
         if self._vehicle is not None and self._vehicle.is_multicopter:
             self.counted = {}
-            return []
+            return
         found = {
             "elevator": self._held or self.elevator,
             "aileron": find_side_control("aileron", self._aircraft.aileron, wiring),
             "rudder": find_side_control("rudder", self._aircraft.rudder, wiring),
         }
         self.counted = {name: surface for name, surface in found.items() if isinstance(surface, Surface)}
+
+    def _settle(self) -> list[FlightEvent]:
+        """Find the surfaces by all that was heard, and say what the elevator is made of, once."""
+        self._count()
         said = self.elevator.said if isinstance(self.elevator, Surface) else ""
         if not said or said == self._said:
             return []
