@@ -110,7 +110,7 @@ def test_a_derivative_is_told_or_not_identifiable_and_never_both(state):
 def test_the_text_says_every_verdict_and_the_decision(state):
     lines = list(lateral_lines(state, AIRCRAFT))
     assert sum("doublet" in line and "✓" in line for line in lines) == 2
-    assert any(line.startswith(("STOP", "CONTINUE")) for line in lines)
+    assert any(line.startswith(("TEST COMPLETE", "CONTINUE")) for line in lines)
 
 
 def test_the_result_does_not_depend_on_the_batches(both, state):
