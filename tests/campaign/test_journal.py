@@ -46,7 +46,7 @@ def test_where_another_clock_begins_times_begin_anew_and_a_sentence_says_so(even
     journal.write("mode MANUAL", 80.0)
     journal.take(event)
     journal.take(ModeChanged("FBWA", 3.0))
-    assert "boot" in lines(journal)[1]
+    assert "power-on" in lines(journal)[1]
     assert lines(journal)[1].startswith("–")
     assert lines(journal)[2] == "0:03.0  mode FBWA"
 

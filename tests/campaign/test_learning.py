@@ -93,7 +93,7 @@ def test_no_verdict_praises_a_control_derivative_that_the_joint_estimate_contrad
     judged = reserved(GOOD, alone, with_lag(0.14, 0.01, theta=twice))
     assert judged.accepted
     assert "good manoeuvre" not in judged.sentence
-    assert "M_delta_e" in judged.sentence
+    assert "M_δe" in judged.sentence
 
 
 def test_a_verdict_that_the_joint_estimate_confirms_stays():
