@@ -70,6 +70,8 @@ class Gap:
     """Gap before, for ``step edge``, ``plateau`` and ``free response``."""
     by_band_hz: tuple[tuple[float, float, float], ...]
     """Band limits in Hz, and the band's share of the power of the pitch-rate error."""
+    by_air: float = 0.0
+    """Part of the gap that the likeliest course of moving air removes from the final model."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,6 +8,8 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.diagnose import diagnose
 from advisor.gap.effects import EFFECTS
+from advisor.gap.records.floor import prefiltered
+from advisor.gap.records.prepare import prepare
 from tests.gap.generator import Setup, fly
 
 # One diagnosis serves two tests.
@@ -49,3 +51,10 @@ def test_a_lag_of_the_servo_is_told_beside_it():
     flown = estimated(fly(Setup(maneuvers=6, switches={"lag": 0.08}, seed=71)))
     found = diagnose(flown, Aircraft())
     assert [c.effect for c in found.causes if c.present] == ["actuator_lag"]
+
+
+def test_a_smooth_estimate_of_the_angle_of_attack_says_nothing_of_the_noise_of_other_channels():
+    flights = prepare(estimated(fly(Setup(maneuvers=3, noise=0.005, seed=71))), Aircraft())
+    assert flights.alpha_is_smoothed
+    assert prefiltered(flights) == {"alpha": True, "q": False, "a_z": False, "theta": False}
+    assert all(prefiltered(replace(flights, alpha_is_derived=False)).values())

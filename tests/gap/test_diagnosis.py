@@ -332,7 +332,7 @@ def test_stated_errors_of_the_terms_at_zero_angles_cover_their_scatter():
 
 @pytest.mark.study
 def test_beside_moving_air_the_sentence_says_what_the_effect_removes_and_manoeuvres_are_kept_out_too():
-    flown = fly(Setup(switches={"delay": 0.06}, gust_std=0.2, maneuvers=6))
+    flown = fly(Setup(switches={"delay": 0.06}, gust_std=0.4, maneuvers=6))
     found, apart = diagnose(flown, Aircraft()), diagnose(flown, Aircraft(), holdout=2)
     assert {c.effect for c in found.causes if c.present} == {"transport_delay", "turbulence"}
     assert found.shrink.beyond_air_percent > 97.0

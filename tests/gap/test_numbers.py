@@ -13,7 +13,7 @@ pytestmark = pytest.mark.study
 
 HEIGHTS = (120.0, 121.0, 119.0)
 CAUSES = {
-    "transport_delay": Setup(maneuvers=4, switches={"delay": 0.06}, seed=21),
+    "transport_delay": Setup(maneuvers=4, switches={"delay": 0.1}, seed=21),
     "alpha_bias": Setup(maneuvers=4, alpha_bias=0.03, seed=22),
     "airspeed_variation": Setup(
         maneuvers=6, surge=0.8, surge_hz=0.1, logs_throttle=True, heights_m=HEIGHTS, seed=202

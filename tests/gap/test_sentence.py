@@ -26,6 +26,19 @@ def test_two_places_that_are_as_likely_are_both_said(moment, places):
     assert sentence == f"Something acts {places} that no known effect explains."
 
 
+@pytest.mark.parametrize(
+    ("by_air", "said"),
+    [
+        (0.9, "light gusts, as in every flight, make 45 % of the gap"),
+        (0.1, "its parameters are right to a few per cent; fitted ones remove 80 % of the gap"),
+    ],
+)
+def test_where_nothing_is_named_gusts_are_not_credited_to_fitted_parameters(by_air, said):
+    gap = replace(diagnosis().gap, before=2.0, after=0.4, by_air=by_air)
+    sentence = sentence_of("none", gap, diagnosis().where, (), None)
+    assert sentence == f"The simulator flies like the aircraft: {said}."
+
+
 def found(effect, **sizes):
     parameters = {name: Value(size, 0.0) for name, size in sizes.items()}
     return Cause(effect, EFFECTS[effect].block, 1.0, parameters, (), "", 0.0, True)

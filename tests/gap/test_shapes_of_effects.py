@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.gap.diagnose import diagnose
+from advisor.gap.diagnose import diagnose, examine
 from advisor.gap.simulator.layout import ENTRIES, INDEX
 from advisor.gap.simulator.surface import surface
 from tests.gap.generator import LIGHT_AIRCRAFT, Airframe, Setup, fly
@@ -164,9 +164,14 @@ def test_a_servo_of_second_order_trails_a_ramp_by_its_lag_and_overshoots_as_its_
 
 
 def test_a_servo_that_begins_to_move_gently_is_called_late_by_its_lag_and_no_delay():
-    found = diagnose(fly(Setup(maneuvers=6, switches={"lag": 0.04, "before_lag": 0.04}, seed=14)), Aircraft())
-    assert found.causes[0].effect == "actuator_lag"
-    assert found.causes[0].parameters["lag_s"].value == pytest.approx(0.08, rel=0.15)
+    """Part of the gentle beginning passes for telemetry that is late by nature: the sum is the lateness."""
+    gentle = fly(Setup(maneuvers=6, switches={"lag": 0.04, "before_lag": 0.04}, seed=14))
+    found = examine(gentle, Aircraft())
+    assert [c.effect for c in found.diagnosis.causes if c.present] == ["actuator_lag"]
+    point = found.evidence.stages[-1].fitted.point
+    late = {e.effect: values[0] for e, values in zip(point.effects, point.values, strict=True)}
+    assert found.diagnosis.causes[0].parameters["lag_s"].value == pytest.approx(late["actuator_lag"])
+    assert late["actuator_lag"] + late["latency"] == pytest.approx(0.08, rel=0.05)
 
 
 @pytest.mark.parametrize("integrated", [0.0, 1.0])

@@ -92,8 +92,10 @@ def test_two_effects_are_both_named_the_larger_one_first():
 def test_three_streams_that_are_late_alike_are_a_late_command_and_one_stream_that_is_early():
     late = Setup(maneuvers=6, noise=0.005, switches={"delay": 0.06}, skew={"alpha": -0.06}, seed=40)
     found = diagnose(fly(late), Aircraft())
-    present = [c.effect for c in found.causes if c.present]
-    assert present == ["transport_delay", "alpha_skew"]
+    present = {c.effect: c.parameters for c in found.causes if c.present}
+    assert present.keys() == {"transport_delay", "alpha_skew"}
+    assert present["transport_delay"]["delay_s"].value == pytest.approx(0.06, abs=0.005)
+    assert present["alpha_skew"]["skew_s"].value == pytest.approx(-0.06, abs=0.005)
 
 
 @pytest.fixture(scope="module")
@@ -184,7 +186,7 @@ def test_of_two_arms_alike_in_the_data_the_one_that_the_file_leaves_open_is_name
 
 @pytest.mark.study
 def test_a_place_of_the_accelerometer_that_the_file_leaves_open_is_named_after_any_other_effect():
-    flown = fly(Setup(maneuvers=6, switches={"acc_arm": 0.8, "delay": 0.02}, seed=32))
+    flown = fly(Setup(maneuvers=6, switches={"acc_arm": 0.8, "delay": 0.04}, seed=32))
     vane_known = Aircraft(alpha=Alpha(vane_arm_m=0.0))
     present = [cause.effect for cause in diagnose(flown, vane_known).causes if cause.present]
     assert present == ["transport_delay", "accelerometer_offset"]
@@ -232,7 +234,7 @@ def test_a_record_filtered_on_the_ground_is_told_from_noise_and_from_moving_air(
 
 
 @pytest.mark.study
-def test_a_record_that_was_filtered_beside_moving_air_names_the_air_alone():
+def test_a_record_that_was_filtered_beside_the_light_gusts_of_any_flight_names_nothing():
     rng, sections = np.random.default_rng(61), butter(4, 3.0, fs=50.0, output="sos")
     flown = []
     for maneuver in fly(Setup(maneuvers=6, gust_std=0.15, coloured=0.5, seed=61)):
@@ -243,8 +245,8 @@ def test_a_record_that_was_filtered_beside_moving_air_names_the_air_alone():
             channels[name] = replace(channels[name], y=sosfiltfilt(sections, channels[name].y))
         flown.append(replace(maneuver, channels=channels))
     found = diagnose(flown, Aircraft())
-    assert [c.effect for c in found.causes if c.present] == ["turbulence"]
-    assert found.verdict == "effect"
+    assert found.verdict == "none"
+    assert not any(c.present for c in found.causes)
 
 
 def flown_with(channel, change, **setup):

@@ -17,13 +17,15 @@ measurement."""
 _SMOOTH = 1e-3
 """White noise over the channel's peak below which a channel was filtered: no instrument is so quiet."""
 _RAW = 1e-2
-"""White noise over the channel's peak above which a channel still has its instrument's noise, although α was
-filtered."""
+"""White noise over the channel's peak above which a channel still has its instrument's noise, although a
+vane's α was filtered."""
 
 
 def prefiltered(flights: PreparedManeuvers) -> dict[str, bool]:
     """Return by channel whether it was filtered, or is smoother than an instrument's white noise."""
-    smooth = flights.white < (_RAW if flights.alpha_is_smoothed else _SMOOTH) * flights.peaks
+    # An angle of attack that an autopilot computes is smooth by nature, and says nothing of other channels.
+    filtered = flights.alpha_is_smoothed and not flights.alpha_is_derived
+    smooth = flights.white < (_RAW if filtered else _SMOOTH) * flights.peaks
     smooth |= flights.alpha_is_smoothed & (np.array(flights.channels) == "alpha")
     return dict(zip(flights.channels, smooth.tolist(), strict=True))
 

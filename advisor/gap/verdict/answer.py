@@ -67,6 +67,7 @@ def answer(
         least = np.maximum(e.air.instruments, tolerance_of(problem.flights))
         last, e = without_air(last, e.air), replace(e, floor=np.minimum(e.floor, least))
     gap = gap_numbers(problem, e.floor, before, last)
+    gap = replace(gap, by_air=whole_gap(with_air, e.floor) - gap.after)
     shrink = None
     if verdict in ("effect", "parameters"):
         shrink = shrink_of(e, kept, gap, before, last, judged.wrong_derivatives)

@@ -68,6 +68,9 @@ def _of_no_gap(gap: Gap) -> str:
     elif gap.after < 0.5 * gap.before:
         percent = 100.0 * (1.0 - gap.after / gap.before)
         finding = f"its parameters are right to a few per cent; fitted ones remove {percent:.0f} % of the gap"
+        if gap.by_air > 0.5 * (gap.before - gap.after):
+            percent = 100.0 * min(gap.by_air / gap.before, 1.0)
+            finding = f"light gusts, as in every flight, make {percent:.0f} % of the gap"
     else:
         finding = "the residual above the noise is too small to name a cause"
     return f"The simulator flies like the aircraft: {finding}."
