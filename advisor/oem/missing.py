@@ -40,7 +40,8 @@ def price(solution: Solution) -> FloatArray | None:
     )
     assembly = assemble(replace(solution.problem, records=imagined))
     y, g = np.empty(len(assembly.z)), np.empty((len(assembly.z), N_PARAMETERS))
-    respond(assembly.grid, solution.optimum.shared, solution.optimum.local, y, g)
+    if not respond(assembly.grid, solution.optimum.shared, solution.optimum.local, y, g):
+        return None
     noise = solution.optimum.noise.copy()
     noise[OUTPUTS.index(output)] = (
         noise[OUTPUTS.index("q")] * _spread(assembly, y, output) / _spread(assembly, y, "q")
