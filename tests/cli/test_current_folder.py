@@ -99,7 +99,7 @@ def test_live_runs_no_file_of_the_current_folder(started: Callable[..., Command]
     command = started("live", "--master", f"udpin:127.0.0.1:{port}", "--record", "flight.tlog")
     command.until(lambda: "recording to" in command.err.read_text())
     fly(records_of(LOG)[:600], port, 1.0, lambda now_s: None)
-    command.until(lambda: "vehicle" in command.out.read_text())
+    command.until(lambda: "following" in command.out.read_text())
     assert command.end() == 130, command.err.read_text()
     assert command.ran == []
     assert "started again" not in command.err.read_text()
@@ -107,7 +107,7 @@ def test_live_runs_no_file_of_the_current_folder(started: Callable[..., Command]
 
 def test_demo_runs_no_file_of_the_current_folder(started: Callable[..., Command]) -> None:
     command = started("demo", "--speed", "50")
-    command.until(lambda: "vehicle" in command.out.read_text())
+    command.until(lambda: "following" in command.out.read_text())
     assert command.end() == 130, command.err.read_text()
     assert command.ran == []
 
