@@ -194,12 +194,18 @@ def test_duplicated_and_reordered_packets_change_nothing():
 
 def test_alpha_is_derived_from_pitch_and_climb_where_nothing_else_says():
     wire = Wire()
-    fly(wire, 1000.0, 50.0, ONE, 14.0)
+    heartbeat(wire, 1000.0)
+    parameter(wire, 1000.0, "SERVO2_FUNCTION", 19.0)
+    for k in range(700):
+        boot = 50.0 + k / 50
+        attitude(wire, 1000.01 + k / 50, boot, pitch=0.05 + 0.01 * np.sin(boot))
+        servo(wire, 1000.012 + k / 50, boot, {2: 1520 if 54.0 <= boot < 54.4 else 1500})
+        hud(wire, 1000.013 + k / 50)
     aircraft = Aircraft(alpha=Alpha(source="derived"))
     (maneuver,) = maneuvers(flown(wire, aircraft)[1])
     alpha = maneuver.channels["alpha"]
     assert (alpha.source, alpha.provenance) == (DERIVED_ALPHA, "derived")
-    assert alpha.y == pytest.approx(0.05)
+    assert alpha.y == pytest.approx(0.05 + 0.01 * np.sin(alpha.t), abs=1e-3)
 
 
 def test_a_still_aoa_message_gives_way_to_the_derived_angle():
