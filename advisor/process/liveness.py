@@ -16,13 +16,14 @@ from typing import Self
 OLD_AFTER_S = 3.0
 """Age of the newest report, s, above which the crew reads that it is old. Reports come every 0.1 s, and an
 estimate of seven manoeuvres together delays one by up to 2 s on a laptop."""
-ENDED_AFTER_S = 60.0
-"""Age of the newest report, s, above which a process is ended and started again: four times the longest
-estimates in flight. A rudder doublet at 50 Hz takes 11 s of processor time, and the joint estimate after it 5
-s. The limit doubles with each end, so that a slow computer comes to its result."""
+ENDED_AFTER_S = 20.0
+"""Age of the newest report, s, above which a process is ended and started again: ten times the longest
+estimate of the elevator's axis in flight. The limit doubles with each end, so that a slow computer comes to
+its result."""
 START_S = 60.0
 """Time to the first report, s, above which a process is ended. Libraries load within 10 s, and compiled
-functions that no folder keeps are compiled within this time."""
+functions that no folder keeps are compiled within this time. Patience holds as long: a rudder doublet at
+50 Hz takes 11 s of processor time, and the joint estimate after it 5 s."""
 _LOOK_EVERY_S = 0.5
 
 
@@ -30,7 +31,7 @@ class Beat(Enum):
     """Message of a process that has nothing else to say."""
 
     LISTENING = "waits for data"
-    READING = "reads what has been recorded so far"
+    BUSY = "reads what has been recorded so far, or may judge roll and yaw"
 
 
 class Watch:
@@ -79,7 +80,8 @@ class Watch:
         Parameters
         ----------
         patient
-            Whether the process reads what has been recorded so far, which may take long.
+            Whether the process reads what has been recorded so far, or judges roll and yaw: both may take
+            long.
         """
         self._limit_s = START_S if patient else ENDED_AFTER_S
         self._messages += 1
