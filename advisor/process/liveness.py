@@ -18,8 +18,8 @@ OLD_AFTER_S = 3.0
 estimate of seven manoeuvres together delays one by up to 2 s on a laptop."""
 ENDED_AFTER_S = 20.0
 """Age of the newest report, s, above which a process is ended and started again. The longest estimate of the
-elevator's axis in flight takes a tenth of this. The limit doubles with each end, so that a slow computer comes
-to its result."""
+elevator's axis in flight takes a tenth of this. The limit doubles with each end, so that a slow computer
+comes to its result."""
 START_S = 60.0
 """Time to the first report, s, above which a process is ended. Libraries load within 10 s, and compiled
 functions that no folder keeps are compiled within this time. Patience holds as long: a rudder doublet at
