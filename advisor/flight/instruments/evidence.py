@@ -188,9 +188,12 @@ def force_against_alpha(channels: Channels) -> Evidence:
     width = COMPUTED_WIDTH if computed else VANE_WIDTH
     by_scale = width * (other.delays_s - fit.delays_s) / _STEP
     covariance = fit.delay_covariance + np.outer(by_scale, by_scale)
-    apart = float(np.sqrt(covariance[0, 0] + covariance[1, 1] - 2.0 * covariance[0, 1]))
+    variances = np.array([covariance[0, 0] + covariance[1, 1] - 2.0 * covariance[0, 1], covariance[1, 1]])
+    if not np.all(variances > 0.0):  # Round-off decides: a damaged record tells no delay.
+        return {}
+    apart, alone = map(float, np.sqrt(variances))
     together = Measured(of_rate - of_force, apart)
-    bound = Measured(-of_force, float(np.sqrt(covariance[1, 1])))
+    bound = Measured(-of_force, alone)
     if source.source == DERIVED_ALPHA:
         return {"a_z_least": bound}
     by_width = width * float(other.factors[1] - fit.factors[1]) / _STEP
