@@ -164,6 +164,23 @@ def rate_moves_alpha(channels: Channels) -> bool | None:
     return None if fit is None else bool(fit.factors[0] > 0.0)
 
 
+def stds_of_delays(covariance: FloatArray) -> tuple[float, float] | None:
+    """Return the standard deviations of the difference of two delays and of the second, s.
+
+    None where round-off decides on a variance, as in a damaged record: it tells no delay.
+
+    Parameters
+    ----------
+    covariance
+        (2, 2) of the delays, s².
+    """
+    variances = np.array([covariance[0, 0] + covariance[1, 1] - 2.0 * covariance[0, 1], covariance[1, 1]])
+    if not np.all(variances > 0.0):
+        return None
+    apart, alone = map(float, np.sqrt(variances))
+    return apart, alone
+
+
 def force_against_alpha(channels: Channels) -> Evidence:
     """Return the clock of the specific force and the scale of the air speed, by a sound angle of attack.
 
@@ -188,12 +205,11 @@ def force_against_alpha(channels: Channels) -> Evidence:
     width = COMPUTED_WIDTH if computed else VANE_WIDTH
     by_scale = width * (other.delays_s - fit.delays_s) / _STEP
     covariance = fit.delay_covariance + np.outer(by_scale, by_scale)
-    variances = np.array([covariance[0, 0] + covariance[1, 1] - 2.0 * covariance[0, 1], covariance[1, 1]])
-    if not np.all(variances > 0.0):  # Round-off decides: a damaged record tells no delay.
+    stds = stds_of_delays(covariance)
+    if stds is None:
         return {}
-    apart, alone = map(float, np.sqrt(variances))
-    together = Measured(of_rate - of_force, apart)
-    bound = Measured(-of_force, alone)
+    together = Measured(of_rate - of_force, stds[0])
+    bound = Measured(-of_force, stds[1])
     if source.source == DERIVED_ALPHA:
         return {"a_z_least": bound}
     by_width = width * float(other.factors[1] - fit.factors[1]) / _STEP

@@ -25,11 +25,11 @@ part of the sideslip's rate, so that a vane's own scale counts several times."""
 _USUAL_IN_G, _SPREAD = 2.0, 0.8
 """Side force of one radian of sideslip over the weight, |C_Yβ|/C_L: its usual value, and the standard
 deviation of its logarithm. Four aircraft on record have 0.7 to 4.9."""
-_SENSE = {
+_DIRECTION = {
     "p": "the right wing goes down", "bank": "the right wing is down", "r": "the nose goes right",
     "a_y": "the force points right", "beta": "the wind comes from the right",
 }  # fmt: skip
-"""Channel to its positive sense."""
+"""Channel to its positive direction."""
 
 
 def examine_side(channels: Mapping[str, Channel], earlier: Evidence | None = None) -> Examined:
@@ -115,7 +115,7 @@ def _turned(work: Work, channel: str, measured: Measured, told: str) -> None:
     work.contradict(
         channel, "sign", "right", "left", measured, f"{PLAIN[channel]} has the wrong sign: {told}",
         f"check the sign of {PLAIN[channel]} ({work.channels[channel].source}), positive where "
-        f"{_SENSE[channel]}",
+        f"{_DIRECTION[channel]}",
     )  # fmt: skip
 
 

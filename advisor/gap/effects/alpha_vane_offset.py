@@ -43,6 +43,6 @@ EFFECT = Effect(
     },
     twin="accelerometer_offset",
     stated=("alpha", "vane_arm_m"),
-    # A vane behind the centre of gravity is hardly ever found.
+    # A vane behind the centre of gravity is rare.
     log_odds_backward=-5.0,
 )

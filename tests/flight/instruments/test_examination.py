@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
+from advisor.flight.instruments.evidence import stds_of_delays
 from advisor.flight.instruments.examination import examine
 from advisor.flight.instruments.measured import Measured
 from advisor.flight.signals.derived_alpha import DERIVED_ALPHA
@@ -222,3 +223,9 @@ def test_a_late_force_shows_by_the_climb_rate_without_alpha_and_air_speed() -> N
     (wrong,) = examine(late(0.12, "a_z", "a_x")(sound)).findings
     assert (wrong.code, wrong.refuses) == ("a_z_delay_s", True)
     assert wrong.value == pytest.approx(0.12, abs=0.01)
+
+
+def test_where_round_off_decides_on_the_variance_of_a_delay_no_delay_is_told():
+    assert stds_of_delays(np.array([[1.0, 1.0], [1.0, 1.0]])) is None
+    assert stds_of_delays(np.array([[4.0, 0.0], [0.0, -1e-18]])) is None
+    assert stds_of_delays(np.array([[9.0, 0.0], [0.0, 16.0]])) == pytest.approx((5.0, 4.0))
