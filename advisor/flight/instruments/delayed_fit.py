@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from advisor.flight.signals.coloured import coloured_covariance
+from advisor.flight.signals.coloured import coloured_covariance, inverse_information
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.motion import integrated
 
@@ -146,5 +146,5 @@ def _covariance(jacobian: FloatArray, residual: FloatArray) -> FloatArray:
     An error of an instrument may have the shape of the motion, and a parameter then takes all of the
     residual. Such a parameter errs by at most ‖r‖·√((JᵀJ)⁻¹). The error is uniform up to this bound.
     """
-    mistaken = float(residual @ residual) / 3.0 * np.linalg.pinv(jacobian.T @ jacobian)
+    mistaken = float(residual @ residual) / 3.0 * inverse_information(jacobian)
     return np.asarray(coloured_covariance(jacobian, residual) + mistaken)

@@ -4,6 +4,19 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 
+_SMALLEST = 1e-15**0.5
+"""Singular value of a Jacobian, over the largest one, at which round-off decides. JᵀJ then has the
+precision of a double."""
+
+
+def inverse_information(jacobian: FloatArray) -> FloatArray:
+    """Return (JᵀJ)⁻¹ of a Jacobian (n, p), without the directions that round-off decides.
+
+    The product of a root with itself has no negative variance; the inverse of a nearly singular JᵀJ may.
+    """
+    root = np.linalg.pinv(jacobian, rcond=_SMALLEST)
+    return np.asarray(root @ root.T)
+
 
 def coloured_covariance(jacobian: FloatArray, residual: FloatArray) -> FloatArray:
     """Return the covariance of a least-squares fit with coloured residuals.
@@ -19,7 +32,7 @@ def coloured_covariance(jacobian: FloatArray, residual: FloatArray) -> FloatArra
         Shape (n,), sampled nearly evenly, so that lags mean times.
     """
     n = len(residual)
-    inverse = np.linalg.pinv(jacobian.T @ jacobian)
+    inverse = inverse_information(jacobian)
     lags = max(1, n // 5)
     inner = float(residual @ residual) / n * (jacobian.T @ jacobian)
     for k in range(1, lags):

@@ -44,6 +44,7 @@ class Advising:
                 stdout=out,
                 stderr=err,
                 env=self.environment,
+                preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_DFL),
             )
         wait_until(lambda: "record" in self.warned or self.process.poll() is not None, 30.0)
 
