@@ -92,6 +92,9 @@ class SidePath:
         return max(watch.newest_s for watch in self._watches.values())
 
     def _add(self, movement: SideMovement) -> None:
+        """Keep a movement. One that ends at its trim without a level of its own is part of no input."""
+        if movement.amplitude == 0.0:
+            return
         self._pending = sorted([*self._pending, movement], key=lambda one: one.span.start_s)
 
     def _is_over(self) -> bool:

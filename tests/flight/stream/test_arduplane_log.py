@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft, Elevator
-from advisor.flight.maneuvers.events import ManeuverFlown
+from advisor.flight.maneuvers.events import ManeuverFlown, SideManeuverFlown
 from advisor.flight.stream.stream import FlightStream
 from advisor.mavlink.logs.tlog import read_tlog
 
@@ -77,3 +77,13 @@ def test_the_log_at_default_rates_is_refused_by_message_and_rate():
     assert {p.code for p in problems} == {"rate"}
     assert any("SERVO_OUTPUT_RAW arrives at 2.0 Hz" in p.text for p in problems)
     assert any("SR0_EXTRA1" in p.fix for p in problems)
+
+
+def test_in_turbulence_a_movement_without_a_level_of_its_own_is_no_lateral_input():
+    stream = FlightStream(Aircraft(elevator=ELEVATOR), lateral=True)
+    events = [
+        event for columns in read_tlog(LOGS / "arduplane-turbulent.tlog") for event in stream.feed(columns)
+    ]
+    events += stream.finish()
+    inputs = [e.maneuver.span for e in events if isinstance(e, SideManeuverFlown)]
+    assert all(any(level != 0.0 for _, level in span.steps) for span in inputs)
