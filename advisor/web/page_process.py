@@ -35,7 +35,7 @@ class PageProcess(AppService):
             close=self._close,
             download_manager=downloads,
         )
-        self._door, self._socket, self._is_ending = door, socket, False
+        self._door, self._socket, self._ending = door, socket, asyncio.Lock()
 
     async def run(self) -> None:
         """Pass on the application's output. A page whose process has ended is closed."""
@@ -44,16 +44,20 @@ class PageProcess(AppService):
         await self._close()
 
     async def end(self) -> None:
-        """End the process at once, because it holds nothing that must be closed in order."""
-        process = self._process
-        if process is None:
-            return
-        if not self._is_ending and self._task is not None and not self._task.done():
-            self._is_ending = True  # a second kill would take the exit code from asyncio, which says so
-            with suppress(ProcessLookupError):
-                process.kill()
-        await self.stop()
-        await process.wait()
+        """End the process at once, because it holds nothing that must be closed in order.
+
+        The page and the server may both call this, at the same time: the first call ends the process,
+        and every call returns when it has ended.
+        """
+        async with self._ending:
+            process = self._process
+            if process is None:
+                return
+            if self._task is not None and not self._task.done():
+                with suppress(ProcessLookupError):
+                    process.kill()
+            await self.stop()
+            await process.wait()
 
     async def _close(self) -> None:
         await self._socket.close()
