@@ -193,7 +193,7 @@ def _checked_against_path(e: Evidence, flown: Sequence[Maneuver], weight: Weight
     is_scaled = e.airspeed_scale is not None and e.airspeed_scale.is_the_accelerometers(weight)
     if e.unexplained is None and (is_scaled or (is_off and not elsewhere) or _reads_another_speed(e, weight)):
         e = replace(e, unexplained=Unexplained("accelerometer", 1.0, (("accelerometer", 1.0),)))
-    return replace(e, weight=weight if is_off else None)
+    return replace(e, weight=weight)
 
 
 def _reads_another_speed(e: Evidence, weight: WeightReading | None) -> bool:

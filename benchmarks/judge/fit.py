@@ -30,6 +30,7 @@ COLUMNS: Mapping[Kind, tuple[str, ...]] = {
     "unknown": (
         "block_share", "block_left", "block_left_share", "block_explains", "law_gain", "law_lead", "misfit",
         "of_peak", "activity", "few_maneuvers", "drift", "step", "block_gain", "answer",
+        "weight",
     ),
 }  # fmt: skip
 """Columns that the judge weighs, by kind of alternative. Effects of the air share the weights of all effects,

@@ -91,6 +91,12 @@ def test_no_row_has_a_value_without_a_column():
     assert all(set(row.values) <= names for row in rows_of(delayed()))
 
 
+def test_the_weight_that_an_accelerometer_reads_speaks_of_the_accelerometer_alone():
+    rows = posterior(rows_of(still(weight={"accelerometer": 2.0})), FIELD).evidence
+    told = {one.alternative.label: one.value("weight") for one in rows if one.value("weight")}
+    assert told == {"unknown@accelerometer": 2.0}
+
+
 def test_probabilities_of_all_alternatives_sum_to_one():
     told = posterior(rows_of(delayed()), FIELD).probabilities
     total = told.none + told.parameters + sum(told.unknown.values()) + sum(told.effects.values())

@@ -36,7 +36,7 @@ class Evidence:
     shear: Shear | None = None
     """Wind that changes with height, which is outside the catalogue."""
     weight: WeightReading | None = None
-    """The accelerometer's reading of the weight, where it is wrong."""
+    """The accelerometer's reading of the weight; None where too few manoeuvres tell it."""
     sought_air: SoughtAir = field(default_factory=SoughtAir)
     """The search for moving air, whether or not air was found."""
     laws: Mapping[str, float] = field(default_factory=dict)

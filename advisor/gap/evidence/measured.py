@@ -117,6 +117,8 @@ class Measured:
     courses: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     """By block: gain of a drift and of a step of trims, offsets and estimates."""
     alpha_is_estimated: bool = False
+    weight: Mapping[str, float] = field(default_factory=dict)
+    """By block: error of the weight that its sensor reads, over the largest one that an offset explains."""
 
 
 def measured(e: Evidence, kinematics: KinematicCheck) -> Measured:
@@ -160,6 +162,7 @@ def measured(e: Evidence, kinematics: KinematicCheck) -> Measured:
             courses_of(problem, first.fitted), [f.started_s for f in problem.flights.flights]
         ),
         alpha_is_estimated=problem.flights.alpha_is_derived,
+        weight={} if e.weight is None else {"accelerometer": e.weight.departure},
     )  # fmt: skip
 
 

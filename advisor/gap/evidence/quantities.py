@@ -83,6 +83,7 @@ QUANTITIES: tuple[Quantity, ...] = (
     Quantity("shape", "", "mark of the air's course: 1 as expected, -1 otherwise"),
     Quantity("kinematics", "standard deviations", "finding of the kinematics alone", _folded),
     Quantity("kinematic_size", "", "finding of the kinematics over the smallest physical size", _folded),
+    Quantity("weight", "", "error of the weight that a sensor reads, over its largest offset", _folded),
     Quantity("estimated", "", "mark of a channel that the autopilot estimates"),
     Quantity("file_gap", "", "gap of the file's derivatives beyond the gap of fitted ones", _folded),
     Quantity(

@@ -56,6 +56,7 @@ def rows_of(m: Measured, answer: Alternative | None = None) -> tuple[Row, ...]:
         # A free disturbance of the air has a name: turbulence.
         values = _of_residual(m, m.last) | _of_courses(m, block) | ({} if block in _KINDS else probed[block])
         values |= {"law_gain": m.laws.get(block, 0.0), "few_maneuvers": _concentration(m.last), "tried": 1.0}
+        values["weight"] = m.weight.get(block, 0.0)
         values |= (
             {"law_lead": lead} if m.laws.get(block, 0.0) == max(m.laws.values(), default=0.0) > 0 else {}
         )

@@ -37,9 +37,14 @@ class WeightReading:
     std: float
 
     @property
+    def departure(self) -> float:
+        """Departure of the share from 1, over the largest one that an accelerometer's offset explains."""
+        return abs(self.share - 1.0) / max(_LEAST, SIGMAS * self.std)
+
+    @property
     def is_off(self) -> bool:
         """Whether the share differs from 1 by more than an accelerometer's offset."""
-        return abs(self.share - 1.0) > max(_LEAST, SIGMAS * self.std)
+        return self.departure > 1.0
 
     @property
     def sentence(self) -> str:

@@ -73,7 +73,7 @@ def _of_the_speed(e: Evidence, aircraft: Aircraft) -> Iterator[str]:
             yield f"The wind changed with height, by {per_metre} per metre."
     if e.airspeed_scale is not None:
         yield e.airspeed_scale.sentence
-    if e.weight is not None:
+    if e.weight is not None and e.weight.is_off:
         yield e.weight.sentence
 
 
