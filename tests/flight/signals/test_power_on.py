@@ -8,7 +8,8 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.signals.messages import Columns
 from advisor.flight.signals.power_on import PowerOn
-from advisor.flight.stream.stream import KEEP_S, FlightStream
+from advisor.flight.stream.state import KEEP_S
+from advisor.flight.stream.stream import FlightStream
 from advisor.mavlink.logs.logs import open_log
 from tests.flights import SHIPPED, TWO, recorded
 

@@ -1,0 +1,256 @@
+"""What a stream knows of its vehicle: outputs, channels, problems, contradictions of the instruments."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.elevator.elevator_guess import ElevatorGuesses, Guess
+from advisor.flight.elevator.elevator_sign import SAID
+from advisor.flight.elevator.mixing import Mixing
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.maneuvers.markers import MarkerWatch
+from advisor.flight.maneuvers.marks import Mark, Marks
+from advisor.flight.signals.attitude import Attitudes
+from advisor.flight.signals.banks import Banks
+from advisor.flight.signals.clocks import BootClock
+from advisor.flight.signals.extremes import Course
+from advisor.flight.signals.instrument_finding import InstrumentFinding
+from advisor.flight.signals.power_on import PowerOn
+from advisor.flight.signals.record import Channel
+from advisor.flight.signals.track import ChannelStatus
+from advisor.flight.signals.tracks import Tracks
+from advisor.flight.signals.trust import Distrust, frozen
+from advisor.flight.stream.cutting import Cutting
+from advisor.flight.stream.elevator_path import ElevatorPath
+from advisor.flight.stream.identity import Identity
+from advisor.flight.stream.instrument_watch import InstrumentWatch
+from advisor.flight.stream.service import Service
+from advisor.flight.stream.side_path import LOOPS, SidePath
+from advisor.flight.stream.suitability import problems, with_guess
+from advisor.flight.stream.vehicle_texts import VehicleTexts
+from advisor.flight.vehicle.boots import Master
+from advisor.flight.vehicle.breaks import Breaks
+from advisor.flight.vehicle.senders import SenderWatch
+from advisor.flight.vehicle.surfaces import Surface
+from advisor.flight.vehicle.vehicle import Vehicle
+from advisor.words.problems import Problem
+
+KEEP_S = 120.0
+"""Time for which channels are kept, s: longer than any manoeuvre with its lead-in."""
+
+
+class StreamState:
+    """The parts of a stream, and what is known of its vehicle so far: `FlightStream` feeds it."""
+
+    def __init__(
+        self,
+        aircraft: Aircraft,
+        target_system: int | None = None,
+        marks: Sequence[Mark] = (),
+        *,
+        keep_all: bool = False,
+        lateral: bool = False,
+    ) -> None:
+        self._aircraft = aircraft
+        self._keep_s = np.inf if keep_all else KEEP_S
+        self._clock_heard: list[Master] = []
+        self.power_ons: list[PowerOn] = []
+        """Every power-on that is over, whole; empty without ``keep_all``."""
+        self._who = Identity(aircraft, target_system)
+        self._texts = VehicleTexts()
+        self._attitudes = Attitudes()
+        self._clock = BootClock()
+        self._tracks = Tracks(
+            aircraft.alpha.source,
+            aircraft.airspeed_m_s,
+            aircraft.reference.air_temperature_c,
+            aircraft.reference.height_m,
+            lambda: self._who.simulated,
+            aircraft.beta.source,
+        )
+        self._breaks = Breaks()
+        self._cutting = Cutting(self._tracks, self._who, aircraft, self._breaks, lateral)
+        self._mixing = Mixing(self._tracks)
+        self.marks = Marks(marks)
+        """Marks by hand, by a switch and by texts."""
+        self._markers = MarkerWatch(aircraft.markers)
+        self._path = ElevatorPath(self._tracks, self._mixing, self.marks, self._cutting)
+        self._side = SidePath(self._tracks, self.marks, self._cutting) if lateral else None
+        self._over = False
+        self.boot = 0
+        """Number of the power-on, 0 for the first in the stream."""
+        self._guesses = ElevatorGuesses()
+        self._instruments = InstrumentWatch(self._tracks.cut)
+        self._start_boot()
+        self.seen: set[str] = set()
+        """Names of the messages that the vehicle has sent."""
+        self._past: dict[str, ChannelStatus] = {}
+        self._service = Service(self._wanting)
+        self._senders = SenderWatch()
+        self._system: int | None = None
+        self._earlier_s = 0.0
+
+    def _start_boot(self) -> None:
+        self._tracks.clear()
+        self._clock_heard.clear()
+        self._path.begin(self.boot)
+        if self._side is not None:
+            self._side.begin(self.boot)
+        self._banks = Banks()
+        self._breaks.begin()
+        self._mixing.begin()
+        self._cutting.begin(self._who.mode)
+        self._who.begin()
+        self._first_s = np.nan
+        self._flown_before = self._cutting.maneuvers
+        self._master_s = np.nan
+        self._heartbeat_s = -np.inf
+        self._guesses.begin()
+        self._instruments.begin()
+
+    @property
+    def vehicle(self) -> Vehicle | None:
+        """Vehicle that is followed. None before its first heartbeat."""
+        return self._who.vehicle
+
+    @property
+    def other_systems(self) -> frozenset[int]:
+        """System ids of the other vehicles heard."""
+        return self._who.other_systems
+
+    @property
+    def maneuvers(self) -> int:
+        """Number of manoeuvres found."""
+        return self._cutting.maneuvers
+
+    @property
+    def mode(self) -> str:
+        """Flight mode of the newest heartbeat."""
+        return self._who.mode
+
+    @property
+    def elevator(self) -> Surface | Problem:
+        """Outputs and scale of the elevator, or the reason for their absence."""
+        stated = self._who.elevator
+        if isinstance(stated, Problem) or not self._path.heard:
+            return stated
+        return stated.without(set(stated.outputs) - self._path.heard) or stated
+
+    @property
+    def elevator_notes(self) -> tuple[str, ...]:
+        """Composition of the elevator and assumptions about its scale and sign, as sentences; those about
+        aileron and rudder follow a lateral manoeuvre."""
+        sentences = [SAID] if self._cutting.is_backwards else []
+        if isinstance(self.elevator, Surface):
+            sentences = [self.elevator.said, self._mixing.said(self.elevator), *sentences]
+        if self._cutting.side_maneuvers:
+            sentences += [surface.said for name, surface in self._who.surfaces.items() if name in LOOPS]
+        return tuple(said for said in sentences if said)
+
+    @property
+    def now_s(self) -> float:
+        """Vehicle time of the newest sample, s since boot; NaN before the first."""
+        return self._clock.newest_s
+
+    @property
+    def duration_s(self) -> float:
+        """Vehicle time heard so far, over all boots, s."""
+        return self._earlier_s + (self._master_s - self._first_s if np.isfinite(self._master_s) else 0.0)
+
+    @property
+    def channels(self) -> Mapping[str, ChannelStatus]:
+        """Arrival of every channel from its present source; at the end of the stream, its best arrival."""
+        arriving = self._past if self._over else {**self._past, **self._tracks.statuses()}
+        return {
+            name: replace(status, provenance=self._who.provenance(status.source, status.provenance))
+            for name, status in arriving.items()
+        }
+
+    def problems(self) -> list[Problem]:
+        """Return the reasons for which the stream so far cannot be used; empty for a usable stream."""
+        flown = self._cutting
+        found = problems(
+            self.vehicle,
+            self.other_systems,
+            self.elevator,
+            self._at_best(),
+            flown.maneuvers,
+            flown.activities,
+            self.frozen,
+            self.seen,
+        )
+        wrong = self._mixing.contradiction
+        if self.guess is not None and isinstance(self.elevator, Problem):
+            found = [with_guess(problem, self.guess) for problem in found]
+        return [
+            *(self.marks.problems() if self._over else ()),
+            *([self.two_senders] if self.two_senders and not flown.maneuvers else ()),
+            *([wrong] if wrong and not flown.maneuvers else ()),
+            *found,
+        ]
+
+    @property
+    def guess(self) -> Guess | None:
+        """Guess of the elevator's output, while no parameter states the output."""
+        return None if self.vehicle is not None and self.vehicle.is_multicopter else self._guesses.newest
+
+    @property
+    def no_data(self) -> tuple[Problem, ...]:
+        """Reasons for which the present data cannot serve; empty while they can."""
+        return self._service.problems
+
+    def courses(self) -> dict[str, Course]:
+        """Return the channels that are shown whole, over this power-on."""
+        return self._tracks.courses()
+
+    @property
+    def serves(self) -> bool:
+        """Whether the present data are known to serve."""
+        return self._service.serves
+
+    def _wanting(self, channels: Mapping[str, ChannelStatus], now_s: float) -> list[Problem]:
+        """Return the problems of a stream with these channels, whatever was flown on it."""
+        wrong = self._mixing.contradiction if not self._cutting.maneuvers else None
+        two = self._senders.problem(self._system, now_s) if self._system is not None else None
+        # Problems of the vehicle followed come first. The screens offer the other vehicles themselves.
+        others = self.other_systems if self.vehicle is None else ()
+        found = problems(self.vehicle, others, self.elevator, channels, 1, {}, (), self.seen)
+        return [*(problem for problem in (two, wrong) if problem), *found]
+
+    @property
+    def two_senders(self) -> Problem | None:
+        """Problem of two senders under the vehicle's id, once they were detected."""
+        return self._senders.seen
+
+    @property
+    def frozen(self) -> list[Distrust]:
+        """Channels that have stood still in flight."""
+        ranges = {name: (status.lowest, status.highest) for name, status in self._at_best().items()}
+        return self._who.distrusts(frozen(ranges))
+
+    @property
+    def instruments(self) -> tuple[InstrumentFinding, ...]:
+        """Contradictions of the instruments: by the manoeuvres, and before the first by any motion."""
+        pitch = self._cutting.findings or (
+            self._instruments.findings if self._cutting.maneuvers == self._flown_before else ()
+        )
+        sideways = self._cutting.side_findings or (
+            () if self._cutting.side_maneuvers else self._instruments.side_findings
+        )
+        known = {f.code for f in pitch}
+        return (*pitch, *(f for f in sideways if f.code not in known))
+
+    def recent(self, name: str, seconds: float) -> Channel | None:
+        """Return the newest stretch of a channel; None without samples."""
+        return self._tracks.recent(name, seconds)
+
+    def so_far(self) -> Maneuver | None:
+        """Return the manoeuvre being flown, cut at the newest sample; None between manoeuvres."""
+        return self._path.so_far()
+
+    def _at_best(self) -> dict[str, ChannelStatus]:
+        """Return the arrival of each channel at its fastest, over all power-ons."""
+        now = {name: status.at_best(self._past.get(name)) for name, status in self._tracks.statuses().items()}
+        return {**self._past, **now}
