@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import lsim
 
-from advisor.aircraft.aircraft import PARAMETERS
+from advisor.aircraft.reference import PARAMETERS
 from advisor.oem.solution import Solution, solve
 from benchmarks.estimate import Data, by_least_squares, collocation, make, problem
 

@@ -18,7 +18,9 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares, minimize
 from scipy.signal import lsim
 
-from advisor.aircraft.aircraft import PARAMETERS, Aircraft, Elevator
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.controls import Elevator
+from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.maneuvers.events import ManeuverFlown
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.record import Channel

@@ -15,7 +15,9 @@ from pathlib import Path
 
 import numpy as np
 
-from advisor.aircraft.aircraft import PARAMETERS, Aircraft, Elevator
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.controls import Elevator
+from advisor.aircraft.reference import PARAMETERS
 from advisor.campaign.campaign import Campaign
 from advisor.campaign.state import CampaignState
 from advisor.mavlink.logs.logs import open_log

@@ -10,7 +10,9 @@ import numpy as np
 import pytest
 
 import advisor as library
-from advisor.aircraft.aircraft import PARAMETERS, Aircraft, Elevator
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.controls import Elevator
+from advisor.aircraft.reference import PARAMETERS
 from advisor.oem.found import with_found
 from tests.conftest import Advisor
 from tests.flights import FOUR, SHIPPED, recorded

@@ -12,18 +12,10 @@ from typing import Any
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError, with_config
 
-from advisor.aircraft.aircraft import (
-    PARAMETERS,
-    SIDE_PARAMETERS,
-    Aircraft,
-    Elevator,
-    FmuVariables,
-    Markers,
-    Pairs,
-    SideControl,
-    TableColumns,
-)
+from advisor.aircraft.aircraft import Aircraft, Markers, TableColumns
+from advisor.aircraft.controls import Elevator, Pairs, SideControl
 from advisor.aircraft.key import keys_of, sections_of
+from advisor.aircraft.reference import PARAMETERS, SIDE_PARAMETERS, FmuVariables
 from advisor.aircraft_file.effects import effects_schema, mistakes_in
 from advisor.process.yaml_file import read_yaml
 from advisor.words.printable import printable

@@ -12,7 +12,8 @@ from typing import Literal
 import numpy as np
 from scipy.stats import chi2
 
-from advisor.aircraft.aircraft import SIDE_PARAMETERS, Aircraft
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.result import ComparedDerivative, Value

@@ -13,7 +13,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
-from advisor.aircraft.aircraft import Aircraft, Alpha, Elevator, TableColumns
+from advisor.aircraft.aircraft import Aircraft, TableColumns
+from advisor.aircraft.controls import Elevator
+from advisor.aircraft.sensors import Alpha
 from advisor.flight.maneuvers.events import ManeuverFlown
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import Columns, FloatArray

@@ -10,7 +10,7 @@ from types import MappingProxyType
 from urllib.parse import quote
 
 from advisor import __version__
-from advisor.aircraft.aircraft import PARAMETERS
+from advisor.aircraft.reference import PARAMETERS
 from advisor.analysis.log_series import SINCE_1970_S
 from advisor.batch.flight import Analyzed
 from advisor.batch.picture import Point, trend_svg

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
-from advisor.aircraft.aircraft import PARAMETERS
+from advisor.aircraft.reference import PARAMETERS
 from advisor.decision.change import Change, find_change
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.pooling import DERIVATIVES, posteriors_at_one_speed

@@ -9,7 +9,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.aircraft.aircraft import PARAMETERS, Aircraft
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.reference import PARAMETERS
 from advisor.decision.verdict import ManeuverVerdict
 from advisor.model.short_period import SPEED_EXPONENTS
 from advisor.oem.estimate import Estimate, NoEstimate

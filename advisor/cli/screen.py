@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from advisor.aircraft.aircraft import Aircraft, SideControl
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.controls import SideControl
 from advisor.process.interrupt import in_order
 from advisor.session.source import Source, Tempo
 from advisor.words.printable import printable

@@ -4,7 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from advisor.aircraft.aircraft import PARAMETERS, Aircraft, CampaignPlan
+from advisor.aircraft.aircraft import Aircraft, CampaignPlan
+from advisor.aircraft.reference import PARAMETERS
 from advisor.decision.choice import Choice, best_input
 from advisor.decision.conditions import Conditions, find_conditions, travel_of
 from advisor.decision.course import CriterionCourse

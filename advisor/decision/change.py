@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import chdtri
 
-from advisor.aircraft.aircraft import PARAMETERS
+from advisor.aircraft.reference import PARAMETERS
 from advisor.decision.consistency import outliers
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.inverses import information_of

@@ -11,7 +11,7 @@ from math import sqrt
 import numpy as np
 from scipy.special import chdtri
 
-from advisor.aircraft.aircraft import PARAMETERS
+from advisor.aircraft.reference import PARAMETERS
 from advisor.decision.consistency import OUTLIER_BELOW
 from advisor.decision.omitted import bias_by
 from advisor.decision.verdict import Reason

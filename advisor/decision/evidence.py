@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from advisor.aircraft.aircraft import PARAMETERS
+from advisor.aircraft.reference import PARAMETERS
 from advisor.decision.information import Knowledge
 from advisor.decision.pooling import DERIVATIVES
 from advisor.words.digits import distinct_texts, with_half

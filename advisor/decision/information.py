@@ -13,7 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import chdtri
 
-from advisor.aircraft.aircraft import PARAMETERS, CampaignPlan
+from advisor.aircraft.aircraft import CampaignPlan
+from advisor.aircraft.reference import PARAMETERS
 from advisor.decision.consistency import consensus, widened
 from advisor.decision.history import CandidateManeuver, estimates_of
 from advisor.decision.pooling import Posterior, Shared, common_airspeed, disagreement, posteriors_at_one_speed

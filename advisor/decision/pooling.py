@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from advisor.aircraft.aircraft import PARAMETERS
+from advisor.aircraft.reference import PARAMETERS
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.decision.inverses import covariance_of, information_of
 from advisor.flight.signals.messages import FloatArray

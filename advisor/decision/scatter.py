@@ -4,7 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from advisor.aircraft.aircraft import PARAMETERS, CampaignPlan, Criterion
+from advisor.aircraft.aircraft import CampaignPlan, Criterion
+from advisor.aircraft.reference import PARAMETERS
 from advisor.decision.pooling import values_at_one_speed
 from advisor.flight.signals.messages import FloatArray
 from advisor.oem.estimate import Estimate

@@ -4,7 +4,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from advisor.aircraft.aircraft import PARAMETERS, CampaignPlan
+from advisor.aircraft.aircraft import CampaignPlan
+from advisor.aircraft.reference import PARAMETERS
 from advisor.decision.pooling import DERIVATIVES
 from advisor.decision.prediction import Prediction
 from advisor.flight.signals.messages import FloatArray

@@ -4,7 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from advisor.aircraft.aircraft import PARAMETERS, CampaignPlan
+from advisor.aircraft.aircraft import CampaignPlan
+from advisor.aircraft.reference import PARAMETERS
 from advisor.decision.change import find_change
 from advisor.decision.course import CriterionCourse
 from advisor.decision.history import CandidateManeuver, usable_ones

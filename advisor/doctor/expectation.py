@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from advisor.aircraft.aircraft import PARAMETERS
+from advisor.aircraft.reference import PARAMETERS
 from advisor.decision.foresight import foresee, response_from_trim, shared_of, unmeasured
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import OUTPUTS

@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Iterable
 
-from advisor.aircraft.aircraft import Elevator
+from advisor.aircraft.controls import Elevator
 from advisor.doctor.examination import ElevatorFound, Limit
 from advisor.doctor.survey import Arrival, Clocks
 from advisor.flight.signals.track import ChannelStatus

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from advisor.aircraft.aircraft import PARAMETERS, Aircraft
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.reference import PARAMETERS
 from advisor.gap.foresight.plan import foresee_plan
 from advisor.gap.simulator.layout import ENTRIES, LAYOUT
 from advisor.gap.simulator.reading import differences, filtered, superposed

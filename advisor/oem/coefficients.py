@@ -13,7 +13,7 @@ C_mq stands for C_mq + C_mα̇, because still air does not distinguish the two.
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from advisor.aircraft.aircraft import PARAMETERS, Reference
+from advisor.aircraft.reference import PARAMETERS, Reference
 from advisor.flight.instruments.atmosphere import AirFlown
 from advisor.flight.signals.standard_atmosphere import SEA_LEVEL_DENSITY_KG_M3
 from advisor.oem.estimate import Estimate

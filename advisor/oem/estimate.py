@@ -6,7 +6,7 @@ from math import nan
 
 import numpy as np
 
-from advisor.aircraft.aircraft import PARAMETERS
+from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.signals.messages import FloatArray
 from advisor.oem.found import FoundInstruments, InstrumentName
 

@@ -5,7 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.aircraft.aircraft import PARAMETERS, Aircraft
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import FloatArray
 from advisor.oem.between import widened_by_scatter

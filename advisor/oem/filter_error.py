@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.aircraft.aircraft import PARAMETERS
+from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.signals.robust import robust_std
 from advisor.model.response import N_PARAMETERS, N_SHARED, OUTPUTS
 from advisor.oem.covariance import Coloured, coloured, colours_of, influence, widening

@@ -5,7 +5,8 @@ uses the value of the data. The sign of the elevator cannot be used, for the fit
 signs is wrong.
 """
 
-from advisor.aircraft.aircraft import PARAMETERS, Aircraft
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.signals.instrument_finding import InstrumentFinding, Quantity
 from advisor.oem.estimate import Estimate, InstrumentEstimate
 from advisor.oem.instrument_fit import CONTRADICTS

@@ -12,7 +12,8 @@ from typing import Literal
 
 import numpy as np
 
-from advisor.aircraft.aircraft import PARAMETERS, Aircraft
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.short_period import SPEED_EXPONENTS
 

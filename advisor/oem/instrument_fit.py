@@ -20,7 +20,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from advisor.aircraft.aircraft import PARAMETERS
+from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.signals.messages import FloatArray
 from advisor.oem.between import widened_by_scatter
 from advisor.oem.covariance import influence

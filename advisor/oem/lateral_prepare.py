@@ -4,7 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from advisor.aircraft.aircraft import Aircraft, SideControl
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.controls import SideControl
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.derived_alpha import SLOWEST_FLIGHT_M_S
 from advisor.flight.signals.record import Channel

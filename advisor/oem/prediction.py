@@ -10,7 +10,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from advisor.aircraft.aircraft import PARAMETERS
+from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import SHARED
 from advisor.oem.gauss_newton import Optimum

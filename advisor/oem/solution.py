@@ -5,7 +5,7 @@ from typing import Literal
 
 import numpy as np
 
-from advisor.aircraft.aircraft import PARAMETERS
+from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import OUTPUTS
 from advisor.oem.covariance import (

@@ -7,7 +7,8 @@ from typing import Any
 
 import yaml
 
-from advisor.aircraft.aircraft import SIDE_PARAMETERS, Aircraft
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.gap.candidates.known import less_of_the_servo, together
 from advisor.gap.result import Diagnosis
 from advisor.process.atomic_file import write_atomically

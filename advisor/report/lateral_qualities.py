@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from advisor.aircraft.aircraft import SIDE_PARAMETERS, Aircraft
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.campaign.lateral import JudgedLateral, LateralState
 from advisor.decision.lateral_levels import GROUPS, SOURCE, LateralLevels, lateral_levels
 from advisor.decision.lateral_qualification import LateralTest, lateral_qualification

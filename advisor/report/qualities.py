@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from advisor.aircraft.aircraft import Reference
+from advisor.aircraft.reference import Reference
 from advisor.campaign.state import CampaignState
 from advisor.flight.instruments.atmosphere import AirFlown, air_flown
 from advisor.model.mil_f_8785c import CATEGORIES, MANNED, SOURCE

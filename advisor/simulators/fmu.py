@@ -10,7 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
-from advisor.aircraft.aircraft import Aircraft, FmuVariables
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.reference import FmuVariables
 from advisor.flight.signals.messages import FloatArray
 from advisor.simulators.fmu_instance import Fmu, Use
 from advisor.simulators.isolated import Isolated

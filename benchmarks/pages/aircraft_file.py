@@ -6,8 +6,9 @@ import typing
 from collections.abc import Mapping
 from typing import Any, Literal
 
-from advisor.aircraft.aircraft import PARAMETERS, Aircraft
+from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.key import REQUIRED, Key, keys_of, sections_of
+from advisor.aircraft.reference import PARAMETERS
 
 _HEAD = """# Aircraft file
 

@@ -10,7 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.aircraft.aircraft import Aircraft, Alpha, Beta
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.sensors import Alpha, Beta
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.library import estimate

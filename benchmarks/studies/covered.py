@@ -13,7 +13,9 @@ from typing import Literal
 
 import numpy as np
 
-from advisor.aircraft.aircraft import PARAMETERS, Aircraft, CampaignPlan, Elevator
+from advisor.aircraft.aircraft import Aircraft, CampaignPlan
+from advisor.aircraft.controls import Elevator
+from advisor.aircraft.reference import PARAMETERS
 from advisor.bundled.study.flying import Scene, fly_named, respond
 from advisor.campaign.campaign import Campaign, ManeuverJudged
 from advisor.campaign.state import CampaignState

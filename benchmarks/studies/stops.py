@@ -9,7 +9,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from advisor.aircraft.aircraft import Aircraft, CampaignPlan, Elevator, Rule
+from advisor.aircraft.aircraft import Aircraft, CampaignPlan, Rule
+from advisor.aircraft.controls import Elevator
 from advisor.bundled.study.blocks import blocks
 from advisor.bundled.study.campaigns import RULES
 from advisor.bundled.study.estimating import estimate_copies

@@ -5,7 +5,8 @@ from pathlib import Path
 import click
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft, Elevator
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.controls import Elevator
 from advisor.aircraft_file.keys import KEYS
 from advisor.aircraft_file.log_facts import LogFacts
 from advisor.aircraft_file.proposal import proposed

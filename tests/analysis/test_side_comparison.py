@@ -5,7 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft, Beta, SideControl
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.controls import SideControl
+from advisor.aircraft.sensors import Beta
 from advisor.analysis.side_comparison import compare_side
 from advisor.cli.side_gap import side_gap_document
 from advisor.flight.maneuvers.maneuver import Maneuver, Span

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.aircraft.aircraft import PARAMETERS
+from advisor.aircraft.reference import PARAMETERS
 from advisor.batch.flight import Analyzed
 from advisor.batch.trend import change_over_flights, lying_apart
 from advisor.oem.estimate import Estimate

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from click.testing import CliRunner
 
-from advisor.aircraft.aircraft import PARAMETERS
+from advisor.aircraft.reference import PARAMETERS
 from advisor.cli.group import advisor
 from tests.flights import FOUR, SHIPPED, TWO, recorded, truth
 

@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft, Elevator
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.controls import Elevator
 from advisor.campaign.campaign import Campaign
 from advisor.campaign.instruments import as_known_by, together
 from advisor.campaign.state import CampaignState

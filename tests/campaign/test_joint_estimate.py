@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft, Elevator
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.controls import Elevator
 from advisor.campaign.campaign import Campaign
 from advisor.campaign.joint_estimate import NEWEST, Together
 from advisor.campaign.learning import may_learn

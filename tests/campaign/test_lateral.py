@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft, SideControl
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.controls import SideControl
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.campaign.campaign import Campaign
 from advisor.flight.maneuvers.events import SideManeuverFlown

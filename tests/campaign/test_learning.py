@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft, Elevator
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.controls import Elevator
 from advisor.campaign.learning import learnt, of_another_power_on, reserved, told
 from advisor.decision.verdict import ManeuverVerdict
 from advisor.oem.estimate import InstrumentEstimate

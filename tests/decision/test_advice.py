@@ -5,7 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import PARAMETERS, Aircraft, CampaignPlan, Elevator, Limits
+from advisor.aircraft.aircraft import Aircraft, CampaignPlan, Limits
+from advisor.aircraft.controls import Elevator
+from advisor.aircraft.reference import PARAMETERS
 from advisor.bundled.study.estimating import estimate_copies
 from advisor.bundled.study.flying import Scene, follow
 from advisor.decision.advice import next_input

@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.aircraft.aircraft import PARAMETERS, Aircraft
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.reference import PARAMETERS
 from advisor.decision.coupling import coupled
 from advisor.decision.omitted import bias_by
 from advisor.flight.maneuvers.maneuver import Maneuver, Span

@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import PARAMETERS, CampaignPlan
+from advisor.aircraft.aircraft import CampaignPlan
+from advisor.aircraft.reference import PARAMETERS
 from advisor.bundled.study.flying import Scene, as_maneuver, fly_named
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.information import Knowledge

@@ -4,7 +4,8 @@ from math import inf, radians
 
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft, SideControl
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.controls import SideControl
 from advisor.decision.lateral_advice import FlownInput, next_lateral
 from tests.campaign.side_builders import estimate, judged
 

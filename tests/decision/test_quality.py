@@ -7,7 +7,9 @@ from io import BytesIO
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import PARAMETERS, Aircraft, Elevator, Limits
+from advisor.aircraft.aircraft import Aircraft, Limits
+from advisor.aircraft.controls import Elevator
+from advisor.aircraft.reference import PARAMETERS
 from advisor.decision.quality import judge_quality, natural_period
 from advisor.flight.maneuvers.events import ManeuverFlown
 from advisor.flight.signals.trust import Distrust

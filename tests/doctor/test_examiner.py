@@ -5,7 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft, Elevator, ElevatorOutput
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.controls import Elevator, ElevatorOutput
 from advisor.doctor.document import doctor_document
 from advisor.doctor.examination import Examination, Limit
 from advisor.doctor.examiner import Examiner

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.signal import cont2discrete
 
-from advisor.aircraft.aircraft import PARAMETERS
+from advisor.aircraft.reference import PARAMETERS
 from advisor.doctor.expectation import (
     NOISE,
     RESPONSE_ALPHA_DEG,

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Elevator
+from advisor.aircraft.controls import Elevator
 from advisor.doctor.examination import ElevatorFound, Limit
 from advisor.doctor.expectation import NOISE, TYPICAL, Assumed, frequency
 from advisor.doctor.instruments import COARSE_DEG, LOSSY_PERCENT, elevator_limits, loss_limits, path_limits

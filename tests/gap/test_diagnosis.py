@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 import yaml
 
-from advisor.aircraft.aircraft import PARAMETERS, Aircraft, CampaignPlan, FmuTrim, FmuVariables, Limits
+from advisor.aircraft.aircraft import Aircraft, CampaignPlan, Limits
+from advisor.aircraft.reference import PARAMETERS, FmuTrim, FmuVariables
 from advisor.aircraft_file.read import parse_aircraft
 from advisor.gap.diagnose import diagnose
 from advisor.gap.document import gap_document

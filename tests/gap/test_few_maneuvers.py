@@ -2,7 +2,8 @@
 
 import pytest
 
-from advisor.aircraft.aircraft import PARAMETERS, Aircraft
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.reference import PARAMETERS
 from advisor.gap.diagnose import diagnose
 from advisor.words.problems import UnusableInputError
 from tests.gap.generator import Setup, fly

@@ -7,7 +7,7 @@ import pytest
 import yaml
 from click.testing import CliRunner
 
-from advisor.aircraft.aircraft import PARAMETERS
+from advisor.aircraft.reference import PARAMETERS
 from advisor.aircraft_file.read import load_aircraft
 from advisor.cli.group import advisor
 from sim.compare import distances

@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft, Elevator
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.controls import Elevator
 from advisor.analysis.gap import maneuvers_of
 from advisor.flight.instruments.kinematics import check_alpha, combine
 from advisor.gap.diagnose import diagnose

@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft, Elevator
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.controls import Elevator
 from advisor.aircraft_file.effects import mistakes_in
 from advisor.aircraft_file.read import parse_aircraft
 from advisor.gap.candidates.catalogue import variants_for

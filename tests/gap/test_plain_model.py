@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft, Reference
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.reference import Reference
 from advisor.flight.instruments.lateness import lateness_std
 from advisor.flight.signals.derived_alpha import DERIVED_ALPHA
 from advisor.flight.signals.instrument_finding import InstrumentFinding

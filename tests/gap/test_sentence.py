@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from advisor.aircraft.aircraft import Accelerometer, Aircraft, Alpha
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.sensors import Accelerometer, Alpha
 from advisor.gap.effects import EFFECTS
 from advisor.gap.result import Cause, Value, Where
 from advisor.gap.verdict.statements import in_simulator, what

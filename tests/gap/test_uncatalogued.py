@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from scipy.signal import butter, lfilter, sosfiltfilt
 
-from advisor.aircraft.aircraft import PARAMETERS, Aircraft, Alpha
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.reference import PARAMETERS
+from advisor.aircraft.sensors import Alpha
 from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.prior import ERROR_IF_WRONG, log_prior, prior_precision
 from advisor.gap.kit.between import shift_moments

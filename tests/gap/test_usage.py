@@ -6,7 +6,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from advisor.aircraft.aircraft import PARAMETERS, Aircraft
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.reference import PARAMETERS
 from advisor.analysis import gap as reading
 from advisor.cli import group as cli
 from advisor.flight.maneuvers.maneuver import Maneuver

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from advisor.aircraft.aircraft import PARAMETERS
+from advisor.aircraft.reference import PARAMETERS
 from advisor.model.short_period import ShortPeriod
 from advisor.oem.problem import OutputErrorProblem, Record
 from advisor.oem.rows import Signal

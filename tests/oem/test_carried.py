@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.aircraft.aircraft import Aircraft, Elevator
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.controls import Elevator
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.carried import UpdatableSolution
 from advisor.oem.colour import Colour

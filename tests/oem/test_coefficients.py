@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Reference
+from advisor.aircraft.reference import Reference
 from advisor.flight.instruments.atmosphere import AirFlown
 from advisor.oem.coefficients import coefficients
 from advisor.oem.estimate import Estimate

@@ -1,7 +1,8 @@
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft, Elevator
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.controls import Elevator
 from advisor.oem.edges import large_steps, sharpened, with_edges
 from advisor.oem.estimator import estimate
 from advisor.oem.problem import OutputErrorProblem, Record

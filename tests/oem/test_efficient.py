@@ -2,7 +2,9 @@ import numpy as np
 import pytest
 from scipy.linalg import toeplitz
 
-from advisor.aircraft.aircraft import PARAMETERS, Aircraft, Elevator
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.controls import Elevator
+from advisor.aircraft.reference import PARAMETERS
 from advisor.oem.colour import Colour
 from advisor.oem.covariance import Coloured, cramer_rao
 from advisor.oem.efficient import efficient, efficient_step

@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft, Elevator
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.controls import Elevator
 from advisor.oem.estimate import InstrumentEstimate
 from advisor.oem.findings import findings_of
 from tests.decision.campaigns import estimate

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Reference
+from advisor.aircraft.reference import Reference
 from advisor.flight.instruments.atmosphere import AirFlown
 from advisor.oem.estimate import Estimate
 from advisor.oem.flying_qualities import FlyingQualities, flying_qualities

@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft, Elevator
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.controls import Elevator
 from advisor.oem.estimator import estimate, estimate_jointly, lag_is_unknown
 from advisor.oem.found import FoundInstruments, found_of, with_found
 from tests.oem.test_instruments import SPEED, equipped

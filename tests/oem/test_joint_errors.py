@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft, Elevator
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.controls import Elevator
 from advisor.oem.between import widened_by_scatter
 from advisor.oem.estimator import estimate, estimate_jointly
 from tests.oem.builders import UAV, flown

@@ -2,7 +2,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.aircraft.aircraft import PARAMETERS, Aircraft, Elevator
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.controls import Elevator
+from advisor.aircraft.reference import PARAMETERS
 from advisor.oem.estimator import estimate
 from advisor.oem.missing import in_words, price
 from advisor.oem.problem import OutputErrorProblem, Record

@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft, Elevator
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.controls import Elevator
 from advisor.model.response import N_PARAMETERS, respond
 from advisor.oem.instrument_fit import fit_instruments
 from advisor.oem.instruments import unknown_instruments

@@ -5,7 +5,7 @@ from math import degrees
 
 import pytest
 
-from advisor.aircraft.aircraft import PARAMETERS
+from advisor.aircraft.reference import PARAMETERS
 from advisor.report.page.render import page
 from advisor.report.qualities import coefficients_of, qualities_of, quality_lines
 from advisor.words.digits import with_half

@@ -6,7 +6,8 @@ from typing import Any, ClassVar
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft, Reference
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.reference import Reference
 from advisor.analysis import gap as gap_of_logs
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.record import Channel

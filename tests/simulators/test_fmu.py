@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft, FmuTrim, FmuVariables
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.reference import FmuTrim, FmuVariables
 from advisor.aircraft_file.read import parse_aircraft
 from advisor.flight.signals.messages import FloatArray
 from advisor.simulators.fmu import FmuSimulator, make_fmu

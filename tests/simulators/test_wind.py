@@ -6,7 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft, Elevator, FmuTrim
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.controls import Elevator
+from advisor.aircraft.reference import FmuTrim
 from advisor.flight.signals.channels import quantities
 from advisor.flight.signals.messages import Columns
 from advisor.flight.signals.record import Channel

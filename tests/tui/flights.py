@@ -5,7 +5,8 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from advisor.aircraft.aircraft import PARAMETERS, Aircraft, CampaignPlan
+from advisor.aircraft.aircraft import Aircraft, CampaignPlan
+from advisor.aircraft.reference import PARAMETERS
 from advisor.campaign.state import CampaignState, ChannelStatus, JudgedManeuver
 from advisor.campaign.whole_flight import WholeFlight
 from advisor.decision.inputs import StepInput

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from rich.text import Text
 
-from advisor.aircraft.aircraft import PARAMETERS
+from advisor.aircraft.reference import PARAMETERS
 from advisor.campaign.state import CampaignState
 from advisor.session.view import View, view_before_first
 from advisor.tui.panes.correlation import Correlation

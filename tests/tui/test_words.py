@@ -5,7 +5,7 @@ from typing import get_args
 
 import pytest
 
-from advisor.aircraft.aircraft import PARAMETERS as NAMES
+from advisor.aircraft.reference import PARAMETERS as NAMES
 from advisor.tui.advice import Word
 from advisor.tui.block_letters import block_letters
 from advisor.tui.panes.gauge import bar

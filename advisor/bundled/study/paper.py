@@ -3,7 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from advisor.aircraft.aircraft import PARAMETERS, Rule
+from advisor.aircraft.aircraft import Rule
+from advisor.aircraft.reference import PARAMETERS
 
 NOISE_PERCENT = (1.0, 2.5, 5.0)
 ORDER = ("3211", "rev", "rev", "3211", "rev", "3211", "rev")

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.aircraft.aircraft import PARAMETERS, Rule
+from advisor.aircraft.aircraft import Rule
+from advisor.aircraft.reference import PARAMETERS
 from advisor.bundled.study.campaigns import RuleOutcome
 from advisor.bundled.study.paper import TABLE_1, PaperRow
 from advisor.flight.signals.messages import FloatArray

@@ -5,7 +5,8 @@ from textwrap import wrap
 
 import numpy as np
 
-from advisor.aircraft.aircraft import PARAMETERS, CampaignPlan
+from advisor.aircraft.aircraft import CampaignPlan
+from advisor.aircraft.reference import PARAMETERS
 from advisor.bundled.study.flaws import NOISE_PERCENT, Flaws
 from advisor.bundled.study.flying import NOISE_READINGS, NoiseReading, Scene
 from advisor.bundled.study.readings import ReadingResult

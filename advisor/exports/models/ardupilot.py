@@ -13,7 +13,7 @@ missing. Its conventions, from its source (``libraries/SITL/SIM_Plane``, ``Servo
 import json
 import math
 
-from advisor.aircraft.aircraft import Elevator, Pairs
+from advisor.aircraft.controls import Elevator, Pairs
 from advisor.exports.models.exported import Exported, commented, effects_beside
 from advisor.exports.models.improvement import Improvement
 from advisor.words.problems import ConfigurationError

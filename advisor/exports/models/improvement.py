@@ -3,7 +3,9 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from advisor.aircraft.aircraft import Aircraft, Elevator, Reference
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.controls import Elevator
+from advisor.aircraft.reference import Reference
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.exports.models.servo import ExportedServo, servo_of
 from advisor.flight.signals.standard_atmosphere import standard_density, standard_pressure

@@ -6,7 +6,7 @@ With N = α̇ - q, the specific force along body z at the centre of gravity is V
 V times (Z_α, Z_q) and V·Z_δe.
 """
 
-from advisor.aircraft.aircraft import PARAMETERS
+from advisor.aircraft.reference import PARAMETERS
 from advisor.exports.models.exported import Exported, commented, effects_beside
 from advisor.exports.models.improvement import Improvement
 

@@ -7,7 +7,7 @@ The specific force along body y at the centre of gravity is V times the derivati
 
 import numpy as np
 
-from advisor.aircraft.aircraft import SIDE_PARAMETERS
+from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.exports.models.exported import Exported, commented
 from advisor.exports.models.flown import FlownModel, SideModel
 from advisor.exports.models.matlab import script_text

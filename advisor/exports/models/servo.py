@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from advisor.aircraft.aircraft import Elevator
+from advisor.aircraft.controls import Elevator
 from advisor.gap.effects import EFFECTS
 
 

@@ -7,7 +7,7 @@ of the left and the right side is therefore the elevator, and the other demand c
 
 from collections.abc import Collection, Sequence
 
-from advisor.aircraft.aircraft import Elevator, ElevatorOutput, Pairs
+from advisor.aircraft.controls import Elevator, ElevatorOutput, Pairs
 from advisor.flight.vehicle.surfaces import Calibration, Part, Surface, in_shares, joined_numbers, listed
 from advisor.flight.vehicle.wiring import ELEVATOR, Role, Wiring
 from advisor.words.problems import Problem

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Literal
 
-from advisor.aircraft.aircraft import SideControl
+from advisor.aircraft.controls import SideControl
 from advisor.flight.elevator.elevator_outputs import without_calibration
 from advisor.flight.vehicle.surfaces import Calibration, Part, Surface, in_shares, joined_numbers
 from advisor.flight.vehicle.wiring import AILERON, RUDDER, Role, Wiring

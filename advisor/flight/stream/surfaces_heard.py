@@ -7,7 +7,8 @@ that is heard only later applies to whole manoeuvres, so that none has a step wh
 from dataclasses import replace
 from math import isfinite
 
-from advisor.aircraft.aircraft import Aircraft, Elevator
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.controls import Elevator
 from advisor.flight.elevator.elevator_outputs import find_elevator
 from advisor.flight.elevator.side_outputs import find_side_control
 from advisor.flight.maneuvers.events import READER_NOTICE, ElevatorRescaled, FlightEvent, Notice

@@ -4,7 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from advisor.aircraft.aircraft import PARAMETERS, Aircraft
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.record import Channel

@@ -5,7 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.aircraft.aircraft import Aircraft, Reference
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.reference import Reference
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import FloatArray

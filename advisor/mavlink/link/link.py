@@ -16,7 +16,7 @@ from queue import Empty, Full, Queue
 from types import TracebackType
 from typing import TYPE_CHECKING, Self
 
-from advisor.aircraft.aircraft import Elevator
+from advisor.aircraft.controls import Elevator
 from advisor.flight.signals.messages import Columns
 from advisor.flight.vehicle.breaks import DOWN
 from advisor.flight.vehicle.following import FOLLOW, TAKE

@@ -13,7 +13,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from advisor.aircraft.aircraft import Elevator
+from advisor.aircraft.controls import Elevator
 from advisor.mavlink.link.keeping import Alive, Guard, Keeping, Stop
 from advisor.mavlink.link.kept_link import KeptLink
 from advisor.mavlink.link.running_links import RunningLink

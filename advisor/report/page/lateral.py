@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 
-from advisor.aircraft.aircraft import SIDE_PARAMETERS
+from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.campaign.lateral import LateralState
 from advisor.decision.lateral_levels import GROUPS, SOURCE
 from advisor.decision.lateral_qualification import LateralTest

@@ -8,7 +8,7 @@ from textual.containers import VerticalScroll
 from textual.events import Resize
 from textual.widgets import Static
 
-from advisor.aircraft.aircraft import PARAMETERS as NAMES
+from advisor.aircraft.reference import PARAMETERS as NAMES
 from advisor.flight.signals.messages import FloatArray
 from advisor.oem.correlation import HIGH_CORRELATION, correlation_matrix
 from advisor.oem.estimate import Estimate

@@ -5,7 +5,7 @@ from dataclasses import replace
 from textual.app import ComposeResult
 from textual.events import Resize
 
-from advisor.aircraft.aircraft import PARAMETERS as NAMES
+from advisor.aircraft.reference import PARAMETERS as NAMES
 from advisor.session.view import View
 from advisor.tui.panes.history import course, history_chart
 from advisor.tui.panes.pane import Pane

@@ -8,7 +8,7 @@ from textual.app import ComposeResult
 from textual.events import Resize
 from textual.widgets import DataTable
 
-from advisor.aircraft.aircraft import PARAMETERS as NAMES
+from advisor.aircraft.reference import PARAMETERS as NAMES
 from advisor.report.result_rows import parameter_row
 from advisor.session.view import View
 from advisor.tui.panes.history import history_chart

@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import PARAMETERS, CampaignPlan
+from advisor.aircraft.aircraft import CampaignPlan
+from advisor.aircraft.reference import PARAMETERS
 from advisor.bundled.study import flaws, readings, run
 from advisor.bundled.study.campaigns import RULES, CampaignBlock, fly_campaigns, judge, outcome, table_blocks
 from advisor.bundled.study.estimating import estimate_copies

@@ -13,7 +13,7 @@ import pytest
 from mcap.reader import make_reader
 from scipy.io import loadmat
 
-from advisor.aircraft.aircraft import PARAMETERS
+from advisor.aircraft.reference import PARAMETERS
 from advisor.exports.flights.plotjuggler import layout
 from tests.exports.flights.conftest import Exported
 

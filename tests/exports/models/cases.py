@@ -2,7 +2,8 @@
 
 from dataclasses import replace
 
-from advisor.aircraft.aircraft import Elevator, Reference
+from advisor.aircraft.controls import Elevator
+from advisor.aircraft.reference import Reference
 from advisor.exports.models.improvement import Improvement
 from advisor.exports.models.servo import ExportedServo
 from advisor.gap.result import Value

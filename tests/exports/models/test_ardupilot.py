@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Elevator
+from advisor.aircraft.controls import Elevator
 from advisor.exports.models.ardupilot import model_text, servo_text
 from advisor.exports.models.servo import ExportedServo
 from advisor.words.problems import ConfigurationError

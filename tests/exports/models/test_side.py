@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import SIDE_PARAMETERS
+from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.decision.lateral_qualification import peak_roll_rate
 from advisor.exports.models.flown import FlownModel, SideModel
 from advisor.exports.models.jsbsim.run import measure_side, model_of

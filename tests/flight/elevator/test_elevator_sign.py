@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft, Elevator
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.controls import Elevator
 from advisor.analysis.gap import maneuvers_of
 from advisor.flight.elevator.elevator_sign import SAID, ElevatorSign, answers_backwards, turned
 from advisor.flight.maneuvers.events import ManeuverFlown, Notice

@@ -7,7 +7,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft, Elevator, ElevatorOutput
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.controls import Elevator, ElevatorOutput
 from advisor.flight.elevator.output_signs import pitch_signs
 from advisor.flight.maneuvers.events import ManeuverFlown
 from advisor.flight.signals.record import Channel

@@ -5,7 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft, Elevator
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.controls import Elevator
 from advisor.flight.maneuvers.events import ManeuverFlown, SideManeuverFlown
 from advisor.flight.stream.stream import FlightStream
 from advisor.mavlink.logs.tlog import read_tlog

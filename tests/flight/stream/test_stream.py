@@ -8,7 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from advisor.aircraft.aircraft import Aircraft, Alpha, Elevator
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.controls import Elevator
+from advisor.aircraft.sensors import Alpha
 from advisor.flight.maneuvers.events import (
     Activity,
     ManeuverFlown,

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Elevator
+from advisor.aircraft.controls import Elevator
 from advisor.flight.elevator.commanded import commanded
 from advisor.flight.elevator.elevator_outputs import find_elevator
 from advisor.flight.signals.banks import Pulses

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Elevator, ElevatorOutput, SideControl
+from advisor.aircraft.controls import Elevator, ElevatorOutput, SideControl
 from advisor.flight.elevator import elevator_outputs
 from advisor.flight.elevator.side_outputs import find_side_control
 from advisor.flight.vehicle.ardupilot_wiring import ardupilot_wiring

@@ -12,7 +12,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pymavlink import DFReader
 
-from advisor.aircraft.aircraft import Aircraft, Elevator, Markers
+from advisor.aircraft.aircraft import Aircraft, Markers
+from advisor.aircraft.controls import Elevator
 from advisor.flight.maneuvers.events import ManeuverFlown
 from advisor.flight.signals.messages import Columns
 from advisor.flight.stream.stream import FlightStream

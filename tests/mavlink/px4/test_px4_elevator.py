@@ -5,7 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft, Elevator
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.controls import Elevator
 from advisor.flight.stream.stream import FlightStream
 from advisor.flight.vehicle.surfaces import Surface
 from advisor.mavlink.logs.logs import open_log

@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft, Elevator
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.controls import Elevator
 from advisor.flight.stream.stream import FlightStream
 from advisor.mavlink.logs.logs import open_log
 from tests.mavlink.ardupilot.test_autopilot_logs import G, elevator_us, motion

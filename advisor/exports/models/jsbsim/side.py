@@ -12,7 +12,7 @@ from math import isfinite
 
 import numpy as np
 
-from advisor.aircraft.aircraft import SIDE_PARAMETERS
+from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.exports.models.exported import Exported
 from advisor.exports.models.flown import SideModel
 from advisor.exports.models.jsbsim.knobs import ROUNDS, WITHIN
