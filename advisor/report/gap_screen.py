@@ -10,11 +10,12 @@ from rich.table import Table
 from rich.text import Text
 
 from advisor.gap.result import Diagnosis, spelled
+from advisor.gap.verdict.limits import limits_of
 from advisor.gap.verdict.text import in_words, place
 from advisor.process.installed import SIMULATOR
 from advisor.report.gap_causes import PRESENT, ranking, unseen
 from advisor.report.gap_fidelity import errors, peaks, worst_maneuver, yardsticks
-from advisor.report.gap_parameters import changes, limits_of
+from advisor.report.gap_parameters import changes
 from advisor.report.gap_reasons import how_sure
 from advisor.report.gap_simulator import simulated
 from advisor.report.gap_sizes import WORSE, before_after, short

@@ -35,9 +35,7 @@ def _blocks(found: Document) -> Iterator[Block]:
         yield Paragraph("The gap could not be diagnosed.")
         yield from listing([f"{p['text']} {p['fix']}" for p in found["problems"]])
         return
-    yield Paragraph(found["sentence"], "verdict")
-    if sure := how_sure(alternatives_of(found)):
-        yield Paragraph(sure)
+    yield from answer(found)
     size, shrink = found["gap"], found["shrink"]
     if found["traces"]:
         close, phone = gap_picture("gap-picture", found), gap_picture("gap-phone", found, across=1)
@@ -87,6 +85,14 @@ def _blocks(found: Document) -> Iterator[Block]:
         yield Paragraph(f"{number}. {step['text']}")
         if step["command"]:
             yield Verbatim(step["command"])
+
+
+def answer(found: Document) -> Iterator[Block]:
+    """Yield the sentence, how sure it is, and what limits it."""
+    yield Paragraph(found["sentence"], "verdict")
+    if sure := how_sure(alternatives_of(found)):
+        yield Paragraph(sure)
+    yield from listing(list(found["limits"]))
 
 
 def shown_causes(found: Document) -> list[Mapping[str, Any]]:
