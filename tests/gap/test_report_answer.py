@@ -177,7 +177,8 @@ def test_a_probability_is_never_shown_as_0_or_100_percent(probability: float, sa
 
 
 def test_the_reasons_of_the_document_end_with_their_sum_in_odds():
-    reasons = (Contribution("fit_gain", 2.0, "gain"), Contribution("rest", -0.5, "rest"))
+    nothing = Contribution("misfit", -0.002, "misfit")
+    reasons = (Contribution("fit_gain", 2.0, "gain"), nothing, Contribution("rest", -0.5, "rest"))
     found = gap_document(diagnosis(why=reasons, rival="actuator_lag", evidence=EVIDENCE))
     assert heading_of(found).startswith("why transport delay, and not actuator lag")
     assert weighed((one["nats"], one["text"]) for one in found["why"]) == [
