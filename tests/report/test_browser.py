@@ -119,3 +119,13 @@ def repeated(content: Content, count: int) -> Content:
 @pytest.mark.skipif(BROWSER is None, reason="Debian's chromium is not installed")
 def test_thirty_manoeuvres_print_on_at_most_twelve_pages(reported: Reported, tmp_path: Path) -> None:
     assert printed_pages(page(repeated(reported.content, 30), "html"), tmp_path) <= 12
+
+
+@pytest.mark.skipif(BROWSER is None, reason="Debian's chromium is not installed")
+def test_the_verdict_and_the_picture_of_the_gap_print_on_one_page(reported: Reported, tmp_path: Path) -> None:
+    first = re.sub(
+        r"(<section id=\"verdict\".*?</section>).*</main>", r"\1</main>", reported.written, flags=re.S
+    )
+    assert first.count("<section") == 1
+    assert "the one with the largest gap" in first
+    assert printed_pages(first, tmp_path) == 1

@@ -78,7 +78,10 @@ def _blocks(found: Document) -> Iterator[Block]:
             frozenset({0}),
         )
     yield from listing(
-        [f"Cannot be seen: {spelled(u['effect'])}, {u['because']}." for u in found["cannot_see"]]
+        [
+            f"Cannot be seen: {spelled(u['effect'])}, {u['because']}. To see it: {u['would_need']}."
+            for u in found["cannot_see"]
+        ]
     )
     yield from listing(list(found["notes"]))
     for number, step in enumerate(found["next"], start=1):
