@@ -18,7 +18,7 @@ from advisor.report.gap_fidelity import errors, peaks, worst_maneuver, yardstick
 from advisor.report.gap_parameters import changes
 from advisor.report.gap_reasons import how_sure
 from advisor.report.gap_simulator import simulated
-from advisor.report.gap_sizes import WORSE, before_after, short
+from advisor.report.gap_sizes import WORSE, before_after, has_grown, short
 from advisor.report.gap_steps import GapStep
 from advisor.report.gap_where import whereabouts
 from advisor.report.gap_why import why_of
@@ -155,7 +155,7 @@ def _numbers(d: Diagnosis) -> Text:
         )
         if d.shrink.beyond_air_percent is not None:
             lines.append(f"without the air's own course: {d.shrink.beyond_air_percent:.0f} % less")
-    if any(after > before for _, before, after in d.gap.by_maneuver):
+    if any(has_grown(after, before) for _, before, after in d.gap.by_maneuver):
         lines.append(f"{WORSE} worse than before")
     return Text("\n".join(lines))
 

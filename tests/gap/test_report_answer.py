@@ -81,6 +81,11 @@ def test_a_gap_that_has_grown_is_marked():
     assert any("▲ worse than before" in line for line in lines)
 
 
+def test_a_gap_that_prints_alike_has_not_grown():
+    gap = replace(diagnosis().gap, by_maneuver=((1, 2.0, 0.1), (2, 0.5, 0.5000001)))
+    assert not any("▲" in line for line in printed(diagnosis(gap=gap), 80))
+
+
 def test_the_steps_say_what_to_put_how_to_prove_it_and_what_excludes_the_rival():
     put, prove, rival = next_steps(diagnosis(effects={"transport_delay": {}}), LOGS, "mine.yaml")
     better = "mine-with-transport-delay.yaml"

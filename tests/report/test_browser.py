@@ -128,4 +128,9 @@ def test_the_verdict_and_the_picture_of_the_gap_print_on_one_page(reported: Repo
     )
     assert first.count("<section") == 1
     assert "the one with the largest gap" in first
-    assert printed_pages(first, tmp_path) == 1
+    sentence = (
+        "TEST COMPLETE: the response is known, each named derivative too, and the newest was predicted."
+    )
+    long = re.sub(r'(<p class="verdict">)[^<]*', rf"\1{sentence} {sentence}", first)
+    limited = long.replace('<div class="gallery">', f'<ul><li>{sentence}</li></ul><div class="gallery">')
+    assert printed_pages(limited, tmp_path) == 1

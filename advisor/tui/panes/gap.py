@@ -10,7 +10,7 @@ from textual.containers import VerticalScroll
 from textual.events import Resize
 
 from advisor.report.gap_reasons import alternatives_of, heading_of, how_sure, weighed
-from advisor.report.gap_sizes import WORSE
+from advisor.report.gap_sizes import WORSE, has_grown
 from advisor.session.diagnosis import Document, GapTask, diagnose_elsewhere
 from advisor.session.view import View
 from advisor.tui.panes.hanging import HangingLines, Labelled
@@ -130,9 +130,9 @@ def _worse(size: Mapping[str, Any]) -> str:
     channels = [
         channel(name).symbol
         for name, after in size["by_channel_after"].items()
-        if after > size["by_channel"][name]
+        if has_grown(after, size["by_channel"][name])
     ]
-    numbers = [str(one["number"]) for one in size["by_maneuver"] if one["after"] > one["before"]]
+    numbers = [str(one["number"]) for one in size["by_maneuver"] if has_grown(one["after"], one["before"])]
     noun = "manoeuvre" if len(numbers) == 1 else "manoeuvres"
     grown = [*channels, *([f"{noun} {', '.join(numbers)}"] if numbers else [])]
     return f"larger than before in {', '.join(grown)}" if grown else ""
