@@ -147,12 +147,19 @@ damage: .venv/.developed ## 10,000 damaged logs and more, read and analysed (DAM
 	DAMAGE_CASES=$(DAMAGE_CASES) $(BIN)/python -m pytest --timeout 0 tests/test_damaged_logs.py
 
 .PHONY: site words pages examples
-SAMPLE := build/samples/report.html
-$(SAMPLE): .venv/.developed logs/arduplane-calm.tlog logs/arduplane-calm.yaml $(shell find advisor -name '*.py' -o -name 'page.*')
+SAMPLES := build/samples/report.html build/samples/gap.html
+PAGE := .venv/.developed $(shell find advisor -name '*.py' -o -name 'page.*')
+build/samples/report.html: logs/arduplane-calm.tlog logs/arduplane-calm.yaml $(PAGE)
 	mkdir -p $(@D)
 	$(BIN)/advisor report logs/arduplane-calm.tlog --aircraft logs/arduplane-calm.yaml --gap -o $@
 
-site: $(SAMPLE) ## the documentation site, built strictly into build/site
+LATE := sim/scenarios/late-command.yaml
+build/samples/gap.html: $(LATE) docs/data/late-command.yaml $(PAGE)
+	mkdir -p $(@D)
+	$(BIN)/python -m sim record --scenario $(LATE) --out $(@D)/late-command.tlog
+	$(BIN)/advisor report $(@D)/late-command.tlog --aircraft docs/data/late-command.yaml --gap -o $@
+
+site: $(SAMPLES) ## the documentation site, built strictly into build/site
 	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict
 
 words: .venv/.developed ## words of the documentation written by hand, and their limit

@@ -12,6 +12,7 @@ import pytest
 from mkdocs.exceptions import PluginError
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft_file.read import load_aircraft
 from advisor.cli.group import COMMANDS
 from advisor.gap.effects import EFFECTS
 from advisor.gap.result import Trace
@@ -34,6 +35,8 @@ from benchmarks.pages.figure import errors, svg
 from benchmarks.pages.generated import SAMPLES
 from benchmarks.pages.hooks import on_page_content
 from benchmarks.pages.signs import signs
+from sim.effects.fitting import flight_of
+from sim.scenario import read_scenario
 from sim.sealed.judge import judge
 from sim.sealed.score import in_time, score
 from tests.gap.test_report_screen import diagnosis
@@ -344,6 +347,12 @@ def test_a_sample_page_that_is_not_written_is_named_with_the_command(monkeypatch
 def test_the_makefile_writes_every_sample_page_that_the_site_shows():
     makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
     assert [name for name in SAMPLES if f"build/samples/{name}" not in makefile] == []
+
+
+def test_the_sample_gaps_aircraft_file_holds_the_simulators_derivatives():
+    flown = flight_of(read_scenario(ROOT / "sim" / "scenarios" / "late-command.yaml"))
+    stated = load_aircraft(ROOT / "docs" / "data" / "late-command.yaml").model
+    assert stated == pytest.approx(flown.engine.truth.as_dict(), rel=0.003)
 
 
 def test_the_picture_of_the_signs_has_each_angle_rate_and_surface():

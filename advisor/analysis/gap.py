@@ -200,7 +200,10 @@ def compare_logs(
         notes.insert(0, f"{twice}: they count once.")
     every_note = (*notes, *compared.diagnosis.notes)
     height_m = _height_of(chosen.maneuvers, aircraft)
-    found = replace(compared.diagnosis, notes=every_note, height_m=height_m, true_over_read=gain)
+    found = replace(
+        compared.diagnosis, notes=every_note, height_m=height_m, true_over_read=gain,
+        although_refused=chosen.although_refused,
+    )  # fmt: skip
     return replace(compared, diagnosis=found)
 
 

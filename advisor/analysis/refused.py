@@ -25,14 +25,16 @@ LEAST = 3
 
 @dataclass(frozen=True)
 class Chosen:
-    """The manoeuvres in use, and a sentence on each of the others."""
+    """The manoeuvres in use, and a sentence on each refused manoeuvre."""
 
     maneuvers: list[Maneuver]
     notes: tuple[str, ...]
+    although_refused: tuple[int, ...] = ()
+    """Numbers of the manoeuvres in use that ``advisor analyze`` refuses."""
 
     def with_speed(self, kind: SpeedKind) -> "Chosen":
         """Return the choice with the kind of air speed that the motion shows."""
-        return Chosen(kind.maneuvers, (kind.note, *self.notes) if kind.note else self.notes)
+        return replace(self, maneuvers=kind.maneuvers, notes=(*filter(None, [kind.note]), *self.notes))
 
 
 def without_refused(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Chosen:
@@ -54,10 +56,10 @@ def without_refused(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Chosen
             f"No manoeuvre of the log can serve. Manoeuvre {maneuvers[0].number}: {hopeless[0].text}.",
             "Fly manoeuvres that advisor analyze accepts.",
         )
-    enough = len(good) >= LEAST
-    verb = "is not used" if enough else "is used, although analyze refuses it"
-    notes = tuple(f"Manoeuvre {number} {verb}: {reason.text}." for number, reason in reasons.items())
-    return Chosen(good if enough else list(maneuvers), notes)
+    if len(good) >= LEAST:
+        return Chosen(good, tuple(f"Manoeuvre {n} is not used: {r.text}." for n, r in reasons.items()))
+    notes = tuple(f"advisor analyze refuses manoeuvre {n}: {r.text}." for n, r in reasons.items())
+    return Chosen(list(maneuvers), notes, tuple(reasons))
 
 
 def _reason(maneuver: Maneuver, aircraft: Aircraft) -> Reason | None:

@@ -5,6 +5,7 @@ from datetime import UTC, datetime
 from html import escape
 from importlib.resources import files
 from math import inf
+from os.path import commonpath
 from pathlib import Path
 from types import MappingProxyType
 from urllib.parse import quote
@@ -101,20 +102,30 @@ def _sentence(flights: Sequence[tuple[int, Estimate]], change: ChangeOverFlights
 
 def _table(flights: Sequence[Analyzed], names: Mapping[str, str], reports: Mapping[Path, str]) -> str:
     head = "".join(f"<th>{name}</th>" for name in _COLUMNS)
+    logs = _below_their_folder([flight.log for flight in flights])
     rows = "\n".join(
-        _row(number, flight, names[aircraft_of(flight)], reports.get(Path(flight.log)))
-        for number, flight in enumerate(flights, start=1)
+        _row(number, flight, log, names[aircraft_of(flight)], reports.get(Path(flight.log)))
+        for number, (flight, log) in enumerate(zip(flights, logs, strict=True), start=1)
     )
     return f'<table id="flights"><thead><tr>{head}</tr></thead>\n<tbody>\n{rows}\n</tbody></table>'
 
 
-def _row(number: int, flight: Analyzed, aircraft: str, report: str | None) -> str:
+def _below_their_folder(logs: Sequence[str]) -> list[str]:
+    """Return the paths of logs below their common folder; whole paths where some are not absolute."""
+    try:
+        folder = commonpath([Path(log).parent for log in logs])
+    except ValueError:
+        return list(logs)
+    return [str(Path(log).relative_to(folder)) for log in logs]
+
+
+def _row(number: int, flight: Analyzed, log: str, aircraft: str, report: str | None) -> str:
     verdicts = [maneuver["verdict"] for maneuver in flight.document["maneuvers"]]
     dated = SINCE_1970_S <= flight.began_s < inf
     test = flight.document["flight_test"] or {}
     cells = (
         str(number),
-        flight.log,
+        log,
         f"{datetime.fromtimestamp(flight.began_s, UTC):%Y-%m-%d %H:%M}" if dated else "not dated",
         aircraft,
         f"{verdicts.count('accepted')} of {len(verdicts)}",

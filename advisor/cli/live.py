@@ -99,7 +99,7 @@ def command(
         other = "--record" if record_to is not None else "--resume"
         raise ConfigurationError(f"{other} and --no-record contradict each other; give one of them.")
     if asked.logs and resume is None:
-        raise ConfigurationError("LOG needs --resume, which continues the flight test of these logs.")
+        raise ConfigurationError(_without_resume(str(asked.logs[0])))
     from advisor.campaign.hand_decisions import NOTHING
     from advisor.cli.flight_start import Speaking, start_of, started
     from advisor.mavlink.link.connection import parse_connection
@@ -138,14 +138,30 @@ def command(
             aircraft_file=asked.aircraft_file,
         )
     if recordings and show is None and not headless():
-        command = ["advisor", "report", *map(str, (*start.earlier, *recordings)), "-o", "flight.html"]
-        if asked.aircraft_file:
-            command += ["--aircraft", str(asked.aircraft_file)]
-        click.echo(f"The page of the flight: {printable(shlex.join(command))}", err=True)
+        click.echo(_page((*start.earlier, *recordings), asked.aircraft_file), err=True)
+
+
+def _without_resume(given: str) -> str:
+    """Return the sentence on an argument that is a connection without its option, or a log."""
+    from advisor.mavlink.link.connection import parse_connection
+
+    try:
+        parse_connection(given)
+    except ConfigurationError:
+        return "LOG needs --resume, which continues the flight test of these logs."
+    return f"A connection is named by an option: advisor live --master {given}"
 
 
 def _recorded(recordings: Sequence[Path]) -> str:
     return f"recording to {printable(str(recordings[0]))}" if recordings else "nothing is recorded"
+
+
+def _page(logs: Sequence[Path], aircraft_file: Path | None) -> str:
+    """Return the sentence with the command that writes the page of the flight."""
+    command = ["advisor", "report", *map(str, logs), "-o", "flight.html"]
+    if aircraft_file:
+        command += ["--aircraft", str(aircraft_file)]
+    return f"The page of the flight: {printable(shlex.join(command))}"
 
 
 def _ended(recordings: Sequence[Path]) -> str:

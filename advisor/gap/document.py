@@ -9,18 +9,19 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.gap.alternative import AlternativeEvidence
 from advisor.gap.result import Cause, ComparedDerivative, Diagnosis, InSimulator, Qualification
 from advisor.gap.verdict.as_judged import answered
+from advisor.gap.verdict.limits import limits_of
 from advisor.gap.verdict.text import in_words
 from advisor.words.plain import picked, plain
 from advisor.words.problems import Problem
 
 SCHEMA = "advisor.gap/1"
 _NOTHING: Mapping[str, Any] = {
-    "verdict": None, "sentence": None, "maneuvers": [], "gap": None, "where": None, "causes": [],
-    "shrink": None, "waterfall": [], "cannot_see": [], "model": None, "reference_airspeed_m_s": None,
-    "alpha_check": None, "yardsticks": None, "notes": [], "improved_model": None,
-    "parameters_changed": [], "traces": [], "share_irreducible": None, "decisions": [], "simulator": None,
-    "qualification": None, "static": [], "trims": [], "probabilities": None, "evidence": [], "why": [],
-    "answer": None, "rival": None,
+    "verdict": None, "sentence": None, "limits": [], "maneuvers": [], "gap": None, "where": None,
+    "causes": [], "shrink": None, "waterfall": [], "cannot_see": [], "model": None,
+    "reference_airspeed_m_s": None, "alpha_check": None, "yardsticks": None, "notes": [],
+    "improved_model": None, "parameters_changed": [], "traces": [], "share_irreducible": None,
+    "decisions": [], "simulator": None, "qualification": None, "static": [], "trims": [],
+    "probabilities": None, "evidence": [], "why": [], "answer": None, "rival": None,
 }  # fmt: skip
 """Keys and values of a document without a diagnosis."""
 
@@ -43,6 +44,7 @@ def gap_document(
     document |= plain({
         "verdict": d.verdict if tested else None,
         **picked(d, "sentence maneuvers model reference_airspeed_m_s cannot_see notes share_irreducible"),
+        "limits": list(limits_of(d)),
         "gap": {
             **picked(gap, "before after floor floor_note by_channel by_channel_after by_phase"),
             "by_maneuver": [{"number": n, "before": b, "after": a} for n, b, a in gap.by_maneuver],

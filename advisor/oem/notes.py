@@ -157,8 +157,8 @@ def _scale(solution: Solution) -> str:
     return (
         "Accelerations agree with the angle of attack if the true air speed differs by"
         f" {100.0 * scale:+.1f} % from the measured one. An angle of attack with a scale error of"
-        f" {-100.0 * scale:+.1f} % would look the same. The fit of a_z allows for either; the derivatives"
-        " refer to the measured air speed."
+        f" {-100.0 * scale:+.1f} % would look the same. The fit of a_z allows for both errors; the"
+        " derivatives refer to the measured air speed."
     )
 
 

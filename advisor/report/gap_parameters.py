@@ -1,8 +1,8 @@
-"""Derivatives of simulator and flight, ``M_α −44.6 → −34.3 ± 0.7 (−23 %)``, and the limits of an answer."""
+"""Derivatives of simulator and flight, ``M_α −44.6 → −34.3 ± 0.7 (−23 %)``."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
-from advisor.gap.result import ComparedDerivative, Diagnosis
+from advisor.gap.result import ComparedDerivative
 from advisor.words.digits import decimals_for, signed, with_half
 from advisor.words.quantities import PARAMETERS
 
@@ -22,16 +22,3 @@ def changes(derivatives: Sequence[ComparedDerivative]) -> list[str]:
     agree = [PARAMETERS[one.name].symbol for one in derivatives if not one.differs]
     lines = [changed(one) for one in derivatives if one.differs]
     return [*lines, *([f"{', '.join(agree)} agree{'s' if len(agree) == 1 else ''}"] if agree else [])]
-
-
-def limits_of(d: Diagnosis) -> Iterator[str]:
-    """Yield what limits the answer, so that the limit stands next to it."""
-    if d.verdict == "untested" or not d.derivatives:
-        yield "No simulator was given: the answer is about the flight alone."
-    if d.shrink is not None and d.shrink.beyond_air_percent is not None:
-        yield (
-            f"The air moved, and its course was fitted to the same samples. Beyond the air the gap falls by "
-            f"{d.shrink.beyond_air_percent:.0f} %."
-        )
-    if len(d.maneuvers) == 1:
-        yield "One manoeuvre alone proves no cause."

@@ -56,13 +56,18 @@ def heading(answer: str, rival: str) -> str:
 
 
 def weighed(reasons: Iterable[tuple[float, str]]) -> list[tuple[str, str]]:
-    """Return the reasons with their nats as text, and a last row with the sum and the odds."""
-    rows = [(f"{nats:+.1f}", said, nats) for nats, said in reasons]
+    """Return the reasons with their nats as text, and a last row with the sum and the odds.
+
+    A reason of 0.0 nats has no row.
+    """
+    rows = [(_signed(nats), said, nats) for nats, said in reasons]
     total = sum(nats for *_, nats in rows)
-    return [
-        *((number.replace("-", "−"), said) for number, said, _ in rows),
-        (f"{total:+.1f}".replace("-", "−"), f"together: {_odds(total)}"),
-    ]
+    shown = [(number, said) for number, said, _ in rows if number not in (_signed(0.0), _signed(-0.0))]
+    return [*shown, (_signed(total), f"together: {_odds(total)}")]
+
+
+def _signed(nats: float) -> str:
+    return f"{nats:+.1f}".replace("-", "−")
 
 
 def _odds(nats: float) -> str:

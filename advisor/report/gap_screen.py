@@ -10,14 +10,15 @@ from rich.table import Table
 from rich.text import Text
 
 from advisor.gap.result import Diagnosis, spelled
+from advisor.gap.verdict.limits import limits_of
 from advisor.gap.verdict.text import in_words, place
 from advisor.process.installed import SIMULATOR
 from advisor.report.gap_causes import PRESENT, ranking, unseen
 from advisor.report.gap_fidelity import errors, peaks, worst_maneuver, yardsticks
-from advisor.report.gap_parameters import changes, limits_of
+from advisor.report.gap_parameters import changes
 from advisor.report.gap_reasons import how_sure
 from advisor.report.gap_simulator import simulated
-from advisor.report.gap_sizes import WORSE, before_after, short
+from advisor.report.gap_sizes import WORSE, before_after, has_grown, short
 from advisor.report.gap_steps import GapStep
 from advisor.report.gap_where import whereabouts
 from advisor.report.gap_why import why_of
@@ -154,7 +155,7 @@ def _numbers(d: Diagnosis) -> Text:
         )
         if d.shrink.beyond_air_percent is not None:
             lines.append(f"without the air's own course: {d.shrink.beyond_air_percent:.0f} % less")
-    if any(after > before for _, before, after in d.gap.by_maneuver):
+    if any(has_grown(after, before) for _, before, after in d.gap.by_maneuver):
         lines.append(f"{WORSE} worse than before")
     return Text("\n".join(lines))
 

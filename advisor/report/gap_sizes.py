@@ -70,7 +70,12 @@ def before_after(before: float, after: float) -> str:
 
 def marked(after: float, before: float) -> str:
     """Return a gap with the findings; with a mark where the gap has grown."""
-    return f"{short(after)} {WORSE}" if after > before else short(after)
+    return f"{short(after)} {WORSE}" if has_grown(after, before) else short(after)
+
+
+def has_grown(after: float, before: float) -> bool:
+    """Return whether a gap is larger than before by more than its digits hide."""
+    return after > before and short(after) != short(before)
 
 
 def in_units(parameter: str) -> tuple[float, str]:

@@ -96,7 +96,7 @@ class Jsbsim:
         if not np.all(np.isfinite(rows)):
             raise UnusableInputError(
                 "simulator_diverges",
-                f"{self.description} leaves all bounds in a replay of {t[-1]:.3g} s.",
+                f"{self.description} grows without limit in a replay of {t[-1]:.3g} s.",
                 "Shorten the manoeuvre, or check the model at the flown condition.",
             )
         trim = {"elevator": start.elevator}

@@ -34,7 +34,8 @@ def compared(records: Sequence[Row]) -> Iterator[Compared]:
         for name, value, half in _VALUE.findall(record.got):
             known, known_half = published.get(name, (0.0, 0.0))
             if known:
-                label = f"{record.what.partition(',')[0]}: {symbol(name)}"
+                aircraft, stem = record.what.partition(",")[0], record.log.partition(".")[0]
+                label = f"{stem}, {aircraft}: {symbol(name)}"
                 yield Compared(label, abs(known_half / known), float(value) / known, abs(float(half) / known))
 
 
@@ -52,7 +53,7 @@ def forest(records: Sequence[Row]) -> str:
         parts.append(f'<text x="{_LEFT - 8}" y="{y + 4:.1f}" text-anchor="end">{escape(row.label)}</text>')
         parts.append(_bar(y, 1.0, row.published_half, _GREY, 7))
         parts.append(_bar(y, row.value, row.half, _BLUE, 2))
-        parts.append(f'<circle cx="{_x(row.value):.1f}" cy="{y:.1f}" r="3.5" fill="{_BLUE}"/>')
+        parts.append(_mark(y, row.value))
     bottom = _TOP + _ROW * len(rows)
     for tick in (0.5, 0.75, 1.0, 1.25, 1.5):
         x = _x(tick)
@@ -64,6 +65,15 @@ def forest(records: Sequence[Row]) -> str:
 def _x(ratio: float) -> float:
     inside = min(max(ratio, _LOW), _HIGH)
     return _LEFT + (inside - _LOW) / (_HIGH - _LOW) * (_WIDTH - _LEFT - 12)
+
+
+def _mark(y: float, value: float) -> str:
+    """Return a dot, or an arrow at the end of the axis beyond which the value lies."""
+    if _LOW <= value <= _HIGH:
+        return f'<circle cx="{_x(value):.1f}" cy="{y:.1f}" r="3.5" fill="{_BLUE}"/>'
+    tip, step = _x(value), 7.0 if value < _LOW else -7.0
+    points = f"{tip:.1f},{y:.1f} {tip + step:.1f},{y - 4:.1f} {tip + step:.1f},{y + 4:.1f}"
+    return f'<polygon points="{points}" fill="{_BLUE}"/>'
 
 
 def _bar(y: float, middle: float, half: float, colour: str, width: int) -> str:

@@ -17,7 +17,7 @@ PAGES: Mapping[str, Callable[[], str]] = {
 }
 """Address of a page in ``docs`` to the function that makes its Markdown."""
 BUILT_SAMPLES = DOCS.parent / "build" / "samples"
-SAMPLES = ("report.html",)
-"""Pages that the advisor itself writes of a shipped log; ``make site`` writes them."""
+SAMPLES = ("report.html", "gap.html")
+"""Pages that the advisor itself writes of two flights; ``make site`` writes them."""
 SECTIONS: Mapping[str, str] = {"Developer": "developer"}
 """Section of the navigation to the folder in ``docs`` whose pages it lists."""

@@ -31,6 +31,7 @@ def test_a_turn_and_a_hole_in_the_record_are_named_and_not_used():
     first, turn, hole, fourth, fifth = flown(maneuvers=5)
     found = without_refused([first, banked(turn, 43.0), with_hole(hole, 0.8), fourth, fifth], Aircraft())
     assert [m.number for m in found.maneuvers] == [1, 4, 5]
+    assert found.although_refused == ()
     assert found.notes[0].startswith("Manoeuvre 2 is not used: bank reached 43 deg (limit 30)")
     assert found.notes[1].startswith("Manoeuvre 3 is not used: 0.8 s of q are missing")
 
@@ -39,7 +40,8 @@ def test_where_too_few_would_remain_all_are_used_and_the_reason_is_said():
     maneuvers = [banked(m, 43.0) for m in flown(maneuvers=3)]
     found = without_refused(maneuvers, Aircraft())
     assert found.maneuvers == maneuvers
-    assert all("is used, although analyze refuses it: bank" in note for note in found.notes)
+    assert found.although_refused == (1, 2, 3)
+    assert found.notes[0].startswith("advisor analyze refuses manoeuvre 1: bank reached 43 deg (limit 30)")
 
 
 def test_two_sound_manoeuvres_are_too_few_and_three_are_enough():

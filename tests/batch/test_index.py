@@ -141,5 +141,11 @@ def test_a_flight_with_a_report_links_to_its_page() -> None:
     assert page.tables["flights"][2][1] == str(log)
 
 
+def test_logs_are_named_below_the_folder_that_they_share() -> None:
+    other = replace(flown(2), log="/logs/of a/campaign/2026/flight-2.bin")
+    rows = Page.read(index_page([flown(1), other])).tables["flights"][1:]
+    assert [row[1] for row in rows] == ["flight-1.bin", "2026/flight-2.bin"]
+
+
 def test_an_aircraft_is_called_by_its_name_alone_where_no_other_shares_it() -> None:
     assert "<h2>Talon</h2>" in index_page([flown(1)])

@@ -19,6 +19,18 @@ def test_a_command_that_is_nearly_right_is_guessed(typed: str, meant: str) -> No
     assert result.exception.message == f"No such command '{typed}': did you mean {meant}?"
 
 
+def test_a_connection_without_its_option_is_answered_with_the_option() -> None:
+    result = CliRunner().invoke(advisor, ["live", "udpin:0.0.0.0:14550"], standalone_mode=False)
+    assert str(result.exception) == (
+        "A connection is named by an option: advisor live --master udpin:0.0.0.0:14550"
+    )
+
+
+def test_a_log_on_a_live_link_is_answered_with_the_way_to_continue() -> None:
+    result = CliRunner().invoke(advisor, ["live", "flight.tlog"], standalone_mode=False)
+    assert str(result.exception).startswith("LOG needs --resume")
+
+
 def test_a_command_that_resembles_none_gets_no_guess() -> None:
     result = CliRunner().invoke(advisor, ["xyzzy"], standalone_mode=False)
     assert "did you mean" not in str(result.exception)

@@ -10,12 +10,14 @@ from advisor.gap.alternative import Contribution
 from advisor.gap.decision import Decision
 from advisor.gap.document import gap_document
 from advisor.gap.result import ComparedDerivative, Shrink, Value
+from advisor.gap.verdict.limits import limits_of
 from advisor.report.gap_decisions import decision_in_words
 from advisor.report.gap_fidelity import peaks
-from advisor.report.gap_parameters import changed, changes, limits_of
+from advisor.report.gap_parameters import changed, changes
 from advisor.report.gap_reasons import alternatives_of, heading_of, how_sure, in_percent, weighed
 from advisor.report.gap_steps import next_steps
-from advisor.report.page.gap import shown_causes
+from advisor.report.page.blocks import Listing
+from advisor.report.page.gap import answer, shown_causes
 from advisor.report.page.gap_picture import write_gap_picture
 from tests.gap.test_report_screen import DELAY, EVIDENCE, UNLIKELY, diagnosis, printed
 
@@ -52,11 +54,24 @@ def test_the_peak_error_comes_in_an_engineers_units():
     assert said.startswith("peak error of α 5.7 → 0 deg, of q 5.7 → 0 deg/s, of a_z 0.1 → 0 m/s²")
 
 
-def test_the_limits_of_an_answer_stand_in_the_box():
-    assert list(limits_of(diagnosis())) == ["No simulator was given: the answer is about the flight alone."]
+def test_the_limits_of_an_answer_are_sentences_of_every_face():
+    no_simulator = "No simulator was given: the answer is about the flight alone."
+    found = diagnosis()
+    assert list(limits_of(found)) == gap_document(found)["limits"] == [no_simulator]
+    assert any(line.startswith(f"│ ! {no_simulator[:40]}") for line in printed(found, 80))
+    assert Listing((no_simulator,)) in answer(gap_document(found))
+
+
+def test_the_air_and_refused_manoeuvres_limit_an_answer():
     in_gusts = Shrink((1, 2), 10.0, 0.1, 99.0, (98.0, 100.0), beyond_air_percent=60.0)
     said = list(limits_of(diagnosis(derivatives=DERIVATIVES, shrink=in_gusts)))
     assert said[0].endswith("Beyond the air the gap falls by 60 %.")
+    (one,) = limits_of(diagnosis(derivatives=DERIVATIVES, gap=replace(diagnosis().gap, by_air=2.0)))
+    assert one.endswith("That flatters the gap after.")
+    (one,) = limits_of(diagnosis(derivatives=DERIVATIVES, although_refused=(2,)))
+    assert one == "Manoeuvre 2 is used, although advisor analyze refuses it."
+    (more,) = limits_of(diagnosis(derivatives=DERIVATIVES, although_refused=(2, 3)))
+    assert more == "Manoeuvres 2, 3 are used, although advisor analyze refuses them."
 
 
 def test_a_gap_that_has_grown_is_marked():
@@ -64,6 +79,11 @@ def test_a_gap_that_has_grown_is_marked():
     lines = printed(diagnosis(gap=gap), 80)
     assert any("0.5 → 0.7 ▲" in line for line in lines)
     assert any("▲ worse than before" in line for line in lines)
+
+
+def test_a_gap_that_prints_alike_has_not_grown():
+    gap = replace(diagnosis().gap, by_maneuver=((1, 2.0, 0.1), (2, 0.5, 0.5000001)))
+    assert not any("▲" in line for line in printed(diagnosis(gap=gap), 80))
 
 
 def test_the_steps_say_what_to_put_how_to_prove_it_and_what_excludes_the_rival():
@@ -162,7 +182,8 @@ def test_a_probability_is_never_shown_as_0_or_100_percent(probability: float, sa
 
 
 def test_the_reasons_of_the_document_end_with_their_sum_in_odds():
-    reasons = (Contribution("fit_gain", 2.0, "gain"), Contribution("rest", -0.5, "rest"))
+    nothing = Contribution("misfit", -0.002, "misfit")
+    reasons = (Contribution("fit_gain", 2.0, "gain"), nothing, Contribution("rest", -0.5, "rest"))
     found = gap_document(diagnosis(why=reasons, rival="actuator_lag", evidence=EVIDENCE))
     assert heading_of(found).startswith("why transport delay, and not actuator lag")
     assert weighed((one["nats"], one["text"]) for one in found["why"]) == [

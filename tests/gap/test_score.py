@@ -45,7 +45,7 @@ def test_ice_takes_lift_and_what_leaves_the_lift_alone_is_none(late):
 def test_a_late_channel_may_be_a_filtered_one_and_how_to_tell_is_said(late):
     _, _, judged = late
     names, ways = indistinguishable_from(judged, [judged], ("alpha", "q", "a_z", "theta"))
-    assert names == ("a filter of that channel that delays as much",)
+    assert names == ("a filter of that channel with an equal delay",)
     assert "before any filter" in ways
 
 

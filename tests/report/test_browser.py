@@ -119,3 +119,18 @@ def repeated(content: Content, count: int) -> Content:
 @pytest.mark.skipif(BROWSER is None, reason="Debian's chromium is not installed")
 def test_thirty_manoeuvres_print_on_at_most_twelve_pages(reported: Reported, tmp_path: Path) -> None:
     assert printed_pages(page(repeated(reported.content, 30), "html"), tmp_path) <= 12
+
+
+@pytest.mark.skipif(BROWSER is None, reason="Debian's chromium is not installed")
+def test_the_verdict_and_the_picture_of_the_gap_print_on_one_page(reported: Reported, tmp_path: Path) -> None:
+    first = re.sub(
+        r"(<section id=\"verdict\".*?</section>).*</main>", r"\1</main>", reported.written, flags=re.S
+    )
+    assert first.count("<section") == 1
+    assert "the one with the largest gap" in first
+    sentence = (
+        "TEST COMPLETE: the response is known, each named derivative too, and the newest was predicted."
+    )
+    long = re.sub(r'(<p class="verdict">)[^<]*', rf"\1{sentence} {sentence}", first)
+    limited = long.replace('<div class="gallery">', f'<ul><li>{sentence}</li></ul><div class="gallery">')
+    assert printed_pages(limited, tmp_path) == 1

@@ -7,6 +7,7 @@ import pytest
 
 from advisor.model.mil_f_8785c import CATEGORIES
 from advisor.oem.flying_qualities import flying_qualities
+from advisor.report.page.drawing import log_ticks
 from advisor.report.page.flying_chart import ellipse, flying_chart
 from advisor.report.qualities import qualities_document
 from tests.oem.test_flying_qualities import HEAVY, THETA, TRUE, estimate, found
@@ -54,3 +55,9 @@ def test_without_an_air_speed_there_is_no_chart() -> None:
     assert without is not None
     assert without["correlation"] is None
     assert flying_chart(without) is None
+
+
+def test_a_short_logarithmic_axis_has_more_labels_in_a_decade_than_a_long_one() -> None:
+    assert log_ticks(16.0, 32.0) == [20.0, 30.0]
+    assert log_ticks(20.0, 6000.0) == [20.0, 50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0, 5000.0]
+    assert log_ticks(1.0, 1e5) == [10.0**k for k in range(6)]

@@ -22,7 +22,14 @@ GAP = replace(diagnosis().gap, by_maneuver=((2, 5.0, 0.2), (3, 0.1, 0.4)))
 REASONS = (Contribution("fit_gain", 2.0, "gain in the fit"), Contribution("rest", -0.5, "rest"))
 DOCUMENT = {
     **gap_document(
-        diagnosis(gap=GAP, derivatives=DERIVATIVES, evidence=EVIDENCE, why=REASONS, rival="actuator_lag")
+        diagnosis(
+            gap=GAP,
+            derivatives=DERIVATIVES,
+            although_refused=(3,),
+            evidence=EVIDENCE,
+            why=REASONS,
+            rival="actuator_lag",
+        )
     ),
     "next": [{"text": "Put it there.", "command": "advisor gap x"}],
 }
@@ -38,6 +45,7 @@ async def test_choosing_the_pane_diagnoses_the_flight_and_shows_the_worst_manoeu
         await here.until(lambda: "answers 30 ms too early" in here.words("#gap-text"))
         said = " ".join(here.words("#gap-text").split())
         assert "M_α −44.60 → −34.30 ± 0.71 1/s²" in said
+        assert "! Manoeuvre 3 is used, although advisor analyze refuses it." in said
         assert "99.9 % less" in said
         assert "1. Put it there. advisor gap x" in said
         assert "Probability by the evidence: transport delay 82 %, actuator lag 18 %." in said

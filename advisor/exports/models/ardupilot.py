@@ -55,7 +55,7 @@ def model_text(improvement: Improvement) -> Exported:
         f"{improvement.name}: longitudinal coefficients by `advisor gap`. Load: --model plane:THIS-FILE",
         "Merge into your own file: without span, drag, side and roll keys ArduPilot keeps its small plane's.",
         f"c_lift_* are C_L times 2 kg / {mass:.6g} kg: the mass of ArduPilot's plane is 2 kg.",
-        "Times 4 where the frame is -heavy (8 kg), times 11 where it is -jet (22 kg).",
+        "Multiply c_lift_* by 4 for the frame -heavy (8 kg), by 11 for -jet (22 kg).",
         f"c_m_* are C_m divided by I_yy = {inertia:.6g} kg m2: ArduPilot takes the torque as acceleration.",
         f"c_*_deltae are per 500 us of pulse width, {math.degrees(travel):+.4g} deg here.",
         improvement.density_note,

@@ -141,7 +141,7 @@ def hold_force_unit(work: Work) -> bool:
     said = " and ".join([*([f"in {unit}"] if other_unit else []), *(["z up"] if reverse else [])])
     work.contradict(
         "a_z", *(("unit", stated, unit) if other_unit else ("sign", "z down", "z up")), known,
-        f"a_z is {said}, not in {stated} with z down: {told}; estimates use the right one",
+        f"a_z is {said}, not in {stated} with z down: {told}; estimates use the unit and sign found",
         f"send {source} in {stated}, z down", used=True,
     )  # fmt: skip
     work.divide("a_z", weighed.factor)

@@ -177,7 +177,7 @@ def _changed(name: str, known: float, value: float, at: str, counts: bool) -> st
     used = (
         f"the elevator is counted with {value:g} after that"
         if counts
-        else f"the elevator is counted with {known:g} all the same, for its linkage has not changed"
+        else f"the elevator is still counted with {known:g}, because its linkage has not changed"
     )
     return f"{name} changed from {known:g} to {value:g}{at}: {used}."
 

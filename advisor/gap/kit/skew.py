@@ -9,7 +9,7 @@ from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX, OUTPUTS, SKEWS
 
 UNFILTERED = (
-    "a filter of that channel that delays as much",
+    "a filter of that channel with an equal delay",
     "log the channel as its sensor reads it, before any filter",
 )
 """Cause that looks like a late channel, and what distinguishes the two."""

@@ -118,10 +118,6 @@ def _of_single_witnesses(e: Evidence) -> Iterator[str]:
 def _of_the_air(e: Evidence) -> Iterator[str]:
     if e.air is None:
         return
-    yield (
-        "The gap 'after' includes this flight's gusts, estimated from the same samples. That flatters the "
-        "model, and no aircraft file can hold gusts."
-    )
     if e.air.gust:
         yield f"The gust shows most in manoeuvre {e.air.gust_number}."
     if e.problem.flights.alpha_is_derived:

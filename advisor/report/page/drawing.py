@@ -38,7 +38,9 @@ _STYLE: Any = {
     "path.simplify_threshold": 0.2,
 }
 _MOST_TICKS = 8
-"""Most labels at 1, 2 and 5 times powers of ten; a longer axis has the powers alone."""
+"""Most labels of a logarithmic axis."""
+_SERIES = ((1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0), (1.0, 2.0, 5.0), (1.0,))
+"""Labels within a decade, the densest first."""
 _DPI = 150
 """Dots per inch of a picture in dots: sharp on a screen of twice the usual density."""
 Shown = TypeVarTuple("Shown")
@@ -107,10 +109,14 @@ def draw(
 
 
 def log_ticks(low: float, high: float) -> list[float]:
-    """Return the values at 1, 2 and 5 times powers of ten, or at powers of ten alone where those are many."""
+    """Return ticks of a logarithmic axis: the densest series that does not crowd the axis."""
     decades = range(floor(log10(low)), ceil(log10(high)) + 1)
-    fine = [m * 10.0**k for k in decades for m in (1.0, 2.0, 5.0) if low <= m * 10.0**k <= high]
-    return fine if len(fine) <= _MOST_TICKS else [v for v in fine if 10.0 ** round(log10(v)) == v]
+    ticks: list[float] = []
+    for series in _SERIES:
+        ticks = [m * 10.0**k for k in decades for m in series if low <= m * 10.0**k <= high]
+        if len(ticks) <= _MOST_TICKS:
+            break
+    return ticks
 
 
 def _inline(svg: str, width_in: float) -> str:

@@ -35,9 +35,7 @@ def _blocks(found: Document) -> Iterator[Block]:
         yield Paragraph("The gap could not be diagnosed.")
         yield from listing([f"{p['text']} {p['fix']}" for p in found["problems"]])
         return
-    yield Paragraph(found["sentence"], "verdict")
-    if sure := how_sure(alternatives_of(found)):
-        yield Paragraph(sure)
+    yield from answer(found)
     size, shrink = found["gap"], found["shrink"]
     if found["traces"]:
         close, phone = gap_picture("gap-picture", found), gap_picture("gap-phone", found, across=1)
@@ -80,13 +78,24 @@ def _blocks(found: Document) -> Iterator[Block]:
             frozenset({0}),
         )
     yield from listing(
-        [f"Cannot be seen: {spelled(u['effect'])}, {u['because']}." for u in found["cannot_see"]]
+        [
+            f"Cannot be seen: {spelled(u['effect'])}, {u['because']}. To see it: {u['would_need']}."
+            for u in found["cannot_see"]
+        ]
     )
     yield from listing(list(found["notes"]))
     for number, step in enumerate(found["next"], start=1):
         yield Paragraph(f"{number}. {step['text']}")
         if step["command"]:
             yield Verbatim(step["command"])
+
+
+def answer(found: Document) -> Iterator[Block]:
+    """Yield the sentence, how sure it is, and what limits it."""
+    yield Paragraph(found["sentence"], "verdict")
+    if sure := how_sure(alternatives_of(found)):
+        yield Paragraph(sure)
+    yield from listing(list(found["limits"]))
 
 
 def shown_causes(found: Document) -> list[Mapping[str, Any]]:

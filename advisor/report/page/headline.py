@@ -2,10 +2,10 @@
 
 from collections.abc import Iterator
 
-from advisor.report.gap_reasons import alternatives_of, how_sure
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, listing
 from advisor.report.page.content import Content
 from advisor.report.page.estimates import joint_table
+from advisor.report.page.gap import answer
 from advisor.report.page.gap_picture import caption, gap_picture
 from advisor.report.table import Table
 
@@ -40,9 +40,7 @@ def _blocks(content: Content) -> Iterator[Block]:
         yield joint
     found = content.gap
     if found is not None and found["usable"]:
-        yield Paragraph(found["sentence"], "verdict")
-        if sure := how_sure(alternatives_of(found)):
-            yield Paragraph(sure)
+        yield from answer(found)
         glance = gap_picture("gap-glance", found, across=_GLANCE)
         yield Gallery((Figure(glance, caption(found), narrow=gap_picture("gap-narrow", found, across=1)),))
 

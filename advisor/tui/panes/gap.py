@@ -10,7 +10,7 @@ from textual.containers import VerticalScroll
 from textual.events import Resize
 
 from advisor.report.gap_reasons import alternatives_of, heading_of, how_sure, weighed
-from advisor.report.gap_sizes import WORSE
+from advisor.report.gap_sizes import WORSE, has_grown
 from advisor.session.diagnosis import Document, GapTask, diagnose_elsewhere
 from advisor.session.view import View
 from advisor.tui.panes.hanging import HangingLines, Labelled
@@ -40,8 +40,8 @@ class GapPane(Pane):
 Why the aircraft does not fly like its simulator. Choosing the pane starts the diagnosis of the flight so
 far, in a process of its own; choosing it again after further manoeuvres starts it again.
 
-The text has the answer with its probability, the derivatives that differ with their 95 % intervals, the
-next steps, and the reasons against the strongest rival. Scroll for more.
+The text has the answer with its probability and limits, the derivatives that differ with their 95 %
+intervals, the next steps, and the reasons against the strongest rival. Scroll for more.
 
 The plots show the manoeuvre with the largest gap: measured (dots), the simulator before, and with the
 findings.
@@ -102,13 +102,14 @@ findings.
 
 
 def answer_rows(document: Document) -> Iterator[Labelled]:
-    """Yield the answer with its probability, what differs, the shrink, the numbered steps, the reasons."""
+    """Yield the answer, how sure it is, its limits, what differs, the shrink, the steps, the reasons."""
     if not document["usable"]:
         yield from (("✗ ", f"{problem['text']} {problem['fix']}") for problem in document["problems"])
         return
     yield "", document["sentence"]
     if sure := how_sure(alternatives_of(document)):
         yield "", sure
+    yield from (("! ", limit) for limit in document["limits"])
     yield from (("  ", _changed(one)) for one in document["parameters_changed"])
     shrink = document["shrink"]
     if shrink is not None:
@@ -129,9 +130,9 @@ def _worse(size: Mapping[str, Any]) -> str:
     channels = [
         channel(name).symbol
         for name, after in size["by_channel_after"].items()
-        if after > size["by_channel"][name]
+        if has_grown(after, size["by_channel"][name])
     ]
-    numbers = [str(one["number"]) for one in size["by_maneuver"] if one["after"] > one["before"]]
+    numbers = [str(one["number"]) for one in size["by_maneuver"] if has_grown(one["after"], one["before"])]
     noun = "manoeuvre" if len(numbers) == 1 else "manoeuvres"
     grown = [*channels, *([f"{noun} {', '.join(numbers)}"] if numbers else [])]
     return f"larger than before in {', '.join(grown)}" if grown else ""
