@@ -1,7 +1,7 @@
 """Damaged logs of every kind, through the whole analysis: a document and an exit code, never a traceback.
 
-``make test`` takes some tens of cases of each kind, ``make damage`` thousands (DAMAGE_CASES). DAMAGE_SEED draws
-other damage.
+``make test`` takes some tens of cases of each kind, ``make damage`` thousands (DAMAGE_CASES). DAMAGE_SEED
+draws other damage.
 """
 
 import json
