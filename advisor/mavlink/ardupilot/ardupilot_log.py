@@ -55,7 +55,7 @@ _FIELDS = frozenset[str]().union(*_RECORDS.values(), *SDLOG2_RECORDS.values()) |
 }
 """Fields that are read: the necessary ones, the stamps, the number of a sensor, and those that some versions
 have."""
-_OF_WHOLE_LOG = (*VEHICLE_RECORDS, *HEALTH_RECORDS, *SYSTEM_ID_RECORDS, "GPS")
+_OF_WHOLE_LOG = (*VEHICLE_RECORDS, *HEALTH_RECORDS, *SYSTEM_ID_RECORDS)
 """Records that later stretches of a log need. All are rare."""
 _UNDIVIDED = ("TIME",)
 """Records of logs that are read whole: PX4's, a few minutes long."""

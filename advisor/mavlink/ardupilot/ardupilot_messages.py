@@ -20,7 +20,7 @@ from advisor.mavlink.ardupilot.ardupilot_vehicle import (
 from advisor.mavlink.ardupilot.body_rates import RATE_RECORDS, body_rates, calmed
 from advisor.mavlink.ardupilot.former_records import Clocked
 from advisor.mavlink.ardupilot.log_health import health
-from advisor.mavlink.ardupilot.sensors import Said, flown, said, silent, silent_at_end, stated_health
+from advisor.mavlink.ardupilot.sensors import Said, Silence, flown, said, silences_in, stated_health
 from advisor.mavlink.ardupilot.system_identification import lost_texts, sweeps
 from advisor.mavlink.records.dataflash import RecordTable, gps_time_base_s, seconds
 from advisor.mavlink.records.equivalent import air_data, message, nearest, side_by_side
@@ -41,8 +41,8 @@ class Known:
     """Time of boot, seconds since 1970; 0 where the log did not state it."""
     health: Mapping[str, set[str]] = field(default_factory=dict)
     """Record of a sensor to the fields that have stated the sensor as healthy."""
-    silent_us: Mapping[str, int | None] = field(default_factory=dict)
-    """Record of a sensor to the begin of a time without a healthy one, us."""
+    silences: Mapping[str, list[Silence]] = field(default_factory=dict)
+    """Record of a sensor to the times without a healthy one in the newest stretch."""
 
 
 class Translation:
@@ -59,29 +59,24 @@ class Translation:
     def __init__(self, read: Clocked, known: Known) -> None:
         self._tables = dict(read.tables)
         self._said: list[Said] = []
-        self._interrupted: set[str] = set()
-        """Records of sensors that were not healthy all the time."""
-        healthy, silent_us = dict(known.health), dict(known.silent_us)
         if read.epoch_s:
             self._said.append(Said(0, 0, "Stamps count from 1970: times are given since the first record"))
+        healthy: dict[str, set[str]] = dict(known.health)
+        silences: dict[str, list[Silence]] = {}
         for name, quantity in _SENSORS.items():
             if name in self._tables:
                 every = self._tables[name]
                 healthy[name] = stated_health(every) | healthy.get(name, set())
                 self._tables[name] = flown(every, healthy[name])
-                before_us = silent_us.get(name)
-                self._said += said(every, self._tables[name], quantity, healthy[name], before_us)
-                silent_us[name] = silent_at_end(every, self._tables[name], before_us)
-                if silent(every, self._tables[name]):
-                    self._interrupted.add(name)
+                silences[name] = silences_in(every, self._tables[name], known.silences.get(name, []))
+                self._said += said(every, self._tables[name], quantity, healthy[name], silences[name])
         self._tables = {name: table for name, table in self._tables.items() if len(table)}
         if "PARM" in self._tables:
             self._tables["PARM"] = in_todays_parameters(self._tables["PARM"])
         self._said += [*health(self._tables), *sweeps(self._tables)]
-        self._base_s = known.base_s
-        if self._base_s is None:
-            self._base_s = float(read.epoch_s) or gps_time_base_s(self._tables.get("GPS"))
-        self.known = Known(read.epoch_s, self._base_s, healthy, silent_us)
+        first_s = float(read.epoch_s) or gps_time_base_s(self._tables.get("GPS"))
+        self._base_s = first_s if known.base_s is None else known.base_s
+        self.known = Known(read.epoch_s, self._base_s, healthy, silences)
         """What this stretch and those before have told."""
         self._system = system_of(self._tables)
 
@@ -208,7 +203,7 @@ class Translation:
 
     def _vfr_hud(self) -> Iterator[Columns]:
         """Yield the air speed, climb rate and throttle, each at the stamps of its own record."""
-        found = air(self._tables, "ARSP" in self._interrupted)
+        found = air(self._tables, bool(self.known.silences.get("ARSP")))
         self._said += found.said
         if found.records:
             fields: dict[str, ArrayLike] = dict(air_data(*found.records))

@@ -1,6 +1,6 @@
 """Choice among several sensors of one kind in an ArduPilot log: healthy, in use, and primary."""
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -69,8 +69,23 @@ class Said:
     text: str
 
 
+@dataclass(frozen=True, slots=True)
+class Silence:
+    """A time with records but without a healthy sensor."""
+
+    begin_us: int
+    """Microseconds since boot."""
+    end_us: int
+    order: int
+    """Position in the file of the last record in this time, bytes."""
+
+
 def said(
-    every: RecordTable, table: RecordTable, quantity: str, health: Collection[str], silent_us: int | None
+    every: RecordTable,
+    table: RecordTable,
+    quantity: str,
+    health: Collection[str],
+    silences: Iterable[Silence],
 ) -> list[Said]:
     """Return sentences on the first sensor in use, on each change of sensor, and on times without a healthy
     one.
@@ -87,22 +102,34 @@ def said(
         Name of the measured quantity.
     health
         Fields that tell of a sensor's health.
-    silent_us
-        Begin of the time without a healthy sensor that lasted at the end of the records before; None where
-        none lasted.
+    silences
+        Result of :func:`silences_in`.
     """
     return [
         *_doubts(every, quantity, health),
         *_changes(table, quantity),
-        *_silences(every, table, quantity, silent_us),
+        *(_silence(one, quantity) for one in silences),
     ]
 
 
-def silent_at_end(every: RecordTable, table: RecordTable, silent_us: int | None) -> int | None:
-    """Return the begin of the time without a healthy sensor that lasts at the end of the records, us; None
-    where none lasts."""
-    lasting = [begin for begin, (_, last) in _since(every, table, silent_us) if last == len(every) - 1]
-    return lasting[0] if lasting else None
+def silences_in(every: RecordTable, table: RecordTable, before: Sequence[Silence] = ()) -> list[Silence]:
+    """Return the times without a healthy sensor.
+
+    Parameters
+    ----------
+    every
+        Records of all sensors.
+    table
+        Records of the sensor in use, from :func:`flown`.
+    before
+        Times without a healthy sensor in the stretch before, of which one may last until here.
+    """
+    found = []
+    for first, last in _silent(every, table):
+        here_us, end_us = every.time_us[[first, last]].tolist()
+        begin_us = next((one.begin_us for one in before if one.begin_us <= here_us <= one.end_us), here_us)
+        found.append(Silence(begin_us, end_us, int(every.order[last])))
+    return found
 
 
 def _doubts(every: RecordTable, quantity: str, health: Collection[str]) -> list[Said]:
@@ -126,38 +153,15 @@ def _changes(table: RecordTable, quantity: str) -> list[Said]:
     return sentences
 
 
-def _silences(every: RecordTable, table: RecordTable, quantity: str, silent_us: int | None) -> list[Said]:
-    """Return a sentence on each time without a healthy sensor, in the place of its end."""
-    sentences = []
-    for begin_us, (_, last) in _since(every, table, silent_us):
-        end_us = int(every.time_us[last])
-        text = (
-            f"{quantity}: no sensor was healthy from {between(begin_us / 1e6, end_us / 1e6)}"
-            " and none is used there"
-        )
-        sentences.append(Said(int(every.order[last]), end_us, text))
-    return sentences
+def _silence(one: Silence, quantity: str) -> Said:
+    when = between(one.begin_us / 1e6, one.end_us / 1e6)
+    return Said(
+        one.order, one.end_us, f"{quantity}: no sensor was healthy from {when} and none is used there"
+    )
 
 
-def _since(
-    every: RecordTable, table: RecordTable, silent_us: int | None
-) -> Iterator[tuple[int, tuple[int, int]]]:
-    """Yield the begin of each time without a healthy sensor, us, with the first and last row of it here."""
-    for first, last in silent(every, table):
-        here_us = int(every.time_us[first])
-        yield here_us if first or silent_us is None else min(silent_us, here_us), (first, last)
-
-
-def silent(every: RecordTable, table: RecordTable) -> list[tuple[int, int]]:
-    """Return stretches with records but without a healthy sensor: rows of ``every``, first and last.
-
-    Parameters
-    ----------
-    every
-        Records of all sensors.
-    table
-        Records of the sensor in use, from :func:`flown`.
-    """
+def _silent(every: RecordTable, table: RecordTable) -> list[tuple[int, int]]:
+    """Return the first and last row of each stretch of ``every`` without a healthy sensor."""
     if len(table) == len(every):
         return []
     # A stretch without a healthy sensor is longer than the interval of the records of the sensor in use.

@@ -13,8 +13,8 @@ from advisor.flight.signals.messages import IntArray
 from advisor.mavlink.records.dataflash import DEFINITION_LAYOUT, RecordTable, layout_of
 from advisor.mavlink.records.record_scan import FMT, FMT_LENGTH, Window, bodies, windows
 
-STRETCH_WINDOWS = 8
-"""Length of a stretch in windows, 32 MB of a file. All its records become messages together, which take some
+STRETCH_WINDOWS = 4
+"""Length of a stretch in windows, 16 MB of a file. All its records become messages together, which take some
 four times the memory."""
 
 

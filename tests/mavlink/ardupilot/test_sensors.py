@@ -15,7 +15,8 @@ def flown(records: RecordTable) -> RecordTable:
 
 def said(records: RecordTable, chosen: RecordTable, quantity: str) -> list[Said]:
     """Sentences about the sensors, of a log in one stretch."""
-    return sensors.said(records, chosen, quantity, stated_health(records), None)
+    silences = sensors.silences_in(records, chosen)
+    return sensors.said(records, chosen, quantity, stated_health(records), silences)
 
 
 def table(*rows, names):
