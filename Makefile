@@ -143,8 +143,9 @@ survival: .venv/.developed ## a live campaign in which fifty processes are kille
 	$(BIN)/python -m pytest -m study tests/mavlink/link/test_never_lost.py
 
 DAMAGE_CASES ?= 3400
-damage: .venv/.developed ## 10,000 damaged logs and more, read and analysed (DAMAGE_CASES of each of three kinds)
-	DAMAGE_CASES=$(DAMAGE_CASES) $(BIN)/python -m pytest --timeout 0 tests/test_damaged_logs.py
+DAMAGE_SEED ?= 0
+damage: .venv/.developed ## 10,000 damaged logs and more, read and analysed (DAMAGE_CASES of each of three kinds, DAMAGE_SEED)
+	DAMAGE_CASES=$(DAMAGE_CASES) DAMAGE_SEED=$(DAMAGE_SEED) $(BIN)/python -m pytest --timeout 0 tests/test_damaged_logs.py
 
 .PHONY: site words pages examples
 SAMPLES := build/samples/report.html build/samples/gap.html

@@ -1,6 +1,7 @@
 """Damaged logs of every kind, through the whole analysis: a document and an exit code, never a traceback.
 
-``make test`` takes some tens of cases of each kind, ``make damage`` thousands (DAMAGE_CASES).
+``make test`` takes some tens of cases of each kind, ``make damage`` thousands (DAMAGE_CASES). DAMAGE_SEED
+draws other damage.
 """
 
 import json
@@ -23,6 +24,7 @@ from tests.mavlink.ardupilot.test_autopilot_logs import FIRST_STEP_S, dataflash_
 
 CASES = int(os.environ.get("DAMAGE_CASES", "60"))
 """Cases of each kind of log that are read; one in twenty is analysed by the command as well."""
+SEED = int(os.environ.get("DAMAGE_SEED", "0"))
 SECONDS = FIRST_STEP_S + 6.0
 
 
@@ -92,7 +94,7 @@ DAMAGES: list[Callable[[bytearray, np.random.Generator], None]] = [
 
 
 def damaged(kind: str, seed: int, damages: list[int]) -> bytes:
-    log, rng = bytearray(sound(kind)), np.random.default_rng([seed, *damages])
+    log, rng = bytearray(sound(kind)), np.random.default_rng([SEED, seed, *damages])
     for damage in damages:
         if log:
             DAMAGES[damage](log, rng)

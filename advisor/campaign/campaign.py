@@ -412,7 +412,7 @@ class Campaign:
         self._judged = tuple(judged)
         self._flight_test = flight_test(self._history, plan, self._aircraft, self._course)
         if lag_is_unknown(self._learnt):
-            model = self._together.estimate([judged.maneuver for judged in self._joined])
+            model = self._together.of_lag([judged.maneuver for judged in self._joined])
             self._judged = tuple(
                 replace(judged, verdict=reserved(judged.verdict, judged.estimate, model))
                 for judged in self._judged
@@ -431,7 +431,9 @@ class Campaign:
         all_of_them = len(joined) == sum(judged.verdict.accepted for judged in self._judged)
         if not may_learn(self._learnt, all_of_them):
             return
-        model = self._together.estimate([judged.maneuver for judged in joined])
+        flown = [judged.maneuver for judged in joined]
+        is_open = self._aircraft.elevator.lag_s is None
+        model = self._together.of_lag(flown) if is_open else self._together.estimate(flown)
         told_by = {judged.maneuver.power_on for judged in joined}
         learnt = learnt_from(self._learnt, model, one_power_on=len(told_by) == 1, exactly=self._ended)
         if learnt is self._learnt:

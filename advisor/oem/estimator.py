@@ -1,7 +1,7 @@
 """From manoeuvres to estimates: the functions that the rest of the program calls."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -49,43 +49,83 @@ def estimate(
     method : ``gauss-newton``, or ``nelder-mead`` for the paper's simplex, which finds the same optimum more
         slowly and estimates neither instruments nor moving air.
     """
-    return _estimate([maneuver], aircraft, method)
+    if method == "gauss-newton":
+        return estimate_jointly([maneuver], aircraft)
+    begun = _begun([maneuver], aircraft, method)
+    if isinstance(begun, NoEstimate):
+        return begun
+    prepared, plain = begun
+    return report(plain, prepared, aircraft, lagged=_supposing_a_lag(plain, aircraft))
 
 
 def estimate_jointly(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Estimate | NoEstimate:
     """Return one estimate over several manoeuvres, with shared derivatives and separate nuisance
     parameters."""
+    fit = fit_jointly(maneuvers, aircraft)
+    return fit if isinstance(fit, NoEstimate) else fit.estimate()
+
+
+def fit_jointly(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> "Fit | NoEstimate":
+    """Return the fit from which the estimate over several manoeuvres follows."""
     if not maneuvers:
         return NoEstimate("no_maneuver", "There is no manoeuvre to estimate from.")
-    return _estimate(maneuvers, aircraft, "gauss-newton")
+    begun = _begun(maneuvers, aircraft, "gauss-newton")
+    if isinstance(begun, NoEstimate):
+        return begun
+    prepared, plain = begun
+    return Fit(maneuvers, aircraft, prepared, plain, _with_instruments(plain, aircraft))
 
 
-def _estimate(maneuvers: Sequence[Maneuver], aircraft: Aircraft, method: Method) -> Estimate | NoEstimate:
-    """Estimate by output error, with instruments and edges, then by filter error where the air moves."""
+@dataclass(frozen=True, slots=True)
+class Fit:
+    """Output error with the instruments of the log, before steps get their times and moving air is allowed
+    for."""
+
+    maneuvers: Sequence[Maneuver]
+    aircraft: Aircraft
+    prepared: Prepared
+    plain: Solution
+    """Solution without instrument parameters."""
+    fitted: InstrumentFit
+
+    @property
+    def tells_lag(self) -> bool:
+        """Whether the servo's lag is a parameter of the fit, and so of the estimate."""
+        return any(x.instrument.name == "servo_lag_s" for x in self.fitted.identified)
+
+    def estimate(self) -> Estimate:
+        """Return the estimate with the times of steps, and by filter error where the air moves."""
+        solution = with_edges(self.fitted.solution)
+        identified = refreshed(self.fitted.identified, solution)
+        lagged = None if self.tells_lag else _supposing_a_lag(solution, self.aircraft)
+        air = _air(solution, self.maneuvers, self.prepared)
+        filtered = None
+        if air is not None:
+            names = [x.instrument for x in identified]
+            # Gusts can draw output error's instruments so far that the search from there diverges.
+            filtered = filter_error(solution, air.air, names) or filter_error(self.plain, air.air, names)
+        if filtered is not None:
+            identified = refreshed(identified, filtered)
+        return report(
+            solution,
+            self.prepared,
+            self.aircraft,
+            identified=identified,
+            lagged=lagged,
+            air=air,
+            filtered=filtered,
+        )
+
+
+def _begun(
+    maneuvers: Sequence[Maneuver], aircraft: Aircraft, method: Method
+) -> tuple[Prepared, Solution] | NoEstimate:
+    """Return the prepared manoeuvres with the solution without instrument parameters."""
     prepared = prepare(maneuvers, aircraft)
     if isinstance(prepared, NoEstimate):
         return prepared
     plain = _solved(prepared.problem, method)
-    if isinstance(plain, NoEstimate):
-        return plain
-    if method != "gauss-newton":
-        return report(plain, prepared, aircraft, lagged=_supposing_a_lag(plain, aircraft))
-    fitted = _with_instruments(plain, aircraft)
-    solution = with_edges(fitted.solution)
-    identified = refreshed(fitted.identified, solution)
-    has_lag = any(x.instrument.name == "servo_lag_s" for x in identified)
-    lagged = None if has_lag else _supposing_a_lag(solution, aircraft)
-    air = _air(solution, maneuvers, prepared)
-    filtered = None
-    if air is not None:
-        names = [x.instrument for x in identified]
-        # Gusts can draw output error's instruments so far that the search from there diverges.
-        filtered = filter_error(solution, air.air, names) or filter_error(plain, air.air, names)
-    if filtered is not None:
-        identified = refreshed(identified, filtered)
-    return report(
-        solution, prepared, aircraft, identified=identified, lagged=lagged, air=air, filtered=filtered
-    )
+    return plain if isinstance(plain, NoEstimate) else (prepared, plain)
 
 
 def _with_instruments(plain: Solution, aircraft: Aircraft) -> InstrumentFit:

@@ -68,8 +68,9 @@ def _airspeed(
         # The autopilot's own air speed goes on without a sensor.
         stand_in, spare_field = spare[0]
         rows = _away_from(time_us, stand_in.time_us)
-        text = f"Air speed: the autopilot's own ({spare_field}) stands in where no sensor was healthy"
-        said.append(Said(int(stand_in.order[0]), int(stand_in.time_us[0]), text))
+        if rows.any():
+            text = f"Air speed: the autopilot's own ({spare_field}) stands in where no sensor was healthy"
+            said.append(Said(int(stand_in.order[rows][0]), int(stand_in.time_us[rows][0]), text))
         order = np.concatenate([order, stand_in.order[rows]])
         time_us = np.concatenate([time_us, stand_in.time_us[rows]])
         speed = np.concatenate([speed, stand_in.fields[spare_field][rows]])

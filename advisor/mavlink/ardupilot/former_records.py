@@ -42,17 +42,26 @@ class Clocked:
     """Seconds since 1970 at TimeUS 0 for a log that counted from 1970; 0 for a log that counts from boot."""
 
 
-def in_todays_names(tables: Mapping[str, RecordTable]) -> Clocked:
-    """Return all records of a log, renamed, on one clock, with several records of one kind of sensor
-    joined."""
+def in_todays_names(tables: Mapping[str, RecordTable], epoch_s: int | None = None) -> Clocked:
+    """Return all records of a log, renamed, on one clock, with several records of one kind of sensor joined.
+
+    ``epoch_s`` is that of an earlier stretch of the log; None: these records tell it.
+    """
     named = {name: _renamed(name, table) for name, table in tables.items()}
     timed = _timed(named)
-    stamps = np.concatenate([table.time_us for table in timed.values()]) if timed else np.zeros(0, np.int64)
-    epoch_s = 0
-    if len(stamps) and np.median(stamps) > _1970_US:
-        epoch_s = int(np.min(stamps[stamps > _1970_US])) // 1_000_000
+    if epoch_s is None:
+        epoch_s = _epoch_s(timed)
+    if epoch_s:
         timed = {name: _at(table, table.time_us - 1_000_000 * epoch_s) for name, table in timed.items()}
     return Clocked(_joined(timed), epoch_s)
+
+
+def _epoch_s(timed: Mapping[str, RecordTable]) -> int:
+    """Return the seconds since 1970 of the first stamp that counts from there; 0 for stamps since boot."""
+    stamps = np.concatenate([table.time_us for table in timed.values()]) if timed else np.zeros(0, np.int64)
+    if len(stamps) == 0 or not np.median(stamps) > _1970_US:
+        return 0
+    return int(np.min(stamps[stamps > _1970_US])) // 1_000_000
 
 
 def _renamed(name: str, table: RecordTable) -> RecordTable:

@@ -1,5 +1,6 @@
 """Choice among several sensors of one kind in an ArduPilot log: healthy, in use, and primary."""
 
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,8 +24,16 @@ _FROZEN_S = 0.5
 sound sensor repeats its values at most once, when records come faster than samples."""
 
 
-def flown(table: RecordTable) -> RecordTable:
+def stated_health(table: RecordTable) -> set[str]:
+    """Return the fields that ever state a healthy sensor. A field that never does cannot distinguish sensors
+    or times."""
+    return {name for name in _stated(table) if np.any(table.fields[name] != 0)}
+
+
+def flown(table: RecordTable, health: Collection[str]) -> RecordTable:
     """Return the records of the sensor in use at each time; none where no sensor was healthy.
+
+    Only the fields in ``health`` tell of a sensor's health (:func:`stated_health`).
 
     ARSP.Pri names the primary sensor. Where that sensor is not both healthy and in use, the lowest-numbered
     such sensor counts. Without one, the lowest-numbered healthy sensor counts. (ArduPilot log messages ARSP
@@ -34,7 +43,7 @@ def flown(table: RecordTable) -> RecordTable:
         return table
     instance = _numbers(table)
     numbers = np.unique(instance)
-    worth = _healthy(table, instance).astype(np.int64) * (1 + _used(table))
+    worth = _healthy(table, instance, health).astype(np.int64) * (1 + _used(table))
     state = np.zeros((len(numbers), len(table)), dtype=np.int64)
     for row, number in enumerate(numbers):
         own = instance == number
@@ -60,7 +69,24 @@ class Said:
     text: str
 
 
-def said(every: RecordTable, table: RecordTable, quantity: str) -> list[Said]:
+@dataclass(frozen=True, slots=True)
+class Silence:
+    """A time with records but without a healthy sensor."""
+
+    begin_us: int
+    """Microseconds since boot."""
+    end_us: int
+    order: int
+    """Position in the file of the last record in this time, bytes."""
+
+
+def said(
+    every: RecordTable,
+    table: RecordTable,
+    quantity: str,
+    health: Collection[str],
+    silences: Iterable[Silence],
+) -> list[Said]:
     """Return sentences on the first sensor in use, on each change of sensor, and on times without a healthy
     one.
 
@@ -74,13 +100,41 @@ def said(every: RecordTable, table: RecordTable, quantity: str) -> list[Said]:
         Records of the sensor in use, from :func:`flown`.
     quantity
         Name of the measured quantity.
+    health
+        Fields that tell of a sensor's health.
+    silences
+        Result of :func:`silences_in`.
     """
-    return [*_doubts(every, quantity), *_changes(table, quantity), *_silences(every, table, quantity)]
+    return [
+        *_doubts(every, quantity, health),
+        *_changes(table, quantity),
+        *(_silence(one, quantity) for one in silences),
+    ]
 
 
-def _doubts(every: RecordTable, quantity: str) -> list[Said]:
+def silences_in(every: RecordTable, table: RecordTable, before: Sequence[Silence] = ()) -> list[Silence]:
+    """Return the times without a healthy sensor.
+
+    Parameters
+    ----------
+    every
+        Records of all sensors.
+    table
+        Records of the sensor in use, from :func:`flown`.
+    before
+        Times without a healthy sensor in the stretch before, of which one may last until here.
+    """
+    found = []
+    for first, last in _silent(every, table):
+        here_us, end_us = every.time_us[[first, last]].tolist()
+        begin_us = next((one.begin_us for one in before if one.begin_us <= here_us <= one.end_us), here_us)
+        found.append(Silence(begin_us, end_us, int(every.order[last])))
+    return found
+
+
+def _doubts(every: RecordTable, quantity: str, health: Collection[str]) -> list[Said]:
     """Return a sentence where no record states any sensor as healthy. All sensors then count as healthy."""
-    if len(every) == 0 or _spoken_for(every) == _stated(every):
+    if len(every) == 0 or set(_stated(every)) <= set(health):
         return []
     text = f"{quantity}: no sensor is ever stated to be healthy, and they are used all the same"
     return [Said(int(every.order[0]), int(every.time_us[0]), text)]
@@ -99,32 +153,22 @@ def _changes(table: RecordTable, quantity: str) -> list[Said]:
     return sentences
 
 
-def _silences(every: RecordTable, table: RecordTable, quantity: str) -> list[Said]:
-    sentences = []
-    for first, last in silent(every, table):
-        start_s, end_s = every.time_us[[first, last]] / 1e6
-        text = f"{quantity}: no sensor was healthy from {between(start_s, end_s)} and none is used there"
-        sentences.append(Said(int(every.order[first]), int(every.time_us[first]), text))
-    return sentences
+def _silence(one: Silence, quantity: str) -> Said:
+    when = between(one.begin_us / 1e6, one.end_us / 1e6)
+    return Said(
+        one.order, one.end_us, f"{quantity}: no sensor was healthy from {when} and none is used there"
+    )
 
 
-def silent(every: RecordTable, table: RecordTable) -> list[tuple[int, int]]:
-    """Return stretches with records but without a healthy sensor: rows of ``every``, first and last.
-
-    Parameters
-    ----------
-    every
-        Records of all sensors.
-    table
-        Records of the sensor in use, from :func:`flown`.
-    """
+def _silent(every: RecordTable, table: RecordTable) -> list[tuple[int, int]]:
+    """Return the first and last row of each stretch of ``every`` without a healthy sensor."""
     if len(table) == len(every):
         return []
     # A stretch without a healthy sensor is longer than the interval of the records of the sensor in use.
-    usual_us = float(np.median(np.diff(table.time_us))) if len(table) > 1 else 0.0
+    usual_us = max(float(np.median(np.diff(table.time_us))), 1.0) if len(table) > 1 else 1.0
     edges = np.concatenate(([every.time_us[0] - usual_us], table.time_us, [every.time_us[-1] + usual_us]))
     found = []
-    for gap in np.flatnonzero(np.diff(edges) > 3.0 * max(usual_us, 1.0)).tolist():
+    for gap in np.flatnonzero(np.diff(edges) > 3.0 * usual_us).tolist():
         within = np.flatnonzero((every.time_us > edges[gap]) & (every.time_us < edges[gap + 1]))
         if len(within):
             found.append((int(within[0]), int(within[-1])))
@@ -142,9 +186,9 @@ def _used(table: RecordTable) -> BoolArray:
     return np.asarray(table.fields.get(_IN_USE, np.ones(len(table))) != 0)
 
 
-def _healthy(table: RecordTable, instance: IntArray) -> BoolArray:
+def _healthy(table: RecordTable, instance: IntArray, health: Collection[str]) -> BoolArray:
     good = np.ones(len(table), dtype=np.bool_)
-    for name in _spoken_for(table):
+    for name in set(_stated(table)) & set(health):
         good &= table.fields[name] != 0
     if set(_MOVING) <= table.fields.keys():
         for number in np.unique(instance):
@@ -156,12 +200,6 @@ def _healthy(table: RecordTable, instance: IntArray) -> BoolArray:
 def _stated(table: RecordTable) -> list[str]:
     """Return the fields of health in the records."""
     return [name for name in _HEALTH if name in table.fields]
-
-
-def _spoken_for(table: RecordTable) -> list[str]:
-    """Return the fields that ever state a healthy sensor. A field that never does cannot distinguish sensors
-    or times."""
-    return [name for name in _stated(table) if np.any(table.fields[name] != 0)]
 
 
 def _frozen(table: RecordTable) -> BoolArray:

@@ -18,7 +18,7 @@ from advisor.flight.maneuvers.events import ManeuverFlown
 from advisor.flight.signals.messages import Columns
 from advisor.flight.stream.stream import FlightStream
 from advisor.mavlink.logs.logs import open_log
-from advisor.mavlink.records.dataflash import read_logs
+from advisor.mavlink.records.stretches import read_stretches
 from advisor.words.problems import UnusableInputError
 from tests.mavlink.autopilot_logs import (
     FORMATS,
@@ -161,7 +161,8 @@ class TestArduPilot:
     def test_every_field_reads_as_by_pymavlink(self, tmp_path: Path) -> None:
         path = tmp_path / "flight.bin"
         path.write_bytes(dataflash_flight())
-        (tables,) = read_logs(path, FORMATS)
+        (stretch,) = read_stretches(path, FORMATS)
+        tables = stretch.tables
         counts = dict.fromkeys(tables, 0)
         with DFReader.DFReader_binary(str(path)) as log:
             while (theirs := log.recv_msg()) is not None:

@@ -1,5 +1,6 @@
 """Two logs joined into one file are two logs, however each numbers its types."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -7,8 +8,9 @@ import pytest
 
 from advisor.mavlink.logs.logs import open_log
 from advisor.mavlink.records import record_scan
-from advisor.mavlink.records.dataflash import read_logs
+from advisor.mavlink.records.dataflash import RecordTable
 from advisor.mavlink.records.record_scan import known_lengths, scan_records
+from advisor.mavlink.records.stretches import read_stretches
 
 BASE = Path(__file__).parents[2] / "cases" / "base.bin"
 FMT = 0x80
@@ -37,9 +39,14 @@ def joined(tmp_path: Path) -> Path:
     return path
 
 
+def logs(path: Path, names: Sequence[str]) -> list[dict[str, RecordTable]]:
+    """The records of each log, in one stretch."""
+    return [stretch.tables for stretch in read_stretches(path, names, length=np.inf)]
+
+
 def test_each_of_two_joined_logs_keeps_its_own_types(tmp_path: Path) -> None:
-    (alone,) = read_logs(BASE, ["ATT", "RCOU"])
-    first, second = read_logs(joined(tmp_path), ["ATT", "RCOU"])
+    (alone,) = logs(BASE, ["ATT", "RCOU"])
+    first, second = logs(joined(tmp_path), ["ATT", "RCOU"])
     for name in ("ATT", "RCOU"):
         for field, values in alone[name].fields.items():
             assert first[name].fields[field].tolist() == values.tolist()
@@ -62,9 +69,9 @@ def test_a_file_read_in_small_windows_gives_the_records_of_one_large_window(
         damaged[at] ^= 0x41
     path.write_bytes(damaged)
     names = ("ATT", "IMU", "RCOU", "PARM", "MSG", "GPS")
-    whole = list(read_logs(path, names))
+    whole = logs(path, names)
     monkeypatch.setattr(record_scan, "WINDOW_BYTES", window)
-    parts = list(read_logs(path, names))
+    parts = logs(path, names)
     assert [tables.keys() for tables in parts] == [tables.keys() for tables in whole]
     for one, other in zip(parts, whole, strict=True):
         for name, table in one.items():

@@ -3,8 +3,20 @@
 import numpy as np
 import pytest
 
-from advisor.mavlink.ardupilot.sensors import flown, said
+from advisor.mavlink.ardupilot import sensors
+from advisor.mavlink.ardupilot.sensors import Said, stated_health
 from advisor.mavlink.records.dataflash import RecordTable
+
+
+def flown(records: RecordTable) -> RecordTable:
+    """Records of the sensor in use, of a log in one stretch."""
+    return sensors.flown(records, stated_health(records))
+
+
+def said(records: RecordTable, chosen: RecordTable, quantity: str) -> list[Said]:
+    """Sentences about the sensors, of a log in one stretch."""
+    silences = sensors.silences_in(records, chosen)
+    return sensors.said(records, chosen, quantity, stated_health(records), silences)
 
 
 def table(*rows, names):

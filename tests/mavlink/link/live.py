@@ -14,6 +14,9 @@ from pathlib import Path
 from tests.mavlink.link.air import Record
 from tests.mavlink.link.builders import free_port, wait_until
 
+LONGEST_STEP_S = 0.01
+"""Wall time between two looks at the flight's clock, s."""
+
 
 class Advising:
     """One flight test as text; its files lie in a folder of its own.
@@ -36,6 +39,11 @@ class Advising:
 
     def start(self, *options: str) -> None:
         """Begin; without options on the test's own port and recording."""
+        self.launch(*options)
+        wait_until(lambda: self.answers or self.process.poll() is not None, 30.0)
+
+    def launch(self, *options: str) -> None:
+        """Begin, and wait for nothing."""
         self._starts += 1
         words = options or ("--master", f"udpin:127.0.0.1:{self.port}", "--record", str(self.recording))
         with self._file("out").open("wb") as out, self._file("err").open("wb") as err:
@@ -46,11 +54,15 @@ class Advising:
                 env=self.environment,
                 preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_DFL),
             )
-        wait_until(lambda: "record" in self.warned or self.process.poll() is not None, 30.0)
 
     def resume(self) -> None:
         """Take the flight test up."""
         self.start("--resume", str(self.recording))
+
+    @property
+    def answers(self) -> bool:
+        """Whether the newest start has said where it records."""
+        return "record" in self.warned
 
     def end(self, by: signal.Signals = signal.SIGINT) -> int:
         """Send a signal, and wait for the exit code."""
@@ -120,21 +132,33 @@ class Advising:
         return self.folder / f"{kind}-{self._starts}.txt"
 
 
-def fly(records: Sequence[Record], port: int, speed: float, meanwhile: Callable[[float], object]) -> None:
-    """Send a recorded flight at a multiple of its own speed.
+def fly(
+    records: Sequence[Record],
+    port: int,
+    speed: float | Callable[[], float],
+    meanwhile: Callable[[float], object],
+) -> None:
+    """Send a recorded flight.
 
     Parameters
     ----------
+    speed
+        Multiple of the flight's own speed, which may change. A sender that gets no processor time holds the
+        flight: nothing is sent in a burst.
     meanwhile
         Called between packets with the seconds of flight that have passed.
     """
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as end:
-        began_s = time.monotonic()
+        flown_s, before_s = 0.0, time.monotonic()
         for record in records:
             due_s = (record.stamp_us - records[0].stamp_us) / 1e6
-            while (ahead_s := began_s + due_s / speed - time.monotonic()) > 0.0:
-                meanwhile(due_s)
-                time.sleep(min(ahead_s, 0.01))
+            while flown_s < due_s:
+                meanwhile(flown_s)
+                pace = speed() if callable(speed) else speed
+                time.sleep(min((due_s - flown_s) / pace, LONGEST_STEP_S))
+                now_s = time.monotonic()
+                flown_s += pace * min(now_s - before_s, 2.0 * LONGEST_STEP_S)
+                before_s = now_s
             end.sendto(record.frame, ("127.0.0.1", port))
 
 

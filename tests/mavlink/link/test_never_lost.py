@@ -23,6 +23,11 @@ pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="processes are l
 FLIGHT = records_of(SHIPPED / "bundled-demo.tlog")
 VERDICT = re.compile(r"^ *\d+ +\d+:\d\d\.\d .*(ACCEPTED|REPEAT)")
 SPEED = 4.0
+OVERDUE = 0.05
+"""Speed at which the flight goes on while a strike is overdue. The elevator's outputs then come 2.5 times a
+second, so that the end of a gap is heard within the two seconds that the advisor takes it for its own."""
+LAST_VERDICT_S = 300.0
+"""Longest wait for the last verdict, s. A new estimator first catches up with the whole recording."""
 
 
 @pytest.fixture
@@ -56,6 +61,9 @@ def survives(
 ) -> None:
     """Fly while each victim in turn is struck, a random time after the one before is replaced.
 
+    The flight goes on while a victim is replaced. It slows down when the next strike is due before that, so
+    that every strike falls into the flight however busy the machine is.
+
     Parameters
     ----------
     hang_s
@@ -65,10 +73,14 @@ def survives(
     waiting = list(rng.permutation(victims))
     pause_s = (flight[-1].stamp_us - flight[0].stamp_us) / 1e6 / len(victims) / 2.0
     next_s = [rng.uniform(0.0, 2.0 * pause_s)]
-    hangs_until_s = [0.0]
+    flown_s, hangs_until_s = [0.0], [0.0]
+
+    def is_due() -> bool:
+        return bool(waiting) and flown_s[0] >= next_s[0] and time.monotonic() >= hangs_until_s[0]
 
     def strike(now_s: float) -> None:
-        if not waiting or now_s < next_s[0] or time.monotonic() < hangs_until_s[0] or not advising.whole:
+        flown_s[0] = now_s
+        if not is_due() or not (advising.whole and advising.answers):
             return
         next_s[0] = now_s + rng.uniform(0.0, pause_s)
         victim = waiting.pop()
@@ -80,14 +92,14 @@ def survives(
             stand_still(pid, seconds)
         elif victim == "screen":
             advising.kill()
-            advising.resume()
+            advising.launch("--resume", str(advising.recording))
         else:
             kill(pid)
 
     advising.start()
-    fly(flight, advising.port, speed, strike)
-    wait_until(lambda: len(verdicts(advising.said)) >= maneuvers, 60.0)
+    fly(flight, advising.port, lambda: OVERDUE if is_due() else speed, strike)
     assert not waiting
+    wait_until(lambda: len(verdicts(advising.said)) >= maneuvers, LAST_VERDICT_S)
     assert advising.end() == 130
 
 
@@ -105,7 +117,7 @@ def test_each_process_may_die_once_and_no_verdict_is_missed(advising: Advising):
 
 
 @pytest.mark.study
-@pytest.mark.timeout(600)
+@pytest.mark.timeout(1800)
 def test_fifty_deaths_at_random_moments_change_no_verdict(advising: Advising):
     survives(advising, FLIGHT, 7, ["narrator"] * 20 + ["screen"] * 20 + ["keeper"] * 10, 1.0)
     length_s = (FLIGHT[-1].stamp_us - FLIGHT[0].stamp_us) / 1e6
@@ -115,7 +127,7 @@ def test_fifty_deaths_at_random_moments_change_no_verdict(advising: Advising):
 
 
 @pytest.mark.study
-@pytest.mark.timeout(1200)
+@pytest.mark.timeout(2400)
 def test_fifty_hangs_at_random_moments_change_no_verdict(advising: Advising):
     """Hangs of half a second to 25 s: the longest are ended, the others end by themselves."""
     speed = 0.2

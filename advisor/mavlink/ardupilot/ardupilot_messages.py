@@ -1,0 +1,250 @@
+"""Records of an ArduPilot log as the messages that its telemetry would have carried."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from advisor.flight.signals.messages import Columns, IntArray
+from advisor.flight.stream.identity import READER
+from advisor.mavlink.ardupilot.ardupilot_air import air
+from advisor.mavlink.ardupilot.ardupilot_vehicle import (
+    heartbeats,
+    in_todays_parameters,
+    parameter_fields,
+    system_of,
+    version_fields,
+)
+from advisor.mavlink.ardupilot.body_rates import RATE_RECORDS, body_rates, calmed
+from advisor.mavlink.ardupilot.former_records import Clocked
+from advisor.mavlink.ardupilot.log_health import health
+from advisor.mavlink.ardupilot.sensors import Said, Silence, flown, said, silences_in, stated_health
+from advisor.mavlink.ardupilot.system_identification import lost_texts, sweeps
+from advisor.mavlink.records.dataflash import RecordTable, gps_time_base_s, seconds
+from advisor.mavlink.records.equivalent import air_data, message, nearest, side_by_side
+
+_SENSORS = {"ARSP": "Air speed", "IMU": "Angular rates and specific force"}
+"""Record, of which a vehicle may carry several, to the quantities that the record holds."""
+_NOT_LOGGED = 255
+"""MAV_SEVERITY of a text of MSG, which does not keep the severity (0 to 7)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Known:
+    """Facts of a whole log that its earlier stretches have told; None before the first."""
+
+    epoch_s: int | None = None
+    """Seconds since 1970 at TimeUS 0 of a log that counted from 1970, else 0."""
+    base_s: float | None = None
+    """Time of boot, seconds since 1970; 0 where the log did not state it."""
+    health: Mapping[str, set[str]] = field(default_factory=dict)
+    """Record of a sensor to the fields that have stated the sensor as healthy."""
+    silences: Mapping[str, list[Silence]] = field(default_factory=dict)
+    """Record of a sensor to the times without a healthy one in the newest stretch."""
+
+
+class Translation:
+    """Translates the records of one stretch of a log.
+
+    Parameters
+    ----------
+    read
+        Records of the stretch.
+    known
+        What the stretches before have told.
+    """
+
+    def __init__(self, read: Clocked, known: Known) -> None:
+        self._tables = dict(read.tables)
+        self._said: list[Said] = []
+        if read.epoch_s:
+            self._said.append(Said(0, 0, "Stamps count from 1970: times are given since the first record"))
+        healthy: dict[str, set[str]] = dict(known.health)
+        silences: dict[str, list[Silence]] = {}
+        for name, quantity in _SENSORS.items():
+            if name in self._tables:
+                every = self._tables[name]
+                healthy[name] = stated_health(every) | healthy.get(name, set())
+                self._tables[name] = flown(every, healthy[name])
+                silences[name] = silences_in(every, self._tables[name], known.silences.get(name, []))
+                self._said += said(every, self._tables[name], quantity, healthy[name], silences[name])
+        self._tables = {name: table for name, table in self._tables.items() if len(table)}
+        if "PARM" in self._tables:
+            self._tables["PARM"] = in_todays_parameters(self._tables["PARM"])
+        self._said += [*health(self._tables), *sweeps(self._tables)]
+        first_s = float(read.epoch_s) or gps_time_base_s(self._tables.get("GPS"))
+        self._base_s = first_s if known.base_s is None else known.base_s
+        self.known = Known(read.epoch_s, self._base_s, healthy, silences)
+        """What this stretch and those before have told."""
+        self._system = system_of(self._tables)
+
+    def columns(self) -> Iterator[Columns]:
+        """Yield the messages of each type. Records that no later message needs are dropped on the way."""
+        order, time_us, fields = heartbeats(self._tables)
+        yield self._made("HEARTBEAT", order, time_us, fields)
+        yield from self._attitude()
+        yield from self._highres_imu()
+        self._drop("ATT", "IMU", "ACC", *RATE_RECORDS)
+        translations = {
+            "AOA": self._aoa_ssa,
+            "POS": self._global_position_int,
+            "RCIN": self._rc_channels,
+        }
+        for name, translate in translations.items():
+            if name in self._tables:
+                yield translate(self._tables.pop(name))
+        if "PARM" in self._tables:
+            yield self._message("PARAM_VALUE", self._tables["PARM"], parameter_fields(self._tables["PARM"]))
+        if "VER" in self._tables:
+            yield self._message("AUTOPILOT_VERSION", self._tables["VER"], version_fields(self._tables["VER"]))
+        if "BARO" in self._tables and "Press" in self._tables["BARO"].fields:
+            yield self._scaled_pressure(self._tables["BARO"].first_instance())
+        yield from self._servo_outputs()
+        self._drop("RCOU", "RCO2", "RCO3")
+        yield from self._vfr_hud()
+        blown = next((self._tables[name] for name in ("XKF2", "NKF2") if name in self._tables), None)
+        if blown is not None:
+            yield self._wind(blown.first_instance())
+        yield self._statustext()
+
+    def _drop(self, *names: str) -> None:
+        for name in names:
+            self._tables.pop(name, None)
+
+    def _message(
+        self, name: str, table: RecordTable, fields: dict[str, ArrayLike], place: int = 0
+    ) -> Columns:
+        """Return one message for each row of a record. ``place`` keeps several messages of one row in
+        order."""
+        return self._made(name, table.order + place, table.time_us, fields)
+
+    def _made(self, name: str, order: IntArray, time_us: IntArray, fields: dict[str, ArrayLike]) -> Columns:
+        arrival_s = self._base_s + seconds(time_us)
+        return message(name, self._system, order, arrival_s, fields, "dataflash")
+
+    def _attitude(self) -> Iterator[Columns]:
+        """Yield angles at the stamps of ATT, rates at those of their own records."""
+        blocks: list[dict[str, NDArray[Any]]] = []
+        if "ATT" in self._tables:
+            att = self._tables["ATT"]
+            angles = {axis.lower(): np.radians(att.fields[axis]) for axis in ("Roll", "Pitch", "Yaw")}
+            blocks.append({"order": att.order, "time_us": att.time_us, **angles})
+        rates = body_rates(self._tables)
+        if rates is not None:
+            turned = dict(zip(("rollspeed", "pitchspeed", "yawspeed"), rates.values, strict=True))
+            blocks.append({"order": rates.order, "time_us": rates.time_us, **turned})
+            if rates.said:
+                text = f"The log holds no IMU records: the angular rates are {rates.said}"
+                self._said.append(Said(int(rates.order[0]), int(rates.time_us[0]), text))
+        if blocks:
+            fields: dict[str, Any] = side_by_side(*blocks)
+            order, time_us = fields.pop("order"), fields.pop("time_us")
+            yield self._made("ATTITUDE", order, time_us, fields | {"time_boot_ms": _milliseconds(time_us)})
+
+    def _highres_imu(self) -> Iterator[Columns]:
+        if "IMU" in self._tables:
+            imu = self._tables["IMU"]
+        elif "ACC" in self._tables:
+            imu = calmed(self._tables["ACC"])
+        else:
+            return
+        fields: dict[str, ArrayLike] = {"time_usec": imu.time_us}
+        for axis in "XYZ":
+            fields[f"{axis.lower()}acc"] = imu.fields[f"Acc{axis}"]
+            if f"Gyr{axis}" in imu.fields:
+                fields[f"{axis.lower()}gyro"] = imu.fields[f"Gyr{axis}"]
+        yield self._message("HIGHRES_IMU", imu, fields, place=1)
+
+    def _aoa_ssa(self, aoa: RecordTable) -> Columns:
+        angles = {"AOA": aoa.fields["AOA"], "SSA": aoa.fields["SSA"]}
+        return self._message("AOA_SSA", aoa, {"time_usec": aoa.time_us, **angles})
+
+    def _scaled_pressure(self, baro: RecordTable) -> Columns:
+        hectopascal = 0.01 * baro.fields["Press"].astype(np.float64)
+        fields: dict[str, ArrayLike] = {"time_boot_ms": _milliseconds(baro.time_us), "press_abs": hectopascal}
+        return self._message("SCALED_PRESSURE", baro, fields)
+
+    def _servo_outputs(self) -> Iterator[Columns]:
+        """Yield SERVO_OUTPUT_RAW, one for each bank of 16. RCOU has outputs 1 to 14, RCO2 15 to 18, RCO3 19
+        to 32."""
+        pulses: dict[int, NDArray[Any]] = {}
+        if "RCOU" not in self._tables:
+            return
+        rcou = self._tables["RCOU"]
+        for name in ("RCOU", "RCO2", "RCO3"):
+            if name in self._tables:
+                table = self._tables[name]
+                for field, values in table.fields.items():
+                    if field[0] == "C" and field[1:].isdigit():
+                        # The autopilot writes the output records of one loop one after the other.
+                        at = nearest(rcou.time_us, table.time_us)
+                        pulses[int(field[1:])] = values if table is rcou else values[at]
+        banks = []
+        for port in range(2):
+            outputs = {
+                f"servo{number - 16 * port}_raw": values
+                for number, values in pulses.items()
+                if 16 * port < number <= 16 * port + 16
+            }
+            if outputs:
+                fields: dict[str, ArrayLike] = {"time_usec": rcou.time_us, "port": port, **outputs}
+                banks.append(self._message("SERVO_OUTPUT_RAW", rcou, fields, place=port))
+        yield from banks
+
+    def _rc_channels(self, rcin: RecordTable) -> Columns:
+        pulses: dict[str, ArrayLike] = {
+            f"chan{field[1:]}_raw": values
+            for field, values in rcin.fields.items()
+            if field[0] == "C" and field[1:].isdigit()
+        }
+        return self._message("RC_CHANNELS", rcin, {"time_boot_ms": _milliseconds(rcin.time_us), **pulses})
+
+    def _vfr_hud(self) -> Iterator[Columns]:
+        """Yield the air speed, climb rate and throttle, each at the stamps of its own record."""
+        found = air(self._tables, bool(self.known.silences.get("ARSP")))
+        self._said += found.said
+        if found.records:
+            fields: dict[str, ArrayLike] = dict(air_data(*found.records))
+            order = np.asarray(fields.pop("order"))
+            yield self._made("VFR_HUD", order, np.asarray(fields["time_usec"]), fields)
+
+    def _wind(self, estimated: RecordTable) -> Columns:
+        """Return WIND: the speed of the estimator's wind, and the direction from which it blows."""
+        north, east = (estimated.fields[name].astype(np.float64) for name in ("VWN", "VWE"))
+        fields: dict[str, ArrayLike] = {
+            "time_usec": estimated.time_us,
+            "speed": np.hypot(north, east),
+            "direction": np.degrees(np.arctan2(-east, -north)),
+        }
+        return self._message("WIND", estimated, fields)
+
+    def _global_position_int(self, pos: RecordTable) -> Columns:
+        fields: dict[str, ArrayLike] = {
+            "time_boot_ms": _milliseconds(pos.time_us),
+            "lat": np.round(pos.fields["Lat"] * 1e7).astype(np.int64),
+            "lon": np.round(pos.fields["Lng"] * 1e7).astype(np.int64),
+            "alt": np.asarray(pos.fields["Alt"] * 1e3, dtype=np.float64),
+            "relative_alt": np.asarray(pos.fields["RelHomeAlt"] * 1e3, dtype=np.float64),
+        }
+        return self._message("GLOBAL_POSITION_INT", pos, fields)
+
+    def _statustext(self) -> Columns:
+        """Return the vehicle's own texts, and sentences on choices made in reading the log."""
+        msg = self._tables.get("MSG")
+        own = [] if msg is None else zip(msg.order, msg.time_us, msg.fields["Message"].tolist(), strict=True)
+        # A record's own messages use its order and the next one.
+        read = [
+            (one.order + 2 + k, one.time_us, READER + one.text.encode()) for k, one in enumerate(self._said)
+        ]
+        texts = np.array(
+            [*own, *lost_texts(self._tables), *read],
+            dtype=[("order", "i8"), ("time_us", "i8"), ("text", "S256")],
+        )
+        fields: dict[str, ArrayLike] = {"severity": _NOT_LOGGED, "text": texts["text"]}
+        return self._made("STATUSTEXT", texts["order"], texts["time_us"], fields)
+
+
+def _milliseconds(time_us: NDArray[np.int64]) -> NDArray[np.int64]:
+    return (time_us + 500) // 1000
