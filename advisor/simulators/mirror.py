@@ -26,6 +26,7 @@ from advisor.simulators.around import skewed
 from advisor.simulators.flying import AsGiven, Flying, without_difference
 from advisor.simulators.inputs import on_grid
 from advisor.simulators.protocol import Replay
+from advisor.simulators.rate_filter import cause_of, lateness, unfiltered
 from advisor.simulators.surrogate import trimmed_at
 from advisor.words.problems import UnusableInputError
 
@@ -50,8 +51,8 @@ class Mirrored:
     def said(self, diagnosis: Diagnosis) -> Diagnosis:
         """Return the diagnosis with the effects as its causes."""
         removed = 100.0 * (1.0 - self.after / self.before)
-        sentence = f"{what(self.causes[0])}; without it the gap is {removed:.0f} % less."
         first = self.causes[0]
+        sentence = f"{_said(first)}; without it the gap is {removed:.0f} % less."
         where = replace(diagnosis.where, block=first.block, share=float(np.clip(removed / 100.0, 0.0, 1.0)))
         simulated = diagnosis.in_simulator
         if simulated is not None:
@@ -92,8 +93,12 @@ def mirrored(
         own = examine(_as_flights(maneuvers, flying, replays), unknown).diagnosis
     except UnusableInputError:
         return None
+    late = None
+    if own.verdict == "unknown" and own.where.block == "pitch_rate_sensor":
+        late, replays = lateness(replays), [unfiltered(replay) for replay in replays]
+        own = examine(_as_flights(maneuvers, flying, replays), unknown).diagnosis
     causes = tuple(c for c in own.causes if c.present and c.block in _BLOCKS)
-    if not causes:
+    if not causes and late is None:
         return None
     effects = {c.effect: own.effects[c.effect] for c in causes if c.effect in own.effects}
     model = {name: own.model[name].value for name in DERIVATIVES}
@@ -108,7 +113,8 @@ def mirrored(
     rival = gap.after if whole.diagnosis.verdict == "effect" else gap.before
     if found.gap.before > _CLEARLY * rival:
         return None
-    return Mirrored(tuple(map(_negative, causes)), gap.before, found.gap.before)
+    filtered = () if late is None else (cause_of(late, found),)
+    return Mirrored((*filtered, *map(_negative, causes)), gap.before, found.gap.before)
 
 
 def _may_be(diagnosis: Diagnosis) -> bool:
@@ -170,6 +176,14 @@ def _with(known: Probabilities | None, first: Cause) -> Probabilities | None:
     effects[first.effect] = effects.get(first.effect, 0.0) + first.probability
     unknown = {block: rest * p for block, p in known.unknown.items()}
     return Probabilities(rest * known.none, rest * known.parameters, unknown, effects)
+
+
+def _said(cause: Cause) -> str:
+    """Return the statement about an effect of the simulator with a negative size."""
+    if cause.block == "input":
+        return what(cause)
+    read = what(_negative(cause))
+    return f"In the simulator alone {read[0].lower()}{read[1:]}"
 
 
 def _negative(cause: Cause) -> Cause:

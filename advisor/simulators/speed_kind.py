@@ -18,7 +18,7 @@ from advisor.gap.candidates.nuisances import TRUE_AIR_SPEED
 from advisor.gap.records.airspeed import measures_speed
 from advisor.gap.records.prepare import prepare
 from advisor.gap.records.unmeasured_alpha import alpha_by_motion
-from advisor.gap.search.baseline import fit_baseline
+from advisor.gap.search.baseline import fit_unfiltered
 from advisor.gap.uncatalogued.airspeed_scale import airspeed_scale_of
 
 _ODDS = 10.0
@@ -48,7 +48,8 @@ def by_the_motion(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> SpeedKin
     flights = prepare(alpha_by_motion(maneuvers, unmodelled), unmodelled)
     if not {"alpha", "a_z"} <= set(flights.channels):
         return unchanged
-    shown = airspeed_scale_of(*fit_baseline(flights, unmodelled))
+    # The curvature of the path depends neither on the reading of the command nor on a filter of the noise.
+    shown = airspeed_scale_of(*fit_unfiltered(flights, unmodelled))
     if shown is None or not _is_likelier(shown.scale, shown.std, factor - 1.0):
         return unchanged
     kind = "a true" if factor < 1.0 else "an indicated"

@@ -12,6 +12,7 @@ from advisor.gap.fitting.fit import fit
 from advisor.gap.fitting.holdout import held_out, hold_out
 from advisor.gap.fitting.step import bounds_of
 from advisor.gap.fitting.uncertainty import effective_samples
+from advisor.gap.fitting.whitening import Filters
 from advisor.gap.records.prepare import prepare
 from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.search.score import addition, log_likelihood_gained, support_of
@@ -54,6 +55,16 @@ def test_an_effect_that_helps_one_manoeuvre_and_harms_another_is_not(late):
 def test_an_effect_that_harms_manoeuvres_kept_out_has_less_than_no_support(late):
     problem, _ = late
     assert support_of(problem, leaving(problem, 1.0, 1.0, 1.0), leaving(problem, 2.0, 2.1, 2.2)) < -1.0
+
+
+def test_a_gust_in_a_manoeuvre_kept_out_takes_no_support_from_an_effect(late):
+    problem, _ = late
+    filtered = replace(problem, whitening=Filters((), (), ()))
+    louder = leaving(problem, 3.0, 3.0, 9.0).residuals
+    quieter = [3.0 * np.ones(len(r)) for r in louder], [np.ones(len(r)) for r in louder]
+    before = held_out(problem, leaving(problem, 3.0, 3.0, 3.0).residuals, quieter[0])
+    after = held_out(problem, louder, quieter[1])
+    assert support_of(filtered, before, after) > 10.0
 
 
 @pytest.mark.parametrize(("support", "named"), [(0.9, False), (1.1, True)])

@@ -5,6 +5,9 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS
 from advisor.gap.diagnose import diagnose
+from advisor.gap.fitting.whitening import Filters
+from advisor.gap.records.prepare import prepare
+from advisor.gap.search.baseline import fit_baseline
 from advisor.words.problems import UnusableInputError
 from tests.gap.generator import Setup, fly
 
@@ -45,3 +48,9 @@ def test_two_manoeuvres_tell_the_cause_and_how_little_they_are():
 def test_without_a_manoeuvre_nothing_is_said():
     with pytest.raises(UnusableInputError, match="No usable manoeuvre"):
         diagnose([], Aircraft())
+
+
+def test_the_air_of_two_short_records_is_no_white_noise():
+    flights = prepare(fly(Setup(maneuvers=2, gust_std=0.5, seed=5), duration=5.4), Aircraft())
+    problem, _ = fit_baseline(flights, Aircraft())
+    assert isinstance(problem.whitening, Filters)

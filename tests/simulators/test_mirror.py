@@ -10,7 +10,9 @@ from advisor.gap.result import Cause, Value
 from advisor.gap.verdict.statements import what
 from advisor.simulators.around import lagging
 from advisor.simulators.compare import compare
-from advisor.simulators.mirror import _negative
+from advisor.simulators.mirror import _negative, _said
+from advisor.simulators.protocol import Condition, Inputs
+from advisor.simulators.rate_filter import lateness
 from tests.simulators.nonlinear import STEP_S, Nonlinear, flown
 
 
@@ -20,6 +22,14 @@ class Filtered(Nonlinear):
     def replay(self, condition, inputs, increments=None):
         flown = super().replay(condition, inputs, increments)
         return replace(flown, alpha=lagging(flown.alpha, STEP_S, 0.12))
+
+
+class FilteredRate(Nonlinear):
+    """Hands its pitch rate out behind a lag."""
+
+    def replay(self, condition, inputs, increments=None):
+        flown = super().replay(condition, inputs, increments)
+        return replace(flown, q=lagging(flown.q, STEP_S, 0.12))
 
 
 class Dull(Nonlinear):
@@ -46,6 +56,27 @@ def test_a_cause_of_the_simulator_is_said_as_what_it_has_too_much_of():
     assert what(_negative(play)).startswith("The simulator's elevator has 0.34 deg too much play")
 
 
+def test_an_instrument_of_the_simulator_is_said_to_be_the_simulators():
+    late = Cause("pitch_rate_skew", "timing", 0.9, {"skew_s": Value(-0.12, 1e-3)}, (), "", 0.0, True)
+    assert _said(late) == "In the simulator alone the pitch rate is stamped 120 ms too late"
+
+
+@pytest.mark.parametrize("banked", [False, True], ids=["level", "banked"])
+@pytest.mark.parametrize("lag_s", [0.0, 0.02, 0.12])
+def test_the_attitude_shows_the_lag_of_a_filtered_pitch_rate(lag_s, banked):
+    t = 0.005 * (np.arange(1200) + 0.5)
+    steps = 0.03 * (((t > 0.5) & (t < 1.2)) * 1.0 - ((t > 1.2) & (t < 1.9)) * 1.0)
+    flown = Nonlinear().replay(Condition(26.0, 300.0), Inputs(t, steps))
+    q = flown.q
+    if banked:
+        bank, turn = np.full(len(q), 0.4), 0.2
+        r = turn * np.cos(bank) - flown.q * np.sin(bank)
+        q = turn * np.sin(bank) + flown.q * np.cos(bank)
+        flown = replace(flown, bank=bank, r=r)
+    late = lateness([replace(flown, q=lagging(q, STEP_S, lag_s))])
+    assert late.value == pytest.approx(lag_s, abs=0.003)
+
+
 @pytest.mark.study
 @pytest.mark.parametrize(
     ("simulator", "effect"),
@@ -53,12 +84,13 @@ def test_a_cause_of_the_simulator_is_said_as_what_it_has_too_much_of():
         (Nonlinear(rate_rad_s=0.25), "actuator_rate_limit"),
         (Nonlinear(half_play_rad=0.009), "actuator_backlash"),
         (Filtered(), "alpha_lag"),
+        (FilteredRate(), "pitch_rate_skew"),
         (Nonlinear(lag_s=0.1), "actuator_lag"),
         (Nonlinear(delay_s=0.06), "transport_delay"),
         (Dull(), "actuator_deadband"),
         (Late(), "accelerometer_skew"),
     ],
-    ids=["rate limit", "play", "filter", "lag", "delay", "dead band", "late accelerometer"],
+    ids=["rate limit", "play", "filter", "filtered rate", "lag", "delay", "dead band", "late accelerometer"],
 )
 def test_an_effect_that_only_the_simulator_has_is_named_first_and_with_its_size(simulator, effect):
     found = compare(flown(maneuvers=5), simulator, Aircraft()).diagnosis

@@ -26,8 +26,6 @@ from advisor.oem.turbulence import Rows, cost_of, find_turbulence, spread_of
 
 _LEAST_SAMPLES = 50
 """Least number of a channel's samples in quiet stretches for an estimate of its noise."""
-_LEAST_QUIET_S = 4.0
-"""Least length of all quiet stretches together for a model of slow air, s."""
 _LONE = 8.0
 """Ratio of powers above which a gust may be the cause: a stretch over the median of all, or a manoeuvre over
 the quietest quarter."""
@@ -71,7 +69,7 @@ def noise_in_quiet(problem: EffectProblem, fitted: EffectFit) -> AirModel | None
         return None
     parts = [part for i in range(len(problem.flights)) for part in _quiet_parts(problem, fitted, i)]
     rows = _without_offsets(parts)
-    if sum(r.t[-1] - r.t[0] for r in rows) < _LEAST_QUIET_S:
+    if not rows:
         return None
     white = instrument_noise(problem)
     system = system_of(problem, fitted)

@@ -129,8 +129,8 @@ def _finite_cost(fitted: EffectFit) -> float:
     return fitted.cost if np.isfinite(fitted.cost) else np.inf
 
 
-def fit_baseline(flights: PreparedManeuvers, aircraft: Aircraft) -> tuple[EffectProblem, EffectFit]:
-    """Return the baseline model with the noise of this flight, and with the command held or linear."""
+def fit_unfiltered(flights: PreparedManeuvers, aircraft: Aircraft) -> tuple[EffectProblem, EffectFit]:
+    """Return the baseline model with white noise, and with the command linear between its stamps."""
     instruments = stated_floor(flights)
     problem = EffectProblem(
         flights,
@@ -140,7 +140,12 @@ def fit_baseline(flights: PreparedManeuvers, aircraft: Aircraft) -> tuple[Effect
         instruments=instruments,
         smallest_noise=0.5 * instruments,
     )
-    fitted = first_fit(problem, aircraft)
+    return problem, first_fit(problem, aircraft)
+
+
+def fit_baseline(flights: PreparedManeuvers, aircraft: Aircraft) -> tuple[EffectProblem, EffectFit]:
+    """Return the baseline model with the noise of this flight, and with the command held or linear."""
+    problem, fitted = fit_unfiltered(flights, aircraft)
     baseline, seen = fitted, quietest(problem, fitted)
     problem, fitted = read_command(*_filtered(problem, fitted, seen, first_look=True))
     fitted = fit_telemetry(problem, fitted, fitted.noise)

@@ -197,10 +197,14 @@ def support_of(problem: EffectProblem, before: HeldOut, after: HeldOut) -> float
     """Return by how many standard errors over manoeuvres the second model lowers the held-out gap of the
     first.
 
+    The gap is that of the innovations, as in the likelihood: air that no model predicts decides on no effect.
     Only channels that identify a cause count (``Flights.telling``). 0 for a single manoeuvre.
     """
-    noise = np.ones(len(problem.channels)) if problem.instruments is None else problem.instruments
-    removed = (before.by_maneuver - after.by_maneuver) / noise**2
+    noise = np.ones(len(problem.channels))
+    if problem.instruments is not None and not problem.knows_the_noise:
+        noise = problem.instruments
+    was, now = (mean_squares(problem, held.innovations) for held in (before, after))
+    removed = (was - now) / noise**2
     taken = np.mean(removed[:, problem.flights.telling], axis=1)
     n = len(taken)
     if n < 2:

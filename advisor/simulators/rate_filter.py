@@ -1,0 +1,63 @@
+"""A filter of the pitch rate that only the simulator has, shown by the simulator's own attitude.
+
+A replay has no noise. So θ̇ = q·cos φ − r·sin φ holds to the step of the simulation, whatever the
+aerodynamics. A pitch rate that departs from the attitude's rate is late: q + τ·q̇ is the rate behind a
+first-order filter, and nearly that before a delay of τ.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from advisor.aircraft.standard_gravity import GRAVITY_M_S2
+from advisor.flight.signals.messages import FloatArray
+from advisor.gap.effects.pitch_rate_skew import EFFECT
+from advisor.gap.result import Cause, Diagnosis, Value
+from advisor.simulators.protocol import Replay
+
+
+def unfiltered(replay: Replay) -> Replay:
+    """Return the replay with the pitch rate of its own attitude."""
+    rate = np.gradient(replay.theta, replay.t)
+    if replay.bank is None:
+        return replace(replay, q=rate)
+    across, up = np.sin(replay.bank), np.cos(replay.bank)
+    if replay.r is not None:
+        return replace(replay, q=(rate + replay.r * across) / up)
+    turn = GRAVITY_M_S2 / replay.airspeed_m_s * across / up
+    return replace(replay, q=rate * up + turn * across)
+
+
+def lateness(replays: Sequence[Replay]) -> Value:
+    """Return the lag of the replays' pitch rate behind their attitude's rate, s, by least squares."""
+    missing, rate = (np.concatenate(series) for series in zip(*map(_departure, replays), strict=True))
+    information = max(float(rate @ rate), 1e-300)
+    lag_s = float(rate @ missing) / information
+    rest = missing - lag_s * rate
+    return Value(lag_s, float(np.sqrt(np.mean(rest**2) / information)))
+
+
+def cause_of(late: Value, without: Diagnosis) -> Cause:
+    """Return the lateness as a cause, with the size that the aircraft has less of.
+
+    Parameters
+    ----------
+    late
+        Lag of the simulator's pitch rate, s.
+    without
+        Diagnosis of the flight against the simulator without that lag. The probability of the cause is that
+        of nothing else but numbers.
+    """
+    told = without.probabilities
+    likeliness = 0.0 if told is None else told.none + told.parameters
+    assert EFFECT.imitated_by is not None
+    looks, way = EFFECT.imitated_by
+    size = {"skew_s": Value(-late.value, late.std)}
+    return Cause(EFFECT.name, EFFECT.block, likeliness, size, (looks,), way, without.gap.before, present=True)
+
+
+def _departure(replay: Replay) -> tuple[FloatArray, FloatArray]:
+    """Return the attitude's rate minus the pitch rate, rad/s, and the derivative of the pitch rate, rad/s²,
+    both of shape (m,)."""
+    return unfiltered(replay).q - replay.q, np.gradient(replay.q, replay.t)
