@@ -1,4 +1,4 @@
-"""What a stream knows of its vehicle: outputs, channels, problems, contradictions of the instruments."""
+"""The state of a stream: the vehicle's outputs, channels and problems, and contradicted instruments."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
