@@ -46,8 +46,8 @@ class PageProcess(AppService):
     async def end(self) -> None:
         """End the process at once, because it holds nothing that must be closed in order.
 
-        The page and the server may both call this, at the same time: the first call ends the process,
-        and every call returns when it has ended.
+        The page and the server may both call this at the same time. The first call ends the process.
+        Every call returns when the process has ended.
         """
         async with self._ending:
             process = self._process
