@@ -78,7 +78,7 @@ class Faults:
     def problems(self, period_s: float) -> list[str]:
         """Return every mistake with its path. ``period_s`` is that of the autopilot's loop, s."""
         found = [
-            f"faults.units.{channel}: '{unit}' is no wrong unit known here, choose from "
+            f"faults.units.{channel}: '{unit}' is not among the wrong units of this channel: "
             f"{', '.join(UNITS.get(channel, ())) or 'none'}"
             for channel, unit in self.units.items()
             if unit not in UNITS.get(channel, ())

@@ -71,7 +71,7 @@ def read_recording(path: Path, output: int | None = None) -> Recording:
         raise ScenarioError([f"{path}: cannot be read ({error.strerror})"]) from error
     commands = [(host_s, message) for host_s, message in found["SERVO_OUTPUT_RAW"] if message.port == 0]
     if len(commands) < 2:
-        raise ScenarioError([f"{path}: no SERVO_OUTPUT_RAW in this log, nothing to fly again"])
+        raise ScenarioError([f"{path}: this log has no SERVO_OUTPUT_RAW, so no command can be flown again"])
     parameters = {message.param_id: message.param_value for _, message in found["PARAM_VALUE"]}
     output = output or _output(parameters, ELEVATOR_FUNCTION, 2)
     throttle = _output(parameters, THROTTLE_FUNCTION, 3)

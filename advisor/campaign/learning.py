@@ -97,7 +97,7 @@ def told(aircraft: Aircraft) -> str:
         return ""
     std = float(found.std[found.names.index("servo_lag_s")])
     if stated is not None and abs(lag_s - stated) <= CONTRADICTS * std:
-        return f"the manoeuvres together tell a lag of the servo of {lag_s:.3f} s, as elevator.lag_s says"
+        return f"all manoeuvres together give a servo lag of {lag_s:.3f} s, as elevator.lag_s says"
     against = "" if stated is None else f", against {stated:.3f} s in elevator.lag_s,"
     return (
         f"the servo's lag is {lag_s:.3f} s{against} by all manoeuvres together; every estimate uses it now;"

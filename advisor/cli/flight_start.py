@@ -133,9 +133,7 @@ def _left_alone(start: Start) -> RunningLink | None:
             mine = running
         elif running.master == start.campaign.master:
             end(running)
-            said = (
-                f"an advisor that ended without being asked to had left {running.master} open; it is closed"
-            )
+            said = f"{running.master} was still open after an advisor that crashed; it is closed"
             again = f"; --resume {running.recording} continues its flight test" if running.recording else ""
             click.echo(said + again, err=True)
     return mine

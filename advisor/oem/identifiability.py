@@ -21,6 +21,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.model.short_period import ShortPeriod
 from advisor.oem.correlation import HIGH_CORRELATION, correlation_matrix
 from advisor.oem.solution import Solution
+from advisor.words.quantiles import NORMAL_95
 
 LARGEST_ERROR = 0.5
 """Largest corrected standard deviation over the natural size of the parameter."""
@@ -79,8 +80,8 @@ def not_identifiable(solution: Solution, lagged: FloatArray | None) -> dict[str,
         j = PARAMETERS.index(name)
         if name not in reasons and not std[j] <= LARGEST_ERROR * size:
             reasons[name] = (
-                f"not identifiable from this input: its error ±{std[j]:.3g} is as large as"
-                f" such a derivative can be here ({size:.3g})"
+                f"not identifiable from this input: its error ±{NORMAL_95 * std[j]:.3g} is as large"
+                f" as such a derivative can be here ({size:.3g})"
             )
     if lagged is not None:
         moment = {name: PARAMETERS.index(name) for name in ("M_alpha", "M_delta_e", "M_q")}

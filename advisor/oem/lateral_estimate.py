@@ -31,6 +31,7 @@ from advisor.oem.lateral_instruments import Nuisance, begun, extra_of, moved_by,
 from advisor.oem.lateral_problem import LateralAssembly, LateralProblem, assemble_lateral
 from advisor.oem.lateral_start import lateral_start
 from advisor.oem.solution import contributions_of, noise_floor, refused
+from advisor.words.quantiles import NORMAL_95
 
 SIDE_FORCE_STD = 0.05
 """Standard deviation of Y_p and Y_r about zero, 1. C_Yp and C_Yr of 0.4 give 0.01 for a jet of 15 t and 0.04
@@ -245,8 +246,8 @@ def lateral_not_identifiable(solution: LateralSolution) -> dict[str, str]:
         error = float(std[LATERAL.names.reported.index(name)])
         if name not in reasons and not error <= _largest_error(name) * size:
             reasons[name] = (
-                f"its error ±{error:.2g} is too large for the size of such a derivative here"
-                f" ({size:.2g}); fly {advice}"
+                f"its error ±{NORMAL_95 * error:.2g} is too large for the size of such a derivative"
+                f" here ({size:.2g}); fly {advice}"
             )
     return reasons
 

@@ -160,7 +160,7 @@ class AnalysisText:
         speed = reference_speed(self.state)
         numbers = ", ".join(str(number) for number in self.state.estimate_from)
         rows = (parameter_row(name, model, self.aircraft.model) for name in PARAMETERS)
-        head = ("parameter", "value", "± 95 %", "± 95 % if white", "simulator", "unit")
+        head = ("parameter", "estimate", "± 95 %", "± 95 % if white", "simulator", "unit")
         table = report_table.Table(
             "joint", "", head, tuple(map(parameter_cells, rows)), frozenset({1, 2, 3, 4})
         )

@@ -20,6 +20,7 @@ from advisor.gap.records.prepare import prepare
 from advisor.gap.records.unmeasured_alpha import alpha_by_motion
 from advisor.gap.search.baseline import fit_unfiltered
 from advisor.gap.uncatalogued.airspeed_scale import airspeed_scale_of
+from advisor.words.quantiles import NORMAL_95
 
 _ODDS = 10.0
 """Prior odds that a log follows MAVLink's convention: one log in ten is thought to break it."""
@@ -53,10 +54,11 @@ def by_the_motion(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> SpeedKin
     if shown is None or not _is_likelier(shown.scale, shown.std, factor - 1.0):
         return unchanged
     kind = "a true" if factor < 1.0 else "an indicated"
+    half = 100.0 * NORMAL_95 * shown.std
     note = (
-        f"The motion shows an air speed {100.0 * shown.scale:+.1f} ± {100.0 * shown.std:.1f} % off the one in"
-        f" use. The log's air speed is {kind} one, then, and the simulator flies at {100.0 * factor:.1f} % of"
-        " the speed in use."
+        f"The motion shows an air speed {100.0 * shown.scale:+.1f} ± {half:.1f} % off the one in use. So the"
+        f" log's air speed is {kind} one, and the simulator flies at {100.0 * factor:.1f} % of the speed in"
+        " use."
     )
     return SpeedKind([_at(m, factor) for m in maneuvers], note)
 

@@ -5,6 +5,7 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
+from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import estimate
@@ -122,6 +123,8 @@ def test_control_derivatives_are_lost_when_only_the_free_motion_stands_out_of_th
     weak = estimate(flown(JET, amplitude=1e-4, noise=3.0), AIRCRAFT)
     assert {"Z_delta_e", "M_delta_e"} <= set(weak.not_identifiable)
     assert "M_q" not in weak.not_identifiable
+    half = 1.96 * weak.std[PARAMETERS.index("M_delta_e")]
+    assert f"its error ±{half:.3g} is" in weak.not_identifiable["M_delta_e"]
 
 
 def test_natural_sizes_follow_the_poles_and_the_control_power():

@@ -196,8 +196,8 @@ def test_every_mistake_in_the_faults_is_listed_with_its_path():
             }
         )
     assert caught.value.problems == [
-        "faults.units.alpha: 'grad' is no wrong unit known here, choose from rad",
-        "faults.units.beta: 'rad' is no wrong unit known here, choose from none",
+        "faults.units.alpha: 'grad' is not among the wrong units of this channel: rad",
+        "faults.units.beta: 'rad' is not among the wrong units of this channel: none",
         "faults.scale.rpm: unknown channel, choose from alpha, q, theta, a_z, accelerometer, airspeed",
         "faults.clock_lag_s.VFR_HUD: carries no stamp, choose from ATTITUDE, AOA_SSA, SERVO_OUTPUT_RAW, "
         "RAW_IMU, GLOBAL_POSITION_INT, SYSTEM_TIME, RC_CHANNELS",

@@ -72,8 +72,8 @@ def _blocks(found: Document) -> Iterator[Block]:
         title = heading_of(found)
         yield Table(
             "gap-why",
-            f"{title[0].upper()}{title[1:]}.",
-            ("nats", "reason: value of the answer against value of the rival"),
+            f"{title[0].upper()}{title[1:]}. First the value of the answer, then that of the rival.",
+            ("nats", "reason"),
             tuple(reasons),
             frozenset({0}),
         )
