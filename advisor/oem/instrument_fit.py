@@ -152,7 +152,15 @@ def _clear_ones(
             return None
         weighing = Weighing.by(solution.noise, solution.assembly)
         opens = [x for x in names if x.prior is None and x.stated is None]
-        rivals = [(x, _without(x, known.get(x.name) or _reset(x, best, plain), names)) for x in opens]
+        rivals = [
+            (
+                x,
+                _descend(
+                    known.get(x.name) or _reset(x, best, plain), [other for other in names if other is not x]
+                ),
+            )
+            for x in opens
+        ]
         std = {found.instrument.name: found.std for found in identified_at(solution, names)}
         gains = [
             0.0 if x.at_end(best.problem, std[x.name]) else _gain(weighing, x, best, rival, names)
@@ -206,11 +214,6 @@ def refreshed(identified: Sequence[Identified], solution: Solution) -> tuple[Ide
     )
 
 
-def _without(x: Instrument, begin: _Fit, names: Sequence[Instrument]) -> _Fit:
-    """Return the optimum of the other instruments, from a fit with this one at the aircraft file's value."""
-    return _descend(begin, [other for other in names if other is not x])
-
-
 def _reset(x: Instrument, best: _Fit, plain: Solution) -> _Fit:
     """Return the fit with one instrument set back to the aircraft file's value."""
     reset = x.write(best.problem, x.read(plain.problem))
@@ -247,9 +250,11 @@ def _looked_about(begin: _Fit, names: Sequence[Instrument]) -> _Fit:
     return best
 
 
-def _descend(begin: _Fit, names: Sequence[Instrument]) -> _Fit:
-    """Minimise the cost over the instruments by Gauss-Newton, with everything else refitted at each step."""
-    best = begin
+def _descend(best: _Fit, names: Sequence[Instrument]) -> _Fit:
+    """Minimise the cost over the instruments by Gauss-Newton, with everything else refitted at each step.
+
+    The start is not kept: of hundreds of manoeuvres it is tens of megabytes.
+    """
     for _ in range(ROUNDS if names else 0):
         step, promised = _step(best, names)
         if promised < SETTLED:
