@@ -23,11 +23,11 @@ SIDE_FORCE_OVER_WEIGHT = 2.0
 """Mean and standard deviation of |C_Yβ|/C_L, 1: -Y_β·V/g is 0.8 and 1.5 on two small aircraft, 2.7 on a jet
 trainer and 4.9 on a fighter."""
 YAW_BY_ROLLING = 0.2
-"""Standard deviation of N_p over L_p, 1. C_np of C_L/8 with C_lp of -0.45 gives 0.03 to 0.2; published fits of
-three aircraft have 0.07 to 0.09."""
+"""Standard deviation of N_p over L_p, 1. C_np of C_L/8 with C_lp of -0.45 gives 0.03 to 0.2. Fits of a jet
+and of two aircraft of 3 kg have 0.07 to 0.09."""
 ROLL_BY_YAWING = 1.0
-"""Standard deviation of L_r over L_p, 1. C_lr of C_L/4 with C_lp of -0.45 gives 0.2 to 0.8; published fits of
-three aircraft have 0.2 to 0.3."""
+"""Standard deviation of L_r over L_p, 1. C_lr of C_L/4 with C_lp of -0.45 gives 0.2 to 0.8. Fits of a
+fighter, a jet and two aircraft of 3 kg have 0.2 to 0.3."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,6 +13,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.model.axis_response import respond_axis
 from advisor.model.lateral import LATERAL
 from advisor.model.response import Index
+from advisor.oem.estimate import NoEstimate
 from advisor.oem.gauss_newton import (
     CONVERGED,
     DAMPING_FACTOR,
@@ -29,15 +30,14 @@ from advisor.oem.gauss_newton import (
 from advisor.oem.lateral_instruments import Nuisance, columns_of, moved_by, penalty
 from advisor.oem.lateral_prior import Priors
 from advisor.oem.lateral_problem import CAUSES, LateralAssembly, LateralProblem, assemble_lateral
-from advisor.oem.solution import noise_floor
+from advisor.oem.solution import RUNS_AWAY
 
 LEAST_NOISE = {"p": 5e-4, "r": 5e-4, "bank": 5e-4, "a_y": 0.01, "beta": 5e-4}
 """Least standard deviation of each output, SI. Gyros of 0.007 deg/s/√Hz have 5e-4 rad/s at 20 Hz, and the
 model itself is no truer: α, θ and V are constant between stamps."""
 SETTLED = 1e-3
-"""Promised change of -2 log of the posterior at which a search ends. It moves no parameter by more than 0.03 of
-its standard deviation."""
-NOTHING_TO_TELL = "The inputs do not excite roll and yaw enough."
+"""Promised change of -2 log of the posterior at which a search ends. It moves no parameter by more than 0.03
+of its standard deviation."""
 _SHARED, _OWN = len(LATERAL.names.shared), len(LATERAL.names.local)
 _INITIAL = [LATERAL.names.local.index(f"{state}_initial") for state in LATERAL.states]
 
@@ -53,6 +53,11 @@ class LateralFit(NamedTuple):
     """(N, k) derivatives of the outputs by the nuisance parameters."""
     begun: FloatArray
     """(m, 4) rates of the states at the first event of each record. A delay may move that event."""
+
+    @property
+    def cost(self) -> float:
+        """-2 log of the posterior, up to a constant."""
+        return self.optimum.log_likelihood_cost
 
 
 class _Setting(NamedTuple):
@@ -71,9 +76,11 @@ class _Setting(NamedTuple):
         if not respond_axis(assembly.grid, shared, local, y, g, motion):
             return None
         least = np.array([LEAST_NOISE[name] for name in LATERAL.outputs])
-        noise, cost = weigh(assembly.z, y, assembly.channel, np.maximum(noise_floor(assembly), least))
+        noise, cost = weigh(assembly.z, y, assembly.channel, least)
         cost += float(np.sum(((assembly.z - y) / noise[assembly.channel]) ** 2))
-        cost += float(self.prior.precision @ (shared - self.prior.mean) ** 2) + penalty(problem, self.nuisances)
+        cost += float(self.prior.precision @ (shared - self.prior.mean) ** 2) + penalty(
+            problem, self.nuisances
+        )
         columns = columns_of(assembly, g[:, _SHARED + _OWN :], motion, self.nuisances)
         optimum = Optimum(EXHAUSTED, shared, local, noise, cost, 0, y, g[:, : _SHARED + _OWN])
         return LateralFit(problem, assembly, optimum, columns, motion[assembly.grid.first[:-1], 1])
@@ -139,7 +146,14 @@ class _System(NamedTuple):
         own = assembly.free >= _SHARED
         free = np.concatenate([assembly.free[~own], _SHARED + np.arange(k), assembly.free[own] + k])
         information, gradient = normal_equations(
-            assembly.grid, assembly.z, optimum.fitted, g, assembly.channel, assembly.owner, free, optimum.noise
+            assembly.grid,
+            assembly.z,
+            optimum.fitted,
+            g,
+            assembly.channel,
+            assembly.owner,
+            free,
+            optimum.noise,
         )
         information = information + np.transpose(np.tril(information, -1), (0, 2, 1))
         weight = np.concatenate([setting.prior.precision, [x.weight for x in setting.nuisances]])
@@ -177,8 +191,8 @@ def fit_lateral(
     prior: Priors,
     begin: tuple[FloatArray, FloatArray],
     most: int = MOST_ITERATIONS,
-) -> LateralFit | None:
-    """Return the fit with the least -2 log of the posterior near a start, or why there is none.
+) -> LateralFit | NoEstimate:
+    """Return the fit with the least -2 log of the posterior near a start. Its status says how it was found.
 
     Parameters
     ----------
@@ -190,24 +204,27 @@ def fit_lateral(
         What is known of the derivatives before the flight.
     begin
         Derivatives (15,) and local parameters (m, 9).
+    most
+        Largest number of trials.
     """
     setting = _Setting(nuisances, prior)
     best = setting.at(problem, assemble_lateral(problem), *begin)
     if best is None:
-        return None
+        return RUNS_AWAY
     damping, status, iteration = 0.0, EXHAUSTED, 0
     while status == EXHAUSTED and iteration < most:
         iteration += 1
         step = setting.step(best, damping)
         trial = None if step is None else setting.moved(best, step)
-        if step is not None and trial is not None and trial.optimum.log_likelihood_cost <= best.optimum.log_likelihood_cost:
+        better = trial is not None and trial.cost <= best.cost
+        if trial is not None and better:
             best = trial
-            if step.promise < SETTLED and damping <= FIRST_DAMPING:
-                status = CONVERGED
-            damping = damping / DAMPING_FACTOR if damping > LEAST_DAMPING else 0.0
-        elif step is not None and step.promise < SETTLED:
+        if step is not None and step.promise < SETTLED and (not better or damping <= FIRST_DAMPING):
             status = CONVERGED
-        elif damping > 1e3:
+        elif better:
+            damping = damping / DAMPING_FACTOR if damping > LEAST_DAMPING else 0.0
+        elif damping * FIRST_DAMPING > 1.0:
+            # Not even a tiny step lowers the cost: only round-off remains.
             status = SINGULAR if step is None else CONVERGED
         else:
             damping = max(FIRST_DAMPING, DAMPING_FACTOR * damping)

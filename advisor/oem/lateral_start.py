@@ -19,6 +19,7 @@ from advisor.oem.lateral_prior import guessed_y_beta
 from advisor.oem.lateral_problem import LateralProblem, LateralRecord
 from advisor.oem.regression import Equations, regressed
 
+
 def lateral_start(problem: LateralProblem) -> tuple[FloatArray, FloatArray]:
     """Return shared (15,) and local (m, 9) parameters for the start of a search.
 
