@@ -35,7 +35,7 @@ class LateralModes:
 
 
 class Errors(NamedTuple):
-    """Errors of the derivatives, for the error of a quantity that depends on them."""
+    """Errors of the derivatives, for the error of a mode."""
 
     covariance: FloatArray
     """(15, 15) from the noise within the manoeuvres."""
@@ -45,12 +45,22 @@ class Errors(NamedTuple):
     def std(self, slope: FloatArray) -> float:
         """Return the standard deviation of a quantity with derivatives ``slope`` (15,).
 
-        The manoeuvres' own values of the quantity give its scatter. Scatter of each derivative would not do:
-        the frequency of the Dutch roll hardly changes where L_p and L_β change together.
+        The variance holds the scatter of the quantity itself between the manoeuvres. A manoeuvre that alone
+        tells the quantity leaves no such scatter. So the variance grows at least as those of the derivatives
+        do on average (Birge, *Phys. Rev.* 40, 1932). A factor for each derivative would break the
+        correlations that make a mode more certain than its derivatives.
         """
-        variance = np.array([[slope @ self.covariance @ slope]])
-        widened = widened_by_scatter(variance, (self.contributions @ slope)[:, None])
-        return float(max(widened[0, 0], 0.0) ** 0.5)
+        within = slope @ self.covariance @ slope
+        own = widened_by_scatter(np.array([[within]]), (self.contributions @ slope)[:, None])[0, 0]
+        return float(max(own, within * self._growth, 0.0) ** 0.5)
+
+    @property
+    def _growth(self) -> float:
+        """Mean factor on the variances of the derivatives by their scatter."""
+        stated = np.diag(self.covariance)
+        known = stated > 0.0
+        widened = np.diag(widened_by_scatter(self.covariance, self.contributions))
+        return float(np.mean(widened[known] / stated[known])) if known.any() else 1.0
 
 
 def lateral_modes(theta: FloatArray, errors: Errors, trim: Trim) -> LateralModes:
