@@ -178,8 +178,8 @@ def _respond_in(
 def _advance(grid: AxisGrid, e: int, since_s: float, h: float, x: FloatArray, scratch: _Scratch) -> None:
     """Advance the states ``x`` (n,) by a step of length ``h`` that begins ``since_s`` after event ``e``.
 
-    ``scratch`` receives the states and inputs at the beginning, in the middle and at the end of the step, and
-    the derivatives of the rates in the middle.
+    ``scratch`` receives the states and inputs at three times of the step, and the exponentials of the matrix
+    in the middle.
     """
     n = len(x)
     rate, total, trial = scratch.rate, scratch.total, scratch.trial

@@ -1,8 +1,8 @@
 """Output error on the lateral axis: from records to derivatives, errors and identifiability.
 
 The influence of every measurement and the noise model are those of the short period. White noise makes
-coloured residuals look too certain beside a prior. So a first fit gives their colour, a second fit weighs the
-priors by that colour, and a third fit by the colour of the second.
+coloured residuals look too certain relative to a prior. So a first fit gives their colour. A second fit
+weighs the priors by the colour of the first, and a third fit by the colour of the second.
 """
 
 from collections.abc import Mapping, Sequence
@@ -35,7 +35,7 @@ from advisor.oem.solution import contributions_of, refused
 
 FIRST_LOOK = 8
 """Iterations of the fit whose residuals give the first colour of the noise. With servos and clocks fixed, a
-longer search would leave the physical values: for L_p of -10 1/s it ends at -220 1/s in a rudder doublet."""
+longer search may leave the physical values. In a rudder doublet L_p of -10 1/s became -220 1/s."""
 NOTHING_TO_TELL = "The inputs do not excite roll and yaw enough."
 LEAST_SHARE = 0.01
 """Least share by which white noise weighs a prior; data without noise have no colour."""

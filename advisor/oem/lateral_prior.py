@@ -1,4 +1,4 @@
-"""What is known of the lateral derivatives before the flight.
+"""Priors of the lateral derivatives.
 
 - Y_p = ρ·S·b·C_Yp/(4·m), and likewise Y_r, are a few per cent on every aircraft.
 - The derivatives of a control that hardly moves scatter about zero by those of the control that is flown.
@@ -20,14 +20,14 @@ SIDE_FORCE_STD = 0.05
 """Standard deviation of Y_p and Y_r about zero, 1. C_Yp and C_Yr of 0.4 give 0.01 for a jet of 15 t and 0.04
 for an aircraft of 3 kg."""
 SIDE_FORCE_OVER_WEIGHT = 2.0
-"""Mean and standard deviation of |C_Yβ|/C_L, 1: -Y_β·V/g is 0.8 and 1.5 on two small aircraft, 2.7 on a jet
-trainer and 4.9 on a fighter."""
+"""Mean and standard deviation of |C_Yβ|/C_L, 1. Fits give -Y_β·V/g of 0.8 on an indoor aircraft, 1.2 at 3 kg,
+2.7 on a jet and 4.9 on a fighter."""
 YAW_BY_ROLLING = 0.2
-"""Standard deviation of N_p over L_p, 1. C_np of C_L/8 with C_lp of -0.45 gives 0.03 to 0.2. Fits of a jet
-and of two aircraft of 3 kg have 0.07 to 0.09."""
+"""Standard deviation of N_p over L_p, 1. C_np of C_L/8 with C_lp of -0.45 gives 0.03 to 0.2. Fits give 0.01 on
+a fighter, 0.05 on a jet, 0.09 at 3 kg and -0.3 on an indoor aircraft."""
 ROLL_BY_YAWING = 1.0
-"""Standard deviation of L_r over L_p, 1. C_lr of C_L/4 with C_lp of -0.45 gives 0.2 to 0.8. Fits of a
-fighter, a jet and two aircraft of 3 kg have 0.2 to 0.3."""
+"""Standard deviation of L_r over L_p, 1. C_lr of C_L/4 with C_lp of -0.45 gives 0.2 to 0.8. Fits give 0.2 on a
+fighter, 0.3 on a jet and at 3 kg, and 0.7 on an indoor aircraft."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +54,7 @@ def guessed_y_beta(problem: LateralProblem) -> float:
 
 
 def priors_of(problem: LateralProblem, start: FloatArray) -> Priors:
-    """Return what is known before the flight, for sizes of derivatives as in ``start`` (15,)."""
+    """Return the priors, for sizes of derivatives as in ``start`` (15,)."""
     mean = dict.fromkeys(LATERAL.names.shared, 0.0)
     std = dict.fromkeys(LATERAL.names.shared, np.inf)
     std |= {"Y_p": SIDE_FORCE_STD, "Y_r": SIDE_FORCE_STD}

@@ -61,7 +61,7 @@ class LateralFit(NamedTuple):
 
 
 class _Setting(NamedTuple):
-    """What the search weighs and moves."""
+    """Nuisance parameters and priors of a search."""
 
     nuisances: Sequence[Nuisance]
     prior: Priors
@@ -201,7 +201,7 @@ def fit_lateral(
     nuisances
         Servos and clocks that move with the derivatives.
     prior
-        What is known of the derivatives before the flight.
+        Priors of the derivatives.
     begin
         Derivatives (15,) and local parameters (m, 9).
     most
