@@ -300,11 +300,6 @@ class Campaign:
         return ManeuverJudged(self._judged[-1], self._flight_test)
 
     @property
-    def judges_lateral(self) -> bool:
-        """Whether manoeuvres of aileron and rudder are judged, too."""
-        return self._lateral is not None
-
-    @property
     def _side_maneuvers(self) -> tuple[Maneuver, ...]:
         """Lateral manoeuvres, where they were asked for."""
         return self._lateral.maneuvers if self._lateral is not None else ()

@@ -139,22 +139,17 @@ def narrate_here(
     from advisor.report.follow import follow
 
     with closing(source):
-        follow(
-            _batches(source, beat, campaign.judges_lateral),
-            campaign,
-            say,
-            of_log=isinstance(source, Playable),
-        )
+        follow(_batches(source, beat), campaign, say, of_log=isinstance(source, Playable))
     if campaign.problems:
         raise UnusableInputError.of(campaign.problems[:1])
 
 
-def _batches(source: Source, beat: Callable[[Beat], object], patient: bool) -> Iterator[Sequence[Columns]]:
+def _batches(source: Source, beat: Callable[[Beat], object]) -> Iterator[Sequence[Columns]]:
     told_s = -inf
     while (columns := source.read(READ_S)) is not None:
         if monotonic() - told_s >= BEAT_S:
             told_s = monotonic()
-            busy = patient or source.health().condition == "waiting"
+            busy = source.health().condition == "waiting"
             beat(Beat.BUSY if busy else Beat.LISTENING)
         for notice in source.take_notices():
             click.echo(f"link: {notice}", err=True)

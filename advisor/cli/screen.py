@@ -115,7 +115,7 @@ def _campaign(
 ) -> "Campaign":
     from advisor.campaign.campaign import Campaign
 
-    # One estimate of roll and yaw takes up to half a minute, in which no elevator manoeuvre is judged.
+    # A file that states both controls announces a test of roll and yaw.
     lateral = SideControl() not in (aircraft.aileron, aircraft.rudder)
     return Campaign(
         aircraft, target_system, settle, tell, by_hand=by_hand, marks=marks, names=names, lateral=lateral

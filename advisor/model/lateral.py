@@ -42,6 +42,8 @@ LATERAL = Axis(
     biases=("p", "a_y"),
 )
 """The lateral axis. A bias of r or φ cannot be told from the constants of trim."""
+CONTROLS = {"delta_a": "aileron", "delta_r": "rudder"}
+"""Ending of a control's derivatives to its name."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,8 +18,7 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.axis_response import AxisGrid
-from advisor.model.either_response import respond_either
-from advisor.model.response import Grid, Index
+from advisor.model.response import Grid, Index, respond
 from advisor.process.compiled import kernel
 
 FLAT = 1e-11
@@ -278,7 +277,7 @@ def arrow_step(
 
 @kernel()
 def descend(
-    grid: Grid | AxisGrid,
+    grid: Grid,
     z: FloatArray,
     channel: Index,
     owner: Index,
@@ -297,7 +296,7 @@ def descend(
     parameters = len(shared) + local.shape[1]
     y, g = np.empty(len(z)), np.empty((len(z), parameters))
     y_trial, g_trial = np.empty(len(z)), np.empty((len(z), parameters))
-    if not respond_either(grid, shared, local, y, g):
+    if not respond(grid, shared, local, y, g):
         return Optimum(OVERFLOW, shared, local, np.zeros(len(floor)), np.inf, 0, y, g)
     noise, cost = weigh(z, y, channel, floor)
     cost += np.sum(prior * shared**2)
@@ -318,7 +317,7 @@ def descend(
             )
             if fine:
                 trial, trial_local = shared + shared_step, local + local_step
-                if respond_either(grid, trial, trial_local, y_trial, g_trial):
+                if respond(grid, trial, trial_local, y_trial, g_trial):
                     trial_noise, trial_cost = weigh(z, y_trial, channel, floor)
                     trial_cost += np.sum(prior * trial**2)
                     if trial_cost <= cost:

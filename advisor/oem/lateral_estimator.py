@@ -13,7 +13,7 @@ from advisor.oem.estimator import channel_fits
 from advisor.oem.identifiability import correlated
 from advisor.oem.lateral_estimate import LateralSolution, lateral_not_identifiable, solve_lateral
 from advisor.oem.lateral_instruments import nuisances_of
-from advisor.oem.lateral_modes import LateralModes, lateral_modes
+from advisor.oem.lateral_modes import Errors, LateralModes, lateral_modes
 from advisor.oem.lateral_prepare import prepare_lateral
 from advisor.oem.prediction import widest_bands
 
@@ -62,7 +62,7 @@ def _reported(solution: LateralSolution) -> LateralEstimate:
         prediction=_bands(solution),
         names=LATERAL.names.reported,
     )
-    modes = lateral_modes(solution.theta, solution.covariance, _trim(solution))
+    modes = lateral_modes(solution.theta, Errors(solution.within, solution.contributions), _trim(solution))
     flown = tuple(name for name in LATERAL.inputs if problem.flies(name))
     scales = problem.reference_airspeed_m_s is not None
     return LateralEstimate(estimate, modes, solution.nuisances, flown, scales)

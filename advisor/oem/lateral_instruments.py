@@ -16,18 +16,15 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.instruments.lateness import lateness_std
 from advisor.flight.signals.messages import FloatArray
-from advisor.model.axis_response import respond_axis
 from advisor.model.lateral import LATERAL
-from advisor.oem.extra import Extra, Prior
-from advisor.oem.lateral_problem import LateralProblem, assemble_lateral
+from advisor.oem.extra import Prior
+from advisor.oem.lateral_problem import CAUSES, LateralAssembly, LateralProblem
 
 USUAL_LAG = Prior(0.05, 0.05)
 """Lag of a servo that the aircraft file leaves open, s. Servos of small aircraft have 0.03 to 0.15 s, and a
 measured surface has none."""
 KNOWN_TO = 0.1
 """Standard deviation of a stated lag, over the lag: as for the elevator's servo."""
-DIFFERENCE_S = 1e-3
-"""Step of the differences, s: half of it is below the shortest interval of a command."""
 FARTHEST_S = 0.1
 """Standard deviation of an unknown arm of the sideslip vane, over the air speed, s. A boom on record has
 0.1 s (13 m at 130 m/s)."""
@@ -50,6 +47,11 @@ class Nuisance:
     prior: Prior
     per_second: float = 1.0
     """Change of the parameter that moves the outputs as one second does: the air speed for an arm, m."""
+
+    @property
+    def weight(self) -> float:
+        """Inverse variance of the prior, as white noise weighs the prior."""
+        return (self.prior.std * self.prior.share) ** -2
 
     @property
     def name(self) -> str:
@@ -118,29 +120,32 @@ def begun(problem: LateralProblem, nuisances: Sequence[Nuisance]) -> LateralProb
     return problem
 
 
-def extra_of(
-    problem: LateralProblem, shared: FloatArray, local: FloatArray, nuisances: Sequence[Nuisance]
-) -> Extra:
-    """Return the nuisance parameters as additional ones of a fit; ``shared`` (15,), ``local`` (m, 9)."""
-    columns = []
-    for x in nuisances:
-        value = x.read(problem)
-        step = DIFFERENCE_S * x.per_second
-        low = max(value - step, 0.0) if x.kind == "lag" else value - step
-        ends = [_outputs(x.write(problem, at), shared, local) for at in (low, value + step)]
-        columns.append((ends[1] - ends[0]) / (value + step - low))
-    if not columns:
-        return Extra.none(len(assemble_lateral(problem).z))
-    values = np.array([x.read(problem) for x in nuisances])
-    return Extra.at(np.column_stack(columns), values, [x.prior for x in nuisances])
+def columns_of(
+    assembly: LateralAssembly, by_cause: FloatArray, motion: FloatArray, nuisances: Sequence[Nuisance]
+) -> FloatArray:
+    """Return the derivatives of the outputs by nuisance parameters, shape (N, k).
 
-
-def _outputs(problem: LateralProblem, shared: FloatArray, local: FloatArray) -> FloatArray:
-    """Return the outputs (N,); NaN from where the model runs away."""
-    assembly = assemble_lateral(problem)
-    y = np.full(len(assembly.z), np.nan)
-    respond_axis(assembly.grid, shared, local, y, np.empty((0, len(shared) + local.shape[1])))
-    return y
+    Parameters
+    ----------
+    by_cause
+        (N, 3) derivatives by ``CAUSES``, which change the motion.
+    motion
+        (E, 2, 4) states and their rates at the events; the instruments of the outputs read them.
+    """
+    columns = np.zeros((len(assembly.z), len(nuisances)))
+    for k, x in enumerate(nuisances):
+        if x.kind in ("command", "lag"):
+            columns[:, k] = by_cause[:, CAUSES.index(x.of or "command")]
+            continue
+        output = LATERAL.outputs.index(x.of)
+        row = assembly.grid.row[output]
+        at, row = np.flatnonzero(row >= 0), row[row >= 0]
+        if x.kind == "delay":
+            columns[row, k] = -np.sum(assembly.grid.seen[at, output] * motion[at, 1], axis=1)
+        else:
+            speed = assembly.grid.felt[at, LATERAL.outputs.index("a_y"), LATERAL.states.index("beta")]
+            columns[row, k] = motion[at, 0, LATERAL.states.index("r")] / speed
+    return columns
 
 
 def moved_by(step: FloatArray, problem: LateralProblem, nuisances: Sequence[Nuisance]) -> LateralProblem:
@@ -153,4 +158,4 @@ def moved_by(step: FloatArray, problem: LateralProblem, nuisances: Sequence[Nuis
 
 def penalty(problem: LateralProblem, nuisances: Sequence[Nuisance]) -> float:
     """Return -2 log of the priors' density up to a constant, as white noise weighs the priors."""
-    return sum(((x.read(problem) - x.prior.mean) / (x.prior.std * x.prior.share)) ** 2 for x in nuisances)
+    return sum(x.weight * (x.read(problem) - x.prior.mean) ** 2 for x in nuisances)

@@ -7,11 +7,13 @@ frequency ω = |λ| and the damping ζ = -Re λ/ω, and the roll mode has the ti
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.lateral import LATERAL, Trim, modes_of, state_matrix
+from advisor.oem.between import widened_by_scatter
 from advisor.oem.flying_qualities import Quality
 
 _STATES = len(LATERAL.states)
@@ -32,8 +34,37 @@ class LateralModes:
     left_out: Mapping[str, str] = field(default_factory=dict)
 
 
-def lateral_modes(theta: FloatArray, covariance: FloatArray, trim: Trim) -> LateralModes:
-    """Return the modes at the trim of ``theta`` (15,), with errors by its covariance (15, 15)."""
+class Errors(NamedTuple):
+    """Errors of the derivatives, for the error of a mode."""
+
+    covariance: FloatArray
+    """(15, 15) from the noise within the manoeuvres."""
+    contributions: FloatArray
+    """(m, 15) contribution of each manoeuvre."""
+
+    def std(self, slope: FloatArray) -> float:
+        """Return the standard deviation of a quantity with derivatives ``slope`` (15,).
+
+        The variance holds the scatter of the quantity itself between the manoeuvres. A manoeuvre that alone
+        tells the quantity leaves no such scatter. So the variance grows at least as those of the derivatives
+        do on average (Birge, *Phys. Rev.* 40, 1932). A factor for each derivative would break the
+        correlations that make a mode more certain than its derivatives.
+        """
+        within = slope @ self.covariance @ slope
+        own = widened_by_scatter(np.array([[within]]), (self.contributions @ slope)[:, None])[0, 0]
+        return float(max(own, within * self._growth, 0.0) ** 0.5)
+
+    @property
+    def _growth(self) -> float:
+        """Mean factor on the variances of the derivatives by their scatter."""
+        stated = np.diag(self.covariance)
+        known = stated > 0.0
+        widened = np.diag(widened_by_scatter(self.covariance, self.contributions))
+        return float(np.mean(widened[known] / stated[known])) if known.any() else 1.0
+
+
+def lateral_modes(theta: FloatArray, errors: Errors, trim: Trim) -> LateralModes:
+    """Return the modes at the trim of ``theta`` (15,), with their errors."""
     a = state_matrix(theta, trim)
     found = modes_of(a)
     omega = zeta = roll = spiral = None
@@ -46,13 +77,13 @@ def lateral_modes(theta: FloatArray, covariance: FloatArray, trim: Trim) -> Late
         size = abs(value)
         by_size = (value.conjugate() * slope).real / size
         by_damping = -slope.real / size + value.real * by_size / size**2
-        omega = _quality(size, by_size, covariance)
-        zeta = _quality(-value.real / size, by_damping, covariance)
+        omega = _quality(size, by_size, errors)
+        zeta = _quality(-value.real / size, by_damping, errors)
     if found.roll is None or found.spiral is None:
         left_out["roll"] = left_out["spiral"] = "roll and spiral oscillate together at these values"
     else:
-        roll = _quality(-1.0 / found.roll, _slope(a, found.roll).real / found.roll**2, covariance)
-        spiral = _quality(found.spiral, _slope(a, found.spiral).real, covariance)
+        roll = _quality(-1.0 / found.roll, _slope(a, found.roll).real / found.roll**2, errors)
+        spiral = _quality(found.spiral, _slope(a, found.spiral).real, errors)
     return LateralModes(omega, zeta, roll, spiral, left_out)
 
 
@@ -68,6 +99,5 @@ def _slope(a: FloatArray, value: complex) -> np.ndarray:
     return moved
 
 
-def _quality(value: float, slope: FloatArray, covariance: FloatArray) -> Quality:
-    variance = float(slope @ covariance @ slope)
-    return Quality(float(value), max(variance, 0.0) ** 0.5)
+def _quality(value: float, slope: FloatArray, errors: Errors) -> Quality:
+    return Quality(float(value), errors.std(slope))

@@ -14,7 +14,7 @@ from advisor.oem.estimate import ChannelFit, NoEstimate
 from advisor.oem.lateral_estimator import LateralEstimate
 from advisor.oem.lateral_instruments import nuisances_of
 from advisor.oem.lateral_prepare import prepare_lateral
-from advisor.oem.lateral_problem import LateralAssembly, LateralProblem, assemble_lateral
+from advisor.oem.lateral_problem import CAUSES, LateralAssembly, LateralProblem, assemble_lateral
 from advisor.oem.lateral_start import lateral_start
 
 ROUNDS = 12
@@ -70,10 +70,11 @@ def _refitted(
     weight = np.array([1.0 / noise[LATERAL.outputs[c]] for c in assembly.channel])
     local = lateral_start(problem)[1]
     local[0, : len(LATERAL.constants)] = 0.0
-    y, g = np.empty(len(assembly.z)), np.empty((len(assembly.z), n + local.shape[1]))
+    y, g = np.empty(len(assembly.z)), np.empty((len(assembly.z), n + local.shape[1] + len(CAUSES)))
+    motion = np.empty((0, 2, len(LATERAL.states)))
     for _ in range(ROUNDS):
-        respond_axis(assembly.grid, theta, local, y, g)
+        respond_axis(assembly.grid, theta, local, y, g, motion)
         step = np.linalg.lstsq(g[:, own] * weight[:, None], (assembly.z - y) * weight, rcond=None)[0]
         local[0, own - n] += step
-    respond_axis(assembly.grid, theta, local, y, g)
+    respond_axis(assembly.grid, theta, local, y, g, motion)
     return y

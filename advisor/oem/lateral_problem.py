@@ -20,6 +20,8 @@ LEAST_PART = 0.2
 in an aileron test of 12 deg follows the motion. Its derivatives would be wrong by half."""
 NEEDED = ("p", "r", "bank")
 """Outputs that every record has."""
+CAUSES = ("command", *LATERAL.inputs)
+"""Causes that change the inputs of a grid: the delay of all commands, and the lag of each servo."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,6 +60,11 @@ class LateralProblem:
     accelerometer_arm_m: float = 0.0
     """Distance of the accelerometer ahead of the centre of gravity, m."""
 
+    @property
+    def tells_force(self) -> bool:
+        """Whether a record has the lateral acceleration or the sideslip."""
+        return any({"a_y", "beta"} & record.outputs.keys() for record in self.records)
+
     def servo(self, name: str) -> Servo:
         """Return the servo of an input, late by the delay of all commands."""
         stated = self.servos.get(name, Servo())
@@ -81,6 +88,8 @@ class LateralAssembly(Laid):
     """A problem of the lateral axis laid out for the kernel."""
 
     grid: AxisGrid
+    begin: FloatArray
+    """(m,) time of the first event of each record, s, to which the initial states belong."""
 
 
 def assemble_lateral(problem: LateralProblem) -> LateralAssembly:
@@ -110,6 +119,7 @@ def assemble_lateral(problem: LateralProblem) -> LateralAssembly:
     return LateralAssembly(
         names=LATERAL.names,
         grid=grid,
+        begin=np.array([piece.t[0] for piece in pieces]),
         **laid.measurements,
         free=_free(problem, measured),
     )
@@ -122,7 +132,7 @@ def _free(problem: LateralProblem, measured: set[str]) -> Index:
     """
     still = [name for name in LATERAL.inputs if not problem.moves(name)]
     shared = [k for k, term in enumerate(LATERAL.shared) if term.factor not in still]
-    if not {"a_y", "beta"} & measured:
+    if not problem.tells_force:
         shared = [k for k in shared if LATERAL.shared[k].name in _WITHOUT_FORCE]
     fixed = {f"{name}_bias" for name in LATERAL.biases if name not in measured}
     if "beta" not in measured:
@@ -134,7 +144,10 @@ def _free(problem: LateralProblem, measured: set[str]) -> Index:
 
 _WITHOUT_FORCE = ("Y_beta", *(term.name for term in LATERAL.shared if term.state != "beta"))
 """Derivatives that are estimated where neither the side force nor the sideslip is measured."""
-_STACKED = ("step_s", "ratio", "inputs", "start", "slope", "linear", "sine", "turn", "seen", "felt")
+_STACKED = (
+    "step_s", "ratio", "inputs", "start", "slope", "changed", "changed_start", "changed_slope", "linear",
+    "sine", "turn", "seen", "felt",
+)  # fmt: skip
 """Fields of a grid that the pieces hold one after another."""
 
 
@@ -149,6 +162,9 @@ class _Piece:
     inputs: FloatArray
     start: FloatArray
     slope: FloatArray
+    changed: FloatArray
+    changed_start: FloatArray
+    changed_slope: FloatArray
     linear: FloatArray
     sine: FloatArray
     turn: FloatArray
@@ -174,7 +190,7 @@ class _Piece:
             pace = min(pace, own_pace)
         t = merged(np.concatenate(corners), pace)
         step = np.diff(t)
-        inputs, start, slope = _moved(record, problem, t)
+        moved = (*_moved(record, problem, t), *_changed(record, problem, t))
         middle = t[:-1] + step / 2.0
         speed = padded(record.airspeed.at(middle))
         ratio = np.ones(len(t))
@@ -182,7 +198,7 @@ class _Piece:
             ratio = speed / problem.reference_airspeed_m_s
         linear, sine, turn = _known(record, middle, speed)
         seen, felt = _outputs(record.airspeed.at(t), problem)
-        return cls(t, outputs, padded(step), ratio, inputs, start, slope, linear, sine, turn, seen, felt)
+        return cls(t, outputs, padded(step), ratio, *moved, linear, sine, turn, seen, felt)
 
 
 def _earlier(signal: Signal, delay_s: float) -> Signal:
@@ -200,6 +216,20 @@ def _moved(
             here, begun, arrival = problem.servo(name).move(command.t, command.y, t)
             at[:, j], after[:, j] = here, begun
             rate[:, j] = padded((arrival - begun[:-1]) / np.diff(t))
+    return at, after, rate
+
+
+def _changed(
+    record: LateralRecord, problem: LateralProblem, t: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return the derivatives by ``CAUSES`` of the inputs at the stamps, just after them, and of their rates,
+    each (E, 3, 2)."""
+    at, after, rate = (np.zeros((len(t), len(CAUSES), len(LATERAL.inputs))) for _ in range(3))
+    for j, name in enumerate(LATERAL.inputs):
+        if name in record.inputs:
+            change = problem.servo(name).changes(*record.inputs[name], t)
+            causes = [CAUSES.index("command"), CAUSES.index(name)]
+            at[:, causes, j], after[:, causes, j], rate[:, causes, j] = change.at, change.start, change.slope
     return at, after, rate
 
 

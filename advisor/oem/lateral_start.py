@@ -15,11 +15,9 @@ from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.motion import integrated
 from advisor.model.lateral import LATERAL
+from advisor.oem.lateral_prior import guessed_y_beta
 from advisor.oem.lateral_problem import LateralProblem, LateralRecord
 from advisor.oem.regression import Equations, regressed
-
-_GUESSED_Y_BETA = -0.3
-"""Y_β, 1/s, where neither a vane nor a_y is measured: jets have -0.2, small aircraft -0.5."""
 
 
 def lateral_start(problem: LateralProblem) -> tuple[FloatArray, FloatArray]:
@@ -47,7 +45,7 @@ def lateral_start(problem: LateralProblem) -> tuple[FloatArray, FloatArray]:
             coefficients[0] for coefficients in own
         ]
     else:
-        shared[columns[0]] = _GUESSED_Y_BETA
+        shared[columns[0]] = guessed_y_beta(problem)
     for i, motion in enumerate(prepared):
         for state in LATERAL.states:
             local[i, names.local.index(f"{state}_initial")] = motion.signals[state][0]
@@ -84,7 +82,7 @@ class _Motion:
         elif self.has_force:
             self.signals["beta"] = integrated(t, turn + self.force_rate)
         else:
-            self.signals["beta"] = _leaking(t, turn)
+            self.signals["beta"] = _leaking(t, turn, guessed_y_beta(problem))
 
     def integrals(self, letter: str) -> FloatArray:
         """Return the integrals (n, 5) that multiply the derivatives of one moment."""
@@ -114,9 +112,9 @@ class _Motion:
         return Equations(columns, self.force_rate, np.column_stack([self.ratio, since, since**2]))
 
 
-def _leaking(t: FloatArray, rate: FloatArray) -> FloatArray:
-    """Return the solution of β̇ = Y_β·β + rate with the guessed Y_β, from rest."""
+def _leaking(t: FloatArray, rate: FloatArray, y_beta: float) -> FloatArray:
+    """Return the solution of β̇ = Y_β·β + rate from rest."""
     beta = np.zeros(len(t))
     for i, step in enumerate(np.diff(t)):
-        beta[i + 1] = beta[i] + step * (_GUESSED_Y_BETA * beta[i] + 0.5 * (rate[i] + rate[i + 1]))
+        beta[i + 1] = beta[i] + step * (y_beta * beta[i] + 0.5 * (rate[i] + rate[i + 1]))
     return beta

@@ -29,6 +29,9 @@ from advisor.oem.start import start
 
 Method = Literal["gauss-newton", "nelder-mead"]
 NOTHING_TO_TELL = "The input does not excite the motion enough to distinguish the parameters."
+RUNS_AWAY = NoEstimate(
+    "diverged", "The model runs away from its first guess: the record is too long or too noisy."
+)
 HEALTHY_ITERATIONS = 12
 """Largest number of iterations of an unsuspicious search. A longer search may creep along the valley of a
 second minimum, and another start is tried."""
@@ -106,9 +109,7 @@ def refused(optimum: Optimum, nothing_to_tell: str) -> NoEstimate | None:
     ``nothing_to_tell`` is the sentence for inputs that do not excite the motion enough.
     """
     if optimum.status == OVERFLOW:
-        return NoEstimate(
-            "diverged", "The model runs away from its first guess: the record is too long or too noisy."
-        )
+        return RUNS_AWAY
     if optimum.status == SINGULAR:
         return NoEstimate("singular", nothing_to_tell)
     if optimum.status != CONVERGED:

@@ -17,13 +17,11 @@ OLD_AFTER_S = 3.0
 """Age of the newest report, s, above which the crew reads that it is old. Reports come every 0.1 s, and an
 estimate of seven manoeuvres together delays one by up to 2 s on a laptop."""
 ENDED_AFTER_S = 20.0
-"""Age of the newest report, s, above which a process is ended and started again. The longest estimate of the
-elevator's axis in flight takes a tenth of this. The limit doubles with each end, so that a slow computer
-comes to its result."""
+"""Age of the newest report, s, above which a process is ended and started again. The longest estimate in
+flight takes a tenth of this. The limit doubles with each end, so that a slow computer comes to its result."""
 START_S = 60.0
 """Time to the first report, s, above which a process is ended. Libraries load within 10 s, and compiled
-functions that no folder keeps are compiled within this time. Patience holds as long: a rudder doublet at
-50 Hz takes 11 s of processor time, and the joint estimate after it 5 s."""
+functions that no folder keeps are compiled within this time. Patience holds as long."""
 _LOOK_EVERY_S = 0.5
 
 
@@ -31,7 +29,7 @@ class Beat(Enum):
     """Message of a process that has nothing else to say."""
 
     LISTENING = "waits for data"
-    BUSY = "reads what has been recorded so far, or may judge roll and yaw"
+    BUSY = "reads what has been recorded so far"
 
 
 class Watch:
@@ -80,8 +78,7 @@ class Watch:
         Parameters
         ----------
         patient
-            Whether the process reads what has been recorded so far, or judges roll and yaw: both may take
-            long.
+            Whether the process reads what has been recorded so far, which may take long.
         """
         self._limit_s = START_S if patient else ENDED_AFTER_S
         self._messages += 1

@@ -170,7 +170,7 @@ class RemoteConductor:
                 case BaseException() as failure:
                     raise failure
             if last is not None:
-                watch.heard(last.health.condition == "waiting" or last.state.lateral is not None)
+                watch.heard(patient=last.health.condition == "waiting")
                 self._tell(last, tell)
                 if last.health.condition == "ended":
                     watch.rest()

@@ -13,7 +13,7 @@ from advisor.flight.signals.record import Channel
 from advisor.model.lateral import LATERAL, Trim
 from advisor.oem.estimate import ChannelFit, Estimate
 from advisor.oem.lateral_estimator import LateralEstimate
-from advisor.oem.lateral_modes import lateral_modes
+from advisor.oem.lateral_modes import Errors, lateral_modes
 from tests.oem.lateral_builders import JET, vector
 
 T = np.arange(0.0, 10.0, 0.04)
@@ -30,7 +30,9 @@ def estimate(*flown, percent=2.0, untold=None, fits=()):
         iterations=3, not_identifiable=untold or {}, correlated=(), condition=1.0, airspeed_m_s=130.0,
         names=LATERAL.names.reported,
     )  # fmt: skip
-    return LateralEstimate(found, lateral_modes(vector(JET), covariance, Trim(130.0)), {}, flown)
+    return LateralEstimate(
+        found, lateral_modes(vector(JET), Errors(covariance, np.zeros((1, 15))), Trim(130.0)), {}, flown
+    )
 
 
 def judged(number, control, *, accepted=True):

@@ -5,7 +5,7 @@ from advisor.decision.lateral_test import lateral_flight_test, lateral_knowledge
 from advisor.model.lateral import LATERAL, Trim
 from advisor.oem.estimate import Estimate
 from advisor.oem.lateral_estimator import LateralEstimate
-from advisor.oem.lateral_modes import lateral_modes
+from advisor.oem.lateral_modes import Errors, lateral_modes
 from tests.oem.lateral_builders import JET, vector
 
 N = len(LATERAL.shared)
@@ -22,7 +22,9 @@ def told(*flown, percent=2.0, off=0.0):
         iterations=3, not_identifiable={}, correlated=(), condition=1.0, airspeed_m_s=130.0,
         names=LATERAL.names.reported,
     )  # fmt: skip
-    return LateralEstimate(estimate, lateral_modes(vector(JET), covariance, Trim(130.0)), {}, flown)
+    return LateralEstimate(
+        estimate, lateral_modes(vector(JET), Errors(covariance, np.zeros((1, 15))), Trim(130.0)), {}, flown
+    )
 
 
 def test_aileron_and_rudder_within_their_tolerance_stop_the_test():

@@ -4,19 +4,21 @@ import pytest
 from advisor.model.axis_response import AxisGrid, respond_axis
 from advisor.model.lateral import LATERAL
 from advisor.model.response import respond
-from advisor.oem.lateral_problem import LateralProblem, assemble_lateral
+from advisor.oem.lateral_problem import CAUSES, LateralProblem, assemble_lateral
 from advisor.oem.problem import OutputErrorProblem, Record, assemble
 from advisor.oem.rows import Signal
 from tests.oem.lateral_builders import JET, TRIM, aileron_doublet, flown, rudder_doublet, vector
 
 T = np.arange(0.0, 8.0, 0.025)
 INITIAL = (0.002, 0.01, -0.004, 0.05)
+UNSEEN = np.empty((0, 2, 4))
 
 
 def responding(assembly, shared, local, sensitivities=False):
     rows = len(assembly.z)
-    y, g = np.empty(rows), np.empty((rows if sensitivities else 0, len(shared) + local.shape[1]))
-    assert respond_axis(assembly.grid, shared, local, y, g)
+    width = len(shared) + local.shape[1] + len(CAUSES)
+    y, g = np.empty(rows), np.empty((rows if sensitivities else 0, width))
+    assert respond_axis(assembly.grid, shared, local, y, g, UNSEEN)
     return y, g
 
 
@@ -51,6 +53,17 @@ def test_sensitivities_are_the_derivatives_of_the_outputs(lateral):
         assert np.max(np.abs(by_difference - g[:, j])) < 1e-3 * scale, j
 
 
+def test_the_motion_has_the_states_and_their_rates(lateral):
+    assembly, local = lateral
+    events = len(assembly.grid.step_s)
+    y, motion = np.empty(len(assembly.z)), np.empty((events, 2, 4))
+    assert respond_axis(assembly.grid, vector(JET), local, y, np.empty((0, 27)), motion)
+    np.testing.assert_array_equal(motion[assembly.grid.row[0] >= 0, 0, 1], y[assembly.rows[0]["p"]])
+    by_difference = np.gradient(motion[:, 0], 0.025, axis=0)
+    free = slice(220, 300)
+    np.testing.assert_allclose(motion[free, 1], by_difference[free], atol=2e-3)
+
+
 def test_the_short_period_described_as_an_axis_is_its_closed_form():
     t = np.arange(0.0, 4.0, 0.02)
     elevator = Signal(t, np.where((t > 0.5) & (t < 1.5), 0.05, 0.0))
@@ -64,18 +77,19 @@ def test_the_short_period_described_as_an_axis_is_its_closed_form():
     linear = np.zeros((events, n, n))
     linear[:, 0, 1] = linear[:, 2, 1] = 1.0
     seen = np.tile(np.eye(n), (events, 1, 1))
-    zero = np.zeros((events, n))
+    zero, still_causes = np.zeros((events, n)), np.zeros((events, 0, 1))
     # α̇ by α, q, δe; q̇ by α, q, δe; then the constants of both.
     place = np.array([(0, 0, 1), (0, 1, 0), (0, 3, 1), (1, 0, 2), (1, 1, 1), (1, 3, 2), (0, 4, 1), (1, 4, 2)])
     grid = AxisGrid(
         first=np.array([0, events]), step_s=closed.grid.step_s[closed.grid.kind],
         ratio=np.ones(events), inputs=elevator.y[:, None], start=elevator.y[:, None],
-        slope=closed.grid.slope[:, None], linear=linear, sine=zero, turn=zero,
+        slope=closed.grid.slope[:, None], changed=still_causes, changed_start=still_causes,
+        changed_slope=still_causes, linear=linear, sine=zero, turn=zero,
         row=closed.grid.row[[0, 1, 3]], seen=seen, felt=np.zeros_like(seen), place=place,
         bias=np.full(3, -1), bank=-1, yaw=0,
     )  # fmt: skip
     y = np.empty(len(closed.z))
-    assert respond_axis(grid, shared[:6], local[:, :5], y, np.empty((0, 11)))
+    assert respond_axis(grid, shared[:6], local[:, :5], y, np.empty((0, 11)), np.empty((0, 2, n)))
     np.testing.assert_allclose(y, expected, atol=1e-7)
 
 
@@ -83,4 +97,4 @@ def test_a_model_that_runs_away_is_no_response(lateral):
     assembly, local = lateral
     wild = vector(JET | {"L_p": 80.0})
     y = np.empty(len(assembly.z))
-    assert not respond_axis(assembly.grid, wild, local, y, np.empty((0, 24)))
+    assert not respond_axis(assembly.grid, wild, local, y, np.empty((0, 27)), UNSEEN)

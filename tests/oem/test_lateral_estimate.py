@@ -6,14 +6,16 @@ import pytest
 from advisor.model.lateral import LATERAL
 from advisor.oem.extra import Prior
 from advisor.oem.lateral_estimate import (
-    SIDE_FORCE_STD,
     LateralSolution,
     lateral_not_identifiable,
     solve_lateral,
 )
-from advisor.oem.lateral_instruments import FARTHEST_S, Nuisance, extra_of
+from advisor.oem.lateral_instruments import FARTHEST_S, Nuisance
+from advisor.oem.lateral_prior import SIDE_FORCE_STD, priors_of
 from advisor.oem.lateral_problem import LateralProblem
+from advisor.oem.lateral_search import fit_lateral
 from advisor.oem.rows import Signal
+from advisor.oem.solution import RUNS_AWAY
 from tests.oem.lateral_builders import JET, aileron_doublet, both_inputs, flown, rudder_doublet, steps, vector
 
 T = np.arange(0.0, 15.0, 0.025)
@@ -138,10 +140,8 @@ def test_an_unknown_boom_is_estimated_and_leaves_the_yaw_damping_true():
     assert solution.theta[place("N_r")] == pytest.approx(JET["N_r"], abs=0.02)
 
 
-def test_where_the_model_runs_away_a_nuisance_has_no_derivative_instead_of_an_arbitrary_one():
+def test_a_start_from_which_the_model_runs_away_gives_no_fit():
     problem = both_inputs(JET, np.random.default_rng(1))
     unstable = vector({**JET, "L_p": 60.0})
     local = np.ones((len(problem.records), len(LATERAL.names.local)))
-    command = Nuisance("command", "", Prior(0.0, 0.01))
-    columns = extra_of(problem, unstable, local, [command]).columns
-    assert np.isnan(columns[-1, 0])
+    assert fit_lateral(problem, (), priors_of(problem, unstable), (unstable, local)) is RUNS_AWAY
