@@ -8,7 +8,7 @@ import click
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.analysis.side_comparison import SideGap
+from advisor.side_gap.comparison import SideGap
 from advisor.analysis.side_gap import side_gap_of
 from advisor.cli.log_options import LogsAsked
 from advisor.cli.options import UNUSABLE

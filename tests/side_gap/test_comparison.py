@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft, Beta, SideControl
-from advisor.analysis.side_comparison import compare_side
+from advisor.side_gap.comparison import compare_side
 from advisor.cli.side_gap import side_gap_document
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.record import Channel

@@ -1,0 +1,106 @@
+"""Effects of roll and yaw, one row each: those of the pitch axis at aileron, rudder and lateral instruments.
+
+Names, blocks, bounds, starts, least sizes and sentences are those of ``gap.effects``. A row adds the control
+or output, the places that the parameters set, and the standard deviation of each before the flight.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from advisor.gap.effects.accelerometer_offset import ARM
+from advisor.gap.effects.actuator_backlash import BACKLASH
+from advisor.gap.effects.actuator_deadband import DEADBAND_ABOUT_TRIM
+from advisor.gap.effects.actuator_lag import LAG
+from advisor.gap.effects.actuator_rate_limit import RATE_LIMIT
+from advisor.gap.effects.pitch_rate_scale import SCALE
+from advisor.gap.effects.transport_delay import DELAY
+from advisor.gap.kit.least import FILTERED_S
+from advisor.gap.kit.skew import skew_beyond
+from advisor.gap.kit.variant import Variant
+from advisor.model.lateral import LATERAL
+from advisor.side_gap.setting import PROPELLER, Flown, Place
+
+THROTTLE_MOVES = 0.02
+"""Least change of the throttle within a record that makes it informative, as for the pitching moment."""
+
+
+@dataclass(frozen=True, slots=True)
+class SideEffect:
+    """One row of the table: an effect at one control or output."""
+
+    of: str
+    """Control or output; ``throttle`` for the propeller."""
+    variant: Variant
+    places: tuple[Place, ...]
+    """Place of each parameter."""
+    std: tuple[float, ...]
+    """Standard deviation of each parameter about zero before the flight, over the aircraft that have the
+    effect; half of a Gaussian where the bounds exclude negative sizes."""
+    words: Mapping[str, str] = field(default_factory=dict)
+    """Words of the pitch axis' sentence to those of this axis."""
+
+    @property
+    def name(self) -> str:
+        """Name of the effect with its control or output: ``aileron_actuator_lag``."""
+        return f"{self.of}_{self.variant.effect}"
+
+    def said(self, sentence: str) -> str:
+        """Return the pitch axis' sentence in the words of this axis; the control leads where the sentence names
+        none."""
+        for old, new in self.words.items():
+            if old in sentence:
+                return sentence.replace(old, new)
+        return sentence if not self.words else f"{self.of.capitalize()}: {sentence[0].lower()}{sentence[1:]}"
+
+    @property
+    def is_one_sided(self) -> bool:
+        """Whether the first parameter cannot be negative."""
+        return self.variant.bounds[0][0] >= 0.0
+
+    @property
+    def sides(self) -> tuple[Place, tuple[float, ...]] | None:
+        """Place with a choice of values in each manoeuvre, and these values; None without one."""
+        return None if self.variant.sides is None else ((self.of, self.variant.sides[0]), (-1.0, 0.0, 1.0))
+
+
+_SERVO = (
+    (LAG, ("lag_s",), (0.05,)),
+    (DELAY, ("delay_s",), (0.05,)),
+    (RATE_LIMIT, ("slowness_s_rad",), (1.5,)),
+    (BACKLASH, ("half_play_rad",), (0.01,)),
+    (DEADBAND_ABOUT_TRIM, ("half_deadband_rad", "neutral_rad"), (0.01, 0.005)),
+)
+"""Effects of a servo, with entries and prior standard deviations: servos of small aircraft lag by 50 ms and
+move 40 deg/s to none; play and dead bands of half a degree are worn linkages."""
+_SPOKEN = {"p": "roll rate", "r": "yaw rate", "bank": "attitude", "a_y": "lateral acceleration", "beta": "sideslip"}
+_SKEWED = {"p": "pitch_rate_skew", "r": "pitch_rate_skew", "bank": "attitude_skew", "a_y": "accelerometer_skew"}
+_SCALED = ("p", "r", "a_y")
+_SCALE_STD, _SKEW_STD_S, _ARM_STD_M = 0.1, 0.05, 0.3
+"""Prior standard deviations of a scale error, 1, of late stamps, s, and of an accelerometer's arm, m."""
+
+
+def side_effects(flown: Flown) -> Iterator[SideEffect]:
+    """Yield every effect that the records can show."""
+    problem = flown.problem
+    for of in filter(problem.flies, LATERAL.inputs):
+        for variant, entries, std in _SERVO:
+            yield SideEffect(of, variant, tuple((of, e) for e in entries), std, {"elevator": of})
+    measured = set.intersection(*(set(record.outputs) for record in problem.records))
+    for of, effect in _SKEWED.items():
+        if of in measured:
+            skew = skew_beyond(effect, FILTERED_S)
+            yield SideEffect(of, skew, ((of, "skew_s"),), (_SKEW_STD_S,), {"pitch rate": _SPOKEN[of]})
+    for of in measured.intersection(_SCALED):
+        yield SideEffect(of, SCALE, ((of, "scale"),), (_SCALE_STD,), {"pitch rate": _SPOKEN[of]})
+    if "a_y" in measured:
+        yield SideEffect("a_y", ARM, (("a_y", "arm_m"),), (_ARM_STD_M,))
+    if any(t is not None and np.ptp(t.y) > THROTTLE_MOVES for t in flown.throttle):
+        yield _propeller()
+
+
+def _propeller() -> SideEffect:
+    """Return the roll due to the propeller, as the aileron that rolls as much at full throttle."""
+    torque = replace(ARM, effect="thrust_moment", block="moment_equation", names=("aileron_rad",), steps=(2e-4,))
+    return SideEffect("throttle", torque, (PROPELLER,), (0.05,))

@@ -1,0 +1,136 @@
+"""Blind flights of roll and yaw with one withheld effect each, and how many are diagnosed right.
+
+    python -m benchmarks.lateral_gap SEED [--each 3] [--clean 6] [--only NAME ...]
+
+The bundled aircraft flies ``--plan lateral`` with a drawn effect. The log goes through ``advisor gap --axis
+lateral`` with the aircraft's true derivatives. A size counts as right within its 95 % interval or 15 %.
+"""
+
+import argparse
+import sys
+import tempfile
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from advisor.aircraft.aircraft import Aircraft, SideControl
+from advisor.analysis.side_gap import side_gap_of
+from advisor.side_gap.comparison import SideGap
+from advisor.words.problems import UnusableInputError
+from advisor.words.quantiles import NORMAL_95
+from sim.lateral import UAV, lateral_flight
+from sim.record import record
+from sim.scenario import Scenario
+
+
+@dataclass(frozen=True)
+class Withheld:
+    """One effect of the simulator, by its name in ``sim.effects.side``."""
+
+    name: str
+    """Name in the diagnosis."""
+    parameter: str
+    """First parameter of the simulator and of the diagnosis."""
+    sizes: tuple[float, float]
+    """Least and greatest size, SI."""
+    is_named: bool = True
+    """Whether the diagnosis has a name for it; if not, "none" and "parameters" are right."""
+
+
+_SERVO = {
+    "actuator_lag": ("lag_s", (0.03, 0.09)),
+    "transport_delay": ("delay_s", (0.06, 0.12)),
+    "actuator_rate_limit": ("rate_rad_s", (0.4, 0.9)),
+    "actuator_backlash": ("half_width_rad", (0.005, 0.015)),
+    "actuator_deadband": ("half_width_rad", (0.005, 0.015)),
+}
+CASES: dict[str, Withheld] = {
+    **{f"{c}_{n}": Withheld(f"{c}_{n}", p, s) for c in ("aileron", "rudder") for n, (p, s) in _SERVO.items()},
+    "p_skew": Withheld("p_pitch_rate_skew", "skew_s", (0.04, 0.09)),
+    "r_skew": Withheld("r_pitch_rate_skew", "skew_s", (0.04, 0.09)),
+    "phi_skew": Withheld("bank_attitude_skew", "skew_s", (0.06, 0.12)),
+    "a_y_skew": Withheld("a_y_accelerometer_skew", "skew_s", (0.06, 0.12)),
+    "p_scale": Withheld("p_pitch_rate_scale", "scale", (0.06, 0.15)),
+    "r_scale": Withheld("r_pitch_rate_scale", "scale", (0.06, 0.15)),
+    "a_y_scale": Withheld("a_y_pitch_rate_scale", "scale", (0.06, 0.15)),
+    "accelerometer_offset": Withheld("a_y_accelerometer_offset", "arm_m", (0.2, 0.5)),
+    "propeller_roll": Withheld("throttle_thrust_moment", "aileron_rad", (0.03, 0.08)),
+    "side_turbulence": Withheld("", "sigma_v_m_s", (0.05, 0.3), is_named=False),
+}
+"""Name in the simulator to what is withheld."""
+KNOWN = SideControl(lag_s=0.0, delay_s=0.0)
+AIRCRAFT = Aircraft(aileron=KNOWN, rudder=KNOWN, model=dict(UAV))
+TIMES = {"lead_in_s": 4.0, "gap_s": 3.0, "settling_s": 1.5, "free_s": 3.0, "closing_s": 2.0}
+
+
+def diagnosed(seed: int, effects: Mapping[str, Mapping[str, float]], folder: Path) -> SideGap | None:
+    """Fly effects, and return the diagnosis; None where no manoeuvre is accepted."""
+    log = folder / f"{seed}.tlog"
+    record(lateral_flight(Scenario(seed=seed, effects={n: dict(s) for n, s in effects.items()}, **TIMES)), log)
+    try:
+        return side_gap_of([log], AIRCRAFT)
+    except UnusableInputError:
+        return None
+    finally:
+        log.unlink()
+
+
+def rows(seed: int, each: int, clean: int, only: list[str], folder: Path) -> Iterator[str]:
+    """Yield a row a flight, then the counts."""
+    rng = np.random.default_rng(seed)
+    right = named = false = size_right = 0
+    for name, case in CASES.items():
+        for _ in range(each):
+            size = float(rng.uniform(*case.sizes)) * (rng.choice([-1.0, 1.0]) if "scale" in name else 1.0)
+            flight = int(rng.integers(2**31))
+            if only and name not in only:
+                continue
+            found = diagnosed(flight, {name: {case.parameter: size}}, folder)
+            told, holds, fits = judged(found, case, size)
+            if case.is_named:
+                named, right, size_right = named + 1, right + holds, size_right + fits
+            else:
+                false += not holds
+            yield f"| {name} | {size:.3g} | {told} | {'yes' if holds else 'NO'} | {'yes' if fits else 'no'} |"
+    for _ in range(0 if only else clean):
+        found = diagnosed(int(rng.integers(2**31)), {}, folder)
+        told, holds, _ = judged(found, Withheld("", "", (0.0, 0.0), is_named=False), 0.0)
+        false += not holds or found is None or found.verdict != "none"
+        yield f"| nothing | | {told} | {'yes' if holds else 'NO'} | |"
+    yield f"{right} of {named} effects named, {size_right} with the right size; {false} false alarms"
+
+
+def judged(found: SideGap | None, case: Withheld, size: float) -> tuple[str, bool, bool]:
+    """Return the answer in words, whether it is right, and whether its size is."""
+    if found is None or found.diagnosis is None:
+        return "no answer", False, False
+    d = found.diagnosis
+    if found.verdict != "effect" or not d.causes:
+        return f"{found.verdict} ({d.none:.2f}, {d.parameters:.2f})", not case.is_named, False
+    first = d.causes[0]
+    told = first.cause.parameters[next(iter(first.cause.parameters))]
+    near = abs(told.value - size) <= max(NORMAL_95 * told.std, 0.15 * abs(size))
+    said = f"{first.name} {told.value:.3g} ± {NORMAL_95 * told.std:.2g} ({first.cause.probability:.2f})"
+    holds = case.is_named and first.name == case.name
+    return said, holds, holds and near
+
+
+def main() -> int:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("seed", type=int)
+    parser.add_argument("--each", type=int, default=3)
+    parser.add_argument("--clean", type=int, default=6)
+    parser.add_argument("--only", nargs="*", default=[])
+    asked = parser.parse_args()
+    print("| withheld | size | told | right | size |\n|---|---|---|---|---|")
+    with tempfile.TemporaryDirectory() as folder:
+        for row in rows(asked.seed, asked.each, asked.clean, asked.only, Path(folder)):
+            print(row, flush=True)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
