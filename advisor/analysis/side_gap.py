@@ -4,10 +4,10 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.side_gap.comparison import SideGap, compare_side
 from advisor.analysis.whole_flights import read_whole
 from advisor.flight.maneuvers.marks import Mark
 from advisor.oem.estimate import NoEstimate
+from advisor.side_gap.comparison import SideGap, compare_side
 from advisor.words.problems import Problem, UnusableInputError
 
 

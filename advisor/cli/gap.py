@@ -61,7 +61,7 @@ _OF_A_PLAN = {
     type=click.Choice(["pitch", "lateral"]),
     default="pitch",
     show_default=True,
-    help="Axis that is diagnosed. On the lateral one, numbers alone are compared.",
+    help="Axis that is diagnosed. On the lateral one, of roll and yaw, nothing is exported.",
 )
 @click.option("--why", is_flag=True, help="Print what speaks for the answer, and every decision on the way.")
 @click.option(

@@ -83,10 +83,12 @@ def compare_side(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> SideGap |
     case = case_of(maneuvers, aircraft, estimate.theta)
     diagnosis = None if isinstance(case, NoEstimate) else diagnose_side(case)
     verdict = _verdict(diagnosis, bool(stated), statistic > limit)
-    holdout, before, after = _held_out(maneuvers, aircraft)
+    holdout, before, after = _held_out(maneuvers, aircraft, model)
     return SideGap(
         verdict,
-        diagnosis.causes[0].sentence if verdict == "effect" and diagnosis else _sentence(verdict, derivatives),
+        diagnosis.causes[0].sentence
+        if verdict == "effect" and diagnosis
+        else _sentence(verdict, derivatives),
         derivatives,
         statistic,
         limit,
@@ -109,14 +111,14 @@ def _verdict(
 
 
 def _held_out(
-    maneuvers: Sequence[Maneuver], aircraft: Aircraft
+    maneuvers: Sequence[Maneuver], aircraft: Aircraft, whole: LateralEstimate
 ) -> tuple[tuple[int, ...], Mapping[str, float], Mapping[str, float]]:
     """Return the manoeuvres held out, and their gap by output before and after; empty where the others do
     not fly every control."""
     kept = maneuvers[: -(len(maneuvers) // HELD_OUT)] if len(maneuvers) >= HELD_OUT else maneuvers[:0]
     unseen = maneuvers[len(kept) :]
-    model, whole = estimate_lateral(kept, aircraft), estimate_lateral(maneuvers, aircraft)
-    if isinstance(model, NoEstimate) or isinstance(whole, NoEstimate) or set(model.flown) != set(whole.flown):
+    model = estimate_lateral(kept, aircraft)
+    if isinstance(model, NoEstimate) or set(model.flown) != set(whole.flown):
         return (), {}, {}
     given = np.array(
         [
@@ -151,7 +153,9 @@ def _sentence(verdict: str | None, derivatives: Sequence[ComparedDerivative]) ->
             "and the like."
         )
     if verdict == "none":
-        return "The simulator's derivatives of roll and yaw are those of the flight, and no effect is missing."
+        return (
+            "The simulator's derivatives of roll and yaw are those of the flight, and no effect is missing."
+        )
     wrong = [one.name for one in derivatives if one.differs]
     listed = f": {', '.join(wrong)}" if wrong else " together, though none alone"
     return f"The simulator's derivatives of roll and yaw are not those of the flight{listed}."

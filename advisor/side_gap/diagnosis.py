@@ -4,7 +4,7 @@ An effect goes with right or with wrong derivatives, both equally likely before 
 never more than what it gains on manoeuvres that the fit has not seen.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
@@ -13,22 +13,28 @@ import numpy as np
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG
 from advisor.gap.judge.prior import FIELD, FieldPrior
-from advisor.gap.result import Cause, Value
+from advisor.gap.result import Cause, Value, spelled
 from advisor.gap.verdict.statements import what
-from advisor.side_gap.effects import SideEffect, side_effects
+from advisor.side_gap.effects import SideEffect, side_effects, unseen
 from advisor.side_gap.evidence import (
     Gain,
-    held_out_gain,
-    held_out_squares,
+    Squares,
+    gain_of,
     information_of,
     log_evidence,
     posterior_of,
     probabilities,
     share_of,
+    squares_of,
 )
-from advisor.side_gap.fit import N, Fit
-from advisor.side_gap.models import Case, effect_fit, plain_fit, refitted, simulated
+from advisor.side_gap.fit import Fit, N, Point
+from advisor.side_gap.models import Case, best_start, effect_fit, plain_fit, refitted, simulated
 
+FITTED = 5
+"""Number of effects that are fitted in full: those that leave least after a linear refit. The others take
+part with no probability."""
+LIKELY = 0.01
+"""Probability above which an effect is fitted again with the likelier tolerance of the derivatives."""
 PEAKS = ("p", "r")
 """Outputs whose largest errors are reported."""
 
@@ -52,6 +58,11 @@ class SideCause:
         """Name of the effect with its control or output."""
         return f"{self.of}_{self.cause.effect}"
 
+    @property
+    def named(self) -> str:
+        """Name of the effect as people write it."""
+        return f"{spelled(self.cause.effect)} of {self.of}"
+
 
 @dataclass(frozen=True, slots=True)
 class SideDiagnosis:
@@ -67,6 +78,8 @@ class SideDiagnosis:
     """Largest error of roll and yaw rate with the simulator's derivatives, rad/s."""
     peaks_by_numbers: Mapping[str, float]
     """Largest error with the flight's derivatives and no effect, rad/s."""
+    cannot_see: Mapping[str, str]
+    """What these records cannot show, with the reason."""
 
     @property
     def verdict(self) -> Literal["none", "parameters", "effect"]:
@@ -102,7 +115,7 @@ def diagnose_side(case: Case, prior: FieldPrior = FIELD, listed: int = 5) -> Sid
     """
     first = plain_fit(case)
     share = 1.0 if first is None else share_of(first)
-    plain = plain_fit(case, share) if first is not None else None
+    plain = None if first is None else refitted(case, first, ERROR_IF_WRONG, share)
     as_given = None if plain is None else simulated(case, plain)
     if plain is None or as_given is None:
         return None
@@ -111,9 +124,14 @@ def diagnose_side(case: Case, prior: FieldPrior = FIELD, listed: int = 5) -> Sid
         log_evidence(plain, told, case.known(tolerance, plain.free), share)
         for tolerance in (ERROR_IF_RIGHT, ERROR_IF_WRONG)
     )
-    held = held_out_squares(plain, told, case.known(ERROR_IF_WRONG, plain.free))
+    left = squares_of(plain, told, case.known(ERROR_IF_WRONG, plain.free))
     table = list(side_effects(case.flown))
-    tried = [one for one in (_tried(case, plain, e, held, share) for e in table) if one is not None]
+    starts = sorted(((best_start(case, plain, e), e) for e in table), key=lambda one: one[0].squares)
+    tried = [
+        one
+        for one in (_tried(case, plain, e, start.point, left, share) for start, e in starts[:FITTED])
+        if one is not None
+    ]
     each = prior.effect / max(len(table), 1)
     found = probabilities(
         [none, parameters, *(one.evidence for one in tried)],
@@ -124,37 +142,43 @@ def diagnose_side(case: Case, prior: FieldPrior = FIELD, listed: int = 5) -> Sid
         float(found[0]),
         float(found[1]),
         {one.effect.name: float(p) for one, p in zip(tried, found[2:], strict=True)},
-        tuple(_cause(case, tried[k], float(found[2 + k]), share) for k in order if tried[k].evidence > -np.inf),
+        tuple(_cause(case, tried[k], float(found[2 + k]), share) for k in order),
         peaks_of(as_given),
         peaks_of(plain),
+        unseen(case.flown),
     )
 
 
-def _tried(case: Case, plain: Fit, effect: SideEffect, held: FloatArray, share: float) -> _Tried | None:
+def _tried(
+    case: Case, plain: Fit, effect: SideEffect, begin: Point, left: Squares, share: float
+) -> _Tried | None:
     """Return an effect with its evidence; None where no fit exists or its size is below the least one."""
-    fit = effect_fit(case, plain, effect, share)
+    fit = effect_fit(case, plain, effect, begin, share)
     if fit is None or abs(_sizes(case, effect, fit)[0]) < effect.variant.smallest:
         return None
     told = information_of(fit, share)
-    wrong_known = case.known(ERROR_IF_WRONG, fit.free)
     counts = np.bincount(fit.assembly.channel, minlength=len(fit.noise)).astype(float)
-    gain = held_out_gain(held, held_out_squares(fit, told, wrong_known), counts, share)
-    in_fit = share**2 * (fit.likelihood - plain.likelihood)
     # Half of the prior lies below zero, where the bounds exclude a size.
-    extra = min(gain.total - in_fit, 0.0) + (np.log(2.0) if effect.is_one_sided else 0.0)
+    extra = np.log(2.0) if effect.is_one_sided else 0.0
     if effect.sides is not None:
         extra -= len(case.flown) * np.log(len(effect.sides[1]))
-    right, wrong = (
-        log_evidence(fit, told, case.known(tolerance, fit.free), share) + extra
-        for tolerance in (ERROR_IF_RIGHT, ERROR_IF_WRONG)
-    )
-    return _Tried(effect, fit, right, wrong, gain)
+    evidence, gains = [], []
+    for tolerance in (ERROR_IF_RIGHT, ERROR_IF_WRONG):
+        known = case.known(tolerance, fit.free)
+        own = squares_of(fit, told, known)
+        in_fit = gain_of(left.in_fit, own.in_fit, counts, share)
+        gains.append(gain_of(left.held_out, own.held_out, counts, share))
+        lost = min(gains[-1].total - in_fit.total, 0.0)
+        evidence.append(log_evidence(fit, told, known, share) + extra + lost)
+    right, wrong = evidence
+    return _Tried(effect, fit, right, wrong, gains[int(wrong > right)])
 
 
 def _cause(case: Case, tried: _Tried, probability: float, share: float) -> SideCause:
     effect, fit = tried.effect, tried.fit
     tolerance = ERROR_IF_RIGHT if tried.right > tried.wrong else ERROR_IF_WRONG
-    fit = refitted(case, fit, tolerance, share) or fit
+    if probability > LIKELY:
+        fit = refitted(case, fit, tolerance, share) or fit
     mean, covariance = posterior_of(fit, information_of(fit, share), case.known(tolerance, fit.free))
     places = [one.place for one in fit.free]
     at = [N + places.index(place) for place in effect.places]

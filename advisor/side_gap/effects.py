@@ -47,8 +47,7 @@ class SideEffect:
         return f"{self.of}_{self.variant.effect}"
 
     def said(self, sentence: str) -> str:
-        """Return the pitch axis' sentence in the words of this axis; the control leads where the sentence names
-        none."""
+        """Return the pitch axis' sentence in the words of this axis; the control leads where none changes."""
         for old, new in self.words.items():
             if old in sentence:
                 return sentence.replace(old, new)
@@ -58,6 +57,12 @@ class SideEffect:
     def is_one_sided(self) -> bool:
         """Whether the first parameter cannot be negative."""
         return self.variant.bounds[0][0] >= 0.0
+
+    @property
+    def starts(self) -> tuple[tuple[float, ...], ...]:
+        """Sizes at which a search starts; both signs of the prior's width where the table has only zero."""
+        told = self.variant.starts
+        return told if any(start[0] for start in told) else (self.std, tuple(-s for s in self.std))
 
     @property
     def sides(self) -> tuple[Place, tuple[float, ...]] | None:
@@ -74,10 +79,21 @@ _SERVO = (
 )
 """Effects of a servo, with entries and prior standard deviations: servos of small aircraft lag by 50 ms and
 move 40 deg/s to none; play and dead bands of half a degree are worn linkages."""
-_SPOKEN = {"p": "roll rate", "r": "yaw rate", "bank": "attitude", "a_y": "lateral acceleration", "beta": "sideslip"}
-_SKEWED = {"p": "pitch_rate_skew", "r": "pitch_rate_skew", "bank": "attitude_skew", "a_y": "accelerometer_skew"}
+_SPOKEN = {
+    "p": "roll rate",
+    "r": "yaw rate",
+    "bank": "attitude",
+    "a_y": "lateral acceleration",
+    "beta": "sideslip",
+}
+_SKEWED = {
+    "p": "pitch_rate_skew",
+    "r": "pitch_rate_skew",
+    "bank": "attitude_skew",
+    "a_y": "accelerometer_skew",
+}
 _SCALED = ("p", "r", "a_y")
-_SCALE_STD, _SKEW_STD_S, _ARM_STD_M = 0.1, 0.05, 0.3
+_SCALE_STD, _SKEW_STD_S, _ARM_STD_M = 0.1, 0.1, 0.3
 """Prior standard deviations of a scale error, 1, of late stamps, s, and of an accelerometer's arm, m."""
 
 
@@ -96,11 +112,29 @@ def side_effects(flown: Flown) -> Iterator[SideEffect]:
         yield SideEffect(of, SCALE, ((of, "scale"),), (_SCALE_STD,), {"pitch rate": _SPOKEN[of]})
     if "a_y" in measured:
         yield SideEffect("a_y", ARM, (("a_y", "arm_m"),), (_ARM_STD_M,))
-    if any(t is not None and np.ptp(t.y) > THROTTLE_MOVES for t in flown.throttle):
+    if _throttle_moves(flown):
         yield _propeller()
+
+
+def unseen(flown: Flown) -> Mapping[str, str]:
+    """Return what the records cannot show, with the reason."""
+    problem = flown.problem
+    found = {"a constant error of p, r, φ or a_y": "each manoeuvre has its own trim and biases"}
+    for of in LATERAL.inputs:
+        if not problem.flies(of):
+            found[f"the servo of the {of}"] = f"the {of} is not flown"
+    if not _throttle_moves(flown):
+        found["roll due to the propeller"] = "the throttle stands still"
+    return found
+
+
+def _throttle_moves(flown: Flown) -> bool:
+    return any(t is not None and np.ptp(t.y) > THROTTLE_MOVES for t in flown.throttle)
 
 
 def _propeller() -> SideEffect:
     """Return the roll due to the propeller, as the aileron that rolls as much at full throttle."""
-    torque = replace(ARM, effect="thrust_moment", block="moment_equation", names=("aileron_rad",), steps=(2e-4,))
+    torque = replace(
+        ARM, effect="thrust_moment", block="moment_equation", names=("aileron_rad",), steps=(2e-4,)
+    )
     return SideEffect("throttle", torque, (PROPELLER,), (0.05,))

@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.oem.covariance import colours_of, cramer_rao, coloured, Coloured, influence, widening
-from advisor.side_gap.fit import N, Fit, Known
+from advisor.oem.covariance import Coloured, coloured, colours_of, cramer_rao, influence, widening
+from advisor.side_gap.fit import Fit, Known
 
 
 class Information(NamedTuple):
@@ -69,17 +69,28 @@ def posterior_of(fit: Fit, told: Information, known: Known) -> tuple[FloatArray,
     return fit.values + covariance @ pull, covariance
 
 
-def held_out_squares(fit: Fit, told: Information, known: Known) -> FloatArray:
-    """Return the sums of squares (m, outputs) of each manoeuvre, predicted from all others.
+class Squares(NamedTuple):
+    """Sums of squares (m, outputs) that a model leaves under a prior."""
 
-    Derivatives and numbers come from the others and from the prior; trims, initial states and biases from the
-    manoeuvre itself.
-    """
+    in_fit: FloatArray
+    held_out: FloatArray
+    """Each manoeuvre predicted from all others. Derivatives and numbers come from these and from the prior.
+    Trims, initial states and biases come from the manoeuvre itself."""
+
+
+def squares_of(fit: Fit, told: Information, known: Known) -> Squares:
+    """Return what a model leaves in the fit, and on manoeuvres held out one by one."""
+    nothing = Information(np.zeros_like(told.matrix), np.zeros_like(told.gradient))
+    return Squares(_squares(fit, told, nothing, known), _squares(fit, told, told, known))
+
+
+def _squares(fit: Fit, told: Information, without: Information, known: Known) -> FloatArray:
+    """Return the sums of squares of each manoeuvre by a fit to the information ``told`` minus ``without``."""
     matrix, gradient = np.sum(told.matrix, axis=0), np.sum(told.gradient, axis=0)
     squares = np.zeros((fit.assembly.maneuvers, len(fit.noise)))
     for m in range(len(squares)):
-        posterior = matrix - told.matrix[m] + np.diag(known.precision)
-        pull = gradient - told.gradient[m] - known.precision * (fit.values - known.mean)
+        posterior = matrix - without.matrix[m] + np.diag(known.precision)
+        pull = gradient - without.gradient[m] - known.precision * (fit.values - known.mean)
         rows = fit.assembly.owner == m
         left = fit.residual[rows] - fit.columns[rows] @ np.linalg.solve(posterior, pull)
         squares[m] = np.bincount(fit.assembly.channel[rows], left**2, len(fit.noise))
@@ -87,14 +98,14 @@ def held_out_squares(fit: Fit, told: Information, known: Known) -> FloatArray:
 
 
 class Gain(NamedTuple):
-    """Log likelihood that one model gains over another on manoeuvres that neither has seen, nats."""
+    """Log likelihood that one model gains over another, nats."""
 
     total: float
     std: float
     """Standard error of the total, by the scatter of the manoeuvres."""
 
 
-def held_out_gain(before: FloatArray, after: FloatArray, counts: FloatArray, share: float) -> Gain:
+def gain_of(before: FloatArray, after: FloatArray, counts: FloatArray, share: float) -> Gain:
     """Return the gain between sums of squares (m, outputs), with ``counts`` (outputs,) samples."""
     told = counts > 0.0
     sums = before[:, told].sum(axis=0), after[:, told].sum(axis=0)

@@ -35,6 +35,8 @@ class Free(NamedTuple):
     """Step of the differences."""
     bounds: tuple[float, float] = (-np.inf, np.inf)
     mean: float = 0.0
+    column: FloatArray | None = None
+    """(N,) derivative of the outputs that an earlier fit has found; None: every step takes differences."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +73,8 @@ class Fit:
     """Log likelihood up to a constant, of white noise."""
     columns: FloatArray
     """(N, 15 + k) derivatives of the outputs, free of what trims, initial states and biases absorb."""
+    slopes: FloatArray
+    """(N, k) derivatives of the outputs by the free numbers alone."""
     sensitivities: FloatArray
     """(N, 15 + l) derivatives of the outputs by derivatives and local parameters."""
 
@@ -90,7 +94,9 @@ class Fit:
         return np.asarray(1.0 / self.noise[self.assembly.channel])
 
 
-def fitted(flown: Flown, begin: Point, free: Sequence[Free], known: Known, rounds: int = ROUNDS) -> Fit | None:
+def fitted(
+    flown: Flown, begin: Point, free: Sequence[Free], known: Known, rounds: int = ROUNDS
+) -> Fit | None:
     """Return the optimum from a start; None where the model runs away there."""
     at = _at(flown, begin, free, known)
     for _ in range(rounds):
@@ -124,7 +130,8 @@ def _at(flown: Flown, point: Point, free: Sequence[Free], known: Known) -> _At |
         return None
     noise, minus_twice = weigh(assembly.z, y, assembly.channel, FLOOR)
     off = np.concatenate([point.theta, _numbers(point, free)]) - known.mean
-    return _At(point, free, assembly, y, g, noise, -0.5 * minus_twice, minus_twice + off @ (known.precision * off))
+    cost = float(minus_twice + off @ (known.precision * off))
+    return _At(point, free, assembly, y, g, noise, -0.5 * minus_twice, cost)
 
 
 def _trials(flown: Flown, at: _At, known: Known) -> Iterator[_At | None]:
@@ -173,8 +180,14 @@ def _slopes(flown: Flown, at: _At) -> FloatArray:
     """Return the derivatives (N, k) of the outputs by the free numbers, by differences."""
     found = np.zeros((len(at.y), len(at.free)))
     for k, (one, value) in enumerate(zip(at.free, _numbers(at.point, at.free), strict=True)):
+        if one.column is not None:
+            found[:, k] = one.column
+            continue
         step = one.step if value + one.step <= one.bounds[1] else -one.step
-        y = outputs(flown, at.point._replace(setting=moved_to(at.point.setting, [one.place], [value + step])))
+        y = outputs(
+            flown,
+            at.point._replace(setting=moved_to(at.point.setting, [one.place], np.array([value + step]))),
+        )
         found[:, k] = (y - at.y) / step
     return found
 
@@ -192,9 +205,8 @@ def _numbers(point: Point, free: Sequence[Free]) -> FloatArray:
 
 
 def _finished(flown: Flown, at: _At) -> Fit:
-    columns = np.column_stack([at.g[:, :N], _slopes(flown, at)])
-    projected, _ = _projected(at, columns, 1.0 / at.noise[at.assembly.channel])
+    slopes = _slopes(flown, at)
+    projected, _ = _projected(at, np.column_stack([at.g[:, :N], slopes]), 1.0 / at.noise[at.assembly.channel])
     projected[:, [k for k in range(N) if k not in at.assembly.free]] = 0.0
-    return Fit(
-        at.point, at.assembly, tuple(at.free), at.y, at.noise, at.likelihood, projected, at.g
-    )
+    free = tuple(at.free)
+    return Fit(at.point, at.assembly, free, at.y, at.noise, at.likelihood, projected, slopes, at.g)

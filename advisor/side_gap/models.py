@@ -1,7 +1,8 @@
 """Models of a lateral flight: the plain one with natural lateness, and one for each effect."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,13 +18,16 @@ from advisor.oem.lateral_prepare import prepare_lateral
 from advisor.oem.lateral_start import lateral_start
 from advisor.oem.prepare import signal_of
 from advisor.side_gap.effects import SideEffect
-from advisor.side_gap.fit import N, Fit, Free, Known, Point, fitted, outputs
+from advisor.side_gap.fit import Fit, Free, Known, N, Point, fitted, outputs
 from advisor.side_gap.setting import COMMAND, Flown, Place, Setting
 
 SMALL_SHARE = 0.1
-"""Least size of a derivative for a relative error, over the size that is natural for it (``natural_size``)."""
+"""Least size of a derivative for a relative error, over its natural size (``natural_size``)."""
 NATURAL_STEP = 1e-3
 """Step of the differences of a natural number, s or m."""
+
+_ENTRIES = {"delay": "skew_s", "arm": "arm_m", "lag": "lag_s"}
+"""Kind of a nuisance parameter to its entry in a setting."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +66,6 @@ def case_of(maneuvers: Sequence[Maneuver], aircraft: Aircraft, theta: FloatArray
     throttle = tuple(
         signal_of(m.channels["throttle"]) if "throttle" in m.channels else None for m in maneuvers
     )
-    places: dict[str, Place] = {"command": COMMAND}
     setting: dict[Place, FloatArray] = {COMMAND: np.zeros(len(maneuvers))}
     natural = []
     for name in LATERAL.inputs:
@@ -71,9 +74,8 @@ def case_of(maneuvers: Sequence[Maneuver], aircraft: Aircraft, theta: FloatArray
             if value:
                 setting[name, entry] = np.full(len(maneuvers), value)
     for one in nuisances_of(problem, aircraft):
-        place = {"command": COMMAND, "delay": (one.of, "skew_s"), "arm": (one.of, "arm_m"), "lag": (one.of, "lag_s")}[
-            one.kind
-        ]
+        place = COMMAND if one.kind == "command" else (one.of, _ENTRIES[one.kind])
+        # A lag that the file leaves open is absent from the simulator: such a lag is an effect.
         if one.kind != "lag" or place in setting:
             natural.append(Free(place, one.prior.std, NATURAL_STEP * one.per_second, mean=one.prior.mean))
     forces = [record.outputs["a_y"].t for record in problem.records if "a_y" in record.outputs]
@@ -85,9 +87,9 @@ def case_of(maneuvers: Sequence[Maneuver], aircraft: Aircraft, theta: FloatArray
     return Case(Flown(problem, throttle), given, stated, tuple(natural), begin)
 
 
-def plain_fit(case: Case, share: float = 1.0) -> Fit | None:
+def plain_fit(case: Case) -> Fit | None:
     """Return the fit without an effect, with derivatives that may be wrong."""
-    return fitted(case.flown, case.begin, case.natural, case.known(ERROR_IF_WRONG, case.natural, share))
+    return fitted(case.flown, case.begin, case.natural, case.known(ERROR_IF_WRONG, case.natural))
 
 
 def simulated(case: Case, plain: Fit) -> Fit | None:
@@ -96,10 +98,16 @@ def simulated(case: Case, plain: Fit) -> Fit | None:
     return fitted(case.flown, plain.point._replace(theta=case.theta), plain.free, known)
 
 
-def free_with(case: Case, effect: SideEffect) -> tuple[Free, ...]:
-    """Return the free numbers of a model with an effect, which replaces a natural number at its place."""
+def free_with(case: Case, effect: SideEffect, plain: Fit) -> tuple[Free, ...]:
+    """Return the free numbers of a model with an effect, which replaces a natural number at its place.
+
+    The natural numbers keep the derivatives of the plain fit."""
     variant = effect.variant
-    kept = [one for one in case.natural if one.place not in effect.places]
+    kept = [
+        one._replace(column=plain.slopes[:, k])
+        for k, one in enumerate(plain.free)
+        if one.place not in effect.places
+    ]
     base = [_value(case.begin.setting, place) for place in effect.places]
     own = [
         Free(place, std, step, (min(low, low + at), high + at), at)
@@ -110,10 +118,17 @@ def free_with(case: Case, effect: SideEffect) -> tuple[Free, ...]:
     return (*kept, *own)
 
 
-def effect_fit(case: Case, plain: Fit, effect: SideEffect, share: float) -> Fit | None:
-    """Return the fit with an effect, from its best start, with derivatives that may be wrong."""
-    free = free_with(case, effect)
-    begin = min(_starts(case, plain, effect), key=lambda start: start[0])[1]
+class Start(NamedTuple):
+    """A start of an effect's fit."""
+
+    squares: float
+    """Sum of squares over the noise, after a linear refit of all else."""
+    point: Point
+
+
+def effect_fit(case: Case, plain: Fit, effect: SideEffect, begin: Point, share: float) -> Fit | None:
+    """Return the fit with an effect from a start, with derivatives that may be wrong."""
+    free = free_with(case, effect, plain)
     return fitted(case.flown, begin, free, case.known(ERROR_IF_WRONG, free, share))
 
 
@@ -122,25 +137,37 @@ def refitted(case: Case, fit: Fit, tolerance: float, share: float) -> Fit | None
     return fitted(case.flown, fit.point, fit.free, case.known(tolerance, fit.free, share))
 
 
-def _starts(case: Case, plain: Fit, effect: SideEffect) -> Iterator[tuple[float, Point]]:
-    """Yield every start of an effect with its sum of squares, after a linear refit of all else."""
+def best_start(case: Case, plain: Fit, effect: SideEffect) -> Start:
+    """Return the start of an effect that leaves least, by one simulation for each start of the table."""
+    return min(_starts(case, plain, effect), key=lambda start: start.squares)
+
+
+def _starts(case: Case, plain: Fit, effect: SideEffect) -> Iterator[Start]:
+    """Yield every start of an effect. Along the way from no effect to a start the outputs count as linear."""
     left = _Left(case, plain)
     place, sides = effect.sides or (("", ""), (0.0,))
-    for values in effect.variant.starts:
+    for values in effect.starts:
         setting = dict(plain.point.setting)
-        for at, value in zip(effect.places, values, strict=True):
-            setting[at] = np.full(len(case.flown), _value(case.begin.setting, at) + value)
-        if effect.sides is None:
-            point = plain.point._replace(setting=setting)
-            yield float(np.sum(left.squares(outputs(case.flown, point)))), point
-            continue
+        base = [_value(case.begin.setting, at) for at in effect.places]
+        for at, value, known in zip(effect.places, values, base, strict=True):
+            setting[at] = np.full(len(case.flown), known + value)
         tried = []
         for side in sides:
             setting[place] = np.full(len(case.flown), side)
-            tried.append(left.squares(outputs(case.flown, plain.point._replace(setting=setting))))
-        best = np.argmin(tried, axis=0)
-        setting[place] = np.array(sides)[best]
-        yield float(np.sum(np.min(tried, axis=0))), plain.point._replace(setting=setting)
+            tried.append(left.along(outputs(case.flown, plain.point._replace(setting=setting))))
+        squares = np.array([squares for _, squares in tried])
+        best = np.argmin(squares, axis=0)
+        if effect.sides is None:
+            del setting[place]
+            share = float(np.clip(tried[0][0], *SECANT))
+            setting[effect.places[0]] = np.full(len(case.flown), base[0] + share * values[0])
+        else:
+            setting[place] = np.array(sides)[best]
+        yield Start(float(np.sum(np.min(squares, axis=0))), plain.point._replace(setting=setting))
+
+
+SECANT = (0.25, 2.0)
+"""Least and greatest part of a start that the straight line from no effect may suggest."""
 
 
 class _Left:
@@ -148,24 +175,30 @@ class _Left:
 
     def __init__(self, case: Case, plain: Fit) -> None:
         self._plain = plain
-        self._known = case.known(ERROR_IF_WRONG, plain.free)
+        known = case.known(ERROR_IF_WRONG, plain.free)
         self._columns = plain.columns * plain.weight[:, None]
+        self._information = self._columns.T @ self._columns + np.diag(known.precision)
         own = plain.assembly.free[plain.assembly.free >= N]
         self._own = plain.sensitivities[:, own] * plain.weight[:, None]
+        self._parts = [plain.assembly.owner == m for m in range(plain.assembly.maneuvers)]
+        self._begin = self._without(plain.residual * plain.weight)
 
-    def squares(self, y: FloatArray) -> FloatArray:
-        """Return the sum of squares (m,) of each manoeuvre, over the noise, for outputs ``y`` (N,)."""
-        plain = self._plain
-        left = (plain.assembly.z - y) * plain.weight
-        if not np.all(np.isfinite(left)):
-            return np.full(plain.assembly.maneuvers, np.inf)
-        parts = [plain.assembly.owner == m for m in range(plain.assembly.maneuvers)]
-        for rows in parts:
+    def along(self, y: FloatArray) -> tuple[float, FloatArray]:
+        """Return the best part of the way to outputs ``y`` (N,), and the sums of squares (m,) left there."""
+        if not np.all(np.isfinite(y)):
+            return 1.0, np.full(len(self._parts), np.inf)
+        way = self._without((y - self._plain.fitted) * self._plain.weight)
+        share = float(way @ self._begin) / max(float(way @ way), 1e-12)
+        left = self._begin - float(np.clip(share, *SECANT)) * way
+        return share, np.array([float(left[rows] @ left[rows]) for rows in self._parts])
+
+    def _without(self, left: FloatArray) -> FloatArray:
+        """Return weighed rows (N,) without what all other parameters absorb."""
+        left = left.copy()
+        for rows in self._parts:
             mine = self._own[rows]
             left[rows] -= mine @ np.linalg.lstsq(mine, left[rows], rcond=None)[0]
-        information = self._columns.T @ self._columns + np.diag(self._known.precision)
-        left -= self._columns @ np.linalg.solve(information, self._columns.T @ left)
-        return np.array([float(left[rows] @ left[rows]) for rows in parts])
+        return np.asarray(left - self._columns @ np.linalg.solve(self._information, self._columns.T @ left))
 
 
 def _value(setting: Setting, place: Place) -> float:

@@ -99,4 +99,5 @@ def _deflected(command: Signal, p: FloatArray) -> Signal:
     begin, trim = float(command.t[0]), float(command.y[0])
     n = int(np.ceil((command.t[-1] - begin) / LONGEST_STEP_S)) + 1
     mean = surface(LONGEST_STEP_S, n, command.t - begin, command.y, False, trim, p)
-    return Signal(begin + LONGEST_STEP_S * (np.arange(n) + 0.5), trim + mean)
+    t = begin + LONGEST_STEP_S * (np.arange(n, dtype=np.float64) + 0.5)
+    return Signal(t, trim + mean)

@@ -26,7 +26,7 @@ class SideKit:
     """Stages between command and surface, by control."""
     fittings: Fittings = field(default_factory=Fittings)
     torque_rad: float = 0.0
-    """Roll due to the propeller at full throttle, as the deflection of the aileron that rolls as much, rad."""
+    """Roll due to the propeller at full throttle, as an equivalent deflection of the aileron, rad."""
     swing: float = 0.0
     """Amplitude of the throttle's slow swing, 0..1."""
     side_gusts: DrydenTurbulence | None = None
@@ -113,9 +113,13 @@ def side_kit(seed: int, effects: Mapping[str, Sizes]) -> SideKit:
     kit = SideKit(seed)
     for name, given in effects.items():
         if name not in SIDE:
-            raise ScenarioError([f"effects.{name}: unknown effect of roll and yaw, choose from {', '.join(SIDE)}"])
+            raise ScenarioError(
+                [f"effects.{name}: unknown effect of roll and yaw, choose from {', '.join(SIDE)}"]
+            )
         known = SIDE[name].sizes
         if wrong := sorted(given.keys() - known.keys()):
-            raise ScenarioError([f"effects.{name}.{wrong[0]}: unknown parameter, choose from {', '.join(known)}"])
+            raise ScenarioError(
+                [f"effects.{name}.{wrong[0]}: unknown parameter, choose from {', '.join(known)}"]
+            )
         SIDE[name].fit(kit, {**known, **given})
     return kit
