@@ -112,11 +112,6 @@ def rows(seed: int, each: int, clean: int, only: list[str]) -> Iterator[str]:
     """Yield a row a flight, then the counts."""
     rng = np.random.default_rng(seed)
     right = named = false = size_right = 0
-    for _ in range(0 if only else clean):
-        found = diagnosed(int(rng.integers(2**31)), {})
-        told, holds, _ = judged(found, Withheld("", "", (0.0, 0.0), is_named=False), 0.0)
-        false += not holds
-        yield f"| nothing | | {told} | {'yes' if holds else 'NO'} | |"
     for _ in range(each):
         for name, case in CASES.items():
             size = float(rng.uniform(*case.sizes)) * (rng.choice([-1.0, 1.0]) if "scale" in name else 1.0)
@@ -130,6 +125,11 @@ def rows(seed: int, each: int, clean: int, only: list[str]) -> Iterator[str]:
             else:
                 false += not holds
             yield f"| {name} | {size:.3g} | {told} | {'yes' if holds else 'NO'} | {'yes' if fits else 'no'} |"
+    for _ in range(0 if only else clean):
+        found = diagnosed(int(rng.integers(2**31)), {})
+        told, holds, _ = judged(found, Withheld("", "", (0.0, 0.0), is_named=False), 0.0)
+        false += not holds
+        yield f"| nothing | | {told} | {'yes' if holds else 'NO'} | |"
     yield f"{right} of {named} effects named, {size_right} with the right size; {false} false alarms"
 
 

@@ -190,8 +190,8 @@ def _cause(case: Case, tried: _Tried, probability: float, share: float) -> SideC
     }
     if effect.variant.inverted:
         name = effect.variant.names[0]
-        slow = parameters[name]
-        parameters[name] = Value(1.0 / slow.value, slow.std / slow.value**2)
+        inverse, error = max(parameters[name].value, effect.variant.smallest), parameters[name].std
+        parameters[name] = Value(1.0 / inverse, error / inverse**2)
     cause = Cause(
         effect.variant.effect, effect.variant.block, probability, parameters, (), "", float(np.nan), True
     )

@@ -11,7 +11,9 @@ from typing import NamedTuple
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
+from advisor.oem.between import widened_by_scatter
 from advisor.oem.covariance import Coloured, coloured, colours_of, cramer_rao, influence, widening
+from advisor.oem.solution import contributions_of
 from advisor.side_gap.fit import Fit, Known
 
 
@@ -37,15 +39,16 @@ def information_of(fit: Fit, share: float) -> Information:
 
 
 def share_of(fit: Fit) -> float:
-    """Return the standard deviation of white noise over that of the coloured residuals, in their effect on
-    the derivatives."""
+    """Return the error of the derivatives by white noise over their error by the residuals: coloured within a
+    manoeuvre, and scattered between manoeuvres."""
     told = influence(fit.assembly, fit.sensitivities, fit.noise)
     if told is None:
         return 1.0
     colours = colours_of(fit.assembly, fit.residual, fit.sensitivities)
     noise = Coloured(colours, widening(fit.assembly, told.rows, colours))
     bound = np.diag(cramer_rao(fit.assembly, told.rows, fit.noise))
-    found = np.diag(coloured(fit.assembly, told.rows, noise))
+    pulls = contributions_of(fit.assembly, told.rows, fit.residual)
+    found = np.diag(widened_by_scatter(coloured(fit.assembly, told.rows, noise), pulls))
     ratio = np.sqrt(bound[found > 0.0] / found[found > 0.0])
     return float(np.clip(np.median(ratio), 0.0, 1.0)) if len(ratio) else 1.0
 
