@@ -79,7 +79,7 @@ class SideDiagnosis:
     peaks_by_numbers: Mapping[str, float]
     """Largest error with the flight's derivatives and no effect, rad/s."""
     cannot_see: Mapping[str, str]
-    """What these records cannot show, with the reason."""
+    """Causes that these records cannot show, with the reason."""
 
     @property
     def verdict(self) -> Literal["none", "parameters", "effect"]:

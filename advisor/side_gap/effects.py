@@ -36,8 +36,8 @@ class SideEffect:
     places: tuple[Place, ...]
     """Place of each parameter."""
     std: tuple[float, ...]
-    """Standard deviation of each parameter about zero before the flight, over the aircraft that have the
-    effect; half of a Gaussian where the bounds exclude negative sizes."""
+    """Standard deviation of each parameter about zero before the flight, over the aircraft with the effect.
+    Where the bounds exclude negative sizes, the prior is half of a Gaussian."""
     words: Mapping[str, str] = field(default_factory=dict)
     """Words of the pitch axis' sentence to those of this axis."""
 
@@ -77,8 +77,8 @@ _SERVO = (
     (BACKLASH, ("half_play_rad",), (0.01,)),
     (DEADBAND_ABOUT_TRIM, ("half_deadband_rad", "neutral_rad"), (0.01, 0.005)),
 )
-"""Effects of a servo, with entries and prior standard deviations: servos of small aircraft lag by 50 ms and
-move 40 deg/s to none; play and dead bands of half a degree are worn linkages."""
+"""Effects of a servo, with entries and prior standard deviations. Servos of small aircraft lag by 50 ms. A
+slowness of 1.5 s/rad is a rate of 40 deg/s. Worn linkages have half a degree of play."""
 _SPOKEN = {
     "p": "roll rate",
     "r": "yaw rate",

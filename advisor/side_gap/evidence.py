@@ -18,7 +18,7 @@ from advisor.side_gap.fit import Fit, Known
 
 
 class Information(NamedTuple):
-    """What the rows of each manoeuvre say of derivatives and numbers."""
+    """Information of each manoeuvre about derivatives and numbers."""
 
     matrix: FloatArray
     """(m, k, k)"""
@@ -82,7 +82,7 @@ class Squares(NamedTuple):
 
 
 def squares_of(fit: Fit, told: Information, known: Known) -> Squares:
-    """Return what a model leaves in the fit, and on manoeuvres held out one by one."""
+    """Return the squares of a model in the fit, and on manoeuvres held out one by one."""
     nothing = Information(np.zeros_like(told.matrix), np.zeros_like(told.gradient))
     return Squares(_squares(fit, told, nothing, known), _squares(fit, told, told, known))
 

@@ -21,7 +21,7 @@ from advisor.exports.models.improvement import require_reference
 from advisor.flight.signals.standard_atmosphere import standard_density, standard_pressure
 
 KEYS = {"beta": "b", "p": "p", "r": "r", "delta_a": "deltaa", "delta_r": "deltar"}
-"""What a derivative multiplies, in the spelling of ArduPilot's keys."""
+"""Factor of a derivative to the spelling of ArduPilot's keys."""
 _CONTROLS = {"delta_a": "aileron", "delta_r": "rudder"}
 
 
