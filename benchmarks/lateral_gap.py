@@ -49,15 +49,15 @@ _SERVO = {
 }
 CASES: dict[str, Withheld] = {
     **{f"{c}_{n}": Withheld(f"{c}_{n}", p, s) for c in ("aileron", "rudder") for n, (p, s) in _SERVO.items()},
-    "p_skew": Withheld("p_pitch_rate_skew", "skew_s", (0.04, 0.09)),
-    "r_skew": Withheld("r_pitch_rate_skew", "skew_s", (0.04, 0.09)),
-    "phi_skew": Withheld("bank_attitude_skew", "skew_s", (0.12, 0.2)),
-    "a_y_skew": Withheld("a_y_accelerometer_skew", "skew_s", (0.12, 0.2)),
-    "p_scale": Withheld("p_pitch_rate_scale", "scale", (0.06, 0.15)),
-    "r_scale": Withheld("r_pitch_rate_scale", "scale", (0.06, 0.15)),
-    "a_y_scale": Withheld("a_y_pitch_rate_scale", "scale", (0.06, 0.15)),
-    "accelerometer_offset": Withheld("a_y_accelerometer_offset", "arm_m", (0.2, 0.5)),
-    "propeller_roll": Withheld("throttle_thrust_moment", "aileron_rad", (0.03, 0.08)),
+    "p_skew": Withheld("late_roll_rate_stamps", "skew_s", (0.04, 0.09)),
+    "r_skew": Withheld("late_yaw_rate_stamps", "skew_s", (0.04, 0.09)),
+    "phi_skew": Withheld("late_attitude_stamps", "skew_s", (0.12, 0.2)),
+    "a_y_skew": Withheld("late_accelerometer_stamps", "skew_s", (0.12, 0.2)),
+    "p_scale": Withheld("roll_rate_scale", "scale", (0.06, 0.15)),
+    "r_scale": Withheld("yaw_rate_scale", "scale", (0.06, 0.15)),
+    "a_y_scale": Withheld("lateral_acceleration_scale", "scale", (0.06, 0.15)),
+    "accelerometer_offset": Withheld("accelerometer_offset", "arm_m", (0.2, 0.5)),
+    "propeller_roll": Withheld("propeller_roll", "aileron_rad", (0.03, 0.08)),
     "side_turbulence": Withheld("", "sigma_v_m_s", (0.05, 0.3), is_named=False),
 }
 """Name in the simulator to what is withheld."""

@@ -131,7 +131,7 @@ def command(
     if axis == "lateral":
         from advisor.cli.side_gap import compare_lateral
 
-        return compare_lateral(asked, aircraft, as_json)
+        return compare_lateral(asked, aircraft, as_json, prior)
     decided = [decided_on(log, asked.no_marks) for log in asked.logs]
     by_hand = [replace(before, marks=(*asked.marks, *before.marks)) for before in decided]
     if out is not None:

@@ -14,6 +14,7 @@ from advisor.cli.log_options import LogsAsked
 from advisor.cli.options import UNUSABLE
 from advisor.cli.stages import Stages
 from advisor.gap.document import changed_document, gap_document
+from advisor.gap.judge.prior import FIELD, field_prior
 from advisor.report.gap_reasons import in_percent
 from advisor.report.gap_sizes import sizes_of
 from advisor.side_gap.comparison import SideGap
@@ -24,13 +25,19 @@ from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import symbol
 
 
-def compare_lateral(asked: LogsAsked, aircraft: Aircraft, as_json: bool) -> int:
+def compare_lateral(asked: LogsAsked, aircraft: Aircraft, as_json: bool, prior: str | None = None) -> int:
     """Compare roll and yaw of the aircraft file with the flight, and print the result."""
     try:
         with Stages() as tell:
             tell("reading and comparing", 0.0)
+            shares = FIELD if prior is None else field_prior(prior)
             found = side_gap_of(
-                asked.logs, aircraft, asked.target_system, asked.marks, no_marks=asked.no_marks
+                asked.logs,
+                aircraft,
+                asked.target_system,
+                asked.marks,
+                no_marks=asked.no_marks,
+                prior=shares,
             )
     except UnusableInputError as error:
         if as_json:

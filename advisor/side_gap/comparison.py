@@ -15,6 +15,7 @@ from scipy.stats import chi2
 from advisor.aircraft.aircraft import SIDE_PARAMETERS, Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import FloatArray
+from advisor.gap.judge.prior import FIELD, FieldPrior
 from advisor.gap.result import ComparedDerivative, Value
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.lateral_estimator import LateralEstimate, estimate_lateral
@@ -54,10 +55,13 @@ class SideGap:
     """Probabilities of all explanations; None where no model fits."""
 
 
-def compare_side(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> SideGap | NoEstimate:
-    """Compare the aircraft file's lateral derivatives with those of accepted manoeuvres.
+def compare_side(
+    maneuvers: Sequence[Maneuver], aircraft: Aircraft, prior: FieldPrior = FIELD
+) -> SideGap | NoEstimate:
+    """Compare roll and yaw of the aircraft file with accepted manoeuvres.
 
-    A derivative that the file does not state counts as that of the flight.
+    A derivative that the file does not state counts as that of the flight. ``prior`` holds the shares of the
+    answers before the flight.
     """
     model = estimate_lateral(maneuvers, aircraft)
     if isinstance(model, NoEstimate):
@@ -81,7 +85,7 @@ def compare_side(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> SideGap |
     statistic = float(off @ np.linalg.pinv(covariance, hermitian=True) @ off) if stated else 0.0
     limit = float(chi2.ppf(LEVEL, len(stated))) if stated else 0.0
     case = case_of(maneuvers, aircraft, estimate.theta)
-    diagnosis = None if isinstance(case, NoEstimate) else diagnose_side(case)
+    diagnosis = None if isinstance(case, NoEstimate) else diagnose_side(case, prior)
     verdict = _verdict(diagnosis, bool(stated), statistic > limit)
     holdout, before, after = _held_out(maneuvers, aircraft, model)
     return SideGap(

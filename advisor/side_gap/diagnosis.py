@@ -13,7 +13,7 @@ import numpy as np
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG
 from advisor.gap.judge.prior import FIELD, FieldPrior
-from advisor.gap.result import Cause, Value, spelled
+from advisor.gap.result import Cause, Value
 from advisor.gap.verdict.statements import what
 from advisor.side_gap.effects import SideEffect, side_effects, unseen
 from advisor.side_gap.evidence import (
@@ -45,6 +45,8 @@ class SideCause:
 
     of: str
     """Control or output."""
+    named: str
+    """Name of the effect as people write it."""
     cause: Cause
     """Effect by its name of the pitch axis, with sizes and probability."""
     sentence: str
@@ -55,13 +57,8 @@ class SideCause:
 
     @property
     def name(self) -> str:
-        """Name of the effect with its control or output."""
-        return f"{self.of}_{self.cause.effect}"
-
-    @property
-    def named(self) -> str:
-        """Name of the effect as people write it."""
-        return f"{spelled(self.cause.effect)} of {self.of}"
+        """Name of the effect in documents."""
+        return self.named.replace(" ", "_")
 
 
 @dataclass(frozen=True, slots=True)
@@ -195,7 +192,7 @@ def _cause(case: Case, tried: _Tried, probability: float, share: float) -> SideC
     cause = Cause(
         effect.variant.effect, effect.variant.block, probability, parameters, (), "", float(np.nan), True
     )
-    return SideCause(effect.of, cause, effect.said(what(cause)), tried.gain, peaks_of(fit))
+    return SideCause(effect.of, effect.named, cause, effect.said(what(cause)), tried.gain, peaks_of(fit))
 
 
 def _sizes(case: Case, effect: SideEffect, fit: Fit) -> FloatArray:

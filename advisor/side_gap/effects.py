@@ -15,10 +15,13 @@ from advisor.gap.effects.actuator_deadband import DEADBAND_ABOUT_TRIM
 from advisor.gap.effects.actuator_lag import LAG
 from advisor.gap.effects.actuator_rate_limit import RATE_LIMIT
 from advisor.gap.effects.pitch_rate_scale import SCALE
+from advisor.gap.effects.thrust_moment import EFFECT as THRUST
 from advisor.gap.effects.transport_delay import DELAY
+from advisor.gap.kit.effect import without_sizes
 from advisor.gap.kit.least import FILTERED_S
 from advisor.gap.kit.skew import skew_beyond
 from advisor.gap.kit.variant import Variant
+from advisor.gap.result import spelled
 from advisor.model.lateral import LATERAL
 from advisor.side_gap.setting import PROPELLER, Flown, Place
 
@@ -42,9 +45,17 @@ class SideEffect:
     """Words of the pitch axis' sentence to those of this axis."""
 
     @property
+    def named(self) -> str:
+        """Name of the effect as people write it: ``aileron actuator lag``, ``roll rate scale``."""
+        spoken = spelled(self.variant.effect)
+        for old, new in self.words.items():
+            spoken = spoken.replace(old, new)
+        return f"{self.of} {spoken}" if self.of in LATERAL.inputs else spoken
+
+    @property
     def name(self) -> str:
-        """Name of the effect with its control or output: ``aileron_actuator_lag``."""
-        return f"{self.of}_{self.variant.effect}"
+        """Name of the effect in documents: ``aileron_actuator_lag``, ``roll_rate_scale``."""
+        return self.named.replace(" ", "_")
 
     def said(self, sentence: str) -> str:
         """Return the pitch axis' sentence in the words of this axis; the control leads where none changes."""
@@ -91,8 +102,14 @@ _SKEWED = {
     "r": "pitch_rate_skew",
     "bank": "attitude_skew",
     "a_y": "accelerometer_skew",
+    "beta": "alpha_skew",
 }
-_SCALED = ("p", "r", "a_y")
+_SCALED = {
+    "p": "pitch_rate_sensor",
+    "r": "pitch_rate_sensor",
+    "a_y": "accelerometer",
+    "beta": "alpha_sensor",
+}
 _SCALE_STD, _SKEW_STD_S, _ARM_STD_M = 0.1, 0.1, 0.3
 """Prior standard deviations of a scale error, 1, of late stamps, s, and of an accelerometer's arm, m."""
 
@@ -107,11 +124,17 @@ def side_effects(flown: Flown) -> Iterator[SideEffect]:
     for of, effect in _SKEWED.items():
         if of in measured:
             skew = skew_beyond(effect, FILTERED_S)
-            yield SideEffect(of, skew, ((of, "skew_s"),), (_SKEW_STD_S,), {"pitch rate": _SPOKEN[of]})
-    for of in measured.intersection(_SCALED):
-        yield SideEffect(of, SCALE, ((of, "scale"),), (_SCALE_STD,), {"pitch rate": _SPOKEN[of]})
+            words = dict.fromkeys(("pitch rate", "angle of attack"), _SPOKEN[of])
+            yield SideEffect(of, skew, ((of, "skew_s"),), (_SKEW_STD_S,), words)
+    for of, block in _SCALED.items():
+        if of in measured:
+            scale = replace(SCALE, block=block)
+            yield SideEffect(of, scale, ((of, "scale"),), (_SCALE_STD,), {"pitch rate": _SPOKEN[of]})
     if "a_y" in measured:
         yield SideEffect("a_y", ARM, (("a_y", "arm_m"),), (_ARM_STD_M,))
+    if "beta" in measured and flown.arm_is_stated:
+        vane = replace(ARM, effect="alpha_vane_offset", block="alpha_sensor")
+        yield SideEffect("beta", vane, (("beta", "arm_m"),), (_ARM_STD_M,))
     if _throttle_moves(flown):
         yield _propeller()
 
@@ -137,4 +160,5 @@ def _propeller() -> SideEffect:
     torque = replace(
         ARM, effect="thrust_moment", block="moment_equation", names=("aileron_rad",), steps=(2e-4,)
     )
-    return SideEffect("throttle", torque, (PROPELLER,), (0.05,))
+    words = dict.fromkeys(without_sizes(THRUST.said, ""), "The propeller rolls the real aircraft")
+    return SideEffect("throttle", torque, (PROPELLER,), (0.05,), {**words, "thrust moment": "propeller roll"})

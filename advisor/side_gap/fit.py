@@ -19,6 +19,7 @@ from advisor.oem.lateral_problem import LateralAssembly
 from advisor.side_gap.setting import Flown, Place, Setting, laid_out, moved_to
 
 ROUNDS = 12
+"""Most Gauss-Newton steps of a fit; those from the table's starts take three to six."""
 SETTLED = 0.05
 """Decrease of the cost, -2 log likelihood, per step, below which a fit is done: far below one nat."""
 N = len(LATERAL.shared)

@@ -13,7 +13,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG
 from advisor.model.lateral import LATERAL, natural_size
 from advisor.oem.estimate import NoEstimate
-from advisor.oem.lateral_instruments import nuisances_of
+from advisor.oem.lateral_instruments import beta_arm_m, nuisances_of
 from advisor.oem.lateral_prepare import prepare_lateral
 from advisor.oem.lateral_start import lateral_start
 from advisor.oem.prepare import signal_of
@@ -84,7 +84,8 @@ def case_of(maneuvers: Sequence[Maneuver], aircraft: Aircraft, theta: FloatArray
     stated = tuple(name for name in SIDE_PARAMETERS if name in aircraft.model)
     given = np.array([aircraft.model.get(n, v) for n, v in zip(SIDE_PARAMETERS, theta, strict=True)])
     begin = Point(theta, lateral_start(problem)[1], setting)
-    return Case(Flown(problem, throttle), given, stated, tuple(natural), begin)
+    flown = Flown(problem, throttle, beta_arm_m(aircraft) is not None)
+    return Case(flown, given, stated, tuple(natural), begin)
 
 
 def plain_fit(case: Case) -> Fit | None:

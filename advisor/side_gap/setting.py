@@ -31,6 +31,8 @@ class Flown:
     """Records with the instruments of the aircraft file; servos are part of a ``Setting``."""
     throttle: tuple[Signal | None, ...]
     """Throttle of each record, 0..1; None where it was not recorded."""
+    arm_is_stated: bool = False
+    """Whether the aircraft file states the place of the sideslip vane."""
 
     def __len__(self) -> int:
         return len(self.problem.records)

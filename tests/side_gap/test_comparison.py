@@ -63,7 +63,7 @@ def test_a_weak_aileron_in_the_simulator_is_named_and_leaves_a_gap_on_unseen_fli
 
 
 def test_a_file_without_lateral_numbers_has_no_verdict(flight, monkeypatch):
-    monkeypatch.setattr(comparison, "diagnose_side", lambda case: None)
+    monkeypatch.setattr(comparison, "diagnose_side", lambda case, prior: None)
     found = compare_side(flight[:2], AIRCRAFT)
     assert found.verdict is None
     assert "give model.L_p" in found.sentence

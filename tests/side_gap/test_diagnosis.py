@@ -18,6 +18,7 @@ from tests.side_gap.test_comparison import maneuvers
 PEAKS = {"p": 0.2, "r": 0.1}
 PLAY = SideCause(
     "aileron",
+    "aileron actuator backlash",
     Cause(
         "actuator_backlash", "input", 0.7, {"half_width_rad": Value(0.01, 0.001)}, (), "", 0.0, present=True
     ),
@@ -47,7 +48,7 @@ def test_the_verdict_is_the_likeliest_kind_and_effects_count_together(none, para
 def test_the_text_says_the_cause_with_its_size_and_the_errors_that_it_removes():
     text = "\n".join(side_gap_lines(FOUND))
     assert "The real aileron has play of 0.57 deg to either side" in text
-    assert "actuator backlash of aileron: 0.57 ± 0.11 deg (70 %)" in text
+    assert "aileron actuator backlash: 0.57 ± 0.11 deg (70 %)" in text
     assert "largest error of p: 11.46 → 2.86 deg/s" in text
     assert "no gap 20 %" in text
 
@@ -74,7 +75,7 @@ def test_a_gyro_that_reads_too_much_is_named_with_its_size():
     found = diagnose_side(case)
     assert found.verdict == "effect"
     first = found.causes[0]
-    assert first.name == "p_pitch_rate_scale"
+    assert first.name == "roll_rate_scale"
     assert first.cause.parameters["scale"].value == pytest.approx(0.08, abs=0.02)
     assert first.sentence.startswith("The roll rate reads 8")
     assert first.peaks["p"] < found.peaks["p"]

@@ -1,8 +1,11 @@
 """Numbers of servos and instruments in a lateral record, against closed forms."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from advisor.gap.effects.thrust_moment import EFFECT as THRUST
 from advisor.model.lateral import LATERAL
 from advisor.oem.lateral_problem import LateralProblem
 from advisor.oem.rows import Signal
@@ -104,7 +107,7 @@ def test_a_control_that_is_not_flown_has_no_effect_and_says_so():
 
 def test_a_still_throttle_cannot_show_the_propeller():
     still = Flown(LateralProblem((AILERON, RUDDER)), (None, Signal(T, 0.5 + 0.0 * T)))
-    assert "throttle_thrust_moment" not in {effect.name for effect in side_effects(still)}
+    assert "propeller_roll" not in {effect.name for effect in side_effects(still)}
     assert "roll due to the propeller" in unseen(still)
 
 
@@ -112,5 +115,12 @@ def test_sentences_are_those_of_the_pitch_axis_in_the_words_of_this_one():
     said = {e.name: e for e in side_effects(FLOWN)}
     play = said["aileron_actuator_backlash"].said("The real elevator has play of 0.40 deg to either side")
     assert play == "The real aileron has play of 0.40 deg to either side"
-    rate = said["p_pitch_rate_scale"].said("The pitch rate reads 10.0 % too much")
+    rate = said["roll_rate_scale"].said("The pitch rate reads 10.0 % too much")
     assert rate == "The roll rate reads 10.0 % too much"
+    assert said["propeller_roll"].said(THRUST.said) == "The propeller rolls the real aircraft"
+
+
+def test_a_vane_is_an_effect_only_where_the_file_states_its_place():
+    stated = replace(FLOWN, arm_is_stated=True)
+    assert "alpha_vane_offset" in {effect.name for effect in side_effects(stated)}
+    assert "alpha_vane_offset" not in {effect.name for effect in side_effects(FLOWN)}
