@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from . import hangar
 from .airframe import GRAVITY_M_S2
 from .autopilot import CRUISE, MANUAL, Demand, Planned
-from .fittings import Fittings
+from .effects.side import SideKit, side_kit
 from .flight import Flight
 from .linear import ShortPeriod
 from .linear_aircraft import LinearAircraft
@@ -28,7 +28,7 @@ from .maneuvers import stepped
 from .motion import Controls, Motion
 from .scenario import Maneuver, Scenario
 from .sensors import Reading
-from .servo import FirstOrderServo
+from .servo import FirstOrderServo, Servo
 
 UAV: Mapping[str, float] = {
     "Y_beta": -0.6, "Y_p": 0.0, "Y_r": 0.01, "Y_delta_a": 0.0, "Y_delta_r": 0.15, "L_beta": -14.0,
@@ -40,6 +40,8 @@ FULL_RAD = math.radians(25.0)
 """Deflection of aileron and rudder at full demand, rad."""
 NOISE = {"p": 0.004, "r": 0.003, "phi": 0.002, "a_y": 0.05}
 """Standard deviation of the lateral instruments' noise, SI."""
+_SWING_S = 3.1
+"""Period of the throttle's swing, s."""
 _HOLD = (0.12, 0.02)
 """Demand of the wing leveller per rad of bank and per rad/s of roll rate."""
 
@@ -55,8 +57,8 @@ class LateralAircraft(LinearAircraft):
         Speed in m/s and height in m, both constant.
     derivatives
         Lateral derivatives at this speed, by name.
-    lag_s
-        First-order lag of the servos of aileron and rudder, s; 0 for none.
+    kit
+        Servos, propeller and air of the effects; None for none.
     """
 
     def __init__(
@@ -65,11 +67,13 @@ class LateralAircraft(LinearAircraft):
         airspeed_m_s: float,
         height_m: float,
         derivatives: Mapping[str, float],
-        lag_s: float = 0.0,
+        kit: SideKit | None = None,
     ) -> None:
         super().__init__(model, airspeed_m_s, height_m)
         self._d = dict(derivatives)
-        self._servos = [FirstOrderServo(lag_s) for _ in range(2)] if lag_s > 0.0 else []
+        self._kit = kit or SideKit(0)
+        self._servos = [Servo(tuple(self._kit.mechanisms[name])) for name in ("aileron", "rudder")]
+        self._gust = 0.0
         self._side = np.zeros(4)
         self._surfaces = np.zeros(2)
         self._steady = super().motion()
@@ -79,7 +83,11 @@ class LateralAircraft(LinearAircraft):
         wanted = [-FULL_RAD * controls.aileron, -FULL_RAD * controls.rudder]
         before = self._surfaces
         pairs = zip(self._servos, wanted, strict=True)
-        self._surfaces = np.array([servo.step(u, dt) for servo, u in pairs] if self._servos else wanted)
+        self._surfaces = np.array([servo.step(u, dt) for servo, u in pairs])
+        self._surfaces[0] += self._kit.torque_rad * (controls.throttle - self.trim.throttle)
+        if self._kit.side_gusts is not None:
+            speed = self._steady.airspeed
+            self._gust = self._kit.side_gusts.step(speed, dt)[0] / speed
         middle = 0.5 * (before + self._surfaces)
         k1 = self._side_rates(self._side, before)
         k2 = self._side_rates(self._side + 0.5 * dt * k1, middle)
@@ -97,8 +105,11 @@ class LateralAircraft(LinearAircraft):
         return steady._replace(phi=phi, p=p, r=r, a_y=side, a_z=down)
 
     def _per_speed(self, letter: str, x: NDArray[np.float64], u: NDArray[np.float64]) -> float:
-        """Return the side force over mass and speed (Y), or a moment over its inertia (L, N)."""
-        factors = zip(("beta", "p", "r", "delta_a", "delta_r"), (*x[:3], *u), strict=True)
+        """Return the side force over mass and speed (Y), or a moment over its inertia (L, N).
+
+        The air that moves sideways adds its angle to the sideslip."""
+        met = (x[0] + self._gust, *x[1:3], *u)
+        factors = zip(("beta", "p", "r", "delta_a", "delta_r"), met, strict=True)
         return float(sum(self._d[f"{letter}_{name}"] * value for name, value in factors))
 
     def _side_rates(self, x: NDArray[np.float64], u: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -151,10 +162,12 @@ class LateralPilot:
         Scenario with the times around each input.
     trim
         Controls in level flight.
+    swing
+        Amplitude of the throttle's slow swing, 0..1.
     """
 
-    def __init__(self, scenario: Scenario, trim: Controls) -> None:
-        self._trim = trim
+    def __init__(self, scenario: Scenario, trim: Controls, swing: float = 0.0) -> None:
+        self._trim, self._swing = trim, swing
         self._inputs: list[tuple[SideInput, Planned]] = []
         now = scenario.lead_in_s
         for one in PLAN:
@@ -184,7 +197,7 @@ class LateralPilot:
             moved[control] = planned.input.pull(time_s - planned.start_s)
         return Demand(
             self._trim.elevator,
-            self._trim.throttle,
+            self._trim.throttle + self._swing * math.sin(2.0 * math.pi * time_s / _SWING_S),
             moved["aileron"],
             moved["rudder"],
             self.mode(time_s),
@@ -208,7 +221,12 @@ def lateral_flight(scenario: Scenario, noisy: bool = True) -> Flight:
     """Return the lateral plan flown by the bundled aircraft under a scenario's servo, rates and times."""
     known = hangar.build(scenario)
     speed = known.motion().airspeed
-    engine = LateralAircraft(known.truth, speed, scenario.height_m, UAV, scenario.servo.lag_s)
-    pilot = LateralPilot(scenario, engine.trim)
-    fittings = Fittings(sensors=[LateralNoise(scenario.seed)] if noisy else [])
-    return Flight(scenario, fittings, engine, pilot, pilot.end_s + scenario.closing_s)
+    kit = side_kit(scenario.seed, scenario.effects)
+    if scenario.servo.lag_s > 0.0:
+        for stages in kit.mechanisms.values():
+            stages.append(FirstOrderServo(scenario.servo.lag_s))
+    engine = LateralAircraft(known.truth, speed, scenario.height_m, UAV, kit)
+    pilot = LateralPilot(scenario, engine.trim, kit.swing)
+    if noisy:
+        kit.fittings.sensors.append(LateralNoise(scenario.seed))
+    return Flight(scenario, kit.fittings, engine, pilot, pilot.end_s + scenario.closing_s)

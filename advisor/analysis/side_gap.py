@@ -4,10 +4,11 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.analysis.side_comparison import SideGap, compare_side
 from advisor.analysis.whole_flights import read_whole
 from advisor.flight.maneuvers.marks import Mark
+from advisor.gap.judge.prior import FIELD, FieldPrior
 from advisor.oem.estimate import NoEstimate
+from advisor.side_gap.comparison import SideGap, compare_side
 from advisor.words.problems import Problem, UnusableInputError
 
 
@@ -17,8 +18,9 @@ def side_gap_of(
     target_system: int | None = None,
     marks: Sequence[Mark] = (),
     no_marks: bool = False,
+    prior: FieldPrior = FIELD,
 ) -> SideGap:
-    """Read logs and compare the aircraft file's lateral derivatives with the flight.
+    """Read logs and compare roll and yaw of the aircraft file with the flight.
 
     Raises
     ------
@@ -39,7 +41,7 @@ def side_gap_of(
                 )
             ]
         )
-    found = compare_side(accepted, aircraft)
+    found = compare_side(accepted, aircraft, prior)
     if isinstance(found, NoEstimate):
         raise UnusableInputError.of(
             [Problem(found.code, found.text, "Fly an aileron doublet and a rudder doublet.")]

@@ -41,7 +41,9 @@ if TYPE_CHECKING:
     show_default=True,
     help="Axis that is analyzed: the elevator's, that of aileron and rudder, or both.",
 )
-@export_option("Write the model of the flight as matlab (both axes) or jsbsim (roll and yaw); repeatable.")
+@export_option(
+    "Write the model of the flight as matlab (both axes), jsbsim or ardupilot (roll and yaw); repeatable."
+)
 @json_option
 def command(
     asked: LogsAsked,
@@ -65,7 +67,7 @@ def command(
       advisor analyze flight.tlog --axis lateral --export matlab:roll-and-yaw.m
     """
     aircraft = asked.read_aircraft()
-    orders = orders_of(exports, aircraft, asked.inputs)
+    orders = orders_of(exports, aircraft, asked.inputs, of_flight=True)
     from advisor.analysis.log_series import LogSeries
 
     series = LogSeries(asked.logs)

@@ -61,7 +61,7 @@ _OF_A_PLAN = {
     type=click.Choice(["pitch", "lateral"]),
     default="pitch",
     show_default=True,
-    help="Axis that is diagnosed. On the lateral one, numbers alone are compared.",
+    help="Axis that is diagnosed. On the lateral one, of roll and yaw, nothing is exported.",
 )
 @click.option("--why", is_flag=True, help="Print what speaks for the answer, and every decision on the way.")
 @click.option(
@@ -131,7 +131,7 @@ def command(
     if axis == "lateral":
         from advisor.cli.side_gap import compare_lateral
 
-        return compare_lateral(asked, aircraft, as_json)
+        return compare_lateral(asked, aircraft, as_json, prior)
     decided = [decided_on(log, asked.no_marks) for log in asked.logs]
     by_hand = [replace(before, marks=(*asked.marks, *before.marks)) for before in decided]
     if out is not None:

@@ -27,7 +27,7 @@ def export_option(
 
 
 def orders_of(
-    exports: Sequence[str], aircraft: Aircraft, inputs: Sequence[Path | None]
+    exports: Sequence[str], aircraft: Aircraft, inputs: Sequence[Path | None], *, of_flight: bool = False
 ) -> "list[ExportOrder]":
     """Read and check all orders before any work.
 
@@ -35,6 +35,8 @@ def orders_of(
     ----------
     inputs
         Files that the command reads, or that another option writes. No order may name one of them.
+    of_flight
+        Whether the model of a flight is written instead of a diagnosis.
 
     Raises
     ------
@@ -54,7 +56,7 @@ def orders_of(
             raise ConfigurationError(
                 f"--export: {order.file} is read or written by this call already; name another file."
             )
-        refuse(order, aircraft)
+        refuse(order, aircraft, of_flight)
         taken.add(order.file.resolve())
         orders.append(order)
     return orders

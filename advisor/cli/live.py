@@ -185,9 +185,10 @@ def _source(earlier: Sequence[Path], link: "KeptLink") -> "Source":
 
 
 def _announce(link: "KeptLink", event: object) -> None:
-    from advisor.campaign.campaign import ManeuverJudged
+    from advisor.campaign.campaign import LateralJudged, ManeuverJudged
 
-    if isinstance(event, ManeuverJudged):
+    if isinstance(event, ManeuverJudged | LateralJudged):
         verdict = event.flight_test
         stop = verdict.sentence if verdict.decision == "stop" else None
-        link.judged(event.judged.maneuver.number, event.judged.verdict.sentence, stop)
+        axis = "roll and yaw" if isinstance(event, LateralJudged) else ""
+        link.judged(event.judged.maneuver.number, event.judged.verdict.sentence, stop, axis)

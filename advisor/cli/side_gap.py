@@ -1,6 +1,7 @@
-"""``advisor gap --axis lateral``: the simulator's derivatives of roll and yaw against the flight's."""
+"""``advisor gap --axis lateral``: the simulator's roll and yaw against the flight's."""
 
 import json
+import math
 from collections.abc import Iterator
 from typing import Any
 
@@ -8,25 +9,35 @@ import click
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.analysis.side_comparison import SideGap
 from advisor.analysis.side_gap import side_gap_of
 from advisor.cli.log_options import LogsAsked
 from advisor.cli.options import UNUSABLE
 from advisor.cli.stages import Stages
 from advisor.gap.document import changed_document, gap_document
+from advisor.gap.judge.prior import FIELD, field_prior
+from advisor.report.gap_reasons import in_percent
+from advisor.report.gap_sizes import sizes_of
+from advisor.side_gap.comparison import SideGap
+from advisor.side_gap.diagnosis import LIKELY, SideDiagnosis
 from advisor.words.plain import picked, plain
 from advisor.words.problems import UnusableInputError
 from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import symbol
 
 
-def compare_lateral(asked: LogsAsked, aircraft: Aircraft, as_json: bool) -> int:
-    """Compare the lateral derivatives of the aircraft file with the flight, and print the result."""
+def compare_lateral(asked: LogsAsked, aircraft: Aircraft, as_json: bool, prior: str | None = None) -> int:
+    """Compare roll and yaw of the aircraft file with the flight, and print the result."""
     try:
         with Stages() as tell:
             tell("reading and comparing", 0.0)
+            shares = FIELD if prior is None else field_prior(prior)
             found = side_gap_of(
-                asked.logs, aircraft, asked.target_system, asked.marks, no_marks=asked.no_marks
+                asked.logs,
+                aircraft,
+                asked.target_system,
+                asked.marks,
+                no_marks=asked.no_marks,
+                prior=shares,
             )
     except UnusableInputError as error:
         if as_json:
@@ -42,8 +53,11 @@ def compare_lateral(asked: LogsAsked, aircraft: Aircraft, as_json: bool) -> int:
 
 
 def side_gap_lines(found: SideGap) -> Iterator[str]:
-    """Yield the sentence, each stated derivative with that of the flight, instruments, and the gap."""
+    """Yield the sentence, the causes, each stated derivative with that of the flight, instruments, and the
+    gap."""
     yield found.sentence
+    if found.diagnosis is not None:
+        yield from _diagnosis_lines(found.diagnosis)
     for one in found.derivatives:
         differs = "  outside" if one.differs else ""
         yield (
@@ -57,6 +71,27 @@ def side_gap_lines(found: SideGap) -> Iterator[str]:
         yield f"Gap on the held-out manoeuvres {listed}, mean square over that of the noise, minus 1:"
         for name, before in found.before.items():
             yield f"  {name:<5} {before:8.2f} before, {found.after[name]:.2f} after"
+
+
+def _diagnosis_lines(found: SideDiagnosis) -> Iterator[str]:
+    """Yield the probabilities, and each likely effect with its size and the errors that it removes."""
+    effects = sum(found.effects.values())
+    yield (
+        f"  probability: no gap {in_percent(found.none)}, wrong numbers {in_percent(found.parameters)}, "
+        f"an effect {in_percent(effects)}"
+    )
+    for one in found.causes:
+        if one.cause.probability >= LIKELY:
+            sizes = "; ".join(sizes_of(one.cause.parameters))
+            yield f"  {one.named}: {sizes} ({in_percent(one.cause.probability)})"
+            for name, before in found.peaks.items():
+                after, least = (math.degrees(peaks[name]) for peaks in (one.peaks, found.peaks_by_numbers))
+                yield (
+                    f"    largest error of {name}: {math.degrees(before):.2f} → {after:.2f} deg/s "
+                    f"({least:.2f} by fitted derivatives alone)"
+                )
+    for what, why in found.cannot_see.items():
+        yield f"  cannot be seen: {what}, for {why}"
 
 
 def side_gap_document(found: SideGap) -> dict[str, Any]:
@@ -73,6 +108,7 @@ def side_gap_document(found: SideGap) -> dict[str, Any]:
         "parameters_compared": [changed_document(one) for one in found.derivatives],
         "instruments": {n: {"value": v.value, "std": v.std} for n, v in found.instruments.items()},
         "shrink": shrink,
+        **_diagnosis_document(found.diagnosis),
         "decisions": [
             {
                 "name": "the simulator's derivatives of roll and yaw",
@@ -83,3 +119,23 @@ def side_gap_document(found: SideGap) -> dict[str, Any]:
         ],
     })  # fmt: skip
     return told
+
+
+def _diagnosis_document(found: SideDiagnosis | None) -> dict[str, Any]:
+    """Return the probabilities, the causes and the largest errors, rad/s; without a diagnosis only their
+    keys."""
+    if found is None:
+        return {"probabilities": None, "causes": [], "peaks": None, "cannot_see": {}}
+    return {
+        "probabilities": picked(found, "none parameters effects"),
+        "causes": [
+            {
+                **picked(one.cause, "effect block probability parameters"),
+                **picked(one, "of name sentence peaks"),
+                "held_out_nats": {"value": one.gain.total, "std": one.gain.std},
+            }
+            for one in found.causes
+        ],
+        "peaks": {"simulator": found.peaks, "fitted_derivatives": found.peaks_by_numbers},
+        "cannot_see": found.cannot_see,
+    }

@@ -12,6 +12,7 @@ missing. Its conventions, from its source (``libraries/SITL/SIM_Plane``, ``Servo
 
 import json
 import math
+from collections.abc import Sequence
 
 from advisor.aircraft.controls import Elevator, Pairs
 from advisor.exports.models.exported import Exported, commented, effects_beside
@@ -107,10 +108,21 @@ def elevator_line(elevator: Elevator) -> tuple[float, float]:
     parts: list[tuple[float, Pairs]] = [(o.weight, o.calibration) for o in elevator.outputs if o.calibration]
     if elevator.calibration:
         parts = [(1.0, elevator.calibration)]
+    return line_of(parts, "elevator")
+
+
+def line_of(parts: Sequence[tuple[float, Pairs]], control: str) -> tuple[float, float]:
+    """Return the deflection at 1500 us, and its change per 500 us, rad, of weighted calibrations.
+
+    Raises
+    ------
+    ConfigurationError
+        There is no calibration; the message names that of ``control``.
+    """
     if not parts:
         raise ConfigurationError(
-            "--export ardupilot: coefficients are per full travel of the servo; give elevator.calibration in "
-            "the aircraft file."
+            f"--export ardupilot: coefficients are per full travel of the servo; give {control}.calibration "
+            "in the aircraft file."
         )
     total = sum(weight for weight, _ in parts)
     neutral = travel = 0.0

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.exports.models import ardupilot, matlab, sdf
+from advisor.exports.models.ardupilot_side import side_model_text
 from advisor.exports.models.exported import Exported
 from advisor.exports.models.flown import FlownModel
 from advisor.exports.models.improvement import (
@@ -65,8 +66,13 @@ def order_of(text: str) -> ExportOrder:
     return ExportOrder(name, Path(file))
 
 
-def refuse(order: ExportOrder, aircraft: Aircraft) -> None:
-    """Refuse, before the diagnosis, an order that could not be carried out after it.
+def refuse(order: ExportOrder, aircraft: Aircraft, of_flight: bool = False) -> None:
+    """Refuse, before the analysis, an order that could not be carried out after it.
+
+    Parameters
+    ----------
+    of_flight
+        Whether the model of a flight is written instead of a diagnosis.
 
     Raises
     ------
@@ -81,6 +87,8 @@ def refuse(order: ExportOrder, aircraft: Aircraft) -> None:
             raise ConfigurationError(
                 f"--export jsbsim: {order.file} is the simulator's own aircraft; name another file."
             )
+    elif order.format == "ardupilot" and order.file.suffix == ".json" and of_flight:
+        require_reference(aircraft.reference, ("wing_area_m2", "span_m"))
     elif order.format == "ardupilot" and order.file.suffix == ".json":
         require_reference(aircraft.reference, REFERENCE_KEYS)
         ardupilot.elevator_line(aircraft.elevator)
@@ -100,10 +108,11 @@ def _flown(order: ExportOrder, model: FlownModel, aircraft: Aircraft) -> ExportO
         made = both_axes_text(model)
     elif order.format == "jsbsim" and model.side is not None:
         made = side_text(model.name, model.side, _model(aircraft))
+    elif order.format == "ardupilot" and order.file.suffix == ".json" and model.side is not None:
+        made = side_model_text(model.name, model.side, aircraft)
     else:
-        text = (
-            "no derivatives of roll and yaw" if order.format == "jsbsim" else "written by advisor gap alone"
-        )
+        without_side = order.format == "jsbsim" or order.file.suffix == ".json"
+        text = "no derivatives of roll and yaw" if without_side else "written by advisor gap alone"
         return ExportOutcome(order, problem=f"--export: {order.file} was not written: {text}.")
     write_atomically(order.file, made.text)
     return ExportOutcome(order, made.left_out)

@@ -1,23 +1,25 @@
 """The accelerometer sits ahead of the centre of gravity, or behind it."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from advisor.gap.kit.effect import ANY, Effect, Need
-from advisor.gap.kit.least import least_arm_m
+from advisor.gap.kit.least import ARM_M, least_arm_m
 from advisor.gap.kit.variant import Variant
 from advisor.gap.records.flights import PreparedManeuvers
 
 _CHORDS = 1.0
 """Standard deviation of an accelerometer's arm over the chord: an IMU lies within the wing's chord."""
 
+ARM = Variant(
+    "accelerometer_offset", "accelerometer", ("arm_m",), ((0.0,),), (0.01,), ((-10.0, 10.0),), ARM_M,
+    entries=("imu_arm_m",),
+)  # fmt: skip
+
 
 def _variants(flights: PreparedManeuvers) -> Sequence[Variant]:
-    arm = Variant(
-        "accelerometer_offset", "accelerometer", ("arm_m",), ((0.0,),), (0.01,), ((-10.0, 10.0),),
-        least_arm_m(flights), entries=("imu_arm_m",),
-        prior_std=() if flights.chord_m is None else (_CHORDS * flights.chord_m,),
-    )  # fmt: skip
-    return (arm,)
+    std = () if flights.chord_m is None else (_CHORDS * flights.chord_m,)
+    return (replace(ARM, smallest=least_arm_m(flights), prior_std=std),)
 
 
 EFFECT = Effect(

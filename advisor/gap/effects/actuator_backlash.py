@@ -9,7 +9,7 @@ from advisor.gap.kit.least import IF_BEYOND_DOUBT, SMALL_ANGLE_RAD
 from advisor.gap.kit.variant import Variant
 from advisor.gap.records.flights import PreparedManeuvers
 
-_BACKLASH = Variant(
+BACKLASH = Variant(
     "actuator_backlash", "input", ("half_width_rad",), ((0.003,), (0.008,), (0.02,)), (2e-4,),
     ((0.0, 0.1),), SMALL_ANGLE_RAD, IF_BEYOND_DOUBT, entries=("half_play_rad",),
     sides=("play_side", tuple(np.linspace(-1.0, 1.0, 8))),
@@ -17,7 +17,7 @@ _BACKLASH = Variant(
 
 
 def _variants(_: PreparedManeuvers) -> Sequence[Variant]:
-    return (_BACKLASH,)
+    return (BACKLASH,)
 
 
 EFFECT = Effect(

@@ -38,7 +38,7 @@ _DEADBAND = Variant(
     ((0.0, 0.1), (-0.1, 0.1)), SMALL_ANGLE_RAD, IF_BEYOND_DOUBT, apply_with=_about_neutral,
     places=("neutral_rad",),
 )  # fmt: skip
-_DEADBAND_ABOUT_TRIM = replace(
+DEADBAND_ABOUT_TRIM = replace(
     _DEADBAND,
     starts=((0.0012, 0.0), (0.004, 0.0), (0.015, 0.0), (0.035, 0.0)),
     apply_with=_about_trim,
@@ -48,7 +48,7 @@ _DEADBAND_ABOUT_TRIM = replace(
 
 def _variants(flights: PreparedManeuvers) -> Sequence[Variant]:
     moves = float(np.ptp([f.u_trim for f in flights.flights])) > _TRIMS_DIFFER_RAD
-    return (_DEADBAND, _DEADBAND_ABOUT_TRIM) if moves else (_DEADBAND,)
+    return (_DEADBAND, DEADBAND_ABOUT_TRIM) if moves else (_DEADBAND,)
 
 
 EFFECT = Effect(

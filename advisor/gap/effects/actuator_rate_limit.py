@@ -7,14 +7,14 @@ from advisor.gap.kit.variant import Variant
 from advisor.gap.records.flights import PreparedManeuvers
 
 # The search uses the slowness 1/ρ: zero means no limit, and the cost is smooth there.
-_RATE_LIMIT = Variant(
+RATE_LIMIT = Variant(
     "actuator_rate_limit", "input", ("rate_rad_s",), ((0.4,), (1.2,), (3.0,)), (0.02,), ((0.0, 30.0),), 0.05,
     entries=("slowness_s_rad",), inverted=True,
 )  # fmt: skip
 
 
 def _variants(_: PreparedManeuvers) -> Sequence[Variant]:
-    return (_RATE_LIMIT,)
+    return (RATE_LIMIT,)
 
 
 EFFECT = Effect(

@@ -6,14 +6,14 @@ from advisor.gap.kit.effect import ANY, Effect
 from advisor.gap.kit.variant import Variant
 from advisor.gap.records.flights import PreparedManeuvers
 
-_SCALE = Variant(
+SCALE = Variant(
     "pitch_rate_scale", "pitch_rate_sensor", ("scale",), ((0.0,),), (0.002,), ((-0.8, 3.0),), 0.01,
     entries=("q_scale",),
 )  # fmt: skip
 
 
 def _variants(_: PreparedManeuvers) -> Sequence[Variant]:
-    return (_SCALE,)
+    return (SCALE,)
 
 
 EFFECT = Effect(

@@ -11,7 +11,7 @@ SMALL_ANGLE_RAD = 0.00175
 IF_BEYOND_DOUBT = 0.4
 """Share of the least angle that is enough for an effect beyond doubt. In a quiet record such an angle shows,
 being that of a servo pulse 1 us longer."""
-_ARM_M, _OF_A_DELAY = 0.02, 0.75
+ARM_M, _OF_A_DELAY = 0.02, 0.75
 """Least arm that is named, m; and the least arm over the air speed, as a share of the least delay."""
 
 
@@ -30,4 +30,4 @@ def least_arm_m(flights: PreparedManeuvers) -> float:
     accelerometer's position has an equal effect, and the gyro's filter adds three quarters of the least
     delay.
     """
-    return max(_ARM_M, _OF_A_DELAY * least_delay_s(flights) * flights.reference_m_s)
+    return max(ARM_M, _OF_A_DELAY * least_delay_s(flights) * flights.reference_m_s)

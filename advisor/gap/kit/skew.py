@@ -1,5 +1,6 @@
 """The stamps of one channel, earlier or later than those of the others."""
 
+from dataclasses import replace
 from functools import partial
 
 from advisor.flight.signals.messages import FloatArray
@@ -17,10 +18,15 @@ UNFILTERED = (
 
 def skew_of(effect: str, channel: str, flights: PreparedManeuvers) -> Variant:
     """Return the skew of one channel, positive is late."""
+    apply = partial(_whole_skew, SKEWS[OUTPUTS.index(channel)])
+    return replace(skew_beyond(effect, least_delay_s(flights)), apply_with=apply, sets=True)
+
+
+def skew_beyond(effect: str, least_s: float) -> Variant:
+    """Return the skew of any channel, named where it is at least ``least_s``, s."""
     return Variant(
-        effect, "timing", ("skew_s",), ((0.02,), (-0.02,), (0.1,), (-0.1,)), (1e-3,), ((-0.4, 0.4),),
-        least_delay_s(flights), apply_with=partial(_whole_skew, SKEWS[OUTPUTS.index(channel)]), sets=True,
-    )  # fmt: skip
+        effect, "timing", ("skew_s",), ((0.02,), (-0.02,), (0.1,), (-0.1,)), (1e-3,), ((-0.4, 0.4),), least_s
+    )
 
 
 def _whole_skew(entry: str, p: FloatArray, values: Values, _: PreparedManeuvers) -> None:

@@ -49,12 +49,12 @@ class Announcer(Talker):
     """
 
     def __init__(self) -> None:
-        self._announced: set[int] = set()
+        self._announced: set[tuple[str, int]] = set()
         self._waiting: deque[str] = deque()
         self._number = 0
-        self._stop_told = False
+        self._stops_told: set[str] = set()
 
-    def judged(self, maneuver: int, sentence: str, stop: str | None = None) -> None:
+    def judged(self, maneuver: int, sentence: str, stop: str | None = None, axis: str = "") -> None:
         """Take the verdict on a manoeuvre.
 
         Parameters
@@ -65,13 +65,15 @@ class Announcer(Talker):
             Sentence of the verdict.
         stop
             Sentence of the flight-test verdict when it says stop. It is sent the first time only.
+        axis
+            Words before the number, where each axis counts its own manoeuvres; empty for the elevator's.
         """
-        if maneuver in self._announced:
+        if (axis, maneuver) in self._announced:
             return
-        self._announced.add(maneuver)
-        sentence = f"{maneuver} {sentence}"
-        if stop is not None and not self._stop_told:
-            self._stop_told = True
+        self._announced.add((axis, maneuver))
+        sentence = f"{axis} {maneuver} {sentence}".lstrip()
+        if stop is not None and axis not in self._stops_told:
+            self._stops_told.add(axis)
             sentence = f"{stop} ({sentence})"
         self._waiting.append(SPOKEN + sentence)
 

@@ -209,8 +209,8 @@ class Keeper:
                     case Alive():
                         at_work_s = min(self._looked_s, self._link.looked_s)
                         connection.send(time.monotonic() - at_work_s)
-                    case AnnounceVerdict(maneuver, sentence, stop) if self._announcer:
-                        self._announcer.judged(maneuver, sentence, stop)
+                    case AnnounceVerdict(maneuver, sentence, stop, axis) if self._announcer:
+                        self._announcer.judged(maneuver, sentence, stop, axis)
                     case CallOrder(method, arguments):
                         getattr(self._link, method)(*arguments)
                     case Stop():

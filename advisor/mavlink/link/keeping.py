@@ -105,6 +105,8 @@ class AnnounceVerdict:
     maneuver: int
     sentence: str
     stop: str | None
+    axis: str = ""
+    """Words before the number; empty for the elevator's axis."""
 
 
 @dataclass(frozen=True, slots=True)

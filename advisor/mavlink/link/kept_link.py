@@ -93,10 +93,10 @@ class KeptLink:
         notices, self._notices = self._notices, []
         return notices
 
-    def judged(self, maneuver: int, sentence: str, stop: str | None) -> None:
+    def judged(self, maneuver: int, sentence: str, stop: str | None, axis: str = "") -> None:
         """Request the announcement of a verdict, unless the manoeuvre belongs to a continued recording."""
         if self._connection is not None and self._position > self._before:
-            self._send(AnnounceVerdict(maneuver, sentence, stop))
+            self._send(AnnounceVerdict(maneuver, sentence, stop, axis))
 
     def follow(self, system: int) -> None:
         """Follow another vehicle. The stream records the choice, and nothing is sent to a vehicle."""

@@ -52,6 +52,18 @@ def test_each_manoeuvre_is_announced_once_and_stop_with_the_verdict_that_brought
     assert joined(announcer) == ["@1 ACCEPTED", "@TEST COMPLETE (2 ACCEPTED)", "@3 ACCEPTED"]
 
 
+def test_roll_and_yaw_count_their_own_manoeuvres_and_stop_for_themselves() -> None:
+    announcer = Announcer()
+    announcer.judged(1, "ACCEPTED", stop="TEST COMPLETE")
+    announcer.judged(1, "accepted", axis="roll and yaw")
+    announcer.judged(2, "accepted", stop="TEST COMPLETE: roll and yaw", axis="roll and yaw")
+    assert joined(announcer) == [
+        "@TEST COMPLETE (1 ACCEPTED)",
+        "@roll and yaw 1 accepted",
+        "@TEST COMPLETE: roll and yaw (roll and yaw 2 accepted)",
+    ]
+
+
 def test_the_crew_hears_it_as_of_a_computer_on_board_and_the_recording_keeps_it(tmp_path: Path) -> None:
     port = free_port()
     vehicle = UdpVehicle(port)

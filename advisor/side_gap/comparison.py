@@ -1,8 +1,8 @@
-"""The gap of the lateral axis: the simulator's derivatives of roll and yaw against those of the flight.
+"""The gap of the lateral axis: the simulator's derivatives and effects against those of the flight.
 
-The diagnosis of the short period searches effects. On this axis only numbers are compared: derivatives with
-their intervals, and servos and clocks that the fit estimates with them. The gap is measured on manoeuvres
-that the fit has not seen, of which only trims, initial states and biases are refitted.
+Derivatives are compared with their intervals, servos and clocks as the estimate tells them. ``diagnosis``
+weighs right derivatives, wrong ones and effects. The gap is measured on manoeuvres that the fit has not seen,
+of which only trims, initial states and biases are refitted.
 """
 
 from collections.abc import Mapping, Sequence
@@ -16,10 +16,13 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import FloatArray
+from advisor.gap.judge.prior import FIELD, FieldPrior
 from advisor.gap.result import ComparedDerivative, Value
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.lateral_estimator import LateralEstimate, estimate_lateral
 from advisor.oem.lateral_prediction import predicted_lateral
+from advisor.side_gap.diagnosis import SideDiagnosis, diagnose_side
+from advisor.side_gap.models import case_of
 
 LEVEL = 0.95
 """Level of the joint test that the simulator's numbers are those of the flight: that of every interval."""
@@ -31,8 +34,8 @@ HELD_OUT = 3
 class SideGap:
     """Comparison of the aircraft file's lateral derivatives with the flight."""
 
-    verdict: Literal["none", "parameters"] | None
-    """None: the file states no derivative that the flight tells."""
+    verdict: Literal["none", "parameters", "effect"] | None
+    """None: the file states no derivative that the flight tells, and no effect was found."""
     sentence: str
     derivatives: tuple[ComparedDerivative, ...]
     statistic: float
@@ -49,12 +52,17 @@ class SideGap:
     """Output to the simulator's gap on those manoeuvres."""
     after: Mapping[str, float]
     """Output to the gap with the derivatives of the flight."""
+    diagnosis: SideDiagnosis | None
+    """Probabilities of all explanations; None where no model fits."""
 
 
-def compare_side(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> SideGap | NoEstimate:
-    """Compare the aircraft file's lateral derivatives with those of accepted manoeuvres.
+def compare_side(
+    maneuvers: Sequence[Maneuver], aircraft: Aircraft, prior: FieldPrior = FIELD
+) -> SideGap | NoEstimate:
+    """Compare roll and yaw of the aircraft file with accepted manoeuvres.
 
-    A derivative that the file does not state counts as that of the flight.
+    A derivative that the file does not state counts as that of the flight. ``prior`` holds the shares of the
+    answers before the flight.
     """
     model = estimate_lateral(maneuvers, aircraft)
     if isinstance(model, NoEstimate):
@@ -77,13 +85,15 @@ def compare_side(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> SideGap |
     covariance = estimate.covariance[np.ix_(stated, stated)]
     statistic = float(off @ np.linalg.pinv(covariance, hermitian=True) @ off) if stated else 0.0
     limit = float(chi2.ppf(LEVEL, len(stated))) if stated else 0.0
-    verdict: Literal["none", "parameters"] | None = None
-    if stated:
-        verdict = "parameters" if statistic > limit else "none"
-    holdout, before, after = _held_out(maneuvers, aircraft)
+    case = case_of(maneuvers, aircraft, estimate.theta)
+    diagnosis = None if isinstance(case, NoEstimate) else diagnose_side(case, prior)
+    verdict = _verdict(diagnosis, bool(stated), statistic > limit)
+    holdout, before, after = _held_out(maneuvers, aircraft, model)
     return SideGap(
         verdict,
-        _sentence(verdict, derivatives),
+        diagnosis.causes[0].sentence
+        if verdict == "effect" and diagnosis
+        else _sentence(verdict, derivatives),
         derivatives,
         statistic,
         limit,
@@ -93,18 +103,27 @@ def compare_side(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> SideGap |
         holdout,
         before,
         after,
+        diagnosis,
     )
 
 
+def _verdict(
+    diagnosis: SideDiagnosis | None, stated: bool, off: bool
+) -> Literal["none", "parameters", "effect"] | None:
+    """Return the likeliest answer; by the joint region of the derivatives alone where no model fits."""
+    likeliest = diagnosis.verdict if diagnosis else "parameters" if off else "none"
+    return likeliest if stated or likeliest == "effect" else None
+
+
 def _held_out(
-    maneuvers: Sequence[Maneuver], aircraft: Aircraft
+    maneuvers: Sequence[Maneuver], aircraft: Aircraft, whole: LateralEstimate
 ) -> tuple[tuple[int, ...], Mapping[str, float], Mapping[str, float]]:
     """Return the manoeuvres held out, and their gap by output before and after; empty where the others do
     not fly every control."""
     kept = maneuvers[: -(len(maneuvers) // HELD_OUT)] if len(maneuvers) >= HELD_OUT else maneuvers[:0]
     unseen = maneuvers[len(kept) :]
-    model, whole = estimate_lateral(kept, aircraft), estimate_lateral(maneuvers, aircraft)
-    if isinstance(model, NoEstimate) or isinstance(whole, NoEstimate) or set(model.flown) != set(whole.flown):
+    model = estimate_lateral(kept, aircraft)
+    if isinstance(model, NoEstimate) or set(model.flown) != set(whole.flown):
         return (), {}, {}
     given = np.array(
         [
@@ -139,7 +158,9 @@ def _sentence(verdict: str | None, derivatives: Sequence[ComparedDerivative]) ->
             "and the like."
         )
     if verdict == "none":
-        return "The simulator's derivatives of roll and yaw lie within the flight's joint 95 % region."
+        return (
+            "The simulator's derivatives of roll and yaw are those of the flight, and no effect is missing."
+        )
     wrong = [one.name for one in derivatives if one.differs]
     listed = f": {', '.join(wrong)}" if wrong else " together, though none alone"
     return f"The simulator's derivatives of roll and yaw are not those of the flight{listed}."

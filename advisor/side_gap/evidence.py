@@ -1,0 +1,125 @@
+"""Evidence on explanations: marginal likelihoods, and the gain on manoeuvres that a fit has not seen.
+
+About its optimum the likelihood is a Gaussian of derivatives and numbers. With a Gaussian prior its integral
+has a closed form (Laplace's method; MacKay, *Neural Computation* 4, 1992). Residuals are coloured, so a nat
+of white noise counts as ``share``² nats.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from advisor.flight.signals.messages import FloatArray
+from advisor.oem.between import widened_by_scatter
+from advisor.oem.covariance import Coloured, coloured, colours_of, cramer_rao, influence, widening
+from advisor.oem.solution import contributions_of
+from advisor.side_gap.fit import Fit, Known
+
+
+class Information(NamedTuple):
+    """Information of each manoeuvre about derivatives and numbers."""
+
+    matrix: FloatArray
+    """(m, k, k)"""
+    gradient: FloatArray
+    """(m, k) at the optimum."""
+
+
+def information_of(fit: Fit, share: float) -> Information:
+    """Return the information of each manoeuvre, with coloured residuals counted as ``share``² of white
+    ones."""
+    weighed = share * fit.columns * fit.weight[:, None]
+    left = share * fit.residual * fit.weight
+    parts = [fit.assembly.owner == m for m in range(fit.assembly.maneuvers)]
+    return Information(
+        np.array([weighed[rows].T @ weighed[rows] for rows in parts]),
+        np.array([weighed[rows].T @ left[rows] for rows in parts]),
+    )
+
+
+def share_of(fit: Fit) -> float:
+    """Return the error of the derivatives by white noise over their error by the residuals: coloured within a
+    manoeuvre, and scattered between manoeuvres."""
+    told = influence(fit.assembly, fit.sensitivities, fit.noise)
+    if told is None:
+        return 1.0
+    colours = colours_of(fit.assembly, fit.residual, fit.sensitivities)
+    noise = Coloured(colours, widening(fit.assembly, told.rows, colours))
+    bound = np.diag(cramer_rao(fit.assembly, told.rows, fit.noise))
+    pulls = contributions_of(fit.assembly, told.rows, fit.residual)
+    found = np.diag(widened_by_scatter(coloured(fit.assembly, told.rows, noise), pulls))
+    ratio = np.sqrt(bound[found > 0.0] / found[found > 0.0])
+    return float(np.clip(np.median(ratio), 0.0, 1.0)) if len(ratio) else 1.0
+
+
+def log_evidence(fit: Fit, told: Information, known: Known, share: float) -> float:
+    """Return the log of the marginal likelihood under a prior, up to a constant that all models share."""
+    matrix, gradient = np.sum(told.matrix, axis=0), np.sum(told.gradient, axis=0)
+    off = fit.values - known.mean
+    pull = gradient - known.precision * off
+    posterior = matrix + np.diag(known.precision)
+    volume = 0.5 * (np.sum(np.log(known.precision)) - np.linalg.slogdet(posterior)[1])
+    height = 0.5 * pull @ np.linalg.solve(posterior, pull) - 0.5 * off @ (known.precision * off)
+    return float(share**2 * fit.likelihood + volume + height)
+
+
+def posterior_of(fit: Fit, told: Information, known: Known) -> tuple[FloatArray, FloatArray]:
+    """Return mean (15 + k,) and covariance of derivatives and numbers under a prior."""
+    posterior = np.sum(told.matrix, axis=0) + np.diag(known.precision)
+    pull = np.sum(told.gradient, axis=0) - known.precision * (fit.values - known.mean)
+    covariance = np.linalg.inv(posterior)
+    return fit.values + covariance @ pull, covariance
+
+
+class Squares(NamedTuple):
+    """Sums of squares (m, outputs) that a model leaves under a prior."""
+
+    in_fit: FloatArray
+    held_out: FloatArray
+    """Each manoeuvre predicted from all others. Derivatives and numbers come from these and from the prior.
+    Trims, initial states and biases come from the manoeuvre itself."""
+
+
+def squares_of(fit: Fit, told: Information, known: Known) -> Squares:
+    """Return the squares of a model in the fit, and on manoeuvres held out one by one."""
+    nothing = Information(np.zeros_like(told.matrix), np.zeros_like(told.gradient))
+    return Squares(_squares(fit, told, nothing, known), _squares(fit, told, told, known))
+
+
+def _squares(fit: Fit, told: Information, without: Information, known: Known) -> FloatArray:
+    """Return the sums of squares of each manoeuvre by a fit to the information ``told`` minus ``without``."""
+    matrix, gradient = np.sum(told.matrix, axis=0), np.sum(told.gradient, axis=0)
+    squares = np.zeros((fit.assembly.maneuvers, len(fit.noise)))
+    for m in range(len(squares)):
+        posterior = matrix - without.matrix[m] + np.diag(known.precision)
+        pull = gradient - without.gradient[m] - known.precision * (fit.values - known.mean)
+        rows = fit.assembly.owner == m
+        left = fit.residual[rows] - fit.columns[rows] @ np.linalg.solve(posterior, pull)
+        squares[m] = np.bincount(fit.assembly.channel[rows], left**2, len(fit.noise))
+    return squares
+
+
+class Gain(NamedTuple):
+    """Log likelihood that one model gains over another, nats."""
+
+    total: float
+    std: float
+    """Standard error of the total, by the scatter of the manoeuvres."""
+
+
+def gain_of(before: FloatArray, after: FloatArray, counts: FloatArray, share: float) -> Gain:
+    """Return the gain between sums of squares (m, outputs), with ``counts`` (outputs,) samples."""
+    told = counts > 0.0
+    sums = before[:, told].sum(axis=0), after[:, told].sum(axis=0)
+    total = 0.5 * share**2 * float(np.sum(counts[told] * np.log(sums[0] / sums[1])))
+    scale = counts[told] / sums[1]
+    each = 0.5 * share**2 * np.sum((before - after)[:, told] * scale, axis=1)
+    return Gain(total, float(np.sqrt(len(each)) * np.std(each, ddof=1)) if len(each) > 1 else np.inf)
+
+
+def probabilities(log_evidence: Sequence[float], shares: Sequence[float]) -> FloatArray:
+    """Return the probability of every explanation, shape (n,), given its share before the flight."""
+    told = np.asarray(log_evidence) + np.log(shares)
+    weights = np.exp(told - np.max(told))
+    return np.asarray(weights / np.sum(weights))

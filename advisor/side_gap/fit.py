@@ -1,0 +1,213 @@
+"""Output error with derivatives, trims and the numbers of a setting, all free at once.
+
+Each step is that of Gauss-Newton. Trims, initial states and biases are projected out of every manoeuvre, so
+that derivatives and numbers alone remain. Their prior is Gaussian.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from advisor.flight.signals.messages import FloatArray
+from advisor.model.axis_response import respond_axis
+from advisor.model.lateral import LATERAL
+from advisor.oem.gauss_newton import weigh
+from advisor.oem.lateral_estimate import LEAST_NOISE
+from advisor.oem.lateral_problem import LateralAssembly
+from advisor.side_gap.setting import Flown, Place, Setting, laid_out, moved_to
+
+ROUNDS = 12
+"""Most Gauss-Newton steps of a fit; those from the table's starts take three to six."""
+SETTLED = 0.05
+"""Decrease of the cost, -2 log likelihood, per step, below which a fit is done: far below one nat."""
+N = len(LATERAL.shared)
+FLOOR = np.array([LEAST_NOISE[name] for name in LATERAL.outputs])
+
+
+class Free(NamedTuple):
+    """One number of the setting that is estimated."""
+
+    place: Place
+    std: float
+    """Standard deviation about zero, or about ``mean``, before the flight."""
+    step: float
+    """Step of the differences."""
+    bounds: tuple[float, float] = (-np.inf, np.inf)
+    mean: float = 0.0
+    column: FloatArray | None = None
+    """(N,) derivative of the outputs that an earlier fit has found; None: every step takes differences."""
+
+
+@dataclass(frozen=True, slots=True)
+class Known:
+    """Gaussian knowledge of derivatives and numbers before the flight."""
+
+    mean: FloatArray
+    precision: FloatArray
+    """(15 + k,) inverse variances."""
+
+
+class Point(NamedTuple):
+    """Parameters of a fit."""
+
+    theta: FloatArray
+    """(15,)"""
+    local: FloatArray
+    """(m, l)"""
+    setting: Setting
+
+
+@dataclass(frozen=True, slots=True)
+class Fit:
+    """The optimum of one model."""
+
+    point: Point
+    assembly: LateralAssembly
+    free: tuple[Free, ...]
+    fitted: FloatArray
+    """(N,) outputs."""
+    noise: FloatArray
+    """(outputs,)"""
+    likelihood: float
+    """Log likelihood up to a constant, of white noise."""
+    columns: FloatArray
+    """(N, 15 + k) derivatives of the outputs, free of what trims, initial states and biases absorb."""
+    slopes: FloatArray
+    """(N, k) derivatives of the outputs by the free numbers alone."""
+    sensitivities: FloatArray
+    """(N, 15 + l) derivatives of the outputs by derivatives and local parameters."""
+
+    @property
+    def values(self) -> FloatArray:
+        """(15 + k,) derivatives and numbers."""
+        return np.concatenate([self.point.theta, _numbers(self.point, self.free)])
+
+    @property
+    def residual(self) -> FloatArray:
+        """(N,) measured minus fitted outputs."""
+        return np.asarray(self.assembly.z - self.fitted)
+
+    @property
+    def weight(self) -> FloatArray:
+        """(N,) inverse standard deviation of each row's noise."""
+        return np.asarray(1.0 / self.noise[self.assembly.channel])
+
+
+def fitted(
+    flown: Flown, begin: Point, free: Sequence[Free], known: Known, rounds: int = ROUNDS
+) -> Fit | None:
+    """Return the optimum from a start; None where the model runs away there."""
+    at = _at(flown, begin, free, known)
+    for _ in range(rounds):
+        if at is None:
+            return None
+        moved = next(filter(None, _trials(flown, at, known)), None)
+        if moved is None:
+            break
+        gain, at = at.cost - moved.cost, moved
+        if gain < SETTLED:
+            break
+    return None if at is None else _finished(flown, at)
+
+
+class _At(NamedTuple):
+    point: Point
+    free: Sequence[Free]
+    assembly: LateralAssembly
+    y: FloatArray
+    g: FloatArray
+    noise: FloatArray
+    likelihood: float
+    cost: float
+
+
+def _at(flown: Flown, point: Point, free: Sequence[Free], known: Known) -> _At | None:
+    assembly = laid_out(flown, point.setting)
+    y = np.empty(len(assembly.z))
+    g = np.empty((len(y), N + point.local.shape[1]))
+    if not respond_axis(assembly.grid, point.theta, point.local, y, g):
+        return None
+    noise, minus_twice = weigh(assembly.z, y, assembly.channel, FLOOR)
+    off = np.concatenate([point.theta, _numbers(point, free)]) - known.mean
+    cost = float(minus_twice + off @ (known.precision * off))
+    return _At(point, free, assembly, y, g, noise, -0.5 * minus_twice, cost)
+
+
+def _trials(flown: Flown, at: _At, known: Known) -> Iterator[_At | None]:
+    """Yield points along the Gauss-Newton step, each a quarter as far, that lower the cost; else None."""
+    columns = np.column_stack([at.g[:, :N], _slopes(flown, at)])
+    weight = 1.0 / at.noise[at.assembly.channel]
+    residual = at.assembly.z - at.y
+    projected, bases = _projected(at, columns, weight)
+    fixed = [k for k in range(N) if k not in at.assembly.free]
+    projected[:, fixed] = 0.0
+    values = np.concatenate([at.point.theta, _numbers(at.point, at.free)])
+    weighed = projected * weight[:, None]
+    information = weighed.T @ weighed + np.diag(known.precision)
+    pull = weighed.T @ (weight * residual) + known.precision * (known.mean - values)
+    step = np.linalg.lstsq(information, pull, rcond=1e-13)[0]
+    low, high = np.array([f.bounds for f in at.free]).reshape(-1, 2).T
+    for share in (1.0, 0.25, 0.06):
+        numbers = np.clip(values[N:] + share * step[N:], low, high)
+        moved = np.concatenate([share * step[:N], numbers - values[N:]])
+        left = weight * (residual - columns @ moved)
+        local = at.point.local.copy()
+        own = at.assembly.free[at.assembly.free >= N] - N
+        for m, (rows, mine) in enumerate(bases):
+            local[m, own] += np.linalg.lstsq(mine, left[rows], rcond=None)[0]
+        setting = moved_to(at.point.setting, [f.place for f in at.free], numbers)
+        trial = _at(flown, Point(at.point.theta + moved[:N], local, setting), at.free, known)
+        yield trial if trial is not None and trial.cost < at.cost else None
+
+
+def _projected(
+    at: _At, columns: FloatArray, weight: FloatArray
+) -> tuple[FloatArray, list[tuple[slice, FloatArray]]]:
+    """Return the columns without what each manoeuvre's own parameters absorb, and its own weighed columns."""
+    own = at.assembly.free[at.assembly.free >= N]
+    result, bases = columns.copy(), []
+    for named in at.assembly.rows:
+        rows = slice(min(s.start for s in named.values()), max(s.stop for s in named.values()))
+        mine = at.g[rows][:, own] * weight[rows, None]
+        bases.append((rows, mine))
+        mix = np.linalg.lstsq(mine, columns[rows] * weight[rows, None], rcond=None)[0]
+        result[rows] -= (mine @ mix) / weight[rows, None]
+    return result, bases
+
+
+def _slopes(flown: Flown, at: _At) -> FloatArray:
+    """Return the derivatives (N, k) of the outputs by the free numbers, by differences."""
+    found = np.zeros((len(at.y), len(at.free)))
+    for k, (one, value) in enumerate(zip(at.free, _numbers(at.point, at.free), strict=True)):
+        if one.column is not None:
+            found[:, k] = one.column
+            continue
+        step = one.step if value + one.step <= one.bounds[1] else -one.step
+        y = outputs(
+            flown,
+            at.point._replace(setting=moved_to(at.point.setting, [one.place], np.array([value + step]))),
+        )
+        found[:, k] = (y - at.y) / step
+    return found
+
+
+def outputs(flown: Flown, point: Point) -> FloatArray:
+    """Return the outputs (N,) of a point."""
+    assembly = laid_out(flown, point.setting)
+    y = np.empty(len(assembly.z))
+    respond_axis(assembly.grid, point.theta, point.local, y, np.empty((0, N + point.local.shape[1])))
+    return y
+
+
+def _numbers(point: Point, free: Sequence[Free]) -> FloatArray:
+    return np.array([point.setting[f.place][0] if f.place in point.setting else 0.0 for f in free])
+
+
+def _finished(flown: Flown, at: _At) -> Fit:
+    slopes = _slopes(flown, at)
+    projected, _ = _projected(at, np.column_stack([at.g[:, :N], slopes]), 1.0 / at.noise[at.assembly.channel])
+    projected[:, [k for k in range(N) if k not in at.assembly.free]] = 0.0
+    free = tuple(at.free)
+    return Fit(at.point, at.assembly, free, at.y, at.noise, at.likelihood, projected, slopes, at.g)

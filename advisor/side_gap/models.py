@@ -1,0 +1,207 @@
+"""Models of a lateral flight: the plain one with natural lateness, and one for each effect."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.reference import SIDE_PARAMETERS
+from advisor.flight.instruments.lateness import lateness_std
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.messages import FloatArray
+from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG
+from advisor.model.lateral import LATERAL, natural_size
+from advisor.oem.estimate import NoEstimate
+from advisor.oem.lateral_instruments import beta_arm_m, nuisances_of
+from advisor.oem.lateral_prepare import prepare_lateral
+from advisor.oem.lateral_start import lateral_start
+from advisor.oem.prepare import signal_of
+from advisor.side_gap.effects import SideEffect
+from advisor.side_gap.fit import Fit, Free, Known, N, Point, fitted, outputs
+from advisor.side_gap.setting import COMMAND, Flown, Place, Setting
+
+SMALL_SHARE = 0.1
+"""Least size of a derivative for a relative error, over its natural size (``natural_size``)."""
+NATURAL_STEP = 1e-3
+"""Step of the differences of a natural number, s or m."""
+
+_ENTRIES = {"delay": "skew_s", "arm": "arm_m", "lag": "lag_s"}
+"""Kind of a nuisance parameter to its entry in a setting."""
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """One flight and one simulator, ready for the fits."""
+
+    flown: Flown
+    theta: FloatArray
+    """(15,) derivatives of the simulator; those of the flight where the file states none."""
+    stated: tuple[str, ...]
+    """Derivatives that the file states."""
+    natural: tuple[Free, ...]
+    """Lateness of commands and outputs, and errors of stated lags: part of every model."""
+    begin: Point
+    """Start of the plain fit."""
+
+    def known(self, tolerance: float, free: Sequence[Free], share: float = 1.0) -> Known:
+        """Return the prior of derivatives, of relative error ``tolerance`` where stated, and of numbers.
+
+        ``share`` is that of white noise among coloured residuals, by which the fit weighs a prior.
+        """
+        sizes = natural_size(self.theta)
+        size = np.array([sizes[name] for name in SIDE_PARAMETERS])
+        scale = np.maximum(np.abs(self.theta), SMALL_SHARE * size)
+        told = np.array([name in self.stated for name in SIDE_PARAMETERS])
+        std = np.concatenate([np.where(told, tolerance * scale, size), [one.std for one in free]])
+        mean = np.concatenate([self.theta, [one.mean for one in free]])
+        return Known(mean, 1.0 / (share * std) ** 2)
+
+
+def case_of(maneuvers: Sequence[Maneuver], aircraft: Aircraft, theta: FloatArray) -> Case | NoEstimate:
+    """Return the flight and the simulator of an aircraft file; ``theta`` (15,) is the flight's estimate."""
+    problem = prepare_lateral(maneuvers, aircraft)
+    if isinstance(problem, NoEstimate):
+        return problem
+    throttle = tuple(
+        signal_of(m.channels["throttle"]) if "throttle" in m.channels else None for m in maneuvers
+    )
+    setting: dict[Place, FloatArray] = {COMMAND: np.zeros(len(maneuvers))}
+    natural = []
+    for name in LATERAL.inputs:
+        control = getattr(aircraft, name)
+        for entry, value in (("lag_s", control.lag_s), ("delay_s", control.delay_s)):
+            if value:
+                setting[name, entry] = np.full(len(maneuvers), value)
+    for one in nuisances_of(problem, aircraft):
+        place = COMMAND if one.kind == "command" else (one.of, _ENTRIES[one.kind])
+        # A lag that the file leaves open is absent from the simulator: such a lag is an effect.
+        if one.kind != "lag" or place in setting:
+            natural.append(Free(place, one.prior.std, NATURAL_STEP * one.per_second, mean=one.prior.mean))
+    forces = [record.outputs["a_y"].t for record in problem.records if "a_y" in record.outputs]
+    if forces:
+        natural.append(Free(("a_y", "skew_s"), lateness_std(forces), NATURAL_STEP))
+    stated = tuple(name for name in SIDE_PARAMETERS if name in aircraft.model)
+    given = np.array([aircraft.model.get(n, v) for n, v in zip(SIDE_PARAMETERS, theta, strict=True)])
+    begin = Point(theta, lateral_start(problem)[1], setting)
+    flown = Flown(problem, throttle, beta_arm_m(aircraft) is not None)
+    return Case(flown, given, stated, tuple(natural), begin)
+
+
+def plain_fit(case: Case) -> Fit | None:
+    """Return the fit without an effect, with derivatives that may be wrong."""
+    return fitted(case.flown, case.begin, case.natural, case.known(ERROR_IF_WRONG, case.natural))
+
+
+def simulated(case: Case, plain: Fit) -> Fit | None:
+    """Return the fit of trims and natural lateness with the simulator's derivatives."""
+    known = case.known(ERROR_IF_RIGHT * 1e-3, plain.free)
+    return fitted(case.flown, plain.point._replace(theta=case.theta), plain.free, known)
+
+
+def free_with(case: Case, effect: SideEffect, plain: Fit) -> tuple[Free, ...]:
+    """Return the free numbers of a model with an effect, which replaces a natural number at its place.
+
+    The natural numbers keep the derivatives of the plain fit."""
+    variant = effect.variant
+    kept = [
+        one._replace(column=plain.slopes[:, k])
+        for k, one in enumerate(plain.free)
+        if one.place not in effect.places
+    ]
+    base = [_value(case.begin.setting, place) for place in effect.places]
+    own = [
+        Free(place, std, step, (min(low, low + at), high + at), at)
+        for place, std, step, (low, high), at in zip(
+            effect.places, effect.std, variant.steps, variant.bounds, base, strict=True
+        )
+    ]
+    return (*kept, *own)
+
+
+class Start(NamedTuple):
+    """A start of an effect's fit."""
+
+    squares: float
+    """Sum of squares over the noise, after a linear refit of all else."""
+    point: Point
+
+
+def effect_fit(case: Case, plain: Fit, effect: SideEffect, begin: Point, share: float) -> Fit | None:
+    """Return the fit with an effect from a start, with derivatives that may be wrong."""
+    free = free_with(case, effect, plain)
+    return fitted(case.flown, begin, free, case.known(ERROR_IF_WRONG, free, share))
+
+
+def refitted(case: Case, fit: Fit, tolerance: float, share: float) -> Fit | None:
+    """Return a fit again, with another tolerance of the derivatives."""
+    return fitted(case.flown, fit.point, fit.free, case.known(tolerance, fit.free, share))
+
+
+def best_start(case: Case, plain: Fit, effect: SideEffect) -> Start:
+    """Return the start of an effect that leaves least, by one simulation for each start of the table."""
+    return min(_starts(case, plain, effect), key=lambda start: start.squares)
+
+
+def _starts(case: Case, plain: Fit, effect: SideEffect) -> Iterator[Start]:
+    """Yield every start of an effect. Along the way from no effect to a start the outputs count as linear."""
+    left = _Left(case, plain)
+    place, sides = effect.sides or (("", ""), (0.0,))
+    for values in effect.starts:
+        setting = dict(plain.point.setting)
+        base = [_value(case.begin.setting, at) for at in effect.places]
+        for at, value, known in zip(effect.places, values, base, strict=True):
+            setting[at] = np.full(len(case.flown), known + value)
+        tried = []
+        for side in sides:
+            setting[place] = np.full(len(case.flown), side)
+            tried.append(left.along(outputs(case.flown, plain.point._replace(setting=setting))))
+        squares = np.array([squares for _, squares in tried])
+        best = np.argmin(squares, axis=0)
+        if effect.sides is None:
+            del setting[place]
+            share = float(np.clip(tried[0][0], *SECANT))
+            setting[effect.places[0]] = np.full(len(case.flown), base[0] + share * values[0])
+        else:
+            setting[place] = np.array(sides)[best]
+        yield Start(float(np.sum(np.min(squares, axis=0))), plain.point._replace(setting=setting))
+
+
+SECANT = (0.25, 2.0)
+"""Least and greatest part of a start that the straight line from no effect may suggest."""
+
+
+class _Left:
+    """Sums of squares that changed outputs leave, with all else refitted linearly."""
+
+    def __init__(self, case: Case, plain: Fit) -> None:
+        self._plain = plain
+        known = case.known(ERROR_IF_WRONG, plain.free)
+        self._columns = plain.columns * plain.weight[:, None]
+        self._information = self._columns.T @ self._columns + np.diag(known.precision)
+        own = plain.assembly.free[plain.assembly.free >= N]
+        self._own = plain.sensitivities[:, own] * plain.weight[:, None]
+        self._parts = [plain.assembly.owner == m for m in range(plain.assembly.maneuvers)]
+        self._begin = self._without(plain.residual * plain.weight)
+
+    def along(self, y: FloatArray) -> tuple[float, FloatArray]:
+        """Return the best part of the way to outputs ``y`` (N,), and the sums of squares (m,) left there."""
+        if not np.all(np.isfinite(y)):
+            return 1.0, np.full(len(self._parts), np.inf)
+        way = self._without((y - self._plain.fitted) * self._plain.weight)
+        share = float(way @ self._begin) / max(float(way @ way), 1e-12)
+        left = self._begin - float(np.clip(share, *SECANT)) * way
+        return share, np.array([float(left[rows] @ left[rows]) for rows in self._parts])
+
+    def _without(self, left: FloatArray) -> FloatArray:
+        """Return weighed rows (N,) without what all other parameters absorb."""
+        left = left.copy()
+        for rows in self._parts:
+            mine = self._own[rows]
+            left[rows] -= mine @ np.linalg.lstsq(mine, left[rows], rcond=None)[0]
+        return np.asarray(left - self._columns @ np.linalg.solve(self._information, self._columns.T @ left))
+
+
+def _value(setting: Setting, place: Place) -> float:
+    return float(setting[place][0]) if place in setting else 0.0

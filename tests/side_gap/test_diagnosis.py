@@ -1,0 +1,84 @@
+"""The diagnosis of roll and yaw: decisions on results made by hand, and one whole flight."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.controls import SideControl
+from advisor.aircraft.reference import SIDE_PARAMETERS
+from advisor.aircraft.sensors import Beta
+from advisor.cli.side_gap import side_gap_document, side_gap_lines
+from advisor.gap.result import Cause, Value
+from advisor.side_gap.comparison import SideGap
+from advisor.side_gap.diagnosis import SideCause, SideDiagnosis, diagnose_side
+from advisor.side_gap.evidence import Gain
+from advisor.side_gap.models import case_of
+from tests.oem.lateral_builders import JET
+from tests.side_gap.test_comparison import maneuvers
+
+PEAKS = {"p": 0.2, "r": 0.1}
+PLAY = SideCause(
+    "aileron",
+    "aileron actuator backlash",
+    Cause(
+        "actuator_backlash", "input", 0.7, {"half_width_rad": Value(0.01, 0.001)}, (), "", 0.0, present=True
+    ),
+    "The real aileron has play of 0.57 deg to either side",
+    Gain(30.0, 4.0),
+    {"p": 0.05, "r": 0.04},
+)
+DIAGNOSIS = SideDiagnosis(
+    0.2, 0.05, {"aileron_actuator_backlash": 0.7, "aileron_actuator_lag": 0.05}, (PLAY,), PEAKS, PEAKS, {}
+)
+FOUND = SideGap("effect", PLAY.sentence, (), 0.0, 0.0, {}, {}, (1, 2, 3), (), {}, {}, DIAGNOSIS)
+
+
+@pytest.mark.parametrize(
+    ("none", "parameters", "effects", "verdict"),
+    [
+        (0.5, 0.2, (0.3,), "none"),
+        (0.3, 0.5, (0.2,), "parameters"),
+        (0.4, 0.0, (0.35, 0.25), "effect"),
+    ],
+)
+def test_the_verdict_is_the_likeliest_kind_and_effects_count_together(none, parameters, effects, verdict):
+    named = {f"effect {k}": p for k, p in enumerate(effects)}
+    assert replace(DIAGNOSIS, none=none, parameters=parameters, effects=named).verdict == verdict
+
+
+def test_the_text_says_the_cause_with_its_size_and_the_errors_that_it_removes():
+    text = "\n".join(side_gap_lines(FOUND))
+    assert "The real aileron has play of 0.57 deg to either side" in text
+    assert "aileron actuator backlash: 0.57 ± 0.11 deg (70 %)" in text
+    assert "largest error of p: 11.46 → 2.86 deg/s" in text
+    assert "no gap 20 %" in text
+
+
+def test_the_document_has_probabilities_that_sum_to_one_and_the_gain_on_unseen_manoeuvres():
+    document = side_gap_document(FOUND)
+    told = document["probabilities"]
+    assert told["none"] + told["parameters"] + sum(told["effects"].values()) == pytest.approx(1.0)
+    (cause,) = document["causes"]
+    assert (cause["of"], cause["effect"], cause["block"]) == ("aileron", "actuator_backlash", "input")
+    assert cause["held_out_nats"] == {"value": 30.0, "std": 4.0}
+    assert document["peaks"]["simulator"] == PEAKS
+
+
+def test_a_gyro_that_reads_too_much_is_named_with_its_size():
+    # About 8 s: the only whole diagnosis with an effect, from records to the answer.
+    known = SideControl(lag_s=0.0, delay_s=0.0)
+    aircraft = Aircraft(aileron=known, rudder=known, beta=Beta("none"), model=dict(JET))
+    flight = []
+    for maneuver in maneuvers():
+        rate = maneuver.channels["p"]
+        flight.append(replace(maneuver, channels={**maneuver.channels, "p": replace(rate, y=1.08 * rate.y)}))
+    case = case_of(flight, aircraft, np.array([JET[name] for name in SIDE_PARAMETERS]))
+    found = diagnose_side(case)
+    assert found.verdict == "effect"
+    first = found.causes[0]
+    assert first.name == "roll_rate_scale"
+    assert first.cause.parameters["scale"].value == pytest.approx(0.08, abs=0.02)
+    assert first.sentence.startswith("The roll rate reads 8")
+    assert first.peaks["p"] < found.peaks["p"]
