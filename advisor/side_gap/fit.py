@@ -14,8 +14,8 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.model.axis_response import respond_axis
 from advisor.model.lateral import LATERAL
 from advisor.oem.gauss_newton import weigh
-from advisor.oem.lateral_estimate import LEAST_NOISE
-from advisor.oem.lateral_problem import LateralAssembly
+from advisor.oem.lateral_problem import CAUSES, LateralAssembly
+from advisor.oem.lateral_search import LEAST_NOISE
 from advisor.side_gap.setting import Flown, Place, Setting, laid_out, moved_to
 
 ROUNDS = 12
@@ -24,6 +24,7 @@ SETTLED = 0.05
 """Decrease of the cost, -2 log likelihood, per step, below which a fit is done: far below one nat."""
 N = len(LATERAL.shared)
 FLOOR = np.array([LEAST_NOISE[name] for name in LATERAL.outputs])
+_NO_MOTION = np.empty((0, 2, len(LATERAL.states)))
 
 
 class Free(NamedTuple):
@@ -126,8 +127,8 @@ class _At(NamedTuple):
 def _at(flown: Flown, point: Point, free: Sequence[Free], known: Known) -> _At | None:
     assembly = laid_out(flown, point.setting)
     y = np.empty(len(assembly.z))
-    g = np.empty((len(y), N + point.local.shape[1]))
-    if not respond_axis(assembly.grid, point.theta, point.local, y, g):
+    g = np.empty((len(y), N + point.local.shape[1] + len(CAUSES)))
+    if not respond_axis(assembly.grid, point.theta, point.local, y, g, _NO_MOTION):
         return None
     noise, minus_twice = weigh(assembly.z, y, assembly.channel, FLOOR)
     off = np.concatenate([point.theta, _numbers(point, free)]) - known.mean
@@ -197,7 +198,8 @@ def outputs(flown: Flown, point: Point) -> FloatArray:
     """Return the outputs (N,) of a point."""
     assembly = laid_out(flown, point.setting)
     y = np.empty(len(assembly.z))
-    respond_axis(assembly.grid, point.theta, point.local, y, np.empty((0, N + point.local.shape[1])))
+    no_slopes = np.empty((0, N + point.local.shape[1] + len(CAUSES)))
+    respond_axis(assembly.grid, point.theta, point.local, y, no_slopes, _NO_MOTION)
     return y
 
 
