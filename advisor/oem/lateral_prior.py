@@ -23,11 +23,11 @@ SIDE_FORCE_OVER_WEIGHT = 2.0
 """Mean and standard deviation of |C_Yβ|/C_L, 1. Fits give -Y_β·V/g of 0.8 on an indoor aircraft, 1.2 at 3 kg,
 2.7 on a jet and 4.9 on a fighter."""
 YAW_BY_ROLLING = 0.2
-"""Standard deviation of N_p over L_p, 1. C_np of C_L/8 with C_lp of -0.45 gives 0.03 to 0.2. Fits give 0.01 on
-a fighter, 0.05 on a jet, 0.09 at 3 kg and -0.3 on an indoor aircraft."""
+"""Standard deviation of N_p over L_p, 1. C_np of C_L/8 with C_lp of -0.45 gives 0.03 to 0.2. Fits give 0.01
+on a fighter, 0.05 on a jet, 0.09 at 3 kg and -0.3 on an indoor aircraft."""
 ROLL_BY_YAWING = 1.0
-"""Standard deviation of L_r over L_p, 1. C_lr of C_L/4 with C_lp of -0.45 gives 0.2 to 0.8. Fits give 0.2 on a
-fighter, 0.3 on a jet and at 3 kg, and 0.7 on an indoor aircraft."""
+"""Standard deviation of L_r over L_p, 1. C_lr of C_L/4 with C_lp of -0.45 gives 0.2 to 0.8. Fits give 0.2 on
+a fighter, 0.3 on a jet and at 3 kg, and 0.7 on an indoor aircraft."""
 
 
 @dataclass(frozen=True, slots=True)
