@@ -3,9 +3,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.model.lateral import LATERAL
+from advisor.model.lateral import LATERAL, Trim, modes_of, state_matrix
 from advisor.oem.extra import Prior
 from advisor.oem.gauss_newton import CONVERGED
+from advisor.oem.lateral_estimate import solve_lateral
 from advisor.oem.lateral_instruments import LONGEST_LAG_S, Nuisance, moved_by
 from advisor.oem.lateral_prior import Priors
 from advisor.oem.lateral_problem import LateralProblem, assemble_lateral
@@ -113,3 +114,13 @@ def test_a_prior_of_a_derivative_pulls_by_its_share(doublets):
         for prior in (KNOWN_NOTHING, known, replace(known, share=0.1))
     )
     assert abs(weighed) < abs(told) < abs(free)
+
+
+def test_a_rudder_doublet_without_side_force_tells_the_dutch_roll(doublets):
+    rudder = doublets.records[1]
+    seen = {name: rudder.outputs[name] for name in ("p", "r", "bank")}
+    solution = solve_lateral(LateralProblem((replace(rudder, outputs=seen),)))
+    trim = Trim(SPEED_M_S, 0.07, 0.105)
+    found, known = (modes_of(state_matrix(theta, trim)).dutch_roll for theta in (solution.theta, vector(JET)))
+    assert abs(found) == pytest.approx(abs(known), rel=0.01)
+    assert -found.real == pytest.approx(-known.real, abs=0.01)
