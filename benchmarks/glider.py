@@ -117,8 +117,8 @@ class Stepping:
 
     def reset(self, speed: float, height: float, alpha: float, theta: float) -> None:
         """Begin with thrust that balances drag and weight along the path."""
-        self.x, self.a_z = np.array([alpha, 0.0, theta, speed, height]), 0.0
-        rates, _, _ = Glider().rates(self.x.tolist(), 0.0, 0.0, 0.0)
+        self.x = np.array([alpha, 0.0, theta, speed, height])
+        rates, _, self.a_z = Glider().rates(self.x.tolist(), 0.0, 0.0, 0.0)
         self.thrust = -float(rates[3]) / np.cos(alpha)
 
     def step(self, dt: float, elevator: float) -> None:
@@ -178,14 +178,14 @@ def row(coding: str, what: str, told: Compared, others: Sequence[Maneuver]) -> s
     first = next((c for c in d.causes if c.present), None)
     size = "" if first is None else f"{next(iter(first.parameters.values())).value:.3f}"
     per_unit = Glider().cm_alpha / told.aircraft.model["M_alpha"]
-    stiffness, error = (abs(x) * per_unit for x in (d.model["M_alpha"].value, 1.96 * d.model["M_alpha"].std))
+    stiffness, error = (x * per_unit for x in (d.model["M_alpha"].value, 1.96 * d.model["M_alpha"].std))
     plain, better = (
         sum(pitch_rate_error(m, simulator, effects) for m in others)
         for simulator, effects in ((Glider(), {}), (improved(told), d.effects))
     )
     shrink = f"{100.0 * (1.0 - better / plain):.0f}" if others else ""
     named = d.verdict if first is None else f"{first.effect}, P {first.probability:.2f} ({d.verdict})"
-    cells = coding, what, named, size, f"{stiffness:.2f} ± {abs(error):.2f}", shrink
+    cells = coding, what, named, size, f"{stiffness:.2f} ± {error:.2f}", shrink
     return f"| {' | '.join(cells)} |"
 
 

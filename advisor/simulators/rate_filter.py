@@ -1,8 +1,8 @@
 """A filter of the pitch rate that only the simulator has, shown by the simulator's own attitude.
 
 A replay has no noise. So θ̇ = q·cos φ − r·sin φ holds to the step of the simulation, whatever the
-aerodynamics. A pitch rate that departs from the attitude's rate is late. Behind a first-order filter,
-the rate is q + τ·q̇; before a delay of τ it is nearly that.
+aerodynamics. A pitch rate that departs from the attitude's rate is late. With a first-order filter the
+departure is τ·q̇, with a delay nearly so.
 """
 
 from collections.abc import Sequence
