@@ -141,16 +141,17 @@ def refitted(case: Case, fit: Fit, tolerance: float, share: float) -> Fit | None
 def best_start(case: Case, plain: Fit, effect: SideEffect) -> Start:
     """Return the start of an effect that leaves least, by one simulation for each start of the table.
 
-    An effect at the place of a natural number saves what that number's prior has cost.
+    An effect at the place of a natural number starts at that number, and saves what its prior has cost.
     """
-    begin = min(_starts(case, plain, effect), key=lambda start: start.squares)
-    values = plain.values[N:]
-    saved = (
+    saved = [
         ((value - one.mean) / one.std) ** 2
-        for one, value in zip(plain.free, values, strict=True)
+        for one, value in zip(plain.free, plain.values[N:], strict=True)
         if one.place in effect.places
-    )
-    return Start(begin.squares - float(sum(saved)), begin.point)
+    ]
+    if saved:
+        squares = _Left(case, plain).along(plain.fitted)[1]
+        return Start(float(np.sum(squares) - sum(saved)), plain.point)
+    return min(_starts(case, plain, effect), key=lambda start: start.squares)
 
 
 def _starts(case: Case, plain: Fit, effect: SideEffect) -> Iterator[Start]:
