@@ -80,10 +80,11 @@ class SideDiagnosis:
 
     @property
     def verdict(self) -> Literal["none", "parameters", "effect"]:
-        """Likeliest kind of explanation: ``none``, ``parameters`` or ``effect``."""
-        totals: dict[Literal["none", "parameters", "effect"], float]
-        totals = {"none": self.none, "parameters": self.parameters, "effect": sum(self.effects.values())}
-        return max(totals, key=lambda kind: totals[kind])
+        """Kind of the likeliest single explanation: ``none``, ``parameters`` or ``effect``."""
+        kinds: dict[Literal["none", "parameters", "effect"], float]
+        likeliest = max(self.effects.values(), default=0.0)
+        kinds = {"none": self.none, "parameters": self.parameters, "effect": likeliest}
+        return max(kinds, key=lambda kind: kinds[kind])
 
 
 @dataclass(frozen=True, slots=True)

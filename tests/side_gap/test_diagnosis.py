@@ -40,10 +40,11 @@ FOUND = SideGap("effect", PLAY.sentence, (), 0.0, 0.0, {}, {}, (1, 2, 3), (), {}
     [
         (0.5, 0.2, (0.3,), "none"),
         (0.3, 0.5, (0.2,), "parameters"),
-        (0.4, 0.0, (0.35, 0.25), "effect"),
+        (0.3, 0.1, (0.4, 0.2), "effect"),
+        (0.4, 0.0, (0.35, 0.25), "none"),
     ],
 )
-def test_the_verdict_is_the_likeliest_kind_and_effects_count_together(none, parameters, effects, verdict):
+def test_the_verdict_is_the_likeliest_single_explanation(none, parameters, effects, verdict):
     named = {f"effect {k}": p for k, p in enumerate(effects)}
     assert replace(DIAGNOSIS, none=none, parameters=parameters, effects=named).verdict == verdict
 
