@@ -66,8 +66,9 @@ _TEXTS = {"Name", "Message"}
 
 
 def read_dataflash(path: Path, wanted: Iterable[str] | None = None) -> Iterator[list[Columns]]:
-    """Yield the messages of a ``.bin``, or of PX4's ``.px4log`` in its container: a batch for each stretch of
-    each log that was joined into the file.
+    """Yield the messages of a ``.bin``, or of PX4's ``.px4log`` in its container.
+
+    A batch holds a stretch of one of the logs that were joined into the file.
 
     Raises
     ------
