@@ -60,6 +60,11 @@ def counted(pids: list[int]) -> tuple[float, int, float]:
     return memory, descriptors, seconds
 
 
+def latest_s(told: str) -> float:
+    """Return the time of flight of the newest manoeuvre that the simulator has told, s."""
+    return float(([line.split()[0] for line in told.splitlines()] or ["0"])[-1])
+
+
 def main() -> None:
     """Fly, count once a minute, and end."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -75,25 +80,16 @@ def _fly(folder: Path, minutes: int, speed: float) -> None:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
     data, said, recording = folder / "data", folder / "said.txt", folder / "flight.tlog"
+    flown = folder / "flown.txt"
     environment = {**os.environ, "HEADLESS": "1", "XDG_DATA_HOME": str(data)}
     live = [sys.executable, "-m", "advisor", "live", "--master", f"udpin:127.0.0.1:{port}"]
-    fly = [
-        sys.executable,
-        "-m",
-        "sim",
-        "fly",
-        "--master",
-        f"udpout:127.0.0.1:{port}",
-        "--speed",
-        f"{speed:g}",
-    ]
-    with said.open("wb") as out:
+    master = f"udpout:127.0.0.1:{port}"
+    fly = [sys.executable, "-m", "sim", "fly", "--master", master, "--speed", f"{speed:g}"]
+    with said.open("wb") as out, flown.open("wb") as told:
         advising = subprocess.Popen([*live, "--record", str(recording)], stdout=out, env=environment)
         time.sleep(5.0)
         plan = str(scenario(folder, 60.0 * minutes * speed))
-        flying = subprocess.Popen(
-            [*fly, "--scenario", plan], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
-        )
+        flying = subprocess.Popen([*fly, "--scenario", plan], stdout=told, stderr=subprocess.STDOUT)
         began = time.monotonic()
         print("minute  flown h   MB  descriptors  CPU s  verdicts  recorded MB", flush=True)
         for minute in range(1, minutes + 1):
@@ -101,8 +97,9 @@ def _fly(folder: Path, minutes: int, speed: float) -> None:
             memory, descriptors, seconds = counted(list(processes(advising.pid, data)))
             text = said.read_text()
             verdicts = text.count("ACCEPTED:") + text.count("REPEAT:")
+            hours = latest_s(flown.read_text()) / 3600.0
             print(
-                f"{minute:6} {minute * speed / 60.0:8.2f} {memory:5.0f} {descriptors:11} {seconds:7.0f}"
+                f"{minute:6} {hours:8.2f} {memory:5.0f} {descriptors:11} {seconds:7.0f}"
                 f" {verdicts:8} {recording.stat().st_size / 1e6:11.1f}",
                 flush=True,
             )

@@ -68,7 +68,7 @@ _TEXTS = {"Name", "Message"}
 def read_dataflash(path: Path, wanted: Iterable[str] | None = None) -> Iterator[list[Columns]]:
     """Yield the messages of a ``.bin``, or of PX4's ``.px4log`` in its container.
 
-    Each stretch of each log that was joined into the file is a batch.
+    A batch holds a stretch of one of the logs that were joined into the file.
 
     Raises
     ------

@@ -77,7 +77,7 @@ class Translation:
         first_s = float(read.epoch_s) or gps_time_base_s(self._tables.get("GPS"))
         self._base_s = first_s if known.base_s is None else known.base_s
         self.known = Known(read.epoch_s, self._base_s, healthy, silences)
-        """Facts that this stretch and those before have told."""
+        """Facts of the whole log after this stretch."""
         self._system = system_of(self._tables)
 
     def columns(self) -> Iterator[Columns]:
