@@ -40,8 +40,8 @@ class StickReplay(Talker):
 
     def __init__(self, t: FloatArray, pulses: IntArray) -> None:
         self._t, self._pulses = t, pulses
-        self._simulated = False
-        self._station = _USUAL_STATION
+        self._simulated_s: float | None = None
+        self._station: int | None = None
         self._asked_s = self._sent_s = float("-inf")
         self._first_asked_s: float | None = None
         self._began_s: float | None = None
@@ -56,7 +56,7 @@ class StickReplay(Talker):
 
     def source(self, own: Ids, vehicle: Ids) -> Ids:
         """Return the id of the vehicle's own ground station, whose override it takes."""
-        return self._station, own[1]
+        return self._station or _USUAL_STATION, own[1]
 
     def hear(self, frame: Frame, now_s: float) -> None:
         """Take the answers to the questions."""
@@ -65,16 +65,18 @@ class StickReplay(Talker):
         payload = frame.payload.ljust(25, b"\0")
         name = payload[8:24].partition(b"\0")[0].decode("ascii", "replace")
         if name in SIMULATED:
-            self._simulated = True
+            self._simulated_s = now_s if self._simulated_s is None else self._simulated_s
         elif name in _STATIONS:
-            self._station = int(np.frombuffer(payload[:4], "<f4")[0]) or _USUAL_STATION
+            self._station = int(np.frombuffer(payload[:4], "<f4")[0])
 
     def speak(self, vehicle: Ids | None, now_s: float) -> list[Any]:
         """Return the questions, then the pulses that are due, at last their release."""
         if vehicle is None or self.done:
             return []
-        if not self._simulated:
+        if self._simulated_s is None:
             return self._asked(vehicle, now_s)
+        if self._station is None and now_s - self._simulated_s < _ASK_EVERY_S:
+            return []  # the answer with the station's id may be on its way
         if self._began_s is None:
             self._began_s = now_s
         if now_s - self._sent_s < _SEND_EVERY_S:

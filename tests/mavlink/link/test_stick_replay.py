@@ -1,6 +1,7 @@
 """Recorded sticks go to a simulation, in their own time, and to nothing else."""
 
 import numpy as np
+import pytest
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 from advisor.mavlink.link.stick_replay import StickReplay
@@ -32,6 +33,7 @@ def flown(replay: StickReplay, until_s: float = 2.0) -> list[tuple[float, list[i
 def test_pulses_go_out_in_their_own_time_and_are_released_at_the_end():
     replay = StickReplay(T, PULSES)
     answered(replay, "SIM_SPEEDUP", 1.0)
+    answered(replay, "SYSID_MYGCS", 252.0)
     sent = flown(replay)
     assert {pulse for t, pulse in sent if 0.11 < t < 0.19} == {1700}
     assert {pulse for t, pulse in sent if 0.21 < t < 0.29} == {1300}
@@ -52,3 +54,9 @@ def test_the_override_comes_from_the_vehicles_own_ground_station():
     assert replay.source((254, 190), VEHICLE) == (255, 190)
     answered(replay, "SYSID_MYGCS", 252.0)
     assert replay.source((254, 190), VEHICLE) == (252, 190)
+
+
+def test_the_first_override_waits_for_the_stations_id_for_the_time_of_one_question():
+    replay = StickReplay(T, PULSES)
+    answered(replay, "SIM_SPEEDUP", 1.0)
+    assert flown(replay)[0][0] == pytest.approx(0.5, abs=0.011)
