@@ -113,3 +113,16 @@ def test_a_users_simulator_flies_a_new_effect(flights):
     departure = STATE.alpha - flight.alpha_trim
     assert force == pytest.approx(-0.2 * NUMBERS["Z_alpha"] * ratio * departure, rel=1e-9)
     assert moment == pytest.approx(-0.2 * NUMBERS["M_delta_e"] * ratio**2 * STATE.elevator, rel=1e-9)
+
+
+def test_every_effect_that_some_manoeuvres_show_is_flown_in_more_of_them():
+    """As for a simulator's shrink: a search leaves manoeuvres out, and its model flies all."""
+    flown = fly(Setup(maneuvers=5, speed_change=0.2, seed=9))
+    every, fewer = (prepare(maneuvers, Aircraft()) for maneuvers in (flown, flown[:3]))
+    variants = [variant for one in variants_for(fewer) for variant in (one, *one.likewise)]
+    assert len(variants) > len(EFFECTS)
+    for variant in variants:
+        p = np.zeros((5, len(ENTRIES)))
+        p[:, [INDEX[name] for name in DERIVATIVES]] = list(NUMBERS.values())
+        variant.apply(p, [0.01] * len(variant.names), every)
+        assert np.all(np.isfinite(p)), variant.effect

@@ -34,7 +34,7 @@ def with_known(
         described = [w for v in variants if v.effect == effect for w in (v, *v.likewise)]
         meant = [w for w in described if _says(w, parameters)]
         for variant in sorted(meant, key=lambda v: (-len(v.fixed), -len(v.names)))[:1]:
-            as_said = as_in_file(variant, EFFECTS[effect].curve, parameters, flights)
+            as_said = as_in_file(variant, EFFECTS[effect].curve, parameters)
             as_said.apply(numbers, _values(variant, parameters), flights)
     return numbers
 

@@ -4,7 +4,7 @@ A linear model knows deviations from trim only, a wing or an elevator its angle.
 differ too, and each manoeuvre is flown on another part of the same curve.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -47,29 +47,27 @@ def bent(variant: Variant, curve: Curve, flights: PreparedManeuvers) -> Variant:
     usual = float(np.median(trims))
     if np.max(np.abs(np.array(trims) - usual)) < _TRIMS_DIFFER * max(float(np.max(np.abs(m))) for m in moved):
         return variant
-    return replace(variant, likewise=(_about(usual, variant, curve, trims),))
+    return replace(variant, likewise=(_about(usual, variant, curve),))
 
 
-def as_in_file(
-    variant: Variant, curve: Curve | None, parameters: Mapping[str, float], flights: PreparedManeuvers
-) -> Variant:
-    """Return a curve about the angle that an aircraft file states, whatever the trims of these flights."""
+def as_in_file(variant: Variant, curve: Curve | None, parameters: Mapping[str, float]) -> Variant:
+    """Return a curve about the angle that an aircraft file states, whatever the trims of the flights."""
     if curve is None or "about_rad" not in parameters or variant.names != tuple(curve.powers):
         return variant
-    return _about(parameters["about_rad"], variant, curve, _trims_of(curve, flights))
+    return _about(parameters["about_rad"], variant, curve)
 
 
 def _trims_of(curve: Curve, flights: PreparedManeuvers) -> list[float]:
     return [f.u_trim if curve.variable == "delta_e" else f.alpha_trim for f in flights.flights]
 
 
-def _about(angle_rad: float, variant: Variant, curve: Curve, trims: Sequence[float]) -> Variant:
+def _about(angle_rad: float, variant: Variant, curve: Curve) -> Variant:
     """Return a variant with (x + D)² and (x + D)³ expanded in x, where D is a manoeuvre's trim minus the
     angle."""
     slope, square, cube = (INDEX[entry] for entry in (curve.slope, *curve.powers))
-    offset = np.array(trims) - angle_rad
 
-    def bend(p: FloatArray, values: Values, _: PreparedManeuvers) -> None:
+    def bend(p: FloatArray, values: Values, flights: PreparedManeuvers) -> None:
+        offset = np.array(_trims_of(curve, flights)) - angle_rad
         p[:, slope] += (2.0 * values[0] + 3.0 * values[1] * offset) * offset
         p[:, square] += values[0] + 3.0 * values[1] * offset
         p[:, cube] += values[1]
