@@ -1,6 +1,7 @@
 """``advisor gap``: why the real aircraft does not fly like the simulator."""
 
 import json
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -27,6 +28,9 @@ _OF_A_FLIGHT = {
     "no_marks": "--no-marks", "why": "--why", "prior": "--prior", "exports": "--export",
     "specification": "--simulator", "figure": "--figure", "axis": "--axis",
 }  # fmt: skip
+_OF_THE_PITCH = {
+    name: _OF_A_FLIGHT[name] for name in ("holdout", "out", "why", "exports", "specification", "figure")
+}
 _OF_A_PLAN = {
     "plan": "--plan", "rate_hz": "--rate", "amplitude_deg": "--amplitude-deg", "without": "--without"
 }  # fmt: skip
@@ -115,7 +119,9 @@ def command(
       advisor gap flight.tlog --aircraft my-aircraft.yaml --axis lateral
       advisor gap --foresee --aircraft my-aircraft.yaml --rate 20 --without a_z
     """
-    _refuse_foreign(foresee)
+    _refuse_foreign(_OF_A_FLIGHT if foresee else _OF_A_PLAN, f"with{'out' if foresee else ''} --foresee")
+    if axis == "lateral":
+        _refuse_foreign(_OF_THE_PITCH, "with --axis pitch")
     aircraft = asked.read_aircraft()
     if foresee:
         if asked.logs:
@@ -192,11 +198,9 @@ def command(
     return USAGE if any(one.problem for one in outcomes) else 0
 
 
-def _refuse_foreign(foresee: bool) -> None:
-    """Refuse options of the other mode of the command, which would be ignored without a word."""
-    foreign = _OF_A_FLIGHT if foresee else _OF_A_PLAN
+def _refuse_foreign(foreign: Mapping[str, str], where: str) -> None:
+    """Refuse options of another mode of the command, which would be ignored without a word."""
     given = click.get_current_context().get_parameter_source
     for name, option in foreign.items():
         if given(name) is ParameterSource.COMMANDLINE:
-            where = "without --foresee" if foresee else "with --foresee"
             raise ConfigurationError(f"{option} has a meaning {where} only: leave it out.")
