@@ -60,15 +60,17 @@ def known(mean, std):
     return Known(np.array([mean]), np.array([std**-2]))
 
 
-def test_the_evidence_is_the_integral_of_likelihood_times_prior():
+@pytest.mark.parametrize("share", [1.0, 0.5])
+def test_the_evidence_is_the_integral_of_likelihood_times_prior(share):
+    """Coloured residuals count as white ones of a larger noise."""
     prior = known(1.5, 0.4)
     line = Line(1.9, Z)
     slopes = np.linspace(-1.0, 5.0, 20001)
     density = np.exp(-0.5 * ((slopes - 1.5) / 0.4) ** 2) / (0.4 * np.sqrt(2.0 * np.pi))
-    likelihoods = np.array([Line(s, Z).likelihood for s in slopes])
+    likelihoods = share**2 * np.array([Line(s, Z).likelihood for s in slopes])
     top = likelihoods.max()
     integral = top + np.log(np.trapezoid(np.exp(likelihoods - top) * density, slopes))
-    found = log_evidence(line, information_of(line, 1.0), prior, 1.0)
+    found = log_evidence(line, information_of(line, share), prior, share)
     # The closed form leaves out the factor (2π)^½ that all models share.
     assert found == pytest.approx(integral, abs=1e-3)
 
