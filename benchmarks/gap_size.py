@@ -30,7 +30,7 @@ EFFECTS = (
 )
 """Folders that describe effects, by their table and their equations; and the weights of ``make judge``."""
 NAMES = frozenset(CATALOGUE) | frozenset(BLOCKS_OF_EFFECTS) | {"attitude_sensor"}
-LIMITS = {"lines of code": 7060, "constants": 287, "names compared": 16, "complex functions": 0}
+LIMITS = {"lines of code": 7060, "constants": 286, "names compared": 16, "complex functions": 0}
 """Upper bound of each count. Lines have 2 % to spare, so that a mend needs no cut elsewhere. The evidence and
 the judge brought 500 of them. The ranges of nuisance parameters brought six constants."""
 MOST_COMPLEX = 15

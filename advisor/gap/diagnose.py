@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.instruments.atmosphere import thin_air
 from advisor.flight.instruments.kinematics import KinematicCheck, check_alpha, combine
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.evidence.found import Evidence
@@ -191,16 +192,19 @@ def _checked_against_path(e: Evidence, flown: Sequence[Maneuver], weight: Weight
     # explanation.
     elsewhere = any(j.block != "force_equation" for j in added_in(e.stages))
     is_scaled = e.airspeed_scale is not None and e.airspeed_scale.is_the_accelerometers(weight)
-    if e.unexplained is None and (is_scaled or (is_off and not elsewhere) or _reads_another_speed(e, weight)):
+    if e.unexplained is None and (
+        is_scaled or (is_off and not elsewhere) or _reads_another_speed(e, weight, flown)
+    ):
         e = replace(e, unexplained=Unexplained("accelerometer", 1.0, (("accelerometer", 1.0),)))
     return replace(e, weight=weight)
 
 
-def _reads_another_speed(e: Evidence, weight: WeightReading | None) -> bool:
+def _reads_another_speed(e: Evidence, weight: WeightReading | None, flown: Sequence[Maneuver]) -> bool:
     """Return whether no true air speed fits both air speed and accelerometer, and no effect was found."""
     # A gust changes α, and the air speed that the motion implies, by more than its filter assumes.
     alone = len(e.stages) == 1 and not (e.air is not None and e.air.gust)
-    return alone and e.airspeed_scale is not None and e.airspeed_scale.is_wrong(e.air is not None, weight)
+    scale = e.airspeed_scale
+    return alone and scale is not None and scale.is_wrong(e.air is not None, weight, thin_air(flown))
 
 
 def _mimics_wind(unexplained: Unexplained | None) -> bool:

@@ -19,6 +19,8 @@ STANDARD_GRAVITY = 9.80665
 SERVO_FUNCTIONS = {"aileron": 4, "throttle": 70, "rudder": 21, "elevator": 19}
 IMU_MESSAGES = ("RAW_IMU", "SCALED_IMU2", "HIGHRES_IMU")
 
+_ALL_BUT_DIFFERENTIAL = 0b1_1011_1111_1111
+"""Fields that HIGHRES_IMU marks as updated: all but the differential pressure."""
 MANUAL, STABILIZE = 0, 2
 """Modes of ArduPlane."""
 
@@ -82,10 +84,18 @@ def int16(value: float) -> int:
     return int(np.clip(round(value), -32768, 32767))
 
 
-def imu_message(name: str, stamp: float, a_x: float, a_z: float, q: float) -> mavlink.MAVLink_message:
+def pressure_hpa(altitude_m: float) -> float:
+    """Pressure of the standard atmosphere below 11 km (ISO 2533)."""
+    return float(1013.25 * (1.0 - 2.25577e-5 * altitude_m) ** 5.25588)
+
+
+def imu_message(
+    name: str, stamp: float, a_x: float, a_z: float, q: float, altitude_m: float
+) -> mavlink.MAVLink_message:
     if name == "HIGHRES_IMU":
+        air = pressure_hpa(altitude_m), 0.0, altitude_m, 20.0
         return mavlink.MAVLink_highres_imu_message(
-            microseconds(stamp), a_x, 0.0, a_z, 0.0, q, 0.0, 0.2, 0.0, 0.4, 950.0, 0.0, 500.0, 20.0, 63
+            microseconds(stamp), a_x, 0.0, a_z, 0.0, q, 0.0, 0.2, 0.0, 0.4, *air, _ALL_BUT_DIFFERENTIAL
         )
     milli_g, milli_rate = 1e3 / STANDARD_GRAVITY, 1e3
     values = (int16(a_x * milli_g), 0, int16(a_z * milli_g), 0, int16(q * milli_rate), 0, 200, 0, 400)
@@ -134,8 +144,10 @@ def messages(
         sent = boot + stamp
         message = mavlink.MAVLink_attitude_message(milliseconds(sent), 0.0, theta, 0.0, 0.0, q, 0.0)
         out.append((sent, message))
-    for stamp, a_x, a_z, q in _rows(streams["imu"], "a_x", "a_z", "imu_q"):
-        out.append((boot + stamp, imu_message(wiring.imu, boot + stamp, a_x, a_z, q)))
+    imu, hud = streams["imu"], streams["hud"]
+    altitudes = (elevation_m + np.interp(imu.stamps, hud.stamps, hud.channels["height"])).tolist()
+    for (stamp, a_x, a_z, q), altitude in zip(_rows(imu, "a_x", "a_z", "imu_q"), altitudes, strict=True):
+        out.append((boot + stamp, imu_message(wiring.imu, boot + stamp, a_x, a_z, q, altitude)))
     for stamp, command, throttle_us in _rows(streams["servo"], "command", "throttle_us"):
         width = round(float(np.clip(throttle_us, 1100.0, 1900.0)))
         out.append((boot + stamp, _servo(boot + stamp, wiring.pulse_width(command), width, wiring)))
@@ -145,23 +157,25 @@ def messages(
 
 def _slow_messages(streams: dict[str, Stream], wiring: Wiring, elevation_m: float) -> list[Timed]:
     boot, out = wiring.boot_s, []
-    for stamp, airspeed, climb, height, throttle in _rows(
-        streams["hud"], "airspeed", "climb", "height", "throttle_percent"
-    ):
+    hud, position = streams["hud"], streams["position"]
+    # An autopilot repeats its receiver's ground speed; that is no pressure, so it knows no thin air.
+    over_ground = np.interp(hud.stamps, position.stamps, position.channels["groundspeed"]).tolist()
+    rows = _rows(hud, "airspeed", "climb", "height", "throttle_percent")
+    for (stamp, airspeed, climb, height, throttle), groundspeed in zip(rows, over_ground, strict=True):
         message = mavlink.MAVLink_vfr_hud_message(
-            airspeed, airspeed, 0, int(np.clip(throttle, 0.0, 100.0)), elevation_m + height, climb
+            airspeed, groundspeed, 0, int(np.clip(throttle, 0.0, 100.0)), elevation_m + height, climb
         )
         out.append((boot + stamp, message))
     north_m, before = 0.0, 0.0
-    for stamp, climb, height, airspeed in _rows(streams["position"], "climb", "height", "airspeed"):
-        north_m, before = north_m + airspeed * (stamp - before), stamp
+    for stamp, climb, height, groundspeed in _rows(position, "climb", "height", "groundspeed"):
+        north_m, before = north_m + groundspeed * (stamp - before), stamp
         message = mavlink.MAVLink_global_position_int_message(
             milliseconds(boot + stamp),
             round(473_000_000 + north_m * 89.8),
             85_000_000,
             round((elevation_m + height) * 1e3),
             round(height * 1e3),
-            int16(airspeed * 100.0),
+            int16(groundspeed * 100.0),
             0,
             int16(-climb * 100.0),
             0,

@@ -42,7 +42,10 @@ class Nature:
 
     def shown(self, observed: dict[str, Floats], step: float) -> dict[str, Floats]:
         """Return the channels as the autopilot shows them, on the time grid."""
-        out = dict(observed, airspeed=self.indicated * observed["airspeed"])
+        true = observed["airspeed"]
+        out = dict(
+            observed, airspeed=self.indicated * true, groundspeed=np.sqrt(true**2 - observed["climb"] ** 2)
+        )
         if self.alpha_lag > 0.0:
             path = np.arcsin(np.clip(observed["climb"] / observed["airspeed"], -1.0, 1.0))
             out["alpha"] = first_order(observed["theta"] - path, self.alpha_lag, step)

@@ -17,7 +17,7 @@ STREAMS = {
     "imu": ("a_x", "a_z", "imu_q"),
     "servo": ("command", "thrust"),
     "hud": ("airspeed", "climb", "height"),
-    "position": ("climb", "height", "airspeed"),
+    "position": ("climb", "height", "groundspeed"),
 }
 
 
@@ -38,7 +38,7 @@ class Noise:
 
     def of(self, channel: str) -> float:
         """Standard deviation of one channel; the command and the throttle are known exactly."""
-        names = {"imu_q": "q", "command": "", "thrust": ""}
+        names = {"imu_q": "q", "command": "", "thrust": "", "groundspeed": "airspeed"}
         name = names.get(channel, channel)
         return float(getattr(self, name)) if name else 0.0
 

@@ -39,7 +39,8 @@ class Nature:
 
     def measured(self, shown: Channels) -> Channels:
         """Return the channels behind the filters, with the air speed that the pitot tube reads."""
-        out = {**shown, "airspeed": self.pitot * shown["airspeed"]}
+        true = shown["airspeed"]
+        out = {**shown, "airspeed": self.pitot * true, "groundspeed": np.sqrt(true**2 - shown["climb"] ** 2)}
         if self.filter_hz > 0.0:
             out |= {name: self._low_passed(shown[name]) for name in ("q", "imu_q", "a_x", "a_z")}
         return out

@@ -15,7 +15,7 @@ CARRIES = {
     "imu": ("a_x", "a_z", "imu_q"),
     "servo": ("command", "throttle"),
     "hud": ("airspeed", "climb", "height", "throttle"),
-    "position": ("airspeed", "climb", "height"),
+    "position": ("groundspeed", "climb", "height"),
 }
 ATTITUDE_ERROR_S = 1.0
 MILLISECOND = 1e-3

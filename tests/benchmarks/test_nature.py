@@ -76,3 +76,16 @@ def test_an_own_flight_with_nature_is_drawn_by_its_seed_alone():
     )
     assert without_vane_noise(computed).noise.alpha_deg == 0.0
     assert without_vane_noise(scenario) == scenario
+
+
+@pytest.mark.parametrize(
+    "shown_by",
+    [
+        lambda c: SecondNature(indicated=0.6).shown(c, 0.002),
+        lambda c: ThirdNature(pitot=0.6).measured(c),
+    ],
+)
+def test_thin_air_slows_the_pitot_tube_but_not_the_receiver(shown_by):
+    found = shown_by({"airspeed": np.array([50.0]), "climb": np.array([14.0])})
+    assert found["airspeed"].tolist() == pytest.approx([30.0])
+    assert found["groundspeed"].tolist() == pytest.approx([48.0])

@@ -123,7 +123,8 @@ class Tracks:
                 continue
             if np.ptp(channel.y) > 0.0:
                 return _in_radians(channel)
-            spare = spare or channel
+            # No barometer stands still: a constant pressure is a default.
+            spare = spare or (None if name == "static_pressure" else channel)
         if spare is None and name == "altitude" and self._height_m is not None:
             ends = np.array([start_s, end_s])
             return Channel(name, ends, np.full(2, self._height_m), GIVEN_HEIGHT, "given")

@@ -19,8 +19,6 @@ _REPORTED, _WRONG = 0.02, 0.06
 _FELT = 0.03
 """Least relative difference for which an indicated air speed is assumed, because its changes are too
 small."""
-_INDICATED = 0.25
-"""Largest relative difference that thin air explains, at 4,000 m and above."""
 _ITS_OWN = 0.5
 """Largest error of the weight that the accelerometer reads, as a share of the difference, for an indicated
 air speed."""
@@ -40,12 +38,13 @@ class AirspeedScale:
     scale: float
     std: float
 
-    def is_wrong(self, moving_air: bool, weight: WeightReading | None) -> bool:
+    def is_wrong(self, moving_air: bool, weight: WeightReading | None, thin_air: float) -> bool:
         """Return whether the difference exceeds the error of any air speed indicator.
 
-        ``weight`` is the accelerometer's reading of the weight, where that is known.
+        ``weight`` is the accelerometer's reading of the weight, where that is known. ``thin_air`` is the
+        excess of the true air speed that the height explains, for an indicated one.
         """
-        least = _INDICATED if self.is_indicated(weight) else _WRONG
+        least = _WRONG + (thin_air if self.is_indicated(weight) else 0.0)
         return abs(self.scale) > max(least, SIGMAS_IN_GUSTS * self.std if moving_air else 0.0)
 
     def is_indicated(self, weight: WeightReading | None) -> bool:

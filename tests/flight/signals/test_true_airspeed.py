@@ -116,3 +116,14 @@ def test_an_air_speed_that_is_the_ground_speed_in_every_sample_is_no_indicated_o
     assert speed is not None
     assert speed.y.tolist() == (20.0 + T).tolist()
     assert is_true(speed)
+
+
+def test_a_pressure_that_stands_still_is_a_default_and_the_height_makes_the_air_speed_true() -> None:
+    found, t = filled(), T[::10]
+    found.append(
+        Decoded("static_pressure", "HIGHRES_IMU.abs_pressure", "measured", t, np.full(5, 95e3), np.arange(5))
+    )
+    speed = found.cut("airspeed", 0.0, 5.0)
+    assert speed is not None
+    assert speed.source == f"VFR_HUD.airspeed{BY_HEIGHT}"
+    assert speed.y == pytest.approx(AT_3000_M, rel=1e-3)
