@@ -1,7 +1,7 @@
 """Alternatives: what may explain a flight, each with its evidence and its probability."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 Kind = Literal["none", "parameters", "effect", "air", "unknown"]
@@ -19,6 +19,8 @@ class Alternative:
     """``none``, ``parameters``, ``unknown``, or the name of an effect."""
     block: str = ""
     """Block of the simulator; empty for ``none`` and ``parameters``."""
+    second: str = ""
+    """Second effect of a set, whose main effect is ``name``; empty for a single answer."""
 
     @property
     def is_effect(self) -> bool:
@@ -26,9 +28,16 @@ class Alternative:
         return self.name not in ("none", "parameters", "unknown")
 
     @property
+    def first(self) -> "Alternative":
+        """The first cause: the main effect of a set, and any other alternative itself."""
+        return replace(self, second="")
+
+    @property
     def label(self) -> str:
-        """The name, with the block where the name alone does not say it: ``unknown@input``."""
-        return f"{self.name}@{self.block}" if self.kind == "unknown" else self.name
+        """The names, with the block where the name alone does not say it: ``unknown@input``, ``a + b``."""
+        if self.kind == "unknown":
+            return f"{self.name}@{self.block}"
+        return f"{self.name} + {self.second}" if self.second else self.name
 
 
 @dataclass(frozen=True, slots=True)

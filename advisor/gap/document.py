@@ -87,7 +87,7 @@ def _judged(d: Diagnosis) -> dict[str, Any]:
         "probabilities": d.probabilities,
         "evidence": [_evidence(one) for one in d.evidence],
         "why": [{"name": c.name, "nats": c.nats, "text": c.sentence} for c in d.why],
-        "answer": answered(d).label if d.why else None,
+        "answer": answered(d, [e.alternative for e in d.evidence]).label if d.why else None,
         "rival": d.rival or None,
     }
 
@@ -126,6 +126,7 @@ def _cause(c: Cause) -> dict[str, Any]:
 def _evidence(one: AlternativeEvidence) -> dict[str, Any]:
     return {
         "alternative": one.alternative.label, **picked(one.alternative, "kind name block"),
+        "second": one.alternative.second or None,
         "text": in_words(one.alternative),
         "probability": one.probability,
         "columns": [picked(column, "name value unit") for column in one.columns],

@@ -22,7 +22,7 @@ from advisor.gap.records.floor import stated_floor, tolerance_of
 from advisor.gap.result import VISIBLE
 from advisor.gap.search.air import SoughtAir, moving_air, one_maneuver_stands_out
 from advisor.gap.search.speed import at_constant_speed
-from advisor.gap.search.stage import Stage
+from advisor.gap.search.stage import Stage, sets_in
 from advisor.gap.search.waterfall import (
     Progress,
     as_measured,
@@ -33,7 +33,7 @@ from advisor.gap.search.waterfall import (
 )
 from advisor.gap.uncatalogued.airspeed_scale import airspeed_scale_of
 from advisor.gap.uncatalogued.beyond_air import explain_little_beyond_air
-from advisor.gap.uncatalogued.law_search import Law, LawSearch, search_law
+from advisor.gap.uncatalogued.law_search import Law, search_law
 from advisor.gap.uncatalogued.spectral_line import ringing_hz
 from advisor.gap.uncatalogued.sustained_oscillation import sustained_oscillation
 from advisor.gap.uncatalogued.unexplained import Unexplained, located, unexplained_residual
@@ -58,7 +58,9 @@ def explain(problem: EffectProblem, baseline: EffectFit, aircraft: Aircraft, pro
     variants = beyond_servo(aircraft, variants_for(problem.flights))
     variants = beyond_known(aircraft.effects, variants)
     variants = [_begun_where_it_rings(v, problem, baseline) for v in variants]
-    stages, laws = _with_effects(problem, baseline, variants, progress)
+    searched = one_after_another(problem, baseline, variants, progress)
+    laws = search_law(problem, searched)
+    stages = in_full(problem, settled(problem, searched)) if laws.law is None else searched
     law = laws.law
     progress("looking at the air", 0.7)
     stages, sought = _with_the_air(problem, stages, law)
@@ -83,7 +85,7 @@ def explain(problem: EffectProblem, baseline: EffectFit, aircraft: Aircraft, pro
     speed = at_constant_speed(problem, last)
     return Evidence(
         problem, stages, unexplained, air, floor, file_model, with_effects, speed, airspeed_scale,
-        sought_air=sought, laws=laws.gains,
+        sought_air=sought, laws=laws.gains, sets=sets_in(searched, stages),
     )  # fmt: skip
 
 
@@ -147,15 +149,6 @@ def _begun_where_it_rings(variant: Variant, problem: EffectProblem, baseline: Ef
     start = list(variant.starts[0])
     start[omega], start[variant.names.index("damping")] = 2.0 * np.pi * hz, _HARDLY_DAMPED
     return replace(variant, starts=(*variant.starts, tuple(start)))
-
-
-def _with_effects(
-    problem: EffectProblem, baseline: EffectFit, variants: Sequence[Variant], progress: Progress
-) -> tuple[list[Stage], LawSearch]:
-    """Return the stages of the search, and what the search for an uncatalogued law found."""
-    stages = one_after_another(problem, baseline, variants, progress)
-    laws = search_law(problem, stages)
-    return (in_full(problem, settled(problem, stages)) if laws.law is None else stages), laws
 
 
 def _with_the_air(

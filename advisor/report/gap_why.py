@@ -19,8 +19,8 @@ def why_of(d: Diagnosis) -> Iterator[RenderableType]:
         *reasons, total = weighed((reason.nats, reason.sentence) for reason in d.why)
         lines = [Text(f"{nats:>6s}  {said}") for nats, said in reasons]
         lines.append(Text(f"{total[0]:>6s}  {total[1]}", style="bold"))
-        rival = next(e.alternative for e in d.evidence if e.alternative.label == d.rival)
-        title = heading(in_words(answered(d)), in_words(rival))
+        stated = {one.alternative.label: one.alternative for one in d.evidence}
+        title = heading(in_words(answered(d, stated.values())), in_words(stated[d.rival]))
         yield Panel(Group(*lines), title=title, title_align="left")
     if d.decisions:
         decided = [Text(decision_in_words(decision)) for decision in d.decisions]

@@ -11,7 +11,7 @@ from scipy.optimize import minimize
 
 from advisor.gap.alternative import KINDS, Kind
 from advisor.gap.judge import weights as weights_file
-from advisor.gap.judge.logit import SCALES, Logit
+from advisor.gap.judge.logit import SCALES, Logit, shared_prior
 from advisor.gap.judge.prior import FieldPrior
 from benchmarks.judge.flights import JudgedFlight
 
@@ -50,6 +50,8 @@ class _Table:
 
     X: np.ndarray
     """Shape (alternatives, weights)."""
+    offset: np.ndarray
+    """Shape (alternatives,): part of the utility that no weight changes."""
     right: np.ndarray
     first: np.ndarray
     """Index of the first alternative of each flight."""
@@ -90,13 +92,14 @@ def fitted(flights: Sequence[JudgedFlight]) -> Logit:
     A user's aircraft is none of the generators, so the temperature is that of a generator that was left out.
     """
     logit = _fitted(flights)
-    utilities, right = [], []
+    utilities, offsets, right = [], [], []
     for generator in sorted({flight.generator for flight in flights}):
         other = _fitted([f for f in flights if f.generator != generator])
         for flight in (f for f in flights if f.generator == generator):
-            utilities.append(other.utilities(flight.rows, other.flown))
+            offsets.append(shared_prior(flight.rows))
+            utilities.append(other.utilities(flight.rows, other.flown) - offsets[-1])
             right.append(flight.is_right)
-    return cooled(logit, _temperature(utilities, right))
+    return cooled(logit, _temperature(utilities, offsets, right))
 
 
 def cooled(logit: Logit, temperature: float) -> Logit:
@@ -117,7 +120,7 @@ def _fitted(flights: Sequence[JudgedFlight]) -> Logit:
     penalty[[not name for _, name in slots()]] *= _FREE
 
     def loss(w: np.ndarray) -> tuple[float, np.ndarray]:
-        u = X @ w
+        u = X @ w + table.offset
         e = np.exp(u - np.maximum.reduceat(u, table.first)[table.of])
         of_right = e * table.right
         every, good = (np.add.reduceat(part, table.first) for part in (e, of_right))
@@ -149,6 +152,7 @@ def _table(flights: Sequence[JudgedFlight]) -> _Table:
     sizes = [len(flight.rows) for flight in kept]
     return _Table(
         np.vstack([matrix(flight) for flight in kept]),
+        np.concatenate([shared_prior(flight.rows) for flight in kept]),
         np.concatenate([flight.is_right for flight in kept]),
         np.cumsum([0, *sizes[:-1]]),
         np.repeat(np.arange(len(kept)), sizes),
@@ -165,13 +169,15 @@ def _std(values: np.ndarray) -> float:
     return max(float(np.std(values)), float(np.mean(np.abs(values))), _SPREAD) if len(values) else 1.0
 
 
-def _temperature(utilities: Sequence[np.ndarray], right: Sequence[np.ndarray]) -> float:
+def _temperature(
+    utilities: Sequence[np.ndarray], offsets: Sequence[np.ndarray], right: Sequence[np.ndarray]
+) -> float:
     """Return the temperature with the largest likelihood on flights that a fit has not seen."""
 
     def loss(temperature: float) -> float:
         total = 0.0
-        for u, good in zip(utilities, right, strict=True):
-            p = np.exp((u - np.max(u)) / temperature)
+        for u, offset, good in zip(utilities, offsets, right, strict=True):
+            p = np.exp((u - np.max(u)) / temperature + offset)
             total -= float(np.log(max(p[good].sum() / p.sum(), 1e-9)))
         return total
 

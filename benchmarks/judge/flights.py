@@ -43,8 +43,8 @@ class JudgedFlight:
 def is_true(alternative: Alternative, truth: Mapping[str, Any]) -> bool:
     """Return whether an alternative is a right first answer.
 
-    Of two effects either is right. Without an effect the air, where it moved, is right, too. Without a name
-    the block must be one in which the cause lies.
+    Of two effects either is right, alone or as the main effect of a set. Without an effect the air, where it
+    moved, is right, too. Without a name the block must be one in which the cause lies.
     """
     kind, effects = truth["kind"], tuple(truth["effects"])
     if kind == "outside":
@@ -71,7 +71,8 @@ def written(flights: Iterable[JudgedFlight], path: Path) -> None:
         for flight in flights:
             rows = [
                 [r.alternative.kind, r.alternative.name, r.alternative.block,
-                 {name: float(f"{value:.6g}") for name, value in r.values.items() if value}]
+                 {name: float(f"{value:.6g}") for name, value in r.values.items() if value},
+                 *filter(None, [r.alternative.second])]
                 for r in flight.rows
             ]  # fmt: skip
             line = {
@@ -90,6 +91,7 @@ def _read(lines: Sequence[str]) -> Iterator[JudgedFlight]:
     for text in lines:
         line = json.loads(text)
         rows = tuple(
-            Row(Alternative(kind, name, block), values) for kind, name, block, values in line["rows"]
+            Row(Alternative(kind, name, block, *second), values)
+            for kind, name, block, values, *second in line["rows"]
         )
         yield JudgedFlight(line["generator"], line["case"], rows, line["truth"], line["answer"])

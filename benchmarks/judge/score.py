@@ -47,10 +47,8 @@ def by_rules(flight: JudgedFlight, logit: Logit, prior: FieldPrior) -> tuple[Alt
 
 
 def by_judge(flight: JudgedFlight, logit: Logit, prior: FieldPrior) -> tuple[Alternative, float]:
-    """Return the likeliest alternative, with its probability."""
-    found = posterior(flight.rows, prior, logit)
-    best = int(np.argmax(found.probability))
-    return found.rows[best].alternative, float(found.probability[best])
+    """Return the likeliest first cause, with its probability."""
+    return posterior(flight.rows, prior, logit).first_causes[0]
 
 
 def left_out(flights: Sequence[JudgedFlight], decide: Decide, prior: FieldPrior | None = None) -> list[Told]:

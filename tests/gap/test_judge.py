@@ -111,6 +111,64 @@ def test_a_calm_flight_of_a_right_file_is_none():
     assert posterior(rows_of(still()), FIELD).probabilities.none > 0.5
 
 
+def two_found():
+    """Return what was measured of a flight where the search found a delay with a smaller lag."""
+    both = replace(delayed().fitted["transport_delay"], gain=2100.0, gap=0.005)
+    lag = replace(both, gain=100.0, removed=0.5)
+    return replace(
+        delayed(),
+        added={**delayed().added, "actuator_lag": lag},
+        sets={("transport_delay", "actuator_lag"): both},
+    )
+
+
+def test_a_set_that_the_search_found_is_a_row_of_its_own():
+    rows = {one.alternative.label: one for one in posterior(rows_of(two_found()), FIELD).evidence}
+    found = rows["transport_delay + actuator_lag"]
+    assert found.value("fit_gain") == 2100.0
+    assert found.value("fit_share") == 1.0
+    assert found.value("model_gain") == rows["transport_delay"].value("model_gain") + 100.0
+    assert found.value("screen_gain") == rows["transport_delay"].value("screen_gain")
+    assert found.alternative.block == "input"
+
+
+def test_a_set_counts_for_its_main_effect_and_all_probabilities_still_sum_to_one():
+    told = posterior(rows_of(two_found()), FIELD, SIMPLE)
+    effects = told.probabilities.effects
+    stated = {one.alternative.label: one.probability for one in told.evidence}
+    both = stated["transport_delay"] + stated["transport_delay + actuator_lag"]
+    assert effects["transport_delay"] == pytest.approx(both)
+    assert effects["actuator_lag"] == pytest.approx(stated["actuator_lag"])
+    assert told.probabilities.none + sum(effects.values()) + sum(told.probabilities.unknown.values()) + (
+        told.probabilities.parameters
+    ) == pytest.approx(1.0)
+
+
+def test_a_set_with_equal_evidence_makes_its_main_effect_no_likelier():
+    rows = [Row(LAG, {"size": 2.0}), Row(NONE, {})]
+    with_set = [*rows, Row(replace(LAG, second="transport_delay"), {"size": 2.0})]
+    alone, both = (posterior(some, EVEN, SIMPLE).of(LAG) for some in (rows, with_set))
+    assert both == pytest.approx(alone)
+
+
+def test_the_reasons_of_a_set_add_up_to_its_log_odds_against_another_first_cause():
+    told = posterior(rows_of(two_found()), FIELD)
+    answer = replace(DELAY, second="actuator_lag")
+    stated = {one.alternative: one.probability for one in told.evidence}
+    rival = told.rival_of(answer)
+    assert rival.first != DELAY
+    odds = math.log(stated[answer] / stated[rival])
+    assert sum(line.nats for line in told.why(answer)) == pytest.approx(odds)
+
+
+def test_the_answer_of_two_causes_is_their_set_where_the_search_fitted_one():
+    found = diagnosis()
+    causes = (replace(found.causes[0], present=True), replace(found.causes[0], effect="gust", present=True))
+    both = replace(DELAY, second="gust")
+    assert answered(replace(found, causes=causes), [DELAY, both]) == both
+    assert answered(replace(found, causes=causes), [DELAY]) == DELAY
+
+
 def test_a_plain_delay_is_likelier_than_everything_else_together():
     assert posterior(rows_of(delayed()), FIELD).probabilities.effects["transport_delay"] > 0.5
 
@@ -179,7 +237,7 @@ def test_a_diagnosis_states_the_probabilities_of_the_evidence():
     found = as_judged(diagnosis(), posterior(rows_of(delayed()), FIELD))
     assert found.probabilities is not None
     assert all(cause.probability == found.probabilities.effects[cause.effect] for cause in found.causes)
-    assert answered(found) == DELAY
+    assert answered(found, [DELAY]) == DELAY
     document = json.loads(json.dumps(gap_document(found), allow_nan=False))
     assert breaches("gap", document) == []
     assert sum(line["nats"] for line in document["why"]) == pytest.approx(

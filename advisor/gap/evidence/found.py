@@ -7,7 +7,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.search.air import MovingAir, SoughtAir
-from advisor.gap.search.stage import Stage
+from advisor.gap.search.stage import FoundSets, Stage
 from advisor.gap.uncatalogued.airspeed_scale import AirspeedScale
 from advisor.gap.uncatalogued.unexplained import Unexplained
 from advisor.gap.uncatalogued.weight_check import WeightReading
@@ -41,3 +41,4 @@ class Evidence:
     """The search for moving air, whether or not air was found."""
     laws: Mapping[str, float] = field(default_factory=dict)
     """Gain of the best uncatalogued law of each block; log likelihood minus the price of its parameters."""
+    sets: FoundSets = field(default_factory=dict)

@@ -1,7 +1,7 @@
 """The measurements of a diagnosis as plain numbers, from which the columns of the evidence are made."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from advisor.gap.fitting.problem import EffectProblem, counts
 from advisor.gap.fitting.uncertainty import distance_from_file, effective_samples
 from advisor.gap.noise.probes import probe_blocks
 from advisor.gap.search.acceptance import JudgedAddition, size_of
+from advisor.gap.search.score import difference, support_of
 from advisor.gap.search.screen import Screened, penalty
 from advisor.gap.search.stage import added_in
 from advisor.gap.uncatalogued.activity_power import power_by_activity
@@ -92,6 +93,8 @@ class Measured:
     """Effects of the final model, each as an addition to the model of its stage."""
     named_gain: float
     """Gain of all effects of the final model together, in the fit."""
+    sets: Mapping[tuple[str, str], FullFit] = field(default_factory=dict)
+    """Sets of two effects that the search found, each as an addition to the baseline model."""
     air_gain: float = 0.0
     air_angle: float = 0.0
     """Standard deviation of the gust angle, rad."""
@@ -140,6 +143,7 @@ def measured(e: Evidence, kinematics: KinematicCheck) -> Measured:
         screened={s.variant.effect: _quick(first.fitted.cost, s, number) for s in first.screened},
         fitted={j.effect: _full(e, j, noise) for j in reversed(first.considered)},
         added={j.effect: _full(e, j, noise) for j in added_in(e.stages)},
+        sets={names: _full_set(e, *pair, noise) for names, pair in e.sets.items()},
         named_gain=0.5 * (first.fitted.cost - last.fitted.cost),
         air_gain=e.sought_air.gain,
         air_angle=e.sought_air.angle_std,
@@ -218,6 +222,18 @@ def _full(e: Evidence, j: JudgedAddition, noise: FloatArray) -> FullFit:
         power=j.held_out.innovation_square / noise**2,
         by_maneuver=power,
     )
+
+
+def _full_set(e: Evidence, earlier: JudgedAddition, later: JudgedAddition, noise: FloatArray) -> FullFit:
+    """Return the joint fit of a set as one addition to the baseline; its size is the weaker effect's."""
+    one, both, before = _full(e, earlier, noise), _full(e, later, noise), e.stages[0].held_out
+    removed = difference(e.problem, before, later.held_out)
+    return replace(
+        both, gain=one.gain + both.gain, support=support_of(e.problem, before, later.held_out),
+        change=removed / max(later.least, 1e-12), removed=removed,
+        sigmas=min(one.sigmas, both.sigmas), size=min(one.size, both.size),
+        at_bound=one.at_bound or both.at_bound,
+    )  # fmt: skip
 
 
 def _pair(value: float, std: float) -> tuple[float, float]:

@@ -9,19 +9,17 @@ from advisor.flight.instruments.kinematics import SMALLEST_LAG_S, SMALLEST_SCALE
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.alternative import Alternative, Kind
 from advisor.gap.effects import EFFECTS
-from advisor.gap.evidence.measured import FullFit, Measured, Residual
+from advisor.gap.evidence.fits import WEIGHTY, Values, of_fit, of_set
+from advisor.gap.evidence.measured import Measured, Residual
 from advisor.gap.kit.effect import BLOCKS, Effect
 from advisor.gap.noise.probes import DYNAMIC, SENSOR_CHANNELS
 from advisor.gap.search.acceptance import LEAST_OFFSET_RAD
 from advisor.gap.search.air import LEAST_GUST_ANGLE
 
-Values = dict[str, float]
 UNKNOWN_IN = (*BLOCKS, "attitude_sensor")
 """Blocks in which an effect without a name may lie."""
 _KINDS: Mapping[str, Kind] = {"air": "air"}
 """Kind of the effects of a block, where it is not ``effect``."""
-_WEIGHTY = 20.0
-"""Least gain in log likelihood, nats, to which other gains are relative: relative to less, chance decides."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +31,8 @@ class Row:
 
 
 def rows_of(m: Measured, answer: Alternative | None = None) -> tuple[Row, ...]:
-    """Return one row for each alternative: none, parameters, every effect, and every block without a name.
+    """Return one row for each alternative: none, parameters, every effect, every set of two that the search
+    found, and every block without a name.
 
     ``answer`` is the alternative that the search ends with.
     """
@@ -47,10 +46,13 @@ def rows_of(m: Measured, answer: Alternative | None = None) -> tuple[Row, ...]:
     screened = _of_screening(m)
     for name, effect in EFFECTS.items():
         values = _of_residual(m, m.base) | probed[_probed_in(effect)] | screened[name]
-        values |= _of_fits(m, name) | _of_kinematics(m, effect) | _of_air(m, effect)
+        values |= of_fit(m, name) | _of_kinematics(m, effect) | _of_air(m, effect)
         values |= _of_courses(m, effect.block) if effect.of_one_flight else {}
         values["estimated"] = float(effect.channel == "alpha" and m.alpha_is_estimated)
         rows.append(Row(stated_as(name), values))
+    single = {row.alternative.name: row.values for row in rows}
+    # What does not come from the fit is that of the main effect: screening and kinematics try one at a time.
+    rows += [Row(stated_as(*names), single[names[0]] | of_set(m, names)) for names in m.sets]
     lead = max(m.laws.values(), default=0.0) - m.named_gain
     for block in UNKNOWN_IN:
         # A free disturbance of the air has a name: turbulence.
@@ -67,10 +69,10 @@ def rows_of(m: Measured, answer: Alternative | None = None) -> tuple[Row, ...]:
     )
 
 
-def stated_as(effect: str) -> Alternative:
-    """Return an effect of the catalogue as an alternative."""
+def stated_as(effect: str, second: str = "") -> Alternative:
+    """Return an effect of the catalogue, or a set of two, as an alternative."""
     block = EFFECTS[effect].block
-    return Alternative(_KINDS.get(block, "effect"), effect, block)
+    return Alternative(_KINDS.get(block, "effect"), effect, block, second)
 
 
 def _of_residual(m: Measured, residual: Residual) -> Values:
@@ -87,7 +89,7 @@ def _of_residual(m: Measured, residual: Residual) -> Values:
 def _of_blocks(m: Measured) -> dict[str, Values]:
     """Return the free disturbances by block; timing has those of the sensor whose stamps may be off."""
     first, last = (_gains(residual) for residual in (m.base, m.last))
-    best, best_left = (max(*gains.values(), _WEIGHTY) for gains in (first, last))
+    best, best_left = (max(*gains.values(), WEIGHTY) for gains in (first, last))
     return {
         block: {
             "block_gain": first.get(block, 0.0),
@@ -116,7 +118,7 @@ def _probed_in(effect: Effect) -> str:
 def _of_screening(m: Measured) -> dict[str, Values]:
     """Return the gains of the screening, absolute and relative to those of other effects."""
     gains = {effect: found.gain for effect, found in m.screened.items()}
-    best = max([*gains.values(), _WEIGHTY])
+    best = max([*gains.values(), WEIGHTY])
     values: dict[str, Values] = {}
     for effect in EFFECTS:
         if effect not in m.screened:
@@ -133,41 +135,6 @@ def _of_screening(m: Measured) -> dict[str, Values]:
             "size": found.size,
         }
     return values
-
-
-def _of_fits(m: Measured, effect: str) -> Values:
-    """Return the full fit of an effect, and its part in the final model."""
-    values: Values = {}
-    best = max([*(fit.gain for fit in m.fitted.values()), _WEIGHTY])
-    if (fit := m.fitted.get(effect, m.added.get(effect))) is not None:
-        gain, error = _held_out_gain(m, fit)
-        misfit = np.maximum(fit.power - 1.0, 0.0)
-        values = {
-            "fit_gain": fit.gain,
-            "fit_share": max(fit.gain, 0.0) / best,
-            "heldout_gain": gain,
-            "heldout_sigmas": gain / max(error, 1e-9),
-            "support": float(np.clip(fit.support, -1e3, 1e3)),
-            "gap_removed": float(np.clip(1.0 - fit.gap / m.base_gap, -1.0, 1.0)) if m.base_gap > 0 else 0.0,
-            "change": fit.change,
-            "size_sigmas": fit.sigmas,
-            "size": fit.size,
-            "at_bound": float(fit.at_bound),
-            "misfit": float(np.max(misfit)),
-        } | {f"misfit_{name}": float(x) for name, x in zip(m.channels, misfit, strict=True)}
-    if (added := m.added.get(effect)) is not None:
-        total = sum(max(one.removed, 1e-6) for one in m.added.values())
-        values |= {"model_gain": added.gain, "model_share": max(added.removed, 1e-6) / total}
-    return values
-
-
-def _held_out_gain(m: Measured, fit: FullFit) -> tuple[float, float]:
-    """Return the gain in log likelihood on held-out manoeuvres, and its standard error over manoeuvres."""
-    noise = np.maximum(np.average(fit.by_maneuver, axis=0, weights=np.maximum(m.samples, 1e-9)), 1e-12)
-    each = np.sum(0.5 * m.samples * (m.base_held - fit.by_maneuver) / noise, axis=1)
-    n = len(each)
-    error = float(np.std(each, ddof=1)) * np.sqrt(n) if n > 1 else float(abs(each[0]))
-    return float(np.sum(each)), error
 
 
 def _of_kinematics(m: Measured, effect: Effect) -> Values:
@@ -191,8 +158,8 @@ def _of_kinematics(m: Measured, effect: Effect) -> Values:
     gain = 0.5 * z**2
     share = m.offset_gap / max(m.offset_gap + m.base_gap, 1e-9)
     return found | {
-        "tried": 1.0, "screen_gain": gain, "screen_share": gain / max(gain + m.named_gain, _WEIGHTY),
-        "fit_gain": gain, "fit_share": gain / max(gain + m.named_gain, _WEIGHTY),
+        "tried": 1.0, "screen_gain": gain, "screen_share": gain / max(gain + m.named_gain, WEIGHTY),
+        "fit_gain": gain, "fit_share": gain / max(gain + m.named_gain, WEIGHTY),
         "size": size, "size_sigmas": z, "gap_removed": share, "model_share": share,
     }  # fmt: skip
 
@@ -203,7 +170,7 @@ def _of_air(m: Measured, effect: Effect) -> Values:
         return {}
     once = 1.0 if effect.comes_once else -1.0
     shape = 0.0 if m.air_is_gust is None else 1.0 if m.air_is_gust else -1.0
-    share = m.air_gain / max(m.air_gain + m.named_gain, _WEIGHTY)
+    share = m.air_gain / max(m.air_gain + m.named_gain, WEIGHTY)
     removed = m.last_gap - m.air_gap
     return {
         "tried": 1.0, "screen_gain": m.air_gain, "screen_share": share,

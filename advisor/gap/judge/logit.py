@@ -18,6 +18,15 @@ from advisor.gap.judge.prior import FieldPrior
 SCALES = {quantity.name: quantity.scale for quantity in QUANTITIES}
 
 
+def shared_prior(rows: Sequence[Row]) -> FloatArray:
+    """Return the logarithm of every row's share of the prior of its first cause, nats, shape (rows,).
+
+    A set of two shares the prior with its main effect alone: a second row makes no cause likelier.
+    """
+    causes = [row.alternative.first for row in rows]
+    return -np.log([float(causes.count(cause)) for cause in causes])
+
+
 @dataclass(frozen=True)
 class Logit:
     """The fitted judge."""
@@ -42,11 +51,13 @@ class Logit:
         """
         return self.intercepts.get(kind, 0.0) + float(np.log(prior.of(kind) / self.flown.of(kind)))
 
+    def offsets(self, rows: Sequence[Row], prior: FieldPrior) -> FloatArray:
+        """Return the part of every row's utility that no evidence changes, nats, shape (rows,)."""
+        return shared_prior(rows) + [self.offset(row.alternative.kind, prior) for row in rows]
+
     def utilities(self, rows: Sequence[Row], prior: FieldPrior) -> FloatArray:
         """Return the utility of every row, nats, shape (rows,)."""
-        offsets = (self.offset(row.alternative.kind, prior) for row in rows)
-        parts = (sum(self.parts(row).values()) for row in rows)
-        return np.array([a + b for a, b in zip(offsets, parts, strict=True)])
+        return self.offsets(rows, prior) + [sum(self.parts(row).values()) for row in rows]
 
     def probabilities(self, rows: Sequence[Row], prior: FieldPrior) -> FloatArray:
         """Return the probability of every row, shape (rows,), which sum to 1."""

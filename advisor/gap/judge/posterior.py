@@ -30,22 +30,27 @@ class Posterior:
     logit: Logit
 
     def of(self, alternative: Alternative) -> float:
-        """Return the probability of an alternative; 0 where no row states it."""
-        return float(sum(p for row, p in self._pairs() if row.alternative == alternative))
+        """Return the probability of the first cause of an alternative; 0 where no row states it."""
+        return dict(self.first_causes).get(alternative.first, 0.0)
 
-    def of_effect(self, name: str) -> float:
-        """Return the probability that an effect is the main cause."""
-        return float(sum(p for row, p in self._pairs() if row.alternative.name == name))
+    @property
+    def first_causes(self) -> tuple[tuple[Alternative, float], ...]:
+        """The first causes with their probabilities, likeliest first; a set counts for its main effect."""
+        found: dict[Alternative, float] = {}
+        for row, p in self._pairs():
+            found[row.alternative.first] = found.get(row.alternative.first, 0.0) + p
+        return tuple(sorted(found.items(), key=lambda pair: -pair[1]))
 
     @property
     def probabilities(self) -> Probabilities:
         """The probabilities as the contract arranges them."""
-        pairs = self._pairs()
+        causes = self.first_causes
+        named = {one.name: p for one, p in causes if one.kind != "unknown"}
         return Probabilities(
-            none=self.of_effect("none"),
-            parameters=self.of_effect("parameters"),
-            unknown={r.alternative.block: float(p) for r, p in pairs if r.alternative.kind == "unknown"},
-            effects={r.alternative.name: float(p) for r, p in pairs if r.alternative.is_effect},
+            none=named.pop("none", 0.0),
+            parameters=named.pop("parameters", 0.0),
+            unknown={one.block: p for one, p in causes if one.kind == "unknown"},
+            effects=named,
         )
 
     @property
@@ -60,26 +65,25 @@ class Posterior:
 
     @property
     def credible(self) -> tuple[tuple[Alternative, float], ...]:
-        """The fewest alternatives that have ``CREDIBLE`` together, likeliest first."""
-        ordered = sorted(self._pairs(), key=lambda pair: -pair[1])
-        before = np.cumsum([0.0, *(p for _, p in ordered)])[:-1]
-        return tuple(
-            (row.alternative, float(p)) for (row, p), b in zip(ordered, before, strict=True) if b < CREDIBLE
-        )
+        """The fewest first causes that have ``CREDIBLE`` together, likeliest first."""
+        causes = self.first_causes
+        before = np.cumsum([0.0, *(p for _, p in causes)])[:-1]
+        return tuple(cause for cause, b in zip(causes, before, strict=True) if b < CREDIBLE)
 
     def rival_of(self, answer: Alternative) -> Alternative:
-        """Return the likeliest alternative to an answer."""
-        others = [(p, row.alternative) for row, p in self._pairs() if row.alternative != answer]
+        """Return the likeliest alternative with another first cause than the answer."""
+        others = [(p, r.alternative) for r, p in self._pairs() if r.alternative.first != answer.first]
         return max(others, key=lambda pair: pair[0])[1]
 
     def why(self, answer: Alternative) -> tuple[Contribution, ...]:
         """Return the contributions to the log odds of an answer against its strongest rival; empty where no
         row states the answer."""
-        by_alternative = {row.alternative: row for row in self.rows}
-        if answer not in by_alternative:
+        stated = [row.alternative for row in self.rows]
+        if answer not in stated:
             return ()
-        rival = by_alternative[self.rival_of(answer)]
-        return reasons(self.logit, by_alternative[answer], rival, self.prior)
+        mine, other = stated.index(answer), stated.index(self.rival_of(answer))
+        offsets = self.logit.offsets(self.rows, self.prior)
+        return reasons(self.logit, self.rows[mine], self.rows[other], float(offsets[mine] - offsets[other]))
 
     def _pairs(self) -> list[tuple[Row, float]]:
         return list(zip(self.rows, map(float, self.probability), strict=True))

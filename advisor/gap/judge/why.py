@@ -6,20 +6,19 @@ from advisor.gap.alternative import Contribution
 from advisor.gap.evidence.quantities import QUANTITIES, Quantity
 from advisor.gap.evidence.rows import Row
 from advisor.gap.judge.logit import Logit
-from advisor.gap.judge.prior import FieldPrior
 
 MOST_LINES = 7
 """Most lines of the reasons, so that they fit one look; the last one holds all smaller contributions."""
 
 
-def reasons(logit: Logit, answer: Row, rival: Row, prior: FieldPrior) -> tuple[Contribution, ...]:
+def reasons(logit: Logit, answer: Row, rival: Row, ahead: float) -> tuple[Contribution, ...]:
     """Return the contributions to the log odds of the answer against its rival, the largest first.
 
-    Their sum is the log odds. A column that both rows lack contributes nothing.
+    ``ahead`` is the part that no evidence changes, nats. The sum is the log odds. A column that both rows
+    lack contributes nothing.
     """
     mine, other = logit.parts(answer), logit.parts(rival)
     nats = {name: mine.get(name, 0.0) - other.get(name, 0.0) for name in {**mine, **other}}
-    ahead = logit.offset(answer.alternative.kind, prior) - logit.offset(rival.alternative.kind, prior)
     lines = [
         _line(quantity, nats[quantity.name], answer.values, rival.values)
         for quantity in QUANTITIES

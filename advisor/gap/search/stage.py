@@ -38,9 +38,30 @@ class Stage:
         return next((j for j in found if not j.large_enough and not j.at_its_bounds), None)
 
 
+FoundSets = Mapping[tuple[str, str], Sequence[JudgedAddition]]
+"""Sets of two effects that the search fitted together, the main effect first: their additions in order."""
+
+
 def added_in(stages: Sequence[Stage]) -> list[JudgedAddition]:
     """Return the added effects, stage by stage."""
     return [stage.added for stage in stages if stage.added is not None]
+
+
+def sets_in(search: Sequence[Stage], settled: Sequence[Stage]) -> FoundSets:
+    """Return the first two effects of the settled model, and those that the search added first.
+
+    The main effect is the one that the settled model has first.
+    """
+    order = [
+        *(judged.effect for judged in added_in(settled)),
+        *(judged.effect for judged in added_in(search)),
+    ]
+    found: dict[tuple[str, str], Sequence[JudgedAddition]] = {}
+    for pair in (added_in(stages)[:2] for stages in (search, settled)):
+        if len(pair) == 2:
+            main, second = sorted((judged.effect for judged in pair), key=order.index)
+            found[main, second] = pair
+    return found
 
 
 def rebuilt(

@@ -11,7 +11,7 @@ from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.nuisances import PROPELLER
 from advisor.gap.evidence.found import Evidence
 from advisor.gap.evidence.measured import measured
-from advisor.gap.evidence.rows import rows_of
+from advisor.gap.evidence.rows import rows_of, stated_as
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.fitting.problem import EffectProblem
@@ -102,7 +102,8 @@ def answer(
         # A single manoeuvre proves no cause, and the judge was fitted on none.
         return diagnosis
     found = measured(examined, kinematics)
-    return as_judged(diagnosis, posterior(rows_of(found, answered(diagnosis)), prior))
+    sets = [stated_as(*names) for names in found.sets]
+    return as_judged(diagnosis, posterior(rows_of(found, answered(diagnosis, sets)), prior))
 
 
 def _speed_is_known(problem: EffectProblem, aircraft: Aircraft) -> bool:

@@ -1,6 +1,6 @@
 """A diagnosis with the probabilities of its alternatives, and the reasons for its answer."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 
 from advisor.gap.alternative import Alternative
@@ -17,11 +17,11 @@ MOST_CAUSES = 5
 
 def as_judged(diagnosis: Diagnosis, told: Posterior) -> Diagnosis:
     """Return the diagnosis with probabilities, evidence and reasons; a doubtful answer says so in a note."""
-    answer = answered(diagnosis)
+    answer = answered(diagnosis, [row.alternative for row in told.rows])
     reasons = told.why(answer)
     doubt = doubtful(told.credible, (answer, told.of(answer)))
     alike = [a.name for a, _ in told.credible if a.is_effect] if doubt else []
-    causes = [replace(c, probability=told.of_effect(c.effect)) for c in diagnosis.causes]
+    causes = [replace(c, probability=told.of(stated_as(c.effect))) for c in diagnosis.causes]
     # The causes of an effect, or next to an unknown, keep the order of what they remove.
     keeps = diagnosis.verdict in ("effect", "unknown")
     causes.sort(key=lambda c: (not (keeps and c.present), 0.0 if keeps and c.present else -c.probability))
@@ -37,10 +37,13 @@ def as_judged(diagnosis: Diagnosis, told: Posterior) -> Diagnosis:
     )
 
 
-def answered(diagnosis: Diagnosis) -> Alternative:
-    """Return the answer of a diagnosis as an alternative."""
+def answered(diagnosis: Diagnosis, stated: Collection[Alternative]) -> Alternative:
+    """Return the answer of a diagnosis as an alternative: the set of its first two causes, if that is
+    stated."""
     if diagnosis.verdict == "effect":
-        return stated_as(diagnosis.causes[0].effect)
+        first, second = (*(c.effect for c in diagnosis.causes if c.present), "", "")[:2]
+        both = stated_as(first or diagnosis.causes[0].effect, second)
+        return both if both in stated else both.first
     if diagnosis.verdict == "unknown":
         return Alternative("unknown", "unknown", diagnosis.where.block)
     if diagnosis.verdict == "parameters":

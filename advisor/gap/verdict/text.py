@@ -27,11 +27,12 @@ def place(block: str) -> str:
 
 
 def in_words(alternative: Alternative) -> str:
-    """Return an alternative in words: ``something without a name in the lift``."""
+    """Return an alternative in words: ``something without a name in the lift``, ``ground effect + gust``."""
     words = {"none": "no gap", "parameters": "wrong numbers"}
     if alternative.kind == "unknown":
         return f"something without a name {place(alternative.block)}"
-    return words.get(alternative.kind, spelled(alternative.name))
+    names = " + ".join(spelled(name) for name in (alternative.name, alternative.second) if name)
+    return words.get(alternative.kind, names)
 
 
 def sentence_of_one_maneuver(where: Where) -> str:
