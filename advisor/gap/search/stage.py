@@ -38,7 +38,7 @@ class Stage:
         return next((j for j in found if not j.large_enough and not j.at_its_bounds), None)
 
 
-FoundSets = Mapping[tuple[str, str], Sequence[JudgedAddition]]
+FoundSets = Mapping[tuple[str, str], tuple[JudgedAddition, JudgedAddition]]
 """Sets of two effects that the search fitted together, the main effect first: their additions in order."""
 
 
@@ -56,11 +56,11 @@ def sets_in(search: Sequence[Stage], settled: Sequence[Stage]) -> FoundSets:
         *(judged.effect for judged in added_in(settled)),
         *(judged.effect for judged in added_in(search)),
     ]
-    found: dict[tuple[str, str], Sequence[JudgedAddition]] = {}
+    found: dict[tuple[str, str], tuple[JudgedAddition, JudgedAddition]] = {}
     for pair in (added_in(stages)[:2] for stages in (search, settled)):
         if len(pair) == 2:
             main, second = sorted((judged.effect for judged in pair), key=order.index)
-            found[main, second] = pair
+            found[main, second] = pair[0], pair[1]
     return found
 
 
