@@ -7,6 +7,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.instruments.atmosphere import thin_air
 from advisor.flight.instruments.kinematics import KinematicCheck, check_alpha, combine
 from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.gap.candidates.known import air_in, left_aside
 from advisor.gap.evidence.found import Evidence
 from advisor.gap.explain import evidence_of_one_maneuver, explain
 from advisor.gap.fitting.prior_speed import prior_speed
@@ -20,7 +21,7 @@ from advisor.gap.records.unmeasured_speed import speed_of_the_motion
 from advisor.gap.records.usable import usable_of
 from advisor.gap.result import Diagnosis
 from advisor.gap.search.acceptance import LEAST_OFFSET_RAD, OFFSET_SIGMAS
-from advisor.gap.search.baseline import at_another_speed, fit_baseline
+from advisor.gap.search.baseline import at_another_speed, fit_baseline, of_this_flight
 from advisor.gap.search.stage import added_in
 from advisor.gap.search.waterfall import Progress
 from advisor.gap.uncatalogued.airspeed_scale import airspeed_scale_of, true_over_read
@@ -117,6 +118,7 @@ def _explained(
         # The offset that the climb rate shows is removed first: the trim would carry it into the lift.
         maneuvers = [_without_offset(m, kinematics.offset.rad) for m in maneuvers]
         flights = prepare(maneuvers, aircraft)
+    given, aircraft = aircraft.effects, of_this_flight(flights, aircraft)
     problem, baseline = fit_baseline(flights, aircraft)
     speed = None if aircraft.reference_airspeed_m_s else prior_speed(problem, baseline)
     if speed is not None:
@@ -132,6 +134,9 @@ def _explained(
     if len(flights) == 1:
         return evidence_of_one_maneuver(problem, baseline), kinematics
     explained = explain(problem, baseline, aircraft, progress)
+    air = air_in(given)
+    aside = left_aside(given, aircraft.effects, {} if explained.air is None else air)
+    explained = replace(explained, known_air=air, left_aside=aside)
     return (_checked_against_path(explained, flown, weight) if measured else explained), kinematics
 
 

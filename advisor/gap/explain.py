@@ -56,7 +56,8 @@ def explain(problem: EffectProblem, baseline: EffectFit, aircraft: Aircraft, pro
         Function that receives a sentence and the share of the work that is done, 0 to 1.
     """
     variants = beyond_servo(aircraft, variants_for(problem.flights))
-    variants = beyond_known(aircraft.effects, variants)
+    stated = [change.effect for change, _ in problem.changes]
+    variants = [v for v in beyond_known(aircraft.effects, variants) if v.effect not in stated]
     variants = [_begun_where_it_rings(v, problem, baseline) for v in variants]
     searched = one_after_another(problem, baseline, variants, progress)
     laws = search_law(problem, searched)

@@ -1,6 +1,7 @@
 """A simulator that has an effect already is judged with it: what is found is what is missing beyond it."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,12 +11,15 @@ from advisor.aircraft.controls import Elevator
 from advisor.aircraft_file.effects import mistakes_in
 from advisor.aircraft_file.read import parse_aircraft
 from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.candidates.known import beyond_known, together, with_known
+from advisor.gap.candidates.known import beyond_known, changes_in, together, with_known
 from advisor.gap.diagnose import diagnose
 from advisor.gap.effects import EFFECTS
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.records.prepare import prepare
+from advisor.gap.result import Cause, Value
+from advisor.gap.search.baseline import fit_unfiltered, of_this_flight
 from advisor.gap.simulator.layout import ENTRIES, INDEX
+from advisor.gap.verdict import outside_fit
 from advisor.gap.verdict.causes import parameters_of
 from advisor.report.improved import improved_file
 from sim.effects.terms import problems_with
@@ -229,3 +233,64 @@ def test_a_servo_may_be_quicker_than_the_file_states_and_the_improved_file_state
     assert effect not in improved.effects
     assert improved.elevator.lag_s == pytest.approx(0.05, abs=0.01)
     assert diagnose(slow, improved).verdict == "none"
+
+
+def test_a_change_in_flight_of_the_file_scales_the_derivatives_after_it(late):
+    flights = prepare(late, Aircraft())
+    variants = variants_for(flights)
+    at_s = next(v.fixed["at_s"] for v in variants if v.effect == "mass_change" and "at_s" in v.fixed)
+    known = changes_in({"mass_change": {"step": 0.25, "at_s": float(f"{at_s:.6g}")}}, variants)
+    problem = EffectProblem(flights, np.zeros(len(ENTRIES)), changes=known)
+    lift = problem.driving(SearchPoint(np.full(6, -1.0), np.zeros((6, 4))))[:, INDEX["Z_alpha"]]
+    assert lift == pytest.approx([-1.0, *[-0.8] * 5])
+
+
+def test_a_change_that_the_flight_does_not_show_is_left_aside_by_the_baseline(late):
+    flights = prepare(late, Aircraft())
+    onset = next(v.fixed["at_s"] for v in variants_for(flights) if "at_s" in v.fixed)
+    file = Aircraft(effects={"mass_change": {"step": 0.3, "at_s": onset}, "alpha_scale": {"scale": 0.0}})
+    assert of_this_flight(flights, file).effects == {"alpha_scale": {"scale": 0.0}}
+
+
+def test_the_slope_of_a_curve_of_the_file_adds_to_the_derivatives(late):
+    flights = prepare(late, Aircraft())
+    curve = {"M_alpha2": 20.0, "M_alpha3": 0.0, "about_rad": flights.flights[0].alpha_trim - 0.05}
+    base = with_known(
+        np.zeros(len(ENTRIES)), {"nonlinear_pitching_moment": curve}, flights, variants_for(flights)
+    )
+    numbers = EffectProblem(flights, base).driving(SearchPoint(np.full(6, -1.0), np.zeros((6, 4))))
+    assert numbers[0, INDEX["M_alpha"]] == pytest.approx(2.0 * 20.0 * 0.05 - 1.0)
+
+
+def resting(flights, file, sides):
+    """Return the flights as an aircraft with the file's effects flies them, its play on these sides."""
+    problem, fitted = fit_unfiltered(flights, file)
+    numbers = problem.driving(replace(fitted.point, sides=np.array(sides)))
+    again = []
+    for flight, p in zip(flights.flights, numbers, strict=True):
+        read = problem.read(flight, problem.fly(flight, p), p)
+        rows = dict(zip(problem.channels, problem.rows(flight), strict=True))
+        outputs = {c: replace(out, y=read[rows[c]]) for c, out in flight.outputs.items() if c in rows}
+        again.append(replace(flight, outputs=outputs))
+    return replace(flights, flights=tuple(again))
+
+
+def test_play_of_the_file_rests_on_a_side_of_its_own_in_every_manoeuvre():
+    file = Aircraft(effects={"actuator_backlash": {"half_width_rad": 0.012}})
+    flights = prepare(fly(Setup(maneuvers=3, switches={"play": 0.012}, seed=7)), Aircraft())
+    _, fitted = fit_unfiltered(resting(flights, file, [1.0, -1.0, 1.0]), file)
+    assert list(fitted.point.sides) == [1.0, -1.0, 1.0]
+
+
+def moving(strength):
+    """Return turbulence of a strength in m/s as a cause, with 5 % of it as standard deviation."""
+    size = Value(strength, 0.05 * strength)
+    return Cause("turbulence", "air", 0.0, {"sigma_w_m_s": size}, (), "", 0.0, True)
+
+
+@pytest.mark.parametrize(
+    ("known", "found"), [({}, True), ({"turbulence": 1.0}, False), ({"turbulence": 0.5}, True)]
+)
+def test_air_as_strong_as_the_files_is_no_cause(monkeypatch, known, found):
+    monkeypatch.setattr(outside_fit, "moving_air_of", lambda _: moving(1.05))
+    assert (outside_fit.air_cause(SimpleNamespace(known_air=known)) is not None) is found

@@ -4,7 +4,7 @@ They are part of every model. A file that ``advisor gap`` improved is therefore 
 diagnosis finds the rest of the gap.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -18,6 +18,8 @@ from advisor.gap.kit.curve import as_in_file
 from advisor.gap.kit.variant import Values, Variant
 from advisor.gap.records.flights import PreparedManeuvers
 
+_IN_FILE = 1e-5
+"""Relative precision of a number in the improved file, which has six digits."""
 Effects = Mapping[str, Mapping[str, float]]
 """Effect name to its parameters, in the units of the aircraft file."""
 
@@ -28,15 +30,23 @@ def with_known(
     """Return the driving numbers, shape (manoeuvres, entries): ``base``, shape (entries,), with the file's
     effects."""
     numbers = np.tile(base, (len(flights), 1))
+    for variant, values in _as_stated(lasting(effects), variants):
+        variant.apply(numbers, values, flights)
+    return numbers
+
+
+def changes_in(effects: Effects, variants: Sequence[Variant]) -> tuple[tuple[Variant, Values], ...]:
+    """Return the file's changes in flight, of mass, balance or ice, with their sizes."""
+    return tuple(_as_stated({e: effects[e] for e in effects if EFFECTS[e].of_one_flight}, variants))
+
+
+def _as_stated(effects: Effects, variants: Sequence[Variant]) -> Iterator[tuple[Variant, Values]]:
+    """Yield the description of each effect that says most of what the file states, and its values."""
     for effect, parameters in effects.items():
-        if EFFECTS[effect].of_one_flight:
-            continue
         described = [w for v in variants if v.effect == effect for w in (v, *v.likewise)]
         meant = [w for w in described if _says(w, parameters)]
         for variant in sorted(meant, key=lambda v: (-len(v.fixed), -len(v.names)))[:1]:
-            as_said = as_in_file(variant, EFFECTS[effect].curve, parameters)
-            as_said.apply(numbers, _values(variant, parameters), flights)
-    return numbers
+            yield as_in_file(variant, EFFECTS[effect].curve, parameters), _values(variant, parameters)
 
 
 def beyond_known(effects: Effects, variants: Sequence[Variant]) -> list[Variant]:
@@ -90,9 +100,23 @@ def stated_in(aircraft: Aircraft, effect: str) -> float | None:
     return stated
 
 
-def left_aside(effects: Effects) -> tuple[str, ...]:
-    """Return the file's effects that belong to one flight alone."""
-    return tuple(effect for effect in effects if EFFECTS[effect].of_one_flight)
+def lasting(effects: Effects) -> Effects:
+    """Return the file's effects without those that belong to one flight alone."""
+    return {name: values for name, values in effects.items() if not EFFECTS[name].of_one_flight}
+
+
+def air_in(effects: Effects) -> Mapping[str, float]:
+    """Return the strength of the file's moving air by effect: standard deviation, or amplitude, m/s."""
+    return {
+        name: abs(next(iter(values.values()), 0.0))
+        for name, values in effects.items()
+        if EFFECTS[name].block == "air"
+    }
+
+
+def left_aside(effects: Effects, *shown: Collection[str]) -> tuple[str, ...]:
+    """Return the file's effects that a flight does not show."""
+    return tuple(effect for effect in effects if not any(effect in some for some in shown))
 
 
 def together(known: Effects, found: Effects) -> dict[str, dict[str, float]]:
@@ -128,7 +152,10 @@ def _beyond(variant: Variant, known: float) -> Variant:
 
 
 def _says(variant: Variant, parameters: Mapping[str, float]) -> bool:
-    same = all(parameters.get(name) == value for name, value in variant.fixed.items())
+    fixed = variant.fixed.items()
+    same = all(
+        np.isclose(parameters.get(name, np.nan), value, rtol=_IN_FILE, atol=0.0) for name, value in fixed
+    )
     needed = list(variant.in_file)[:1] or variant.names
     return same and all(name in parameters for name in needed)
 

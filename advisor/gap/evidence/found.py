@@ -42,3 +42,7 @@ class Evidence:
     laws: Mapping[str, float] = field(default_factory=dict)
     """Gain of the best uncatalogued law of each block; log likelihood minus the price of its parameters."""
     sets: FoundSets = field(default_factory=dict)
+    known_air: Mapping[str, float] = field(default_factory=dict)
+    """Moving air of the aircraft file: ``turbulence``, standard deviation, and ``gust``, amplitude, m/s."""
+    left_aside: tuple[str, ...] = ()
+    """Changes in flight of the aircraft file that this flight does not show."""

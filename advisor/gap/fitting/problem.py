@@ -15,7 +15,7 @@ from advisor.gap.fitting.prior import (
     small_without_alpha,
 )
 from advisor.gap.fitting.whitening import Filters, Whitening
-from advisor.gap.kit.variant import Variant
+from advisor.gap.kit.variant import Values, Variant
 from advisor.gap.records.flights import PreparedManeuver, PreparedManeuvers
 from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, FILTER, INDEX, LAYOUT, NUISANCES, SKEWS
 from advisor.gap.simulator.pack import LANES
@@ -124,6 +124,8 @@ class EffectProblem:
     """Standard deviation of all stamps, including the command's, s."""
     whitening: Whitening | None = None
     """Filter of moving air and coloured instruments; None where the residual is white."""
+    changes: tuple[tuple[Variant, Values], ...] = ()
+    """Changes in flight from the aircraft file, with their sizes: they scale derivatives."""
 
     @property
     def knows_the_noise(self) -> bool:
@@ -188,11 +190,11 @@ class EffectProblem:
         """Return the driving numbers of each manoeuvre's simulation, shape (manoeuvres, entries)."""
         p = np.empty((len(self.flights), self.base.shape[-1]))
         p[:] = self.base
-        p[:, : len(DERIVATIVES)] = point.derivatives
+        p[:, : len(DERIVATIVES)] += point.derivatives
         p[:, len(DERIVATIVES) : len(DERIVATIVES) + len(NUISANCES)] = point.own
-        for effect, values in zip(point.effects, point.values, strict=True):
-            if effect.sides is not None and point.sides is not None:
-                p[:, INDEX[effect.sides[0]]] = point.sides
+        if point.sides is not None:
+            p[:, INDEX["play_side"]] = point.sides
+        for effect, values in (*self.changes, *zip(point.effects, point.values, strict=True)):
             effect.apply(p, values, self.flights)
         return p
 

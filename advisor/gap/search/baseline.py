@@ -7,10 +7,11 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.candidates.known import stated_in, with_known
+from advisor.gap.candidates.known import changes_in, lasting, stated_in, with_known
 from advisor.gap.candidates.nuisances import LOOP, OWN_ALPHA, PROPELLER, TRUE_AIR_SPEED, filters, latency
 from advisor.gap.effects import EFFECTS
 from advisor.gap.fitting.fit import EffectFit, fit, rms_of
+from advisor.gap.fitting.neighbourhood import Neighbourhood
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.fitting.regression import regressions
 from advisor.gap.fitting.whitening import Weighting
@@ -131,16 +132,37 @@ def _finite_cost(fitted: EffectFit) -> float:
 
 def fit_unfiltered(flights: PreparedManeuvers, aircraft: Aircraft) -> tuple[EffectProblem, EffectFit]:
     """Return the baseline model with white noise, and with the command linear between its stamps."""
-    instruments = stated_floor(flights)
+    instruments, variants = stated_floor(flights), variants_for(flights)
     problem = EffectProblem(
         flights,
-        with_known(base_entries(aircraft), aircraft.effects, flights, variants_for(flights)),
+        with_known(base_entries(aircraft), aircraft.effects, flights, variants),
+        changes=changes_in(aircraft.effects, variants),
         prior_derivatives=prior_derivatives(aircraft),
         arms_in_file=arms_in(aircraft),
         instruments=instruments,
         smallest_noise=0.5 * instruments,
     )
-    return problem, first_fit(problem, aircraft)
+    return problem, _at_rest(problem, first_fit(problem, aircraft), aircraft)
+
+
+def _at_rest(problem: EffectProblem, fitted: EffectFit, aircraft: Aircraft) -> EffectFit:
+    """Return the fit with the side on which the file's play rests, which every manoeuvre begins anew."""
+    for variant in variants_for(problem.flights):
+        if variant.sides is not None and variant.effect in aircraft.effects:
+            point = Neighbourhood(problem, fitted).choose_sides(fitted.point, variant.sides[1])
+            return min(fitted, fit(problem, point, fitted.noise), key=_finite_cost)
+    return fitted
+
+
+def of_this_flight(flights: PreparedManeuvers, aircraft: Aircraft) -> Aircraft:
+    """Return the aircraft without the file's changes in flight, if these manoeuvres are likelier without.
+
+    Such a change belongs to one flight. A file that the flight improved has the change already.
+    """
+    others = replace(aircraft, effects=lasting(aircraft.effects))
+    if others == aircraft:
+        return aircraft
+    return min((others, aircraft), key=lambda one: _finite_cost(fit_unfiltered(flights, one)[1]))
 
 
 def fit_baseline(flights: PreparedManeuvers, aircraft: Aircraft) -> tuple[EffectProblem, EffectFit]:

@@ -22,6 +22,7 @@ from advisor.gap.judge.prior import FIELD, FieldPrior
 from advisor.gap.records.floor import tolerance_of
 from advisor.gap.result import Cause, Diagnosis, Gap, GapVerdict, Where
 from advisor.gap.search.acceptance import LEAST_SIGMA
+from advisor.gap.search.air import SoughtAir
 from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.gap.verdict.as_judged import answered, as_judged
 from advisor.gap.verdict.causes import block_ranking
@@ -38,6 +39,7 @@ from advisor.gap.verdict.numbers import (
     traces_of,
     waterfall_of,
 )
+from advisor.gap.verdict.outside_fit import air_cause
 from advisor.gap.verdict.statements import in_simulator
 from advisor.gap.verdict.text import sentence_of, sentence_of_one_maneuver
 
@@ -101,6 +103,8 @@ def answer(
     if len(problem.flights) == 1:
         # A single manoeuvre proves no cause, and the judge was fitted on none.
         return diagnosis
+    if examined.known_air and air_cause(examined) is None:
+        examined = replace(examined, sought_air=SoughtAir())
     found = measured(examined, kinematics)
     sets = [stated_as(*names) for names in found.sets]
     return as_judged(diagnosis, posterior(rows_of(found, answered(diagnosis, sets)), prior))

@@ -6,7 +6,6 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.gap.candidates.known import left_aside
 from advisor.gap.evidence.found import Evidence
 from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.records.flights import PreparedManeuvers
@@ -40,7 +39,7 @@ def notes_of(
         *_of_the_unexplained(e),
         *_of_single_witnesses(e),
         *_of_the_air(e),
-        *_of_the_file(aircraft, nuisances),
+        *_of_the_file(e, aircraft, nuisances),
         *_of_what_is_missing(e, aircraft),
     )
 
@@ -127,14 +126,14 @@ def _of_the_air(e: Evidence) -> Iterator[str]:
         )
 
 
-def _of_the_file(aircraft: Aircraft, nuisances: Collection[str]) -> Iterator[str]:
+def _of_the_file(e: Evidence, aircraft: Aircraft, nuisances: Collection[str]) -> Iterator[str]:
     """Yield the additional terms of the improved simulator, and the treatment of the file's effects."""
     if nuisances:
         yield (
             f"The improved simulator also has a propeller's terms ({_listed(sorted(nuisances))}). Every "
             "aircraft with a propeller has them, so they do not count as a cause."
         )
-    aside = left_aside(aircraft.effects)
+    aside = e.left_aside
     if had := [effect for effect in aircraft.effects if effect not in aside]:
         yield f"The simulator already has {_listed(had)} from the file; sizes found here add to that."
     if aside:

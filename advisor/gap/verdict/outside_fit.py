@@ -12,6 +12,7 @@ from advisor.gap.result import Cause, Value
 from advisor.gap.search.acceptance import JudgedAddition, least_offset_rad
 from advisor.gap.search.indistinguishable import way_to_distinguish
 from advisor.gap.verdict.holdout_numbers import without_air
+from advisor.words.quantiles import NORMAL_95
 
 _SCALED_BY = 0.2
 """Largest difference between an offset and the effect of a scale error on the trim angle for which no offset
@@ -58,7 +59,17 @@ def alpha_bias_cause(
 
 def air_cause(e: Evidence) -> Cause | None:
     """Return turbulence or a gust as a cause, with the strength of its course; None in the air of any
-    flight."""
+    flight, and where the aircraft file has air of that strength."""
+    cause = moving_air_of(e)
+    if cause is None or cause.effect not in e.known_air:
+        return cause
+    strength = next(iter(cause.parameters.values()))
+    is_more = abs(strength.value) - NORMAL_95 * strength.std > e.known_air[cause.effect]
+    return cause if is_more else None
+
+
+def moving_air_of(e: Evidence) -> Cause | None:
+    """Return turbulence or a gust as a cause, whatever the file has; None in the air of any flight."""
     if e.air is None or e.air.is_natural:
         return None
     reference = e.problem.flights.reference_m_s
