@@ -12,16 +12,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.signals.robust import robust_std
 from advisor.model.response import N_PARAMETERS, N_SHARED, OUTPUTS
-from advisor.oem.covariance import Coloured, coloured, colours_of, influence, widening
+from advisor.oem.evaluation import errors_of
 from advisor.oem.extra import Extra
 from advisor.oem.innovations import AirModel
 from advisor.oem.instruments import Instrument, moved_by
 from advisor.oem.place import Linearization, at, free_of, in_time, speeds_of, system_of
 from advisor.oem.prior import precision
-from advisor.oem.solution import Solution, contributions_of, reported
+from advisor.oem.solution import Solution, reported
 from advisor.oem.turbulence import Rows, Turbulence, find_turbulence
 from advisor.oem.whitened import Whitened, gains_along, whitened
 
@@ -143,17 +142,16 @@ def _moved(
 
 def _solution(start: Solution, place: Linearization, air: AirModel) -> Solution | None:
     """Return the solution at the point, with Cramér-Rao errors and with errors for coloured innovations."""
-    assembly, n = place.assembly, len(PARAMETERS)
+    assembly = place.assembly
     white = np.empty((len(place.residual), 1 + N_PARAMETERS + len(place.extra)))
     columns = np.column_stack([place.residual, place.sensitivities, place.extra.columns])
     for order, gains in gains_along(place, air):
         white[order] = gains.innovations(columns[order])
     g, extra = white[:, 1 : 1 + N_PARAMETERS], place.extra.whitened(white[:, 1 + N_PARAMETERS :])
-    effect = influence(assembly, g, _UNIT, extra, precision(place.problem, place.shared))
-    if effect is None:
+    prior = precision(place.problem, place.shared)
+    errors = errors_of(assembly, white[:, 0], g, _UNIT, extra, prior)
+    if errors is None:
         return None
-    colours = colours_of(assembly, white[:, 0], g)
-    noise = Coloured(colours, widening(assembly, effect.rows, colours))
     fitted = assembly.z - place.residual
     optimum = start.optimum._replace(
         shared=place.shared, local=place.local, fitted=fitted, sensitivities=place.sensitivities
@@ -163,11 +161,7 @@ def _solution(start: Solution, place: Linearization, air: AirModel) -> Solution 
         problem=place.problem,
         assembly=assembly,
         optimum=optimum,
-        influence=effect,
         theta=reported(place.shared, place.local),
-        covariance_cr=effect.rows[:, :n].T @ effect.rows[:, :n] + effect.prior_covariance[:n, :n],
-        covariance=coloured(assembly, effect.rows, noise) + effect.prior_covariance,
-        noise=noise,
-        contributions=contributions_of(assembly, effect.rows, white[:, 0]),
         extra=place.extra,
+        **errors,
     )

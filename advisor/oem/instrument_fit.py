@@ -22,7 +22,6 @@ import numpy as np
 
 from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.signals.messages import FloatArray
-from advisor.oem.between import widened_by_scatter
 from advisor.oem.covariance import influence
 from advisor.oem.estimate import InstrumentEstimate
 from advisor.oem.extra import Prior
@@ -304,9 +303,7 @@ def _at(problem: OutputErrorProblem, near: _Fit, flat: float = CLOSE_ENOUGH) -> 
 
 def identified_at(solution: Solution, names: Sequence[Instrument]) -> tuple[Identified, ...]:
     """Return values and errors of instruments in a solution whose first extra columns are theirs."""
-    pulls = solution.contributions[:, : len(solution.covariance)]
-    covariance = widened_by_scatter(solution.covariance, pulls)
-    std = np.sqrt(np.diag(covariance)[N : N + len(names)])
+    std = np.sqrt(np.diag(solution.widened)[N : N + len(names)])
     return tuple(_identified(x, solution.problem, float(s)) for x, s in zip(names, std, strict=True))
 
 
