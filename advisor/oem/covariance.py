@@ -19,12 +19,12 @@ from advisor.oem.colour import Colour, Stretch, find_colour, moved, product
 from advisor.oem.extra import Extra
 from advisor.oem.inverses import inverse_of
 from advisor.oem.rows import Laid
+from advisor.words.quantiles import NORMAL_95
 
 OPEN_SHARE = 0.01
 """Largest share of a parameter in undetermined directions. Above it the parameter is unresolved."""
 DIFFERENCE = 0.05
 LEAST_FREEDOM = 3.0
-GAUSS_975 = 1.959963984540054
 REPORTED = NAMES.places
 """Place of each of the eight parameters of the short period: whether it is shared, and its index."""
 
@@ -203,7 +203,7 @@ def widening(assembly: Laid, rows: FloatArray, colours: Mapping[str, Colour]) ->
     freedom = np.full(len(variance), 1e9)
     uncertain = spread > 0.0
     freedom[uncertain] = np.maximum(2.0 * variance[uncertain] ** 2 / spread[uncertain], LEAST_FREEDOM)
-    factor: FloatArray = np.asarray(stdtrit(freedom, 0.975) / GAUSS_975, np.float64)
+    factor: FloatArray = np.asarray(stdtrit(freedom, 0.975) / NORMAL_95, np.float64)
     return factor
 
 

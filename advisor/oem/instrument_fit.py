@@ -24,9 +24,9 @@ from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.signals.messages import FloatArray
 from advisor.oem.covariance import influence
 from advisor.oem.estimate import InstrumentEstimate
-from advisor.oem.extra import Prior
+from advisor.oem.extra import Prior, penalty
 from advisor.oem.gauss_newton import CONVERGED, Optimum
-from advisor.oem.instruments import Instrument, extra_of, moved_by, penalty
+from advisor.oem.instruments import Instrument, extra_of, moved_by
 from advisor.oem.problem import Assembly, OutputErrorProblem
 from advisor.oem.solution import Solution, evaluate, search
 from advisor.oem.weighing import Weighing

@@ -14,6 +14,7 @@ from advisor.model.axis_response import respond_axis
 from advisor.model.lateral import LATERAL
 from advisor.model.response import Index
 from advisor.oem.estimate import NoEstimate
+from advisor.oem.extra import penalty
 from advisor.oem.gauss_newton import (
     CONVERGED,
     DAMPING_FACTOR,
@@ -27,7 +28,7 @@ from advisor.oem.gauss_newton import (
     normal_equations,
     weigh,
 )
-from advisor.oem.lateral_instruments import Nuisance, columns_of, moved_by, penalty
+from advisor.oem.lateral_instruments import Nuisance, columns_of, moved_by
 from advisor.oem.lateral_prior import Priors
 from advisor.oem.lateral_problem import CAUSES, LateralAssembly, LateralProblem, assemble_lateral
 from advisor.oem.solution import RUNS_AWAY

@@ -14,7 +14,7 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.input_response import InputChange
-from advisor.oem.rows import padded
+from advisor.oem.rows import Signal, padded
 from advisor.process.compiled import kernel
 
 LONGEST_STEP_S = 0.0105
@@ -47,6 +47,14 @@ class Servo:
             return start, start, arrival
         surface = lagged(np.diff(run), start[:-1], arrival, self.lag_s, start[0])[len(run) - len(t) :]
         return surface, surface, surface[1:]
+
+    def signal(self, command: Signal) -> Signal:
+        """Return the surface behind a linear command, at the corners of its motion."""
+        t, pace = self.grid(command.t)
+        if not np.isfinite(pace) or len(t) < 2:
+            return Signal(t, command.y)
+        fine = np.union1d(t, np.arange(t[0], t[-1], pace))
+        return Signal(fine, self.move(command.t, command.y, fine)[0])
 
     def course(
         self, command_t: FloatArray, command: FloatArray, t: FloatArray, held: bool = False
