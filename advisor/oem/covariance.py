@@ -15,9 +15,9 @@ from scipy.special import stdtrit
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.short_period import NAMES
+from advisor.oem.arrow import inverse_of
 from advisor.oem.colour import Colour, Stretch, find_colour, moved, product
 from advisor.oem.extra import Extra
-from advisor.oem.inverses import inverse_of
 from advisor.oem.rows import Laid
 from advisor.words.quantiles import NORMAL_95
 
@@ -91,7 +91,7 @@ def influence(
     weight = 1.0 / noise[assembly.channel] ** 2
     names, split = assembly.names, len(assembly.names.shared)
     reported = len(names.reported)
-    common, own = assembly.free[assembly.free < split], assembly.free[assembly.free >= split]
+    common, own = assembly.common, assembly.own
     shared_g = g[:, common] if extra is None else np.column_stack([g[:, common], extra.columns])
     places = [
         (j, int(np.searchsorted(own, split + i))) for j, (shared, i) in enumerate(names.places) if not shared
@@ -99,8 +99,7 @@ def influence(
     parts = []
     projected = np.empty_like(shared_g)
     open_share = np.zeros(split + len(names.local))
-    for named in assembly.rows:
-        rows = slice(min(s.start for s in named.values()), max(s.stop for s in named.values()))
+    for rows in assembly.blocks:
         mine = g[rows][:, own]
         weighted = (mine * weight[rows, None]).T
         inverse, left_open = inverse_of(weighted @ mine)

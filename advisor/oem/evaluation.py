@@ -96,8 +96,7 @@ def errors_of(
         effect = effect.first(len(assembly.names.reported) + kept)
     from_priors = effect.prior_covariance
     if prior_share is not None:
-        free = assembly.free[assembly.free < len(prior)]
-        pulled = effect.shared_inverse * (np.sqrt(prior) / prior_share)[free, None]
+        pulled = effect.shared_inverse * (np.sqrt(prior) / prior_share)[assembly.common, None]
         from_priors = pulled.T @ pulled + from_priors
     if noise is None:
         colours = colours_of(assembly, residual, g)
@@ -115,5 +114,4 @@ def contributions_of(assembly: Laid, rows: FloatArray, residual: FloatArray) -> 
     """Return the contribution of each manoeuvre, shape (m, p + k), from influence ``rows`` (N, p + k) and
     ``residual`` (N,)."""
     pull = rows * residual[:, None]
-    first = np.searchsorted(assembly.owner, np.arange(assembly.maneuvers))
-    return np.array([part.sum(axis=0) for part in np.split(pull, first[1:])])
+    return np.array([pull[block].sum(axis=0) for block in assembly.blocks])

@@ -18,7 +18,7 @@ from advisor.oem.evaluation import errors_of
 from advisor.oem.extra import Extra
 from advisor.oem.innovations import AirModel
 from advisor.oem.instruments import Instrument, moved_by
-from advisor.oem.place import Linearization, at, free_of, in_time, speeds_of, system_of
+from advisor.oem.place import Linearization, at, in_time, speeds_of, system_of
 from advisor.oem.prior import precision
 from advisor.oem.solution import Solution, reported
 from advisor.oem.turbulence import Rows, Turbulence, find_turbulence
@@ -131,7 +131,7 @@ def _moved(
     here: Linearization, seen: Whitened, scale: float, instruments: Sequence[Instrument]
 ) -> Linearization | None:
     """Return the point after a share of the step; None where the model overflows there."""
-    common, own = free_of(here.assembly)
+    common, own = here.assembly.common, here.assembly.own
     shared, local = here.shared.copy(), here.local.copy()
     shared[common] += scale * seen.step[: len(common)]
     for m, step in enumerate(seen.own_steps):

@@ -13,6 +13,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.model.axis_response import respond_axis
 from advisor.model.lateral import LATERAL
 from advisor.model.response import Index
+from advisor.oem.arrow import arrow_step, normal_equations
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.extra import penalty
 from advisor.oem.gauss_newton import (
@@ -24,8 +25,6 @@ from advisor.oem.gauss_newton import (
     MOST_ITERATIONS,
     SINGULAR,
     Optimum,
-    arrow_step,
-    normal_equations,
     weigh,
 )
 from advisor.oem.lateral_instruments import Nuisance, columns_of, moved_by
@@ -144,12 +143,10 @@ class _System(NamedTuple):
         problem, assembly, optimum, columns = fit[:4]
         k = columns.shape[1]
         g = np.column_stack([optimum.sensitivities[:, :_SHARED], columns, optimum.sensitivities[:, _SHARED:]])
-        own = assembly.free >= _SHARED
-        free = np.concatenate([assembly.free[~own], _SHARED + np.arange(k), assembly.free[own] + k])
+        free = np.concatenate([assembly.common, _SHARED + np.arange(k), assembly.own + k])
         information, gradient = normal_equations(
-            assembly.grid,
-            assembly.z,
-            optimum.fitted,
+            assembly.maneuvers,
+            assembly.z - optimum.fitted,
             g,
             assembly.channel,
             assembly.owner,

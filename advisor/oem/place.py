@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.model.response import N_PARAMETERS, N_SHARED, SHARED, Index, respond
+from advisor.model.response import N_PARAMETERS, SHARED, Index, respond
 from advisor.oem.extra import Extra
 from advisor.oem.instruments import Instrument, extra_of
 from advisor.oem.problem import Assembly, OutputErrorProblem, assemble
@@ -44,15 +44,10 @@ def at(
     return Linearization(problem, assembly, shared, local, assembly.z - y, g, extra)
 
 
-def free_of(assembly: Assembly) -> tuple[Index, Index]:
-    """Return the free shared and the free local parameters, as indices of all 14."""
-    return assembly.free[assembly.free < N_SHARED], assembly.free[assembly.free >= N_SHARED]
-
-
 def in_time(assembly: Assembly, m: int) -> Index:
     """Return the rows of manoeuvre ``m`` in order of time, shape (n,)."""
-    rows = np.concatenate([np.arange(s.start, s.stop) for s in assembly.rows[m].values()])
-    return np.asarray(rows[np.argsort(assembly.t[rows], kind="stable")])
+    rows = assembly.blocks[m]
+    return np.asarray(rows.start + np.argsort(assembly.t[rows], kind="stable"))
 
 
 def speeds_of(place: Linearization) -> list[float]:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import NamedTuple, TypedDict
 
 import numpy as np
@@ -48,6 +49,22 @@ class Laid:
     def maneuvers(self) -> int:
         """Number of manoeuvres."""
         return len(self.rows)
+
+    @property
+    def common(self) -> Index:
+        """Free shared parameters, as indices of all."""
+        return self.free[self.free < len(self.names.shared)]
+
+    @property
+    def own(self) -> Index:
+        """Free parameters of a manoeuvre, as indices of all."""
+        return self.free[self.free >= len(self.names.shared)]
+
+    @property
+    def blocks(self) -> tuple[slice, ...]:
+        """Rows of each manoeuvre."""
+        ends = np.searchsorted(self.owner, np.arange(self.maneuvers + 1))
+        return tuple(slice(int(a), int(b)) for a, b in pairwise(ends))
 
 
 class Piece(NamedTuple):

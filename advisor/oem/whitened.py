@@ -10,9 +10,9 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import N_PARAMETERS, Index
+from advisor.oem.arrow import inverse_of
 from advisor.oem.innovations import AirModel, Gains, gains_of
-from advisor.oem.inverses import inverse_of
-from advisor.oem.place import Linearization, free_of, in_time, speeds_of, system_of
+from advisor.oem.place import Linearization, in_time, speeds_of, system_of
 from advisor.oem.prior import precision
 
 
@@ -37,7 +37,7 @@ class Whitened:
 
 def whitened(place: Linearization, air: AirModel) -> Whitened | None:
     """Return the whitened fit; None where numbers overflow."""
-    common, own = free_of(place.assembly)
+    common, own = place.assembly.common, place.assembly.own
     n = len(common) + len(place.extra)
     prior = precision(place.problem, place.shared)[common]
     information, gradient = np.zeros((n, n)), np.zeros(n)
