@@ -269,7 +269,7 @@ def _found(
     if not identified:
         return None
     names = tuple(x.instrument.name for x in identified)
-    values = np.array([x.value for x in identified])
+    values = np.array([x.found.value for x in identified])
     return FoundInstruments.of(names, values, covariance, airspeed_m_s)
 
 

@@ -15,7 +15,6 @@ import numpy as np
 from advisor.flight.signals.robust import robust_std
 from advisor.model.response import N_PARAMETERS, N_SHARED, OUTPUTS
 from advisor.oem.evaluation import errors_of
-from advisor.oem.extra import Extra
 from advisor.oem.innovations import AirModel
 from advisor.oem.instruments import Instrument, moved_by
 from advisor.oem.place import Linearization, at, in_time, speeds_of, system_of
@@ -43,18 +42,10 @@ def moving_air(solution: Solution, seen_by_alpha: bool) -> Turbulence:
     seen_by_alpha
         Whether the angle of attack reads the air, like a vane, instead of coming from inertial sensors.
     """
-    place = Linearization(
-        solution.problem,
-        solution.assembly,
-        solution.optimum.shared,
-        solution.optimum.local,
-        solution.residual,
-        solution.sensitivities,
-        Extra.none(len(solution.residual)),
-    )
-    rows = _rows(place)[-MOST_MANEUVERS:]
+    rows = _rows(solution)[-MOST_MANEUVERS:]
     white = np.array([_white(rows, c) for c in range(len(OUTPUTS))])
-    return find_turbulence(rows, system_of(place, 1.0)[:4], white, seen_by_alpha, start_variance=0.0)
+    system = system_of(solution.optimum.shared, 1.0)
+    return find_turbulence(rows, system, white, seen_by_alpha, start_variance=0.0)
 
 
 def _white(rows: Sequence[Rows], channel: int) -> float:
@@ -63,14 +54,14 @@ def _white(rows: Sequence[Rows], channel: int) -> float:
     return robust_std(steps) / float(np.sqrt(2.0)) if len(steps) else 1.0
 
 
-def _rows(place: Linearization) -> list[Rows]:
+def _rows(solution: Solution) -> list[Rows]:
     found = []
-    for m, speed in enumerate(speeds_of(place)):
-        order = in_time(place.assembly, m)
-        channel, residual = place.assembly.channel[order], place.residual[order].copy()
+    for m, speed in enumerate(speeds_of(solution.problem)):
+        order = in_time(solution.assembly, m)
+        channel, residual = solution.assembly.channel[order], solution.residual[order]
         for c in np.unique(channel):
             residual[channel == c] -= residual[channel == c].mean()
-        found.append(Rows(place.assembly.t[order], channel, residual, speed))
+        found.append(Rows(solution.assembly.t[order], channel, residual, speed))
     return found
 
 

@@ -72,14 +72,14 @@ def _is_worth_saying(identified: Identified) -> bool:
     """Return whether the data tell a value that neither the file nor a sound instrument explains."""
     x = identified.instrument
     if x.prior is None:
-        return x.stated is None or identified.contradicts
+        return x.stated is None or identified.found.contradicts
     told = x.name in ("command_delay_s", "steady_moment_rad")
-    return told and abs(identified.value - x.prior.mean) > 3.0 * identified.std
+    return told and abs(identified.found.value - x.prior.mean) > 3.0 * identified.found.std
 
 
 def _instrument(identified: Identified, solution: Solution) -> str:
     """Return a sentence about one instrument, with the line that puts its value into the aircraft file."""
-    value, half = identified.value, NORMAL_95 * identified.std
+    value, half = identified.found.value, NORMAL_95 * identified.found.std
     match identified.instrument.name:
         case "servo_lag_s":
             return (
@@ -116,7 +116,11 @@ def _instrument(identified: Identified, solution: Solution) -> str:
 
 def _line(identified: Identified, line: str) -> str:
     """Return the line for the aircraft file, where a value is known to a tenth."""
-    return f" For the aircraft file: {line}" if identified.std < KNOWN_TO * abs(identified.value) else ""
+    return (
+        f" For the aircraft file: {line}"
+        if identified.found.std < KNOWN_TO * abs(identified.found.value)
+        else ""
+    )
 
 
 def _servo(solution: Solution, lagged: FloatArray | None) -> str:

@@ -50,13 +50,13 @@ def in_time(assembly: Assembly, m: int) -> Index:
     return np.asarray(rows.start + np.argsort(assembly.t[rows], kind="stable"))
 
 
-def speeds_of(place: Linearization) -> list[float]:
+def speeds_of(problem: OutputErrorProblem) -> list[float]:
     """Return the mean air speed of each manoeuvre, m/s."""
-    speeds = [record.airspeed for record in place.problem.records]
+    speeds = [record.airspeed for record in problem.records]
     return [ASSUMED_M_S if speed is None else float(np.mean(speed.y)) for speed in speeds]
 
 
-def system_of(place: Linearization, ratio: float) -> FloatArray:
+def system_of(shared: FloatArray, ratio: float) -> FloatArray:
     """Return Z_α, Z_q, M_α, M_q at an air speed of ``ratio`` times the reference, shape (4,)."""
-    z_a, z_q, m_a, m_q = (place.shared[SHARED.index(n)] for n in ("Z_alpha", "Z_q", "M_alpha", "M_q"))
+    z_a, z_q, m_a, m_q = (shared[SHARED.index(n)] for n in ("Z_alpha", "Z_q", "M_alpha", "M_q"))
     return np.array([ratio * z_a, z_q, ratio**2 * m_a, ratio * m_q])

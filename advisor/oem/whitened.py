@@ -11,7 +11,8 @@ import numpy as np
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import N_PARAMETERS, Index
 from advisor.oem.arrow import inverse_of
-from advisor.oem.innovations import AirModel, Gains, gains_of
+from advisor.oem.innovations import AirModel, gains_of
+from advisor.oem.kalman import Gains
 from advisor.oem.place import Linearization, in_time, speeds_of, system_of
 from advisor.oem.prior import precision
 
@@ -70,8 +71,8 @@ def whitened(place: Linearization, air: AirModel) -> Whitened | None:
 def gains_along(place: Linearization, air: AirModel) -> list[tuple[Index, Gains]]:
     """Return for each manoeuvre its rows in order of time, and the filter's gains along them."""
     problem, found = place.problem, []
-    for m, speed in enumerate(speeds_of(place)):
-        system = np.append(system_of(place, speed / (problem.reference_airspeed_m_s or speed)), speed)
+    for m, speed in enumerate(speeds_of(problem)):
+        system = np.append(system_of(place.shared, speed / (problem.reference_airspeed_m_s or speed)), speed)
         order = in_time(place.assembly, m)
         arms = (problem.vane_arm_m, problem.accelerometer_arm_m)
         # The fit has its own initial states, so the filter starts without uncertainty.
