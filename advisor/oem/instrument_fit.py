@@ -22,6 +22,7 @@ import numpy as np
 
 from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.signals.messages import FloatArray
+from advisor.oem.arrow import solved_within
 from advisor.oem.covariance import influence
 from advisor.oem.estimate import InstrumentEstimate
 from advisor.oem.extra import Prior, penalty
@@ -265,14 +266,10 @@ def _step(fit: _Fit, names: Sequence[Instrument]) -> tuple[FloatArray, float]:
     if effect is None:
         return np.zeros(len(names)), 0.0
     step = effect.step(fit.assembly.z - optimum.fitted, extra)[N:]
-    information = np.linalg.pinv(effect.extra_covariance, hermitian=True)
-    slope = information @ step
-    after = moved_by(step, fit.problem, names)
-    allowed = np.array([x.read(after) - x.read(fit.problem) for x in names])
-    ends = ~np.isclose(allowed, step)
-    if ends.any() and not ends.all():
-        pulled = slope[~ends] - information[np.ix_(~ends, ends)] @ allowed[ends]
-        allowed[~ends] = np.linalg.pinv(information[np.ix_(~ends, ~ends)], hermitian=True) @ pulled
+    information = np.asarray(np.linalg.pinv(effect.extra_covariance, hermitian=True), np.float64)
+    slope, now = information @ step, np.array([x.read(fit.problem) for x in names])
+    least, most = np.array([(x.lowest, x.highest) for x in names]).T - now
+    allowed = solved_within(information, slope, least, most)
     return allowed, float(allowed @ (2.0 * slope - information @ allowed))
 
 
