@@ -246,8 +246,8 @@ def bound(campaigns: int) -> Iterator[str]:
         if not isinstance(found, LateralSolution):
             continue
         errors.append(found.theta - truth)
-        stated.append(np.sqrt(np.diag(found.covariance)))
-        limits.append(np.sqrt(np.diag(found.covariance_cr)))
+        stated.append(np.sqrt(np.diag(found.widened)[: len(truth)]))
+        limits.append(np.sqrt(np.diag(found.covariance_cr)[: len(truth)]))
     off, std, least = np.array(errors), np.array(stated), np.array(limits)
     yield f"{len(off)} of {campaigns} campaigns with an estimate"
     yield "| derivative | error over bound | coverage of 95 % |"

@@ -11,9 +11,10 @@ import numpy as np
 from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import N_SHARED, Grid, Index
+from advisor.oem.arrow import cholesky, normal_equations, solve_lower
 from advisor.oem.covariance import REPORTED
 from advisor.oem.estimate import NoEstimate
-from advisor.oem.gauss_newton import CONVERGED, cholesky, descend, normal_equations, solve_lower
+from advisor.oem.gauss_newton import CONVERGED, descend
 from advisor.oem.problem import OutputErrorProblem, Record, assemble
 from advisor.oem.rows import Signal
 from advisor.oem.solution import noise_floor, solve
@@ -114,7 +115,7 @@ def _each(
         if optimum.status != CONVERGED:
             continue
         information, _ = normal_equations(
-            grid, z[i], optimum.fitted, optimum.sensitivities, channel, owner, free, optimum.noise
+            1, z[i] - optimum.fitted, optimum.sensitivities, channel, owner, free, optimum.noise
         )
         if not cholesky(information[0]):
             continue

@@ -8,7 +8,7 @@ solution follows twice per second.
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -22,8 +22,7 @@ from advisor.oem.covariance import REPORTED
 from advisor.oem.estimate import ChannelFit, Estimate
 from advisor.oem.prepare import Prepared
 from advisor.oem.prior import precision
-from advisor.oem.problem import merged
-from advisor.oem.rows import STAMP_S, Signal, nearest_event
+from advisor.oem.rows import STAMP_S, Measurements, Piece, Signal, events_of, lay_rows, padded
 from advisor.oem.solution import Solution, noise_floor, reported
 from advisor.oem.sums import Sums
 
@@ -114,20 +113,17 @@ class UpdatableSolution:
             return False
         shared, local = self._solution.optimum.shared, self._solution.optimum.local.copy()
         local[0, [i - N_SHARED for i in _INITIAL]] = self._state
-        grid = self._grid(maneuver, new, stamps)
-        count = sum(len(signal.t) for signal in new.values())
-        y, g = np.empty(count), np.empty((count, N_PARAMETERS))
+        laid, grid = self._grid(maneuver, new)
+        y, g = np.empty(len(laid["z"])), np.empty((len(laid["z"]), N_PARAMETERS))
         if not respond(grid, shared, local, y, g):
             return False
         self._state, ends = _end(grid, shared, local)
         g, self._sensitivities = self._through(g), self._through(ends)
-        self._end_s, first = float(np.max(stamps)), 0
-        for name, signal in new.items():
-            rows = slice(first, first + len(signal.t))
-            first = rows.stop
-            if len(signal.t):
-                self._rows[name].append((signal.t, signal.y, y[rows], g[rows]))
-                self._sums[name].add(np.ascontiguousarray(g[rows][:, self._free]), signal.y - y[rows])
+        self._end_s = float(np.max(stamps))
+        for name, rows in laid["rows"][0].items():
+            if len(y[rows]):
+                self._rows[name].append((laid["t"][rows], laid["z"][rows], y[rows], g[rows]))
+                self._sums[name].add(np.ascontiguousarray(g[rows][:, self._free]), laid["z"][rows] - y[rows])
         return True
 
     def _through(self, g: FloatArray) -> FloatArray:
@@ -137,41 +133,32 @@ class UpdatableSolution:
         whole[:, _INITIAL] = 0.0
         return np.asarray(whole + g[:, _INITIAL] @ self._sensitivities)
 
-    def _grid(self, maneuver: Maneuver, new: Mapping[str, Signal], stamps: FloatArray) -> Grid:
+    def _grid(self, maneuver: Maneuver, new: Mapping[str, Signal]) -> tuple[Measurements, Grid]:
+        """Return the new samples laid out for the kernel, from the end of the solution."""
         problem, last = self._solution.problem, self._solution.assembly.grid
         command = maneuver.channels["elevator"]
         begin = int(np.searchsorted(command.t, self._end_s - REST_S))
-        command_t, command_y = command.t[begin:], command.y[begin:]
-        breaks, pace = problem.servo.grid(command_t)
-        end_s = float(np.max(stamps))
-        inside = breaks[(breaks > self._end_s) & (breaks < end_s)]
-        t = merged(np.concatenate([[self._end_s], stamps, inside]), pace)
-        at_event, start, arrival = problem.servo.move(command_t, command_y, t, problem.records[0].held)
-        step = np.diff(t)
-        row, n = np.full((len(OUTPUTS), len(t)), -1, np.int64), 0
-        for name, signal in new.items():
-            row[OUTPUTS.index(name), nearest_event(t, signal.t)] = np.arange(n, n + len(signal.t))
-            n += len(signal.t)
+        flown = command.t[begin:], command.y[begin:]
+        known = {"end": Signal(np.array([self._end_s]), np.empty(0)), **new}
+        t = events_of(known, [problem.servo.grid(flown[0])])
+        laid = lay_rows([Piece(t, new, {})], OUTPUTS)
         gravity = np.full(len(t), last.gravity[-1])
         theta = maneuver.channels.get("theta")
         if problem.records[0].gravity_z is not None and theta is not None:
             attitude = np.interp(t, theta.t, theta.y)
             gravity = GRAVITY_M_S2 * np.cos(attitude) * np.cos(bank_at(t, maneuver.channels))
-        return Grid(
-            first=np.array([0, len(t)]),
+        moved = problem.servo.course(*flown, t, problem.records[0].held)
+        fields: dict[str, Any] = dict(zip(("elevator", "start", "slope"), moved, strict=True))
+        for name in ("known", "vane", "airspeed", "acceleration"):
+            fields[name] = np.full(len(t), getattr(last, name)[-1])
+        return laid.measurements, last._replace(
+            first=laid.first,
             kind=np.arange(len(t)),
-            step_s=np.append(step, step[-1]),
+            step_s=padded(np.diff(t)),
             ratio=np.full(len(t), last.ratio[last.kind[-1]]),
-            elevator=at_event,
-            start=start,
-            slope=np.append((arrival - start[:-1]) / step, 0.0),
-            known=np.full(len(t), last.known[-1]),
-            row=row,
-            vane=np.full(len(t), last.vane[-1]),
-            airspeed=np.full(len(t), last.airspeed[-1]),
-            acceleration=np.full(len(t), last.acceleration[-1]),
+            row=laid.row,
             gravity=gravity,
-            arm=last.arm,
+            **fields,
         )
 
     def _stepped(self) -> Estimate | None:

@@ -72,12 +72,12 @@ def find_colour(stretches: Sequence[Stretch]) -> Colour:
     prepared = [_orthogonal(s, scale) for s in stretches]
     freedom = sum(max(len(block) - block.shape[1] + 1, 1) for block in prepared)
 
+    def pooled(memory: float, share: float) -> tuple[float, float]:
+        parts = [_restricted(block, memory, share) for block in prepared]
+        return sum(power for power, _ in parts), sum(determinant for _, determinant in parts)
+
     def cost(memory: float, share: float) -> tuple[float, float]:
-        power = determinants = 0.0
-        for block in prepared:
-            part, determinant = _restricted(block, memory, share)
-            power += part
-            determinants += determinant
+        power, determinants = pooled(memory, share)
         power = max(power, float(np.finfo(float).tiny))  # a residual of nothing but offsets
         return float(freedom * np.log(power / freedom) + determinants), power / freedom
 
@@ -108,11 +108,7 @@ def find_colour(stretches: Sequence[Stretch]) -> Colour:
 
     def joint(x: FloatArray) -> float:
         """Return -2·log-likelihood by log variance and shape."""
-        power = determinants = 0.0
-        for block in prepared:
-            part, determinant = _restricted(block, *_bounded(x[1:]))
-            power += part
-            determinants += determinant
+        power, determinants = pooled(*_bounded(x[1:]))
         return float(freedom * x[0] + power * np.exp(-x[0]) + determinants)
 
     centre = np.concatenate([[np.log(variance)], _unbounded(memory, share)])

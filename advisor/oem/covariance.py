@@ -15,16 +15,16 @@ from scipy.special import stdtrit
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.short_period import NAMES
+from advisor.oem.arrow import inverse_of
 from advisor.oem.colour import Colour, Stretch, find_colour, moved, product
 from advisor.oem.extra import Extra
-from advisor.oem.inverses import inverse_of
 from advisor.oem.rows import Laid
+from advisor.words.quantiles import NORMAL_95
 
 OPEN_SHARE = 0.01
 """Largest share of a parameter in undetermined directions. Above it the parameter is unresolved."""
 DIFFERENCE = 0.05
 LEAST_FREEDOM = 3.0
-GAUSS_975 = 1.959963984540054
 REPORTED = NAMES.places
 """Place of each of the eight parameters of the short period: whether it is shared, and its index."""
 
@@ -91,7 +91,7 @@ def influence(
     weight = 1.0 / noise[assembly.channel] ** 2
     names, split = assembly.names, len(assembly.names.shared)
     reported = len(names.reported)
-    common, own = assembly.free[assembly.free < split], assembly.free[assembly.free >= split]
+    common, own = assembly.common, assembly.own
     shared_g = g[:, common] if extra is None else np.column_stack([g[:, common], extra.columns])
     places = [
         (j, int(np.searchsorted(own, split + i))) for j, (shared, i) in enumerate(names.places) if not shared
@@ -99,8 +99,7 @@ def influence(
     parts = []
     projected = np.empty_like(shared_g)
     open_share = np.zeros(split + len(names.local))
-    for named in assembly.rows:
-        rows = slice(min(s.start for s in named.values()), max(s.stop for s in named.values()))
+    for rows in assembly.blocks:
         mine = g[rows][:, own]
         weighted = (mine * weight[rows, None]).T
         inverse, left_open = inverse_of(weighted @ mine)
@@ -203,7 +202,7 @@ def widening(assembly: Laid, rows: FloatArray, colours: Mapping[str, Colour]) ->
     freedom = np.full(len(variance), 1e9)
     uncertain = spread > 0.0
     freedom[uncertain] = np.maximum(2.0 * variance[uncertain] ** 2 / spread[uncertain], LEAST_FREEDOM)
-    factor: FloatArray = np.asarray(stdtrit(freedom, 0.975) / GAUSS_975, np.float64)
+    factor: FloatArray = np.asarray(stdtrit(freedom, 0.975) / NORMAL_95, np.float64)
     return factor
 
 

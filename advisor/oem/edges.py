@@ -46,8 +46,10 @@ class Edges:
 
     interval: tuple[int, ...]
     """Index of the stamp before each step."""
+    stamps: FloatArray
+    """(2, k) stamps before and after each step, s."""
     time: FloatArray
-    """(k,) time of each step, between its stamp and the next, s."""
+    """(k,) time of each step, between its stamps, s."""
 
 
 def large_steps(command: Signal) -> Edges:
@@ -58,8 +60,8 @@ def large_steps(command: Signal) -> Edges:
     interval = tuple(
         int(i) for i in np.flatnonzero((change > LARGE * span) & (next_to_it < ISOLATED * change))
     )
-    middle = [(command.t[i] + command.t[i + 1]) / 2.0 for i in interval]
-    return Edges(interval, np.array(middle))
+    stamps = np.array([command.t[: len(change)], command.t[1:]])[:, list(interval)]
+    return Edges(interval, stamps, stamps.mean(axis=0))
 
 
 def sharpened(command: Signal, edges: Edges) -> Signal:
@@ -97,13 +99,13 @@ def with_edges(plain: Solution) -> Solution:
         if round_ == 0:
             upright = gain
         columns = _by_edges(problem, assembly, optimum, edges)
-        extra = own.joined(_within_intervals(edges, records, columns))
+        extra = own.joined(_within_intervals(edges, columns))
         if round_ == ROUNDS:
             break
         effect = weighing.influence(g, extra)
         if effect is None:
             return plain
-        edges = _moved(edges, effect.step(residual, extra)[len(PARAMETERS) + len(own) :], records)
+        edges = _moved(edges, effect.step(residual, extra)[len(PARAMETERS) + len(own) :])
     if gain < chdtri(count, CHANCE) and upright < GAIN_UPRIGHT:
         return plain
     final = evaluate(problem, assembly, optimum, extra, kept=len(own))
@@ -123,27 +125,21 @@ def _edged(
     )
 
 
-def _within_intervals(edges: Sequence[Edges], records: Sequence[Record], columns: FloatArray) -> Extra:
+def _within_intervals(edges: Sequence[Edges], columns: FloatArray) -> Extra:
     """Return the times of all edges as parameters, with the prior of a time anywhere in its interval."""
-    stamps = [(record.elevator.t, e) for record, e in zip(records, edges, strict=True)]
-    first = np.concatenate([t[list(e.interval)] for t, e in stamps])
-    last = np.concatenate([t[[i + 1 for i in e.interval]] for t, e in stamps])
+    first, last = np.concatenate([e.stamps for e in edges], axis=1)
     time = np.concatenate([e.time for e in edges])
     priors = [Prior((a + b) / 2.0, (b - a) / np.sqrt(12.0)) for a, b in zip(first, last, strict=True)]
     return Extra.at(columns, time, priors)
 
 
-def _moved(edges: Sequence[Edges], steps: FloatArray, records: Sequence[Record]) -> list[Edges]:
+def _moved(edges: Sequence[Edges], steps: FloatArray) -> list[Edges]:
     """Return the edges displaced, each within its interval."""
-    moved, at = [], 0
-    for record, e in zip(records, edges, strict=True):
-        k = len(e.interval)
-        first = record.elevator.t[list(e.interval)]
-        last = record.elevator.t[[i + 1 for i in e.interval]]
-        time = np.clip(e.time + steps[at : at + k], first + WIDTH_S, last - WIDTH_S)
-        moved.append(Edges(e.interval, time))
-        at += k
-    return moved
+    ends = np.cumsum([len(e.interval) for e in edges])
+    return [
+        replace(e, time=np.clip(e.time + by, e.stamps[0] + WIDTH_S, e.stamps[1] - WIDTH_S))
+        for e, by in zip(edges, np.split(steps, ends[:-1]), strict=True)
+    ]
 
 
 def _by_edges(

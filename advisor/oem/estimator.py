@@ -9,7 +9,6 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import FloatArray
-from advisor.oem.between import widened_by_scatter
 from advisor.oem.edges import large_steps, with_edges
 from advisor.oem.efficient import efficient
 from advisor.oem.estimate import ChannelFit, Estimate, InstrumentEstimate, NoEstimate
@@ -232,8 +231,8 @@ def report(
     """
     best = filtered or (solution if quick else efficient(solution))
     source = filtered or solution
-    told = _widened(source.covariance, source)
-    best = replace(best, covariance=_widened(best.covariance, source))
+    told = source.widened
+    best = replace(best, covariance=replace(source, covariance=best.covariance).widened)
     airspeed_m_s = solution.problem.reference_airspeed_m_s or prepared.airspeed_m_s
     given = found_of(aircraft)
     common = np.zeros((N, N)) if given is None else given.covariance_at(airspeed_m_s)
@@ -260,10 +259,6 @@ def report(
     )
 
 
-def _widened(covariance: FloatArray, source: Solution) -> FloatArray:
-    return widened_by_scatter(covariance, source.contributions[:, : len(covariance)])
-
-
 def _found(
     covariance: FloatArray, identified: Sequence[Identified], airspeed_m_s: float | None
 ) -> FoundInstruments | None:
@@ -274,7 +269,7 @@ def _found(
     if not identified:
         return None
     names = tuple(x.instrument.name for x in identified)
-    values = np.array([x.value for x in identified])
+    values = np.array([x.found.value for x in identified])
     return FoundInstruments.of(names, values, covariance, airspeed_m_s)
 
 

@@ -5,8 +5,9 @@ one more measurement of its parameter. The prior adds to the information and pul
 is part of the estimate's covariance.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -22,6 +23,23 @@ class Prior:
     share: float = 1.0
     """Standard deviation with which white noise weighs the prior, over ``std``. White noise makes coloured
     data look more certain than they are, and the prior must look as much more certain."""
+
+
+class Parameter(Protocol):
+    """A number of a problem that is estimated with the derivatives."""
+
+    @property
+    def prior(self) -> Prior | None:
+        """Knowledge before the flight."""
+
+    def read(self, problem: Any, /) -> float:
+        """Return the value in a problem."""
+
+
+def penalty(problem: object, parameters: Iterable[Parameter]) -> float:
+    """Return -2 log of the priors' density up to a constant, as white noise weighs the priors."""
+    known = [(x.read(problem), x.prior) for x in parameters if x.prior is not None]
+    return sum(((value - prior.mean) / (prior.std * prior.share)) ** 2 for value, prior in known)
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +61,11 @@ class Extra:
         known = [prior or Prior(0.0, np.inf) for prior in priors]
         mean, std, share = np.array([(p.mean, p.std, p.share) for p in known]).reshape(-1, 3).T
         return cls(columns, 1.0 / std, (mean - values) / std, share)
+
+    @classmethod
+    def of(cls, columns: FloatArray, problem: object, parameters: Sequence[Parameter]) -> "Extra":
+        """Return parameters at their values in a problem."""
+        return cls.at(columns, np.array([x.read(problem) for x in parameters]), [x.prior for x in parameters])
 
     @classmethod
     def none(cls, rows: int) -> "Extra":

@@ -12,16 +12,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.signals.robust import robust_std
 from advisor.model.response import N_PARAMETERS, N_SHARED, OUTPUTS
-from advisor.oem.covariance import Coloured, coloured, colours_of, influence, widening
-from advisor.oem.extra import Extra
+from advisor.oem.evaluation import errors_of
 from advisor.oem.innovations import AirModel
 from advisor.oem.instruments import Instrument, moved_by
-from advisor.oem.place import Linearization, at, free_of, in_time, speeds_of, system_of
+from advisor.oem.place import Linearization, at, in_time, speeds_of, system_of
 from advisor.oem.prior import precision
-from advisor.oem.solution import Solution, contributions_of, reported
+from advisor.oem.solution import Solution, reported
 from advisor.oem.turbulence import Rows, Turbulence, find_turbulence
 from advisor.oem.whitened import Whitened, gains_along, whitened
 
@@ -44,18 +42,10 @@ def moving_air(solution: Solution, seen_by_alpha: bool) -> Turbulence:
     seen_by_alpha
         Whether the angle of attack reads the air, like a vane, instead of coming from inertial sensors.
     """
-    place = Linearization(
-        solution.problem,
-        solution.assembly,
-        solution.optimum.shared,
-        solution.optimum.local,
-        solution.residual,
-        solution.sensitivities,
-        Extra.none(len(solution.residual)),
-    )
-    rows = _rows(place)[-MOST_MANEUVERS:]
+    rows = _rows(solution)[-MOST_MANEUVERS:]
     white = np.array([_white(rows, c) for c in range(len(OUTPUTS))])
-    return find_turbulence(rows, system_of(place, 1.0)[:4], white, seen_by_alpha, start_variance=0.0)
+    system = system_of(solution.optimum.shared, 1.0)
+    return find_turbulence(rows, system, white, seen_by_alpha, start_variance=0.0)
 
 
 def _white(rows: Sequence[Rows], channel: int) -> float:
@@ -64,14 +54,14 @@ def _white(rows: Sequence[Rows], channel: int) -> float:
     return robust_std(steps) / float(np.sqrt(2.0)) if len(steps) else 1.0
 
 
-def _rows(place: Linearization) -> list[Rows]:
+def _rows(solution: Solution) -> list[Rows]:
     found = []
-    for m, speed in enumerate(speeds_of(place)):
-        order = in_time(place.assembly, m)
-        channel, residual = place.assembly.channel[order], place.residual[order].copy()
+    for m, speed in enumerate(speeds_of(solution.problem)):
+        order = in_time(solution.assembly, m)
+        channel, residual = solution.assembly.channel[order], solution.residual[order]
         for c in np.unique(channel):
             residual[channel == c] -= residual[channel == c].mean()
-        found.append(Rows(place.assembly.t[order], channel, residual, speed))
+        found.append(Rows(solution.assembly.t[order], channel, residual, speed))
     return found
 
 
@@ -132,7 +122,7 @@ def _moved(
     here: Linearization, seen: Whitened, scale: float, instruments: Sequence[Instrument]
 ) -> Linearization | None:
     """Return the point after a share of the step; None where the model overflows there."""
-    common, own = free_of(here.assembly)
+    common, own = here.assembly.common, here.assembly.own
     shared, local = here.shared.copy(), here.local.copy()
     shared[common] += scale * seen.step[: len(common)]
     for m, step in enumerate(seen.own_steps):
@@ -143,17 +133,16 @@ def _moved(
 
 def _solution(start: Solution, place: Linearization, air: AirModel) -> Solution | None:
     """Return the solution at the point, with Cramér-Rao errors and with errors for coloured innovations."""
-    assembly, n = place.assembly, len(PARAMETERS)
+    assembly = place.assembly
     white = np.empty((len(place.residual), 1 + N_PARAMETERS + len(place.extra)))
     columns = np.column_stack([place.residual, place.sensitivities, place.extra.columns])
     for order, gains in gains_along(place, air):
         white[order] = gains.innovations(columns[order])
     g, extra = white[:, 1 : 1 + N_PARAMETERS], place.extra.whitened(white[:, 1 + N_PARAMETERS :])
-    effect = influence(assembly, g, _UNIT, extra, precision(place.problem, place.shared))
-    if effect is None:
+    prior = precision(place.problem, place.shared)
+    errors = errors_of(assembly, white[:, 0], g, _UNIT, extra, prior)
+    if errors is None:
         return None
-    colours = colours_of(assembly, white[:, 0], g)
-    noise = Coloured(colours, widening(assembly, effect.rows, colours))
     fitted = assembly.z - place.residual
     optimum = start.optimum._replace(
         shared=place.shared, local=place.local, fitted=fitted, sensitivities=place.sensitivities
@@ -163,11 +152,7 @@ def _solution(start: Solution, place: Linearization, air: AirModel) -> Solution 
         problem=place.problem,
         assembly=assembly,
         optimum=optimum,
-        influence=effect,
         theta=reported(place.shared, place.local),
-        covariance_cr=effect.rows[:, :n].T @ effect.rows[:, :n] + effect.prior_covariance[:n, :n],
-        covariance=coloured(assembly, effect.rows, noise) + effect.prior_covariance,
-        noise=noise,
-        contributions=contributions_of(assembly, effect.rows, white[:, 0]),
         extra=place.extra,
+        **errors,
     )

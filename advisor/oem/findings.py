@@ -5,12 +5,16 @@ uses the value of the data. The sign of the elevator cannot be used, for the fit
 signs is wrong.
 """
 
+import numpy as np
+
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.signals.instrument_finding import InstrumentFinding, Quantity
 from advisor.oem.estimate import Estimate, InstrumentEstimate
+from advisor.oem.found import InstrumentName
 from advisor.oem.instrument_fit import CONTRADICTS
 from advisor.oem.instruments import KNOWN_TO
+from advisor.words.quantiles import NORMAL_95
 
 _PLACES: dict[str, tuple[str, Quantity, str]] = {
     "servo_lag_s": ("elevator", "lag_s", "elevator: {{lag_s: {:.3f}}}"),
@@ -36,7 +40,7 @@ def findings_of(estimate: Estimate, aircraft: Aircraft) -> tuple[InstrumentFindi
 
 
 def _finding(x: InstrumentEstimate, aircraft: Aircraft) -> InstrumentFinding:
-    channel, quantity, line = _PLACES[x.name]
+    channel, quantity, _ = _PLACES[x.name]
     stated = aircraft.elevator.delay_s if x.name == "command_delay_s" else x.stated
     value, std = (x.value, x.std) if x.stated is None else (x.told, x.told_std)
     worth = x.contradicts or (x.stated is None and x.clear and std < KNOWN_TO * abs(value))
@@ -48,7 +52,7 @@ def _finding(x: InstrumentEstimate, aircraft: Aircraft) -> InstrumentFinding:
         std,
         contradicts=x.contradicts,
         text=_text(x, stated, value, std),
-        fix=line.format(value) if worth else "",
+        fix=line_of(x.name, value) if worth else "",
         used=x.contradicts or x.stated is None,
     )
 
@@ -56,25 +60,43 @@ def _finding(x: InstrumentEstimate, aircraft: Aircraft) -> InstrumentFinding:
 def _text(x: InstrumentEstimate, stated: float | None, value: float, std: float) -> str:
     apart = value - (stated or 0.0)
     later = "later" if apart > 0.0 else "earlier"
-    half = 1.96 * std
     match x.name:
         case "servo_lag_s" if x.contradicts:
             return f"the surface responds {abs(apart):.2f} s {later} than elevator.lag_s says"
-        case "servo_lag_s":
-            agrees = "" if stated is None else ", as elevator.lag_s says"
-            return f"the servo's lag is {value:.3f} ± {half:.3f} s{agrees}"
+        case "servo_lag_s" if stated is not None:
+            return f"{value_in_words(x.name, value, std)}, as elevator.lag_s says"
         case "command_delay_s" if x.contradicts and stated is not None:
             return f"the command acts {abs(apart):.3f} s {later} than elevator.delay_s says"
-        case "command_delay_s":
-            return f"the command acts {1e3 * value:+.0f} ± {1e3 * half:.0f} ms after its stamps"
         case "vane_arm_m" if x.contradicts:
             return f"alpha reads like a vane {value:.2f} m ahead, and alpha.vane_arm_m says {stated:.2f} m"
+        case _:
+            return value_in_words(x.name, value, std)
+
+
+def value_in_words(name: InstrumentName, value: float, std: float) -> str:
+    """Return the value of an instrument with its 95 % interval, as the beginning of a sentence."""
+    half = NORMAL_95 * std
+    match name:
+        case "servo_lag_s":
+            return f"the servo's lag is {value:.3f} ± {half:.3f} s"
+        case "command_delay_s":
+            return f"the command acts {1e3 * value:+.0f} ± {1e3 * half:.0f} ms after its stamps"
         case "vane_arm_m":
             return f"alpha reads like a vane {value:.2f} ± {half:.2f} m ahead of the centre of gravity"
         case "alpha_delay_s":
             return f"alpha is {1e3 * value:+.0f} ± {1e3 * half:.0f} ms late relative to the motion"
-        case _:
+        case "accelerometer_arm_m":
             return f"the accelerometer reads as if {value:.2f} ± {half:.2f} m ahead of the centre of gravity"
+        case "steady_moment_rad":
+            return (
+                "the moment that does not change with air speed, such as the thrust's, equals"
+                f" {np.degrees(value):+.1f} ± {np.degrees(half):.1f} deg of elevator"
+            )
+
+
+def line_of(name: InstrumentName, value: float) -> str:
+    """Return the line for the aircraft file; empty where the file has no such value."""
+    return _PLACES[name][2].format(value) if name in _PLACES else ""
 
 
 def _sign(estimate: Estimate) -> tuple[InstrumentFinding, ...]:

@@ -16,8 +16,7 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import OUTPUTS
-from advisor.oem import kalman
-from advisor.oem.kalman import DIFFUSE
+from advisor.oem.kalman import DIFFUSE, STATES, Gains, filter_along, observed_by
 
 ALPHA, A_Z = OUTPUTS.index("alpha"), OUTPUTS.index("a_z")
 
@@ -44,33 +43,6 @@ class AirModel:
         return cls(white, np.full(len(OUTPUTS), 1e-12), 0.3, 0.0, 1.0, seen_by_alpha)
 
 
-@dataclass(frozen=True)
-class Gains:
-    """Gains of the filter for one record."""
-
-    step: FloatArray
-    """Shape (n, 4, 4): transition of α, q, θ and the gust up to each row."""
-    keep: FloatArray
-    """Shape (n,): decay of the coloured noise since the row before."""
-    gain: FloatArray
-    """Shape (n, 8): Kalman gain of each row."""
-    root: FloatArray
-    """Shape (n,): standard deviation of each innovation."""
-    channel: np.ndarray
-    observed: FloatArray
-    """Shape (4, 8): observation of the states by each channel."""
-
-    def innovations(self, columns: FloatArray, order: np.ndarray | None = None) -> FloatArray:
-        """Return whitened columns, shape (n, k), in their order of rows; ``order`` gives the rows in order of
-        time."""
-        rows = np.arange(len(columns)) if order is None else order
-        return np.asarray(
-            kalman.pass_through(
-                self.step, self.keep, self.gain, self.root, self.channel, self.observed, columns, rows
-            )
-        )
-
-
 def gains_of(
     t: FloatArray,
     channel: np.ndarray,
@@ -94,11 +66,11 @@ def gains_of(
         Arms of the vane and of the accelerometer, ahead of the centre of gravity.
     """
     white = np.asarray(air.white[channel] ** 2 + extra)
-    observed = kalman.observed_by(system, air.seen_by_alpha, *arms_m)
-    step, keep, gain, root = kalman.gains_along(
-        t, channel, system, white, _memory(air), observed, start_variance
-    )
-    return Gains(step, keep, gain, root, channel, observed)
+    observed = observed_by(system, air.seen_by_alpha, *arms_m)
+    n = len(t)
+    gains = Gains(np.empty((n, 4, 4)), np.empty(n), np.empty((n, STATES)), np.empty(n), channel, observed)
+    filter_along(t, system, white, _memory(air), start_variance, np.empty(0), gains)
+    return gains
 
 
 def cost_of(
@@ -115,10 +87,11 @@ def cost_of(
     The arguments are those of ``gains_of``. A search for the noise calls this a few hundred times, so nothing
     is kept.
     """
-    observed = kalman.observed_by(system, air.seen_by_alpha, 0.0, 0.0)
-    return float(
-        kalman.cost_along(t, channel, residual, system, air.white**2, _memory(air), observed, start_variance)
-    )
+    observed = observed_by(system, air.seen_by_alpha, 0.0, 0.0)
+    nothing = np.empty(0)
+    gains = Gains(np.empty((0, 4, 4)), nothing, np.empty((0, STATES)), nothing, channel, observed)
+    white = air.white[channel] ** 2
+    return float(filter_along(t, system, white, _memory(air), start_variance, residual, gains))
 
 
 def _memory(air: AirModel) -> FloatArray:

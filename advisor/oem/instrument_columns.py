@@ -19,7 +19,7 @@ from advisor.model.input_response import (
 )
 from advisor.oem.found import InstrumentName
 from advisor.oem.problem import Assembly, OutputErrorProblem, Record, steady_share
-from advisor.oem.surface import padded
+from advisor.oem.rows import padded
 
 READING = {
     "vane_arm_m": BY_VANE,

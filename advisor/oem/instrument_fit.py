@@ -22,12 +22,12 @@ import numpy as np
 
 from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.signals.messages import FloatArray
-from advisor.oem.between import widened_by_scatter
+from advisor.oem.arrow import solved_within
 from advisor.oem.covariance import influence
 from advisor.oem.estimate import InstrumentEstimate
-from advisor.oem.extra import Prior
+from advisor.oem.extra import Prior, penalty
 from advisor.oem.gauss_newton import CONVERGED, Optimum
-from advisor.oem.instruments import Instrument, extra_of, moved_by, penalty
+from advisor.oem.instruments import Instrument, extra_of, moved_by
 from advisor.oem.problem import Assembly, OutputErrorProblem
 from advisor.oem.solution import Solution, evaluate, search
 from advisor.oem.weighing import Weighing
@@ -51,38 +51,17 @@ CONTRADICTS = 3.0
 they exclude each other."""
 
 
-@dataclass(frozen=True, slots=True)
-class Identified:
+class Identified(NamedTuple):
     """An instrument parameter of a fit."""
 
     instrument: Instrument
-    value: float
-    """Value in the fit, in the parameter's unit."""
-    std: float
-    """Corrected standard deviation of the value in the fit."""
-    told: float
-    """Value that the data tell without the statement."""
-    told_std: float
-    """Corrected standard deviation of ``told``."""
-    contradicts: bool = False
-    """Whether the data exclude the stated value."""
+    found: InstrumentEstimate
 
     @property
     def reported(self) -> InstrumentEstimate | None:
         """The parameter for the rest of the program; None for a moment of the aircraft."""
-        x = self.instrument
-        if x.name == "steady_moment_rad":
-            return None
-        return InstrumentEstimate(
-            x.name,
-            self.value,
-            self.std,
-            x.stated,
-            self.told,
-            self.told_std,
-            self.contradicts,
-            x.prior is None,
-        )
+        is_moment = self.instrument.name == "steady_moment_rad"
+        return None if is_moment else replace(self.found, clear=self.instrument.prior is None)
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,7 +140,7 @@ def _clear_ones(
             )
             for x in opens
         ]
-        std = {found.instrument.name: found.std for found in identified_at(solution, names)}
+        std = {x.instrument.name: x.found.std for x in identified_at(solution, names)}
         gains = [
             0.0 if x.at_end(best.problem, std[x.name]) else _gain(weighing, x, best, rival, names)
             for x, rival in rivals
@@ -183,23 +162,23 @@ def _with_statements(
     """Return the fit in which every stated value that the data do not exclude is a prior."""
     alone = identified_at(solution, names)
     white = np.sqrt(np.diag(solution.covariance_cr)[N:])
-    if all(x.instrument.stated is None or x.contradicts for x in alone):
+    if all(x.instrument.stated is None or x.found.contradicts for x in alone):
         return InstrumentFit(solution, alone)
     kept, reset = [], best
-    for found, white_std in zip(alone, white, strict=True):
-        x = found.instrument
+    for one, white_std in zip(alone, white, strict=True):
+        x, found = one
         share = min(1.0, float(white_std) / found.std)
         if x.prior is not None:
-            kept.append(replace(found, instrument=weighed(x, share)))
+            kept.append(one._replace(instrument=weighed(x, share)))
         elif x.stated is None or found.contradicts:
-            kept.append(found)
+            kept.append(one)
         elif x.known_to * abs(x.stated) > 0.0:
             # A statement is trusted no better than the data confirm it.
             width = max(x.known_to * abs(x.stated), abs(found.told - x.stated))
-            kept.append(replace(found, instrument=replace(x, prior=Prior(x.stated, width, share))))
+            kept.append(one._replace(instrument=replace(x, prior=Prior(x.stated, width, share))))
         else:
             reset = _at(x.write(reset.problem, x.stated), reset) or reset
-    names = tuple(found.instrument for found in kept)
+    names = tuple(one.instrument for one in kept)
     final = _solution(_descend(reset, names), names)
     return InstrumentFit(plain) if final is None else InstrumentFit(final, refreshed(kept, final))
 
@@ -209,7 +188,9 @@ def refreshed(identified: Sequence[Identified], solution: Solution) -> tuple[Ide
     stay."""
     now = identified_at(solution, [x.instrument for x in identified])
     return tuple(
-        there if x.instrument.stated is None else replace(x, value=there.value, std=there.std)
+        there
+        if x.instrument.stated is None
+        else x._replace(found=replace(x.found, value=there.found.value, std=there.found.std))
         for x, there in zip(identified, now, strict=True)
     )
 
@@ -285,14 +266,10 @@ def _step(fit: _Fit, names: Sequence[Instrument]) -> tuple[FloatArray, float]:
     if effect is None:
         return np.zeros(len(names)), 0.0
     step = effect.step(fit.assembly.z - optimum.fitted, extra)[N:]
-    information = np.linalg.pinv(effect.extra_covariance, hermitian=True)
-    slope = information @ step
-    after = moved_by(step, fit.problem, names)
-    allowed = np.array([x.read(after) - x.read(fit.problem) for x in names])
-    ends = ~np.isclose(allowed, step)
-    if ends.any() and not ends.all():
-        pulled = slope[~ends] - information[np.ix_(~ends, ends)] @ allowed[ends]
-        allowed[~ends] = np.linalg.pinv(information[np.ix_(~ends, ~ends)], hermitian=True) @ pulled
+    information = np.asarray(np.linalg.pinv(effect.extra_covariance, hermitian=True), np.float64)
+    slope, now = information @ step, np.array([x.read(fit.problem) for x in names])
+    least, most = np.array([(x.lowest, x.highest) for x in names]).T - now
+    allowed = solved_within(information, slope, least, most)
     return allowed, float(allowed @ (2.0 * slope - information @ allowed))
 
 
@@ -304,24 +281,21 @@ def _at(problem: OutputErrorProblem, near: _Fit, flat: float = CLOSE_ENOUGH) -> 
 
 def identified_at(solution: Solution, names: Sequence[Instrument]) -> tuple[Identified, ...]:
     """Return values and errors of instruments in a solution whose first extra columns are theirs."""
-    pulls = solution.contributions[:, : len(solution.covariance)]
-    covariance = widened_by_scatter(solution.covariance, pulls)
-    std = np.sqrt(np.diag(covariance)[N : N + len(names)])
+    std = np.sqrt(np.diag(solution.widened)[N : N + len(names)])
     return tuple(_identified(x, solution.problem, float(s)) for x, s in zip(names, std, strict=True))
 
 
 def _identified(x: Instrument, problem: OutputErrorProblem, std: float) -> Identified:
-    value = x.read(problem)
+    value, off = x.read(problem), False
     if x.prior is not None:
         # Sound instruments all lie within the prior; a servo's lag with a prior was told by other manoeuvres.
         odd = abs(value - x.prior.mean) > CONTRADICTS * float(np.hypot(std, x.prior.std))
-        return Identified(x, value, std, value, std, contradicts=odd and x.name == "command_delay_s")
-    if x.stated is None:
-        return Identified(x, value, std, value, std)
-    apart = abs(value - x.stated)
-    excluded = apart > CONTRADICTS * float(np.hypot(std, x.known_to * x.stated))
-    beyond = excluded and apart > x.smallest(problem) and not x.at_end(problem, std)
-    return Identified(x, value, std, value, std, contradicts=beyond)
+        off = odd and x.name == "command_delay_s"
+    elif x.stated is not None:
+        apart = abs(value - x.stated)
+        excluded = apart > CONTRADICTS * float(np.hypot(std, x.known_to * x.stated))
+        off = excluded and apart > x.smallest(problem) and not x.at_end(problem, std)
+    return Identified(x, InstrumentEstimate(x.name, value, std, x.stated, value, std, off))
 
 
 def _solution(fit: _Fit, names: Sequence[Instrument]) -> Solution | None:

@@ -15,6 +15,7 @@ Each unknown instrument is one more shared parameter of the fit (``instrument_fi
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -25,13 +26,12 @@ from advisor.oem.extra import Extra, Prior
 from advisor.oem.found import FoundInstruments, InstrumentName, found_of
 from advisor.oem.instrument_columns import instrument_columns
 from advisor.oem.problem import Assembly, OutputErrorProblem
-from advisor.oem.surface import Servo
+from advisor.words.quantiles import NORMAL_95
 
 KNOWN_TO = 0.1
 """Standard deviation over the value for which the value represents the aircraft, and that of a servo's lag in
 an aircraft file. An error of a tenth of a usual servo lag moves M_δe by some 5 %, the default tolerance of a
 campaign."""
-NORMAL_95 = 1.959963984540054
 SMALLEST_DELAY_S = 0.004
 """Smallest delay of the angle of attack that matters, s: a fifth of a sample at 50 Hz."""
 SMALLEST_ARM_M = 0.02
@@ -53,16 +53,14 @@ class Instrument:
     """One instrument parameter, and its place in a problem."""
 
     name: InstrumentName
-    read: Callable[[OutputErrorProblem], float]
-    write: Callable[[OutputErrorProblem, float], OutputErrorProblem]
     resolution: float
     """Distance from an end of the range below which the search has reached it, in the parameter's unit."""
     lowest: float
     highest: float
-    starts: tuple[float, ...]
-    """Values at which the search starts, in addition to the present one."""
     smallest: Callable[[OutputErrorProblem], float]
     """Smallest value that the sampling of the record can show, in the parameter's unit."""
+    starts: tuple[float, ...] = ()
+    """Values at which the search starts, in addition to the present one."""
     usual: Callable[[OutputErrorProblem], float] | None = None
     """Standard deviation of the parameter over sound instruments. None: no such parameter without
     evidence."""
@@ -71,6 +69,25 @@ class Instrument:
     prior: Prior | None = None
     stated: float | None = None
     """Value in the aircraft file, in the parameter's unit. None: the file leaves the value open."""
+
+    def read(self, problem: OutputErrorProblem) -> float:
+        """Return the value in a problem. A delay of the command counts from its linear reading."""
+        match self.name:
+            case "servo_lag_s":
+                return problem.servo.lag_s
+            case "command_delay_s":
+                return problem.servo.delay_s + _held_for(problem)
+            case name:
+                return float(getattr(problem, name))
+
+    def write(self, problem: OutputErrorProblem, value: float) -> OutputErrorProblem:
+        """Return the problem with another value."""
+        changed: dict[str, Any] = {self.name: value}
+        if self.name == "servo_lag_s":
+            changed = {"servo": replace(problem.servo, lag_s=value)}
+        elif self.name == "command_delay_s":
+            changed = {"servo": replace(problem.servo, delay_s=value - _held_for(problem))}
+        return replace(problem, **changed)
 
     def innocent(self, problem: OutputErrorProblem) -> "Instrument | None":
         """Return the instrument with the prior of sound instruments about the problem's value."""
@@ -87,38 +104,9 @@ class Instrument:
         return not self.lowest + self.resolution < value < self.highest - NORMAL_95 * std
 
 
-def _with_lag(problem: OutputErrorProblem, value: float) -> OutputErrorProblem:
-    return replace(problem, servo=Servo(value, problem.servo.delay_s))
-
-
-def _command_delay(problem: OutputErrorProblem) -> float:
-    """Return the delay of the command behind its linear reading, s."""
-    return problem.servo.delay_s + _held_for(problem)
-
-
-def _with_command_delay(problem: OutputErrorProblem, value: float) -> OutputErrorProblem:
-    return replace(problem, servo=Servo(problem.servo.lag_s, value - _held_for(problem)))
-
-
 def _held_for(problem: OutputErrorProblem) -> float:
     """Return the mean age of a held command, s."""
     return _half_interval(problem) if problem.records[0].held else 0.0
-
-
-def _with_arm(problem: OutputErrorProblem, value: float) -> OutputErrorProblem:
-    return replace(problem, vane_arm_m=value)
-
-
-def _with_delay(problem: OutputErrorProblem, value: float) -> OutputErrorProblem:
-    return replace(problem, alpha_delay_s=value)
-
-
-def _with_imu(problem: OutputErrorProblem, value: float) -> OutputErrorProblem:
-    return replace(problem, accelerometer_arm_m=value)
-
-
-def _with_steady_moment(problem: OutputErrorProblem, value: float) -> OutputErrorProblem:
-    return replace(problem, steady_moment_rad=value)
 
 
 def _half_interval(problem: OutputErrorProblem) -> float:
@@ -142,69 +130,23 @@ def _speed(problem: OutputErrorProblem) -> float:
 
 
 SERVO_LAG = Instrument(
-    "servo_lag_s",
-    lambda problem: problem.servo.lag_s,
-    _with_lag,
-    1e-4,
-    0.0,
-    0.4,
-    (0.03, 0.06, 0.1, 0.15, 0.22, 0.3),
-    _half_interval,
-    known_to=KNOWN_TO,
+    "servo_lag_s", 1e-4, 0.0, 0.4, _half_interval, (0.03, 0.06, 0.1, 0.15, 0.22, 0.3), known_to=KNOWN_TO
 )
 COMMAND_DELAY = Instrument(
-    "command_delay_s",
-    _command_delay,
-    _with_command_delay,
-    1e-4,
-    -0.5,
-    1.0,
-    (),
-    lambda _: SMALLEST_DELAY_S,
-    usual=_command_lateness,
+    "command_delay_s", 1e-4, -0.5, 1.0, lambda _: SMALLEST_DELAY_S, usual=_command_lateness
 )
 VANE_ARM = Instrument(
     "vane_arm_m",
-    lambda problem: problem.vane_arm_m,
-    _with_arm,
     1e-3,
     -100.0,
     100.0,
-    (),
     lambda problem: SMALLEST_DELAY_S * _speed(problem),
     usual=lambda problem: _alpha_lateness(problem) * _speed(problem),
 )
-ALPHA_DELAY = Instrument(
-    "alpha_delay_s",
-    lambda problem: problem.alpha_delay_s,
-    _with_delay,
-    1e-4,
-    -0.3,
-    0.5,
-    (),
-    lambda _: SMALLEST_DELAY_S,
-    usual=_alpha_lateness,
-)
-ACCELEROMETER_ARM = Instrument(
-    "accelerometer_arm_m",
-    lambda problem: problem.accelerometer_arm_m,
-    _with_imu,
-    1e-3,
-    -100.0,
-    100.0,
-    (),
-    lambda _: SMALLEST_ARM_M,
-)
+ALPHA_DELAY = Instrument("alpha_delay_s", 1e-4, -0.3, 0.5, lambda _: SMALLEST_DELAY_S, usual=_alpha_lateness)
+ACCELEROMETER_ARM = Instrument("accelerometer_arm_m", 1e-3, -100.0, 100.0, lambda _: SMALLEST_ARM_M)
 STEADY_MOMENT = Instrument(
-    "steady_moment_rad",
-    lambda problem: problem.steady_moment_rad,
-    _with_steady_moment,
-    1e-4,
-    -0.5,
-    0.5,
-    (),
-    lambda _: 0.0,
-    usual=lambda _: STEADY_MOMENT_RAD,
+    "steady_moment_rad", 1e-4, -0.5, 0.5, lambda _: 0.0, usual=lambda _: STEADY_MOMENT_RAD
 )
 OF_ALPHA = ("vane_arm_m", "alpha_delay_s")
 """Instruments of the angle of attack. They change Z_α, Z_q and Z_δe."""
@@ -224,14 +166,7 @@ def extra_of(
     if not names:
         return Extra.none(len(assembly.z))
     columns = instrument_columns(problem, assembly, shared, local, [x.name for x in names])
-    values = np.array([x.read(problem) for x in names])
-    return Extra.at(columns, values, [x.prior for x in names])
-
-
-def penalty(problem: OutputErrorProblem, names: Sequence[Instrument]) -> float:
-    """Return -2 log of the instruments' prior density up to a constant, as white noise weighs the priors."""
-    known = [(x.read(problem), x.prior) for x in names if x.prior is not None]
-    return sum(((value - prior.mean) / (prior.std * prior.share)) ** 2 for value, prior in known)
+    return Extra.of(columns, problem, names)
 
 
 def moved_by(

@@ -4,6 +4,8 @@ The states are α, q, θ and the gust angle, which are coupled, then the coloure
 come in order of time, so that every update is by a scalar.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
@@ -12,6 +14,28 @@ from advisor.process.compiled import kernel
 STATES = 8
 DIFFUSE = 1e3
 """Variance of an unknown motion at the start of the record, far above any motion in SI units."""
+
+
+class Gains(NamedTuple):
+    """Gains of the filter for one record."""
+
+    step: FloatArray
+    """Shape (n, 4, 4): transition of α, q, θ and the gust up to each row."""
+    keep: FloatArray
+    """Shape (n,): decay of the coloured noise since the row before."""
+    gain: FloatArray
+    """Shape (n, 8): Kalman gain of each row."""
+    root: FloatArray
+    """Shape (n,): standard deviation of each innovation."""
+    channel: np.ndarray
+    observed: FloatArray
+    """Shape (4, 8): observation of the states by each channel."""
+
+    def innovations(self, columns: FloatArray, order: np.ndarray | None = None) -> FloatArray:
+        """Return whitened columns, shape (n, k), in their order of rows; ``order`` gives the rows in order of
+        time."""
+        rows = np.arange(len(columns)) if order is None else order
+        return np.asarray(pass_through(self, columns, rows))
 
 
 @kernel(error_model="numpy")
@@ -122,22 +146,21 @@ def _correct(P: FloatArray, gain: FloatArray, observed: FloatArray, white: float
 
 
 @kernel(error_model="numpy", fastmath={"contract"})
-def gains_along(
+def filter_along(
     t: FloatArray,
-    channel: np.ndarray,
     system: FloatArray,
     white: FloatArray,
     memory: FloatArray,
-    observed: FloatArray,
     start_variance: float,
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Return the gains of a record for ``innovations.Gains``: transitions, decays of the colour, gains,
-    roots.
+    residual: FloatArray,
+    gains: Gains,
+) -> float:
+    """Run the filter along a record, and return -2 log likelihood of its residual.
 
     Parameters
     ----------
-    t, channel
-        Shape (n,): ascending times, and the row of ``observed`` for each sample.
+    t
+        Shape (n,): ascending times.
     system
         Shape (5,): Z_α, Z_q, M_α, M_q, V.
     white
@@ -145,101 +168,73 @@ def gains_along(
     memory
         Shape (7,): standard deviations of the coloured noise by channel and its correlation time in s, then
         that of the gust angle in rad, and its correlation time in s.
-    observed
-        Shape (4, 8): observation of the states by each channel.
     start_variance
         Variance of α, q and θ at the start.
+    residual
+        Shape (n,), or (0,) for none.
+    gains
+        Arrays of n rows, which receive the gains; or of none.
+
+    Returns
+    -------
+    Up to a constant, without rows that are still diffuse; 0 without a residual.
     """
-    n = len(t)
-    steps, keeps = np.empty((n, 4, 4)), np.empty(n)
-    gains, roots = np.empty((n, STATES)), np.empty(n)
+    seeking, keeping = len(residual) > 0, len(gains.root) > 0
     A, half_square, P = _begun(system, memory, start_variance)
-    step, moved = np.eye(4), np.empty((4, STATES))
-    last, keep_gust, keep = -1.0, 1.0, 1.0
-    for i in range(n):
-        dt = t[i] - t[i - 1] if i > 0 else 0.0
-        if dt > 1e-9:
-            if abs(dt - last) > 1e-9:
-                last, keep_gust, keep = dt, np.exp(-dt / memory[6]), np.exp(-dt / memory[4])
-                _transition(step, A, half_square, dt, keep_gust)
-            steps[i], keeps[i] = step, keep
-            _propagate(P, moved, step, keep, keep_gust, memory)
-        else:
-            steps[i], keeps[i] = np.eye(4), 1.0
-        roots[i] = np.sqrt(_correct(P, gains[i], observed[channel[i]], white[i]))
-    return steps, keeps, gains, roots
-
-
-@kernel(error_model="numpy", fastmath={"contract"})
-def cost_along(
-    t: FloatArray,
-    channel: np.ndarray,
-    residual: FloatArray,
-    system: FloatArray,
-    white: FloatArray,
-    memory: FloatArray,
-    observed: FloatArray,
-    start_variance: float,
-) -> float:
-    """Return -2 log likelihood of a ``residual``, shape (n,), up to a constant and without rows that are
-    still diffuse.
-
-    The result is that of ``gains_along`` and ``pass_through``, in one pass that keeps nothing. The arguments
-    are theirs, but ``white``, shape (4,), is by channel.
-    """
-    A, half_square, P = _begun(system, memory, start_variance)
-    step, moved = np.eye(4), np.empty((4, STATES))
+    step, still, moved = np.eye(4), np.eye(4), np.empty((4, STATES))
     x, gain = np.zeros(STATES), np.empty(STATES)
     last, keep_gust, keep, cost = -1.0, 1.0, 1.0, 0.0
     for i in range(len(t)):
         dt = t[i] - t[i - 1] if i > 0 else 0.0
-        if dt > 1e-9:
+        later = dt > 1e-9
+        if later:
             if abs(dt - last) > 1e-9:
                 last, keep_gust, keep = dt, np.exp(-dt / memory[6]), np.exp(-dt / memory[4])
                 _transition(step, A, half_square, dt, keep_gust)
             _propagate(P, moved, step, keep, keep_gust, memory)
-            a, q, air = x[0], x[1], x[3]
-            x[0] = step[0, 0] * a + step[0, 1] * q + step[0, 3] * air
-            x[1] = step[1, 0] * a + step[1, 1] * q + step[1, 3] * air
-            x[2] += step[2, 0] * a + step[2, 1] * q + step[2, 3] * air
-            x[3] = keep_gust * air
-            for s in range(4, STATES):
-                x[s] *= keep
-        seen = observed[channel[i]]
-        innovation = residual[i]
-        for s in range(STATES):
-            innovation -= seen[s] * x[s]
-        variance = _correct(P, gain, seen, white[channel[i]])
-        for s in range(STATES):
-            x[s] += gain[s] * innovation
-        if variance < 0.1 * DIFFUSE:
-            cost += np.log(variance) + innovation * innovation / variance
+        seen = gains.observed[gains.channel[i]]
+        variance = _correct(P, gain, seen, white[i])
+        if keeping:
+            gains.step[i], gains.keep[i] = step if later else still, keep if later else 1.0
+            gains.gain[i], gains.root[i] = gain, np.sqrt(variance)
+        if seeking:
+            if later:
+                _advance(x, step, keep, keep_gust)
+            innovation = residual[i]
+            for s in range(STATES):
+                innovation -= seen[s] * x[s]
+            for s in range(STATES):
+                x[s] += gain[s] * innovation
+            if variance < 0.1 * DIFFUSE:
+                cost += np.log(variance) + innovation * innovation / variance
     return cost
 
 
 @kernel(error_model="numpy", fastmath={"contract"})
-def pass_through(
-    steps: FloatArray,
-    keeps: FloatArray,
-    gains: FloatArray,
-    roots: FloatArray,
-    channel: np.ndarray,
-    observed: FloatArray,
-    columns: FloatArray,
-    rows: np.ndarray,
-) -> FloatArray:
+def _advance(x: FloatArray, step: FloatArray, keep: float, keep_gust: float) -> None:
+    """Advance the states, shape (8,), by a step."""
+    a, q, air = x[0], x[1], x[3]
+    x[0] = step[0, 0] * a + step[0, 1] * q + step[0, 3] * air
+    x[1] = step[1, 0] * a + step[1, 1] * q + step[1, 3] * air
+    x[2] += step[2, 0] * a + step[2, 1] * q + step[2, 3] * air
+    x[3] = keep_gust * air
+    for s in range(4, STATES):
+        x[s] *= keep
+
+
+@kernel(error_model="numpy", fastmath={"contract"})
+def pass_through(gains: Gains, columns: FloatArray, rows: np.ndarray) -> FloatArray:
     """Return innovations of columns, shape (n, k), in units of each innovation's standard deviation.
 
-    The first six arguments are results and arguments of ``gains_along``; ``rows``, shape (n,), has the
-    columns' rows in order of time.
+    ``rows``, shape (n,), has the columns' rows in order of time.
     """
     n, k = columns.shape
     out = np.empty((n, k))
     X = np.zeros((STATES, k))
     innovation = np.empty(k)
     for i in range(n):
-        if keeps[i] < 1.0:
-            s = steps[i]
+        if gains.keep[i] < 1.0:
+            s = gains.step[i]
             for j in range(k):
                 a, q, angle, air = X[0, j], X[1, j], X[2, j], X[3, j]
                 X[0, j] = s[0, 0] * a + s[0, 1] * q + s[0, 3] * air
@@ -248,17 +243,17 @@ def pass_through(
                 X[3, j] = s[3, 3] * air
             for c in range(4, STATES):
                 for j in range(k):
-                    X[c, j] *= keeps[i]
-        c, row, per_root = channel[i], rows[i], 1.0 / roots[i]
+                    X[c, j] *= gains.keep[i]
+        c, row, per_root = gains.channel[i], rows[i], 1.0 / gains.root[i]
         for j in range(k):
             innovation[j] = columns[row, j]
         for s in range(STATES):
-            seen = observed[c, s]
+            seen = gains.observed[c, s]
             if seen != 0.0:
                 for j in range(k):
                     innovation[j] -= seen * X[s, j]
         for s in range(STATES):
-            gain = gains[i, s]
+            gain = gains.gain[i, s]
             for j in range(k):
                 X[s, j] += gain * innovation[j]
         for j in range(k):

@@ -13,27 +13,19 @@ import numpy as np
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.lateral import CONTROLS, LATERAL, natural_size
 from advisor.oem.between import widened_by_scatter
-from advisor.oem.covariance import (
-    Coloured,
-    Influence,
-    coloured,
-    colours_of,
-    cramer_rao,
-    influence,
-    widening,
-)
 from advisor.oem.estimate import NoEstimate
+from advisor.oem.evaluation import Evaluated, errors_of
 from advisor.oem.extra import Extra
-from advisor.oem.gauss_newton import Optimum
 from advisor.oem.identifiability import LARGEST_ERROR
 from advisor.oem.lateral_instruments import Nuisance, begun
 from advisor.oem.lateral_prior import SIDE_FORCE_STD, Priors, priors_of
 from advisor.oem.lateral_problem import LateralAssembly, LateralProblem
 from advisor.oem.lateral_search import LateralFit, fit_lateral
 from advisor.oem.lateral_start import lateral_start
-from advisor.oem.solution import contributions_of, refused
+from advisor.oem.solution import refused
 from advisor.words.quantiles import NORMAL_95
 
+N = len(LATERAL.shared)
 FIRST_LOOK = 8
 """Iterations of the fit whose residuals give the first colour of the noise. With servos and clocks fixed, a
 longer search may leave the physical values. In a rudder doublet L_p of -10 1/s became -220 1/s."""
@@ -46,38 +38,16 @@ WITHOUT_FORCE = (
 _FLY = {"aileron": "an aileron doublet", "rudder": "a rudder doublet"}
 
 
-@dataclass(frozen=True, slots=True)
-class LateralSolution:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LateralSolution(Evaluated):
     """The optimum of one lateral problem, with its errors."""
 
     problem: LateralProblem
     assembly: LateralAssembly
-    optimum: Optimum
-    influence: Influence
-    covariance_cr: FloatArray
-    """(15, 15) Cramér-Rao bound."""
-    within: FloatArray
-    """(15, 15) covariance of the derivatives by the noise within the manoeuvres, corrected for its colour."""
-    contributions: FloatArray
-    """(m, 15) contribution of each manoeuvre's residuals to each derivative."""
-    joint: FloatArray
-    """(15 + k, 15 + k) covariance of derivatives and of k nuisance parameters. It is corrected for coloured
-    residuals and for the scatter between manoeuvres."""
     extra: Extra
     """Nuisance parameters at their values."""
-    noise: Coloured
     nuisances: Mapping[str, tuple[float, float]]
     """Name of each nuisance parameter to its value and standard deviation, in its unit."""
-
-    @property
-    def theta(self) -> FloatArray:
-        """(15,) derivatives, in the order of ``LATERAL``."""
-        return self.optimum.shared
-
-    @property
-    def covariance(self) -> FloatArray:
-        """(15, 15) covariance of the derivatives."""
-        return self.joint[: len(self.theta), : len(self.theta)]
 
     @property
     def cost(self) -> float:
@@ -118,41 +88,28 @@ def solve_lateral(
 
 def _share(solution: LateralSolution) -> float:
     """Return the errors by white noise over those by the residuals' colour, the median of the derivatives."""
-    stated = np.diag(solution.covariance)
-    ratio = np.diag(solution.covariance_cr) / np.where(stated > 0.0, stated, np.nan)
+    stated = np.diag(solution.widened)[:N]
+    ratio = np.diag(solution.covariance_cr)[:N] / np.where(stated > 0.0, stated, np.nan)
     return float(np.clip(np.sqrt(np.nanmedian(ratio)), LEAST_SHARE, 1.0))
 
 
 def _evaluated(fit: LateralFit, prior: Priors, nuisances: Sequence[Nuisance]) -> LateralSolution | NoEstimate:
     problem, assembly, optimum, columns, _ = fit
     g, residual = optimum.sensitivities, assembly.z - optimum.fitted
-    extra = Extra.at(columns, np.array([x.read(problem) for x in nuisances]), [x.prior for x in nuisances])
-    effect = influence(assembly, g, optimum.noise, extra, prior.precision)
-    if effect is None:
+    extra = Extra.of(columns, problem, nuisances)
+    errors = errors_of(assembly, residual, g, optimum.noise, extra, prior.precision, prior_share=prior.share)
+    if errors is None:
         return NoEstimate("singular", NOTHING_TO_TELL)
-    free = assembly.free[assembly.free < len(LATERAL.shared)]
-    by_prior = effect.shared_inverse * (np.sqrt(prior.precision) / prior.share)[free, None]
-    from_priors = by_prior.T @ by_prior + effect.prior_covariance
-    colours = colours_of(assembly, residual, g)
-    noise = Coloured(colours, widening(assembly, effect.rows, colours))
-    pulls = contributions_of(assembly, effect.rows, residual)
-    bound = cramer_rao(assembly, effect.rows, optimum.noise) + from_priors
-    within = _at_least(bound, coloured(assembly, effect.rows, noise) + from_priors)
-    joint = widened_by_scatter(within, pulls)
-    n = len(LATERAL.shared)
-    std = np.sqrt(np.diag(joint))
+    errors["covariance"] = _at_least(errors["covariance_cr"], errors["covariance"])
+    std = np.sqrt(np.diag(widened_by_scatter(errors["covariance"], errors["contributions"])))[N:]
     return LateralSolution(
-        problem,
-        assembly,
-        optimum,
-        effect,
-        bound[:n, :n],
-        within[:n, :n],
-        pulls[:, :n],
-        joint,
-        extra,
-        noise,
-        {x.name: (x.read(problem), float(std[n + k])) for k, x in enumerate(nuisances)},
+        problem=problem,
+        assembly=assembly,
+        optimum=optimum,
+        theta=optimum.shared,
+        extra=extra,
+        nuisances={x.name: (x.read(problem), float(s)) for x, s in zip(nuisances, std, strict=True)},
+        **errors,
     )
 
 
@@ -182,7 +139,7 @@ def lateral_not_identifiable(solution: LateralSolution) -> dict[str, str]:
     reasons |= {
         name: f"{unresolved}; fly {advice}" for name in solution.influence.unresolved if name not in reasons
     }
-    std = np.sqrt(np.diag(solution.covariance))
+    std = np.sqrt(np.diag(solution.widened))
     for name, size in natural_size(solution.theta).items():
         error = float(std[LATERAL.names.reported.index(name)])
         if name not in reasons and not error <= _largest_error(name) * size:
@@ -199,12 +156,3 @@ def _largest_error(name: str) -> float:
     A derivative with a prior is told by the data only where its error is clearly below that of the prior.
     """
     return LARGEST_ERROR * SIDE_FORCE_STD if name in ("Y_p", "Y_r") else LARGEST_ERROR
-
-
-def fits_of(solution: LateralSolution) -> tuple[Mapping[str, tuple[FloatArray, FloatArray]], ...]:
-    """Return measured and fitted values (n,) of every manoeuvre and output."""
-    assembly = solution.assembly
-    return tuple(
-        {name: (assembly.z[rows], solution.optimum.fitted[rows]) for name, rows in named.items()}
-        for named in assembly.rows
-    )

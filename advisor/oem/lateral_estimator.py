@@ -11,7 +11,7 @@ from advisor.model.lateral import LATERAL, Trim
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import channel_fits
 from advisor.oem.identifiability import correlated
-from advisor.oem.lateral_estimate import LateralSolution, lateral_not_identifiable, solve_lateral
+from advisor.oem.lateral_estimate import LateralSolution, N, lateral_not_identifiable, solve_lateral
 from advisor.oem.lateral_instruments import nuisances_of
 from advisor.oem.lateral_modes import Errors, LateralModes, lateral_modes
 from advisor.oem.lateral_prepare import prepare_lateral
@@ -47,22 +47,25 @@ def estimate_lateral(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Later
 def _reported(solution: LateralSolution) -> LateralEstimate:
     problem = solution.problem
     told = lateral_not_identifiable(solution)
+    bound, covariance = solution.covariance_cr[:N, :N], solution.widened[:N, :N]
     estimate = Estimate(
         theta=solution.theta,
-        covariance_cr=solution.covariance_cr,
-        covariance=solution.covariance,
+        covariance_cr=bound,
+        covariance=covariance,
         cost=solution.cost,
         fits=channel_fits(solution.assembly, solution.optimum),
         iterations=solution.optimum.iterations,
         not_identifiable=told,
-        correlated=correlated(solution.covariance_cr, LATERAL.names.reported),
+        correlated=correlated(bound, LATERAL.names.reported),
         condition=solution.influence.condition,
         airspeed_m_s=_airspeed(solution),
         servo_lag_s=max((servo.lag_s for servo in problem.servos.values()), default=0.0),
         prediction=_bands(solution),
         names=LATERAL.names.reported,
     )
-    modes = lateral_modes(solution.theta, Errors(solution.within, solution.contributions), _trim(solution))
+    modes = lateral_modes(
+        solution.theta, Errors(solution.covariance[:N, :N], solution.contributions[:, :N]), _trim(solution)
+    )
     flown = tuple(name for name in LATERAL.inputs if problem.flies(name))
     scales = problem.reference_airspeed_m_s is not None
     return LateralEstimate(estimate, modes, solution.nuisances, flown, scales)
@@ -70,9 +73,9 @@ def _reported(solution: LateralSolution) -> LateralEstimate:
 
 def _bands(solution: LateralSolution) -> Mapping[str, float]:
     """Return the band of each output's response, by derivatives and nuisance parameters."""
-    derivatives = solution.optimum.sensitivities[:, : len(LATERAL.shared)]
+    derivatives = solution.optimum.sensitivities[:, :N]
     columns = np.column_stack([derivatives, solution.extra.columns])
-    return widest_bands(solution.assembly, solution.optimum, columns, solution.joint)
+    return widest_bands(solution.assembly, solution.optimum, columns, solution.widened)
 
 
 def _airspeed(solution: LateralSolution) -> float:

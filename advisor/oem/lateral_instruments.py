@@ -154,8 +154,3 @@ def moved_by(step: FloatArray, problem: LateralProblem, nuisances: Sequence[Nuis
         most = LARGEST_MOVE_S * x.per_second
         problem = x.write(problem, x.read(problem) + float(np.clip(change, -most, most)))
     return problem
-
-
-def penalty(problem: LateralProblem, nuisances: Sequence[Nuisance]) -> float:
-    """Return -2 log of the priors' density up to a constant, as white noise weighs the priors."""
-    return sum(x.weight * (x.read(problem) - x.prior.mean) ** 2 for x in nuisances)

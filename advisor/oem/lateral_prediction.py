@@ -66,7 +66,7 @@ def _refitted(
 ) -> FloatArray:
     """Return the outputs (N,) at the best trims, initial states and biases."""
     n = len(LATERAL.names.shared)
-    own = assembly.free[assembly.free >= n]
+    own = assembly.own
     weight = np.array([1.0 / noise[LATERAL.outputs[c]] for c in assembly.channel])
     local = lateral_start(problem)[1]
     local[0, : len(LATERAL.constants)] = 0.0

@@ -5,17 +5,16 @@ from collections.abc import Sequence
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import SideControl
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.derived_alpha import SLOWEST_FLIGHT_M_S
 from advisor.flight.signals.record import Channel
 from advisor.model.lateral import LATERAL
 from advisor.oem.airspeed import airspeed
-from advisor.oem.alpha_use import FEWEST_SAMPLES, can_do_without, has, infer, why_left_out
+from advisor.oem.alpha_use import can_do_without, has, infer, why_left_out
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.lateral_instruments import beta_arm_m
 from advisor.oem.lateral_problem import NEEDED, LateralProblem, LateralRecord
-from advisor.oem.prepare import constant_speed, reference_speed, signal_of, stated_reference
+from advisor.oem.prepare import constant_speed, reference_speed, signal_of, stated_reference, too_few
 from advisor.oem.rows import Signal
 from advisor.oem.surface import Servo
 
@@ -25,9 +24,8 @@ _SPOKEN = {"p": "roll rate", "r": "yaw rate", "bank": "bank angle", "theta": "pi
 def prepare_lateral(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> LateralProblem | NoEstimate:
     """Return the estimation problem of the lateral axis, or why there is none."""
     for maneuver in maneuvers:
-        missing = _missing(maneuver)
-        if missing is not None:
-            return missing
+        if (few := too_few(maneuver, _SPOKEN)) is not None:
+            return few
     measured = [airspeed(m.channels) for m in maneuvers]
     speeds = [
         found.signal
@@ -62,7 +60,10 @@ def prepare_lateral(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Latera
             for m, speed in zip(maneuvers, known, strict=True)
         ),
         reference_airspeed_m_s=reference,
-        servos={name: _servo(getattr(aircraft, name)) for name in LATERAL.inputs},
+        servos={
+            name: Servo(control.lag_s or 0.0, control.delay_s or 0.0)
+            for name, control in (("aileron", aircraft.aileron), ("rudder", aircraft.rudder))
+        },
         beta_arm_m=beta_arm_m(aircraft) or 0.0,
         accelerometer_arm_m=aircraft.accelerometer.arm_m or 0.0,
     )
@@ -74,19 +75,6 @@ def _plain_speed(maneuver: Maneuver) -> Signal | None:
     if channel is None or len(channel) < 2 or not np.median(channel.y) > SLOWEST_FLIGHT_M_S:
         return None
     return Signal(channel.t, np.maximum(channel.y, 0.5 * SLOWEST_FLIGHT_M_S))
-
-
-def _servo(control: SideControl) -> Servo:
-    return Servo(control.lag_s or 0.0, control.delay_s or 0.0)
-
-
-def _missing(maneuver: Maneuver) -> NoEstimate | None:
-    for name in (*NEEDED, "theta", "q"):
-        if not has(maneuver.channels, name):
-            samples = len(maneuver.channels[name]) if name in maneuver.channels else 0
-            text = f"The record has {samples} samples of the {_SPOKEN[name]}; it takes {FEWEST_SAMPLES}."
-            return NoEstimate("too_few_samples", text)
-    return None
 
 
 def _outputs(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> list[str]:

@@ -10,9 +10,8 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.model.axis_response import AxisGrid
 from advisor.model.lateral import LATERAL
 from advisor.model.response import Index
-from advisor.oem.problem import finite, merged
-from advisor.oem.rows import Laid, Signal, lay_rows
-from advisor.oem.surface import Servo, padded
+from advisor.oem.rows import Laid, Piece, Signal, events_of, lay_rows, measured_in, padded, with_samples
+from advisor.oem.surface import Servo
 
 _BETA, _P, _R, _BANK = range(len(LATERAL.states))
 LEAST_PART = 0.2
@@ -100,21 +99,17 @@ def assemble_lateral(problem: LateralProblem) -> LateralAssembly:
     ValueError
         A record lacks p, r or bank, or has fewer than two stamps of one of them.
     """
-    pieces = [_Piece.of(record, problem) for record in problem.records]
+    pieces = [_piece(record, problem) for record in problem.records]
     measured = {name for piece in pieces for name in piece.outputs}
     laid = lay_rows(pieces, LATERAL.outputs)
-
-    def joined(name: str) -> FloatArray:
-        return np.concatenate([getattr(piece, name) for piece in pieces])
-
     grid = AxisGrid(
         first=laid.first,
-        **{name: joined(name) for name in _STACKED},
         row=laid.row,
         place=LATERAL.place,
         bias=LATERAL.bias,
         bank=_BANK,
         yaw=_R,
+        **laid.columns,
     )
     return LateralAssembly(
         names=LATERAL.names,
@@ -144,98 +139,44 @@ def _free(problem: LateralProblem, measured: set[str]) -> Index:
 
 _WITHOUT_FORCE = ("Y_beta", *(term.name for term in LATERAL.shared if term.state != "beta"))
 """Derivatives that are estimated where neither the side force nor the sideslip is measured."""
-_STACKED = (
-    "step_s", "ratio", "inputs", "start", "slope", "changed", "changed_start", "changed_slope", "linear",
-    "sine", "turn", "seen", "felt",
-)  # fmt: skip
-"""Fields of a grid that the pieces hold one after another."""
 
 
-@dataclass(frozen=True, slots=True)
-class _Piece:
-    """One record on the union of its stamps; the fields of the grid have its shapes."""
-
-    t: FloatArray
-    outputs: Mapping[str, Signal]
-    step_s: FloatArray
-    ratio: FloatArray
-    inputs: FloatArray
-    start: FloatArray
-    slope: FloatArray
-    changed: FloatArray
-    changed_start: FloatArray
-    changed_slope: FloatArray
-    linear: FloatArray
-    sine: FloatArray
-    turn: FloatArray
-    seen: FloatArray
-    felt: FloatArray
-
-    @classmethod
-    def of(cls, record: LateralRecord, problem: LateralProblem) -> "_Piece":
-        outputs = {
-            name: _earlier(finite(record.outputs[name]), problem.delays_s.get(name, 0.0))
-            for name in LATERAL.outputs
-            if name in record.outputs
-        }
-        for name in NEEDED:
-            if name not in outputs or len(outputs[name].t) < 2:
-                raise ValueError(f"a record needs at least two samples of {name}")
-        stamps = [signal.t for signal in outputs.values()]
-        begin, end = min(t[0] for t in stamps), max(t[-1] for t in stamps)
-        corners, pace = list(stamps), np.inf
-        for name, command in record.inputs.items():
-            breaks, own_pace = problem.servo(name).grid(command.t)
-            corners.append(breaks[(breaks > begin) & (breaks < end)])
-            pace = min(pace, own_pace)
-        t = merged(np.concatenate(corners), pace)
-        step = np.diff(t)
-        moved = (*_moved(record, problem, t), *_changed(record, problem, t))
-        middle = t[:-1] + step / 2.0
-        speed = padded(record.airspeed.at(middle))
-        ratio = np.ones(len(t))
-        if problem.reference_airspeed_m_s is not None:
-            ratio = speed / problem.reference_airspeed_m_s
-        linear, sine, turn = _known(record, middle, speed)
-        seen, felt = _outputs(record.airspeed.at(t), problem)
-        return cls(t, outputs, padded(step), ratio, *moved, linear, sine, turn, seen, felt)
+def _piece(record: LateralRecord, problem: LateralProblem) -> Piece:
+    """Return one record on the union of its stamps."""
+    outputs = measured_in(record.outputs, LATERAL.outputs, problem.delays_s)
+    with_samples(outputs, NEEDED)
+    t = events_of(outputs, [problem.servo(name).grid(command.t) for name, command in record.inputs.items()])
+    step = np.diff(t)
+    middle = t[:-1] + step / 2.0
+    speed = padded(record.airspeed.at(middle))
+    reference = problem.reference_airspeed_m_s
+    columns = {
+        "step_s": padded(step),
+        "ratio": np.ones(len(t)) if reference is None else speed / reference,
+        **_moved(record, problem, t),
+        **_known(record, middle, speed),
+        **_outputs(record.airspeed.at(t), problem),
+    }
+    return Piece(t, outputs, columns)
 
 
-def _earlier(signal: Signal, delay_s: float) -> Signal:
-    return Signal(signal.t - delay_s, signal.y) if delay_s else signal
-
-
-def _moved(
-    record: LateralRecord, problem: LateralProblem, t: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the inputs at the stamps, just after them, and their rates, each (E, 2)."""
-    at, after, rate = (np.zeros((len(t), len(LATERAL.inputs))) for _ in range(3))
+def _moved(record: LateralRecord, problem: LateralProblem, t: FloatArray) -> dict[str, FloatArray]:
+    """Return the inputs at the stamps, just after them, and their rates, each (E, 2), with their derivatives
+    by ``CAUSES``, each (E, 3, 2)."""
+    inputs = np.zeros((3, len(t), len(LATERAL.inputs)))
+    changed = np.zeros((3, len(t), len(CAUSES), len(LATERAL.inputs)))
     for j, name in enumerate(LATERAL.inputs):
         if name in record.inputs:
-            command = record.inputs[name]
-            here, begun, arrival = problem.servo(name).move(command.t, command.y, t)
-            at[:, j], after[:, j] = here, begun
-            rate[:, j] = padded((arrival - begun[:-1]) / np.diff(t))
-    return at, after, rate
-
-
-def _changed(
-    record: LateralRecord, problem: LateralProblem, t: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the derivatives by ``CAUSES`` of the inputs at the stamps, just after them, and of their rates,
-    each (E, 3, 2)."""
-    at, after, rate = (np.zeros((len(t), len(CAUSES), len(LATERAL.inputs))) for _ in range(3))
-    for j, name in enumerate(LATERAL.inputs):
-        if name in record.inputs:
-            change = problem.servo(name).changes(*record.inputs[name], t)
+            servo, command = problem.servo(name), record.inputs[name]
+            inputs[:, :, j] = servo.course(*command, t)
             causes = [CAUSES.index("command"), CAUSES.index(name)]
-            at[:, causes, j], after[:, causes, j], rate[:, causes, j] = change.at, change.start, change.slope
-    return at, after, rate
+            changed[:, :, causes, j] = servo.changes(*command, t)[:3]
+    return dict(zip(("inputs", "start", "slope"), inputs, strict=True)) | dict(
+        zip(("changed", "changed_start", "changed_slope"), changed, strict=True)
+    )
 
 
-def _known(
-    record: LateralRecord, middle: FloatArray, speed: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _known(record: LateralRecord, middle: FloatArray, speed: FloatArray) -> dict[str, FloatArray]:
     """Return the known matrix (E, 4, 4), and the factors (E, 4) of sin φ and of r·cos φ."""
     alpha, theta, q = (padded(s.at(middle)) for s in (record.alpha, record.theta, record.q))
     linear = np.zeros((len(speed), 4, 4))
@@ -245,10 +186,10 @@ def _known(
     sine[:, _BETA] = GRAVITY_M_S2 / speed * np.cos(theta)
     sine[:, _BANK] = q * np.tan(theta)
     turn[:, _BANK] = np.tan(theta)
-    return linear, sine, turn
+    return {"linear": linear, "sine": sine, "turn": turn}
 
 
-def _outputs(speed: FloatArray, problem: LateralProblem) -> tuple[FloatArray, FloatArray]:
+def _outputs(speed: FloatArray, problem: LateralProblem) -> dict[str, FloatArray]:
     """Return the factors (E, outputs, 4) of the states, and of the parameters' part of the rates."""
     seen = np.zeros((len(speed), len(LATERAL.outputs), 4))
     felt = np.zeros_like(seen)
@@ -258,4 +199,4 @@ def _outputs(speed: FloatArray, problem: LateralProblem) -> tuple[FloatArray, Fl
     force = LATERAL.outputs.index("a_y")
     felt[:, force, _BETA] = speed
     felt[:, force, _R] = problem.accelerometer_arm_m
-    return seen, felt
+    return {"seen": seen, "felt": felt}

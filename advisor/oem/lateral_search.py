@@ -13,7 +13,9 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.model.axis_response import respond_axis
 from advisor.model.lateral import LATERAL
 from advisor.model.response import Index
+from advisor.oem.arrow import arrow_step, normal_equations
 from advisor.oem.estimate import NoEstimate
+from advisor.oem.extra import penalty
 from advisor.oem.gauss_newton import (
     CONVERGED,
     DAMPING_FACTOR,
@@ -23,11 +25,9 @@ from advisor.oem.gauss_newton import (
     MOST_ITERATIONS,
     SINGULAR,
     Optimum,
-    arrow_step,
-    normal_equations,
     weigh,
 )
-from advisor.oem.lateral_instruments import Nuisance, columns_of, moved_by, penalty
+from advisor.oem.lateral_instruments import Nuisance, columns_of, moved_by
 from advisor.oem.lateral_prior import Priors
 from advisor.oem.lateral_problem import CAUSES, LateralAssembly, LateralProblem, assemble_lateral
 from advisor.oem.solution import RUNS_AWAY
@@ -143,12 +143,10 @@ class _System(NamedTuple):
         problem, assembly, optimum, columns = fit[:4]
         k = columns.shape[1]
         g = np.column_stack([optimum.sensitivities[:, :_SHARED], columns, optimum.sensitivities[:, _SHARED:]])
-        own = assembly.free >= _SHARED
-        free = np.concatenate([assembly.free[~own], _SHARED + np.arange(k), assembly.free[own] + k])
+        free = np.concatenate([assembly.common, _SHARED + np.arange(k), assembly.own + k])
         information, gradient = normal_equations(
-            assembly.grid,
-            assembly.z,
-            optimum.fitted,
+            assembly.maneuvers,
+            assembly.z - optimum.fitted,
             g,
             assembly.channel,
             assembly.owner,

@@ -63,14 +63,10 @@ class _Motion:
         self.ratio = np.ones(len(t)) if reference is None else self.speed / reference
         self.signals = {name: record.outputs[name].at(t) for name in ("p", "r", "bank")}
         for name in LATERAL.inputs:
-            command = record.inputs.get(name)
-            moved = np.zeros(len(t))
-            if command is not None:
-                servo = problem.servo(name)
-                grid, pace = servo.grid(command.t)
-                fine = np.union1d(grid, np.arange(grid[0], grid[-1], pace)) if np.isfinite(pace) else grid
-                moved = np.interp(t, fine, servo.move(command.t, command.y, fine)[0])
-            self.signals[name] = moved
+            still = name not in record.inputs
+            self.signals[name] = (
+                np.zeros(len(t)) if still else problem.servo(name).signal(record.inputs[name]).at(t)
+            )
         self.has_force = "a_y" in record.outputs
         alpha, theta = record.alpha.at(t), record.theta.at(t)
         turn = GRAVITY_M_S2 / self.speed * np.cos(theta) * np.sin(self.signals["bank"])

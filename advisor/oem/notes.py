@@ -2,12 +2,11 @@
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.signals.messages import FloatArray
 from advisor.oem.correlation import HIGH_CORRELATION
+from advisor.oem.findings import line_of, value_in_words
 from advisor.oem.found import found_of
 from advisor.oem.identifiability import SUPPOSED_LAG_S, correlated
 from advisor.oem.instrument_fit import Identified
@@ -15,7 +14,6 @@ from advisor.oem.instruments import KNOWN_TO
 from advisor.oem.missing import in_words, price
 from advisor.oem.prepare import Prepared
 from advisor.oem.solution import Solution
-from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import symbol
 
 N = len(PARAMETERS)
@@ -44,7 +42,7 @@ def notes(
     """
     sentences = [
         _outputs(solution, prepared),
-        *(_instrument(x, solution) for x in identified if _is_worth_saying(x)),
+        *(_instrument(x) for x in identified if _is_worth_saying(x)),
         _servo(solution, lagged),
         _found_lag(aircraft),
         _airspeed(prepared),
@@ -72,51 +70,19 @@ def _is_worth_saying(identified: Identified) -> bool:
     """Return whether the data tell a value that neither the file nor a sound instrument explains."""
     x = identified.instrument
     if x.prior is None:
-        return x.stated is None or identified.contradicts
+        return x.stated is None or identified.found.contradicts
     told = x.name in ("command_delay_s", "steady_moment_rad")
-    return told and abs(identified.value - x.prior.mean) > 3.0 * identified.std
+    return told and abs(identified.found.value - x.prior.mean) > 3.0 * identified.found.std
 
 
-def _instrument(identified: Identified, solution: Solution) -> str:
+def _instrument(identified: Identified) -> str:
     """Return a sentence about one instrument, with the line that puts its value into the aircraft file."""
-    value, half = identified.value, NORMAL_95 * identified.std
-    match identified.instrument.name:
-        case "servo_lag_s":
-            return (
-                f"The servo's lag is estimated and used: {value:.3f} ± {half:.3f} s. A pure delay would look"
-                " nearly the same." + _line(identified, f"elevator: {{lag_s: {value:.3f}}}")
-            )
-        case "vane_arm_m":
-            speed = solution.problem.reference_airspeed_m_s or float(solution.assembly.grid.airspeed.mean())
-            return (
-                f"alpha reads like a vane {value:.2f} ± {half:.2f} m ahead of the centre of gravity"
-                f" ({value / speed:.3f} s of pitch rate); the estimate allows for that."
-                + _line(identified, f"alpha: {{vane_arm_m: {value:.2f}}}")
-            )
-        case "command_delay_s":
-            return (
-                f"The command acts {1e3 * value:+.1f} ± {1e3 * half:.1f} ms after its stamps, as estimated."
-            )
-        case "steady_moment_rad":
-            return (
-                "A part of the pitching moment, such as the thrust's, does not change with air speed. It"
-                f" equals the moment of {np.degrees(value):+.1f} ± {np.degrees(half):.1f} deg of elevator."
-            )
-        case "alpha_delay_s":
-            return (
-                f"alpha is {1e3 * value:.0f} ± {1e3 * half:.0f} ms late relative to the motion;"
-                " the estimate allows for that."
-            )
-        case "accelerometer_arm_m":
-            return (
-                f"The accelerometer reads as if {value:.2f} ± {half:.2f} m ahead of the centre of gravity;"
-                " the estimate allows for that." + _line(identified, f"accelerometer: {{arm_m: {value:.2f}}}")
-            )
-
-
-def _line(identified: Identified, line: str) -> str:
-    """Return the line for the aircraft file, where a value is known to a tenth."""
-    return f" For the aircraft file: {line}" if identified.std < KNOWN_TO * abs(identified.value) else ""
+    x = identified.found
+    text = value_in_words(x.name, x.value, x.std)
+    known = identified.instrument.prior is None and x.std < KNOWN_TO * abs(x.value)
+    line = line_of(x.name, x.value) if known else ""
+    advice = f" For the aircraft file: {line}" if line else ""
+    return f"{text[0].upper()}{text[1:]}; the estimate allows for that.{advice}"
 
 
 def _servo(solution: Solution, lagged: FloatArray | None) -> str:

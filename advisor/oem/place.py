@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.model.response import N_PARAMETERS, N_SHARED, SHARED, Index, respond
+from advisor.model.response import N_PARAMETERS, SHARED, Index, respond
 from advisor.oem.extra import Extra
 from advisor.oem.instruments import Instrument, extra_of
 from advisor.oem.problem import Assembly, OutputErrorProblem, assemble
@@ -44,24 +44,19 @@ def at(
     return Linearization(problem, assembly, shared, local, assembly.z - y, g, extra)
 
 
-def free_of(assembly: Assembly) -> tuple[Index, Index]:
-    """Return the free shared and the free local parameters, as indices of all 14."""
-    return assembly.free[assembly.free < N_SHARED], assembly.free[assembly.free >= N_SHARED]
-
-
 def in_time(assembly: Assembly, m: int) -> Index:
     """Return the rows of manoeuvre ``m`` in order of time, shape (n,)."""
-    rows = np.concatenate([np.arange(s.start, s.stop) for s in assembly.rows[m].values()])
-    return np.asarray(rows[np.argsort(assembly.t[rows], kind="stable")])
+    rows = assembly.blocks[m]
+    return np.asarray(rows.start + np.argsort(assembly.t[rows], kind="stable"))
 
 
-def speeds_of(place: Linearization) -> list[float]:
+def speeds_of(problem: OutputErrorProblem) -> list[float]:
     """Return the mean air speed of each manoeuvre, m/s."""
-    speeds = [record.airspeed for record in place.problem.records]
+    speeds = [record.airspeed for record in problem.records]
     return [ASSUMED_M_S if speed is None else float(np.mean(speed.y)) for speed in speeds]
 
 
-def system_of(place: Linearization, ratio: float) -> FloatArray:
+def system_of(shared: FloatArray, ratio: float) -> FloatArray:
     """Return Z_α, Z_q, M_α, M_q at an air speed of ``ratio`` times the reference, shape (4,)."""
-    z_a, z_q, m_a, m_q = (place.shared[SHARED.index(n)] for n in ("Z_alpha", "Z_q", "M_alpha", "M_q"))
+    z_a, z_q, m_a, m_q = (shared[SHARED.index(n)] for n in ("Z_alpha", "Z_q", "M_alpha", "M_q"))
     return np.array([ratio * z_a, z_q, ratio**2 * m_a, ratio * m_q])

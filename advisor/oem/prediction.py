@@ -13,6 +13,7 @@ import numpy as np
 from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import SHARED
+from advisor.oem.arrow import unabsorbed
 from advisor.oem.gauss_newton import Optimum
 from advisor.oem.rows import Laid
 from advisor.oem.solution import Solution
@@ -52,17 +53,13 @@ def widest_bands(
     covariance
         (k, k) covariance of these parameters.
     """
-    own = assembly.free[assembly.free >= len(assembly.names.shared)]
     weight = 1.0 / optimum.noise[assembly.channel]
     widest: dict[str, float] = {}
-    for named in assembly.rows:
-        rows = np.concatenate([np.arange(s.start, s.stop) for s in named.values()])
-        left = _without(optimum.sensitivities[rows][:, own], columns[rows], weight[rows])
+    for named, rows in zip(assembly.rows, assembly.blocks, strict=True):
+        left = unabsorbed(columns[rows], optimum.sensitivities[rows][:, assembly.own], weight[rows], 1e-10)
         half = half_widths(left, covariance)
-        first = 0
         for name, s in named.items():
-            band = float(np.max(half[first : first + s.stop - s.start]))
-            first += s.stop - s.start
+            band = float(np.max(half[s.start - rows.start : s.stop - rows.start]))
             peak = float(np.max(np.abs(optimum.fitted[s] - optimum.fitted[s.start])))
             widest[name] = max(widest.get(name, 0.0), band / peak if peak > 0.0 else np.inf)
     return widest
@@ -80,9 +77,3 @@ def half_widths(slopes: FloatArray, covariance: FloatArray) -> FloatArray:
     """
     variance = np.einsum("ni,ni->n", slopes @ covariance, slopes)
     return np.asarray(NORMAL_95 * np.sqrt(np.maximum(variance, 0.0)))
-
-
-def _without(own: FloatArray, columns: FloatArray, weight: FloatArray) -> FloatArray:
-    """Return the part of ``columns`` (n, k) that a manoeuvre's nuisance parameters cannot absorb."""
-    taken = np.linalg.lstsq(own * weight[:, None], columns * weight[:, None], rcond=1e-10)[0]
-    return np.asarray(columns - own @ taken)

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.motion import bank_at, gravity_in_plane, integrated
@@ -138,7 +137,7 @@ def _prepared(
         )
         if together
         else None,
-        servo=_servo(aircraft.elevator),
+        servo=Servo(aircraft.elevator.lag_s or 0.0, aircraft.elevator.delay_s or 0.0),
         vane_arm_m=(aircraft.alpha.vane_arm_m or 0.0) if known else 0.0,
         accelerometer_arm_m=aircraft.accelerometer.arm_m or 0.0,
         alpha_is_computed="alpha" in usable and all(_is_computed(m.channels["alpha"]) for m in maneuvers),
@@ -159,10 +158,6 @@ def _is_computed(alpha: Channel) -> bool:
     return alpha.provenance in ("derived", "simulated")
 
 
-def _servo(elevator: Elevator) -> Servo:
-    return Servo(elevator.lag_s or 0.0, elevator.delay_s or 0.0)
-
-
 def _renewed(signal: Signal) -> tuple[Signal, bool]:
     """Return the samples that bring a new value, and whether the channel is held between them.
 
@@ -173,15 +168,20 @@ def _renewed(signal: Signal) -> tuple[Signal, bool]:
 
 
 def _missing(maneuver: Maneuver) -> NoEstimate | None:
-    for name, spoken in (("elevator", "the elevator"), ("q", "pitch rate")):
-        samples = len(maneuver.channels[name]) if name in maneuver.channels else 0
-        if not _has(maneuver.channels, name):
-            text = (
-                f"Manoeuvre {maneuver.number} has {samples} samples of {spoken}; it takes {FEWEST_SAMPLES}."
-            )
-            return NoEstimate("too_few_samples", text)
+    if (few := too_few(maneuver, {"elevator": "the elevator", "q": "pitch rate"})) is not None:
+        return few
     if float(np.ptp(maneuver.channels["elevator"].y)) == 0.0:
         return NoEstimate("no_input", f"The elevator did not move in manoeuvre {maneuver.number}.")
+    return None
+
+
+def too_few(maneuver: Maneuver, spoken: Mapping[str, str]) -> NoEstimate | None:
+    """Return the first channel, by its name in words, that has too few samples; None without one."""
+    for name, words in spoken.items():
+        if not _has(maneuver.channels, name):
+            samples = len(maneuver.channels[name]) if name in maneuver.channels else 0
+            text = f"Manoeuvre {maneuver.number} has {samples} samples of {words}; it takes {FEWEST_SAMPLES}."
+            return NoEstimate("too_few_samples", text)
     return None
 
 

@@ -8,8 +8,8 @@ import numpy as np
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import LOCAL, N_SHARED, OUTPUTS, SHARED, Grid, Index
-from advisor.oem.rows import STAMP_S, Laid, Signal, lay_rows
-from advisor.oem.surface import Servo, padded
+from advisor.oem.rows import Laid, Piece, Signal, events_of, lay_rows, measured_in, padded, with_samples
+from advisor.oem.surface import Servo
 
 STAMP_DIGITS = 12
 """Decimals to which lengths of steps are distinguished: equal steps share their matrices."""
@@ -89,35 +89,23 @@ def assemble(problem: OutputErrorProblem) -> Assembly:
     ValueError
         A record lacks q, the input, or both alpha and a_z, or has fewer than two stamps of one of them.
     """
-    pieces = [_Piece.of(record, problem) for record in problem.records]
+    pieces = [_piece(record, problem) for record in problem.records]
     measured = {name for piece in pieces for name in piece.outputs}
     laid = lay_rows(pieces, OUTPUTS)
-    steps = np.concatenate([piece.steps for piece in pieces])
-    kinds, kind = _kinds(steps)
-
-    def joined(name: str) -> FloatArray:
-        return np.concatenate([getattr(piece, name) for piece in pieces])
-
-    speed = joined("airspeed")
+    columns = dict(laid.columns)
+    kinds, kind = _kinds(columns.pop("steps"))
     grid = Grid(
         first=laid.first,
         kind=kind,
         step_s=np.ascontiguousarray(kinds[:, 0]),
         ratio=np.ascontiguousarray(kinds[:, 1]),
-        elevator=joined("elevator"),
-        start=joined("start"),
-        slope=joined("slope"),
-        known=joined("known"),
         row=laid.row,
-        vane=-problem.vane_arm_m / speed if problem.vane_arm_m else np.zeros(len(speed)),
-        airspeed=speed,
-        acceleration=joined("acceleration"),
-        gravity=joined("gravity"),
         arm=problem.accelerometer_arm_m,
+        **columns,
     )
     return Assembly(
         grid=grid,
-        events=joined("t"),
+        events=np.concatenate([piece.t for piece in pieces]),
         **laid.measurements,
         free=_free(measured, problem.airspeed_may_be_off and {"alpha", "a_z"} <= measured),
     )
@@ -152,67 +140,44 @@ def _free(measured: set[str], scaled: bool) -> Index:
     )
 
 
-@dataclass(frozen=True, slots=True)
-class _Piece:
-    """One record on the union of its stamps."""
-
-    t: FloatArray
-    outputs: Mapping[str, Signal]
-    steps: FloatArray
-    """(E, 2) length of each step, and air speed ratio."""
-    elevator: FloatArray
-    start: FloatArray
-    slope: FloatArray
-    known: FloatArray
-    airspeed: FloatArray
-    acceleration: FloatArray
-    gravity: FloatArray
-
-    @classmethod
-    def of(cls, record: Record, problem: OutputErrorProblem) -> "_Piece":
-        outputs = {name: finite(record.outputs[name]) for name in OUTPUTS if name in record.outputs}
-        for name in ("q", "alpha" if "alpha" in outputs else "a_z"):
-            if name not in outputs or len(outputs[name].t) < 2:
-                raise ValueError(f"a record needs at least two samples of {name}")
-        if "alpha" in outputs:
-            outputs["alpha"] = Signal(outputs["alpha"].t - problem.alpha_delay_s, outputs["alpha"].y)
-        if len(record.elevator.t) < 2:
-            raise ValueError("a record needs at least two samples of the elevator")
-        stamps = [signal.t for signal in outputs.values()]
-        begin, end = min(t[0] for t in stamps), max(t[-1] for t in stamps)
-        breaks, pace = problem.servo.grid(record.elevator.t)
-        inside = breaks[(breaks > begin) & (breaks < end)]
-        t = merged(np.concatenate([*stamps, inside]), pace)
-        step = np.diff(t)
-        middle = t[:-1] + step / 2.0
-        at_event, start, arrival = problem.servo.move(record.elevator.t, record.elevator.y, t, record.held)
-        ratio, airspeed, acceleration = np.ones(len(step)), np.ones(len(t)), np.zeros(len(t))
-        known = np.zeros(len(step))
-        if record.airspeed is not None:
-            airspeed = record.airspeed.at(t)
-            acceleration = _slope(airspeed, t)
-            speed = record.airspeed.at(middle)
-            pull = GRAVITY_M_S2 / speed
-            if problem.reference_airspeed_m_s is not None:
-                ratio = speed / problem.reference_airspeed_m_s
-                known = pull - ratio * GRAVITY_M_S2 / problem.reference_airspeed_m_s
-                steady = problem.steady_moment_rad * steady_share(problem, airspeed)
-                at_event, start, arrival = at_event + steady, start + steady, arrival + steady[1:]
-            if record.normal_gravity is not None:
-                known += pull * (record.normal_gravity.at(middle) - 1.0)
-        gravity = np.full(len(t), GRAVITY_M_S2) if record.gravity_z is None else record.gravity_z.at(t)
-        return cls(
-            t=t,
-            outputs=outputs,
-            steps=padded(np.column_stack([np.round(step, STAMP_DIGITS), ratio])),
-            elevator=at_event,
-            start=start,
-            slope=padded((arrival - start[:-1]) / step),
-            known=padded(known),
-            airspeed=airspeed,
-            acceleration=acceleration,
-            gravity=gravity,
-        )
+def _piece(record: Record, problem: OutputErrorProblem) -> Piece:
+    """Return one record on the union of its stamps."""
+    outputs = measured_in(record.outputs, OUTPUTS, {"alpha": problem.alpha_delay_s})
+    with_samples(
+        {**outputs, "the elevator": record.elevator},
+        ("q", "alpha" if "alpha" in outputs else "a_z", "the elevator"),
+    )
+    t = events_of(outputs, [problem.servo.grid(record.elevator.t)])
+    step = np.diff(t)
+    middle = t[:-1] + step / 2.0
+    at_event, start, arrival = problem.servo.move(record.elevator.t, record.elevator.y, t, record.held)
+    ratio, airspeed, acceleration = np.ones(len(step)), np.ones(len(t)), np.zeros(len(t))
+    known = np.zeros(len(step))
+    if record.airspeed is not None:
+        airspeed = record.airspeed.at(t)
+        acceleration = _slope(airspeed, t)
+        speed = record.airspeed.at(middle)
+        pull = GRAVITY_M_S2 / speed
+        if problem.reference_airspeed_m_s is not None:
+            ratio = speed / problem.reference_airspeed_m_s
+            known = pull - ratio * GRAVITY_M_S2 / problem.reference_airspeed_m_s
+            steady = problem.steady_moment_rad * steady_share(problem, airspeed)
+            at_event, start, arrival = at_event + steady, start + steady, arrival + steady[1:]
+        if record.normal_gravity is not None:
+            known += pull * (record.normal_gravity.at(middle) - 1.0)
+    gravity = np.full(len(t), GRAVITY_M_S2) if record.gravity_z is None else record.gravity_z.at(t)
+    columns = {
+        "steps": padded(np.column_stack([np.round(step, STAMP_DIGITS), ratio])),
+        "elevator": at_event,
+        "start": start,
+        "slope": padded((arrival - start[:-1]) / step),
+        "known": padded(known),
+        "vane": -problem.vane_arm_m / airspeed if problem.vane_arm_m else np.zeros(len(t)),
+        "airspeed": airspeed,
+        "acceleration": acceleration,
+        "gravity": gravity,
+    }
+    return Piece(t, outputs, columns)
 
 
 def _slope(y: FloatArray, t: FloatArray) -> FloatArray:
@@ -229,23 +194,3 @@ def steady_share(problem: OutputErrorProblem, airspeed: FloatArray) -> FloatArra
     reference = problem.reference_airspeed_m_s
     share: FloatArray = np.zeros(len(airspeed)) if reference is None else (reference / airspeed) ** 2 - 1.0
     return share
-
-
-def finite(signal: Signal) -> Signal:
-    """Return the finite samples of a signal."""
-    keep = np.isfinite(signal.y) & np.isfinite(signal.t)
-    t, y = (signal.t, signal.y) if keep.all() else (signal.t[keep], signal.y[keep])
-    return Signal(np.ascontiguousarray(t, float), np.ascontiguousarray(y, float))
-
-
-def merged(stamps: FloatArray, pace: float) -> FloatArray:
-    """Return the distinct stamps in order, with more between them where their distance exceeds ``pace``."""
-    ordered = np.sort(stamps)
-    t: FloatArray = ordered[np.concatenate([[True], np.diff(ordered) > STAMP_S])]
-    if not np.isfinite(pace):
-        return t
-    parts: Index = np.maximum(1, np.ceil(np.diff(t) / pace - 1e-6)).astype(np.int64)
-    cells = np.repeat(np.arange(len(parts)), parts)
-    within = np.arange(len(cells)) - np.repeat(np.cumsum(parts) - parts, parts)
-    merged: FloatArray = np.append(t[cells] + within * (np.diff(t) / parts)[cells], t[-1])
-    return merged

@@ -5,20 +5,11 @@ from typing import Literal
 
 import numpy as np
 
-from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import OUTPUTS
-from advisor.oem.covariance import (
-    REPORTED,
-    Coloured,
-    Influence,
-    coloured,
-    colours_of,
-    cramer_rao,
-    influence,
-    widening,
-)
+from advisor.oem.covariance import REPORTED, Coloured
 from advisor.oem.estimate import NoEstimate
+from advisor.oem.evaluation import Evaluated, errors_of
 from advisor.oem.extra import Extra
 from advisor.oem.gauss_newton import CONVERGED, FLAT, LEAST_NOISE, OVERFLOW, SINGULAR, Optimum, descend
 from advisor.oem.prior import precision
@@ -37,37 +28,12 @@ HEALTHY_ITERATIONS = 12
 second minimum, and another start is tried."""
 
 
-@dataclass(frozen=True, slots=True)
-class Solution:
-    """The optimum of one problem, with all quantities computed from it."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Solution(Evaluated):
+    """The optimum of one problem of the short period, with all quantities computed from it."""
 
     problem: OutputErrorProblem
     assembly: Assembly
-    optimum: Optimum
-    influence: Influence
-    theta: FloatArray
-    """(8,) in the order of ``PARAMETERS``; Z_0 and M_0 are means over the manoeuvres."""
-    covariance_cr: FloatArray
-    """(8 + k, 8 + k) Cramér-Rao bound of the eight and of the k extra parameters."""
-    covariance: FloatArray
-    """(8 + k, 8 + k) covariance corrected for coloured residuals."""
-    noise: Coloured
-    """Colour of each output's noise."""
-    contributions: FloatArray
-    """(m, 8 + k) contribution of each manoeuvre's residuals to each parameter; the contributions sum to
-    zero."""
-    extra: Extra | None = None
-    """The e >= k additional parameters, such as the times of edges."""
-
-    @property
-    def fitted(self) -> FloatArray:
-        """(N,) model outputs, in the rows of ``assembly``."""
-        return self.optimum.fitted
-
-    @property
-    def sensitivities(self) -> FloatArray:
-        """(N, 14) derivatives of the outputs by the parameters of the row's manoeuvre."""
-        return self.optimum.sensitivities
 
     @property
     def residual(self) -> FloatArray:
@@ -158,38 +124,16 @@ def evaluate(
 
     Parameters
     ----------
-    extra, noise : arguments of ``covariance.influence`` and of ``solve``.
-    kept : number of extra parameters, the first ones, with errors of their own; by default all.
+    extra, noise, kept : arguments of ``evaluation.errors_of``.
     """
-    g = optimum.sensitivities
-    effect = influence(assembly, g, optimum.noise, extra, precision(problem, optimum.shared))
-    if effect is None:
-        return NoEstimate("singular", NOTHING_TO_TELL)
-    if kept is not None:
-        effect = effect.first(len(PARAMETERS) + kept)
-    if noise is None:
-        colours = colours_of(assembly, assembly.z - optimum.fitted, g)
-        noise = Coloured(colours, widening(assembly, effect.rows, colours))
-    return Solution(
-        problem=problem,
-        assembly=assembly,
-        optimum=optimum,
-        influence=effect,
-        theta=reported(optimum.shared, optimum.local),
-        covariance_cr=cramer_rao(assembly, effect.rows, optimum.noise) + effect.prior_covariance,
-        covariance=coloured(assembly, effect.rows, noise) + effect.prior_covariance,
-        noise=noise,
-        contributions=contributions_of(assembly, effect.rows, assembly.z - optimum.fitted),
-        extra=extra,
+    residual, prior = assembly.z - optimum.fitted, precision(problem, optimum.shared)
+    errors = errors_of(
+        assembly, residual, optimum.sensitivities, optimum.noise, extra, prior, noise=noise, kept=kept
     )
-
-
-def contributions_of(assembly: Laid, rows: FloatArray, residual: FloatArray) -> FloatArray:
-    """Return the contribution of each manoeuvre, shape (m, 8 + k), from influence ``rows`` (N, 8 + k) and
-    ``residual`` (N,)."""
-    pull = rows * residual[:, None]
-    first = np.searchsorted(assembly.owner, np.arange(assembly.maneuvers))
-    return np.array([part.sum(axis=0) for part in np.split(pull, first[1:])])
+    if errors is None:
+        return NoEstimate("singular", NOTHING_TO_TELL)
+    theta = reported(optimum.shared, optimum.local)
+    return Solution(problem=problem, assembly=assembly, optimum=optimum, theta=theta, extra=extra, **errors)
 
 
 def reported(shared: FloatArray, local: FloatArray) -> FloatArray:

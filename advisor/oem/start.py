@@ -17,8 +17,7 @@ from advisor.flight.signals.motion import integrated
 from advisor.model.response import N_LOCAL, N_SHARED
 from advisor.oem.problem import OutputErrorProblem, Record
 from advisor.oem.regression import Equations, regressed
-from advisor.oem.rows import Signal
-from advisor.oem.surface import Servo
+from advisor.oem.rows import Signal, finite
 
 
 def start(
@@ -42,7 +41,7 @@ def start(
         moment = output == "q"
         parts = []
         for record in problem.records:
-            side = _usable(record.outputs["q"] if moment else record.alpha)
+            side = finite(record.outputs["q"] if moment else record.alpha)
             common, constants = _regressors(record, problem, side.t, moment)
             if lift_from_alpha_only and not moment:
                 parts.append(Equations(common[:, :1], side.y - common[:, 1], constants))
@@ -59,7 +58,7 @@ def start(
         local[:, [2 + first, first]] = own
     for m, record in enumerate(problem.records):
         if "theta" in record.outputs:
-            local[m, 4] = _usable(record.outputs["theta"]).y[0]
+            local[m, 4] = finite(record.outputs["theta"]).y[0]
     return shared, local
 
 
@@ -73,8 +72,8 @@ def _from_force(problem: OutputErrorProblem) -> tuple[FloatArray, FloatArray]:
     shared, local = np.zeros(N_SHARED), np.zeros((len(problem.records), N_LOCAL))
     moments, slopes, forces, levels = [], [], [], []
     for record in problem.records:
-        q, force = _usable(record.outputs["q"]), _usable(record.outputs["a_z"])
-        surface, ratio = _surface(record, problem.servo), _ratio(record, problem, q.t)
+        q, force = finite(record.outputs["q"]), finite(record.outputs["a_z"])
+        surface, ratio = problem.servo.signal(record.elevator), _ratio(record, problem, q.t)
         begin = float(q.t[0])
         n = Signal(force.t, force.y / _speed(record, force.t))
         columns = [
@@ -117,8 +116,8 @@ def _regressors(
 ) -> tuple[FloatArray, FloatArray]:
     """Return the integrals of α, q, δe from the record's first stamp to ``t``, shape (n, 3), and of 1 and s,
     shape (n, 2)."""
-    alpha, q = _usable(record.alpha), _usable(record.outputs["q"])
-    surface = _surface(record, problem.servo)
+    alpha, q = finite(record.alpha), finite(record.outputs["q"])
+    surface = problem.servo.signal(record.elevator)
     begin = min(signal.t[0] for signal in record.outputs.values())
     ratio = _ratio(record, problem, t)
     powers = (2, 1, 2, 2) if moment else (1, 0, 1, 1)
@@ -127,14 +126,6 @@ def _regressors(
         for x, power in zip((alpha, q, surface, Signal(t, np.ones(len(t)))), powers, strict=True)
     ]
     return np.column_stack(columns[:3]), np.column_stack([np.ones(len(t)), columns[3]])
-
-
-def _surface(record: Record, servo: Servo) -> Signal:
-    grid, pace = servo.grid(record.elevator.t)
-    if servo.lag_s <= 0.0 or len(grid) < 2:
-        return Signal(grid, record.elevator.y)
-    t = np.union1d(grid, np.arange(grid[0], grid[-1], pace))
-    return Signal(t, servo.move(record.elevator.t, record.elevator.y, t)[0])
 
 
 def _integral(x: Signal, begin: float, t: FloatArray) -> FloatArray:
@@ -147,8 +138,3 @@ def _integral(x: Signal, begin: float, t: FloatArray) -> FloatArray:
 
     result: FloatArray = upto(t) - upto(np.array([begin]))
     return result
-
-
-def _usable(signal: Signal) -> Signal:
-    keep = np.isfinite(signal.y)
-    return Signal(signal.t[keep], signal.y[keep])

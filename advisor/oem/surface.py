@@ -14,6 +14,7 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.input_response import InputChange
+from advisor.oem.rows import Signal, padded
 from advisor.process.compiled import kernel
 
 LONGEST_STEP_S = 0.0105
@@ -46,6 +47,22 @@ class Servo:
             return start, start, arrival
         surface = lagged(np.diff(run), start[:-1], arrival, self.lag_s, start[0])[len(run) - len(t) :]
         return surface, surface, surface[1:]
+
+    def signal(self, command: Signal) -> Signal:
+        """Return the surface behind a linear command, at the corners of its motion."""
+        t, pace = self.grid(command.t)
+        if not np.isfinite(pace) or len(t) < 2:
+            return Signal(t, command.y)
+        fine = np.union1d(t, np.arange(t[0], t[-1], pace))
+        return Signal(fine, self.move(command.t, command.y, fine)[0])
+
+    def course(
+        self, command_t: FloatArray, command: FloatArray, t: FloatArray, held: bool = False
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return the surface at the stamps, just after them, and its rates, each (E,); arguments of
+        ``move``."""
+        at, start, arrival = self.move(command_t, command, t, held)
+        return at, start, padded((arrival - start[:-1]) / np.diff(t))
 
     def changes(
         self,
@@ -111,12 +128,6 @@ def _change(start: FloatArray, arrival: FloatArray, step: FloatArray, impulse: F
     return InputChange(
         (after + before) / 2.0, after, slope, np.repeat(impulse[:, None], start.shape[1], axis=1)
     )
-
-
-def padded(rows: FloatArray) -> FloatArray:
-    """Return the rows with the last one repeated, so that there are as many steps as events."""
-    padded: FloatArray = np.concatenate([rows, rows[-1:]])
-    return padded
 
 
 @kernel()

@@ -12,9 +12,9 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import N_LOCAL, N_SHARED, OUTPUTS
+from advisor.oem.arrow import arrow_step, normal_equations
 from advisor.oem.covariance import Coloured, Influence, influence
 from advisor.oem.extra import Extra
-from advisor.oem.gauss_newton import arrow_step, normal_equations
 from advisor.oem.problem import Assembly
 from advisor.oem.whitening import Whitening
 
@@ -68,7 +68,7 @@ class Weighing:
         white = self.forward(residual[:, None])[:, 0]
         a = self.assembly
         information, gradient = normal_equations(
-            a.grid, white, np.zeros(len(white)), self.forward(g), a.channel, a.owner, a.free, UNIT
+            a.maneuvers, white, self.forward(g), a.channel, a.owner, a.free, UNIT
         )
         *_, promise = arrow_step(information, gradient, a.free, 0.0, N_SHARED, N_LOCAL)
         return float(white @ white) - promise

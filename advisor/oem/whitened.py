@@ -10,9 +10,10 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import N_PARAMETERS, Index
-from advisor.oem.innovations import AirModel, Gains, gains_of
-from advisor.oem.inverses import inverse_of
-from advisor.oem.place import Linearization, free_of, in_time, speeds_of, system_of
+from advisor.oem.arrow import inverse_of
+from advisor.oem.innovations import AirModel, gains_of
+from advisor.oem.kalman import Gains
+from advisor.oem.place import Linearization, in_time, speeds_of, system_of
 from advisor.oem.prior import precision
 
 
@@ -37,7 +38,7 @@ class Whitened:
 
 def whitened(place: Linearization, air: AirModel) -> Whitened | None:
     """Return the whitened fit; None where numbers overflow."""
-    common, own = free_of(place.assembly)
+    common, own = place.assembly.common, place.assembly.own
     n = len(common) + len(place.extra)
     prior = precision(place.problem, place.shared)[common]
     information, gradient = np.zeros((n, n)), np.zeros(n)
@@ -70,8 +71,8 @@ def whitened(place: Linearization, air: AirModel) -> Whitened | None:
 def gains_along(place: Linearization, air: AirModel) -> list[tuple[Index, Gains]]:
     """Return for each manoeuvre its rows in order of time, and the filter's gains along them."""
     problem, found = place.problem, []
-    for m, speed in enumerate(speeds_of(place)):
-        system = np.append(system_of(place, speed / (problem.reference_airspeed_m_s or speed)), speed)
+    for m, speed in enumerate(speeds_of(problem)):
+        system = np.append(system_of(place.shared, speed / (problem.reference_airspeed_m_s or speed)), speed)
         order = in_time(place.assembly, m)
         arms = (problem.vane_arm_m, problem.accelerometer_arm_m)
         # The fit has its own initial states, so the filter starts without uncertainty.

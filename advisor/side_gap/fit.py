@@ -13,6 +13,7 @@ import numpy as np
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.axis_response import respond_axis
 from advisor.model.lateral import LATERAL
+from advisor.oem.arrow import unabsorbed
 from advisor.oem.gauss_newton import weigh
 from advisor.oem.lateral_problem import CAUSES, LateralAssembly
 from advisor.oem.lateral_search import LEAST_NOISE
@@ -155,7 +156,7 @@ def _trials(flown: Flown, at: _At, known: Known) -> Iterator[_At | None]:
         moved = np.concatenate([share * step[:N], numbers - values[N:]])
         left = weight * (residual - columns @ moved)
         local = at.point.local.copy()
-        own = at.assembly.free[at.assembly.free >= N] - N
+        own = at.assembly.own - N
         for m, (rows, mine) in enumerate(bases):
             local[m, own] += np.linalg.lstsq(mine, left[rows], rcond=None)[0]
         setting = moved_to(at.point.setting, [f.place for f in at.free], numbers)
@@ -167,14 +168,11 @@ def _projected(
     at: _At, columns: FloatArray, weight: FloatArray
 ) -> tuple[FloatArray, list[tuple[slice, FloatArray]]]:
     """Return the columns without what each manoeuvre's own parameters absorb, and its own weighed columns."""
-    own = at.assembly.free[at.assembly.free >= N]
     result, bases = columns.copy(), []
-    for named in at.assembly.rows:
-        rows = slice(min(s.start for s in named.values()), max(s.stop for s in named.values()))
-        mine = at.g[rows][:, own] * weight[rows, None]
-        bases.append((rows, mine))
-        mix = np.linalg.lstsq(mine, columns[rows] * weight[rows, None], rcond=None)[0]
-        result[rows] -= (mine @ mix) / weight[rows, None]
+    for rows in at.assembly.blocks:
+        mine = at.g[rows][:, at.assembly.own]
+        bases.append((rows, mine * weight[rows, None]))
+        result[rows] = unabsorbed(columns[rows], mine, weight[rows])
     return result, bases
 
 

@@ -11,9 +11,9 @@ from advisor.gap.diagnose import DiagnosisEvidence
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
-from advisor.gap.records.flights import Measured
 from advisor.gap.result import InSimulator
 from advisor.gap.simulator.layout import DERIVATIVES, INDEX, OUTPUTS
+from advisor.oem.rows import Signal
 from advisor.simulators.flying import AsGiven, Flying, added, beyond, without_servo
 from advisor.simulators.inputs import at_reference
 from advisor.simulators.qualification import qualified
@@ -167,7 +167,7 @@ def _with(problem: EffectProblem, grids: Sequence[FloatArray], sign: float) -> E
     for flight, grid in zip(problem.flights.flights, grids, strict=True):
         t = np.arange(grid.shape[1]) * flight.h
         outputs = {
-            name: Measured(out.t, out.y + sign * np.interp(out.t, t, grid[OUTPUTS.index(name)]))
+            name: Signal(out.t, out.y + sign * np.interp(out.t, t, grid[OUTPUTS.index(name)]))
             for name, out in flight.outputs.items()
         }
         flights.append(replace(flight, outputs=outputs))

@@ -7,7 +7,7 @@ import numpy as np
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.records.flights import Measured, PreparedManeuver
+from advisor.gap.records.flights import PreparedManeuver
 from advisor.gap.simulator.layout import (
     A_X,
     ALPHA_TRIM,
@@ -21,6 +21,7 @@ from advisor.gap.simulator.layout import (
     TURN,
 )  # fmt: skip
 from advisor.gap.simulator.surface import surface
+from advisor.oem.rows import Signal
 from advisor.simulators.protocol import Condition, Inputs, Replay
 
 _RATE_S = 0.02
@@ -100,7 +101,7 @@ def read_from(flight: PreparedManeuver, grid: FloatArray, channels: tuple[str, .
     stamps = np.arange(0.0, t[-1], _RATE_S)
     names = ("alpha", "q", "a_z", "theta")
     outputs = {
-        name: Measured(stamps, np.interp(stamps, t, grid[c]))
+        name: Signal(stamps, np.interp(stamps, t, grid[c]))
         for c, name in enumerate(names)
         if name in channels
     }

@@ -5,7 +5,7 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.diagnose import diagnose
-from advisor.gap.fitting.normal import solved_within
+from advisor.oem.arrow import solved_within
 from tests.gap.generator import Setup, fly
 
 pytestmark = pytest.mark.study

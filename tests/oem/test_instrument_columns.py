@@ -100,7 +100,7 @@ def test_the_column_of_a_step_is_the_slope_of_the_outputs_by_its_time(lag_s):
     for m, j in product(range(2), range(2)):
         ends = []
         for sign in (1.0, -1.0):
-            moved = [Edges(e.interval, e.time.copy()) for e in edges]
+            moved = [Edges(e.interval, e.stamps, e.time.copy()) for e in edges]
             moved[m].time[j] += sign * WIDTH_S
             ends.append(outputs(_edged(plain, moved, records)))
         slope = (ends[0] - ends[1]) / (2.0 * WIDTH_S)

@@ -13,12 +13,12 @@ import numpy as np
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.fit import EffectFit, above_floor
 from advisor.gap.fitting.linear import shared_steps, shifted_points
-from advisor.gap.fitting.normal import solved, solved_within
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint, counts, row_weights
 from advisor.gap.fitting.step import bounds_of, factor_of
 from advisor.gap.records.flights import PreparedManeuver
 from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.gap.simulator.reading import differences
+from advisor.oem.arrow import solved, solved_within
 
 _INDIFFERENT = 1e-9
 """Relative information below which a direction of the shared parameters is not moved in a quick fit."""

@@ -12,10 +12,10 @@ from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.holdout import HeldOut, held_out
 from advisor.gap.fitting.linear import Linear, linearise
-from advisor.gap.fitting.normal import solved_within
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.records.flights import PreparedManeuver
 from advisor.gap.simulator.layout import DERIVATIVES, NUISANCES, SPEED
+from advisor.oem.arrow import solved_within
 
 _ROUNDS = 4
 """Number of Gauss-Newton steps from each start. The outputs are nearly linear in the nuisance parameters."""

@@ -68,11 +68,11 @@ def _regressed(flights: PreparedManeuvers, late: Late) -> tuple[FloatArray, floa
 def _system(f: PreparedManeuver, late: Late) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Return regressors and rates of the moment equation and of the force equation, in integral form."""
     t = np.arange(0.0, f.duration_s, _STEP_S)
-    q = np.interp(t + late.q_s, f.outputs["q"].t, f.outputs["q"].y)
+    q = f.outputs["q"].at(t + late.q_s)
     d = np.interp(t - late.surface_s, f.t_u, f.u) - f.u_trim
     a = np.zeros(len(t))
     if "alpha" in f.outputs:
-        a = np.interp(t + late.alpha_s, f.outputs["alpha"].t, f.outputs["alpha"].y) - f.alpha_trim
+        a = f.outputs["alpha"].at(t + late.alpha_s) - f.alpha_trim
 
     def windowed(y: FloatArray) -> FloatArray:
         total = integrated(t, y)

@@ -10,9 +10,9 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.linear import Linear
-from advisor.gap.fitting.normal import factored, solved, solved_within
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.simulator.layout import DERIVATIVES
+from advisor.oem.arrow import factored, solved, solved_within
 
 _FASTEST_GROWTH = 5.0
 """Largest growth rate of an unstable motion, 1/s: the amplitude doubles in 0.14 s, as on the most unstable

@@ -9,7 +9,7 @@ from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.prior import ERROR_IF_RIGHT, Distance, distance_of, log_prior, prior_precision
 from advisor.gap.fitting.problem import EffectProblem, counts
 from advisor.gap.records.floor import effective_sample_size
-from advisor.oem.inverses import inverse_of
+from advisor.oem.arrow import inverse_of
 
 CLEAR_GAP = 0.5
 """Gap that fitted derivatives remove from the file's, above which a smaller distance is enough to reject the

@@ -14,7 +14,8 @@ import numpy as np
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX, SPEED, short_period
-from advisor.oem.innovations import ALPHA, AirModel, Gains, gains_of
+from advisor.oem.innovations import ALPHA, AirModel, gains_of
+from advisor.oem.kalman import Gains
 
 
 class Whitening(Protocol):

@@ -14,7 +14,6 @@ import numpy as np
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.linear import pulse_response
-from advisor.gap.fitting.normal import solved
 from advisor.gap.fitting.problem import EffectProblem, row_weights
 from advisor.gap.fitting.step import factor
 from advisor.gap.records.flights import PreparedManeuver
@@ -26,6 +25,7 @@ from advisor.gap.simulator.layout import (
     INDEX,
     OUTPUTS,
 )
+from advisor.oem.arrow import solved
 
 KNOTS_S = 0.1
 MEMORY_S = 0.6

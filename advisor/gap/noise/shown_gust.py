@@ -45,7 +45,7 @@ def _beyond_motion(flight: PreparedManeuver) -> FloatArray:
     t, alpha = flight.outputs["alpha"].t, flight.outputs["alpha"].y
     if not all(name in flight.outputs for name in _NEEDED):
         return alpha
-    q, a_z, theta = (np.interp(t, flight.outputs[n].t, flight.outputs[n].y) for n in _NEEDED[1:])
+    q, a_z, theta = (flight.outputs[n].at(t) for n in _NEEDED[1:])
     middles = (np.arange(flight.n) + 0.5) * flight.h
     a_x, bank, speed = (np.interp(t, middles, flight.slow[row]) for row in (A_X, BANK, SPEED))
     beyond = alpha - integrated(t, q + path_turning(a_x, a_z, theta, alpha, bank) / speed)

@@ -4,12 +4,11 @@ import numpy as np
 
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import FloatArray
+from advisor.oem.lost_input import LOST_INTERVAL
 
 _STEEP, _SHORT_S = 0.15, 0.02
 """Least jump between two stamps that counts as an edge, as a share of the command's range. The share holds
 for intervals of the second number, s; for others the product of jump and interval is compared."""
-_LOST = 1.5
-"""Interval between two stamps, in usual intervals, above which a stamp counts as lost."""
 _HOLE_S, _HOLE = 0.15, 3.5
 """Least length of a hole in the command's log, in s, and in usual intervals. A longer of the two counts."""
 _PULSE_S = 0.25
@@ -60,4 +59,4 @@ def _lost(t: FloatArray) -> FloatArray:
     1,)."""
     interval = np.diff(t)
     usual = float(np.median(interval))
-    return np.where(interval > _LOST * usual, interval - usual, 0.0)
+    return np.where(interval > LOST_INTERVAL * usual, interval - usual, 0.0)

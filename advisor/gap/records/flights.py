@@ -9,6 +9,7 @@ import numpy as np
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.simulator.layout import ALPHA_TRIM, REFERENCE, SCALED, SPEED
+from advisor.oem.rows import Signal
 
 SPEED_CHANGE = 0.03
 """Relative change of air speed, over all manoeuvres, above which its effect is examined."""
@@ -17,15 +18,6 @@ _QUIET_AFTER = 0.6
 _QUIET_AFTER_S = 1.5
 """Time in s after the last step before which the motion never counts as decayed. A mode change may cut the
 free response short."""
-
-
-@dataclass(frozen=True, slots=True)
-class Measured:
-    """Measurements of one output channel in one manoeuvre."""
-
-    t: FloatArray
-    """Shape (n,). Seconds since the start of the record."""
-    y: FloatArray
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +43,8 @@ class PreparedManeuver:
     φ."""
     trim: FloatArray
     """Shape (4,): α and θ at the start, reference speed, and 1 where derivatives scale with speed."""
-    outputs: Mapping[str, Measured]
+    outputs: Mapping[str, Signal]
+    """Measurements of each output channel, in seconds since the start of the record."""
     edges: FloatArray
     """Shape (m, 4). Edges of the command: middle of the interval between stamps (s), jump times length (rad
     s), length (s), lost part (s)."""

@@ -17,7 +17,7 @@ from advisor.gap.records.airspeed import (
     speed_error_factors,
 )
 from advisor.gap.records.edges import edges_of, held_from
-from advisor.gap.records.flights import Measured, PreparedManeuver, PreparedManeuvers
+from advisor.gap.records.flights import PreparedManeuver, PreparedManeuvers
 from advisor.gap.records.grid import STEP_S, smooth
 from advisor.gap.records.provenance import is_estimate
 from advisor.gap.records.smoothness import is_filtered, is_rough, is_smoothed, white_part
@@ -25,6 +25,7 @@ from advisor.gap.records.unmeasured_speed import speed_without_instrument, speed
 from advisor.gap.records.usable import outputs_of, recorded, usable_of
 from advisor.gap.simulator.layout import OUTPUTS, SLOW, SPEED, THETA_FROM, THRUST
 from advisor.oem.place import ASSUMED_M_S
+from advisor.oem.rows import Signal
 
 _CHORD_OF_1_KG_M = 0.15
 """Chord of an aircraft of 1 kg, m. Chords grow with the cube root of the mass. A glider of 3.1 kg has 0.17 m,
@@ -199,17 +200,17 @@ def _ready(m: Maneuver, reference: float, level: float | None, true_over_read: f
     )  # fmt: skip
 
 
-def _trimmed_alpha(m: Maneuver, outputs: Mapping[str, Measured], start: float, first: float) -> float:
+def _trimmed_alpha(m: Maneuver, outputs: Mapping[str, Signal], start: float, first: float) -> float:
     """Return the angle of attack before the first step, rad: measured, or by the motion; 0 without any."""
     if "alpha" in outputs:
         return _at_start(outputs["alpha"], first)
     alpha = m.channels.get("alpha")
     if alpha is None or len(alpha) == 0:
         return 0.0
-    return _at_start(Measured(alpha.t - start, alpha.y), first)
+    return _at_start(Signal(alpha.t - start, alpha.y), first)
 
 
-def _at_start(out: Measured, first_step_s: float) -> float:
+def _at_start(out: Signal, first_step_s: float) -> float:
     """Return the mean of an output before the first step, or over its first 0.1 s where that is longer."""
     return float(np.mean(out.y[out.t <= max(first_step_s, out.t[0] + 0.1)]))
 

@@ -8,8 +8,8 @@ from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.renewal import renewed
 from advisor.gap.records.edges import step_unseen
-from advisor.gap.records.flights import Measured
 from advisor.gap.records.unmeasured_alpha import is_known_by_motion, outputs_with
+from advisor.oem.rows import Signal
 
 LEAST_SAMPLES = 15
 """Least number of samples of a channel in a manoeuvre. A derived α at 8 Hz has as many in the shortest
@@ -59,7 +59,7 @@ def recorded(m: Maneuver) -> tuple[float, float]:
     return max(float(t[0]) for t in both), min(float(t[-1]) for t in both)
 
 
-def outputs_of(m: Maneuver) -> dict[str, Measured]:
+def outputs_of(m: Maneuver) -> dict[str, Signal]:
     """Return the compared channels with their renewed samples, in seconds since the manoeuvre's beginning."""
     start, end = recorded(m)
     outputs = {}
@@ -70,7 +70,7 @@ def outputs_of(m: Maneuver) -> dict[str, Measured]:
         cut = channel.cut(start, end)
         t, y = condensed(*renewed(cut.t - start - cut.delay_s, cut.y, _LEAST_RENEWED))
         if len(t) >= LEAST_SAMPLES:
-            outputs[name] = Measured(t, y)
+            outputs[name] = Signal(t, y)
     return outputs
 
 

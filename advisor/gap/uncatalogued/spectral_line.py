@@ -14,11 +14,11 @@ import numpy as np
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.linear import pulse_response
-from advisor.gap.fitting.normal import solved
 from advisor.gap.fitting.problem import EffectProblem, row_weights
 from advisor.gap.fitting.step import factor
 from advisor.gap.noise.probes import DYNAMIC, SENSOR_CHANNELS, Probe
 from advisor.gap.simulator.layout import OUTPUTS
+from advisor.oem.arrow import solved
 
 _SWINGS = 5.0
 """Least number of periods in a record. Slower motion is a drift, or the aircraft's own."""

@@ -9,12 +9,12 @@ import numpy as np
 from advisor.gap.evidence.found import Evidence
 from advisor.gap.fitting.holdout import HeldOut, folds_for, held_out, hold_out, mean_squares
 from advisor.gap.fitting.problem import EffectProblem
-from advisor.gap.records.flights import Measured
 from advisor.gap.search.acceptance import JudgedAddition
 from advisor.gap.search.air import MovingAir
 from advisor.gap.search.speed import at_constant_speed
 from advisor.gap.search.stage import Stage
 from advisor.gap.search.waterfall import as_measured
+from advisor.oem.rows import Signal
 
 
 def on_holdout(e: Evidence, holdout: int | None) -> tuple[Evidence, list[int]]:
@@ -78,7 +78,7 @@ def as_read(problem: EffectProblem, offset_rad: float) -> EffectProblem:
     flights = tuple(
         replace(
             f,
-            outputs={**f.outputs, "alpha": Measured(f.outputs["alpha"].t, f.outputs["alpha"].y + offset_rad)},
+            outputs={**f.outputs, "alpha": Signal(f.outputs["alpha"].t, f.outputs["alpha"].y + offset_rad)},
         )
         for f in problem.flights.flights
     )
