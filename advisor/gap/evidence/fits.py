@@ -11,47 +11,35 @@ WEIGHTY = 20.0
 
 def of_fit(m: Measured, effect: str) -> Values:
     """Return the full fit of an effect, and its part in the final model."""
-    values: Values = {}
-    if (fit := m.fitted.get(effect, m.added.get(effect))) is not None:
-        values = _fitted(m, fit)
-    if (added := m.added.get(effect)) is not None:
-        values |= {"model_gain": added.gain, "model_share": _share(m, effect)}
-    return values
+    fit = m.fitted.get(effect, m.added.get(effect))
+    return {} if fit is None else _fitted(m, fit) | _of_model(m, effect)
 
 
 def of_set(m: Measured, effects: tuple[str, str]) -> Values:
     """Return the joint fit of a set, and the part of its effects in the final model."""
-    inside = [name for name in effects if name in m.added]
-    part = {
-        "model_gain": sum(m.added[name].gain for name in inside),
-        "model_share": sum(_share(m, name) for name in inside),
-    }
-    return _fitted(m, m.sets[effects]) | part
+    return _fitted(m, m.sets[effects]) | _of_model(m, *effects)
 
 
-def _share(m: Measured, effect: str) -> float:
-    """Return the share of an effect in what all effects of the final model remove."""
-    total = sum(max(one.removed, 1e-6) for one in m.added.values())
-    return max(m.added[effect].removed, 1e-6) / total
+def _of_model(m: Measured, *effects: str) -> Values:
+    """Return the gain of effects of the final model, and their share in what all of its effects remove."""
+    if not (inside := [m.added[name] for name in effects if name in m.added]):
+        return {}
+    removed, total = (sum(max(one.removed, 1e-6) for one in some) for some in (inside, m.added.values()))
+    return {"model_gain": sum(one.gain for one in inside), "model_share": removed / total}
 
 
 def _fitted(m: Measured, fit: FullFit) -> Values:
     gain, error = _held_out_gain(m, fit)
     misfit = np.maximum(fit.power - 1.0, 0.0)
     best = max([*(other.gain for other in (*m.fitted.values(), *m.sets.values())), WEIGHTY])
-    return {
-        "fit_gain": fit.gain,
-        "fit_share": max(fit.gain, 0.0) / best,
-        "heldout_gain": gain,
-        "heldout_sigmas": gain / max(error, 1e-9),
-        "support": float(np.clip(fit.support, -1e3, 1e3)),
-        "gap_removed": float(np.clip(1.0 - fit.gap / m.base_gap, -1.0, 1.0)) if m.base_gap > 0 else 0.0,
-        "change": fit.change,
-        "size_sigmas": fit.sigmas,
-        "size": fit.size,
-        "at_bound": float(fit.at_bound),
+    removed = float(np.clip(1.0 - fit.gap / m.base_gap, -1.0, 1.0)) if m.base_gap > 0 else 0.0
+    return {f"misfit_{name}": float(x) for name, x in zip(m.channels, misfit, strict=True)} | {
+        "fit_gain": fit.gain, "fit_share": max(fit.gain, 0.0) / best,
+        "heldout_gain": gain, "heldout_sigmas": gain / max(error, 1e-9),
+        "support": float(np.clip(fit.support, -1e3, 1e3)), "gap_removed": removed, "change": fit.change,
+        "size_sigmas": fit.sigmas, "size": fit.size, "at_bound": float(fit.at_bound),
         "misfit": float(np.max(misfit)),
-    } | {f"misfit_{name}": float(x) for name, x in zip(m.channels, misfit, strict=True)}
+    }  # fmt: skip
 
 
 def _held_out_gain(m: Measured, fit: FullFit) -> tuple[float, float]:

@@ -58,8 +58,8 @@ def alpha_bias_cause(
 
 
 def air_cause(e: Evidence) -> Cause | None:
-    """Return turbulence or a gust as a cause, with the strength of its course; None in the air of any
-    flight, and where the aircraft file has air of that strength."""
+    """Return turbulence or a gust as a cause; None in the air of any flight, and where the aircraft file has
+    air of that strength."""
     cause = moving_air_of(e)
     if cause is None or cause.effect not in e.known_air:
         return cause
@@ -69,7 +69,7 @@ def air_cause(e: Evidence) -> Cause | None:
 
 
 def moving_air_of(e: Evidence) -> Cause | None:
-    """Return turbulence or a gust as a cause, whatever the file has; None in the air of any flight."""
+    """Return turbulence or a gust with the strength of its course; None in the air of any flight."""
     if e.air is None or e.air.is_natural:
         return None
     reference = e.problem.flights.reference_m_s
