@@ -20,6 +20,7 @@ from advisor.analysis.refused import without_refused
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.diagnose import diagnose
 from advisor.gap.result import Diagnosis
+from advisor.gap.verdict.as_judged import answered
 from advisor.simulators.compare import compare
 from advisor.words.problems import ConfigurationError, UnusableInputError
 
@@ -36,7 +37,7 @@ class Answer:
     name: str
     """First cause, or the verdict where there is none."""
     probability: float | None
-    """Probability of the first cause; None for a verdict without one."""
+    """Probability of the answer; None where a diagnosis states none."""
 
     def __str__(self) -> str:
         return self.name if self.probability is None else f"{self.name} P {self.probability:.2f}"
@@ -48,11 +49,10 @@ class Answer:
 
 
 def answer_of(diagnosis: Diagnosis) -> Answer:
-    """Return the first cause of a diagnosis with its probability, or else its verdict."""
-    first = next((cause for cause in diagnosis.causes if cause.present), None)
-    if diagnosis.verdict != "effect" or first is None:
-        return Answer(diagnosis.verdict, None)
-    return Answer(first.effect, first.probability)
+    """Return the first cause of a diagnosis, or else its verdict, with its probability."""
+    first = answered(diagnosis, [])
+    stated = [one.probability for one in diagnosis.evidence if one.alternative.first == first]
+    return Answer(first.name, sum(stated) if stated else None)
 
 
 def agree(one: Answer, other: Answer) -> bool:
