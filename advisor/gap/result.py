@@ -277,6 +277,8 @@ class Diagnosis:
     """The answer against its strongest rival, in nats that add up to the log odds."""
     rival: str = ""
     """Label of that rival; empty without ``why``."""
+    doubt: str = ""
+    """Sentence on alternatives that the evidence cannot exclude; empty where the answer is sure."""
     although_refused: tuple[int, ...] = ()
     """Numbers of the manoeuvres in use that ``advisor analyze`` refuses by their data alone."""
     true_over_read: float = 1.0

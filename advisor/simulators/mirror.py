@@ -61,7 +61,7 @@ class Mirrored:
         return replace(
             diagnosis, verdict="effect", sentence=sentence, where=where, causes=self.causes, effects={},
             waterfall=((first.effect, self.after),), shrink=None, in_simulator=simulated,
-            probabilities=_with(diagnosis.probabilities, first), why=(), rival="",
+            probabilities=_with(diagnosis.probabilities, first), why=(), rival="", doubt="",
         )  # fmt: skip
 
 

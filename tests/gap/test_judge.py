@@ -20,6 +20,7 @@ from advisor.gap.judge.prior import FIELD, FieldPrior, field_prior
 from advisor.gap.judge.weights import LOGIT
 from advisor.gap.judge.why import MOST_LINES
 from advisor.gap.verdict.as_judged import answered, as_judged, doubtful
+from advisor.gap.verdict.limits import limits_of
 from advisor.words.problems import ConfigurationError
 from benchmarks.judge.fit import slots
 from tests.gap.test_report_screen import diagnosis
@@ -219,6 +220,16 @@ def test_two_alternatives_that_share_the_probability_are_both_told():
     said = doubtful([(LAG, 0.6), (DELAY, 0.35)], (LAG, 0.6))
     assert said == "The evidence does not decide between actuator lag (60 %) and transport delay (35 %)."
     assert doubtful([(LAG, 0.95)], (LAG, 0.95)) == ""
+
+
+def test_the_doubt_stands_among_the_limits_next_to_the_answer_and_in_json():
+    rows = [Row(a, {"size": s}) for a, s in ((DELAY, 3.0), (LAG, 2.7), (NONE, 0.0))]
+    told = posterior(rows, EVEN, Logit({"effect": {"size": 1.0}}, {"none": -9.0}, EVEN))
+    found = as_judged(diagnosis(), told)
+    said = "The evidence does not decide between transport delay (52 %) and actuator lag (48 %)."
+    assert next(limits_of(found)) == said
+    assert gap_document(found)["limits"][0] == said
+    assert said not in found.notes
 
 
 def test_an_answer_that_the_evidence_contradicts_says_so():

@@ -16,7 +16,7 @@ MOST_CAUSES = 5
 
 
 def as_judged(diagnosis: Diagnosis, told: Posterior) -> Diagnosis:
-    """Return the diagnosis with probabilities, evidence and reasons; a doubtful answer says so in a note."""
+    """Return the diagnosis with probabilities, evidence, reasons, and the doubt that remains."""
     answer = answered(diagnosis, [row.alternative for row in told.rows])
     reasons = told.why(answer)
     doubt = doubtful(told.credible, (answer, told.of(answer)))
@@ -33,7 +33,7 @@ def as_judged(diagnosis: Diagnosis, told: Posterior) -> Diagnosis:
         evidence=told.evidence,
         why=reasons,
         rival=told.rival_of(answer).label if reasons else "",
-        notes=(*((doubt,) if doubt else ()), *diagnosis.notes),
+        doubt=doubt,
     )
 
 
