@@ -39,8 +39,8 @@ from advisor.gap.uncatalogued.sustained_oscillation import sustained_oscillation
 from advisor.gap.uncatalogued.unexplained import Unexplained, located, unexplained_residual
 
 _HARDLY_DAMPED = 0.02
-"""Damping ratio at which the search for a structural mode starts, of bare metal or a boom. A start far from
-the true value only costs iterations."""
+"""Numerical: damping ratio at which the search for a structural mode starts, of bare metal or a boom. A start
+far from the true value only costs iterations."""
 
 
 def explain(problem: EffectProblem, baseline: EffectFit, aircraft: Aircraft, progress: Progress) -> Evidence:

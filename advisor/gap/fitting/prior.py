@@ -16,20 +16,22 @@ from advisor.model.response import SHARED
 from advisor.oem.prior import precision_without_alpha
 
 ERROR_IF_RIGHT = 0.03
-"""Relative standard deviation of derivatives that are right: they are linearised, at a nearby speed."""
+"""Prior: relative standard deviation of derivatives that are right: they are linearised, at a nearby
+speed."""
 ERROR_IF_WRONG = 0.3
-"""Relative standard deviation of derivatives that are wrong."""
+"""Prior: relative standard deviation of derivatives that are wrong."""
 ERROR_IF_FIXED = 0.003
-"""Relative standard deviation of derivatives that are fixed at the file's, in the search for another
+"""Prior: relative standard deviation of derivatives that are fixed at the file's, in the search for another
 explanation."""
 _LEAST = 0.1
-"""Least size of a derivative for a relative error, 1/s or 1/s². A smaller derivative counts as zero."""
+"""Prior: least size of a derivative for a relative error, 1/s or 1/s². A smaller derivative counts as
+zero."""
 _CHI_SQUARE_999, _CHI_SQUARE_500 = 22.46, 5.35
 """Limits of chi square with six degrees of freedom, for probabilities of 99.9 % and 50 %."""
 
 _LOG_ODDS_OTHER_STATED = -4.0
-"""Log prior odds of an arm that the aircraft file states, relative to an equivalent arm that it leaves open.
-They also hold for a vane's arm where α is an estimate."""
+"""Prior: log prior odds of an arm that the aircraft file states, relative to an equivalent arm that it leaves
+open. They also hold for a vane's arm where α is an estimate."""
 
 
 def derivative_scale(prior: FloatArray) -> FloatArray:

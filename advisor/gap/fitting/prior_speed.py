@@ -16,9 +16,10 @@ from advisor.model.short_period import SPEED_EXPONENTS
 _POWERS = np.array([float(SPEED_EXPONENTS[name]) for name in DERIVATIVES])
 """Power of the air speed with which each derivative grows."""
 _FARTHEST = 0.06
-"""Largest relative distance of the speed from the mean. Derivatives that hold at no speed within it are wrong
-ones."""
+"""Prior: largest relative distance of the speed from the mean. Derivatives that hold at no speed within it
+are wrong ones."""
 _TRIED = 25
+"""Numerical: number of speeds that are tried."""
 
 
 def prior_speed(problem: EffectProblem, baseline: EffectFit) -> float | None:

@@ -27,14 +27,14 @@ CONFUSED_AT = 0.95
 """Cosine between two signatures above which one effect passes for the other."""
 _LISTED_AT = 0.8
 _MOST_CONFUSIONS = 3
-"""Cosine above which a similar effect is listed, and the most effects listed."""
+"""Words: cosine above which a similar effect is listed, and the most effects listed."""
 _DETECTED_AT = 5.0
 """Number of standard deviations of a size that is found in nearly every flight, instead of in half of
 them."""
 _GROWTH = 3.0
 _CLOSE = 0.02
-"""Factor on a size without a signature, and relative difference of two sizes in a row at which the refinement
-ends."""
+"""Numerical: factor on a size without a signature, and relative difference of two sizes in a row at which the
+refinement ends."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -29,11 +29,11 @@ from advisor.gap.search.indistinguishable import way_to_distinguish
 from advisor.gap.simulator.layout import DISTURB_AIR, REFERENCE, SPEED
 
 CLIMB_RATE_STD_M_S = 0.1
-"""Noise assumed for an unmeasured climb rate, m/s, with one independent reading per second."""
+"""Prior: noise assumed for an unmeasured climb rate, m/s, with one independent reading per second."""
 _ANGLES = np.geomspace(1e-5, 0.5, 200)
-"""Gust angles that are tried, rad; a filter assumes one of them."""
+"""Numerical: gust angles that are tried, rad; a filter assumes one of them."""
 _SPEED_STEP = 0.01
-"""Relative change of speed with which the signature of the air speed is evaluated."""
+"""Numerical: relative change of speed with which the signature of the air speed is evaluated."""
 
 
 @dataclass(frozen=True)

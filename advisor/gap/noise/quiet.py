@@ -25,7 +25,7 @@ from advisor.oem.innovations import AirModel
 from advisor.oem.turbulence import Rows, cost_of, find_turbulence, spread_of
 
 _LEAST_SAMPLES = 50
-"""Least number of a channel's samples in quiet stretches for an estimate of its noise."""
+"""Record: least number of a channel's samples in quiet stretches for an estimate of its noise."""
 _LONE = 8.0
 """Ratio of powers above which a gust may be the cause: a stretch over the median of all, or a manoeuvre over
 the quietest quarter."""
@@ -35,11 +35,12 @@ _FAINT, _FAINT_MARGIN = 3.0, 1.2
 """Power of a less loud manoeuvre over the quietest quarter, and the higher ratio of likelihoods that a gust
 there needs. A change of mass looks like moving air too."""
 _NO_LESS = 0.98
-"""Least weight of a sample with which its stamp counts as exact."""
+"""Numerical: least weight of a sample with which its stamp counts as exact."""
 _LEAST_GAIN = 15.0
 """Log likelihood by which coloured noise or moving air must beat white noise before a filter is used."""
 _NONE_OF_PEAK = 1e-9
-"""White noise over the channel's peak that stands for no noise at all; avoids a division by zero."""
+"""Numerical: white noise over the channel's peak that stands for no noise at all; avoids a division by
+zero."""
 
 
 def whitening_of(problem: EffectProblem, fitted: EffectFit, first_look: bool = False) -> Whitening | None:

@@ -14,19 +14,19 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.motion import bank_at, integrated, path_turning, speed_rate_at
 
 _BLOCK_S = 1.0
-"""Length in s of the blocks over which errors of the motion are fully correlated, such as a gust or the rest
-of an offset."""
+"""Prior: length in s of the blocks over which errors of the motion are fully correlated: gusts, or the rest of
+an offset."""
 _LARGER = 3.0
-"""Factor by which errors may exceed the scatter between blocks: α sees gusts, the integral of the force does
-not."""
+"""Prior: factor by which errors may exceed the scatter between blocks: α sees gusts, the integral of the
+force does not."""
 _SPEEDS_DIFFER = 6.0
 """Scatter of the manoeuvres' speeds over the error from blocks, above which the speeds differ."""
 _LEAST_DIFFERENCE = 0.02
 """Least relative scatter of the manoeuvres' speeds that counts as a difference."""
 _FLOWN = 0.05
-"""Prior standard deviation of a manoeuvre's speed about the intended speed, relative."""
+"""Prior: prior standard deviation of a manoeuvre's speed about the intended speed, relative."""
 _LEAST_STD = 0.01
-"""Least standard deviation of a speed from the motion, relative."""
+"""Prior: least standard deviation of a speed from the motion, relative."""
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,8 @@ from advisor.oem.turbulence import Turbulence, find_turbulence
 AIR_GAIN = 40.0
 """Least gain in log likelihood of moving air over coloured instruments."""
 AIR_MANEUVERS = 5
-"""Number of manoeuvres, the loudest ones, in which moving air is sought: enough to recognise turbulence."""
+"""Numerical: number of manoeuvres, the loudest ones, in which moving air is sought: enough to recognise
+turbulence."""
 
 LEAST_GUST_ANGLE = 0.001
 """Least standard deviation of the gust angle, rad, for which the air counts as moving."""
@@ -38,9 +39,10 @@ _STANDS_OUT = 4.0
 equal colour in all manoeuvres does not explain that one."""
 
 _TRIED = 6
-"""Number of prior sizes of a gust that are tried, from that of turbulence up to any."""
+"""Numerical: number of prior sizes of a gust that are tried, from that of turbulence up to any."""
 _AS_MUCH = 0.995
-"""Least share of the residual that a gentler course must explain, relative to the strongest one."""
+"""Numerical: least share of the residual that a gentler course must explain, relative to the strongest
+one."""
 
 
 @dataclass(frozen=True)

@@ -12,10 +12,10 @@ from advisor.gap.simulator.layout import HEIGHT, SPEED, THROTTLE, THRUST
 from advisor.oem.recursion import accumulated
 
 _ENGINES_S = (0.4, 1.5)
-"""Lags of engines in s; engines with a lag between them are nearly mixtures of the two."""
+"""Prior: lags of engines in s; engines with a lag between them are nearly mixtures of the two."""
 _SMOOTHED_S = 1.0
-"""Length in s of the average over accelerations. Thrust does not vary faster; noise of accelerometers
-does."""
+"""Numerical: length in s of the average over accelerations. Thrust does not vary faster; noise of
+accelerometers does."""
 
 
 def energy_swing(flights: PreparedManeuvers) -> float | None:

@@ -18,21 +18,22 @@ from advisor.gap.search.screen import Screen, Screened, likeliest_first
 from advisor.gap.simulator.layout import DERIVATIVES
 
 _PROMISE = 0.7
-"""Share of the least gain that the screening must promise before a full fit."""
+"""Numerical: share of the least gain that the screening must promise before a full fit."""
 _ITERATIONS = 8
 _TO_THE_END = 25
-"""Most iterations of the best candidate's fit; other candidates get ``_ITERATIONS``."""
+"""Numerical: most iterations of the best candidate's fit; other candidates get ``_ITERATIONS``."""
 _FITS = 5
-"""Most candidates with a full fit after the screening."""
+"""Numerical: most candidates with a full fit after the screening."""
 _RIVAL = 0.3
-"""Least promise of a candidate for a full fit, as a share of the best promise."""
+"""Numerical: least promise of a candidate for a full fit, as a share of the best promise."""
 _LACKING = 0.2
-"""Share of the best decrease of the cost that a candidate may lack and still be fitted to the end."""
+"""Numerical: share of the best decrease of the cost that a candidate may lack and still be fitted to the
+end."""
 _GROSS = 300.0
-"""Promised log likelihood above which the right model is far from the range of the screening."""
+"""Numerical: promised log likelihood above which the right model is far from the range of the screening."""
 _GROSS_FITS = 8
 _GROSS_RIVAL = 0.05
-"""Most full fits in that case, and the least share of the best promise that earns one."""
+"""Numerical: most full fits in that case, and the least share of the best promise that earns one."""
 _TELLS = 3.0
 """Least difference of the prior terms for which one effect is preferred to another with equal motion."""
 

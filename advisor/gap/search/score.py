@@ -37,7 +37,7 @@ _OF_PEAK = 0.003
 TIMES = frozenset({"delay_s", "lag_s", "skew_s"})
 """Parameters that are times."""
 TIME_ERROR_S = 0.0006
-"""Error of a delay, lag or skew in s, for the simulation's grid and the resolution of the stamps."""
+"""Prior: error of a delay, lag or skew in s, for the simulation's grid and the resolution of the stamps."""
 _ANY_TIME = 1.5
 """Factor on the physical minimum for a step that may lie between any two manoeuvres."""
 _JITTERS = 3.0

@@ -30,9 +30,10 @@ from advisor.gap.uncatalogued.candidate_laws import MUST_LEAVE_LITTLE, RINGING, 
 from advisor.gap.uncatalogued.unexplained import Unexplained
 
 _FITTED_SHARE = 0.2
-"""Least share of the likeliest law's gain in the screening for a full fit of another."""
+"""Numerical: least share of the likeliest law's gain in the screening for a full fit of another."""
 _OUT_OF_REACH = 200.0
-"""Cost above that of the best law, or of all effects together, at which the fit of a law is given up."""
+"""Numerical: cost above that of the best law, or of all effects together, at which the fit of a law is given
+up."""
 _LIKELIER = 10.0
 """Least gain in log likelihood of a law over all effects together."""
 _LEAVES = 0.3
@@ -52,8 +53,8 @@ certain gain is enough. They must also change the outputs by that share of the l
 has side effects."""
 
 _MISSING = 0.03
-"""Residual of all effects beyond noise, as a share of some channel's peak, above which a ringing servo is
-tried from every start."""
+"""Numerical: residual of all effects beyond noise, as a share of some channel's peak, above which a ringing
+servo is tried from every start."""
 
 
 @dataclass(frozen=True)

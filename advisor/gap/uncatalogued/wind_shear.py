@@ -19,14 +19,14 @@ from advisor.flight.signals.motion import bank_at, gravity_in_plane, integrated,
 
 _NEEDED = ("airspeed", "a_x", "a_z", "theta", "alpha")
 _LEAST_SAMPLES = 10
-"""Least number of air speed samples in a manoeuvre beyond the parabola's three."""
+"""Record: least number of air speed samples in a manoeuvre beyond the parabola's three."""
 _LEAST_PER_S = 0.08
 """Least gradient of the wind, 1/s, that matters: a knot in six metres."""
 _MOST_PER_S = 0.5
 """Largest plausible gradient of the wind, 1/s. Wind shear that airports call severe begins at 0.2 1/s (ICAO
 Doc 9817)."""
 _LEAST_MANEUVERS = 4
-"""Least number of manoeuvres that must agree on a gradient."""
+"""Record: least number of manoeuvres that must agree on a gradient."""
 _CHANCE = 1e-3
 """Largest probability of the gradient by chance, from the scatter between the manoeuvres (Student's t)."""
 _CLEAR_CHANCE = 5e-3
@@ -53,11 +53,11 @@ noise, in the median manoeuvre."""
 _ALONE = 1e-3
 """Least share of the squared height changes that all manoeuvres but one must hold."""
 _LATE_S = (0.0, 0.1, 0.2, 0.3, 0.45, 0.6, 0.8, 1.0)
-"""Delays of the air speed that are tried, s: a long line to the tube, and a filter."""
+"""Numerical: delays of the air speed that are tried, s: a long line to the tube, and a filter."""
 _HEIGHTS = 14
 _THINNEST_M = 2.0
-"""Least thickness of a layer, m. A layer is sought between any two of ``_HEIGHTS`` quantiles of the
-height."""
+"""Numerical: least thickness of a layer, m. A layer is sought between any two of ``_HEIGHTS`` quantiles of
+the height."""
 
 
 @dataclass(frozen=True)
