@@ -32,14 +32,14 @@ EFFECTS = (
 """Folders that describe effects, by their table and their equations; and the weights of ``make judge``."""
 NAMES = frozenset(CATALOGUE) | frozenset(BLOCKS_OF_EFFECTS) | {"attitude_sensor"}
 LIMITS = {
-    "lines of code": 7060,
-    "constants": 286,
-    "constants that decide": 130,
-    "names compared": 16,
+    "lines of code": 6970,
+    "constants": 213,
+    "constants that decide": 54,
+    "names compared": 15,
     "complex functions": 0,
 }
 """Upper bound of each count. Lines have 2 % to spare, so that a mend needs no cut elsewhere. The evidence and
-the judge brought 500 of them. The ranges of nuisance parameters brought six constants."""
+the judge brought 500 of them."""
 MOST_COMPLEX = 15
 _LAYOUT = frozenset(
     {tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT, tokenize.ENDMARKER}

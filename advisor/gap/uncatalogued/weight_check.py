@@ -13,6 +13,7 @@ import numpy as np
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import FloatArray
+from advisor.gap.decision import SIGMAS
 from advisor.words.quantiles import NORMAL_95
 
 _NEEDED = ("a_z", "alpha", "theta")
@@ -24,9 +25,6 @@ _ENDS_S = 0.3
 """Record: length in s of the average over each end of an angle."""
 _LEAST = 0.15
 """Least departure of the share from 1 that no offset of an accelerometer explains."""
-SIGMAS = 5.0
-"""Least number of standard errors of a difference that is reported, here from the scatter between
-manoeuvres."""
 
 
 @dataclass(frozen=True)
