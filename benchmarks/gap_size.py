@@ -3,10 +3,11 @@
     python -m benchmarks.gap_size
 
 Counted over ``advisor/gap`` are lines of code, without docstrings, comments and blank lines, so that an
-explanation costs nothing; constants, which are names of numbers; comparisons with the name of an effect or a
-block; and functions of a cyclomatic complexity above 15 (McCabe 1976). A new effect does not count: the
-folders that describe effects, ``EFFECTS``, are left out of all counts but the last. ``make check`` and
-``.ci/run`` fail above a limit.
+explanation costs nothing; constants, which are names of numbers; those among them that decide, by the kind in
+their docstring (``benchmarks.pages.constants``); comparisons with the name of an effect or a block; and
+functions of a cyclomatic complexity above 15 (McCabe 1976). A new effect does not count: the folders that
+describe effects, ``EFFECTS``, are left out of all counts but the last. ``make check`` and ``.ci/run`` fail
+above a limit.
 """
 
 import ast
@@ -18,7 +19,7 @@ from pathlib import Path
 
 from advisor.gap.effects import EFFECTS as CATALOGUE
 from advisor.gap.kit.effect import BLOCKS as BLOCKS_OF_EFFECTS
-from benchmarks.pages.constants import constants_in
+from benchmarks.pages.constants import DECIDES, rows_in
 
 ROOM = Path(__file__).parents[1] / "advisor" / "gap"
 EFFECTS = (
@@ -30,9 +31,15 @@ EFFECTS = (
 )
 """Folders that describe effects, by their table and their equations; and the weights of ``make judge``."""
 NAMES = frozenset(CATALOGUE) | frozenset(BLOCKS_OF_EFFECTS) | {"attitude_sensor"}
-LIMITS = {"lines of code": 7060, "constants": 286, "names compared": 16, "complex functions": 0}
+LIMITS = {
+    "lines of code": 6970,
+    "constants": 213,
+    "constants that decide": 54,
+    "names compared": 15,
+    "complex functions": 0,
+}
 """Upper bound of each count. Lines have 2 % to spare, so that a mend needs no cut elsewhere. The evidence and
-the judge brought 500 of them. The ranges of nuisance parameters brought six constants."""
+the judge brought 500 of them."""
 MOST_COMPLEX = 15
 _LAYOUT = frozenset(
     {tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT, tokenize.ENDMARKER}
@@ -44,7 +51,7 @@ def main() -> int:
     """Print every count next to its limit; return 1 where a count is above its limit."""
     counts = counted()
     for name, count in counts.items():
-        print(f"{name:18s}{count:7d}  limit {LIMITS[name]}{'  ABOVE' if count > LIMITS[name] else ''}")
+        print(f"{name:22s}{count:7d}  limit {LIMITS[name]}{'  ABOVE' if count > LIMITS[name] else ''}")
     return int(any(count > LIMITS[name] for name, count in counts.items()))
 
 
@@ -57,7 +64,9 @@ def counted() -> dict[str, int]:
         found["complex functions"] += sum(_complexity(f) > MOST_COMPLEX for f in _functions(tree))
         if not any(path.is_relative_to(folder) for folder in EFFECTS):
             found["lines of code"] += len(_lines_of_code(text, tree))
-            found["constants"] += sum(len(constant.names) for constant in constants_in(tree))
+            rows = list(rows_in(tree))
+            found["constants"] += sum(len(row.values) for row in rows)
+            found["constants that decide"] += sum(len(row.values) for row in rows if row.kind == DECIDES)
             found["names compared"] += sum(map(_compares_a_name, ast.walk(tree)))
     return found
 

@@ -50,26 +50,18 @@ MUTANTS = (
         "_LEAST_SHARE = 0.05",
         "gap/test_wind_shear.py",
     ),
-    Mutant("gap/uncatalogued/wind_shear.py", "1e-2, 0.3", "1e-2, 0.1", "gap/test_wind_shear.py"),
-    Mutant(
-        "gap/uncatalogued/wind_shear.py",
-        "_CLEAR_SHARE = 0.25",
-        "_CLEAR_SHARE = 0.2",
-        "gap/test_wind_shear.py",
-    ),
     Mutant(
         "gap/uncatalogued/sensor_jumps.py", "_JUMPS = 0.005", "_JUMPS = 0.001", "gap/test_sensor_jumps.py"
     ),
-    Mutant("gap/uncatalogued/sensor_jumps.py", "_SELDOM = 0.1", "_SELDOM = 0.5", "gap/test_sensor_jumps.py"),
     Mutant(
         "gap/records/floor.py",
         "STATED_FLOOR_MARGIN = 2.5",
         "STATED_FLOOR_MARGIN = 1.0",
         "gap/test_sensor_jumps.py",
     ),
-    Mutant("gap/search/acceptance.py", "LEAST_GAIN = 6.0", "LEAST_GAIN = 1.0", "gap/test_additions.py"),
-    Mutant("gap/search/acceptance.py", "LEAST_SIGMA = 3.0", "LEAST_SIGMA = 1.0", "gap/test_additions.py"),
-    Mutant("gap/search/acceptance.py", "_UNCONFIRMED = 20.0", "_UNCONFIRMED = 6.0", "gap/test_additions.py"),
+    Mutant("gap/decision.py", "LEAST_GAIN = 6.0", "LEAST_GAIN = 1.0", "gap/test_additions.py"),
+    Mutant("gap/decision.py", "LEAST_SIGMA = 3.0", "LEAST_SIGMA = 1.0", "gap/test_additions.py"),
+    Mutant("gap/decision.py", "CERTAIN = 30.0", "CERTAIN = 20.0", "gap/test_additions.py"),
     Mutant(
         "oem/estimator.py",
         "covariance=best.covariance[:N, :N]",

@@ -1,6 +1,28 @@
-"""One decision of the diagnosis, as the ledger keeps it: a statistic compared with its limit."""
+"""One decision of the diagnosis, as the ledger keeps it: a statistic compared with its limit; and the levels.
+
+Every question of the same kind has the same level.
+"""
 
 from dataclasses import dataclass
+
+LEAST_GAIN = 6.0
+"""Least gain in log likelihood, nats, for one explanation over another: 400 to 1. Two explanations that
+differ by less are alike."""
+CERTAIN = 30.0
+"""Gain in log likelihood, nats, above which something like an effect, or moving air, is certainly
+present. On 40 flights of two generators no gain of moving air lies between 21 and 64."""
+BEYOND_DOUBT = 100.0
+"""Gain in log likelihood, nats, beyond doubt. Residuals without a name gained above 11,000 in 40 flights, and
+those of right models at most 116."""
+LEAST_SIGMA = 3.0
+"""Least number of standard deviations by which a parameter of an effect differs from zero."""
+SIGMAS = 5.0
+"""Least number of standard deviations of a difference that a check without a model reports. Checked are air
+speed, weight, offset of α, and the speeds of manoeuvres. Their errors are not Gaussian, so three would not
+do."""
+CHANCE = 1e-3
+"""Largest probability by chance with which a test rejects: of a wind's gradient (Student's t), and of the
+aircraft file's derivatives (chi square)."""
 
 
 @dataclass(frozen=True, slots=True)

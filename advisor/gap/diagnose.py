@@ -20,14 +20,14 @@ from advisor.gap.records.unmeasured_alpha import alpha_by_motion, is_known
 from advisor.gap.records.unmeasured_speed import speed_of_the_motion
 from advisor.gap.records.usable import usable_of
 from advisor.gap.result import Diagnosis
-from advisor.gap.search.acceptance import LEAST_OFFSET_RAD, OFFSET_SIGMAS
+from advisor.gap.search.acceptance import least_offset_rad
 from advisor.gap.search.baseline import at_another_speed, fit_baseline, of_this_flight
 from advisor.gap.search.stage import added_in
 from advisor.gap.search.waterfall import Progress
 from advisor.gap.uncatalogued.airspeed_scale import airspeed_scale_of, true_over_read
 from advisor.gap.uncatalogued.unexplained import Unexplained, as_wind
 from advisor.gap.uncatalogued.weight_check import WeightReading, weight_reading
-from advisor.gap.uncatalogued.wind_shear import moves_along_path, wind_shear
+from advisor.gap.uncatalogued.wind_shear import wind_shear
 from advisor.gap.verdict.answer import answer
 from advisor.gap.verdict.notes import left_out
 from advisor.words.problems import UnusableInputError
@@ -113,8 +113,7 @@ def _explained(
     checks = [check_alpha(m, aircraft.stated_airspeed_m_s, *arms) for m in flown if measured]
     kinematics = combine(checks)
     progress("fitting the simulator's model", 0.1)
-    least = max(LEAST_OFFSET_RAD, OFFSET_SIGMAS * kinematics.offset.std_rad)
-    if kinematics.offset.stays and abs(kinematics.offset.rad) > least:
+    if kinematics.offset.stays and abs(kinematics.offset.rad) > least_offset_rad(kinematics.offset.std_rad):
         # The offset that the climb rate shows is removed first: the trim would carry it into the lift.
         maneuvers = [_without_offset(m, kinematics.offset.rad) for m in maneuvers]
         flights = prepare(maneuvers, aircraft)
@@ -185,21 +184,12 @@ def _checked_against_path(e: Evidence, flown: Sequence[Maneuver], weight: Weight
     shear = wind_shear(flown, true_over_read(e.airspeed_scale, weight))
     of_gusts = shear is not None and shear.is_implausible and e.air is not None
     if shear is not None and not of_gusts and not _mimics_wind(e.unexplained):
-        # Moving air changes the air speed too: next to it only a clear wind shear becomes the unexplained
-        # residual.
-        is_there = e.air is None or shear.exceeds_gusts
-        e = replace(e, shear=shear, unexplained=as_wind(e.unexplained) if is_there else e.unexplained)
-    if e.unexplained is not None and e.unexplained.block == "force_equation" and moves_along_path(flown):
-        # A change of the wind along the path appears as lift that comes and goes.
-        e = replace(e, unexplained=as_wind(e.unexplained))
+        e = replace(e, shear=shear, unexplained=as_wind(e.unexplained))
     is_off = weight is not None and weight.is_off
     # An accelerometer error appears as a force too: an effect of the force equation is no separate
     # explanation.
     elsewhere = any(j.block != "force_equation" for j in added_in(e.stages))
-    is_scaled = e.airspeed_scale is not None and e.airspeed_scale.is_the_accelerometers(weight)
-    if e.unexplained is None and (
-        is_scaled or (is_off and not elsewhere) or _reads_another_speed(e, weight, flown)
-    ):
+    if e.unexplained is None and ((is_off and not elsewhere) or _reads_another_speed(e, weight, flown)):
         e = replace(e, unexplained=Unexplained("accelerometer", 1.0, (("accelerometer", 1.0),)))
     return replace(e, weight=weight)
 
@@ -209,7 +199,7 @@ def _reads_another_speed(e: Evidence, weight: WeightReading | None, flown: Seque
     # A gust changes α, and the air speed that the motion implies, by more than its filter assumes.
     alone = len(e.stages) == 1 and not (e.air is not None and e.air.gust)
     scale = e.airspeed_scale
-    return alone and scale is not None and scale.is_wrong(e.air is not None, weight, thin_air(flown))
+    return alone and scale is not None and scale.is_wrong(weight, thin_air(flown))
 
 
 def _mimics_wind(unexplained: Unexplained | None) -> bool:

@@ -14,7 +14,7 @@ from advisor.gap.fitting.fit import EffectFit, fit
 from advisor.gap.fitting.holdout import hold_out
 from advisor.gap.fitting.measure import file_model_of, whole_gap
 from advisor.gap.fitting.problem import EffectProblem, counts
-from advisor.gap.fitting.uncertainty import effective_samples, file_is_off
+from advisor.gap.fitting.uncertainty import distance_from_file, effective_samples
 from advisor.gap.kit.variant import Variant
 from advisor.gap.noise.quiet import quiet_rms
 from advisor.gap.noise.stamps import stamp_power
@@ -32,15 +32,14 @@ from advisor.gap.search.waterfall import (
     settled,
 )
 from advisor.gap.uncatalogued.airspeed_scale import airspeed_scale_of
-from advisor.gap.uncatalogued.beyond_air import explain_little_beyond_air
 from advisor.gap.uncatalogued.law_search import Law, search_law
 from advisor.gap.uncatalogued.spectral_line import ringing_hz
 from advisor.gap.uncatalogued.sustained_oscillation import sustained_oscillation
 from advisor.gap.uncatalogued.unexplained import Unexplained, located, unexplained_residual
 
 _HARDLY_DAMPED = 0.02
-"""Damping ratio at which the search for a structural mode starts, of bare metal or a boom. A start far from
-the true value only costs iterations."""
+"""Numerical: damping ratio at which the search for a structural mode starts, of bare metal or a boom. A start
+far from the true value only costs iterations."""
 
 
 def explain(problem: EffectProblem, baseline: EffectFit, aircraft: Aircraft, progress: Progress) -> Evidence:
@@ -67,9 +66,6 @@ def explain(problem: EffectProblem, baseline: EffectFit, aircraft: Aircraft, pro
     stages, sought = _with_the_air(problem, stages, law)
     progress("looking for what has no name", 0.8)
     stages = as_measured(problem, stages)
-    if sought.found is not None and explain_little_beyond_air(stages):
-        stages = reduced_to(problem, stages, [])
-        sought = moving_air(problem, stages[0].fitted)
     air = sought.found
     first, last, tolerance = stages[0].fitted, stages[-1].fitted, tolerance_of(problem.flights)
     unexplained = None if law is None else law.unexplained
@@ -129,7 +125,7 @@ def evidence_of_one_maneuver(problem: EffectProblem, baseline: EffectFit) -> Evi
         file_model_of(problem, baseline),
     )
     as_filed, held = baseline, stage.held_out
-    is_off = file_is_off(problem, baseline, clear_gap=False)
+    is_off = distance_from_file(problem, baseline).is_off
     if problem.prior_derivatives is not None and file_model is not None and is_off:
         file = replace(baseline.point, derivatives=problem.prior_derivatives)
         as_filed, held = fit(replace(problem, derivatives_fixed=True), file, baseline.noise), file_model

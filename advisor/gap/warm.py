@@ -10,6 +10,7 @@ from advisor.gap.simulator.reading import differences, filtered, superposed
 from advisor.gap.simulator.right_sides import MOTION, right_sides
 
 _ANY_AIRCRAFT = dict(zip(PARAMETERS, (0.0, -4.0, 0.0, -0.3, 0.0, -30.0, -4.0, -50.0), strict=True))
+"""Numerical: parameters of an aircraft that is flown to compile the kernels."""
 
 
 def warm_up() -> None:

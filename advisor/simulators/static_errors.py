@@ -13,7 +13,6 @@ import numpy as np
 from advisor.gap.diagnose import DiagnosisEvidence
 from advisor.gap.result import Diagnosis, TrimDifference
 from advisor.gap.simulator.layout import DERIVATIVES
-from advisor.gap.uncatalogued.airspeed_scale import SIGMAS_IN_GUSTS
 
 _TRIM_OFF = {"alpha": 0.0175, "elevator": 0.0175, "throttle": 0.1}
 """Quantity to the least difference of two trims that is said. A vane or a surface aligned by hand is right to
@@ -68,12 +67,8 @@ def _of_the_trims(trims: Sequence[TrimDifference]) -> Iterator[str]:
 
 
 def _of_the_speed(examined: DiagnosisEvidence) -> Iterator[str]:
-    e = examined.evidence
-    found = e.airspeed_scale
-    if found is None or found.is_the_accelerometers(e.weight):
-        return
-    least = max(_READS_WRONG, SIGMAS_IN_GUSTS * found.std if e.air is not None else 0.0)
-    if abs(found.scale) > least:
+    found = examined.evidence.airspeed_scale
+    if found is not None and abs(found.scale) > _READS_WRONG:
         read = 100.0 * (1.0 / (1.0 + found.scale) - 1.0)
         yield f"The air speed reads {abs(read):.0f} % {'low' if read < 0.0 else 'high'} by the motion."
 

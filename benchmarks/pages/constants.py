@@ -1,11 +1,25 @@
-"""The constants of a module, read from its source: names, values, and the docstring below them."""
+"""The constants of a module, read from its source: names, values, the docstring below them, and their kind.
+
+The first word of a docstring, before a colon, states the kind. A constant without a stated kind decides: a
+comparison with it changes what is found, kept, named or said.
+"""
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 _ARITHMETIC = frozenset({"dict", "zip"})
 """Functions whose result is as plain a number as their arguments; numpy's are called by attribute."""
+
+KINDS = {
+    "Numerical": "step, tolerance or extent of a computation",
+    "Prior": "stated spread, bound or probability of an instrument, an aircraft or the air",
+    "Record": "what a log must hold to be used at all",
+    "Words": "what a text or a picture shows of an answer",
+}
+"""Kinds of constants that decide nothing, each with its meaning."""
+DECIDES, DESCRIBES = "decides", "describes"
+"""Kind of all other plain numbers; and kind of what is no plain number, the description of an effect."""
 
 
 @dataclass(frozen=True)
@@ -26,6 +40,44 @@ class Constant:
     def names(self) -> tuple[str, ...]:
         """Names in capitals."""
         return tuple(name for name, _ in self.values)
+
+
+@dataclass(frozen=True)
+class Row:
+    """Constants that one docstring explains."""
+
+    values: tuple[tuple[str, str], ...]
+    meaning: str
+    """Docstring without the kind."""
+    kind: str
+    """One of ``KINDS``, ``DECIDES`` or ``DESCRIBES``."""
+
+
+def rows_in(tree: ast.Module) -> Iterator[Row]:
+    """Yield the constants of a module; neighbours without a docstring share the next one's."""
+    waiting: list[Constant] = []
+    for constant in constants_in(tree):
+        apart = waiting and waiting[-1].line + 1 != constant.begins
+        if apart or (waiting and waiting[-1].is_plain != constant.is_plain):
+            yield _row(waiting)
+            waiting = []
+        waiting.append(constant)
+        if constant.meaning:
+            yield _row(waiting)
+            waiting = []
+    if waiting:
+        yield _row(waiting)
+
+
+def _row(constants: Sequence[Constant]) -> Row:
+    last = constants[-1]
+    values = tuple(value for constant in constants for value in constant.values)
+    stated, colon, rest = last.meaning.partition(": ")
+    if not last.is_plain:
+        return Row(values, last.meaning, DESCRIBES)
+    if not colon or stated not in KINDS:
+        return Row(values, last.meaning, DECIDES)
+    return Row(values, rest[0].upper() + rest[1:], stated)
 
 
 def constants_in(tree: ast.Module) -> Iterator[Constant]:

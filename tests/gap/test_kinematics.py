@@ -13,7 +13,7 @@ from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.records.prepare import prepare
 from advisor.gap.simulator.layout import ENTRIES
-from advisor.gap.uncatalogued.wind_shear import moves_along_path, wind_shear
+from advisor.gap.uncatalogued.wind_shear import wind_shear
 from advisor.gap.verdict.outside_fit import alpha_bias_cause
 from tests.gap.generator import LIGHT_AIRCRAFT, Setup, fly
 
@@ -61,7 +61,7 @@ def test_a_turn_spoils_neither_the_lag_nor_the_offset_of_alpha(late_s):
 
 @pytest.mark.parametrize(
     ("offset", "by_a_vane", "by_an_estimate"),
-    [(0.006, False, False), (0.0075, True, False), (0.01, True, True)],
+    [(0.0085, False, False), (0.009, True, True)],
 )
 def test_beside_another_cause_an_offset_below_what_any_zero_is_set_to_gets_no_name(
     offset, by_a_vane, by_an_estimate
@@ -77,7 +77,7 @@ def test_beside_another_cause_an_offset_below_what_any_zero_is_set_to_gets_no_na
 
 @pytest.mark.parametrize(
     ("offset", "std", "named"),
-    [(0.0025, 1e-4, False), (0.0035, 1e-4, True), (0.0035, 6e-4, False), (0.0075, 1.3e-3, True)],
+    [(0.0025, 1e-4, False), (0.0035, 1e-4, True), (0.0035, 8e-4, False), (0.0075, 1.3e-3, True)],
 )
 def test_where_nothing_else_is_a_vane_that_is_plainly_off_is_named_from_a_sixth_of_a_degree(
     offset, std, named
@@ -264,10 +264,9 @@ def test_a_wind_that_all_manoeuvres_agree_on_is_plain_though_the_air_speed_is_ro
         speed = sheared.channels["airspeed"]
         y = speed.y + 0.4 * rng.standard_normal(len(speed.y))
         rough.append(replace(sheared, channels={**sheared.channels, "airspeed": replace(speed, y=y)}))
-    every, few = wind_shear(rough), wind_shear(rough[:5])
-    assert every.share < 0.25
-    assert every.exceeds_gusts
-    assert few is None or not few.exceeds_gusts
+    found = wind_shear(rough)
+    assert found.share < 0.25
+    assert found.gradient_per_s == pytest.approx(0.2, abs=0.05)
 
 
 def test_a_rough_beginning_of_the_records_makes_no_air_speed_late():
@@ -314,19 +313,6 @@ def test_a_layer_of_wind_is_told_by_two_manoeuvres_that_cross_its_edge():
         wind = 0.4 * np.clip(np.interp(speed.t, height.t, height.y) - 150.0, -10.0, 10.0)
         sheared.append(replace(m, channels={**m.channels, "airspeed": replace(speed, y=speed.y + wind)}))
     found = wind_shear(sheared)
-    assert found.exceeds_gusts
     assert abs(found.gradient_per_s - 0.4) < 0.1
     # One that was flown in it agrees with no other.
     assert wind_shear([m for k, m in enumerate(sheared) if k != 4]) is None
-
-
-def test_air_that_moves_along_the_path_shows_in_the_air_speed_and_a_late_engine_does_not():
-    def gusty(m, size_m_s):
-        speed = m.channels["airspeed"]
-        y = speed.y + size_m_s * np.tanh((speed.t - speed.t[0] - 4.0) / 0.5)
-        return replace(m, channels={**m.channels, "airspeed": replace(speed, y=y)})
-
-    still = fly(Setup(maneuvers=5, thrust_amplitude=0.5, engine_lag_s=0.8, seed=61))
-    assert not moves_along_path(still)
-    assert not moves_along_path([gusty(m, 0.2) for m in still])
-    assert moves_along_path([gusty(m, 2.0) for m in still])

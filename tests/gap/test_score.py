@@ -15,8 +15,7 @@ from advisor.gap.fitting.uncertainty import effective_samples
 from advisor.gap.records.prepare import prepare
 from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.search.indistinguishable import indistinguishable_from
-from advisor.gap.search.ranking import evened
-from advisor.gap.search.score import addition, predict_alike
+from advisor.gap.search.score import addition
 from tests.gap.generator import LIGHT_AIRCRAFT, UAV, Setup, fly
 
 
@@ -59,41 +58,16 @@ def test_what_other_derivatives_imitate_exactly_is_tied_with_them_whatever_the_f
     assert "trims level flight" in ways
 
 
-@pytest.mark.parametrize(("less", "tied"), [(0.05, True), (0.2, False)])
+@pytest.mark.parametrize(("less", "tied"), [(5.0, True), (7.0, False)])
 def test_ice_that_explains_nearly_as_much_as_more_mass_is_tied_with_it(late, less, tied):
     problem, _, judged = late
     mass, ice = (
         replace(judged, variant=next(v for v in variants_for(problem.flights) if v.effect == name), gain=gain)
-        for name, gain in (("mass_change", 1000.0), ("icing", 1000.0 * (1.0 - less)))
+        for name, gain in (("mass_change", 1000.0), ("icing", 1000.0 - less))
     )
     names, ways = indistinguishable_from(mass, [mass, ice], ("alpha", "q", "a_z", "theta"))
     assert names == (("icing",) if tied else ())
     assert ("fuel" in ways) == tied
-
-
-def test_predictions_are_alike_where_they_differ_by_less_than_any_description_errs(late):
-    problem, plain, judged = late
-    assert not predict_alike(problem, plain, judged.held_out)
-    nudged = replace(plain, residuals=(plain.residuals[0] + 1e-6, *plain.residuals[1:]))
-    assert predict_alike(problem, plain, nudged)
-
-
-@pytest.mark.parametrize(("likelier_by", "first"), [(0.0, 0), (2.0, 0), (4.0, 1)])
-def test_of_two_that_predict_the_same_motion_the_one_likelier_beforehand_comes_first(
-    late, likelier_by, first
-):
-    problem, _, judged = late
-    rival = replace(judged, gain=judged.gain - 20.0, prior_terms=judged.prior_terms + likelier_by)
-    ranked = evened(problem, [judged, rival])
-    assert ranked[0].prior_terms == (judged, rival)[first].prior_terms
-    if first:
-        assert ranked[0].gain == pytest.approx(judged.gain + likelier_by)
-
-
-def test_what_predicts_another_motion_keeps_its_own_likelihood(late):
-    problem, plain, judged = late
-    other = replace(judged, gain=judged.gain - 20.0, prior_terms=judged.prior_terms + 9.0, held_out=plain)
-    assert evened(problem, [judged, other])[0] is judged
 
 
 @pytest.mark.study

@@ -43,7 +43,7 @@ def test_a_sensor_jumps_from_one_sample_in_two_hundred(count, block):
     assert judged((0, count, 0)) == block
 
 
-@pytest.mark.parametrize(("other", "block"), [(3, None), (1, "alpha_sensor")])
+@pytest.mark.parametrize(("other", "block"), [(12, None), (8, "alpha_sensor")])
 def test_jumps_in_a_second_sensor_are_a_gust_or_a_knock(other, block):
     assert judged((20, other, 0)) == block
 
@@ -68,11 +68,3 @@ def test_jumps_while_the_stick_moves_do_not_count():
 
 def test_an_autopilots_estimate_is_not_judged():
     assert judged((20, 0, 0), telling=(1, 2)) is None
-
-
-def test_a_jump_over_a_longer_interval_does_not_count():
-    """A propeller's vibration changes where the interval between samples does."""
-    late = np.linspace(10, N - 10, 20).astype(int)
-    stamps = T + 0.01 * np.isin(np.arange(N), late).cumsum()
-    assert judged((0, 20, 0)) == "pitch_rate_sensor"
-    assert judged((0, 20, 0), stamps=stamps) is None

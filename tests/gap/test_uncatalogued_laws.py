@@ -228,17 +228,7 @@ def test_an_accelerometers_zero_that_is_off_by_a_common_amount_is_no_cause():
     assert found.verdict == "none"
 
 
-@pytest.mark.parametrize(
-    ("scale", "share", "scaled_it_is"), [(-0.19, 0.8, True), (-0.19, 1.0, False), (0.02, 0.8, False)]
-)
-def test_an_accelerometer_that_misses_as_much_of_the_weight_as_of_the_path_is_scaled(
-    scale, share, scaled_it_is
-):
-    assert AirspeedScale(scale, 0.003).is_the_accelerometers(WeightReading(share, 0.004)) is scaled_it_is
-    assert not AirspeedScale(scale, 0.003).is_the_accelerometers(None)
-
-
 @pytest.mark.parametrize(("height_explains", "wrong"), [(0.30, False), (0.20, True), (0.0, True)])
 def test_a_low_air_speed_is_wrong_where_the_height_does_not_explain_it(height_explains, wrong):
     weight_is_read_right = WeightReading(1.0, 0.004)
-    assert AirspeedScale(0.31, 0.003).is_wrong(False, weight_is_read_right, height_explains) is wrong
+    assert AirspeedScale(0.31, 0.003).is_wrong(weight_is_read_right, height_explains) is wrong

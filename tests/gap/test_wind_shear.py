@@ -57,8 +57,8 @@ def test_heights_must_explain_17_percent_of_the_air_speed(share, is_found):
         assert found.gradient_per_s == pytest.approx(0.15, rel=0.03)
 
 
-@pytest.mark.parametrize(("share", "is_found"), [(0.28, False), (0.32, True)])
-def test_heights_must_explain_30_percent_in_a_layer(share, is_found):
+@pytest.mark.parametrize(("share", "is_found"), [(0.155, False), (0.185, True)])
+def test_heights_must_explain_17_percent_in_a_layer(share, is_found):
     """Three manoeuvres fly in the layer, and three below it in calm air. All heights explain half as much."""
     wind = 0.2 * CLIMBED
     air = rough(wind, share)
@@ -68,15 +68,6 @@ def test_heights_must_explain_30_percent_in_a_layer(share, is_found):
     assert (found is not None) == is_found
 
 
-@pytest.mark.parametrize(
-    ("share", "std", "exceeds"),
-    [(0.24, 0.05, False), (0.26, 0.05, True), (0.1, 0.0145, False), (0.1, 0.0135, True)],
-)
-def test_a_quarter_or_an_agreement_to_one_in_ten_thousand_exceeds_gusts(share, std, exceeds):
-    """Student's t with eight degrees of freedom is 7.12 at that chance, and the gradient 0.1 1/s."""
-    assert Shear(0.1, std, share, maneuvers=9).exceeds_gusts == exceeds
-
-
 @pytest.mark.parametrize(("gradient", "agreed"), [(0.079, False), (-0.081, True)])
 def test_a_gradient_below_a_knot_in_six_metres_does_not_matter(gradient, agreed):
-    assert Shear(gradient, 0.0, 0.5, maneuvers=5).is_agreed(0.01) == agreed
+    assert Shear(gradient, 0.0, 0.5, maneuvers=5).is_agreed() == agreed

@@ -15,7 +15,8 @@ from advisor.gap.fitting.step import own_eliminated
 from advisor.gap.simulator.layout import DERIVATIVES, NUISANCES
 
 LEAST_MANEUVERS = 5
-"""Least number of manoeuvres for a course: a step has two levels and a place, a drift two parameters."""
+"""Record: least number of manoeuvres for a course: a step has two levels and a place, a drift two
+parameters."""
 _BLOCKS = {
     "Z_trim": "force_equation", "M_trim": "moment_equation", "a_z": "accelerometer",
     "theta": "attitude_sensor", "Z_alpha": "force_equation", "M_alpha": "moment_equation",

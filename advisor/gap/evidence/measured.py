@@ -157,7 +157,7 @@ def measured(e: Evidence, kinematics: KinematicCheck) -> Measured:
         file_gap=0.0 if e.file_model is None else float(
             np.mean((e.file_model.mean_square - first.held_out.mean_square) / e.floor**2)
         ),
-        file_distance=distance_from_file(problem, last.fitted, clear_gap=False).statistic,
+        file_distance=distance_from_file(problem, last.fitted).statistic,
         has_file=problem.prior_derivatives is not None,
         offset_rad=_pair(offset.rad if offset.stays else 0.0, offset.std_rad),
         lag_s=_pair(kinematics.lag_s, kinematics.lag_std_s),

@@ -17,19 +17,19 @@ from advisor.gap.fitting.problem import EffectProblem, SearchPoint, counts, row_
 from advisor.gap.fitting.step import SearchStep, solve_blocks
 
 _SETTLED = 0.02
-"""Relative change of the weights below which weights and nuisance parameters have converged at one
+"""Numerical: relative change of the weights below which weights and nuisance parameters have converged at one
 linearisation."""
 _SHORTER = 0.3
-"""Factor by which a step that raises the cost is shortened."""
+"""Numerical: factor by which a step that raises the cost is shortened."""
 _SHORTEST = 0.05
-"""Least length of a step, relative to the full step. Below it the roughness of the cost, from the
+"""Numerical: least length of a step, relative to the full step. Below it the roughness of the cost, from the
 simulation's grid, decides."""
 _FURTHER = 5.0
-"""Further decrease of the cost that a search can bring at most, in multiples of the decrease promised by the
-next step."""
+"""Numerical: further decrease of the cost that a search can bring at most, in multiples of the decrease
+promised by the next step."""
 _EDGES_DIFFER = 0.05
-"""Root mean square shift of the command's edges, in intervals between stamps, above which the model is
-linearised again before a search ends."""
+"""Numerical: root mean square shift of the command's edges, in intervals between stamps, above which the
+model is linearised again before a search ends."""
 
 
 @dataclass(frozen=True)

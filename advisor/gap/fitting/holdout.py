@@ -19,11 +19,11 @@ from advisor.gap.simulator.layout import DERIVATIVES, HEIGHT, SPEED, THROTTLE
 from advisor.oem.arrow import solved_within
 
 _INDIFFERENT = 3e-4
-"""Relative information below which a direction of the shared parameters is not moved. Such a direction
-changes no prediction, but a long step leaves the range in which the model is linear."""
+"""Numerical: relative information below which a direction of the shared parameters is not moved. Such a
+direction changes no prediction, but a long step leaves the range in which the model is linear."""
 _ANCHOR = 1e-3
-"""Weight of the prior "no effect" relative to the information of all manoeuvres on a parameter. The prior is
-no stronger than a guess with the parameter's own size as standard deviation."""
+"""Prior: weight of the prior "no effect" relative to the information of all manoeuvres on a parameter. The
+prior is no stronger than a guess with the parameter's own size as standard deviation."""
 _SOLE_SHARE = 0.9
 """Share of the information on a parameter above which a single manoeuvre counts as its only source."""
 _NEEDED = (SPEED, THROTTLE, HEIGHT)

@@ -15,32 +15,35 @@ from advisor.gap.simulator.layout import DISTURB_INPUT, INDEX, NUISANCES, OUTPUT
 from advisor.gap.simulator.reading import differences, lane, packed, superposed
 
 _DERIVATIVE_STEP = 1e-3
-"""Finite-difference step of a derivative, relative to its size: far above rounding, far below curvature."""
+"""Numerical: finite-difference step of a derivative, relative to its size: far above rounding, far below
+curvature."""
 _LEAST_SCALE = np.array([0.5, 0.05, 0.1, 1.0, 0.5, 1.0])
-"""Least size of each derivative for its finite-difference step, in the units of ``DERIVATIVES``."""
+"""Numerical: least size of each derivative for its finite-difference step, in the units of
+``DERIVATIVES``."""
 _NEAR, _STEPS = 0.02, 2.0
-"""Largest change within which sensitivities to nuisance parameters are reused. Derivatives count relative to
-their size, parameters of effects in finite-difference steps."""
+"""Numerical: largest change within which sensitivities to nuisance parameters are reused. Derivatives count
+relative to their size, parameters of effects in finite-difference steps."""
 _OWN_STEPS = np.array([1e-4, 1e-4, 1e-3, 1e-3])
-"""Finite-difference steps of initial states (rad, rad/s) and trim terms (1/s, 1/s²)."""
+"""Numerical: finite-difference steps of initial states (rad, rad/s) and trim terms (1/s, 1/s²)."""
 _OFFSETS = {"a_z": 0.5, "theta": 0.035}
-"""Prior standard deviation of an instrument's offset in a manoeuvre, by channel, SI. An accelerometer that
-is not calibrated is off by 0.05 g, and an attitude by 2 deg."""
+"""Prior: prior standard deviation of an instrument's offset in a manoeuvre, by channel, SI. An accelerometer
+that is not calibrated is off by 0.05 g, and an attitude by 2 deg."""
 _SPEEDS = ("speed_level_m_s", "speed_slope_m_s", "speed_bow_m_s")
 _SPEED_STEP = 1e-3
-"""Finite-difference step of the air speed, relative."""
+"""Numerical: finite-difference step of the air speed, relative."""
 _TIMES = frozenset({"latency_s", "delay_s", "skew_s"})
 """Parameters that shift the response to an edge as a whole."""
 _PULSE = 1e-4
-"""Area of the disturbance that measures a pulse response: small enough for a linear response."""
+"""Numerical: area of the disturbance that measures a pulse response: small enough for a linear response."""
 _EDGE_VARIANCE = 1.0 / 12.0
-"""Variance of the place of an edge between two stamps, in squared intervals: uniform over the interval."""
+"""Prior: variance of the place of an edge between two stamps, in squared intervals: uniform over the
+interval."""
 _SHARES = (1.0 / 6.0, 0.5, 5.0 / 6.0)
-"""Places of three pulses that replace one pulse while a servo runs at its limit: the middles of thirds of
-that time."""
+"""Numerical: places of three pulses that replace one pulse while a servo runs at its limit: the middles of
+thirds of that time."""
 _HELD_JITTER_S = 0.0015
-"""Standard deviation in s of the time at which a held command changes, relative to its stamp: the stamp's
-resolution."""
+"""Prior: standard deviation in s of the time at which a held command changes, relative to its stamp: the
+stamp's resolution."""
 
 
 @dataclass(frozen=True)

@@ -13,10 +13,11 @@ from advisor.gap.fitting.refit import own_refitted
 from advisor.gap.records.flights import PreparedManeuver
 
 _BANDS_HZ = ((0.0, 0.5), (0.5, 1.0), (1.0, 2.0), (2.0, 4.0), (4.0, 10.0))
-"""Limits of the frequency bands in Hz. The short period lies in the middle bands, drift of the trim below,
-structure and noise above."""
+"""Words: limits of the frequency bands in Hz. The short period lies in the middle bands, drift of the trim
+below, structure and noise above."""
 _EDGE_S = 0.2
-"""Time in s after a step that counts as the step's edge, where faults between command and surface show."""
+"""Words: time in s after a step that counts as the step's edge, where faults between command and surface
+show."""
 PHASES = ("step edge", "plateau", "free response")
 
 

@@ -21,7 +21,8 @@ from advisor.gap.simulator.reading import differences
 from advisor.oem.arrow import solved, solved_within
 
 _INDIFFERENT = 1e-9
-"""Relative information below which a direction of the shared parameters is not moved in a quick fit."""
+"""Numerical: relative information below which a direction of the shared parameters is not moved in a quick
+fit."""
 
 
 @dataclass(frozen=True)

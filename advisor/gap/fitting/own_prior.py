@@ -12,10 +12,11 @@ from advisor.gap.records.flights import PreparedManeuver
 from advisor.gap.simulator.layout import NUISANCES, REFERENCE
 
 _START_RAD = 0.035
-"""Standard deviation of the angle of attack at the start of a record about its mean before the first step,
-rad. Motion that still dies down, or a gust, makes 2 deg."""
+"""Prior: standard deviation of the angle of attack at the start of a record about its mean before the first
+step, rad. Motion that still dies down, or a gust, makes 2 deg."""
 _LOAD_FACTOR = 0.3
-"""Standard deviation of the load factor in trim about that of level flight: a turn of 30 deg has 0.15."""
+"""Prior: standard deviation of the load factor in trim about that of level flight: a turn of 30 deg has
+0.15."""
 
 
 def own_mean(flight: PreparedManeuver) -> FloatArray:

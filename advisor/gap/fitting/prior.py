@@ -8,28 +8,29 @@ power, the explanation that keeps the file's derivatives is likelier.
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.special import chdtri
 
 from advisor.flight.signals.messages import FloatArray
+from advisor.gap.decision import CHANCE
 from advisor.gap.effects import effect_named
 from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.model.response import SHARED
 from advisor.oem.prior import precision_without_alpha
 
 ERROR_IF_RIGHT = 0.03
-"""Relative standard deviation of derivatives that are right: they are linearised, at a nearby speed."""
+"""Prior: relative standard deviation of derivatives that are right: they are linearised, at a nearby
+speed."""
 ERROR_IF_WRONG = 0.3
-"""Relative standard deviation of derivatives that are wrong."""
+"""Prior: relative standard deviation of derivatives that are wrong."""
 ERROR_IF_FIXED = 0.003
-"""Relative standard deviation of derivatives that are fixed at the file's, in the search for another
+"""Prior: relative standard deviation of derivatives that are fixed at the file's, in the search for another
 explanation."""
 _LEAST = 0.1
-"""Least size of a derivative for a relative error, 1/s or 1/s². A smaller derivative counts as zero."""
-_CHI_SQUARE_999, _CHI_SQUARE_500 = 22.46, 5.35
-"""Limits of chi square with six degrees of freedom, for probabilities of 99.9 % and 50 %."""
-
+"""Prior: least size of a derivative for a relative error, 1/s or 1/s². A smaller derivative counts as
+zero."""
 _LOG_ODDS_OTHER_STATED = -4.0
-"""Log prior odds of an arm that the aircraft file states, relative to an equivalent arm that it leaves open.
-They also hold for a vane's arm where α is an estimate."""
+"""Prior: log prior odds of an arm that the aircraft file states, relative to an equivalent arm that it leaves
+open. They also hold for a vane's arm where α is an estimate."""
 
 
 def derivative_scale(prior: FloatArray) -> FloatArray:
@@ -97,17 +98,12 @@ class Distance:
         return self.statistic > self.limit
 
 
-def distance_of(
-    derivatives: FloatArray, covariance: FloatArray, prior: FloatArray, clear_gap: bool
-) -> Distance:
-    """Return the distance of fitted derivatives from the file's; ``log_prior`` has the other arguments.
-
-    ``clear_gap``: the file's derivatives leave a clear gap, so that a smaller distance is enough.
-    """
+def distance_of(derivatives: FloatArray, covariance: FloatArray, prior: FloatArray) -> Distance:
+    """Return the distance of fitted derivatives from the file's; ``log_prior`` has the arguments."""
     scale = derivative_scale(prior)
     covariance_of_error = covariance / np.outer(scale, scale) + ERROR_IF_RIGHT**2 * np.eye(6)
-    least = _CHI_SQUARE_500 if clear_gap else _CHI_SQUARE_999
-    return Distance(_distance((derivatives - prior) / scale, covariance_of_error), least)
+    limit = float(chdtri(len(prior), CHANCE))
+    return Distance(_distance((derivatives - prior) / scale, covariance_of_error), limit)
 
 
 def _distance(off: FloatArray, covariance_of_error: FloatArray) -> float:

@@ -9,16 +9,17 @@ import numpy as np
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.prior import distance_of, log_prior
 from advisor.gap.fitting.problem import EffectProblem
-from advisor.gap.fitting.uncertainty import covariance, effective_samples, file_is_off
+from advisor.gap.fitting.uncertainty import covariance, distance_from_file, effective_samples
 from advisor.gap.simulator.layout import DERIVATIVES, SPEED
 from advisor.model.short_period import SPEED_EXPONENTS
 
 _POWERS = np.array([float(SPEED_EXPONENTS[name]) for name in DERIVATIVES])
 """Power of the air speed with which each derivative grows."""
 _FARTHEST = 0.06
-"""Largest relative distance of the speed from the mean. Derivatives that hold at no speed within it are wrong
-ones."""
+"""Prior: largest relative distance of the speed from the mean. Derivatives that hold at no speed within it
+are wrong ones."""
 _TRIED = 25
+"""Numerical: number of speeds that are tried."""
 
 
 def prior_speed(problem: EffectProblem, baseline: EffectFit) -> float | None:
@@ -27,7 +28,7 @@ def prior_speed(problem: EffectProblem, baseline: EffectFit) -> float | None:
     None where they may be right at the mean speed of the manoeuvres, or are wrong at every speed.
     """
     flights, prior = problem.flights, problem.prior_derivatives
-    if prior is None or not flights.speed_measured or not file_is_off(problem, baseline, clear_gap=True):
+    if prior is None or not flights.speed_measured or not distance_from_file(problem, baseline).is_off:
         return None
     flown = np.concatenate([flight.slow[SPEED] for flight in flights.flights]) / flights.reference_m_s
     lowest, highest = max(np.min(flown), 1.0 - _FARTHEST), min(np.max(flown), 1.0 + _FARTHEST)
@@ -36,6 +37,6 @@ def prior_speed(problem: EffectProblem, baseline: EffectFit) -> float | None:
     shares = np.linspace(lowest, highest, _TRIED)
     at_speeds = [prior * share**-_POWERS for share in shares]
     best = int(np.argmax([log_prior(baseline.point.derivatives, known, there) for there in at_speeds]))
-    if distance_of(baseline.point.derivatives, known, at_speeds[best], clear_gap=True).is_off:
+    if distance_of(baseline.point.derivatives, known, at_speeds[best]).is_off:
         return None
     return float(shares[best] * flights.reference_m_s)

@@ -24,6 +24,7 @@ from advisor.gap.simulator.simulate import simulate
 from advisor.gap.simulator.surface import surfaces
 
 _NO_DISTURBANCE = np.zeros((4, 0))
+"""Numerical: response of the four outputs to no disturbance."""
 _SKEW_ENTRIES = np.array([INDEX[name] for name in SKEWS])
 _FILTER_ENTRIES = np.array([INDEX[name] for name in FILTER])
 _FLOWN_ENTRIES = np.array([i for i, name in enumerate(ENTRIES) if name not in (*SKEWS, *FILTER)])

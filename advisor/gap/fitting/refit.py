@@ -18,17 +18,19 @@ from advisor.gap.simulator.layout import DERIVATIVES, NUISANCES, SPEED
 from advisor.oem.arrow import solved_within
 
 _ROUNDS = 4
-"""Number of Gauss-Newton steps from each start. The outputs are nearly linear in the nuisance parameters."""
+"""Numerical: number of Gauss-Newton steps from each start. The outputs are nearly linear in the nuisance
+parameters."""
 _ALPHA_RAD, _Q_RAD_S = 0.1, 0.2
-"""Largest departures of α (rad) and q (rad/s) from steady flight at the start of a record: 6 deg and 11
-deg/s. A test input begins from trim, and most responses to a whole input are no larger."""
+"""Prior: largest departures of α (rad) and q (rad/s) from steady flight at the start of a record: 6 deg and
+11 deg/s. A test input begins from trim, and most responses to a whole input are no larger."""
 _LOAD = 0.3
-"""Largest departure of the load factor from 1 at the start, as in a turn with 40 deg of bank."""
+"""Prior: largest departure of the load factor from 1 at the start, as in a turn with 40 deg of bank."""
 _ELEVATOR_RAD = 0.1
-"""Largest moment of trim, as the deflection that balances the moment, rad: a quarter of 25 deg of travel."""
+"""Prior: largest moment of trim, as the deflection that balances the moment, rad: a quarter of 25 deg of
+travel."""
 _OFFSETS = {"a_z": 1.0, "theta": 0.05}
-"""Largest offset of an accelerometer, a tenth of the weight in m/s², and of an attitude, 3 deg in rad. A
-calibrated and levelled autopilot reads better."""
+"""Prior: largest offset of an accelerometer, a tenth of the weight in m/s², and of an attitude, 3 deg in rad.
+A calibrated and levelled autopilot reads better."""
 
 
 @dataclass(frozen=True)

@@ -9,18 +9,19 @@ from advisor.flight.signals.motion import integrated
 from advisor.gap.records.flights import PreparedManeuver, PreparedManeuvers
 
 _STEP_S = 0.02
-"""Step of the regression's grid, s."""
+"""Numerical: step of the regression's grid, s."""
 _SPAN = 10
-"""Number of steps over which the equations are integrated, so that no data need be differentiated."""
+"""Numerical: number of steps over which the equations are integrated, so that no data need be
+differentiated."""
 _RIDGE = 1e-6
-"""Ridge of the regression, relative to the mean square of a regressor: bounds directions that a flight does
-not excite."""
+"""Numerical: ridge of the regression, relative to the mean square of a regressor: bounds directions that a
+flight does not excite."""
 _SIMULTANEOUS = 0.01
-"""Product of the residual shares of both equations below which the channels are simultaneous, and no shift
-is tried."""
+"""Numerical: product of the residual shares of both equations below which the channels are simultaneous, and
+no shift is tried."""
 _BETTER = 0.5
-"""Residual share with one channel shifted, relative to that without, below which the shifted regression is a
-start too."""
+"""Numerical: residual share with one channel shifted, relative to that without, below which the shifted
+regression is a start too."""
 
 
 class Late(NamedTuple):
@@ -33,7 +34,7 @@ class Late(NamedTuple):
 
 
 _SHIFTS_S = (-0.12, -0.08, -0.04, 0.04, 0.08, 0.12)
-"""Shifts of a channel that are tried, s: up to about one radian of a fast short period."""
+"""Numerical: shifts of a channel that are tried, s: up to about one radian of a fast short period."""
 _ONE_LATE = (
     *(Late(q_s=shift) for shift in _SHIFTS_S),
     *(Late(alpha_s=shift) for shift in _SHIFTS_S),

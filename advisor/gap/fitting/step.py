@@ -15,9 +15,10 @@ from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.oem.arrow import factored, solved, solved_within
 
 _FASTEST_GROWTH = 5.0
-"""Largest growth rate of an unstable motion, 1/s: the amplitude doubles in 0.14 s, as on the most unstable
-aircraft with computer control. A fit with faster growth has lost the motion."""
+"""Prior: largest growth rate of an unstable motion, 1/s: the amplitude doubles in 0.14 s, as on the most
+unstable aircraft with computer control. A fit with faster growth has lost the motion."""
 _GROWS = {"Z_alpha": _FASTEST_GROWTH, "M_q": _FASTEST_GROWTH, "M_alpha": _FASTEST_GROWTH**2}
+"""Prior: the largest derivatives with that growth rate."""
 _MOST = np.array([_GROWS.get(name, np.inf) for name in DERIVATIVES])
 """Shape (6,): largest derivatives with which the motion grows no faster, by any of them alone."""
 

@@ -11,10 +11,6 @@ from advisor.gap.fitting.problem import EffectProblem, counts
 from advisor.gap.records.floor import effective_sample_size
 from advisor.oem.arrow import inverse_of
 
-CLEAR_GAP = 0.5
-"""Gap that fitted derivatives remove from the file's, above which a smaller distance is enough to reject the
-file's derivatives."""
-
 
 def effective_samples(problem: EffectProblem, residuals: Sequence[FloatArray]) -> FloatArray:
     """Return the effective sample size of each channel over all manoeuvres, shape (channels,)."""
@@ -34,19 +30,13 @@ def log_prior_of(problem: EffectProblem, fitted: EffectFit, effective: FloatArra
     return log_prior(fitted.point.derivatives, known, problem.prior_derivatives)
 
 
-def file_is_off(problem: EffectProblem, fitted: EffectFit, clear_gap: bool) -> bool:
-    """Return whether the fit rejects the aircraft file's derivatives; ``distance_of`` explains
-    ``clear_gap``."""
-    return distance_from_file(problem, fitted, clear_gap).is_off
-
-
-def distance_from_file(problem: EffectProblem, fitted: EffectFit, clear_gap: bool) -> Distance:
+def distance_from_file(problem: EffectProblem, fitted: EffectFit) -> Distance:
     """Return the distance of the fitted derivatives from the aircraft file's, or zero without a file."""
     if problem.prior_derivatives is None:
         return Distance(0.0, np.inf)
     n = len(problem.prior_derivatives)
     known = covariance(problem, fitted, effective_samples(problem, fitted.innovations))[:n, :n]
-    return distance_of(fitted.point.derivatives, known, problem.prior_derivatives, clear_gap)
+    return distance_of(fitted.point.derivatives, known, problem.prior_derivatives)
 
 
 def shared_std(

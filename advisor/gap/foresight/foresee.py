@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
+from advisor.gap.decision import LEAST_GAIN, LEAST_SIGMA
 from advisor.gap.effects import EFFECTS
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.problem import EffectProblem
@@ -18,23 +19,20 @@ from advisor.gap.foresight.signatures import Signatures
 from advisor.gap.kit.variant import Variant
 from advisor.gap.records.floor import floor_margins
 from advisor.gap.result import Unseen, spelled
-from advisor.gap.search.acceptance import LEAST_GAIN
 from advisor.gap.search.indistinguishable import way_to_distinguish
 from advisor.gap.search.score import least_change
 from advisor.gap.simulator.layout import INDEX
+from advisor.words.quantiles import NORMAL_95
 
 CONFUSED_AT = 0.95
 """Cosine between two signatures above which one effect passes for the other."""
 _LISTED_AT = 0.8
 _MOST_CONFUSIONS = 3
-"""Cosine above which a similar effect is listed, and the most effects listed."""
-_DETECTED_AT = 5.0
-"""Number of standard deviations of a size that is found in nearly every flight, instead of in half of
-them."""
+"""Words: cosine above which a similar effect is listed, and the most effects listed."""
 _GROWTH = 3.0
 _CLOSE = 0.02
-"""Factor on a size without a signature, and relative difference of two sizes in a row at which the refinement
-ends."""
+"""Numerical: factor on a size without a signature, and relative difference of two sizes in a row at which the
+refinement ends."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -215,7 +213,7 @@ def _needed(signatures: Signatures, numbers: int) -> float:
     # A filter of moving air leaves far less of a change than the outputs show.
     least = least_change(signatures.problem) * float(np.mean(floor_margins(signatures.problem.flights) ** 2))
     change = 0.0 if signatures.filtered else least * signatures.rows
-    return max(_DETECTED_AT**2, 2.0 * LEAST_GAIN + price, change)
+    return max(float(LEAST_SIGMA + NORMAL_95) ** 2, 2.0 * LEAST_GAIN + price, change)
 
 
 def _foreseen(

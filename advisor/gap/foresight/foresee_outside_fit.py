@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
+from advisor.gap.decision import CERTAIN
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.linear import pulse_response
 from advisor.gap.fitting.problem import EffectProblem
@@ -24,16 +25,16 @@ from advisor.gap.foresight.signatures import Signatures
 from advisor.gap.noise.probes import disturbance_columns
 from advisor.gap.records.flights import SPEED_CHANGE, PreparedManeuver, PreparedManeuvers
 from advisor.gap.search.acceptance import least_offset_rad
-from advisor.gap.search.air import AIR_GAIN, AIR_MANEUVERS, LEAST_GUST_ANGLE
+from advisor.gap.search.air import AIR_MANEUVERS, LEAST_GUST_ANGLE
 from advisor.gap.search.indistinguishable import way_to_distinguish
 from advisor.gap.simulator.layout import DISTURB_AIR, REFERENCE, SPEED
 
 CLIMB_RATE_STD_M_S = 0.1
-"""Noise assumed for an unmeasured climb rate, m/s, with one independent reading per second."""
+"""Prior: noise assumed for an unmeasured climb rate, m/s, with one independent reading per second."""
 _ANGLES = np.geomspace(1e-5, 0.5, 200)
-"""Gust angles that are tried, rad; a filter assumes one of them."""
+"""Numerical: gust angles that are tried, rad; a filter assumes one of them."""
 _SPEED_STEP = 0.01
-"""Relative change of speed with which the signature of the air speed is evaluated."""
+"""Numerical: relative change of speed with which the signature of the air speed is evaluated."""
 
 
 @dataclass(frozen=True)
@@ -140,4 +141,4 @@ def _at_speed(flight: PreparedManeuver, factor: float) -> PreparedManeuver:
 def _first(gain: Callable[[float], float]) -> float:
     """Return the smallest gust angle with enough expected gain."""
     angles = [a for a in _ANGLES if a >= LEAST_GUST_ANGLE]
-    return next((float(a) for a in angles if gain(a) >= AIR_GAIN), float("inf"))
+    return next((float(a) for a in angles if gain(a) >= CERTAIN), float("inf"))

@@ -32,18 +32,19 @@ STEPS = {
     "doublet": ((1, -1.0), (1, 1.0)),
     "pulse": ((1, -1.0),),
 }
-"""Steps of each input: units of time, and share of the amplitude with trailing edge down. The areas of all
-but a pulse sum to zero, so that the aircraft returns to trim. The first step of a ``3211`` raises the
-nose."""
+"""Numerical: steps of each input: units of time, and share of the amplitude with trailing edge down. The
+areas of all but a pulse sum to zero, so that the aircraft returns to trim. The first step of a ``3211``
+raises the nose."""
 TYPICAL_NOISE = {"alpha": np.radians(0.1), "q": np.radians(0.2), "a_z": 0.1, "theta": np.radians(0.1)}
-"""Standard deviations assumed for unmeasured instruments, in SI units of the channel."""
+"""Prior: standard deviations assumed for unmeasured instruments, in SI units of the channel."""
 SPARED = ("alpha", "a_z", "theta", "airspeed", "climb_rate", "throttle")
 """Channels that a plan may do without."""
 _IN_FILE = "it is in the aircraft file, and taken as it stands there"
 """Remark about an effect with a shape in the aircraft file, of which no other amount is sought."""
 _SPACING_S = 30.0
+"""Numerical: time between two manoeuvres of a plan, s."""
 _HIGHEST_RATE_HZ, _LARGEST_STEP_DEG = 1000.0, 60.0
-"""Highest rate of any telemetry, Hz, and largest deflection of any elevator, deg."""
+"""Record: highest rate of any telemetry, Hz, and largest deflection of any elevator, deg."""
 
 
 def foresee_plan(

@@ -16,7 +16,8 @@ from advisor.gap.fitting.problem import EffectProblem, row_weights
 from advisor.gap.kit.variant import Variant
 
 _RANK = 1e-7
-"""Relative singular value of a direction of the shared parameters below which the direction is ignored."""
+"""Numerical: relative singular value of a direction of the shared parameters below which the direction is
+ignored."""
 
 
 class Signatures:

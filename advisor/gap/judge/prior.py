@@ -21,8 +21,8 @@ class FieldPrior:
 
 
 FIELD = FieldPrior(none=0.4, parameters=0.2, effect=0.3, unknown=0.1)
-"""Shares that are assumed without a statement of the user. Most flights of a simulator in use show no gap, or
-wrong numbers; the flights of the fit have far more effects."""
+"""Prior: shares that are assumed without a statement of the user. Most flights of a simulator in use show no
+gap, or wrong numbers; the flights of the fit have far more effects."""
 
 
 def field_prior(text: str) -> FieldPrior:

@@ -8,7 +8,8 @@ from advisor.gap.evidence.rows import Row
 from advisor.gap.judge.logit import Logit
 
 MOST_LINES = 7
-"""Most lines of the reasons, so that they fit one look; the last one holds all smaller contributions."""
+"""Words: most lines of the reasons, so that they fit one look; the last one holds all smaller
+contributions."""
 
 
 def reasons(logit: Logit, answer: Row, rival: Row, ahead: float) -> tuple[Contribution, ...]:

@@ -29,8 +29,8 @@ from advisor.oem.arrow import solved
 
 KNOTS_S = 0.1
 MEMORY_S = 0.6
-"""Distance between the knots of a disturbance, s; and its correlation time, s. Faster and slower disturbances
-are combinations of such ones."""
+"""Numerical: distance between the knots of a disturbance, s; and its correlation time, s. Faster and slower
+disturbances are combinations of such ones."""
 SENSOR_CHANNELS = {
     "alpha_sensor": "alpha",
     "pitch_rate_sensor": "q",
@@ -44,7 +44,7 @@ DYNAMIC = {
     "air": DISTURB_AIR,
 }
 _SIZES = np.geomspace(1e-3, 30.0, 24)
-"""Candidate sizes of the disturbance: 1 gives a response as large as the noise."""
+"""Numerical: candidate sizes of the disturbance: 1 gives a response as large as the noise."""
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
+from advisor.gap.decision import LEAST_GAIN
 from advisor.gap.fitting.fit import EffectFit, rms_of
 from advisor.gap.fitting.holdout import mean_squares
 from advisor.gap.fitting.linear import as_measured
@@ -25,21 +26,19 @@ from advisor.oem.innovations import AirModel
 from advisor.oem.turbulence import Rows, cost_of, find_turbulence, spread_of
 
 _LEAST_SAMPLES = 50
-"""Least number of a channel's samples in quiet stretches for an estimate of its noise."""
+"""Record: least number of a channel's samples in quiet stretches for an estimate of its noise."""
 _LONE = 8.0
-"""Ratio of powers above which a gust may be the cause: a stretch over the median of all, or a manoeuvre over
-the quietest quarter."""
-_MARGIN = 1.03
-"""Least ratio of the log likelihood that moving air explains to that of any other block, for a gust."""
-_FAINT, _FAINT_MARGIN = 3.0, 1.2
-"""Power of a less loud manoeuvre over the quietest quarter, and the higher ratio of likelihoods that a gust
-there needs. A change of mass looks like moving air too."""
+"""Power of a quiet stretch over the median of all, above which a gust passed in it."""
+_LOUD = 3.0
+"""Power of a manoeuvre over the quietest quarter, above which a gust may be the cause."""
+_MARGIN = 1.2
+"""Least ratio of the log likelihood that moving air explains to that of any other block, for a gust. A change
+of mass looks like moving air too."""
 _NO_LESS = 0.98
-"""Least weight of a sample with which its stamp counts as exact."""
-_LEAST_GAIN = 15.0
-"""Log likelihood by which coloured noise or moving air must beat white noise before a filter is used."""
+"""Numerical: least weight of a sample with which its stamp counts as exact."""
 _NONE_OF_PEAK = 1e-9
-"""White noise over the channel's peak that stands for no noise at all; avoids a division by zero."""
+"""Numerical: white noise over the channel's peak that stands for no noise at all; avoids a division by
+zero."""
 
 
 def whitening_of(problem: EffectProblem, fitted: EffectFit, first_look: bool = False) -> Whitening | None:
@@ -79,7 +78,7 @@ def noise_in_quiet(problem: EffectProblem, fitted: EffectFit) -> AirModel | None
     found = find_turbulence(rows, system, white, bool(_seen(problem)))
     plain = cost_of(rows, system, AirModel.still(spread_of(rows)))
     gain = 0.5 * (plain - cost_of(rows, system, found.air))
-    return with_floor(problem, found.air) if gain > _LEAST_GAIN else None
+    return with_floor(problem, found.air) if gain > LEAST_GAIN else None
 
 
 def loudness(problem: EffectProblem, fitted: EffectFit) -> float:
@@ -103,11 +102,10 @@ def gusts_in(
                       for c in (OUTPUTS.index(name) for name in problem.channels)])  # fmt: skip
     power = np.mean(mean_squares(problem, _begun_anew(problem, fitted, noise)) / noise**2, axis=1)
     louder = power / np.percentile(power, 25.0)
-    likelier = {int(i): _likelier(problem, fitted, int(i), noise) for i in np.flatnonzero(louder > _FAINT)}
-    gusty = {i for i, by in likelier.items() if by > (_MARGIN if louder[i] > _LONE else _FAINT_MARGIN)}
-    suspects = {i for i in likelier if louder[i] > _LONE} if first_look and gusty else set()
+    suspects = [int(i) for i in np.flatnonzero(louder > _LOUD)]
+    gusty = [i for i in suspects if _likelier(problem, fitted, i, noise) > _MARGIN]
     most = largest_gust(problem.flights, float(fitted.point.derivatives[0]))
-    return {i: replace(still, gust=most) for i in sorted(gusty | suspects)}
+    return {i: replace(still, gust=most) for i in (suspects if first_look and gusty else gusty)}
 
 
 def _begun_anew(problem: EffectProblem, fitted: EffectFit, noise: FloatArray) -> list[FloatArray]:

@@ -19,12 +19,14 @@ _LEAST = {"q": 0.3, "a_z": 0.45}
 quickly and are measured well are used. The accelerometer's limit is higher, because it is rough at every step
 of the command."""
 _THIRD = np.array([1.0, -3.0, 3.0, -1.0])
+"""Numerical: weights of a third difference."""
 _BINS = 12
-"""Number of bins of a channel's rate over which the roughness is followed."""
+"""Numerical: number of bins of a channel's rate over which the roughness is followed."""
 _MEDIAN = 0.455
-"""Median of the square of a standard normal number."""
+"""Numerical: median of the square of a standard normal number."""
 _FAR = 2.0
-"""Number of standard deviations of a stamp within which a sample may lie on the other side of a step."""
+"""Numerical: number of standard deviations of a stamp within which a sample may lie on the other side of a
+step."""
 
 
 def stamp_variance(problem: EffectProblem, fitted: EffectFit) -> list[FloatArray]:

@@ -16,19 +16,19 @@ from advisor.gap.records.grid import smooth
 from advisor.oem.airspeed import LARGEST_DISAGREEMENT
 
 _LEAST_SAMPLES = 6
-"""Least number of air speed samples in a manoeuvre for the fit of a parabola. With fewer samples the smoothed
-reading is used."""
+"""Record: least number of air speed samples in a manoeuvre for the fit of a parabola. With fewer samples the
+smoothed reading is used."""
 _LEAST_SPARE = 10
-"""Least number of samples in all manoeuvres, minus three for each manoeuvre's parabola, for an estimate of
-the instrument's noise."""
+"""Record: least number of samples in all manoeuvres, minus three for each manoeuvre's parabola, for an
+estimate of the instrument's noise."""
 _LONGEST_MEMORY = 0.95
-"""Largest correlation between neighbouring samples that is ascribed to the instrument. A higher correlation
-is motion of the aircraft."""
+"""Prior: largest correlation between neighbouring samples that is ascribed to the instrument. A higher
+correlation is motion of the aircraft."""
 _READ_OVER_S = 0.5
-"""Length in s of the average over the air speed where no accelerometer shows the change between two
-readings."""
+"""Numerical: length in s of the average over the air speed where no accelerometer shows the change between
+two readings."""
 _SLOW_S = 1.0
-"""Length in s of the average over thrust minus drag: shorter than the speed changes, longer than
+"""Numerical: length in s of the average over thrust minus drag: shorter than the speed changes, longer than
 accelerometer noise."""
 
 

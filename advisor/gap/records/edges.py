@@ -7,12 +7,13 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.oem.lost_input import LOST_INTERVAL
 
 _STEEP, _SHORT_S = 0.15, 0.02
-"""Least jump between two stamps that counts as an edge, as a share of the command's range. The share holds
-for intervals of the second number, s; for others the product of jump and interval is compared."""
+"""Record: least jump between two stamps that counts as an edge, as a share of the command's range. The share
+holds for intervals of the second number, s; for others the product of jump and interval is compared."""
 _HOLE_S, _HOLE = 0.15, 3.5
-"""Least length of a hole in the command's log, in s, and in usual intervals. A longer of the two counts."""
+"""Record: least length of a hole in the command's log, in s, and in usual intervals. A longer of the two
+counts."""
 _PULSE_S = 0.25
-"""Length in s of a hole that may hide a whole pulse. Pulses for a fast short period are shorter."""
+"""Record: length in s of a hole that may hide a whole pulse. Pulses for a fast short period are shorter."""
 
 
 def edges_of(t: FloatArray, u: FloatArray) -> FloatArray:

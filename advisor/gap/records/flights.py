@@ -14,10 +14,10 @@ from advisor.oem.rows import Signal
 SPEED_CHANGE = 0.03
 """Relative change of air speed, over all manoeuvres, above which its effect is examined."""
 _QUIET_AFTER = 0.6
-"""Share of the free response after which the motion counts as decayed."""
+"""Record: share of the free response after which the motion counts as decayed."""
 _QUIET_AFTER_S = 1.5
-"""Time in s after the last step before which the motion never counts as decayed. A mode change may cut the
-free response short."""
+"""Record: time in s after the last step before which the motion never counts as decayed. A mode change may
+cut the free response short."""
 
 
 @dataclass(frozen=True, slots=True)

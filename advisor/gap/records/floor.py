@@ -10,7 +10,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.gap.records.flights import PreparedManeuvers
 
 TOLERANCE = 0.02
-"""Noise that is assumed in a record filtered before storage, as a share of the channel's peak."""
+"""Prior: noise that is assumed in a record filtered before storage, as a share of the channel's peak."""
 STATED_FLOOR_MARGIN = 2.5
 """Factor by which a residual must exceed a stated floor to count. A stated floor is an assumption, not a
 measurement."""

@@ -5,7 +5,8 @@ import numpy as np
 from advisor.flight.signals.messages import FloatArray
 
 STEP_S = 0.005
-"""Step of the grid in s: a hundredth of the fastest short period, and as fine as stamps are known."""
+"""Numerical: step of the grid in s: a hundredth of the fastest short period, and as fine as stamps are
+known."""
 
 
 def smooth(y: FloatArray, seconds: float) -> FloatArray:

@@ -28,8 +28,8 @@ from advisor.oem.place import ASSUMED_M_S
 from advisor.oem.rows import Signal
 
 _CHORD_OF_1_KG_M = 0.15
-"""Chord of an aircraft of 1 kg, m. Chords grow with the cube root of the mass. A glider of 3.1 kg has 0.17 m,
-a UAV of 10 kg 0.3 m, and a jet of 50 t 4.2 m."""
+"""Prior: chord of an aircraft of 1 kg, m. Chords grow with the cube root of the mass. A glider of 3.1 kg has
+0.17 m, a UAV of 10 kg 0.3 m, and a jet of 50 t 4.2 m."""
 
 
 def prepare(

@@ -4,10 +4,11 @@ from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.renewal import renewed
 
 _ESTIMATED_HZ = 22.0
-"""Rate in Hz below which α may be ArduPilot's estimate, which is renewed at most 20 times per second."""
+"""Prior: rate in Hz below which α may be ArduPilot's estimate, which is renewed at most 20 times per
+second."""
 _TELLING_HZ = 15.0
-"""Rate in Hz above which roughness identifies an instrument. ArduPilot's ``.bin`` logs hold ten estimates per
-second, which look as rough as a vane."""
+"""Prior: rate in Hz above which roughness identifies an instrument. ArduPilot's ``.bin`` logs hold ten
+estimates per second, which look as rough as a vane."""
 
 
 def is_estimate(m: Maneuver, smoothed: bool, rough: bool) -> bool:

@@ -13,6 +13,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.robust import robust_std
 
 _WEIGHTS = np.array([1.0, -4.0, 6.0, -4.0, 1.0])
+"""Numerical: weights of a fourth difference."""
 _ROUGH = 1.6
 """Largest growth of the differences from one to two samples that is ascribed to an instrument. ArduPilot's
 estimates show 2.4 and more."""

@@ -12,21 +12,18 @@ import numpy as np
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.motion import bank_at, integrated, path_turning, speed_rate_at
+from advisor.gap.decision import SIGMAS
 
 _BLOCK_S = 1.0
-"""Length in s of the blocks over which errors of the motion are fully correlated, such as a gust or the rest
+"""Prior: length in s of the blocks over which errors of the motion are fully correlated: a gust, or the rest
 of an offset."""
 _LARGER = 3.0
-"""Factor by which errors may exceed the scatter between blocks: α sees gusts, the integral of the force does
-not."""
-_SPEEDS_DIFFER = 6.0
-"""Scatter of the manoeuvres' speeds over the error from blocks, above which the speeds differ."""
-_LEAST_DIFFERENCE = 0.02
-"""Least relative scatter of the manoeuvres' speeds that counts as a difference."""
+"""Prior: factor by which errors may exceed the scatter between blocks: α sees gusts, the integral of the
+force does not."""
 _FLOWN = 0.05
-"""Prior standard deviation of a manoeuvre's speed about the intended speed, relative."""
+"""Prior: prior standard deviation of a manoeuvre's speed about the intended speed, relative."""
 _LEAST_STD = 0.01
-"""Least standard deviation of a speed from the motion, relative."""
+"""Prior: least standard deviation of a speed from the motion, relative."""
 
 
 @dataclass(frozen=True)
@@ -89,7 +86,7 @@ def speeds_about(maneuvers: Sequence[Maneuver], level_m_s: float) -> Speeds:
     off, std = np.mean(shown) / shown - 1.0, np.maximum(_LARGER * known, _LEAST_STD)
     # Gusts spoil what one manoeuvre shows: then it is nearer to what was meant than that.
     weight = _FLOWN**2 / (_FLOWN**2 + std**2)
-    differ = scatter > max(_LEAST_DIFFERENCE, _SPEEDS_DIFFER * float(np.sqrt(np.mean(known**2))))
+    differ = scatter > SIGMAS * float(np.sqrt(np.mean(known**2)))
     return Speeds(meant * (1.0 + weight * off), level_m_s * np.sqrt(weight) * std, differ)
 
 

@@ -12,20 +12,22 @@ from advisor.gap.records.unmeasured_alpha import is_known_by_motion, outputs_wit
 from advisor.oem.rows import Signal
 
 LEAST_SAMPLES = 15
-"""Least number of samples of a channel in a manoeuvre. A derived α at 8 Hz has as many in the shortest
-manoeuvre."""
+"""Record: least number of samples of a channel in a manoeuvre. A derived α at 8 Hz has as many in the
+shortest manoeuvre."""
 _LEAST_RENEWED = 30
-"""Least number of renewals below which a repeated value is kept, because a vane may stick."""
+"""Record: least number of renewals below which a repeated value is kept, because a vane may stick."""
 _MANY_HZ, _ENOUGH_HZ = 80.0, 50.0
-"""Rate in Hz above which neighbouring samples are averaged, and the rate that remains. The rest gives six
-samples per period of the fastest structural mode, and fifteen of the fastest short period."""
+"""Numerical: rate in Hz above which neighbouring samples are averaged, and the rate that remains. The rest
+gives six samples per period of the fastest structural mode, and fifteen of the fastest short period."""
 _PAIR = 2
 _NEIGHBOURS = 1.5
-"""Longest distance between neighbouring stamps, in usual intervals."""
+"""Numerical: least number of samples that are averaged, and longest distance between neighbouring stamps, in
+usual intervals."""
 DEPARTED_RAD = 1.0
-"""Range of the angle of attack in rad at which the aircraft departed: no equation about a trim applies."""
+"""Record: range of the angle of attack in rad at which the aircraft departed: no equation about a trim
+applies."""
 _ENOUGH = 4
-"""Least number of complete manoeuvres that allows incomplete ones to be left out."""
+"""Record: least number of complete manoeuvres that allows incomplete ones to be left out."""
 
 
 def usable_of(maneuvers: Sequence[Maneuver]) -> list[Maneuver]:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.decision import Decision
+from advisor.gap.decision import CERTAIN, LEAST_GAIN, LEAST_SIGMA, SIGMAS, Decision
 from advisor.gap.effects import effect_named
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.holdout import HeldOut
@@ -13,31 +13,11 @@ from advisor.gap.kit.variant import Variant
 
 MOST_EFFECTS = 3
 """Most effects named in one flight. More names in one flight are hardly ever right."""
-LEAST_GAIN = 6.0
-"""Least gain in log likelihood on held-out manoeuvres, after the price of the effect's parameters."""
-_UNCONFIRMED = 20.0
-"""Least gain in log likelihood where one manoeuvre alone determines the effect, and no other can confirm
-it."""
-LEAST_SIGMA = 3.0
-"""Least significance of an effect: number of standard deviations by which some parameter differs from
-zero."""
-CERTAIN = 30.0
-"""Gain in log likelihood above which something like the effect is certainly present."""
-BEYOND_DOUBT = 100.0
-"""Gain in log likelihood beyond doubt."""
 LEAST_OFFSET_RAD = 0.003
 """Least offset of α that is removed before the fit, and that is named, rad."""
-_SET_WITHIN_RAD = 0.007
-"""Least offset of α that is named in addition to other effects, rad. The zero of a vane, and the attitude
-reference behind the flight path, are hardly ever set within 0.4 deg."""
-_ESTIMATED_WITHIN_RAD = 0.0087
-"""Least offset of an autopilot's estimate of α that is named, rad. Such an estimate is off by up to half a
-degree without a fault."""
-OFFSET_SIGMAS, _SMALL_OFFSET_SIGMAS = 5.0, 7.0
-"""Number of standard deviations by which an offset of α must differ from zero; the second number is for a
-small offset."""
-LEAST_PRIOR_GAIN = 8.0
-"""Least gain in log prior probability for which an effect is named on that ground alone."""
+_SET_WITHIN_RAD = 0.0087
+"""Prior: largest offset of α without a fault, rad, half a degree. The zero of a vane, and the attitude
+reference behind the flight path, are hardly set more exactly. An autopilot's estimate is off by as much."""
 _HOLD_OUT = "hold-out"
 LEAST_SUPPORT = 1.0
 """Least reduction of the gap on held-out manoeuvres, in standard errors over the manoeuvres. Of two
@@ -98,7 +78,7 @@ class JudgedAddition:
     def decisions(self) -> tuple[Decision, ...]:
         """Questions that decide on acceptance; all must hold."""
         certain = self.gain >= CERTAIN
-        of_the_file = self.prior_gain >= LEAST_PRIOR_GAIN
+        of_the_file = self.prior_gain >= LEAST_GAIN
         change = 0.0 if of_the_file else self.least_certain if certain else self.least
         size, name = size_of(self.variant, self.value), self.variant.names[0]
         inverse = self.variant.inverted  # The search has the reciprocal of the file's parameter.
@@ -125,7 +105,7 @@ class JudgedAddition:
     def is_predictable(self) -> bool:
         """Whether other manoeuvres can predict the effect: neither one manoeuvre nor the aircraft file alone
         shows it."""
-        return self.sole_maneuver is None and self.prior_gain < LEAST_PRIOR_GAIN
+        return self.sole_maneuver is None and self.prior_gain < LEAST_GAIN
 
     @property
     def is_supported(self) -> bool:
@@ -141,12 +121,10 @@ class JudgedAddition:
     def least_gain(self) -> float:
         """Least value of ``gain``. Where the data leave a choice and the file decides, a positive gain is
         enough."""
-        if self.with_the_air:
-            # Air speed, throttle and height move with the air too.
+        if self.with_the_air or self.sole_maneuver is not None:
+            # Air speed, throttle and height move with the air too; one manoeuvre alone confirms nothing.
             return CERTAIN
-        if self.sole_maneuver is not None:
-            return _UNCONFIRMED
-        return 0.0 if self.variant.twin is not None and self.prior_gain >= LEAST_PRIOR_GAIN else LEAST_GAIN
+        return 0.0 if self.variant.twin is not None and self.prior_gain >= LEAST_GAIN else LEAST_GAIN
 
     @property
     def at_its_bounds(self) -> bool:
@@ -182,10 +160,8 @@ def least_offset_rad(std_rad: float, derived: bool = False, alone: bool = True) 
     alone
         Whether no cause other than moving air was found.
     """
-    least = max(_ESTIMATED_WITHIN_RAD if derived else _SET_WITHIN_RAD, OFFSET_SIGMAS * std_rad)
-    if derived or not alone:
-        return least
-    return min(least, max(LEAST_OFFSET_RAD, _SMALL_OFFSET_SIGMAS * std_rad))
+    least = _SET_WITHIN_RAD if derived or not alone else LEAST_OFFSET_RAD
+    return max(least, SIGMAS * std_rad)
 
 
 def size_of(variant: Variant, value: FloatArray) -> float:

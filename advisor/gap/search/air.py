@@ -11,6 +11,7 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.robust import robust_std
+from advisor.gap.decision import CERTAIN
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.holdout import mean_squares
 from advisor.gap.fitting.problem import EffectProblem
@@ -20,27 +21,23 @@ from advisor.gap.noise.shown_gust import largest_gust
 from advisor.model.response import OUTPUTS
 from advisor.oem.turbulence import Turbulence, find_turbulence
 
-AIR_GAIN = 40.0
-"""Least gain in log likelihood of moving air over coloured instruments."""
 AIR_MANEUVERS = 5
-"""Number of manoeuvres, the loudest ones, in which moving air is sought: enough to recognise turbulence."""
+"""Numerical: number of manoeuvres, the loudest ones, in which moving air is sought: enough to recognise
+turbulence."""
 
 LEAST_GUST_ANGLE = 0.001
-"""Least standard deviation of the gust angle, rad, for which the air counts as moving."""
+"""Numerical: standard deviation of the gust angle, rad, to which the evidence on moving air is relative."""
 NATURAL_GUST_ANGLE = 0.006
 """Largest standard deviation of the gust angle, rad, as found, that is part of every flight and no cause. At
 25 m/s that is 0.15 m/s, the lightest turbulence that the development flights of three generators name."""
-_LEAST_GUST_PEAK = 0.0025
-"""Least peak of the gust angle for a gust to be named, rad. A gust that passed once hardly changes the
-standard deviation."""
 _STANDS_OUT = 4.0
 """Residual power of one manoeuvre over the median of all, above which a gust is sought in it alone. Noise of
 equal colour in all manoeuvres does not explain that one."""
-
 _TRIED = 6
-"""Number of prior sizes of a gust that are tried, from that of turbulence up to any."""
+"""Numerical: number of prior sizes of a gust that are tried, from that of turbulence up to any."""
 _AS_MUCH = 0.995
-"""Least share of the residual that a gentler course must explain, relative to the strongest one."""
+"""Numerical: least share of the residual that a gentler course must explain, relative to the strongest
+one."""
 
 
 @dataclass(frozen=True)
@@ -92,11 +89,11 @@ def moving_air(problem: EffectProblem, fitted: EffectFit) -> SoughtAir:
     power = np.mean(before / floor**2, axis=1)
     loudest = np.argsort(-power, kind="stable")[:AIR_MANEUVERS]
     found = _moving_in(problem, fitted, loudest)
-    if found.gain < AIR_GAIN and _stands_out(power):
+    if found.gain < CERTAIN and _stands_out(power):
         found = _moving_in(problem, fitted, loudest[:1])
     # A gain that coloured instruments bring alone gives a gust angle of zero, and is no moving air.
     nothing = SoughtAir(found.gain, found.gust_angle)
-    if found.gain < AIR_GAIN or found.gust_angle <= 0.0:
+    if found.gain < CERTAIN or found.gust_angle <= 0.0:
         return nothing
     model = with_floor(problem, found.air)
     instruments = np.hypot(model.white, model.coloured)[[OUTPUTS.index(c) for c in problem.channels]]
@@ -106,8 +103,6 @@ def moving_air(problem: EffectProblem, fitted: EffectFit) -> SoughtAir:
     # Gaussian air of this many samples reaches four times its standard deviation, a lone gust far more.
     highest = float(np.max(np.abs(joined)))
     gust = highest > 6.0 * typical
-    if found.gust_angle < LEAST_GUST_ANGLE and not (gust and highest > _LEAST_GUST_PEAK):
-        return nothing
     if gust:
         course = _of_a_gust(problem, fitted, instruments, found.gust_angle)
     # Without a gust, a course may wander far and change little, or hardly move and explain a slow drift.

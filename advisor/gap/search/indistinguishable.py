@@ -2,13 +2,9 @@
 
 from collections.abc import Sequence
 
+from advisor.gap.decision import LEAST_GAIN
 from advisor.gap.effects import EFFECTS
 from advisor.gap.search.acceptance import JudgedAddition
-
-NEAR = 5.0
-"""Difference of the gain in log likelihood below which two explanations are indistinguishable."""
-_LITTLE = 0.1
-"""Difference of the gain below which twin effects are indistinguishable, as a share of the gain."""
 
 
 def way_to_distinguish(effect: str, other: str) -> str:
@@ -16,17 +12,12 @@ def way_to_distinguish(effect: str, other: str) -> str:
     return EFFECTS[effect].distinguished_by.get(other) or EFFECTS[other].distinguished_by.get(effect, "")
 
 
-def _is_as_good(a: JudgedAddition, b: JudgedAddition) -> bool:
-    """Return whether two effects are equally good; twins may differ by a share of their gain."""
-    twins = EFFECTS[a.effect].twin == b.effect or EFFECTS[b.effect].twin == a.effect
-    return abs(a.gain - b.gain) < (max(NEAR, _LITTLE * abs(b.gain)) if twins else NEAR)
-
-
 def indistinguishable_from(
     best: JudgedAddition, others: Sequence[JudgedAddition], channels: Sequence[str]
 ) -> tuple[tuple[str, ...], str]:
     """Return the effects that explain the data as well as ``best``, and what would distinguish them."""
-    names = [j.effect for j in others if j.effect != best.effect and _is_as_good(j, best) and j.gain > 0.0]
+    least = max(best.gain - LEAST_GAIN, 0.0)
+    names = [j.effect for j in others if j.effect != best.effect and j.gain > least]
     ways = []
     for name in names:
         found = way_to_distinguish(best.effect, name)

@@ -12,24 +12,10 @@ from advisor.gap.simulator.layout import HEIGHT, SPEED, THROTTLE, THRUST
 from advisor.oem.recursion import accumulated
 
 _ENGINES_S = (0.4, 1.5)
-"""Lags of engines in s; engines with a lag between them are nearly mixtures of the two."""
+"""Prior: lags of engines in s; engines with a lag between them are nearly mixtures of the two."""
 _SMOOTHED_S = 1.0
-"""Length in s of the average over accelerations. Thrust does not vary faster; noise of accelerometers
-does."""
-
-
-def energy_swing(flights: PreparedManeuvers) -> float | None:
-    """Return the standard deviation of the speed from work beyond drag's, relative to the mean speed.
-
-    Accelerations along the path are integrated without a constant and without drag, common to all manoeuvres.
-    None where they were not measured.
-    """
-    if not measures_path_acceleration(flights):
-        return None
-    everywhere = [slice(0, flight.n) for flight in flights.flights]
-    beyond = _beyond_drag(flights, [np.ones((flight.n, 1)) for flight in flights.flights], everywhere)
-    gained = [np.std(np.cumsum(b) * flight.h) for b, flight in zip(beyond, flights.flights, strict=True)]
-    return float(np.mean(gained)) / mean_speed(flights)
+"""Numerical: length in s of the average over accelerations. Thrust does not vary faster; noise of
+accelerometers does."""
 
 
 def uncommanded_thrust(flights: PreparedManeuvers) -> float | None:

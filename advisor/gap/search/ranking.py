@@ -6,35 +6,35 @@ from dataclasses import replace
 
 import numpy as np
 
+from advisor.gap.decision import LEAST_GAIN
 from advisor.gap.fitting.fit import EffectFit, fit
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.prior import log_prior
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint, counts
 from advisor.gap.fitting.uncertainty import covariance, effective_samples, log_prior_of
 from advisor.gap.kit.variant import Variant
-from advisor.gap.search.acceptance import LEAST_GAIN, LEAST_PRIOR_GAIN, JudgedAddition, size_of
-from advisor.gap.search.score import addition, is_baseline, predict_alike, smallest_of
+from advisor.gap.search.acceptance import JudgedAddition, size_of
+from advisor.gap.search.score import addition, is_baseline, smallest_of
 from advisor.gap.search.screen import Screen, Screened, likeliest_first
 from advisor.gap.simulator.layout import DERIVATIVES
 
 _PROMISE = 0.7
-"""Share of the least gain that the screening must promise before a full fit."""
+"""Numerical: share of the least gain that the screening must promise before a full fit."""
 _ITERATIONS = 8
 _TO_THE_END = 25
-"""Most iterations of the best candidate's fit; other candidates get ``_ITERATIONS``."""
+"""Numerical: most iterations of the best candidate's fit; other candidates get ``_ITERATIONS``."""
 _FITS = 5
-"""Most candidates with a full fit after the screening."""
+"""Numerical: most candidates with a full fit after the screening."""
 _RIVAL = 0.3
-"""Least promise of a candidate for a full fit, as a share of the best promise."""
+"""Numerical: least promise of a candidate for a full fit, as a share of the best promise."""
 _LACKING = 0.2
-"""Share of the best decrease of the cost that a candidate may lack and still be fitted to the end."""
+"""Numerical: share of the best decrease of the cost that a candidate may lack and still be fitted to the
+end."""
 _GROSS = 300.0
-"""Promised log likelihood above which the right model is far from the range of the screening."""
+"""Numerical: promised log likelihood above which the right model is far from the range of the screening."""
 _GROSS_FITS = 8
 _GROSS_RIVAL = 0.05
-"""Most full fits in that case, and the least share of the best promise that earns one."""
-_TELLS = 3.0
-"""Least difference of the prior terms for which one effect is preferred to another with equal motion."""
+"""Numerical: most full fits in that case, and the least share of the best promise that earns one."""
 
 
 def candidates_for(problem: EffectProblem, fitted: EffectFit, variants: Sequence[Variant]) -> list[Screened]:
@@ -69,7 +69,7 @@ def _from_the_prior(
     if problem.prior_derivatives is None or not is_baseline(baseline):
         return []
     file = replace(baseline.point, derivatives=problem.prior_derivatives)
-    if prior_gain(file) < LEAST_PRIOR_GAIN:
+    if prior_gain(file) < LEAST_GAIN:
         return []
     points = [file.with_effect(v, v.start_at_prior) for v in variants if v.start_at_prior is not None]
     fits = [fit(problem, point, baseline.noise, _TO_THE_END, 0.5) for point in points]
@@ -92,7 +92,7 @@ def judge(
     effective = effective_samples(problem, min(fits, key=lambda f: f.cost).innovations)
     judged = [addition(problem, before, held_before, f, f.point.effects[-1].effect, effective) for f in fits]
     best: dict[str, JudgedAddition] = {}
-    for one in evened(problem, judged):
+    for one in sorted(judged, key=lambda j: -j.gain):
         best.setdefault(one.effect, one)
     first, *rest = best.values()
     if first.fitted.iterations == _ITERATIONS:
@@ -121,25 +121,6 @@ def _described(point: SearchPoint) -> list[SearchPoint]:
     ]
 
 
-def evened(problem: EffectProblem, judged: Sequence[JudgedAddition]) -> list[JudgedAddition]:
-    """Return the judgements, best first. An effect with equal motion and better prior terms gets the best
-    likelihood.
-
-    A low-order description misses a share of the motion. Where two descriptions differ by less, the
-    likelihood prefers the one that absorbs more of its own error. The prior decides instead: above all, which
-    of them keeps the aircraft file's derivatives.
-    """
-    best = max(judged, key=lambda j: j.gain)
-
-    def at_its_worth(j: JudgedAddition) -> JudgedAddition:
-        likelier = j.prior_terms > best.prior_terms + _TELLS
-        if not (likelier and j.is_accepted and predict_alike(problem, best.held_out, j.held_out)):
-            return j
-        return replace(j, gain=best.gain - best.prior_terms + j.prior_terms)
-
-    return sorted((at_its_worth(j) for j in judged), key=lambda j: -j.gain)
-
-
 def shortlist(problem: EffectProblem, before: EffectFit, candidates: Sequence[Screened]) -> list[Screened]:
     """Return the candidates for a full fit; ``candidates`` come best first.
 
@@ -162,12 +143,12 @@ def shortlist(problem: EffectProblem, before: EffectFit, candidates: Sequence[Sc
     least = (_GROSS_RIVAL if gross else _RIVAL) * best_of(candidates)
     chosen: list[Screened] = []
     for c in candidates:
-        promises = promise(c) >= _PROMISE * LEAST_GAIN or c.prior_gain >= _PROMISE * LEAST_PRIOR_GAIN
+        promises = max(promise(c), c.prior_gain) >= _PROMISE * LEAST_GAIN
         same = sum(c.variant.effect == other.variant.effect for other in chosen)
         if promises and promise(c) + c.prior_gain >= least and same < (2 if gross else 1):
             chosen.append(c)
     chosen = chosen[: _GROSS_FITS if gross else _FITS]
     # A twin of wrong derivatives is as far from the baseline model as these are. The screening's
     # sensitivities are those of another model and say little about such a fit.
-    twins = [c for c in candidates if c.variant.twin is not None and c.prior_gain >= LEAST_PRIOR_GAIN]
+    twins = [c for c in candidates if c.variant.twin is not None and c.prior_gain >= LEAST_GAIN]
     return [*chosen, *(c for c in twins if c not in chosen)]

@@ -3,8 +3,9 @@
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
+from advisor.gap.decision import BEYOND_DOUBT, LEAST_GAIN, LEAST_SIGMA
 from advisor.gap.effects import effect_named
-from advisor.gap.fitting.fit import EffectFit, rms_of
+from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.holdout import (
     HeldOut,
     hold_out,
@@ -17,17 +18,9 @@ from advisor.gap.fitting.problem import EffectProblem, counts
 from advisor.gap.fitting.uncertainty import covariance, log_prior_of, sigmas_of
 from advisor.gap.kit.variant import Variant
 from advisor.gap.records.floor import floor_margins
-from advisor.gap.search.acceptance import (
-    BEYOND_DOUBT,
-    LEAST_PRIOR_GAIN,
-    LEAST_SUPPORT,
-    JudgedAddition,
-    size_of,
-)
+from advisor.gap.result import VISIBLE
+from advisor.gap.search.acceptance import LEAST_SUPPORT, JudgedAddition, size_of
 
-LEAST_GAP = 0.05
-"""Least mean square change of the outputs for a named effect, relative to the instruments' noise, averaged
-over channels."""
 _FAINT = 0.15
 """Share of the least change that is enough for an effect that is certain, in still air and without another
 effect. Effects that every aircraft has are excepted. A time must be twice its least size then, and so must a
@@ -37,13 +30,9 @@ _OF_PEAK = 0.003
 TIMES = frozenset({"delay_s", "lag_s", "skew_s"})
 """Parameters that are times."""
 TIME_ERROR_S = 0.0006
-"""Error of a delay, lag or skew in s, for the simulation's grid and the resolution of the stamps."""
+"""Prior: error of a delay, lag or skew in s, for the simulation's grid and the resolution of the stamps."""
 _ANY_TIME = 1.5
 """Factor on the physical minimum for a step that may lie between any two manoeuvres."""
-_JITTERS = 3.0
-"""Number of standard deviations of the stamps that are added to the physical minimum of a time."""
-_NOT_SEEN = 0.005
-"""Mean square difference of two predictions, relative to the instruments' noise, that no flight shows."""
 
 
 def smallest_of(problem: EffectProblem, variant: Variant, gain: float = 0.0) -> float:
@@ -53,7 +42,7 @@ def smallest_of(problem: EffectProblem, variant: Variant, gain: float = 0.0) -> 
     """
     smallest = variant.smallest * (variant.if_beyond_doubt if gain >= BEYOND_DOUBT else 1.0)
     if variant.names[0] in TIMES:
-        return smallest + TIME_ERROR_S + _JITTERS * problem.jitter_s
+        return smallest + TIME_ERROR_S + LEAST_SIGMA * problem.jitter_s
     return smallest * (_ANY_TIME if variant.comes_at_any_time else 1.0)
 
 
@@ -89,9 +78,7 @@ def addition(
     odds = log_odds_in(problem, variant.effect, float(value[0]))
     least, prior_terms = least_change(problem), prior_gain + odds - price_of(variant, effective)
     gain = likelihood + prior_terms
-    known_numbers = covariance(problem, fitted, effective, trusted=prior_gain >= LEAST_PRIOR_GAIN)[
-        place, place
-    ]
+    known_numbers = covariance(problem, fitted, effective, trusted=prior_gain >= LEAST_GAIN)[place, place]
     located = [name in variant.places for name in variant.names]
     return JudgedAddition(
         variant=variant, fitted=fitted, held_out=held,
@@ -180,17 +167,8 @@ def least_change(problem: EffectProblem) -> float:
     share of each channel's peak.
     """
     if problem.instruments is None:
-        return LEAST_GAP
-    return max(LEAST_GAP, float(_OF_PEAK**2 / np.mean((problem.instruments / problem.flights.peaks) ** 2)))
-
-
-def predict_alike(problem: EffectProblem, one: HeldOut, other: HeldOut) -> bool:
-    """Return whether two predictions are equal but for the error of a low-order description."""
-    differences = rms_of(problem, [a - b for a, b in zip(one.residuals, other.residuals, strict=True)])
-    return (
-        bool(np.all(differences < _OF_PEAK * problem.flights.peaks))
-        or difference(problem, one, other) < _NOT_SEEN
-    )
+        return VISIBLE
+    return max(VISIBLE, float(_OF_PEAK**2 / np.mean((problem.instruments / problem.flights.peaks) ** 2)))
 
 
 def support_of(problem: EffectProblem, before: HeldOut, after: HeldOut) -> float:

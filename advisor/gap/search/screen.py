@@ -14,14 +14,15 @@ from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.kit.variant import Variant
 
 _STEPS = 4
-"""Most Gauss-Newton steps of a quick fit."""
+"""Numerical: most Gauss-Newton steps of a quick fit."""
 _AT_ONCE = 16
-"""Points that are simulated together: enough to fill the packs, few enough for the cache."""
+"""Numerical: points that are simulated together: enough to fill the packs, few enough for the cache."""
 _HARDLY = 6.0
-"""Decrease of the cost (twice the log likelihood) below which a description is not followed further."""
+"""Numerical: decrease of the cost (twice the log likelihood) below which a description is not followed
+further."""
 _HOPELESS = 0.05
-"""Share of the best decrease so far below which a description is not followed further, being no rival
-(``ranking``)."""
+"""Numerical: share of the best decrease so far below which a description is not followed further, being no
+rival (``ranking``)."""
 
 
 @dataclass(frozen=True)

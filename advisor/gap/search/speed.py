@@ -3,8 +3,7 @@
 The air speed varies in every flight, because a manoeuvre exchanges it for height. A simulator with the
 measured speed knows that. The variation is a cause only where thrust did uncommanded work: it varies while
 the throttle rests, as accelerations along the path show. Without these or the throttle in the log, the energy
-V²/2 + g h must have varied as much as the speed. Measured accelerations must then show that work too, beyond
-drag. For a small variation they must be measured, and the air must be still.
+V²/2 + g h must have varied.
 """
 
 from collections.abc import Sequence
@@ -19,43 +18,25 @@ from advisor.gap.fitting.holdout import HeldOut, hold_out
 from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.records.flights import SPEED_CHANGE, PreparedManeuvers
-from advisor.gap.result import Cause, Value
+from advisor.gap.result import VISIBLE, Cause, Value
 from advisor.gap.search.air import MovingAir
 from advisor.gap.search.path_energy import (
     energy_speed,
-    energy_swing,
     mean_speed,
     measures_path_acceleration,
     uncommanded_thrust,
 )
-from advisor.gap.simulator.layout import SPEED
 
-_COSTS = 0.05
-"""Least gap of a simulator at constant speed for a step of the waterfall."""
-_IS_CAUSE = 1.0
-"""Least gap of a simulator at constant speed for which the variation may be the cause."""
+_COSTS = 0.3
+"""Least gap of a simulator at constant speed for which a varying speed is the cause."""
 _WORK = 0.02
 """Least standard deviation of the speed from energy alone, relative to the mean speed, that shows work."""
-_LITTLE_WORK = 0.009
-"""Least such standard deviation where accelerations were measured and the air is still."""
-_CLEAR_WORK = 0.03
-"""Most work that the accelerations must show, as relative standard deviation of the speed: a thrust that
-varies for long passes for drag in part."""
-_EXCHANGED = 0.9
-"""Least ratio of the energy's standard deviation to the speed's. Below it most speed was exchanged for
-height."""
 _UNCOMMANDED = 0.002 * GRAVITY_M_S2
 """Least uncommanded thrust that is a cause, m/s². Drag and engines beyond simple laws stay below it: 0.012
 m/s² in 270 flights of nine simulators without an effect."""
-_UNCOMMANDED_SWING = 0.006
-"""Least relative standard deviation of the speed for an uncommanded thrust."""
-_UNCOMMANDED_GUSTS = 1.5
-"""Least ratio of the speed's standard deviation to that of the gust angle, for an uncommanded thrust."""
-_UNCOMMANDED_COSTS = 0.3
-"""Least gap of a simulator at constant speed for an uncommanded thrust."""
 _GUSTS = 4.0
-"""Least ratio of the variation of speed, or of the work felt, and of energy to the gust angle. An air speed
-indicator reads gusts too."""
+"""Least ratio of the variation of energy to the gust angle. An air speed indicator reads gusts, which are no
+work."""
 
 
 def at_constant_speed(
@@ -77,7 +58,7 @@ def airspeed_cause(
     problem: EffectProblem, constant: HeldOut | None, last: HeldOut, floor: FloatArray
 ) -> Cause | None:
     """Return the variation of air speed as a cause where ignoring it costs; its probability is set later."""
-    if constant is None or speed_costs(constant, last, floor) < _COSTS:
+    if constant is None or speed_costs(constant, last, floor) < VISIBLE:
         return None
     return Cause(
         "airspeed_variation", "force_equation", 0.0,
@@ -99,20 +80,14 @@ def speed_is_a_cause(
     A speed that was not logged is a cause wherever it matters, because no simulator was given it.
     """
     if constant is not None and not problem.flights.speed_measured:
-        return speed_costs(constant, last, floor) > _COSTS
+        return speed_costs(constant, last, floor) > VISIBLE
     if constant is None or "height" not in problem.flights.has or (air is not None and air.gust):
         return False
     if "throttle" in problem.flights.has and measures_path_acceleration(problem.flights):
         return thrust_is_uncommanded(problem, constant, last, floor, air)
-    speed, energy = swings(problem.flights)
     gusts = 0.0 if air is None else air.angle_std
-    least = max(_EXCHANGED * speed, _LITTLE_WORK)
-    energy_felt = energy_swing(problem.flights)
-    worked = energy > least and (energy_felt is None or energy_felt > min(least, _CLEAR_WORK))
-    clear = energy > _WORK or (energy_felt is not None and air is None)
-    # An air speed indicator reads gusts; accelerometers along the path do not.
-    felt_more = min(max(speed, energy_felt or 0.0), energy) > _GUSTS * gusts
-    return worked and clear and felt_more and speed_costs(constant, last, floor) > _IS_CAUSE
+    worked = energy_swing(problem.flights) > max(_WORK, _GUSTS * gusts)
+    return worked and speed_costs(constant, last, floor) > _COSTS
 
 
 def thrust_is_uncommanded(
@@ -123,25 +98,16 @@ def thrust_is_uncommanded(
     flights = problem.flights
     if constant is None or not flights.speed_measured or (air is not None and air.gust):
         return False
-    if "throttle" not in flights.has or speed_costs(constant, last, floor) < _UNCOMMANDED_COSTS:
+    if "throttle" not in flights.has or speed_costs(constant, last, floor) < _COSTS:
         return False
     thrust = uncommanded_thrust(flights)
-    if thrust is None or thrust < _UNCOMMANDED:
-        return False
-    gusts = 0.0 if air is None else air.angle_std
-    return swings(flights)[0] > max(_UNCOMMANDED_SWING, _UNCOMMANDED_GUSTS * gusts)
+    return thrust is not None and thrust >= _UNCOMMANDED
 
 
-def swings(flights: PreparedManeuvers) -> tuple[float, float]:
-    """Return the standard deviations of the speed and of √(V² + 2 g h) in a manoeuvre, relative to the mean
-    speed.
+def energy_swing(flights: PreparedManeuvers) -> float:
+    """Return the standard deviation of √(V² + 2 g h) in a manoeuvre, relative to the mean speed.
 
-    Medians over the manoeuvres: a manoeuvre with a steady climb or descent does not count as a change of
-    speed.
+    It is the median over the manoeuvres: a manoeuvre with a steady climb or descent does not count.
     """
-    speeds, energies = [], []
-    for flight in flights.flights:
-        speeds.append(float(np.std(flight.slow[SPEED])))
-        energies.append(float(np.std(energy_speed(flight))))
-    mean = mean_speed(flights)
-    return float(np.median(speeds)) / mean, float(np.median(energies)) / mean
+    swings = [np.std(energy_speed(flight)) for flight in flights.flights]
+    return float(np.median(swings)) / mean_speed(flights)

@@ -3,11 +3,12 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from advisor.gap.decision import BEYOND_DOUBT
 from advisor.gap.fitting.fit import EffectFit, fit
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.fitting.uncertainty import effective_samples
-from advisor.gap.search.acceptance import BEYOND_DOUBT, JudgedAddition
+from advisor.gap.search.acceptance import JudgedAddition
 from advisor.gap.search.score import addition
 from advisor.gap.search.screen import Screened
 

@@ -3,21 +3,17 @@
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-from advisor.gap.effects import effect_named
+from advisor.gap.decision import BEYOND_DOUBT, LEAST_GAIN
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.holdout import hold_out, measured_in
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.fitting.uncertainty import effective_samples, shared_std
 from advisor.gap.kit.variant import Variant
-from advisor.gap.search.acceptance import BEYOND_DOUBT, LEAST_PRIOR_GAIN, MOST_EFFECTS, JudgedAddition
+from advisor.gap.search.acceptance import MOST_EFFECTS, JudgedAddition
 from advisor.gap.search.ranking import candidates_for, judge
 from advisor.gap.search.score import addition
 from advisor.gap.search.screen import one_each
 from advisor.gap.search.stage import Stage, added_in, fit_with_effects, rebuilt
-
-_OPEN = 0.1
-"""Factor on the gain of an effect that is a position to be measured, when effects are ordered; see
-``_rank_of``."""
 
 Progress = Callable[[str, float], None]
 """Function that receives a sentence about the work and the share done, 0 to 1."""
@@ -91,9 +87,7 @@ def in_full(problem: EffectProblem, stages: list[Stage]) -> list[Stage]:
     def restated(added: JudgedAddition) -> JudgedAddition:
         point = full.point
         k = point.index_of(added.effect)
-        std = shared_std(problem, full, effective, trusted=added.prior_gain >= LEAST_PRIOR_GAIN)[
-            point.place(k)
-        ]
+        std = shared_std(problem, full, effective, trusted=added.prior_gain >= LEAST_GAIN)[point.place(k)]
         return replace(added, variant=point.effects[k], value=point.values[k], std=std)
 
     return [s if s.added is None else replace(s, added=restated(s.added)) for s in stages]
@@ -117,7 +111,7 @@ def settled(problem: EffectProblem, stages: list[Stage]) -> list[Stage]:
         # An effect that held-out manoeuvres do not support goes first, whatever its gain.
         weakest = min(names, key=lambda name: (lost_without[name].is_supported, lost_without[name].gain))
         if lost_without[weakest].is_accepted:
-            names.sort(key=lambda name: -lost_without[name].gain * _rank_of(problem, name))
+            names.sort(key=lambda name: -lost_without[name].gain)
             break
         names.remove(weakest)
         full = without[weakest]
@@ -132,15 +126,6 @@ def _stands_alone(problem: EffectProblem, first: Stage, full: EffectFit, name: s
     """Return whether the only remaining effect is accepted alone; it may have led to one that was dropped."""
     effective = effective_samples(problem, full.innovations)
     return addition(problem, first.fitted, first.held_out, full, name, effective).is_accepted
-
-
-def _rank_of(problem: EffectProblem, effect: str) -> float:
-    """Return the factor on an effect's gain when effects are ordered.
-
-    An accelerometer's position that the file leaves open is to be measured. It comes last, unless other
-    effects are tiny.
-    """
-    return _OPEN if effect_named(effect).left_open and effect not in problem.arms_in_file else 1.0
 
 
 def reduced_to(problem: EffectProblem, stages: Sequence[Stage], names: Sequence[str]) -> list[Stage]:

@@ -8,26 +8,19 @@ the air speed is an indicated one in thin air.
 from dataclasses import dataclass
 
 from advisor.gap.candidates.nuisances import TRUE_AIR_SPEED
+from advisor.gap.decision import SIGMAS
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.fitting.uncertainty import effective_samples, shared_std
-from advisor.gap.uncatalogued.weight_check import SIGMAS, WeightReading
+from advisor.gap.uncatalogued.weight_check import WeightReading
 from advisor.words.quantiles import NORMAL_95
 
-_REPORTED, _WRONG = 0.02, 0.06
-"""Least relative difference that is reported, and least difference that shows an error."""
-_FELT = 0.03
-"""Least relative difference for which an indicated air speed is assumed, because its changes are too
-small."""
+_REPORTED, _WRONG = 0.03, 0.06
+"""Least relative difference that is reported, and may be that of an indicated air speed; and least difference
+that shows an error."""
 _ITS_OWN = 0.5
 """Largest error of the weight that the accelerometer reads, as a share of the difference, for an indicated
 air speed."""
-_AS_MUCH = 0.05
-"""Largest difference between the errors of curvature and weight for which both are the accelerometer's. An
-offset of the accelerometer contributes to one of them."""
-SIGMAS_IN_GUSTS = 8.0
-"""Least number of standard deviations of a difference that shows an error in moving air. A wave in every
-manoeuvre looks like a wrong air speed."""
 
 
 @dataclass(frozen=True)
@@ -38,23 +31,18 @@ class AirspeedScale:
     scale: float
     std: float
 
-    def is_wrong(self, moving_air: bool, weight: WeightReading | None, thin_air: float) -> bool:
+    def is_wrong(self, weight: WeightReading | None, thin_air: float) -> bool:
         """Return whether the difference exceeds the error of any air speed indicator.
 
         ``weight`` is the accelerometer's reading of the weight, where that is known. ``thin_air`` is the
         excess of the true air speed that the height explains, for an indicated one.
         """
-        least = _WRONG + (thin_air if self.is_indicated(weight) else 0.0)
-        return abs(self.scale) > max(least, SIGMAS_IN_GUSTS * self.std if moving_air else 0.0)
+        return abs(self.scale) > _WRONG + (thin_air if self.is_indicated(weight) else 0.0)
 
     def is_indicated(self, weight: WeightReading | None) -> bool:
         """Return whether the air speed may be an indicated one in thin air: the accelerometer reads the
         weight right."""
-        return weight is not None and self.scale > max(_FELT, (weight.share - 1.0) / _ITS_OWN)
-
-    def is_the_accelerometers(self, weight: WeightReading | None) -> bool:
-        """Return whether weight and curvature lack an equal share, which no air speed error causes."""
-        return weight is not None and weight.is_off and abs(self.scale - (weight.share - 1.0)) < _AS_MUCH
+        return weight is not None and self.scale > max(0.0, (weight.share - 1.0) / _ITS_OWN)
 
     @property
     def sentence(self) -> str:

@@ -12,16 +12,13 @@ from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.noise.stamps import rates_of
 
 _LAG_OF = {"alpha": "alpha_lag"}
-_MOSTLY = 0.5
-"""Least share of a channel's error, beyond its noise, that a delay in each manoeuvre must explain."""
-_BETTER = 2.0
-"""Least ratio of the error explained by delays to that explained by a scale in each manoeuvre."""
 
 
 def is_clock_error(problem: EffectProblem, fitted: EffectFit, channel: str) -> bool:
     """Return whether the residual of a channel is its rate times a delay that changes between manoeuvres.
 
-    The delay may grow or shrink steadily within a manoeuvre. Where a lag of the channel was found, the lag
+    The delays must explain most of the error beyond noise, and more than a scale in each manoeuvre does. A
+    delay may grow or shrink steadily within a manoeuvre. Where a lag of the channel was found, the lag
     itself changes, and the sensor is at fault.
     """
     if any(effect.effect == _LAG_OF.get(channel) for effect in fitted.point.effects):
@@ -36,7 +33,7 @@ def is_clock_error(problem: EffectProblem, fitted: EffectFit, channel: str) -> b
         total += float(residual @ residual)
         if problem.instruments is not None:
             total -= len(residual) * float(problem.instruments[c]) ** 2
-    return delayed > _MOSTLY * total and delayed > _BETTER * scaled
+    return delayed > max(total - delayed, scaled)
 
 
 def _taken(residual: FloatArray, times: FloatArray) -> float:

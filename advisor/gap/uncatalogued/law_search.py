@@ -10,15 +10,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
+from advisor.gap.decision import CERTAIN, LEAST_GAIN
 from advisor.gap.fitting.fit import EffectFit, fit
-from advisor.gap.fitting.holdout import HeldOut, hold_out, mean_squares
 from advisor.gap.fitting.problem import EffectProblem, counts
 from advisor.gap.fitting.uncertainty import effective_samples, log_prior_of
 from advisor.gap.kit.variant import Variant
-from advisor.gap.search.acceptance import CERTAIN, JudgedAddition
+from advisor.gap.search.acceptance import JudgedAddition
 from advisor.gap.search.score import (
     addition,
-    difference,
     log_likelihood_gained,
     log_odds_in,
     price_of,
@@ -30,30 +29,16 @@ from advisor.gap.uncatalogued.candidate_laws import MUST_LEAVE_LITTLE, RINGING, 
 from advisor.gap.uncatalogued.unexplained import Unexplained
 
 _FITTED_SHARE = 0.2
-"""Least share of the likeliest law's gain in the screening for a full fit of another."""
+"""Numerical: least share of the likeliest law's gain in the screening for a full fit of another."""
 _OUT_OF_REACH = 200.0
-"""Cost above that of the best law, or of all effects together, at which the fit of a law is given up."""
-_LIKELIER = 10.0
-"""Least gain in log likelihood of a law over all effects together."""
+"""Numerical: cost above that of the best law, or of all effects together, at which the fit of a law is given
+up."""
 _LEAVES = 0.3
 """Largest residual share of some channel's power for a law of ``MUST_LEAVE_LITTLE``. A tilted attitude
 resembles a gyro that is sensitive to acceleration, and a vibrating propeller resembles a surface stop."""
-_IN_MOST = 0.6
-"""Least share of manoeuvres in which a law reduces the residual. An improvement in fewer is a gust, or a
-fault that comes and goes."""
-_LITTLE = 0.004
-"""Least change by a law as a share of a channel's peak. A smaller one may be a catalogued effect too small to
-be named."""
-_SEVERAL = 2
-"""Number of effects that may imitate a law together."""
-_SEPARATE_SHARE = 0.5
-"""Least gain of the effects in addition to the law, relative to their gain without it, for separate causes; a
-certain gain is enough. They must also change the outputs by that share of the law's change. A wrong air speed
-has side effects."""
-
 _MISSING = 0.03
-"""Residual of all effects beyond noise, as a share of some channel's peak, above which a ringing servo is
-tried from every start."""
+"""Numerical: residual of all effects beyond noise, as a share of some channel's peak, above which a ringing
+servo is tried from every start."""
 
 
 @dataclass(frozen=True)
@@ -133,25 +118,10 @@ def _is_law(
     held, disputed = stages[0].held_out, stages[-1].disputed
     # Effective sample sizes depend on the fit that gives them: both gains are computed with the same ones.
     named = max(_gain_of_all(problem, stages, effective), 0.0 if disputed is None else disputed.gain)
-    if not judged.is_accepted or judged.gain < max(CERTAIN, named + _LIKELIER):
-        return False
-    after, before = (np.sum(h.by_maneuver / held.mean_square, axis=1) for h in (judged.held_out, held))
-    if np.mean(after < before) < _IN_MOST or _largest_change(problem, held, judged.held_out) <= _LITTLE:
-        return False
-    alike = difference(problem, stages[-1].held_out, judged.held_out) < judged.least
-    if alike and len(added_in(stages)) < _SEVERAL:
-        # The motion nearly equals that of one effect, which stays. Several in concert would be less likely.
-        return False
-    if len(stages) > 1 and _are_separate_causes(problem, stages, judged, effective):
+    if not judged.is_accepted or judged.gain < max(CERTAIN, named + LEAST_GAIN):
         return False
     remaining_shares = judged.held_out.mean_square / held.mean_square
     return judged.effect not in MUST_LEAVE_LITTLE or bool(np.min(remaining_shares) <= _LEAVES)
-
-
-def _largest_change(problem: EffectProblem, before: HeldOut, after: HeldOut) -> float:
-    """Return the largest change that a law makes to a channel of a manoeuvre: rms relative to the peak."""
-    changes = [a - b for a, b in zip(before.residuals, after.residuals, strict=True)]
-    return float(np.max(np.sqrt(mean_squares(problem, changes)) / np.maximum(problem.flights.peaks, 1e-300)))
 
 
 def _gain_of_all(problem: EffectProblem, stages: list[Stage], effective: FloatArray) -> float:
@@ -169,30 +139,6 @@ def _gain_of_all(problem: EffectProblem, stages: list[Stage], effective: FloatAr
     price = sum(price_of(j.variant, effective) for j in named)
     odds = sum(log_odds_in(problem, j.effect, float(j.value[0])) for j in named)
     return likelihood + prior_gain + odds - price
-
-
-def _are_separate_causes(
-    problem: EffectProblem, stages: list[Stage], judged: JudgedAddition, effective: FloatArray
-) -> bool:
-    """Return whether the effects explain much in addition to the law, and change the outputs enough."""
-    first, last = stages[0], stages[-1]
-    law = set(judged.variant.entries)
-    others = [v.effect for v in last.fitted.point.effects if not law & set(v.entries)]
-    both = fit(
-        problem,
-        last.fitted.point.with_only(others).with_effect(judged.variant, tuple(judged.value)),
-        judged.fitted.noise,
-        tolerance=0.5,
-    )
-
-    def gained(before: EffectFit, held_before: HeldOut, after: EffectFit, held_after: HeldOut) -> float:
-        return log_likelihood_gained(before, held_before, after, held_after, effective)
-
-    held = hold_out(problem, both)
-    alone = gained(first.fitted, first.held_out, last.fitted, last.held_out)
-    in_addition = gained(judged.fitted, judged.held_out, both, held)
-    matters = difference(problem, judged.held_out, held) > _SEPARATE_SHARE * judged.removed
-    return matters and in_addition > min(_SEPARATE_SHARE * alone, CERTAIN)
 
 
 def _share(judged: JudgedAddition, best: JudgedAddition) -> float:

@@ -12,7 +12,7 @@ from advisor.gap.simulator.layout import INDEX
 
 SURFACE_STOP, VANE_STOP = "surface_stop", "vane_stop"
 _TRIMMED_RAD = 0.002
-"""Least distance of a stop from trim, rad."""
+"""Numerical: least distance of a stop from trim, rad."""
 
 
 def surface_stops(flights: PreparedManeuvers) -> list[Variant]:

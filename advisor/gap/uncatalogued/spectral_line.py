@@ -21,14 +21,14 @@ from advisor.gap.simulator.layout import OUTPUTS
 from advisor.oem.arrow import solved
 
 _SWINGS = 5.0
-"""Least number of periods in a record. Slower motion is a drift, or the aircraft's own."""
+"""Record: least number of periods in a record. Slower motion is a drift, or the aircraft's own."""
 _LINE = 3.0
-"""Half width of a line, in inverse lengths of a record: Hann's window and a little damping."""
+"""Numerical: half width of a line, in inverse lengths of a record: Hann's window and a little damping."""
 _ABOVE = 3.8
 """Least power of a line relative to white noise, and relative to the highest power elsewhere. A damped motion
 reaches 3.4."""
 _POINTS = 4096
-"""Least number of points of the spectrum."""
+"""Numerical: least number of points of the spectrum."""
 
 
 @dataclass(frozen=True)

@@ -3,12 +3,12 @@
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
+from advisor.gap.decision import BEYOND_DOUBT
 from advisor.gap.fitting.fit import EffectFit, rms_of
 from advisor.gap.fitting.problem import EffectProblem
-from advisor.gap.noise.probes import SENSOR_CHANNELS
+from advisor.gap.result import VISIBLE
 from advisor.gap.uncatalogued.spectral_line import SpectralLine, spectral_line_in
 from advisor.gap.uncatalogued.unexplained import (
-    LEAST_GAIN,
     LEAST_OF_GAP,
     OF_PEAK,
     Unexplained,
@@ -17,10 +17,6 @@ from advisor.gap.uncatalogued.unexplained import (
     ranking_of,
 )
 
-_OF_PEAK_SWINGING = 0.005
-"""Least amplitude of an aircraft's oscillation, as a share of a channel's peak. No model error oscillates."""
-_VISIBLE = 0.05
-"""Least power of an oscillation relative to the instruments' noise, for an unexplained residual."""
 _SHAKEN = 4.0
 """Least power of an oscillation in the accelerometer alone, relative to its noise. An engine shakes every
 accelerometer, and sampling turns that into a slow oscillation."""
@@ -35,14 +31,13 @@ def sustained_oscillation(
     """
     noise, instruments = innovation_noise(problem), np.maximum(instruments_of(problem), 1e-12)
     line = spectral_line_in(problem, last, noise)
-    if line is None or line.probes[0].gain < LEAST_GAIN or line.probes[0].block == "air":
+    if line is None or line.probes[0].gain < BEYOND_DOUBT or line.probes[0].block == "air":
         return None
     best = line.probes[0]
-    least = OF_PEAK if best.block in SENSOR_CHANNELS else _OF_PEAK_SWINGING
-    if not np.any(line.power > np.maximum(least * problem.flights.peaks, tolerance) ** 2):
+    if not np.any(line.power > np.maximum(OF_PEAK * problem.flights.peaks, tolerance) ** 2):
         return None
     over_noise = line.power / instruments**2
-    if float(np.mean(over_noise)) < _VISIBLE or (_may_be_vibration(line) and np.max(over_noise) < _SHAKEN):
+    if float(np.mean(over_noise)) < VISIBLE or (_may_be_vibration(line) and np.max(over_noise) < _SHAKEN):
         return None
     powers = (rms_of(problem, last.innovations) / noise) ** 2
     taken = float(np.sum((rms_of(problem, first.innovations) / noise) ** 2 - powers))
@@ -59,4 +54,4 @@ def _may_be_vibration(line: SpectralLine) -> bool:
     """
     best = line.probes[0]
     accelerometer = next((p.gain for p in line.probes if p.block == "accelerometer"), 0.0)
-    return best.block in ("accelerometer", "force_equation") and accelerometer > best.gain - LEAST_GAIN
+    return best.block in ("accelerometer", "force_equation") and accelerometer > best.gain - BEYOND_DOUBT

@@ -13,20 +13,18 @@ import numpy as np
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import FloatArray
+from advisor.gap.decision import SIGMAS
 from advisor.words.quantiles import NORMAL_95
 
 _NEEDED = ("a_z", "alpha", "theta")
 _LEAST_MANEUVERS = 3
-"""Least number of manoeuvres for a scatter."""
+"""Record: least number of manoeuvres for a scatter."""
 _LEVEL_RAD = 0.26
-"""Largest bank in rad at which the rate of the pitch angle equals the pitch rate."""
+"""Record: largest bank in rad at which the rate of the pitch angle equals the pitch rate."""
 _ENDS_S = 0.3
-"""Length in s of the average over each end of an angle."""
+"""Record: length in s of the average over each end of an angle."""
 _LEAST = 0.15
 """Least departure of the share from 1 that no offset of an accelerometer explains."""
-SIGMAS = 5.0
-"""Least number of standard errors of a difference that is reported, here from the scatter between
-manoeuvres."""
 
 
 @dataclass(frozen=True)

@@ -16,48 +16,30 @@ from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.motion import bank_at, gravity_in_plane, integrated, speed_rate
+from advisor.gap.decision import CHANCE
 
 _NEEDED = ("airspeed", "a_x", "a_z", "theta", "alpha")
 _LEAST_SAMPLES = 10
-"""Least number of air speed samples in a manoeuvre beyond the parabola's three."""
+"""Record: least number of air speed samples in a manoeuvre beyond the parabola's three."""
 _LEAST_PER_S = 0.08
 """Least gradient of the wind, 1/s, that matters: a knot in six metres."""
 _MOST_PER_S = 0.5
-"""Largest plausible gradient of the wind, 1/s. Wind shear that airports call severe begins at 0.2 1/s (ICAO
-Doc 9817)."""
+"""Prior: largest gradient of a wind, 1/s. Wind shear that airports call severe begins at 0.2 1/s (ICAO Doc
+9817)."""
 _LEAST_MANEUVERS = 4
-"""Least number of manoeuvres that must agree on a gradient."""
-_CHANCE = 1e-3
-"""Largest probability of the gradient by chance, from the scatter between the manoeuvres (Student's t)."""
-_CLEAR_CHANCE = 5e-3
-"""Largest probability by chance where heights explain a clear share."""
+"""Record: least number of manoeuvres that must agree on a gradient."""
 _LEAST_SHARE = 0.17
-"""Least share of the air speed's residual that heights explain. In moving air, and with delayed thrust,
-heights explain up to a seventh by chance; a wind gradient explains a fifth and more."""
-_CLEAR_SHARE = 0.25
-"""Share that is clear evidence of a gradient, even in moving air."""
-_SURE_CHANCE = 1e-4
-"""Probability by chance that is clear evidence of a gradient, even in moving air."""
-_LAYER_CHANCE, _LAYER_SHARE = 1e-2, 0.3
-"""Largest probability by chance, and least share, for a gradient in a layer. Few manoeuvres meet a layer, and
-leaving one out changes the result. In 770 simulated flights without a gradient two layers explain 0.25 and
-none more, except with a wrong attitude."""
-_UNDENIABLE_SHARE = 0.4
-"""Share that is evidence of a layer although few manoeuvres met it."""
-_NOT_ONE_ALONE = 1.5
-"""Least ratio of such a gradient to its standard deviation. A gradient from one manoeuvre alone vanishes when
-that one is left out."""
-_ALONG, _ABOVE_NOISE = 0.015, 3.0
-"""Least standard deviation of the air speed's residual, relative to the air speed, and relative to its white
-noise, in the median manoeuvre."""
+"""Least share of the air speed's residual that heights explain. In 770 simulated flights, in
+moving air and with delayed thrust, heights explained up to a seventh by chance. A wind gradient explains a
+fifth and more."""
 _ALONE = 1e-3
-"""Least share of the squared height changes that all manoeuvres but one must hold."""
+"""Numerical: least share of the squared height changes that all manoeuvres but one hold, for a scatter."""
 _LATE_S = (0.0, 0.1, 0.2, 0.3, 0.45, 0.6, 0.8, 1.0)
-"""Delays of the air speed that are tried, s: a long line to the tube, and a filter."""
+"""Numerical: delays of the air speed that are tried, s: a long line to the tube, and a filter."""
 _HEIGHTS = 14
 _THINNEST_M = 2.0
-"""Least thickness of a layer, m. A layer is sought between any two of ``_HEIGHTS`` quantiles of the
-height."""
+"""Numerical: least thickness of a layer, m. A layer is sought between any two of ``_HEIGHTS`` quantiles of
+the height."""
 
 
 @dataclass(frozen=True)
@@ -78,15 +60,11 @@ class Shear:
         """Whether the gradient is larger than any wind's: a gust in moving air, or a wrong air speed."""
         return abs(self.gradient_per_s) > _MOST_PER_S
 
-    @property
-    def exceeds_gusts(self) -> bool:
-        """Whether the gradient exceeds what moving air can imitate."""
-        return self.share >= _CLEAR_SHARE or self.is_agreed(_SURE_CHANCE)
-
-    def is_agreed(self, chance: float) -> bool:
-        """Return whether the manoeuvres agree on the gradient, and whether it matters."""
-        scatter = float(stdtrit(self.maneuvers - 1, 1.0 - 0.5 * chance)) * self.std
-        return abs(self.gradient_per_s) >= max(_LEAST_PER_S, scatter)
+    def is_agreed(self, tried: int = 1) -> bool:
+        """Return whether the manoeuvres agree on the gradient, the likeliest of ``tried``, and whether it
+        matters."""
+        scatter = float(stdtrit(self.maneuvers - 1, 1.0 - 0.5 * CHANCE / tried)) * self.std
+        return self.share >= _LEAST_SHARE and abs(self.gradient_per_s) >= max(_LEAST_PER_S, scatter)
 
 
 @dataclass(frozen=True)
@@ -134,8 +112,7 @@ def _shear_of(paths: Sequence[_Path]) -> Shear | None:
     if len(paths) < _LEAST_MANEUVERS:
         return None
     everywhere = _gradient(paths)
-    chance = _CLEAR_CHANCE if everywhere.share >= _CLEAR_SHARE else _CHANCE
-    if everywhere.share >= _LEAST_SHARE and everywhere.is_agreed(chance):
+    if everywhere.is_agreed():
         return everywhere
     heights = np.concatenate([p.height for p in paths])
     if np.any(np.isnan(heights)):
@@ -143,30 +120,7 @@ def _shear_of(paths: Sequence[_Path]) -> Shear | None:
     between = combinations(np.quantile(heights, np.linspace(0.0, 1.0, _HEIGHTS)), 2)
     layers = [_gradient(paths, low, high) for low, high in between if high - low >= _THINNEST_M]
     likeliest = max(layers, key=lambda s: s.share, default=everywhere)
-    there = likeliest.share >= _LAYER_SHARE and likeliest.is_agreed(_LAYER_CHANCE)
-    gradient = abs(likeliest.gradient_per_s)
-    undeniable = likeliest.share >= _UNDENIABLE_SHARE and gradient >= max(
-        _LEAST_PER_S, _NOT_ONE_ALONE * likeliest.std
-    )
-    return likeliest if there or undeniable else None
-
-
-def moves_along_path(maneuvers: Sequence[Maneuver]) -> bool:
-    """Return whether the air speed varies beyond accelerations and noise: the air moves along the path.
-
-    Found in 3 of 480 flights, all with gusts, and in one with a wrong attitude.
-    """
-    slow, above_noise = [], []
-    for maneuver in maneuvers:
-        path = _path_of(maneuver)
-        if path is None:
-            continue
-        white = float(np.var(np.diff(path.speed))) / 2.0
-        swing = float(np.sqrt(max(float(np.var(path.speed)) - white, 0.0)))
-        slow.append(swing / float(np.mean(maneuver.channels["airspeed"].y)))
-        above_noise.append(swing / max(np.sqrt(white), 1e-12))
-    enough = len(slow) >= _LEAST_MANEUVERS
-    return enough and bool(np.median(slow) > _ALONG and np.median(above_noise) > _ABOVE_NOISE)
+    return likeliest if likeliest.is_agreed(len(layers)) else None
 
 
 def _gradient(paths: Sequence[_Path], low: float = -np.inf, high: float = np.inf) -> Shear:

@@ -9,6 +9,7 @@ from advisor.flight.instruments.kinematics import KinematicCheck
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.nuisances import PROPELLER
+from advisor.gap.decision import LEAST_SIGMA
 from advisor.gap.evidence.found import Evidence
 from advisor.gap.evidence.measured import measured
 from advisor.gap.evidence.rows import rows_of, stated_as
@@ -21,7 +22,6 @@ from advisor.gap.judge.posterior import posterior
 from advisor.gap.judge.prior import FIELD, FieldPrior
 from advisor.gap.records.floor import tolerance_of
 from advisor.gap.result import Cause, Diagnosis, Gap, GapVerdict, Where
-from advisor.gap.search.acceptance import LEAST_SIGMA
 from advisor.gap.search.air import SoughtAir
 from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.gap.verdict.as_judged import answered, as_judged

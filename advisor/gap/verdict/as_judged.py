@@ -12,7 +12,7 @@ from advisor.gap.search.indistinguishable import way_to_distinguish
 from advisor.gap.verdict.text import in_words
 
 MOST_CAUSES = 5
-"""Most causes that are stated, so that a reader sees the likely ones."""
+"""Words: most causes that are stated, so that a reader sees the likely ones."""
 
 
 def as_judged(diagnosis: Diagnosis, told: Posterior) -> Diagnosis:

@@ -17,7 +17,7 @@ from advisor.gap.search.score import TIME_ERROR_S, TIMES
 from advisor.gap.search.stage import Stage
 
 _SHAPE_ERROR = 0.03
-"""Relative error of a size for the low-order description of its effect."""
+"""Prior: relative error of a size for the low-order description of its effect."""
 
 
 def causes_of(stages: Sequence[Stage], floor: FloatArray, channels: Sequence[str]) -> tuple[Cause, ...]:

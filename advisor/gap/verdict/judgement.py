@@ -20,8 +20,6 @@ from advisor.gap.verdict.ledger import decisions_of
 from advisor.gap.verdict.outside_fit import air_cause, alpha_bias_cause
 from advisor.gap.verdict.wrong_derivatives import WrongDerivatives, wrong_derivatives
 
-_MOUNTED_RAD = 0.02
-"""Largest offset of α, rad, behind which named effects come first: that of an instrument's mounting."""
 _MOSTLY = 0.98
 """Share of the gap from wrong derivatives above which they are the answer, whatever else is present. Other
 derivatives imitate an effect by nine tenths at most, except for one that they imitate exactly."""
@@ -117,7 +115,7 @@ def _ordered(e: Evidence, found: _Found) -> tuple[Cause, ...]:
     causes = (*present, *found.outside_fit, *others)
     bias, speed = found.bias, found.speed
     derived = e.problem.flights.alpha_is_derived
-    if bias is not None and not found.unknown and not derived and _exceeds_mounting(bias, found.named):
+    if bias is not None and not found.unknown and not derived and not found.named:
         offset = (bias.parameters["bias_rad"].value / e.floor[channels.index("alpha")]) ** 2
         if float(offset) / len(e.floor) > found.names:
             causes = _with_first(causes, bias)
@@ -137,11 +135,6 @@ def _verdict(found: _Found, causes: Sequence[Cause]) -> GapVerdict:
     if wrong and not (found.bias or found.speed in found.outside_fit):
         return "parameters"
     return "effect" if any(c.present for c in causes) else "none"
-
-
-def _exceeds_mounting(bias: Cause, named: Sequence[JudgedAddition]) -> bool:
-    """Return whether an offset exceeds that of a mounting, or stands alone."""
-    return not named or abs(bias.parameters["bias_rad"].value) > _MOUNTED_RAD
 
 
 def _at_constant_speed(problem: EffectProblem, before: HeldOut, constant: HeldOut, last: HeldOut) -> HeldOut:

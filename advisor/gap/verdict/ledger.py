@@ -1,11 +1,9 @@
 """The ledger: every statistic that was compared with a limit on the way to a verdict, in order."""
 
-from advisor.gap.decision import Decision
+from advisor.gap.decision import CERTAIN, Decision
 from advisor.gap.evidence.found import Evidence
-from advisor.gap.fitting.uncertainty import CLEAR_GAP
 from advisor.gap.result import VISIBLE
 from advisor.gap.search.acceptance import JudgedAddition
-from advisor.gap.search.air import AIR_GAIN
 from advisor.gap.search.stage import Stage
 from advisor.gap.verdict.wrong_derivatives import WrongDerivatives
 
@@ -36,7 +34,7 @@ def _of_the_air(e: Evidence) -> list[Decision]:
     if e.air is None:
         return []
     about = "gust" if e.air.gust else "turbulence"
-    return [Decision(about, "likelihood", e.air.gain, AIR_GAIN, "log likelihood gained")]
+    return [Decision(about, "likelihood", e.air.gain, CERTAIN, "log likelihood gained")]
 
 
 def _of_the_derivatives(e: Evidence, derivatives: WrongDerivatives) -> list[Decision]:
@@ -51,5 +49,4 @@ def _of_the_derivatives(e: Evidence, derivatives: WrongDerivatives) -> list[Deci
         derivatives.distance.limit,
         "chi square of six",
     )
-    clear = Decision("parameters", "clear gap", derivatives.gap, CLEAR_GAP, unit)
-    return [gap, clear, distance]
+    return [gap, distance]

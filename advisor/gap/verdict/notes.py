@@ -17,11 +17,11 @@ from advisor.gap.verdict.text import place
 from advisor.words.quantiles import NORMAL_95
 
 _ANOTHER_SPEED = 0.005
-"""Least relative difference between two means of the air speed that is reported."""
+"""Words: least relative difference between two means of the air speed that is reported."""
 _MATTERS = 0.3
-"""Least gap of a simulator at constant speed that is reported."""
+"""Words: least gap of a simulator at constant speed that is reported."""
 _FEW = 6
-"""Number of manoeuvres below which changes between them can hardly be seen."""
+"""Words: number of manoeuvres below which changes between them can hardly be seen."""
 
 
 def notes_of(

@@ -14,17 +14,14 @@ from advisor.gap.search.indistinguishable import way_to_distinguish
 from advisor.gap.verdict.holdout_numbers import without_air
 from advisor.words.quantiles import NORMAL_95
 
-_SCALED_BY = 0.2
-"""Largest difference between an offset and the effect of a scale error on the trim angle for which no offset
-is named. The difference is relative to that effect."""
 _GUST_ERROR = 0.25
-"""Relative error of a gust's strength, whose course is a low-order estimate."""
+"""Prior: relative error of a gust's strength, whose course is a low-order estimate."""
 _TURBULENCE_ERROR = 0.5
-"""Relative error of the strength of turbulence. Waves longer than a record pass for its trim. Where Dryden's
-scale length takes at least three seconds to fly through, 0.5 to 0.7 of the strength is found. Where it takes
-one second, 1.2 is found."""
+"""Prior: relative error of the strength of turbulence. Waves longer than a record pass for its trim. Where
+Dryden's scale length takes at least three seconds to fly through, 0.5 to 0.7 of the strength is found. Where
+it takes one second, 1.2 is found."""
 _GUST_TIME_ERROR_S = 0.1
-"""Error of a gust's time, s: the distance between two knots of its course."""
+"""Prior: error of a gust's time, s: the distance between two knots of its course."""
 
 
 def alpha_bias_cause(
@@ -47,8 +44,7 @@ def alpha_bias_cause(
     trim = float(np.mean([flight.alpha_trim for flight in problem.flights.flights]))
     scale = sum(float(judged.value[0]) for judged in named if judged.effect == "alpha_scale")
     # The trim was read without the offset: the effect of a scale error on it is no offset.
-    scaled = scale * trim
-    if abs(check.offset.rad) < least or abs(check.offset.rad - scaled) < max(least, _SCALED_BY * abs(scaled)):
+    if abs(check.offset.rad) < least or abs(check.offset.rad - scale * trim) < least:
         return None
     return Cause(
         "alpha_bias", "alpha_sensor", 0.0, {"bias_rad": Value(check.offset.rad, check.offset.std_rad)},

@@ -5,9 +5,9 @@ from collections.abc import Sequence
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.candidates.known import stated_in
+from advisor.gap.decision import LEAST_SIGMA
 from advisor.gap.effects import EFFECTS
 from advisor.gap.result import Cause
-from advisor.gap.search.acceptance import LEAST_SIGMA
 
 
 def what(cause: Cause, in_simulator: frozenset[str] = frozenset()) -> str:

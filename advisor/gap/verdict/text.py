@@ -7,7 +7,7 @@ from advisor.gap.result import VISIBLE, Cause, Gap, GapVerdict, Shrink, Where, s
 from advisor.gap.verdict.statements import or_else, what
 
 _AS_LIKELY = 0.99
-"""Score relative to the best block at which another block is equally likely."""
+"""Words: score relative to the best block at which another block is equally likely."""
 BLOCKS = {
     "input": "between the command and the surface",
     "force_equation": "in the lift",

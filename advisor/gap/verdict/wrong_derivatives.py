@@ -9,16 +9,13 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.gap.evidence.found import Evidence
 from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.fitting.prior import Distance
-from advisor.gap.fitting.uncertainty import CLEAR_GAP, distance_from_file
+from advisor.gap.fitting.uncertainty import distance_from_file
 from advisor.gap.result import VISIBLE
 from advisor.gap.search.acceptance import JudgedAddition
 
 _BY_NAMES = 0.8
 """Least share of the gap that named effects must explain with the file's own derivatives, for these to be
 right."""
-_FAR_MORE = 3.0
-"""Ratio of the gap of wrong derivatives to that of moving air above which moving air cannot explain the
-difference."""
 
 
 @dataclass(frozen=True)
@@ -41,9 +38,7 @@ def wrong_derivatives(e: Evidence, named: Sequence[JudgedAddition], still: Float
     """Judge the file's derivatives; ``still`` is the noise floor without moving air, shape (channels,)."""
     gap, beside_air = _beyond_fitted(e, e.floor), _beyond_fitted(e, still)
     of_the_air = whole_gap(e.stages[0].held_out.mean_square, still) if e.air is not None else 0.0
-    # Fitted derivatives adapt to moving air, and explain a part of it.
-    clear_gap = gap > CLEAR_GAP and beside_air > _FAR_MORE * of_the_air
-    distance = distance_from_file(e.problem, e.stages[-1].fitted, clear_gap)
+    distance = distance_from_file(e.problem, e.stages[-1].fitted)
     are_wrong = gap > VISIBLE and distance.is_off
     told_by_file = any(judged.variant.twin is not None and judged.prior_gain > 0.0 for judged in named)
     return WrongDerivatives(

@@ -13,7 +13,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.gap.result import Yardsticks
 
 BAND = {"theta": np.radians(1.5), "q": np.radians(2.0), "a_z": 0.10 * GRAVITY_M_S2}
-"""Tolerance of simulator qualification for the short period, by channel, SI."""
+"""Words: tolerance of simulator qualification for the short period, by channel, SI."""
 
 
 def yardsticks(channel: str, measured: FloatArray, simulated: FloatArray) -> Yardsticks:
