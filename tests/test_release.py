@@ -1,11 +1,17 @@
-"""`make release`: the heading in CHANGELOG.md, one commit and its tag, or a sentence and nothing else."""
+"""`make release`: the heading in CHANGELOG.md, one commit and its tag, or a sentence and nothing else.
+
+Every change and every night have their trials. What is handed on carries its licence."""
 
 import re
 import shutil
 import subprocess
+import tomllib
 from pathlib import Path
+from typing import Any, cast
 
+import pymavlink
 import pytest
+import yaml
 
 ROOT = Path(__file__).parents[1]
 SCRIPT = ROOT / ".ci" / "release"
@@ -60,6 +66,42 @@ def test_every_action_of_a_workflow_is_pinned_by_a_commit() -> None:
     actions = [action for text in workflows for action in re.findall(r"uses: (.*)", text)]
     loose = [action for action in actions if not re.fullmatch(r"\S+@[0-9a-f]{40} # v\d+\.\d+\.\d+", action)]
     assert (len(actions) >= 5, loose) == (True, [])
+
+
+def test_every_python_that_is_promised_has_its_run_of_the_suite_and_of_the_wheel() -> None:
+    known = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["classifiers"]
+    promised = [name for one in known if re.fullmatch(r"3\.\d+", name := one.rpartition(" ")[2])]
+    jobs = workflow("check.yml")["jobs"]
+    for job in ("check", "install"):
+        assert jobs[job]["strategy"]["matrix"]["python"] == promised, job
+
+
+def test_every_night_tries_the_lowest_versions_known_weaknesses_and_damaged_logs() -> None:
+    job = workflow("nightly.yml")["jobs"]["nightly"]
+    assert {"lowest", "audit", "damage", "nightly"} <= set(job["strategy"]["matrix"]["target"])
+    assert job["steps"][-1]["run"] == "make ${{ matrix.target }}"
+
+
+def test_each_package_that_is_installed_stands_on_the_page_of_the_installation() -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    names = {re.split(r"[<>=]", one)[0] for one in project["dependencies"]}
+    page = (ROOT / "docs" / "how-to" / "install.md").read_text(encoding="utf-8")
+    assert {name for name in names if name.lower() not in page.lower()} == set()
+
+
+def test_the_container_hands_on_the_licence_of_each_package_that_asks_for_it() -> None:
+    text = (ROOT / "Containerfile").read_text(encoding="utf-8")
+    (search,) = re.findall(r"\$\((find .*?-type f)\)", text)
+    packages = Path(pymavlink.__file__).parents[1]
+    found = subprocess.run(["sh", "-c", search], cwd=packages, capture_output=True, text=True, check=True)
+    assert any(re.search(r"/pymavlink-[^/]*/(licenses/)?COPYING", line) for line in found.stdout.split())
+    assert "common-licenses/*GPL-3 " in text
+
+
+def workflow(name: str) -> dict[str, Any]:
+    """The jobs of a workflow."""
+    text = (ROOT / ".github" / "workflows" / name).read_text(encoding="utf-8")
+    return cast("dict[str, Any]", yaml.safe_load(text))
 
 
 def assert_refused(checkout: Path, version: str, reason: str) -> None:

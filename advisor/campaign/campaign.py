@@ -38,6 +38,7 @@ from advisor.flight.maneuvers.marks import MARK_NOTICES, Mark
 from advisor.flight.signals.messages import Columns
 from advisor.flight.stream.flights import Flights
 from advisor.flight.stream.stream import FlightStream
+from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import lag_is_unknown
 from advisor.oem.solution import Method
 from advisor.words.problems import Problem
@@ -407,7 +408,7 @@ class Campaign:
         self._judged = tuple(judged)
         self._flight_test = flight_test(self._history, plan, self._aircraft, self._course)
         if lag_is_unknown(self._learnt):
-            model = self._together.of_lag([judged.maneuver for judged in self._joined])
+            model = self._of_lag
             self._judged = tuple(
                 replace(judged, verdict=reserved(judged.verdict, judged.estimate, model))
                 for judged in self._judged
@@ -417,18 +418,27 @@ class Campaign:
     def _joined(self) -> Sequence[JudgedManeuver]:
         """Manoeuvres of the joint estimate: the newest accepted ones in flight, all accepted ones at the
         end."""
-        accepted = [judged for judged in self._judged if judged.verdict.accepted]
+        accepted = self._accepted
         return accepted if self._ended else accepted[-NEWEST:]
+
+    @property
+    def _accepted(self) -> Sequence[JudgedManeuver]:
+        return [judged for judged in self._judged if judged.verdict.accepted]
+
+    @property
+    def _of_lag(self) -> Estimate | None:
+        """Joint estimate that tells the servo's lag; None where there is none yet."""
+        accepted = [judged.maneuver for judged in self._accepted]
+        return self._together.of_lag(accepted) if self._ended else self._together.of_lag_so_far(accepted)
 
     def _learn(self) -> None:
         """Examine all manoeuvres again when they have told more of the instruments."""
         joined = self._joined
-        all_of_them = len(joined) == sum(judged.verdict.accepted for judged in self._judged)
+        all_of_them = len(joined) == len(self._accepted)
         if not may_learn(self._learnt, all_of_them):
             return
         flown = [judged.maneuver for judged in joined]
-        is_open = self._aircraft.elevator.lag_s is None
-        model = self._together.of_lag(flown) if is_open else self._together.estimate(flown)
+        model = self._of_lag if self._aircraft.elevator.lag_s is None else self._together.estimate(flown)
         told_by = {judged.maneuver.power_on for judged in joined}
         learnt = learnt_from(self._learnt, model, one_power_on=len(told_by) == 1, exactly=self._ended)
         if learnt is self._learnt:

@@ -7,6 +7,7 @@ from the data alone.
 """
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from operator import is_
 
 from advisor.aircraft.aircraft import Aircraft
@@ -20,8 +21,34 @@ paper. The seven manoeuvres of ``logs/arduplane-calm.tlog`` give the servo's lag
 manoeuvre takes some 0.1 s more of processor time at every verdict."""
 
 
+@dataclass(slots=True)
+class _Joint:
+    """One joint fit, and the estimate from it once that was asked for."""
+
+    maneuvers: tuple[Maneuver, ...]
+    tells_lag: bool
+    """Whether the servo's lag is a parameter of the fit."""
+    _fit: Fit | None
+    """Fit until its estimate is asked for."""
+    _found: Estimate | None = None
+
+    @classmethod
+    def of(cls, maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> "_Joint":
+        """Fit manoeuvres jointly."""
+        fit = fit_jointly(maneuvers, aircraft)
+        if isinstance(fit, NoEstimate):
+            return cls(tuple(maneuvers), False, None)
+        return cls(tuple(maneuvers), fit.tells_lag, fit)
+
+    def estimate(self) -> Estimate | None:
+        """Return the estimate from the fit; None without a fit."""
+        if self._fit is not None:
+            self._found, self._fit = self._fit.estimate(), None
+        return self._found
+
+
 class Together:
-    """Estimates manoeuvres jointly and keeps the newest result.
+    """Estimates manoeuvres jointly and keeps the two newest results.
 
     Parameters
     ----------
@@ -31,27 +58,39 @@ class Together:
 
     def __init__(self, aircraft: Aircraft) -> None:
         self._aircraft = aircraft
-        self._maneuvers: tuple[Maneuver, ...] = ()
-        self._fit: Fit | None = None
-        self._found: Estimate | None = None
+        self._kept: tuple[_Joint, ...] = ()
 
     def estimate(self, maneuvers: Sequence[Maneuver]) -> Estimate | None:
         """Return the joint estimate over manoeuvres; None without manoeuvres."""
-        self._take(maneuvers)
-        if self._fit is not None:
-            self._found, self._fit = self._fit.estimate(), None
-        return self._found
+        return self._of(maneuvers).estimate()
 
     def of_lag(self, maneuvers: Sequence[Maneuver]) -> Estimate | None:
         """Return the joint estimate over manoeuvres that tell the servo's lag; None where they tell none.
 
         The fit knows that, and the estimate takes a quarter as long again.
         """
-        self._take(maneuvers)
-        return None if self._fit is not None and not self._fit.tells_lag else self.estimate(maneuvers)
+        joint = self._of(maneuvers)
+        return joint.estimate() if joint.tells_lag else None
 
-    def _take(self, maneuvers: Sequence[Maneuver]) -> None:
-        if len(maneuvers) != len(self._maneuvers) or not all(map(is_, maneuvers, self._maneuvers)):
-            fit = fit_jointly(maneuvers, self._aircraft)
-            self._maneuvers = tuple(maneuvers)
-            self._fit, self._found = (None if isinstance(fit, NoEstimate) else fit), None
+    def of_lag_so_far(self, accepted: Sequence[Maneuver]) -> Estimate | None:
+        """Return the joint estimate over the newest manoeuvres that tell the servo's lag; None where they
+        tell none.
+
+        Accepted manoeuvres are asked for a lag in groups of ``NEWEST``. Where the newest whole group tells
+        none, the next group is waited for.
+        """
+        whole = len(accepted) - len(accepted) % NEWEST
+        if whole and not self._of(accepted[whole - NEWEST : whole]).tells_lag:
+            return None
+        return self.of_lag(accepted[-NEWEST:])
+
+    def _of(self, maneuvers: Sequence[Maneuver]) -> _Joint:
+        found = next((kept for kept in self._kept if _same(kept.maneuvers, maneuvers)), None)
+        if found is None:
+            found = _Joint.of(maneuvers, self._aircraft)
+        self._kept = (found, *[kept for kept in self._kept if kept is not found][:1])
+        return found
+
+
+def _same(some: Sequence[Maneuver], others: Sequence[Maneuver]) -> bool:
+    return len(some) == len(others) and all(map(is_, some, others))

@@ -223,11 +223,10 @@ def _looked_about(begin: _Fit, names: Sequence[Instrument]) -> _Fit:
     stated lag is zero, has none."""
     best = begin
     for x in names:
-        near, found = best, [best]
+        near, here = best, best.problem
         for start in x.starts if x.stated != 0.0 and x.prior is None else ():
-            near = _at(x.write(best.problem, start), near, ROUGHLY) or near
-            found.append(near)
-        best = min(found, key=lambda fit: fit.cost(()))
+            near = _at(x.write(here, start), near, ROUGHLY) or near
+            best = min(best, near, key=lambda fit: fit.cost(()))
     return best
 
 

@@ -1,19 +1,21 @@
 """The joint estimate: of the newest accepted manoeuvres during the flight, of all at its end."""
 
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
+from advisor.campaign import joint_estimate
 from advisor.campaign.campaign import Campaign
 from advisor.campaign.joint_estimate import NEWEST, Together
 from advisor.campaign.learning import may_learn
 from advisor.campaign.state import CampaignState
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.mavlink.logs.logs import open_log
-from advisor.oem.estimate import Estimate
+from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import estimate_jointly
 from advisor.oem.found import FoundInstruments, with_found
 from sim.scenario import Scenario
@@ -102,3 +104,44 @@ def test_reading_the_state_again_seeks_no_other_joint_estimate() -> None:
         campaign.feed(batch)
     assert campaign.state.model is not None
     assert campaign.state.model is campaign.state.model
+
+
+@dataclass
+class Fits:
+    """Stands for the joint fit: keeps the numbers of the manoeuvres asked for, and tells a lag or none."""
+
+    tells_lag: bool
+    asked: list[list[int]]
+
+    def __call__(self, maneuvers: Sequence[Maneuver], _: Aircraft) -> "Fits | NoEstimate":
+        self.asked.append([maneuver.number for maneuver in maneuvers])
+        return self if self.tells_lag else NoEstimate("singular", "Nothing is told.")
+
+    def estimate(self) -> "Fits":
+        return self
+
+
+def asked_for_a_lag(
+    tells_lag: bool, count: int, one: Maneuver, monkeypatch: pytest.MonkeyPatch
+) -> list[list[int]]:
+    fits = Fits(tells_lag, [])
+    monkeypatch.setattr(joint_estimate, "fit_jointly", fits)
+    accepted, together = [replace(one, number=k + 1) for k in range(count)], Together(Aircraft())
+    for k in range(count):
+        together.of_lag_so_far(accepted[: k + 1])
+    return fits.asked
+
+
+def test_after_a_group_that_tells_no_lag_the_next_whole_group_is_asked(
+    states: tuple[CampaignState, CampaignState], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked = asked_for_a_lag(False, 2 * NEWEST + 1, states[0].maneuvers[0].maneuver, monkeypatch)
+    first = [list(range(1, k + 1)) for k in range(1, NEWEST + 1)]
+    assert asked == [*first, list(range(NEWEST + 1, 2 * NEWEST + 1))]
+
+
+def test_after_a_group_that_tells_a_lag_every_manoeuvre_is_asked_with_its_forerunners(
+    states: tuple[CampaignState, CampaignState], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked = asked_for_a_lag(True, NEWEST + 2, states[0].maneuvers[0].maneuver, monkeypatch)
+    assert asked[NEWEST:] == [list(range(2, NEWEST + 2)), list(range(3, NEWEST + 3))]

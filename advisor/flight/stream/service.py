@@ -6,6 +6,7 @@ of arrival, so that a log and a live link agree for any batches. A link that is 
 about its channels; the link itself reports a silence.
 """
 
+from array import array
 from collections.abc import Callable, Mapping, Sequence
 from math import nan
 
@@ -43,7 +44,7 @@ class Service:
 
     def __init__(self, judge: Judge) -> None:
         self._judge = judge
-        self._arrivals: dict[tuple[str, str], list[float]] = {}
+        self._arrivals: dict[tuple[str, str], array[float]] = {}
         self._clock: list[tuple[float, float]] = []
         self._newest_s = -np.inf
         self._due_s = np.inf
@@ -66,7 +67,8 @@ class Service:
 
     def take(self, channel: str, source: str, arrival_s: FloatArray) -> None:
         """Take the times at which samples of a channel arrived from one source, shape (n,)."""
-        self._arrivals.setdefault((channel, source), []).extend(arrival_s.tolist())
+        times = self._arrivals.setdefault((channel, source), array("d"))
+        times.frombytes(np.asarray(arrival_s, float).tobytes())
 
     def take_clock(self, arrival_s: FloatArray, vehicle_s: FloatArray) -> None:
         """Take the vehicle's clock, s since boot, at times of arrival, s; both of shape (n,)."""
@@ -97,7 +99,8 @@ class Service:
         """Drop times of arrival that no later judgement needs."""
         oldest_s = self._newest_s - WINDOW_S - STEP_S
         for times in self._arrivals.values():
-            del times[: next((i for i, t in enumerate(times) if t > oldest_s), len(times))]
+            needed = np.flatnonzero(np.array(times) > oldest_s)
+            del times[: int(needed[0]) if len(needed) else len(times)]
         # The newest reading stays, however long ago the clock stopped.
         del self._clock[: sum(arrival_s <= oldest_s for arrival_s, _ in self._clock[:-1])]
 
@@ -125,8 +128,9 @@ class Service:
         """Return the arrival of every channel within the window, from its fastest source."""
         found: dict[str, ChannelStatus] = {}
         for (channel, source), times in self._arrivals.items():
-            newest = [t for t in times if now_s - WINDOW_S < t <= now_s]
+            heard = np.array(times)
+            newest = heard[(heard > now_s - WINDOW_S) & (heard <= now_s)]
             rate_hz = len(newest) / WINDOW_S
             if len(newest) and (channel not in found or rate_hz > found[channel].rate_hz):
-                found[channel] = ChannelStatus(source, "", rate_hz, WINDOW_S, newest[-1])
+                found[channel] = ChannelStatus(source, "", rate_hz, WINDOW_S, float(newest[-1]))
         return found
