@@ -29,7 +29,7 @@ def compare_lateral(asked: LogsAsked, aircraft: Aircraft, as_json: bool, prior: 
     """Compare roll and yaw of the aircraft file with the flight, and print the result."""
     try:
         with Stages() as tell:
-            tell("reading and comparing", 0.0)
+            tell("reading", 0.0)
             shares = FIELD if prior is None else field_prior(prior)
             found = side_gap_of(
                 asked.logs,
@@ -38,6 +38,7 @@ def compare_lateral(asked: LogsAsked, aircraft: Aircraft, as_json: bool, prior: 
                 asked.marks,
                 no_marks=asked.no_marks,
                 prior=shares,
+                progress=tell,
             )
     except UnusableInputError as error:
         if as_json:
