@@ -1,6 +1,7 @@
 """Blind flights of roll and yaw with one withheld effect each, and how many are diagnosed right.
 
-    python -m benchmarks.lateral_gap SEED [--each 3] [--clean 6] [--only NAME ...] [--jsbsim]
+    python -m benchmarks.lateral_gap SEED [--each 3] [--clean 6] [--only NAME ...] [--pairs 0] [--air 0]
+        [--jsbsim]
 
 The bundled aircraft flies ``--plan lateral`` with a drawn effect, and is recorded at 50 Hz. The diagnosis of
 ``advisor gap --axis lateral`` has the aircraft's true derivatives. With ``--jsbsim``, JSBSim's c172p flies
@@ -46,7 +47,7 @@ class Withheld:
     sizes: tuple[float, float]
     """Least and greatest size, SI."""
     is_named: bool = True
-    """Whether the diagnosis has a name for it; if not, "none" is right."""
+    """Whether it must be named; if not, "none" is right too."""
 
 
 _SERVO = {
@@ -67,7 +68,7 @@ CASES: dict[str, Withheld] = {
     "a_y_scale": Withheld("lateral_acceleration_scale", "scale", (0.06, 0.15)),
     "accelerometer_offset": Withheld("accelerometer_offset", "arm_m", (0.2, 0.5)),
     "propeller_roll": Withheld("propeller_roll", "aileron_rad", (0.03, 0.08)),
-    "side_turbulence": Withheld("", "sigma_v_m_s", (0.05, 0.3), is_named=False),
+    "side_turbulence": Withheld("side_gusts", "sigma_v_m_s", (0.05, 0.3), is_named=False),
 }
 """Name in the simulator to what is withheld."""
 KNOWN = SideControl(lag_s=0.0, delay_s=0.0)
@@ -80,6 +81,7 @@ READ = {
 
 
 Effects = Mapping[str, Mapping[str, float]]
+Fly = Callable[[int, Effects], SideDiagnosis | None]
 FULL = {"aileron": FULL_RAD, "rudder": FULL_RAD}
 
 
@@ -148,31 +150,61 @@ def recorded(number: int, samples: Sequence[Sample], full_rad: Mapping[str, floa
     return Maneuver(number, 0, Span(t[0], t[0] + 1.0, t[0] + 3.0, t[-1], "other", (), "quiet"), channels)
 
 
-def rows(
-    seed: int, each: int, clean: int, only: list[str], fly: Callable[[int, Effects], SideDiagnosis | None]
-) -> Iterator[str]:
+@dataclass(frozen=True)
+class Study:
+    """Numbers of the flights to fly."""
+
+    each: int
+    """Flights with each effect."""
+    clean: int
+    """Flights with nothing."""
+    pairs: int
+    """Flights with two effects of different controls or outputs."""
+    air: int
+    """Flights in side gusts alone."""
+    only: Sequence[str] = ()
+    """Effects to fly; empty for all."""
+
+
+def rows(seed: int, study: Study, fly: Fly) -> Iterator[str]:
     """Yield a row a flight, then the counts; ``fly`` flies effects and diagnoses them."""
     rng = np.random.default_rng(seed)
     right = named = false = size_right = 0
-    for _ in range(each):
-        for name, case in CASES.items():
-            size = float(rng.uniform(*case.sizes)) * (rng.choice([-1.0, 1.0]) if "scale" in name else 1.0)
-            flight = int(rng.integers(2**31))
-            if only and name not in only:
-                continue
-            found = fly(flight, {name: {case.parameter: size}})
-            told, holds, fits = judged(found, case, size)
-            if case.is_named:
-                named, right, size_right = named + 1, right + holds, size_right + fits
-            else:
-                false += not holds
-            yield f"| {name} | {size:.3g} | {told} | {'yes' if holds else 'NO'} | {'yes' if fits else 'no'} |"
-    for _ in range(clean):
-        found = fly(int(rng.integers(2**31)), {})
-        told, holds, _ = judged(found, Withheld("", "", (0.0, 0.0), is_named=False), 0.0)
+
+    def drawn(name: str) -> float:
+        sign = rng.choice([-1.0, 1.0]) if "scale" in name else 1.0
+        return float(rng.uniform(*CASES[name].sizes) * sign)
+
+    singles = [name for _ in range(study.each) for name in CASES if not study.only or name in study.only]
+    for name in [*singles, *("side_turbulence" for _ in range(study.air))]:
+        case, size = CASES[name], drawn(name)
+        told, holds, fits = judged(fly(int(rng.integers(2**31)), {name: {case.parameter: size}}), case, size)
+        if case.is_named:
+            named, right, size_right = named + 1, right + holds, size_right + fits
+        else:
+            false += not holds
+        yield f"| {name} | {size:.3g} | {told} | {'yes' if holds else 'NO'} | {'yes' if fits else 'no'} |"
+    for _ in range(study.clean):
+        told, holds, _ = judged(fly(int(rng.integers(2**31)), {}), NOTHING, 0.0)
         false += not holds
         yield f"| nothing | | {told} | {'yes' if holds else 'NO'} | |"
-    yield f"{right} of {named} effects named, {size_right} with the right size; {false} false alarms"
+    both = one = 0
+    able = [name for name, case in CASES.items() if case.is_named]
+    for _ in range(study.pairs):
+        names = [able[int(k)] for k in rng.choice(len(able), 2, replace=False)]
+        sizes = {name: drawn(name) for name in names}
+        effects = {name: {CASES[name].parameter: size} for name, size in sizes.items()}
+        told, found = pair_judged(fly(int(rng.integers(2**31)), effects), names)
+        both, one = both + (found == len(names)), one + (found > 0)
+        listed = ", ".join(f"{size:.3g}" for size in sizes.values())
+        yield f"| {' + '.join(names)} | {listed} | {told} | {found} of 2 | |"
+    yield (
+        f"{right} of {named} effects named, {size_right} with the right size; {false} false alarms; of "
+        f"{study.pairs} pairs {both} named whole, {one} at least by half"
+    )
+
+
+NOTHING = Withheld("", "", (0.0, 0.0), is_named=False)
 
 
 def judged(found: SideDiagnosis | None, case: Withheld, size: float) -> tuple[str, bool, bool]:
@@ -182,12 +214,31 @@ def judged(found: SideDiagnosis | None, case: Withheld, size: float) -> tuple[st
     if found.verdict != "effect":
         said = f"{found.verdict} ({found.none:.2f}, {found.parameters:.2f})"
         return said, not case.is_named and found.verdict == "none", False
-    first = found.causes[0]
-    told = first.cause.parameters[next(iter(first.cause.parameters))]
+    present = [one for one in found.causes if one.cause.present]
+    first = present[0].cause.parameters
+    told = first[next(iter(first))]
     near = abs(told.value - size) <= max(NORMAL_95 * told.std, 0.15 * abs(size))
-    said = f"{first.name} {told.value:.3g} ± {NORMAL_95 * told.std:.2g} ({first.cause.probability:.2f})"
-    holds = case.is_named and first.name == case.name
-    return said, holds, holds and near
+    holds = [one.name for one in present] == [case.name]
+    return said_of(found), holds, holds and near
+
+
+def pair_judged(found: SideDiagnosis | None, names: Sequence[str]) -> tuple[str, int]:
+    """Return the answer in words, and how many of the effects it names; one that is not there costs all."""
+    if found is None or found.verdict != "effect":
+        return "none" if found is None else found.verdict, 0
+    told = {one.name for one in found.causes if one.cause.present}
+    right = {CASES[name].name for name in names}
+    return said_of(found), 0 if told - right else len(told)
+
+
+def said_of(found: SideDiagnosis) -> str:
+    """Return the effects of the model with their first size and probability."""
+    return "; ".join(
+        f"{one.name} {value.value:.3g} ± {NORMAL_95 * value.std:.2g} ({one.cause.probability:.2f})"
+        for one in found.causes
+        if one.cause.present
+        for value in list(one.cause.parameters.values())[:1]
+    )
 
 
 def main() -> int:
@@ -197,11 +248,14 @@ def main() -> int:
     parser.add_argument("--each", type=int, default=3)
     parser.add_argument("--clean", type=int, default=6)
     parser.add_argument("--only", nargs="*", default=[])
+    parser.add_argument("--pairs", type=int, default=0)
+    parser.add_argument("--air", type=int, default=0)
     parser.add_argument("--jsbsim", action="store_true")
     asked = parser.parse_args()
     fly = diagnosed_in_jsbsim if asked.jsbsim else diagnosed
     print("| withheld | size | told | right | size |\n|---|---|---|---|---|")
-    for row in rows(asked.seed, asked.each, asked.clean, asked.only, fly):
+    study = Study(asked.each, asked.clean, asked.pairs, asked.air, asked.only)
+    for row in rows(asked.seed, study, fly):
         print(row, flush=True)
     return 0
 
