@@ -74,6 +74,11 @@ def case_of(maneuvers: Sequence[Maneuver], aircraft: Aircraft, theta: FloatArray
         for entry, value in (("lag_s", control.lag_s), ("delay_s", control.delay_s)):
             if value:
                 setting[name, entry] = np.full(len(maneuvers), value)
+    for name in filter(problem.flies, LATERAL.inputs):
+        # Held or linear between two stamps: a rate limit begins with the first, a lag with their mean.
+        stamps = np.concatenate([np.diff(r.inputs[name].t) for r in problem.records if name in r.inputs])
+        stated_s = getattr(aircraft, name).delay_s or 0.0
+        natural.append(Free((name, "delay_s"), 0.5 * float(np.median(stamps)), NATURAL_STEP, mean=stated_s))
     for one in nuisances_of(problem, aircraft):
         place = COMMAND if one.kind == "command" else (one.of, _ENTRIES[one.kind])
         # A lag that the file leaves open is absent from the simulator: such a lag is an effect.
