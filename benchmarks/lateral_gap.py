@@ -1,16 +1,18 @@
 """Blind flights of roll and yaw with one withheld effect each, and how many are diagnosed right.
 
-    python -m benchmarks.lateral_gap SEED [--each 3] [--clean 6] [--only NAME ...]
+    python -m benchmarks.lateral_gap SEED [--each 3] [--clean 6] [--only NAME ...] [--pairs 0] [--air 0]
+        [--jsbsim]
 
 The bundled aircraft flies ``--plan lateral`` with a drawn effect, and is recorded at 50 Hz. The diagnosis of
-``advisor gap --axis lateral`` has the aircraft's true derivatives. A size counts as right within its 95 %
+``advisor gap --axis lateral`` has the aircraft's true derivatives. With ``--jsbsim``, JSBSim's c172p flies
+the plan, and c172p without the effect is the user's simulator. A size counts as right within its 95 %
 interval or 15 %.
 """
 
 import argparse
 import sys
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,11 +22,17 @@ from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.record import Channel
 from advisor.oem.estimate import NoEstimate
+from advisor.side_gap.comparison import compare_side
 from advisor.side_gap.diagnosis import SideDiagnosis, diagnose_side
 from advisor.side_gap.models import case_of
+from advisor.simulators.side import side_without_difference
+from advisor.simulators.specification import simulator_of
 from advisor.words.quantiles import NORMAL_95
-from sim.flight import Sample
-from sim.lateral import FULL_RAD, UAV, lateral_flight
+from sim.effects.side import side_kit
+from sim.flight import Flight, Sample
+from sim.lateral import FULL_RAD, UAV, flown_laterally, lateral_flight
+from sim.lateral_jsbsim import LateralJsbsim
+from sim.motion import HOME_HEIGHT_M
 from sim.scenario import Scenario
 
 
@@ -39,7 +47,7 @@ class Withheld:
     sizes: tuple[float, float]
     """Least and greatest size, SI."""
     is_named: bool = True
-    """Whether the diagnosis has a name for it; if not, "none" is right."""
+    """Whether it must be named; if not, "none" is right too."""
 
 
 _SERVO = {
@@ -60,7 +68,7 @@ CASES: dict[str, Withheld] = {
     "a_y_scale": Withheld("lateral_acceleration_scale", "scale", (0.06, 0.15)),
     "accelerometer_offset": Withheld("accelerometer_offset", "arm_m", (0.2, 0.5)),
     "propeller_roll": Withheld("propeller_roll", "aileron_rad", (0.03, 0.08)),
-    "side_turbulence": Withheld("", "sigma_v_m_s", (0.05, 0.3), is_named=False),
+    "side_turbulence": Withheld("side_gusts", "sigma_v_m_s", (0.05, 0.3), is_named=False),
 }
 """Name in the simulator to what is withheld."""
 KNOWN = SideControl(lag_s=0.0, delay_s=0.0)
@@ -72,9 +80,14 @@ READ = {
 """Channel to the field of the simulator's reading."""
 
 
-def diagnosed(seed: int, effects: Mapping[str, Mapping[str, float]]) -> SideDiagnosis | None:
-    """Fly effects, and return the diagnosis."""
-    scenario = Scenario(
+Effects = Mapping[str, Mapping[str, float]]
+Fly = Callable[[int, Effects], SideDiagnosis | None]
+FULL = {"aileron": FULL_RAD, "rudder": FULL_RAD}
+
+
+def scenario_of(seed: int, effects: Effects) -> Scenario:
+    """Return the scenario of a flight."""
+    return Scenario(
         seed=seed,
         effects={name: dict(sizes) for name, sizes in effects.items()},
         lead_in_s=3.0,
@@ -84,55 +97,114 @@ def diagnosed(seed: int, effects: Mapping[str, Mapping[str, float]]) -> SideDiag
         closing_s=1.0,
         step_s=0.0025,
     )
-    case = case_of(flown(scenario), AIRCRAFT, np.array([UAV[name] for name in SIDE_PARAMETERS]))
+
+
+def diagnosed(seed: int, effects: Effects) -> SideDiagnosis | None:
+    """Fly effects, and return the diagnosis."""
+    flight = recordings(lateral_flight(scenario_of(seed, effects)))
+    case = case_of(flight, AIRCRAFT, np.array([UAV[name] for name in SIDE_PARAMETERS]))
     assert not isinstance(case, NoEstimate)
     return diagnose_side(case)
 
 
-def flown(scenario: Scenario) -> list[Maneuver]:
-    """Return the manoeuvres of the lateral plan."""
+def diagnosed_in_jsbsim(seed: int, effects: Effects) -> SideDiagnosis | None:
+    """Fly effects with JSBSim's c172p, and return the diagnosis against c172p without them."""
+    scenario = replace(
+        scenario_of(seed, effects), engine="jsbsim", aircraft="c172p", height_m=1200.0, step_s=0.005
+    )
+    kit = side_kit(seed, scenario.effects)
+    engine = LateralJsbsim("c172p", 53.0, scenario.height_m, scenario.step_s, kit)
+    flight = recordings(flown_laterally(scenario, engine, kit, slower=SLOWER), engine.full_rad)
+    simulator = simulator_of("jsbsim:c172p", Aircraft(), lambda _: [])
+    try:
+        beside, as_file = side_without_difference(flight, simulator, Aircraft(aileron=KNOWN, rudder=KNOWN))
+    finally:
+        simulator.close()
+    found = compare_side(beside, as_file)
+    assert not isinstance(found, NoEstimate)
+    return found.diagnosis
+
+
+SLOWER = 1.6
+"""Duration of the steps over those of the bundled aircraft: the Dutch roll of c172p lasts 1.6 times as
+long."""
+
+
+def recordings(flight: Flight, full_rad: Mapping[str, float] = FULL) -> list[Maneuver]:
+    """Return the manoeuvres of the lateral plan; ``full_rad`` is the deflection at full demand."""
     stretches: dict[float, list[Sample]] = {}
-    for sample in lateral_flight(scenario).samples():
+    for sample in flight.samples():
         if sample.flying is not None:
             stretches.setdefault(sample.flying.start_s, []).append(sample)
-    return [recorded(k, samples) for k, samples in enumerate(stretches.values(), 1)]
+    return [recorded(k, samples, full_rad) for k, samples in enumerate(stretches.values(), 1)]
 
 
-def recorded(number: int, samples: Sequence[Sample]) -> Maneuver:
+def recorded(number: int, samples: Sequence[Sample], full_rad: Mapping[str, float]) -> Maneuver:
     """Return a manoeuvre as a log holds it."""
     t = np.array([sample.time_s for sample in samples])
     told = {name: [getattr(sample.reading, field) for sample in samples] for name, field in READ.items()}
-    told |= {
-        name: [-FULL_RAD * getattr(sample, name) for sample in samples] for name in ("aileron", "rudder")
-    }
+    told |= {name: [-full * getattr(sample, name) for sample in samples] for name, full in full_rad.items()}
+    told["altitude"] = [HOME_HEIGHT_M + sample.motion.height for sample in samples]
     told["throttle"] = [sample.throttle for sample in samples]
     channels = {n: Channel(n, t, np.array(y, float), "HIGHRES_IMU", "measured") for n, y in told.items()}
     return Maneuver(number, 0, Span(t[0], t[0] + 1.0, t[0] + 3.0, t[-1], "other", (), "quiet"), channels)
 
 
-def rows(seed: int, each: int, clean: int, only: list[str]) -> Iterator[str]:
-    """Yield a row a flight, then the counts."""
+@dataclass(frozen=True)
+class Study:
+    """Numbers of the flights to fly."""
+
+    each: int
+    """Flights with each effect."""
+    clean: int
+    """Flights with nothing."""
+    pairs: int
+    """Flights with two effects of different controls or outputs."""
+    air: int
+    """Flights in side gusts alone."""
+    only: Sequence[str] = ()
+    """Effects to fly; empty for all."""
+
+
+def rows(seed: int, study: Study, fly: Fly) -> Iterator[str]:
+    """Yield a row a flight, then the counts; ``fly`` flies effects and diagnoses them."""
     rng = np.random.default_rng(seed)
     right = named = false = size_right = 0
-    for _ in range(each):
-        for name, case in CASES.items():
-            size = float(rng.uniform(*case.sizes)) * (rng.choice([-1.0, 1.0]) if "scale" in name else 1.0)
-            flight = int(rng.integers(2**31))
-            if only and name not in only:
-                continue
-            found = diagnosed(flight, {name: {case.parameter: size}})
-            told, holds, fits = judged(found, case, size)
-            if case.is_named:
-                named, right, size_right = named + 1, right + holds, size_right + fits
-            else:
-                false += not holds
-            yield f"| {name} | {size:.3g} | {told} | {'yes' if holds else 'NO'} | {'yes' if fits else 'no'} |"
-    for _ in range(0 if only else clean):
-        found = diagnosed(int(rng.integers(2**31)), {})
-        told, holds, _ = judged(found, Withheld("", "", (0.0, 0.0), is_named=False), 0.0)
+
+    def drawn(name: str) -> float:
+        sign = rng.choice([-1.0, 1.0]) if "scale" in name else 1.0
+        return float(rng.uniform(*CASES[name].sizes) * sign)
+
+    singles = [name for _ in range(study.each) for name in CASES if not study.only or name in study.only]
+    for name in [*singles, *("side_turbulence" for _ in range(study.air))]:
+        case, size = CASES[name], drawn(name)
+        told, holds, fits = judged(fly(int(rng.integers(2**31)), {name: {case.parameter: size}}), case, size)
+        if case.is_named:
+            named, right, size_right = named + 1, right + holds, size_right + fits
+        else:
+            false += not holds
+        yield f"| {name} | {size:.3g} | {told} | {'yes' if holds else 'NO'} | {'yes' if fits else 'no'} |"
+    for _ in range(study.clean):
+        told, holds, _ = judged(fly(int(rng.integers(2**31)), {}), NOTHING, 0.0)
         false += not holds
         yield f"| nothing | | {told} | {'yes' if holds else 'NO'} | |"
-    yield f"{right} of {named} effects named, {size_right} with the right size; {false} false alarms"
+    both = one = 0
+    able = [name for name, case in CASES.items() if case.is_named]
+    for _ in range(study.pairs):
+        names = [able[int(k)] for k in rng.choice(len(able), 2, replace=False)]
+        sizes = {name: drawn(name) for name in names}
+        effects = {name: {CASES[name].parameter: size} for name, size in sizes.items()}
+        told, found = pair_judged(fly(int(rng.integers(2**31)), effects), names)
+        both, one = both + (found == len(names)), one + (found > 0)
+        listed = ", ".join(f"{size:.3g}" for size in sizes.values())
+        yield f"| {' + '.join(names)} | {listed} | {told} | {found} of 2 | |"
+    yield (
+        f"{right} of {named} effects named, {size_right} with the right size; {false} false alarms; of "
+        f"{study.pairs} pairs {both} named whole, {one} at least by half"
+    )
+
+
+NOTHING = Withheld("", "", (0.0, 0.0), is_named=False)
 
 
 def judged(found: SideDiagnosis | None, case: Withheld, size: float) -> tuple[str, bool, bool]:
@@ -142,12 +214,31 @@ def judged(found: SideDiagnosis | None, case: Withheld, size: float) -> tuple[st
     if found.verdict != "effect":
         said = f"{found.verdict} ({found.none:.2f}, {found.parameters:.2f})"
         return said, not case.is_named and found.verdict == "none", False
-    first = found.causes[0]
-    told = first.cause.parameters[next(iter(first.cause.parameters))]
+    present = [one for one in found.causes if one.cause.present]
+    first = present[0].cause.parameters
+    told = first[next(iter(first))]
     near = abs(told.value - size) <= max(NORMAL_95 * told.std, 0.15 * abs(size))
-    said = f"{first.name} {told.value:.3g} ± {NORMAL_95 * told.std:.2g} ({first.cause.probability:.2f})"
-    holds = case.is_named and first.name == case.name
-    return said, holds, holds and near
+    holds = [one.name for one in present] == [case.name]
+    return said_of(found), holds, holds and near
+
+
+def pair_judged(found: SideDiagnosis | None, names: Sequence[str]) -> tuple[str, int]:
+    """Return the answer in words, and how many of the effects it names; one that is not there costs all."""
+    if found is None or found.verdict != "effect":
+        return "none" if found is None else found.verdict, 0
+    told = {one.name for one in found.causes if one.cause.present}
+    right = {CASES[name].name for name in names}
+    return said_of(found), 0 if told - right else len(told)
+
+
+def said_of(found: SideDiagnosis) -> str:
+    """Return the effects of the model with their first size and probability."""
+    return "; ".join(
+        f"{one.name} {value.value:.3g} ± {NORMAL_95 * value.std:.2g} ({one.cause.probability:.2f})"
+        for one in found.causes
+        if one.cause.present
+        for value in list(one.cause.parameters.values())[:1]
+    )
 
 
 def main() -> int:
@@ -157,9 +248,14 @@ def main() -> int:
     parser.add_argument("--each", type=int, default=3)
     parser.add_argument("--clean", type=int, default=6)
     parser.add_argument("--only", nargs="*", default=[])
+    parser.add_argument("--pairs", type=int, default=0)
+    parser.add_argument("--air", type=int, default=0)
+    parser.add_argument("--jsbsim", action="store_true")
     asked = parser.parse_args()
+    fly = diagnosed_in_jsbsim if asked.jsbsim else diagnosed
     print("| withheld | size | told | right | size |\n|---|---|---|---|---|")
-    for row in rows(asked.seed, asked.each, asked.clean, asked.only):
+    study = Study(asked.each, asked.clean, asked.pairs, asked.air, asked.only)
+    for row in rows(asked.seed, study, fly):
         print(row, flush=True)
     return 0
 

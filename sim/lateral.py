@@ -164,14 +164,16 @@ class LateralPilot:
         Controls in level flight.
     swing
         Amplitude of the throttle's slow swing, 0..1.
+    slower
+        Factor of the steps' duration, for an aircraft with a slower Dutch roll.
     """
 
-    def __init__(self, scenario: Scenario, trim: Controls, swing: float = 0.0) -> None:
+    def __init__(self, scenario: Scenario, trim: Controls, swing: float = 0.0, slower: float = 1.0) -> None:
         self._trim, self._swing = trim, swing
         self._inputs: list[tuple[SideInput, Planned]] = []
         now = scenario.lead_in_s
         for one in PLAN:
-            stick = stepped(one.steps, one.amplitude, one.unit_s)
+            stick = stepped(one.steps, one.amplitude, slower * one.unit_s)
             start = now + scenario.settling_s
             end = start + stick.duration_s + 2.0 * scenario.free_s
             self._inputs.append((one, Planned(Maneuver(input="none"), stick, now, start, end)))
@@ -226,7 +228,14 @@ def lateral_flight(scenario: Scenario, noisy: bool = True) -> Flight:
         for stages in kit.mechanisms.values():
             stages.append(FirstOrderServo(scenario.servo.lag_s))
     engine = LateralAircraft(known.truth, speed, scenario.height_m, UAV, kit)
-    pilot = LateralPilot(scenario, engine.trim, kit.swing)
+    return flown_laterally(scenario, engine, kit, noisy)
+
+
+def flown_laterally(
+    scenario: Scenario, engine: hangar.Aircraft, kit: SideKit, noisy: bool = True, slower: float = 1.0
+) -> Flight:
+    """Return the lateral plan flown by an engine that takes aileron and rudder."""
+    pilot = LateralPilot(scenario, engine.trim, kit.swing, slower)
     if noisy:
         kit.fittings.sensors.append(LateralNoise(scenario.seed))
     return Flight(scenario, kit.fittings, engine, pilot, pilot.end_s + scenario.closing_s)

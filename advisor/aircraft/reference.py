@@ -123,6 +123,13 @@ class FmuVariables:
     height: Annotated[str | None, Key(
         "Height, m. None: the height of the flight condition, constant.",
     )] = None  # fmt: skip
+    p: Annotated[str | None, Key("Output: roll rate. Roll and yaw also need r, bank, and a_y or beta.")] = (
+        None
+    )
+    r: Annotated[str | None, Key("Output: yaw rate.")] = None
+    bank: Annotated[str | None, Key("Output: bank angle.")] = None
+    a_y: Annotated[str | None, Key("Output: specific force along body y, m/s².")] = None
+    beta: Annotated[str | None, Key("Output: sideslip, positive where the wind comes from the right.")] = None
     aileron: Annotated[str | None, Key("Input: aileron, flown where the log has one.")] = None
     rudder: Annotated[str | None, Key("Input: rudder, flown where the log has one.")] = None
     throttle: Annotated[str | None, Key("Input: throttle, flown where the log has one.")] = None

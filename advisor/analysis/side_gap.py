@@ -1,15 +1,23 @@
 """From logs to the gap of the lateral axis, over the accepted manoeuvres of aileron and rudder."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
+from typing import TypeVar
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.analysis.whole_flights import read_whole
+from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.marks import Mark
 from advisor.gap.judge.prior import FIELD, FieldPrior
 from advisor.oem.estimate import NoEstimate
+from advisor.oem.lateral_estimator import estimate_lateral
 from advisor.side_gap.comparison import SideGap, compare_side
-from advisor.words.problems import Problem, UnusableInputError
+from advisor.simulators.flying import Progress
+from advisor.simulators.side import side_without_difference
+from advisor.simulators.specification import simulator_of
+from advisor.words.problems import ConfigurationError, Problem, UnusableInputError
 
 
 def side_gap_of(
@@ -19,14 +27,39 @@ def side_gap_of(
     marks: Sequence[Mark] = (),
     no_marks: bool = False,
     prior: FieldPrior = FIELD,
+    progress: Progress = lambda *_: None,
 ) -> SideGap:
-    """Read logs and compare roll and yaw of the aircraft file with the flight.
+    """Read logs and compare the flight with roll and yaw of the aircraft file, or of its simulator.
 
     Raises
     ------
+    ConfigurationError
+        The file's simulator cannot be built.
     UnusableInputError
-        No log can be used, or no manoeuvre of aileron or rudder is accepted.
+        No log can be used, no manoeuvre of aileron or rudder is accepted, or the simulator does not fly them.
     """
+    accepted = _accepted(logs, aircraft, target_system, marks, no_marks)
+    kind, _, rest = (aircraft.simulator or "linear").partition(":")
+    if kind == "log":
+        aircraft = _identified(Path(rest), aircraft)
+    elif kind != "linear":
+        simulator = simulator_of(str(aircraft.simulator), aircraft, lambda _: [])
+        try:
+            accepted, aircraft = side_without_difference(accepted, simulator, aircraft, progress)
+        finally:
+            simulator.close()
+    progress("comparing", 1.0)
+    return _answered(compare_side(accepted, aircraft, prior))
+
+
+def _accepted(
+    logs: Sequence[Path],
+    aircraft: Aircraft,
+    target_system: int | None = None,
+    marks: Sequence[Mark] = (),
+    no_marks: bool = False,
+) -> list[Maneuver]:
+    """Return the accepted manoeuvres of aileron and rudder."""
     flights = read_whole(logs, aircraft, target_system, marks, no_marks=no_marks, axis="lateral")
     state = flights.state.lateral
     assert state is not None
@@ -41,7 +74,24 @@ def side_gap_of(
                 )
             ]
         )
-    found = compare_side(accepted, aircraft, prior)
+    return accepted
+
+
+def _identified(log: Path, aircraft: Aircraft) -> Aircraft:
+    """Return the aircraft file with the derivatives that a simulator's log shows."""
+    if not log.is_file():
+        raise ConfigurationError(f"--simulator log:{log}: there is no such file; name the simulator's log.")
+    found = _answered(estimate_lateral(_accepted([log], aircraft, no_marks=True), aircraft)).estimate
+    told = zip(SIDE_PARAMETERS, map(float, found.theta), strict=True)
+    model = {name: value for name, value in told if name not in found.not_identifiable}
+    return replace(aircraft, model=model, reference_airspeed_m_s=found.airspeed_m_s)
+
+
+_Found = TypeVar("_Found")
+
+
+def _answered(found: _Found | NoEstimate) -> _Found:
+    """Return an answer, or refuse manoeuvres that gave none."""
     if isinstance(found, NoEstimate):
         raise UnusableInputError.of(
             [Problem(found.code, found.text, "Fly an aileron doublet and a rudder doublet.")]

@@ -28,9 +28,7 @@ _OF_A_FLIGHT = {
     "no_marks": "--no-marks", "why": "--why", "prior": "--prior", "exports": "--export",
     "specification": "--simulator", "figure": "--figure", "axis": "--axis",
 }  # fmt: skip
-_OF_THE_PITCH = {
-    name: _OF_A_FLIGHT[name] for name in ("holdout", "out", "why", "exports", "specification", "figure")
-}
+_OF_THE_PITCH = {name: _OF_A_FLIGHT[name] for name in ("holdout", "out", "why", "exports", "figure")}
 _OF_A_PLAN = {
     "plan": "--plan", "rate_hz": "--rate", "amplitude_deg": "--amplitude-deg", "without": "--without"
 }  # fmt: skip
@@ -117,6 +115,7 @@ def command(
       advisor gap flight.tlog --aircraft my-aircraft.yaml --export matlab:short-period.m
       advisor gap flight.tlog --simulator jsbsim:c172p
       advisor gap flight.tlog --aircraft my-aircraft.yaml --axis lateral
+      advisor gap flight.tlog --axis lateral --simulator jsbsim:c172p
       advisor gap --foresee --aircraft my-aircraft.yaml --rate 20 --without a_z
     """
     _refuse_foreign(_OF_A_FLIGHT if foresee else _OF_A_PLAN, f"with{'out' if foresee else ''} --foresee")
@@ -134,6 +133,8 @@ def command(
         return print_foresight(aircraft, plan, rate_hz, amplitude_deg, without, as_json)
     if not asked.logs:
         raise ConfigurationError("advisor gap needs at least one log, or --foresee with an aircraft file.")
+    if specification is not None:
+        aircraft = replace(aircraft, simulator=specification)
     if axis == "lateral":
         from advisor.cli.side_gap import compare_lateral
 
@@ -145,8 +146,6 @@ def command(
         if asked.aircraft_file is not None and out.resolve() == asked.aircraft_file.resolve():
             raise ConfigurationError(f"--out: {out} is the aircraft file itself; name another file.")
     refuse_figure(figure, [*asked.inputs, out])
-    if specification is not None:
-        aircraft = replace(aircraft, simulator=specification)
     orders = orders_of(exports, aircraft, [*asked.inputs, out])
     from advisor.analysis.gap import compare_logs, named_simulator
     from advisor.gap.document import gap_document

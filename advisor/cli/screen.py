@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 import click
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import SideControl
 from advisor.process.interrupt import in_order
 from advisor.session.source import Source, Tempo
 from advisor.words.printable import printable
@@ -115,10 +114,8 @@ def _campaign(
 ) -> "Campaign":
     from advisor.campaign.campaign import Campaign
 
-    # A file that states both controls announces a test of roll and yaw.
-    lateral = SideControl() not in (aircraft.aileron, aircraft.rudder)
     return Campaign(
-        aircraft, target_system, settle, tell, by_hand=by_hand, marks=marks, names=names, lateral=lateral
+        aircraft, target_system, settle, tell, by_hand=by_hand, marks=marks, names=names, lateral=True
     )
 
 

@@ -18,7 +18,8 @@ from advisor.gap.judge.prior import FIELD, field_prior
 from advisor.report.gap_reasons import in_percent
 from advisor.report.gap_sizes import sizes_of
 from advisor.side_gap.comparison import SideGap
-from advisor.side_gap.diagnosis import LIKELY, SideDiagnosis
+from advisor.side_gap.diagnosis import SideDiagnosis
+from advisor.side_gap.stage import LIKELY
 from advisor.words.plain import picked, plain
 from advisor.words.problems import UnusableInputError
 from advisor.words.quantiles import NORMAL_95
@@ -29,7 +30,7 @@ def compare_lateral(asked: LogsAsked, aircraft: Aircraft, as_json: bool, prior: 
     """Compare roll and yaw of the aircraft file with the flight, and print the result."""
     try:
         with Stages() as tell:
-            tell("reading and comparing", 0.0)
+            tell("reading", 0.0)
             shares = FIELD if prior is None else field_prior(prior)
             found = side_gap_of(
                 asked.logs,
@@ -38,6 +39,7 @@ def compare_lateral(asked: LogsAsked, aircraft: Aircraft, as_json: bool, prior: 
                 asked.marks,
                 no_marks=asked.no_marks,
                 prior=shares,
+                progress=tell,
             )
     except UnusableInputError as error:
         if as_json:
@@ -125,17 +127,18 @@ def _diagnosis_document(found: SideDiagnosis | None) -> dict[str, Any]:
     """Return the probabilities, the causes and the largest errors, rad/s; without a diagnosis only their
     keys."""
     if found is None:
-        return {"probabilities": None, "causes": [], "peaks": None, "cannot_see": {}}
+        return {"probabilities": None, "causes": [], "waterfall": [], "peaks": None, "cannot_see": {}}
     return {
         "probabilities": picked(found, "none parameters effects"),
         "causes": [
             {
-                **picked(one.cause, "effect block probability parameters"),
+                **picked(one.cause, "effect block probability present parameters"),
                 **picked(one, "of name sentence peaks"),
                 "held_out_nats": {"value": one.gain.total, "std": one.gain.std},
             }
             for one in found.causes
         ],
+        "waterfall": [{"effect": name, "after": after} for name, after in found.waterfall],
         "peaks": {"simulator": found.peaks, "fitted_derivatives": found.peaks_by_numbers},
         "cannot_see": found.cannot_see,
     }

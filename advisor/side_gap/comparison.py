@@ -91,9 +91,7 @@ def compare_side(
     holdout, before, after = _held_out(maneuvers, aircraft, model)
     return SideGap(
         verdict,
-        diagnosis.causes[0].sentence
-        if verdict == "effect" and diagnosis
-        else _sentence(verdict, derivatives),
+        diagnosis.sentence if verdict == "effect" and diagnosis else _sentence(verdict, derivatives),
         derivatives,
         statistic,
         limit,

@@ -1,42 +1,24 @@
-"""Explanations of a lateral flight with their probabilities: no gap, wrong numbers, or one effect.
+"""Explanations of a lateral flight: no gap, wrong numbers, side gusts, one effect, or two at once."""
 
-An effect goes with right or with wrong derivatives, both equally likely before the flight. Its evidence is
-never more than what it gains on manoeuvres that the fit has not seen.
-"""
-
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
-from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG
+from advisor.gap.fitting.prior import ERROR_IF_WRONG
 from advisor.gap.judge.prior import FIELD, FieldPrior
 from advisor.gap.result import Cause, Value
 from advisor.gap.verdict.statements import what
 from advisor.side_gap.effects import SideEffect, side_effects, unseen
-from advisor.side_gap.evidence import (
-    Gain,
-    Squares,
-    gain_of,
-    information_of,
-    log_evidence,
-    posterior_of,
-    probabilities,
-    share_of,
-    squares_of,
-)
-from advisor.side_gap.fit import Fit, N, Point
-from advisor.side_gap.models import Case, best_start, effect_fit, plain_fit, refitted, simulated
+from advisor.side_gap.evidence import Gain, information_of, posterior_of, share_of
+from advisor.side_gap.fit import Fit, N
+from advisor.side_gap.models import Case, base_of, plain_fit, refitted, simulated
+from advisor.side_gap.stage import LIKELY, Stage, Tried, stage_of
 
-FITTED = 5
-"""Number of effects that are fitted in full: those that leave least after a linear refit. The others take
-part with no probability."""
-LIKELY = 0.01
-"""Probability above which an effect is fitted again with the likelier tolerance of the derivatives."""
 PEAKS = ("p", "r")
 """Outputs whose largest errors are reported."""
+AIR = "side gusts"
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +26,7 @@ class SideCause:
     """One effect as the explanation of the gap."""
 
     of: str
-    """Control or output."""
+    """Control or output; ``air`` for side gusts."""
     named: str
     """Name of the effect as people write it."""
     cause: Cause
@@ -68,15 +50,18 @@ class SideDiagnosis:
     none: float
     parameters: float
     effects: Mapping[str, float]
-    """Name of every effect that was tried to its probability."""
+    """Name of every effect that was tried to the probability that it is the main cause."""
     causes: tuple[SideCause, ...]
-    """Likeliest first."""
+    """Effects of the model in the order in which they were found, then alternatives, likeliest first."""
     peaks: Mapping[str, float]
     """Largest error of roll and yaw rate with the simulator's derivatives, rad/s."""
     peaks_by_numbers: Mapping[str, float]
     """Largest error with the flight's derivatives and no effect, rad/s."""
     cannot_see: Mapping[str, str]
     """Causes that these records cannot show, with the reason."""
+    waterfall: tuple[tuple[str, float], ...] = ()
+    """Name of each effect of the model, and the gap that remains with it: the mean square over that of the
+    whole model, minus 1."""
 
     @property
     def verdict(self) -> Literal["none", "parameters", "effect"]:
@@ -86,25 +71,16 @@ class SideDiagnosis:
         kinds = {"none": self.none, "parameters": self.parameters, "effect": likeliest}
         return max(kinds, key=lambda kind: kinds[kind])
 
-
-@dataclass(frozen=True, slots=True)
-class _Tried:
-    """One effect with its fit and its evidence."""
-
-    effect: SideEffect
-    fit: Fit
-    right: float
-    """Log evidence with right derivatives, limited by the gain on unseen manoeuvres."""
-    wrong: float
-    gain: Gain
-
     @property
-    def evidence(self) -> float:
-        return float(np.logaddexp(self.right, self.wrong) - np.log(2.0))
+    def sentence(self) -> str:
+        """Statements about all effects of the model."""
+        return ". ".join(one.sentence for one in self.causes if one.cause.present)
 
 
 def diagnose_side(case: Case, prior: FieldPrior = FIELD, listed: int = 5) -> SideDiagnosis | None:
     """Return the probabilities of all explanations; None where no plain fit exists.
+
+    Where one effect is the likeliest explanation, a second one is sought in the model with the first.
 
     Parameters
     ----------
@@ -117,70 +93,75 @@ def diagnose_side(case: Case, prior: FieldPrior = FIELD, listed: int = 5) -> Sid
     as_given = None if plain is None else simulated(case, plain)
     if plain is None or as_given is None:
         return None
-    told = information_of(plain, share)
-    none, parameters = (
-        log_evidence(plain, told, case.known(tolerance, plain.free), share)
-        for tolerance in (ERROR_IF_RIGHT, ERROR_IF_WRONG)
-    )
-    left = squares_of(plain, told, case.known(ERROR_IF_WRONG, plain.free))
     table = list(side_effects(case.flown))
-    starts = sorted(((best_start(case, plain, e), e) for e in table), key=lambda one: one[0].squares)
-    tried = [
-        one
-        for one in (_tried(case, plain, e, start.point, left, share) for start, e in starts[:FITTED])
-        if one is not None
-    ]
-    each = prior.effect / max(len(table), 1)
-    found = probabilities(
-        [none, parameters, *(one.evidence for one in tried)],
-        [prior.none, prior.parameters, *(each for _ in tried)],
-    )
-    order = np.argsort(-found[2:])[:listed]
+    stage = stage_of(case, plain, share, table, prior)
+    effects = dict(stage.probability)
+    if stage.air > 0.0:
+        effects[AIR.replace(" ", "_")] = stage.air
+    stages = [stage, *_second(case, stage, table, prior)]
     return SideDiagnosis(
-        float(found[0]),
-        float(found[1]),
-        {one.effect.name: float(p) for one, p in zip(tried, found[2:], strict=True)},
-        tuple(_cause(case, tried[k], float(found[2 + k]), share) for k in order),
+        stage.none,
+        stage.parameters,
+        effects,
+        tuple(_causes(case, stages, as_given))[:listed],
         peaks_of(as_given),
         peaks_of(plain),
         unseen(case.flown),
+        _waterfall(stages),
     )
 
 
-def _tried(
-    case: Case, plain: Fit, effect: SideEffect, begin: Point, left: Squares, share: float
-) -> _Tried | None:
-    """Return an effect with its evidence; None where no fit exists or its size is below the least one."""
-    fit = effect_fit(case, plain, effect, begin, share)
-    if fit is None or abs(_sizes(case, effect, fit)[0]) < effect.variant.smallest:
-        return None
-    told = information_of(fit, share)
-    counts = np.bincount(fit.assembly.channel, minlength=len(fit.noise)).astype(float)
-    # Half of the prior lies below zero, where the bounds exclude a size.
-    extra = np.log(2.0) if effect.is_one_sided else 0.0
-    if effect.sides is not None:
-        extra -= len(case.flown) * np.log(len(effect.sides[1]))
-    evidence, gains = [], []
-    for tolerance in (ERROR_IF_RIGHT, ERROR_IF_WRONG):
-        known = case.known(tolerance, fit.free)
-        own = squares_of(fit, told, known)
-        in_fit = gain_of(left.in_fit, own.in_fit, counts, share)
-        gains.append(gain_of(left.held_out, own.held_out, counts, share))
-        lost = min(gains[-1].total - in_fit.total, 0.0)
-        evidence.append(log_evidence(fit, told, known, share) + extra + lost)
-    right, wrong = evidence
-    return _Tried(effect, fit, right, wrong, gains[int(wrong > right)])
+def _second(case: Case, stage: Stage, table: Sequence[SideEffect], prior: FieldPrior) -> Iterator[Stage]:
+    """Yield the stage after the one effect that was found, where its model can be fitted again."""
+    found = stage.found
+    if found is None:
+        return
+    share = share_of(found.fit)
+    plain = refitted(case, found.fit, ERROR_IF_WRONG, share)
+    if plain is not None:
+        others = [e for e in table if not set(e.places) & set(found.effect.places)]
+        yield stage_of(case, plain, share, others, prior)
 
 
-def _cause(case: Case, tried: _Tried, probability: float, share: float) -> SideCause:
-    effect, fit = tried.effect, tried.fit
-    tolerance = ERROR_IF_RIGHT if tried.right > tried.wrong else ERROR_IF_WRONG
-    if probability > LIKELY:
+def _causes(case: Case, stages: Sequence[Stage], as_given: Fit) -> Iterator[SideCause]:
+    """Yield the effects of the model, then the alternatives to the first of them."""
+    stage, together = stages[0], 1.0
+    fit, tolerance, share = stage.plain, ERROR_IF_WRONG, stage.share
+    added: list[tuple[Tried, float]] = []
+    for one in stages:
+        if one.found is not None:
+            together *= one.probability[one.found.effect.name]
+            added.append((one.found, together))
+            fit, tolerance, share = one.found.fit, one.found.tolerance, one.share
+    if added:
+        # The whole model leaves less colour than the model in which its last effect was sought.
+        share = share_of(fit)
         fit = refitted(case, fit, tolerance, share) or fit
+    for tried, probability in added:
+        yield _cause(case, tried, fit, tolerance, probability, share, present=True)
+    alternatives: list[tuple[float, Tried | None]]
+    alternatives = [(stage.probability[t.effect.name], t) for t in stage.ranked if t is not stage.found]
+    if stage.air > 0.0:
+        alternatives.append((stage.air, None))
+    for probability, other in sorted(alternatives, key=lambda pair: -pair[0]):
+        if other is None:
+            yield _air(case, stage, as_given)
+            continue
+        again = other.fit
+        if probability > LIKELY:
+            again = refitted(case, other.fit, other.tolerance, stage.share) or other.fit
+        yield _cause(case, other, again, other.tolerance, probability, stage.share, present=False)
+
+
+def _cause(
+    case: Case, tried: Tried, fit: Fit, tolerance: float, probability: float, share: float, present: bool
+) -> SideCause:
+    """Return an effect with its sizes in a fit that has the effect."""
+    effect = tried.effect
     mean, covariance = posterior_of(fit, information_of(fit, share), case.known(tolerance, fit.free))
     places = [one.place for one in fit.free]
     at = [N + places.index(place) for place in effect.places]
-    sizes = mean[at] - _base(case, effect)
+    sizes = mean[at] - base_of(case, effect)
     std = np.sqrt(np.diag(covariance)[at])
     parameters = {
         name: Value(float(size), float(error))
@@ -191,20 +172,29 @@ def _cause(case: Case, tried: _Tried, probability: float, share: float) -> SideC
         inverse, error = max(parameters[name].value, effect.variant.smallest), parameters[name].std
         parameters[name] = Value(1.0 / inverse, error / inverse**2)
     cause = Cause(
-        effect.variant.effect, effect.variant.block, probability, parameters, (), "", float(np.nan), True
+        effect.variant.effect, effect.variant.block, probability, parameters, (), "", float(np.nan), present
     )
     return SideCause(effect.of, effect.named, cause, effect.said(what(cause)), tried.gain, peaks_of(fit))
 
 
-def _sizes(case: Case, effect: SideEffect, fit: Fit) -> FloatArray:
-    found = np.array([fit.point.setting[place][0] for place in effect.places])
-    return np.asarray(found - _base(case, effect))
+def _air(case: Case, stage: Stage, as_given: Fit) -> SideCause:
+    """Return side gusts as a cause."""
+    is_found = stage.air > max(stage.none, stage.parameters, *stage.probability.values())
+    speed = float(np.mean([np.mean(record.airspeed.y) for record in case.flown.problem.records]))
+    size = Value(stage.gusts.angle * speed, stage.gusts.angle_std * speed)
+    cause = Cause("turbulence", "air", stage.air, {"sigma_v_m_s": size}, (), "", float(np.nan), is_found)
+    said = f"The air was not still: side gusts of about {size.value:.2g} m/s"
+    return SideCause("air", AIR, cause, said, Gain(stage.air_gain, 0.0), peaks_of(as_given))
 
 
-def _base(case: Case, effect: SideEffect) -> FloatArray:
-    """Return the numbers that the aircraft file states at an effect's places."""
-    begin = case.begin.setting
-    return np.array([begin[place][0] if place in begin else 0.0 for place in effect.places])
+def _waterfall(stages: Sequence[Stage]) -> tuple[tuple[str, float], ...]:
+    """Return the gap that remains with each effect of the model."""
+    added = [stage.found for stage in stages if stage.found is not None]
+    if not added:
+        return ()
+    told = np.unique(added[-1].fit.assembly.channel)
+    last = added[-1].fit.noise[told]
+    return tuple((one.effect.name, float(np.mean((one.fit.noise[told] / last) ** 2)) - 1.0) for one in added)
 
 
 def peaks_of(fit: Fit) -> Mapping[str, float]:

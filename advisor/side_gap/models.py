@@ -20,7 +20,7 @@ from advisor.oem.lateral_start import lateral_start
 from advisor.oem.prepare import signal_of
 from advisor.side_gap.effects import SideEffect
 from advisor.side_gap.fit import Fit, Free, Known, N, Point, fitted, outputs
-from advisor.side_gap.setting import COMMAND, Flown, Place, Setting
+from advisor.side_gap.setting import COMMAND, Flown, Place
 
 SMALL_SHARE = 0.1
 """Least size of a derivative for a relative error, over its natural size (``natural_size``)."""
@@ -74,6 +74,11 @@ def case_of(maneuvers: Sequence[Maneuver], aircraft: Aircraft, theta: FloatArray
         for entry, value in (("lag_s", control.lag_s), ("delay_s", control.delay_s)):
             if value:
                 setting[name, entry] = np.full(len(maneuvers), value)
+    for name in filter(problem.flies, LATERAL.inputs):
+        # Held or linear between two stamps: a rate limit begins with the first, a lag with their mean.
+        stamps = np.concatenate([np.diff(r.inputs[name].t) for r in problem.records if name in r.inputs])
+        stated_s = getattr(aircraft, name).delay_s or 0.0
+        natural.append(Free((name, "delay_s"), 0.5 * float(np.median(stamps)), NATURAL_STEP, mean=stated_s))
     for one in nuisances_of(problem, aircraft):
         place = COMMAND if one.kind == "command" else (one.of, _ENTRIES[one.kind])
         # A lag that the file leaves open is absent from the simulator: such a lag is an effect.
@@ -103,18 +108,18 @@ def simulated(case: Case, plain: Fit) -> Fit | None:
 def free_with(case: Case, effect: SideEffect, plain: Fit) -> tuple[Free, ...]:
     """Return the free numbers of a model with an effect, which replaces a natural number at its place.
 
-    The natural numbers keep the derivatives of the plain fit."""
+    The natural numbers keep the derivatives of the plain fit; those of an effect found before do not."""
     variant = effect.variant
+    natural = {one.place for one in case.natural}
     kept = [
-        one._replace(column=plain.slopes[:, k])
+        one._replace(column=plain.slopes[:, k] if one.place in natural else None)
         for k, one in enumerate(plain.free)
         if one.place not in effect.places
     ]
-    base = [_value(case.begin.setting, place) for place in effect.places]
     own = [
         Free(place, std, step, (min(low, low + at), high + at), at)
         for place, std, step, (low, high), at in zip(
-            effect.places, effect.std, variant.steps, variant.bounds, base, strict=True
+            effect.places, effect.std, variant.steps, variant.bounds, base_of(case, effect), strict=True
         )
     ]
     return (*kept, *own)
@@ -161,7 +166,7 @@ def _starts(case: Case, plain: Fit, effect: SideEffect) -> Iterator[Start]:
     place, sides = effect.sides or (("", ""), (0.0,))
     for values in effect.starts:
         setting = dict(plain.point.setting)
-        base = [_value(case.begin.setting, at) for at in effect.places]
+        base = base_of(case, effect)
         for at, value, known in zip(effect.places, values, base, strict=True):
             setting[at] = np.full(len(case.flown), known + value)
         tried = []
@@ -214,5 +219,7 @@ class _Left:
         return np.asarray(left - self._columns @ np.linalg.solve(self._information, self._columns.T @ left))
 
 
-def _value(setting: Setting, place: Place) -> float:
-    return float(setting[place][0]) if place in setting else 0.0
+def base_of(case: Case, effect: SideEffect) -> FloatArray:
+    """Return the numbers that the simulator has at an effect's places."""
+    setting = case.begin.setting
+    return np.array([setting[place][0] if place in setting else 0.0 for place in effect.places])

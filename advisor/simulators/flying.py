@@ -13,10 +13,11 @@ from advisor.gap.fitting.regression import regressions
 from advisor.gap.records.flights import PreparedManeuver, PreparedManeuvers
 from advisor.gap.records.usable import DEPARTED_RAD
 from advisor.gap.simulator.layout import BANK, DERIVATIVES, HEIGHT, INDEX, OUTPUTS
+from advisor.oem.rows import Signal
 from advisor.simulators.around import instruments, skewed
 from advisor.simulators.increments import SimulatorIncrements, carried
 from advisor.simulators.inputs import as_flight, condition_of, inputs_of, on_grid, surface_of
-from advisor.simulators.interface import elevator_fault, interface_fault
+from advisor.simulators.interface import control_fault, interface_fault
 from advisor.simulators.protocol import Condition, Increments, Inputs, Replay, Simulator
 from advisor.simulators.surrogate import Surrogate, trimmed_at
 from advisor.words.problems import UnusableInputError
@@ -216,7 +217,7 @@ def refuse_another_elevator(description: str, m_delta_e: float, flights: Prepare
     k = DERIVATIVES.index("M_delta_e")
     flown = [float(guess[k]) for guess in regressions(flights)]
     # Where a late channel turns the sign of a regression, the flight says nothing.
-    fault = elevator_fault(m_delta_e, flown[0]) if min(flown) * max(flown) > 0.0 else None
+    fault = control_fault("elevator", m_delta_e, flown[0]) if min(flown) * max(flown) > 0.0 else None
     if fault is not None:
         raise fault.refuse(description)
 
@@ -244,11 +245,13 @@ def without_difference(m: Maneuver, as_flown: Mapping[int, AsGiven]) -> Maneuver
         return m
     flight, grid = as_flown[m.number].flight, as_flown[m.number].beyond
     t: FloatArray = flight.started_s + np.arange(grid.shape[1], dtype=np.float64) * flight.h
-    channels = dict(m.channels)
-    for c, name in enumerate(OUTPUTS):
-        if name in channels:
-            channels[name] = _less(channels[name], t, grid[c])
-    return replace(m, channels=channels)
+    return without(m, {name: Signal(t, grid[c]) for c, name in enumerate(OUTPUTS)})
+
+
+def without(m: Maneuver, lost: Mapping[str, Signal]) -> Maneuver:
+    """Return the manoeuvre with each of its channels minus the signal of that name."""
+    changed = {name: _less(m.channels[name], *by) for name, by in lost.items() if name in m.channels}
+    return replace(m, channels={**m.channels, **changed})
 
 
 def _less(channel: Channel, t: FloatArray, by: FloatArray) -> Channel:

@@ -19,8 +19,13 @@ from advisor.simulators.protocol import CONDITIONS, CONTROLS, Condition, Increme
 from advisor.words.problems import ConfigurationError, UnusableInputError
 
 _STEP_S = 0.01
-_ANGULAR = ("elevator", "aileron", "rudder", "alpha", "q", "theta", "force_increment", "moment_increment")
-_OUTPUTS = ("alpha", "q", "theta", "a_z", "airspeed", "height")
+_ANGULAR = (
+    "elevator", "aileron", "rudder", "alpha", "q", "theta", "force_increment", "moment_increment", "bank",
+    "r", "p", "beta",
+)  # fmt: skip
+_MOTION = ("alpha", "q", "theta", "a_z", "airspeed", "height")
+_SIDE = ("bank", "r", "p", "a_y", "beta")
+_OUTPUTS = (*_MOTION, *_SIDE)
 _INPUTS = ("elevator", "aileron", "rudder", "throttle", "force_increment", "moment_increment")
 _TRIM = ("airspeed", "height", "flight_path", "mass", "wind_along", "wind_right", "alpha", "theta")
 _DIFFERENCE_RAD = 1e-3
@@ -121,9 +126,10 @@ class FmuSimulator:
             self._fmu.step(float(t[k]), step)
             rows.append(self._motion(condition))
         self._fmu.end()
-        alpha, q, theta, a_z, speed, height = np.array(rows).T
-        trim = {name: rest[name] for name in held}
-        return Replay(t, alpha, q, theta, a_z, speed, height, trim=trim)
+        side = (name for name in _SIDE if name in self._outputs)
+        names = ("alpha", "q", "theta", "a_z", "airspeed_m_s", "height_m", *side)
+        seen = dict(zip(names, np.array(rows).T, strict=True))
+        return Replay(t, **seen, trim={name: rest[name] for name in held})
 
     def linearise(self, condition: Condition) -> Mapping[str, float] | None:
         """Return None: an FMU's states are not in general those of a short period."""
@@ -218,13 +224,14 @@ class FmuSimulator:
         self._fmu.write({self._inputs[name]: value / self._factor[name] for name, value in values.items()})
 
     def _motion(self, condition: Condition) -> list[float]:
-        """Return the outputs in the order of ``_OUTPUTS``; an unmapped output keeps the condition's value."""
+        """Return the outputs in the order of ``_OUTPUTS``; unmapped speed and height are the condition's."""
         values = dict(zip(self._outputs, self._fmu.read(self._outputs.values()), strict=True))
         kept = {"airspeed": condition.airspeed_m_s, "height": condition.height_m}
-        return [self._factor[name] * values[name] if name in values else kept[name] for name in _OUTPUTS]
+        told = {name: self._factor[name] * value for name, value in values.items()}
+        return [told.get(name, kept.get(name, np.nan)) for name in _OUTPUTS if name in {*_MOTION, *told}]
 
     def _state(self, rows: list[list[float]], t: float, elevator: float, throttle: float) -> State:
-        alpha, q, _, _, airspeed, height = rows[-1]
+        alpha, q, _, _, airspeed, height = rows[-1][: len(_MOTION)]
         before = rows[-2] if len(rows) > 1 else rows[-1]
         alpha_dot, q_dot = ((rows[-1][i] - before[i]) / self._step_s for i in (0, 1))
         half = 0.5 * self._step_s

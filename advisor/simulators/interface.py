@@ -111,26 +111,75 @@ def _in_radians(replay: Replay, names: Sequence[str]) -> Replay:
     return replace(replay, **changed)
 
 
-def elevator_fault(simulated: float, flown: float) -> InterfaceFault | None:
-    """Return the wrong sign or unit of the elevator; None where the simulator answers as the aircraft.
+_POSITIVE = {
+    "elevator": (
+        "it pitches up where the aircraft pitches down",
+        "trailing edge down is positive and pitches down",
+    ),
+    "aileron": ("it rolls to the other side", "a positive aileron rolls to the left"),
+    "rudder": ("it yaws to the other side", "a positive rudder yaws to the left"),
+}
+"""Control to the fault of its sense, and to the convention."""
+
+
+def control_fault(control: str, simulated: float, flown: float) -> InterfaceFault | None:
+    """Return the wrong sign or unit of a control; None where the simulator answers as the aircraft.
 
     Parameters
     ----------
+    control
+        ``elevator``, ``aileron`` or ``rudder``.
     simulated, flown
-        M_δe of the simulator and of the flight, 1/s².
+        M_δe, L_δa or N_δr of the simulator and of the flight, 1/s².
     """
     ratio = simulated / flown if flown else 1.0
     if _is(ratio, -1.0):
-        told = "the wrong direction: it pitches up where the aircraft pitches down"
-        mend = "Reverse the elevator's input; trailing edge down is positive and pitches down."
-        return InterfaceFault("the elevator", told, mend)
+        wrong, convention = _POSITIVE[control]
+        return InterfaceFault(
+            f"the {control}", f"the wrong direction: {wrong}", f"Reverse the {control}'s input; {convention}."
+        )
     if _is(abs(ratio), 1.0 / _PER_RAD):
         told = f"{1.0 / abs(ratio):.0f} times less effect than the flight: it takes degrees"
-        return InterfaceFault("the elevator", told, "Turn the deflection, sent in rad, into degrees.")
+        return InterfaceFault(f"the {control}", told, "Turn the deflection, sent in rad, into degrees.")
     if _is(abs(ratio), _PER_RAD):
         told = f"{abs(ratio):.0f} times more effect than the flight: it takes another unit"
-        return InterfaceFault("the elevator", told, "The deflection is sent in rad; check its scale.")
+        return InterfaceFault(f"the {control}", told, "The deflection is sent in rad; check its scale.")
     return None
+
+
+def side_fault(replay: Replay) -> InterfaceFault | None:
+    """Return the first wrong sign or unit of p, r, bank and β; None where they agree with each other.
+
+    φ̇ = p + tan θ·(q·sin φ + r·cos φ)        β̇ = a_y/V + (g/V)·cos θ·sin φ + sin α·p − cos α·r
+    """
+    p, r, bank, a_y, beta = (getattr(replay, name) for name in ("p", "r", "bank", "a_y", "beta"))
+    if p is None or r is None or bank is None:
+        return None
+    if np.max(np.abs(bank)) > np.pi:
+        return InterfaceFault("the bank angle", "in degrees", "Give angles in rad and rates in rad/s.")
+    rolled = _integrated(p, replay.t)
+    if np.ptp(rolled) > _MOVES_RAD:
+        swept = np.tan(replay.theta) * (replay.q * np.sin(bank) + r * np.cos(bank))
+        by_p = _slope(rolled, bank - bank[0] - _integrated(swept, replay.t))
+        if _is(by_p, -1.0):
+            return _sign("p", "with the sign reversed: positive is right wing down")
+        if _is(by_p, 1.0 / _PER_RAD):
+            return InterfaceFault("p", "in deg/s", "Give the roll rate in rad/s.")
+    if a_y is None or beta is None:
+        return None
+    weight = GRAVITY_M_S2 * np.cos(replay.theta) * np.sin(bank)
+    pushed = _integrated((a_y + weight) / replay.airspeed_m_s + np.sin(replay.alpha) * p, replay.t)
+    turned = _integrated(-np.cos(replay.alpha) * r, replay.t)
+    if np.ptp(turned) < _MOVES_RAD:
+        return None
+    by_push, by_turn = np.linalg.lstsq(np.column_stack([pushed, turned]), beta - beta[0])[0]
+    if _is(by_turn, -1.0):
+        mend = "positive is wind from the right" if _is(by_push, -1.0) else "positive is nose right"
+        return _sign("β" if _is(by_push, -1.0) else "r", f"with the sign reversed: {mend}")
+    if _is(by_turn, 1.0 / _PER_RAD):
+        return InterfaceFault("r", "in deg/s", "Give the yaw rate in rad/s.")
+    in_degrees = _is(by_turn, _PER_RAD) and _is(by_push, _PER_RAD)
+    return InterfaceFault("β", "in degrees", "Give the sideslip in rad.") if in_degrees else None
 
 
 def _path_turning(replay: Replay) -> FloatArray:

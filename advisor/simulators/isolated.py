@@ -236,7 +236,7 @@ def _outcome(task: Any, *given: Any) -> tuple[str, Any]:
         return "raised", " ".join(f"{type(error).__name__}: {error}".split())[:300].rstrip(".: ")
 
 
-_OPTIONAL = ("a_x", "bank", "r")
+_OPTIONAL = ("a_x", "bank", "r", "p", "a_y", "beta")
 """Series of a replay that may be missing."""
 
 

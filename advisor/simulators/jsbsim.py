@@ -18,6 +18,8 @@ from advisor.words.problems import UnusableInputError
 _THRUST_SHARE = 0.01
 """Largest force along the path that helps the trim, over the weight, with which the throttle counts as
 trimmed."""
+_MOTION = ("alpha", "q", "theta", "a_z", "airspeed_m_s", "height_m", "a_x", "bank", "r", "p", "a_y", "beta")
+"""Series of a replay."""
 _SHOWN = 6
 """Most foreign properties that are named."""
 _PROBE = 1e-3
@@ -102,8 +104,7 @@ class Jsbsim:
         trim = {"elevator": start.elevator}
         if flight.engines and abs(start.axial) < _THRUST_SHARE * flight.fdm["inertia/weight-lbs"]:
             trim["throttle"] = start.throttle
-        alpha, q, theta, a_z, speed, height, a_x, bank, r = rows.T
-        return Replay(t, alpha, q, theta, a_z, speed, height, a_x, bank, r, trim)
+        return Replay(t, **dict(zip(_MOTION, rows.T, strict=True)), trim=trim)
 
     def linearise(self, condition: Condition) -> Mapping[str, float] | None:
         """Return central differences of α̇ and q̇ about the trimmed state, at constant speed and flight path.
@@ -185,7 +186,7 @@ class Jsbsim:
         return math.copysign(1.0 / throw, seen[-1.0][1] - seen[1.0][1])
 
     def _motion(self) -> tuple[float, ...]:
-        """Return the motion in the order of ``Replay``'s series."""
+        """Return the motion in the order of ``_MOTION``."""
         fdm = self._flight.fdm
         acceleration = FOOT_M / fdm["inertia/mass-slugs"]
         return (
@@ -198,6 +199,9 @@ class Jsbsim:
             acceleration * fdm["forces/fbx-total-lbs"],
             fdm["attitude/phi-rad"],
             fdm["velocities/r-rad_sec"],
+            fdm["velocities/p-rad_sec"],
+            acceleration * fdm["forces/fby-total-lbs"],
+            fdm["aero/beta-rad"],
         )
 
     def _add(self, increments: Increments, t: float, elevator: float, throttle: float) -> None:

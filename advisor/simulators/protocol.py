@@ -99,6 +99,12 @@ class Replay:
     """Bank angle, rad; None means that the simulator flies in the vertical plane."""
     r: FloatArray | None = None
     """Yaw rate, rad/s; None means that of a coordinated turn."""
+    p: FloatArray | None = None
+    """Roll rate, rad/s, positive right wing down."""
+    a_y: FloatArray | None = None
+    """Specific force along body y at the centre of gravity, m/s²."""
+    beta: FloatArray | None = None
+    """Sideslip, rad, positive where the wind comes from the right."""
     trim: Mapping[str, float] = field(default_factory=dict)
     """Controls of the trimmed flight: ``elevator`` in rad and those of ``CONTROLS``, as far as they are
     known."""

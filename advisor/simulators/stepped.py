@@ -25,6 +25,10 @@ from advisor.simulators.protocol import CONDITIONS, CONTROLS, Condition, Increme
 from advisor.words.problems import UnusableInputError
 
 _NEEDED = ("alpha", "q", "theta", "a_z")
+_KEPT = ("airspeed", "height")
+"""Quantities that stay at the flight condition where the environment does not observe them."""
+_SIDE = ("bank", "r", "p", "a_y", "beta")
+"""Quantities of roll and yaw, which an environment may observe."""
 _DIFFERENCE = 1e-3
 """Departure of an unknown of the trim for a finite difference, rad or share of the throttle."""
 _ROUNDS = 40
@@ -46,7 +50,7 @@ class Environment(Protocol):
 
     def observe(self) -> Mapping[str, float]:
         """Return ``alpha``, ``q``, ``theta`` and ``a_z`` (m/s², -9.81 in level flight), and ``airspeed`` and
-        ``height`` where they change."""
+        ``height`` where they change. Roll and yaw have ``p``, ``r``, ``bank``, ``a_y`` and ``beta``."""
 
 
 class Stepped:
@@ -87,6 +91,7 @@ class Stepped:
         self.takes_increments = increments
         self.takes = frozenset(controls) & {*CONTROLS} | frozenset(conditions) & {*CONDITIONS}
         self._environment, self._dt = environment, dt
+        self._side: list[str] = []
         self._unknowns = ("alpha", "elevator", *(("throttle",) if trims_throttle else ()))
 
     def replay(self, condition: Condition, inputs: Inputs, increments: Increments | None = None) -> Replay:
@@ -107,9 +112,9 @@ class Stepped:
                 controls["force"], controls["moment"] = increments(state)
             self._environment.step(dt, **self._with_trim(trim, controls))
             rows.append(self._seen(condition))
-        alpha, q, theta, a_z, speed, height = np.array(rows).T
         told = {name: value for name, value in trim.items() if name != "alpha"}
-        return Replay(t, alpha, q, theta, a_z, speed, height, trim=told)
+        seen = dict(zip((*_NEEDED, "airspeed_m_s", "height_m", *self._side), np.array(rows).T, strict=True))
+        return Replay(t, **seen, trim=told)
 
     def linearise(self, condition: Condition) -> None:
         """Return None: derivatives are identified from replays."""
@@ -133,7 +138,7 @@ class Stepped:
         return {**resting, **controls}
 
     def _seen(self, condition: Condition) -> list[float]:
-        """Return α, q, θ, a_z, air speed and height; the last two stay at the condition where untold."""
+        """Return α, q, θ, a_z, air speed, height and the observed quantities of roll and yaw."""
         seen = self._environment.observe()
         missing = [name for name in _NEEDED if name not in seen]
         if missing:
@@ -143,7 +148,8 @@ class Stepped:
                 "Return alpha, q, theta and a_z from observe().",
             )
         kept = {"airspeed": condition.airspeed_m_s, "height": condition.height_m}
-        return [float(({**kept, **seen})[name]) for name in (*_NEEDED, "airspeed", "height")]
+        self._side = [name for name in _SIDE if name in seen]
+        return [float(({**kept, **seen})[name]) for name in (*_NEEDED, *_KEPT, *self._side)]
 
     def _trimmed(self, condition: Condition) -> dict[str, float]:
         """Return the controls and angle of attack whose first two steps change nothing (Newton)."""

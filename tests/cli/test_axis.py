@@ -2,7 +2,10 @@
 
 from pathlib import Path
 
+from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.axes import no_lateral
+from advisor.campaign.hand_decisions import NOTHING
+from advisor.cli.screen import _campaign
 from advisor.flight.stream.flights import FlightHeard
 from tests.conftest import Advisor
 from tests.flights import TWO, recorded
@@ -25,3 +28,7 @@ def test_the_axis_of_pitch_alone_leaves_out_roll_and_yaw(advisor: Advisor) -> No
     told = advisor("analyze", recorded("uav", 1.0, maneuvers=TWO), "--axis", "pitch")
     assert told.returncode == 0
     assert "Roll and yaw" not in told.stdout
+
+
+def test_screens_judge_roll_and_yaw_of_any_aircraft_as_analyze_does():
+    assert _campaign(Aircraft(), None, None, (), (), True, NOTHING).state.lateral is not None

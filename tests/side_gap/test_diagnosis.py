@@ -1,6 +1,7 @@
 """The diagnosis of roll and yaw: decisions on results made by hand, and one whole flight."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.aircraft.sensors import Beta
 from advisor.cli.side_gap import side_gap_document, side_gap_lines
 from advisor.gap.result import Cause, Value
+from advisor.side_gap import diagnosis
 from advisor.side_gap.comparison import SideGap
 from advisor.side_gap.diagnosis import SideCause, SideDiagnosis, diagnose_side
 from advisor.side_gap.evidence import Gain
@@ -83,3 +85,31 @@ def test_a_gyro_that_reads_too_much_is_named_with_its_size():
     assert first.cause.parameters["scale"].value == pytest.approx(0.08, abs=0.02)
     assert first.sentence.startswith("The roll rate reads 8")
     assert first.peaks["p"] < found.peaks["p"]
+
+
+def test_two_effects_at_once_are_both_said_and_stand_before_the_alternatives():
+    lag = replace(PLAY, of="rudder", named="rudder actuator lag", sentence="The real rudder lags by 60 ms")
+    other = replace(PLAY, named="roll rate scale", cause=replace(PLAY.cause, present=False, probability=0.1))
+    both = replace(
+        DIAGNOSIS,
+        causes=(PLAY, lag, other),
+        waterfall=(("aileron_actuator_backlash", 0.4), ("rudder_actuator_lag", 0.0)),
+    )
+    assert both.sentence == f"{PLAY.sentence}. The real rudder lags by 60 ms"
+    document = side_gap_document(replace(FOUND, diagnosis=both))
+    assert [one["present"] for one in document["causes"]] == [True, True, False]
+    assert document["waterfall"][0] == {"effect": "aileron_actuator_backlash", "after": 0.4}
+
+
+@pytest.mark.parametrize("found", [True, False])
+def test_a_second_effect_is_sought_only_after_a_first_and_elsewhere(found, monkeypatch):
+    first, same, elsewhere = (
+        SimpleNamespace(places=places) for places in ((("p", "scale"),), (("p", "scale"),), (("r", "scale"),))
+    )
+    one = SimpleNamespace(found=SimpleNamespace(effect=first, fit="fit") if found else None)
+    tables = []
+    monkeypatch.setattr(diagnosis, "share_of", lambda _: 1.0)
+    monkeypatch.setattr(diagnosis, "refitted", lambda *_: "again")
+    monkeypatch.setattr(diagnosis, "stage_of", lambda *given: tables.append(given[3]))
+    assert len(list(diagnosis._second(None, one, [first, same, elsewhere], None))) == int(found)
+    assert tables == ([[elsewhere]] if found else [])

@@ -267,3 +267,11 @@ def test_a_mistake_in_the_section_fmu_is_told_with_its_path(wrong: dict[str, obj
 def test_a_name_that_is_missing_is_told_with_its_path() -> None:
     with pytest.raises(ConfigurationError, match=r"fmu.q: field required"):
         parse_aircraft({"fmu": {name: value for name, value in SECTION.items() if name != "q"}})
+
+
+def test_roll_and_yaw_are_read_from_the_named_variables_in_the_fmus_unit(tmp_path):
+    names = replace(NAMES, p="q", beta="alpha", scale={**NAMES.scale, "p": 2.0})
+    flown = simulator(tmp_path, 2, names).replay(LEVEL, Inputs(T, DOUBLET))
+    assert flown.p == pytest.approx(2.0 * flown.q)
+    assert flown.beta == pytest.approx(flown.alpha)
+    assert flown.r is None

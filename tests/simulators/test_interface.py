@@ -8,7 +8,7 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.simulators.compare import compare
-from advisor.simulators.interface import elevator_fault, interface_fault
+from advisor.simulators.interface import control_fault, interface_fault
 from advisor.simulators.protocol import Condition, Inputs, Replay
 from advisor.words.problems import UnusableInputError
 from tests.simulators.nonlinear import Nonlinear, flown
@@ -63,7 +63,7 @@ def test_small_angles_in_degrees_are_told_by_the_motion_alone():
     ("simulated", "words"), [(30.0, "the wrong direction"), (-30.0 / DEG, "takes degrees"), (-31.0, None)]
 )
 def test_an_elevator_of_another_sense_or_unit_than_the_flights_is_told(simulated, words):
-    found = elevator_fault(simulated, -29.0)
+    found = control_fault("elevator", simulated, -29.0)
     assert (found is None) if words is None else (found is not None and words in found.found)
 
 

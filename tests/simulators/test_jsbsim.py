@@ -8,6 +8,7 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.signals.messages import FloatArray
+from advisor.simulators.interface import side_fault
 from advisor.simulators.jsbsim import Jsbsim, make_jsbsim
 from advisor.simulators.jsbsim_model import find_model
 from advisor.simulators.protocol import Condition, Inputs, Replay
@@ -171,8 +172,10 @@ def test_throttle_accelerates_and_a_positive_aileron_rolls_left(model: str) -> N
     jsbsim, n = simulator(model), round(3.0 / STEP_S)
     faster = jsbsim.replay(FLEET[model], inputs(3.0, throttle=np.full(n, 0.15)))
     assert faster.airspeed_m_s[-1] > FLEET[model].airspeed_m_s + 0.1
-    jsbsim.replay(FLEET[model], inputs(1.0, aileron=np.full(round(1.0 / STEP_S), 0.05)))
-    assert jsbsim._flight.fdm["attitude/phi-rad"] < -0.005
+    rolled = jsbsim.replay(FLEET[model], inputs(1.0, aileron=np.full(round(1.0 / STEP_S), 0.05)))
+    assert rolled.bank[-1] < -0.005
+    assert np.mean(rolled.p) < 0.0
+    assert side_fault(rolled) is None
 
 
 def test_in_a_process_of_its_own_the_model_flies_the_same(model: str) -> None:

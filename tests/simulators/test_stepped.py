@@ -100,3 +100,14 @@ def test_an_observation_without_a_needed_quantity_is_named():
 
     with pytest.raises(UnusableInputError, match="observes no theta, a_z"):
         Stepped(Blind(), "Blind").replay(LEVEL, Inputs(T, DOUBLET))
+
+
+def test_roll_and_yaw_are_handed_out_where_the_environment_observes_them():
+    class Rolls(Glides):
+        def observe(self):
+            return {**super().observe(), "p": 2.0 * self.q, "a_y": 0.5}
+
+    flown = Stepped(Rolls(), "Rolls").replay(LEVEL, Inputs(T, DOUBLET))
+    assert flown.p == pytest.approx(2.0 * flown.q)
+    assert np.all(flown.a_y == 0.5)
+    assert flown.r is None

@@ -1,0 +1,250 @@
+"""Roll and yaw of the user's simulator: the flight without the difference of the simulator to its surrogate.
+
+The simulator S flies the recorded aileron, rudder, elevator and throttle. The lateral model L is fitted to
+that motion. The diagnosis compares L with y − (y_S − y_L), as on the pitch axis (``compare``). A change of L
+by an effect then counts as an equal change of S.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.controls import SideControl
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.messages import FloatArray
+from advisor.gap.effects.actuator_lag import LAG
+from advisor.gap.effects.transport_delay import DELAY
+from advisor.model.lateral import LATERAL
+from advisor.oem.estimate import NoEstimate
+from advisor.oem.extra import Prior
+from advisor.oem.lateral_estimate import (
+    LateralSolution,
+    fits_of,
+    lateral_not_identifiable,
+    solve_lateral,
+)
+from advisor.oem.lateral_instruments import FIRST_LAG_S, Nuisance
+from advisor.oem.lateral_prepare import prepare_lateral
+from advisor.oem.lateral_problem import NEEDED, LateralProblem, LateralRecord
+from advisor.oem.rows import Signal
+from advisor.oem.surface import Servo
+from advisor.simulators.air import refuse_unknown_air, standard_heights, winds
+from advisor.simulators.flying import Progress, without
+from advisor.simulators.interface import control_fault, side_fault
+from advisor.simulators.protocol import CONTROLS, Condition, Inputs, Replay, Simulator
+from advisor.words.problems import UnusableInputError
+from advisor.words.quantiles import NORMAL_95
+
+STEP_S = 0.02
+"""Interval of the inputs, and of the stamps at which a replay is read, s: as on the pitch axis."""
+OWN_DELAY, OWN_LAG = Prior(0.0, 0.1), Prior(FIRST_LAG_S, 0.1)
+"""Delay and lag between the simulator's input and its surfaces, s. Replays have no noise and tell them
+alone."""
+_TURNS = {"aileron": "L_delta_a", "rudder": "N_delta_r"}
+
+
+def side_without_difference(
+    maneuvers: Sequence[Maneuver],
+    simulator: Simulator,
+    aircraft: Aircraft,
+    progress: Progress = lambda *_: None,
+) -> tuple[list[Maneuver], Aircraft]:
+    """Return the manoeuvres without the simulator's difference to its surrogate, and the surrogate's file.
+
+    Parameters
+    ----------
+    maneuvers
+        Manoeuvres of aileron and rudder.
+    aircraft
+        The aircraft file. Its servos act ahead of the simulator; its model is not used.
+
+    Raises
+    ------
+    UnusableInputError
+        The records cannot be used, or the simulator does not fly them in roll and yaw.
+    """
+    said = simulator.description
+    flown = prepare_lateral(maneuvers, aircraft)
+    if isinstance(flown, NoEstimate):
+        raise UnusableInputError(flown.code, flown.text, "Fly an aileron doublet and a rudder doublet.")
+    _refuse_untaken(simulator, flown)
+    heights, blown = standard_heights(maneuvers, aircraft), winds(maneuvers)
+    refuse_unknown_air(said, heights)
+    records = []
+    for k, (maneuver, record) in enumerate(zip(maneuvers, flown.records, strict=True)):
+        progress(f"{said} flies manoeuvre {maneuver.number}", k / len(maneuvers))
+        level = replace(
+            _condition(maneuver, record, aircraft),
+            height_m=heights[maneuver.number] or 0.0,
+            wind_m_s=blown.get(maneuver.number, (0.0, 0.0)),
+        )
+        inputs, t = _inputs(maneuver, record, aircraft)
+        replay = simulator.replay(level, inputs)
+        _refuse_broken(replay, said, maneuver, float(inputs.t[-1]))
+        records.append(_as_record(replay, inputs, t))
+    progress(f"fitting roll and yaw of {said}", 1.0)
+    surrogate = _surrogate(tuple(records), flown, said)
+    _refuse_another_control(surrogate, flown, said)
+    beyond = [
+        {name: Signal(record.outputs[name].t, z - y) for name, (z, y) in fits.items()}
+        for record, fits in zip(records, fits_of(surrogate), strict=True)
+    ]
+    kept = [without(m, lost) for m, lost in zip(maneuvers, beyond, strict=True)]
+    return kept, _file(surrogate, aircraft, said)
+
+
+def _condition(maneuver: Maneuver, record: LateralRecord, aircraft: Aircraft) -> Condition:
+    """Return the steady flight before the first step, at no height and in still air."""
+
+    def mean(signal: Signal) -> float:
+        before = signal.y[signal.t < maneuver.span.start_s]
+        return float(np.mean(before)) if len(before) else float(signal.y[0])
+
+    path = mean(record.theta) - mean(record.alpha)
+    return Condition(mean(record.airspeed), 0.0, path, aircraft.reference.mass_kg)
+
+
+def _inputs(maneuver: Maneuver, record: LateralRecord, aircraft: Aircraft) -> tuple[Inputs, FloatArray]:
+    """Return the recorded inputs as departures, behind the file's servos, and their stamps in the record."""
+    begin = min(signal.t[0] for signal in record.outputs.values())
+    end = max(signal.t[-1] for signal in record.outputs.values())
+    t: FloatArray = begin + STEP_S * (np.arange(int(np.ceil((end - begin) / STEP_S)) + 1) + 0.5)
+    moved = {}
+    for name in ("elevator", *CONTROLS):
+        channel = maneuver.channels.get(name)
+        if channel is None or len(channel) < 2:
+            continue
+        servo = _servo(getattr(aircraft, name)) if name in LATERAL.inputs else Servo()
+        grid = np.union1d(servo.grid(channel.t)[0], t)
+        y = np.interp(t, grid, servo.move(channel.t, channel.y, grid)[0])
+        before = t < max(maneuver.span.start_s, t[0] + STEP_S)
+        moved[name] = y - float(np.mean(y[before]))
+    elevator = moved.pop("elevator", np.zeros(len(t)))
+    return Inputs(t - begin, elevator, moved), t
+
+
+def _servo(control: SideControl) -> Servo:
+    return Servo(control.lag_s or 0.0, control.delay_s or 0.0)
+
+
+def _as_record(replay: Replay, inputs: Inputs, t: FloatArray) -> LateralRecord:
+    """Return a replay as a record at the stamps of the inputs."""
+
+    def read(series: FloatArray) -> Signal:
+        return Signal(t, np.interp(inputs.t, replay.t, series))
+
+    motion: Mapping[str, FloatArray | None] = {
+        name: getattr(replay, name) for name in ("p", "r", "bank", "a_y", "beta")
+    }
+    return LateralRecord(
+        inputs={name: Signal(t, inputs.others[name]) for name in LATERAL.inputs if name in inputs.others},
+        outputs={name: read(series) for name, series in motion.items() if series is not None},
+        airspeed=read(replay.airspeed_m_s),
+        alpha=read(replay.alpha),
+        theta=read(replay.theta),
+        q=read(replay.q),
+    )
+
+
+def _surrogate(records: tuple[LateralRecord, ...], flown: LateralProblem, said: str) -> LateralSolution:
+    """Return the lateral model of the replays, with lag and delay between input and surface."""
+    problem = LateralProblem(
+        records, flown.reference_airspeed_m_s, servos={name: Servo() for name in LATERAL.inputs}
+    )
+    moving = [name for name in LATERAL.inputs if problem.flies(name)]
+    own = [Nuisance("command", "", OWN_DELAY), *(Nuisance("lag", name, OWN_LAG) for name in moving)]
+    found = solve_lateral(problem, own)
+    if isinstance(found, NoEstimate):
+        raise UnusableInputError(
+            "simulator_lateral",
+            f"{said} flies no roll and yaw that a linear model describes: {found.text}",
+            "Check its signs and units in roll and yaw, and that it flies at this speed.",
+        )
+    return found
+
+
+def _file(surrogate: LateralSolution, aircraft: Aircraft, said: str) -> Aircraft:
+    """Return the aircraft file with the surrogate as its model, and both servos in series."""
+    untold = lateral_not_identifiable(surrogate)
+    told = zip(LATERAL.names.reported, surrogate.theta, strict=True)
+    servos = {}
+    for name in LATERAL.inputs:
+        control = getattr(aircraft, name)
+        delay_s = _beyond(surrogate, "command_delay_s", DELAY.smallest)
+        # A command ahead of its stamps takes as much from a lag: the two act nearly alike.
+        early_s = min(surrogate.problem.command_delay_s, 0.0)
+        lag_s = _beyond(surrogate, f"{name}_lag_s", LAG.smallest, early_s)
+        servos[name] = replace(
+            control,
+            lag_s=(control.lag_s or 0.0) + lag_s if lag_s else control.lag_s,
+            delay_s=(control.delay_s or 0.0) + delay_s if delay_s else control.delay_s,
+        )
+    return replace(
+        aircraft,
+        model={name: float(value) for name, value in told if name not in untold},
+        reference_airspeed_m_s=surrogate.problem.reference_airspeed_m_s or aircraft.reference_airspeed_m_s,
+        simulator=said,
+        **servos,
+    )
+
+
+def _beyond(surrogate: LateralSolution, name: str, least: float, other_s: float = 0.0) -> float:
+    """Return a lag or delay of the simulator with another time, s; 0 where below the least one or its
+    error."""
+    value, std = surrogate.nuisances.get(name, (0.0, 0.0))
+    value += other_s
+    return value if value > max(least, NORMAL_95 * std) else 0.0
+
+
+def _refuse_untaken(simulator: Simulator, flown: LateralProblem) -> None:
+    """Refuse a simulator that does not take a control of the test."""
+    for name in LATERAL.inputs:
+        if flown.flies(name) and name not in simulator.takes:
+            raise UnusableInputError(
+                "simulator_control",
+                f"{simulator.description} takes no {name}, which the flight has flown.",
+                f"Name the {name} among its inputs (takes, controls or fmu.{name}).",
+            )
+
+
+def _refuse_broken(replay: Replay, said: str, maneuver: Maneuver, duration_s: float) -> None:
+    """Refuse a replay without roll and yaw, one that ends too early, and one with a wrong sign or unit."""
+    missing = [name for name in NEEDED if getattr(replay, name) is None]
+    if replay.a_y is None and replay.beta is None:
+        missing.append("a_y (or beta)")
+    if missing:
+        raise UnusableInputError(
+            "simulator_lateral",
+            f"{said} returns no {', '.join(missing)}, which roll and yaw need.",
+            "Add them to its replay or observation (for an FMU, to fmu: in the aircraft file).",
+        )
+    if replay.t[-1] < duration_s - 0.1:
+        raise UnusableInputError(
+            "simulator_replay",
+            f"{said} ends manoeuvre {maneuver.number} at {replay.t[-1]:.2g} s of {duration_s:.2g} s.",
+            "Check that the model flies at the speed and height of the flight.",
+        )
+    fault = side_fault(replay)
+    if fault is not None:
+        raise fault.refuse(said)
+    if np.max(np.abs(np.asarray(replay.bank))) > np.pi / 2.0:
+        raise UnusableInputError(
+            "simulator_departs",
+            f"{said} rolls onto its back in manoeuvre {maneuver.number}.",
+            "Check the calibration of aileron and rudder, and that the model is stable at this speed.",
+        )
+
+
+def _refuse_another_control(surrogate: LateralSolution, flown: LateralProblem, said: str) -> None:
+    """Refuse a simulator whose aileron or rudder has another sense or unit than the flight's."""
+    real = solve_lateral(flown)
+    if isinstance(real, NoEstimate):
+        return
+    for name, derivative in _TURNS.items():
+        k = LATERAL.names.reported.index(derivative)
+        if flown.flies(name):
+            fault = control_fault(name, float(surrogate.theta[k]), float(real.theta[k]))
+            if fault is not None:
+                raise fault.refuse(said)
