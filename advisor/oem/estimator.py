@@ -231,7 +231,6 @@ def report(
     """
     best = filtered or (solution if quick else efficient(solution))
     source = filtered or solution
-    told = source.widened
     best = replace(best, covariance=replace(source, covariance=best.covariance).widened)
     airspeed_m_s = solution.problem.reference_airspeed_m_s or prepared.airspeed_m_s
     given = found_of(aircraft)
@@ -250,27 +249,20 @@ def report(
         notes=notes(solution, prepared, aircraft, identified, lagged, best=best, priced=not quick),
         theta_of_lowest_cost=None if best.theta is solution.theta else solution.theta,
         instruments=(*_given(given), *(x.reported for x in identified if x.reported is not None)),
-        found=_found(told, identified, airspeed_m_s),
+        found=FoundInstruments.of(
+            tuple(x.instrument.name for x in identified),
+            np.array([x.found.value for x in identified]),
+            source.widened,
+            airspeed_m_s,
+        )
+        if identified
+        else None,
         common=common,
         gust_rad=air.gust_angle if air is not None and air.present else None,
         filtered=filtered is not None,
         servo_lag_s=best.problem.servo.lag_s,
         prediction={} if quick else prediction_band(best),
     )
-
-
-def _found(
-    covariance: FloatArray, identified: Sequence[Identified], airspeed_m_s: float | None
-) -> FoundInstruments | None:
-    """Return the instruments of a fit with the errors that they cause; None without any.
-
-    ``covariance`` (8 + k, 8 + k) is that of the parameters, then of the instruments.
-    """
-    if not identified:
-        return None
-    names = tuple(x.instrument.name for x in identified)
-    values = np.array([x.found.value for x in identified])
-    return FoundInstruments.of(names, values, covariance, airspeed_m_s)
 
 
 def _given(found: FoundInstruments | None) -> Iterator[InstrumentEstimate]:

@@ -94,9 +94,8 @@ def _share(solution: LateralSolution) -> float:
 
 
 def _evaluated(fit: LateralFit, prior: Priors, nuisances: Sequence[Nuisance]) -> LateralSolution | NoEstimate:
-    problem, assembly, optimum, columns, _ = fit
+    problem, assembly, optimum, extra, _ = fit
     g, residual = optimum.sensitivities, assembly.z - optimum.fitted
-    extra = Extra.of(columns, problem, nuisances)
     errors = errors_of(assembly, residual, g, optimum.noise, extra, prior.precision, prior_share=prior.share)
     if errors is None:
         return NoEstimate("singular", NOTHING_TO_TELL)

@@ -49,11 +49,6 @@ class Nuisance:
     """Change of the parameter that moves the outputs as one second does: the air speed for an arm, m."""
 
     @property
-    def weight(self) -> float:
-        """Inverse variance of the prior, as white noise weighs the prior."""
-        return (self.prior.std * self.prior.share) ** -2
-
-    @property
     def name(self) -> str:
         """Name of the parameter with its unit."""
         what = {"lag": "lag_s", "arm": "arm_m"}.get(self.kind, "delay_s")

@@ -15,7 +15,7 @@ from advisor.model.lateral import LATERAL
 from advisor.model.response import Index
 from advisor.oem.arrow import arrow_step, normal_equations
 from advisor.oem.estimate import NoEstimate
-from advisor.oem.extra import penalty
+from advisor.oem.extra import Extra, penalty
 from advisor.oem.gauss_newton import (
     CONVERGED,
     DAMPING_FACTOR,
@@ -49,8 +49,8 @@ class LateralFit(NamedTuple):
     """Records, with servos and clocks at their values."""
     assembly: LateralAssembly
     optimum: Optimum
-    columns: FloatArray
-    """(N, k) derivatives of the outputs by the nuisance parameters."""
+    extra: Extra
+    """Nuisance parameters at their values."""
     begun: FloatArray
     """(m, 4) rates of the states at the first event of each record. A delay may move that event."""
 
@@ -83,14 +83,15 @@ class _Setting(NamedTuple):
         )
         columns = columns_of(assembly, g[:, _SHARED + _OWN :], motion, self.nuisances)
         optimum = Optimum(EXHAUSTED, shared, local, noise, cost, 0, y, g[:, : _SHARED + _OWN])
-        return LateralFit(problem, assembly, optimum, columns, motion[assembly.grid.first[:-1], 1])
+        extra = Extra.of(columns, problem, self.nuisances)
+        return LateralFit(problem, assembly, optimum, extra, motion[assembly.grid.first[:-1], 1])
 
     def step(self, fit: LateralFit, damping: float) -> "_Step | None":
         """Return the damped step from a fit; None where the data do not determine it.
 
         A nuisance parameter that would leave its range goes to the end of the range, and all others follow.
         """
-        system = _System.of(self, fit)
+        system = _System.of(self.prior, fit)
         held: dict[int, float] = {}
         for _ in range(2):
             found = system.solved(damping, held)
@@ -138,11 +139,13 @@ class _System(NamedTuple):
     nuisances: int
 
     @classmethod
-    def of(cls, setting: _Setting, fit: LateralFit) -> Self:
+    def of(cls, prior: Priors, fit: LateralFit) -> Self:
         """Return the normal equations at a fit."""
-        problem, assembly, optimum, columns = fit[:4]
-        k = columns.shape[1]
-        g = np.column_stack([optimum.sensitivities[:, :_SHARED], columns, optimum.sensitivities[:, _SHARED:]])
+        assembly, optimum, extra = fit.assembly, fit.optimum, fit.extra
+        k = len(extra)
+        g = np.column_stack(
+            [optimum.sensitivities[:, :_SHARED], extra.columns, optimum.sensitivities[:, _SHARED:]]
+        )
         free = np.concatenate([assembly.common, _SHARED + np.arange(k), assembly.own + k])
         information, gradient = normal_equations(
             assembly.maneuvers,
@@ -154,9 +157,8 @@ class _System(NamedTuple):
             optimum.noise,
         )
         information = information + np.transpose(np.tril(information, -1), (0, 2, 1))
-        weight = np.concatenate([setting.prior.precision, [x.weight for x in setting.nuisances]])
-        pull = [x.prior.mean - x.read(problem) for x in setting.nuisances]
-        off = np.concatenate([setting.prior.mean - optimum.shared, pull])
+        weight = np.concatenate([prior.precision, (extra.weight / extra.share) ** 2])
+        off = np.concatenate([prior.mean - optimum.shared, extra.pull / extra.weight])
         common = free[free < _SHARED + k]
         places = np.arange(len(common))
         information[0, places, places] += weight[common]

@@ -48,7 +48,7 @@ def waving():
 @pytest.mark.parametrize("x", CLOCKS, ids=lambda x: x.name)
 def test_derivatives_by_servos_clocks_and_arms_are_those_of_differences(waving, x):
     problem, local = waving
-    by_pass = still(problem, (x,), local).columns[:, 0]
+    by_pass = still(problem, (x,), local).extra.columns[:, 0]
     step = 5e-4 * x.per_second
     ends = []
     for sign in (-1.0, 1.0):
