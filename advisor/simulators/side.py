@@ -21,7 +21,6 @@ from advisor.oem.estimate import NoEstimate
 from advisor.oem.extra import Prior
 from advisor.oem.lateral_estimate import (
     LateralSolution,
-    fits_of,
     lateral_not_identifiable,
     solve_lateral,
 )
@@ -87,9 +86,10 @@ def side_without_difference(
     progress(f"fitting roll and yaw of {said}", 1.0)
     surrogate = _surrogate(tuple(records), flown, said)
     _refuse_another_control(surrogate, flown, said)
+    left = surrogate.assembly.z - surrogate.fitted
     beyond = [
-        {name: Signal(record.outputs[name].t, z - y) for name, (z, y) in fits.items()}
-        for record, fits in zip(records, fits_of(surrogate), strict=True)
+        {name: Signal(record.outputs[name].t, left[rows]) for name, rows in named.items()}
+        for record, named in zip(records, surrogate.assembly.rows, strict=True)
     ]
     kept = [without(m, lost) for m, lost in zip(maneuvers, beyond, strict=True)]
     return kept, _file(surrogate, aircraft, said)

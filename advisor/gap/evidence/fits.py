@@ -6,7 +6,7 @@ from advisor.gap.evidence.measured import FullFit, Measured
 
 Values = dict[str, float]
 WEIGHTY = 20.0
-"""Numerical: least gain in log likelihood, nats, to which others are relative: relative to less, chance decides."""
+"""Numerical: least gain in log likelihood, nats, to which others are relative. Chance decides below it."""
 
 
 def of_fit(m: Measured, effect: str) -> Values:
