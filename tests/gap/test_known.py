@@ -270,7 +270,7 @@ def resting(flights, file, sides):
     for flight, p in zip(flights.flights, numbers, strict=True):
         read = problem.read(flight, problem.fly(flight, p), p)
         rows = dict(zip(problem.channels, problem.rows(flight), strict=True))
-        outputs = {c: replace(out, y=read[rows[c]]) for c, out in flight.outputs.items() if c in rows}
+        outputs = {c: out._replace(y=read[rows[c]]) for c, out in flight.outputs.items() if c in rows}
         again.append(replace(flight, outputs=outputs))
     return replace(flights, flights=tuple(again))
 
