@@ -14,9 +14,7 @@ BEFORE = np.ones((6, 2))
 def told(after, gain=50.0, effect="attitude_scale"):
     """Return whether a law is told that leaves the share ``after`` of each manoeuvre's power."""
     powers = np.repeat(np.reshape(after, (6, 1)), 2, axis=1)
-    held, kept = (
-        SimpleNamespace(by_maneuver=by, mean_square=np.mean(by, axis=0)) for by in (BEFORE, powers)
-    )
+    held, kept = (SimpleNamespace(by_maneuver=by, mean_square=np.mean(by, axis=0)) for by in (BEFORE, powers))
     stage = SimpleNamespace(held_out=held, disputed=None, added=None)
     judged = SimpleNamespace(is_accepted=True, gain=gain, held_out=kept, effect=effect)
     return _is_law(None, [stage], judged, np.array([100.0, 100.0]))
