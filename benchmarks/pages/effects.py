@@ -43,7 +43,6 @@ _KINDS = {
     "of_one_flight": "It belongs to one flight and is left aside where an aircraft file states it.",
     "of_one_imu": "An angle of attack that an autopilot estimates cannot show it.",
     "takes": "Its size is what it takes away.",
-    "left_open": "Where the aircraft file does not state it, it is named after all else.",
 }
 _CHANNELS = {"alpha": "angle of attack", "a_z": "vertical acceleration", "theta": "attitude"}
 _SI_ENDINGS = {

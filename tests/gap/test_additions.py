@@ -27,7 +27,6 @@ PLAIN = JudgedAddition(
     least_certain=0.01,
     smallest=0.006,
     prior_gain=0.0,
-    prior_terms=-3.0,
     support=3.0,
     value=np.array([0.03, 0.4]),
     std=np.array([0.003, 0.1]),

@@ -79,9 +79,6 @@ class Effect:
     """Whether the elevator alone can show the effect; if not, another input must vary."""
     takes: bool = False
     """Whether the size states a loss: a gain of the same size is no such effect."""
-    left_open: bool = False
-    """Whether the effect is a position to be measured. Where the aircraft file does not state it, it is named
-    last."""
     log_odds_backward: float = 0.0
     """Log prior odds of an arm that points backwards; 0 where the effect is no arm."""
     need: Need | None = None

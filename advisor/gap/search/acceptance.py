@@ -44,9 +44,6 @@ class JudgedAddition:
     """Least size of the first parameter for acceptance."""
     prior_gain: float
     """Gain in log prior probability, because the derivatives agree better with the aircraft file's."""
-    prior_terms: float
-    """Part of ``gain`` that does not come from the motion: prior gain and log odds of an arm, minus the price
-    of the parameters."""
     support: float
     """Reduction of the gap on held-out manoeuvres, mean over standard error over the manoeuvres."""
     value: FloatArray

@@ -18,8 +18,8 @@ def read_command(linear: EffectProblem, fitted: EffectFit) -> tuple[EffectProble
     """Return the baseline model with the command held or linear between its stamps, as the data decide.
 
     A held command looks like a linear one with a delay of half an interval. The held reading is chosen where
-    it needs no delay, with or without a lag; otherwise half an interval goes into the delay's error. Each
-    parameter has its price (Schwarz).
+    it explains more without a delay and a lag than the linear one does with both, at their price (Schwarz).
+    Otherwise half an interval goes into the delay's error.
     """
     best = min(Screen(linear, fitted).quick_fits((DELAY, LAG)), key=lambda s: s.cost, default=None)
     if best is None:
@@ -31,10 +31,8 @@ def read_command(linear: EffectProblem, fitted: EffectFit) -> tuple[EffectProble
     if as_linear <= as_held and fitted.cost - best.cost < 2.0 * price:
         return linear, fitted
     late = fit(linear, best.point.with_effect(other, _SLIGHT), best.noise, 8)
-    lagging = fit(held, plainly_held.point.with_effect(LAG, _SLIGHT), best.noise, 8)
-    as_linear = min(as_linear, evidence_of(linear, late) + 2.0 * price)
-    as_held = min(as_held, evidence_of(held, lagging) + price)
-    return (held, plainly_held) if as_held < as_linear else (linear, fitted)
+    is_held = as_held < min(as_linear, evidence_of(linear, late) + 2.0 * price)
+    return (held, plainly_held) if is_held else (linear, fitted)
 
 
 def read_otherwise(problem: EffectProblem, fitted: EffectFit) -> tuple[EffectProblem, EffectFit]:

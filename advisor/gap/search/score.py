@@ -76,8 +76,8 @@ def addition(
     likelihood += 0.5 * (problem.nuisance_cost(before.point) - problem.nuisance_cost(point))
     prior_gain = log_prior_of(problem, fitted, effective) - log_prior_of(problem, before, effective)
     odds = log_odds_in(problem, variant.effect, float(value[0]))
-    least, prior_terms = least_change(problem), prior_gain + odds - price_of(variant, effective)
-    gain = likelihood + prior_terms
+    least = least_change(problem)
+    gain = likelihood + prior_gain + odds - price_of(variant, effective)
     known_numbers = covariance(problem, fitted, effective, trusted=prior_gain >= LEAST_GAIN)[place, place]
     located = [name in variant.places for name in variant.names]
     return JudgedAddition(
@@ -87,7 +87,7 @@ def addition(
         support=support,
         least=least, least_certain=least * _share_enough(problem, before, variant, value),
         smallest=smallest_of(problem, variant, gain),
-        prior_gain=prior_gain, prior_terms=prior_terms, value=value, sole_maneuver=sole_maneuver,
+        prior_gain=prior_gain, value=value, sole_maneuver=sole_maneuver,
         with_the_air=bool(variant.needs) and problem.knows_the_noise,
         std=np.sqrt(np.maximum(np.diag(known_numbers), 0.0)), sigmas=sigmas_of(value, known_numbers, located),
     )  # fmt: skip

@@ -120,6 +120,10 @@ def _is_law(
     named = max(_gain_of_all(problem, stages, effective), 0.0 if disputed is None else disputed.gain)
     if not judged.is_accepted or judged.gain < max(CERTAIN, named + LEAST_GAIN):
         return False
+    after, before = (np.sum(h.by_maneuver / held.mean_square, axis=1) for h in (judged.held_out, held))
+    if 2 * np.count_nonzero(after < before) <= len(before):
+        # An improvement in the smaller part of the manoeuvres is a gust, or a fault that comes and goes.
+        return False
     remaining_shares = judged.held_out.mean_square / held.mean_square
     return judged.effect not in MUST_LEAVE_LITTLE or bool(np.min(remaining_shares) <= _LEAVES)
 
