@@ -105,12 +105,13 @@ class Tracks:
         found = self._cut(name, start_s, end_s, up_to_order)
         if name != "airspeed" or found is None:
             return found
-        if self._logs_true_speed():
+        air = (self._cut(n, start_s - _AIR_S, end_s + _AIR_S, up_to_order) for n in AIR_UNITS)
+        by_name = {channel.name: channel for channel in air if channel is not None}
+        # With a static pressure an aircraft reads its air speed from a pitot tube, and knows no true one.
+        if self._logs_true_speed() and "static_pressure" not in by_name:
             return replace(found, source=f"{found.source}{AS_REPORTED}")
         if self._speeds_agree(start_s, end_s, up_to_order):
             return replace(found, source=f"{found.source}{AS_GROUND_SPEED}")
-        air = (self._cut(n, start_s - _AIR_S, end_s + _AIR_S, up_to_order) for n in AIR_UNITS)
-        by_name = {channel.name: channel for channel in air if channel is not None}
         return true_airspeed(
             found, by_name.get("static_pressure"), by_name.get("altitude"), self._temperature_c
         )

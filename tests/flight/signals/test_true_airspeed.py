@@ -127,3 +127,13 @@ def test_a_pressure_that_stands_still_is_a_default_and_the_height_makes_the_air_
     assert speed is not None
     assert speed.source == f"VFR_HUD.airspeed{BY_HEIGHT}"
     assert speed.y == pytest.approx(AT_3000_M, rel=1e-3)
+
+
+def test_an_aircraft_with_a_static_pressure_reports_no_true_air_speed() -> None:
+    found, pressure = filled(true=True), 70e3 + 10.0 * T
+    found.append(
+        Decoded("static_pressure", "SCALED_PRESSURE.press_abs", "measured", T, pressure, np.arange(len(T)))
+    )
+    speed = found.cut("airspeed", 0.0, 5.0)
+    assert speed is not None
+    assert speed.source == f"VFR_HUD.airspeed{BY_PRESSURE}"
