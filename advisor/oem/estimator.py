@@ -261,7 +261,7 @@ def report(
         gust_rad=air.gust_angle if air is not None and air.present else None,
         filtered=filtered is not None,
         servo_lag_s=best.problem.servo.lag_s,
-        prediction={} if quick else prediction_band(best),
+        prediction={} if quick else prediction_band(best.assembly, best, best.covariance),
     )
 
 

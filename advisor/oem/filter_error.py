@@ -17,11 +17,19 @@ from advisor.model.response import N_PARAMETERS, N_SHARED, OUTPUTS
 from advisor.oem.evaluation import errors_of
 from advisor.oem.innovations import AirModel
 from advisor.oem.instruments import Instrument, moved_by
-from advisor.oem.place import Linearization, at, in_time, speeds_of, system_of
 from advisor.oem.prior import precision
 from advisor.oem.solution import Solution, reported
 from advisor.oem.turbulence import Rows, Turbulence, find_turbulence
-from advisor.oem.whitened import Whitened, gains_along, whitened
+from advisor.oem.whitened import (
+    Linearization,
+    Whitened,
+    at,
+    gains_along,
+    in_time,
+    speeds_of,
+    system_of,
+    whitened,
+)
 
 ROUNDS = 6
 SETTLED = 0.1

@@ -18,10 +18,10 @@ from advisor.oem.evaluation import Evaluated, errors_of
 from advisor.oem.extra import Extra
 from advisor.oem.identifiability import LARGEST_ERROR
 from advisor.oem.lateral_instruments import Nuisance, begun
-from advisor.oem.lateral_prior import SIDE_FORCE_STD, Priors, priors_of
 from advisor.oem.lateral_problem import LateralAssembly, LateralProblem
 from advisor.oem.lateral_search import LateralFit, fit_lateral
 from advisor.oem.lateral_start import lateral_start
+from advisor.oem.prior import SIDE_FORCE_STD, Priors, priors_of
 from advisor.oem.solution import refused
 from advisor.words.quantiles import NORMAL_95
 

@@ -15,7 +15,7 @@ from advisor.oem.lateral_estimate import LateralSolution, N, lateral_not_identif
 from advisor.oem.lateral_instruments import nuisances_of
 from advisor.oem.lateral_modes import Errors, LateralModes, lateral_modes
 from advisor.oem.lateral_prepare import prepare_lateral
-from advisor.oem.prediction import widest_bands
+from advisor.oem.prediction import prediction_band
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +60,7 @@ def _reported(solution: LateralSolution) -> LateralEstimate:
         condition=solution.influence.condition,
         airspeed_m_s=_airspeed(solution),
         servo_lag_s=max((servo.lag_s for servo in problem.servos.values()), default=0.0),
-        prediction=_bands(solution),
+        prediction=prediction_band(solution.assembly, solution, solution.widened),
         names=LATERAL.names.reported,
     )
     modes = lateral_modes(
@@ -69,13 +69,6 @@ def _reported(solution: LateralSolution) -> LateralEstimate:
     flown = tuple(name for name in LATERAL.inputs if problem.flies(name))
     scales = problem.reference_airspeed_m_s is not None
     return LateralEstimate(estimate, modes, solution.nuisances, flown, scales)
-
-
-def _bands(solution: LateralSolution) -> Mapping[str, float]:
-    """Return the band of each output's response, by derivatives and nuisance parameters."""
-    derivatives = solution.optimum.sensitivities[:, :N]
-    columns = np.column_stack([derivatives, solution.extra.columns])
-    return widest_bands(solution.assembly, solution.optimum, columns, solution.widened)
 
 
 def _airspeed(solution: LateralSolution) -> float:

@@ -28,8 +28,8 @@ from advisor.oem.gauss_newton import (
     weigh,
 )
 from advisor.oem.lateral_instruments import Nuisance, columns_of, moved_by
-from advisor.oem.lateral_prior import Priors
 from advisor.oem.lateral_problem import CAUSES, LateralAssembly, LateralProblem, assemble_lateral
+from advisor.oem.prior import Priors
 from advisor.oem.solution import RUNS_AWAY
 
 LEAST_NOISE = {"p": 5e-4, "r": 5e-4, "bank": 5e-4, "a_y": 0.01, "beta": 5e-4}

@@ -15,8 +15,8 @@ from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.motion import integrated
 from advisor.model.lateral import LATERAL
-from advisor.oem.lateral_prior import guessed_y_beta
 from advisor.oem.lateral_problem import LateralProblem, LateralRecord
+from advisor.oem.prior import guessed_y_beta
 from advisor.oem.regression import Equations, regressed
 
 

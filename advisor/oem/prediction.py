@@ -10,34 +10,32 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.signals.messages import FloatArray
-from advisor.model.response import SHARED
 from advisor.oem.arrow import unabsorbed
+from advisor.oem.evaluation import Evaluated
 from advisor.oem.gauss_newton import Optimum
 from advisor.oem.rows import Laid
-from advisor.oem.solution import Solution
 from advisor.words.quantiles import NORMAL_95
 
-_DERIVATIVES = tuple(name for name in SHARED if name in PARAMETERS)
 
-
-def prediction_band(solution: Solution) -> Mapping[str, float]:
-    """Return the band of the short period's response by output name, as ``widest_bands``.
+def prediction_band(assembly: Laid, solution: Evaluated, covariance: FloatArray) -> Mapping[str, float]:
+    """Return the band of a response by output name, as ``widest_bands``.
 
     Parameters
     ----------
-    solution : an optimum with the covariance of its parameters.
+    solution
+        An optimum on the rows of ``assembly``.
+    covariance
+        (p + k, p + k) covariance of the reported parameters, and of the first k extra ones.
     """
-    columns = solution.sensitivities[:, [SHARED.index(name) for name in _DERIVATIVES]]
-    kept = solution.covariance.shape[0] - len(PARAMETERS)
+    names = assembly.names
+    derivatives = [name for name in names.shared if name in names.reported]
+    columns = solution.sensitivities[:, [names.shared.index(name) for name in derivatives]]
+    kept = len(covariance) - len(names.reported)
     if kept and solution.extra is not None:
         columns = np.column_stack([columns, solution.extra.columns[:, :kept]])
-    among = [PARAMETERS.index(name) for name in _DERIVATIVES]
-    among += range(len(PARAMETERS), len(PARAMETERS) + columns.shape[1] - len(_DERIVATIVES))
-    return widest_bands(
-        solution.assembly, solution.optimum, columns, solution.covariance[np.ix_(among, among)]
-    )
+    among = [*map(names.reported.index, derivatives), *range(len(names.reported), len(covariance))]
+    return widest_bands(assembly, solution.optimum, columns, covariance[np.ix_(among, among)])
 
 
 def widest_bands(

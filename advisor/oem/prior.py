@@ -1,17 +1,30 @@
-"""The prior of Z_q and Z_δe for an aircraft with a tail, where no angle of attack is measured.
+"""Priors of derivatives that a record may leave open.
 
-Without a vane, Z_q and Z_δe are correlated with Z_α in pitch rate and specific force of a well damped
-aircraft. Both are small on every aircraft:
+*Short period.* Without a vane, Z_q and Z_δe are correlated with Z_α in pitch rate and specific force of a
+well damped aircraft. Both are small on every aircraft with a tail:
 
 - Z_q = -ρ·S·c·C_Lq/(4·m) is the lift of the pitch rate relative to the turn of the path;
 - Z_δe/M_δe = k_y²/(l_t·V): the tail's lift turns the path by its force, the nose by its moment, with k_y the
   radius of gyration and l_t the tail's lever.
+
+*Lateral axis.*
+
+- Y_p = ρ·S·b·C_Yp/(4·m), and likewise Y_r, are a few per cent on every aircraft.
+- The derivatives of a control that hardly moves scatter about zero by those of the control that is flown.
+- Without a lateral acceleration and a sideslip, the motion alone determines neither the side force nor the
+  sideslip. In level flight Y_β = -(g/V)·|C_Yβ|/C_L, so that gravity and air speed give its size. Strip theory
+  gives N_p/L_p = (C_np/C_lp)·(I_xx/I_zz) and L_r/L_p = C_lr/C_lp (Etkin & Reid, *Dynamics of Flight*, Ch. 5).
 """
+
+from dataclasses import dataclass
 
 import numpy as np
 
+from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.signals.messages import FloatArray
+from advisor.model.lateral import CONTROLS, LATERAL, natural_size
 from advisor.model.response import N_SHARED, SHARED
+from advisor.oem.lateral_problem import LateralProblem
 from advisor.oem.problem import OutputErrorProblem
 
 Z_Q_STD = 0.1
@@ -19,6 +32,18 @@ Z_Q_STD = 0.1
 LIFT_OVER_MOMENT_S = 0.02
 """Standard deviation of Z_δe/M_δe, s. Published estimates give 0.008 (twin jet) and 0.010 (twin
 turboprop)."""
+SIDE_FORCE_STD = 0.05
+"""Standard deviation of Y_p and Y_r about zero, 1. C_Yp and C_Yr of 0.4 give 0.01 for a jet of 15 t and 0.04
+for an aircraft of 3 kg."""
+SIDE_FORCE_OVER_WEIGHT = 2.0
+"""Mean and standard deviation of |C_Yβ|/C_L, 1. Fits give -Y_β·V/g of 0.8 on an indoor aircraft, 1.2 at 3 kg,
+2.7 on a jet and 4.9 on a fighter."""
+YAW_BY_ROLLING = 0.2
+"""Standard deviation of N_p over L_p, 1. C_np of C_L/8 with C_lp of -0.45 gives 0.03 to 0.2. Fits give 0.01
+on a fighter, 0.05 on a jet, 0.09 at 3 kg and -0.3 on an indoor aircraft."""
+ROLL_BY_YAWING = 1.0
+"""Standard deviation of L_r over L_p, 1. C_lr of C_L/4 with C_lp of -0.45 gives 0.2 to 0.8. Fits give 0.2 on
+a fighter, 0.3 on a jet and at 3 kg, and 0.7 on an indoor aircraft."""
 
 
 def precision(problem: OutputErrorProblem, shared: FloatArray) -> FloatArray:
@@ -47,3 +72,44 @@ def precision_without_alpha(shared: FloatArray) -> FloatArray:
     weight[SHARED.index("Z_q")] = Z_Q_STD**-2
     weight[SHARED.index("Z_delta_e")] = (LIFT_OVER_MOMENT_S * moment) ** -2
     return weight
+
+
+@dataclass(frozen=True, slots=True)
+class Priors:
+    """Gaussian knowledge of the derivatives before the flight."""
+
+    mean: FloatArray
+    """(15,)."""
+    std: FloatArray
+    """(15,) infinite without knowledge."""
+    share: float = 1.0
+    """Standard deviation with which white noise weighs the priors, over ``std``, as in ``extra.Prior``."""
+
+    @property
+    def precision(self) -> FloatArray:
+        """(15,) inverse variances, as white noise weighs the priors."""
+        return np.asarray((self.std * self.share) ** -2)
+
+
+def guessed_y_beta(problem: LateralProblem) -> float:
+    """Return the Y_β of an aircraft that flies as fast as the records, 1/s."""
+    speed = float(np.mean([np.mean(record.airspeed.y) for record in problem.records]))
+    return -SIDE_FORCE_OVER_WEIGHT * GRAVITY_M_S2 / speed
+
+
+def priors_of(problem: LateralProblem, start: FloatArray) -> Priors:
+    """Return the priors, for sizes of derivatives as in ``start`` (15,)."""
+    mean = dict.fromkeys(LATERAL.names.shared, 0.0)
+    std = dict.fromkeys(LATERAL.names.shared, np.inf)
+    std |= {"Y_p": SIDE_FORCE_STD, "Y_r": SIDE_FORCE_STD}
+    size = natural_size(start)
+    flown = [suffix for suffix, name in CONTROLS.items() if problem.flies(name)]
+    for suffix in CONTROLS.keys() - flown:
+        for letter in "YLN":
+            usual = max((size[f"{letter}_{other}"] for other in flown), default=np.inf)
+            std[f"{letter}_{suffix}"] = usual if usual > 0.0 else np.inf
+    if not problem.tells_force:
+        mean["Y_beta"] = guessed_y_beta(problem)
+        std["Y_beta"] = -mean["Y_beta"]
+        std |= {"N_p": YAW_BY_ROLLING * size["L_p"], "L_r": ROLL_BY_YAWING * size["L_p"]}
+    return Priors(np.array(list(mean.values())), np.array(list(std.values())))

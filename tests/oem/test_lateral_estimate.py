@@ -11,9 +11,9 @@ from advisor.oem.lateral_estimate import (
     solve_lateral,
 )
 from advisor.oem.lateral_instruments import FARTHEST_S, Nuisance
-from advisor.oem.lateral_prior import SIDE_FORCE_STD, priors_of
 from advisor.oem.lateral_problem import LateralProblem
 from advisor.oem.lateral_search import fit_lateral
+from advisor.oem.prior import SIDE_FORCE_STD, priors_of
 from advisor.oem.rows import Signal
 from advisor.oem.solution import RUNS_AWAY
 from tests.oem.lateral_builders import JET, aileron_doublet, both_inputs, flown, rudder_doublet, steps, vector

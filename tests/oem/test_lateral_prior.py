@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from advisor.model.lateral import LATERAL
-from advisor.oem.lateral_prior import priors_of
+from advisor.oem.prior import priors_of
 from tests.oem.lateral_builders import JET, both_inputs, vector
 
 FITS = {"N_p": (0.01, 0.05, 0.09, -0.3), "L_r": (0.2, 0.3, 0.3, 0.7)}

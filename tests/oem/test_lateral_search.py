@@ -8,10 +8,10 @@ from advisor.oem.extra import Prior
 from advisor.oem.gauss_newton import CONVERGED
 from advisor.oem.lateral_estimate import solve_lateral
 from advisor.oem.lateral_instruments import LONGEST_LAG_S, Nuisance, moved_by
-from advisor.oem.lateral_prior import Priors
 from advisor.oem.lateral_problem import LateralProblem, assemble_lateral
 from advisor.oem.lateral_search import fit_lateral
 from advisor.oem.lateral_start import lateral_start
+from advisor.oem.prior import Priors
 from advisor.oem.rows import Signal
 from advisor.oem.surface import Servo
 from tests.oem.lateral_builders import JET, both_inputs, flown, vector

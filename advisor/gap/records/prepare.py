@@ -24,8 +24,8 @@ from advisor.gap.records.smoothness import is_filtered, is_rough, is_smoothed, w
 from advisor.gap.records.unmeasured_speed import speed_without_instrument, speeds_about
 from advisor.gap.records.usable import outputs_of, recorded, usable_of
 from advisor.gap.simulator.layout import OUTPUTS, SLOW, SPEED, THETA_FROM, THRUST
-from advisor.oem.place import ASSUMED_M_S
 from advisor.oem.rows import Signal
+from advisor.oem.whitened import ASSUMED_M_S
 
 _CHORD_OF_1_KG_M = 0.15
 """Prior: chord of an aircraft of 1 kg, m. Chords grow with the cube root of the mass. A glider of 3.1 kg has
