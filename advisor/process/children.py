@@ -4,10 +4,25 @@
 folder of logs may hold any file: a ``queue.py`` or ``socket.py`` there would replace Python's own module.
 """
 
-import multiprocessing
 import os
 import sys
-from multiprocessing.context import SpawnContext
+from multiprocessing.context import SpawnContext, SpawnProcess
+
+
+class _Child(SpawnProcess):
+    """Child that is ended by a signal that it cannot ignore.
+
+    From Python 3.12 on, a pool whose worker has died calls ``terminate`` on the others and waits for them.
+    Children of this program ignore SIGTERM, which is their parent's.
+    """
+
+    def terminate(self) -> None:
+        """End the child at once."""
+        self.kill()
+
+
+class _Spawning(SpawnContext):
+    Process = _Child
 
 
 def python_module(module: str) -> list[str]:
@@ -19,7 +34,7 @@ def python_module(module: str) -> list[str]:
 def spawning() -> SpawnContext:
     """Return the context of `multiprocessing` that starts new interpreters."""
     keep_current_folder_out()
-    return multiprocessing.get_context("spawn")
+    return _Spawning()
 
 
 def keep_current_folder_out() -> None:

@@ -138,6 +138,17 @@ def test_servo_commands_suffice_without_any_output(tmp_path: Path) -> None:
     assert elevator(log.write(tmp_path)) == ((2,), pytest.approx(-STEP_RAD, rel=1e-3))
 
 
+def test_an_infinite_servo_command_counts_as_no_pulse(tmp_path: Path) -> None:
+    t = every(50.0)
+    control = np.zeros((len(t), 8))
+    control[:, 1] = stick(t)
+    control[300, 1] = np.inf
+    log = flight(CA_SV_CS_COUNT=2, CA_SV_CS0_TYPE=1, CA_SV_CS1_TYPE=3)
+    path = log.topic("actuator_servos", t, control=control).write(tmp_path)
+    (outputs,) = (c for batch in open_log(path) for c in batch if c.name == "SERVO_OUTPUT_RAW")
+    assert np.flatnonzero(~(outputs.fields["servo2_raw"] > 0.0)).tolist() == [300]
+
+
 def commanded(log: PX4Log, topic: str, rate_hz: float) -> PX4Log:
     """The commands of roll, pitch, yaw and throttle."""
     t = every(rate_hz, 0.002)

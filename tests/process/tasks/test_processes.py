@@ -8,7 +8,10 @@ import time
 from concurrent.futures import BrokenExecutor
 from pathlib import Path
 
+from advisor.process.children import spawning
+from advisor.process.interrupt import ignore
 from advisor.process.tasks.processes import run_in_processes
+from tests.mavlink.link.builders import wait_until
 
 
 def square(number: int) -> int:
@@ -36,6 +39,20 @@ def test_a_worker_that_is_killed_costs_its_own_task_only() -> None:
     assert len(told) == 6
     assert {n: done[n] for n in (1, 2, 4, 5, 6)} == {1: 1, 2: 4, 4: 16, 5: 25, 6: 36}
     assert isinstance(done[13], BrokenExecutor)
+
+
+def leave_signals_and_sleep(file: str) -> None:
+    ignore()
+    say_who_and_sleep(file)
+
+
+def test_a_child_that_leaves_signals_to_its_parent_can_be_ended(tmp_path: Path) -> None:
+    child = spawning().Process(target=leave_signals_and_sleep, args=(str(tmp_path / "pid"),))
+    child.start()
+    wait_until((tmp_path / "pid").exists, 30.0)
+    child.terminate()
+    child.join(10.0)
+    assert child.exitcode == -signal.SIGKILL
 
 
 def test_without_tasks_no_process_is_started() -> None:
