@@ -65,7 +65,7 @@ MUTANTS = (
     Mutant(
         "oem/estimator.py",
         "covariance=best.covariance[:N, :N]",
-        "covariance=len(pulls) * best.covariance[:N, :N]",
+        "covariance=len(best.contributions) * best.covariance[:N, :N]",
         "oem/test_joint_errors.py",
     ),
     Mutant(
