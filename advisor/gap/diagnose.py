@@ -7,7 +7,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.instruments.atmosphere import thin_air
 from advisor.flight.instruments.kinematics import KinematicCheck, check_alpha, combine
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.gap.candidates.known import air_in, left_aside
+from advisor.gap.candidates.known import AIR, left_aside
 from advisor.gap.evidence.found import Evidence
 from advisor.gap.explain import evidence_of_one_maneuver, explain
 from advisor.gap.fitting.prior_speed import prior_speed
@@ -133,9 +133,8 @@ def _explained(
     if len(flights) == 1:
         return evidence_of_one_maneuver(problem, baseline), kinematics
     explained = explain(problem, baseline, aircraft, progress)
-    air = air_in(given)
-    aside = left_aside(given, aircraft.effects, {} if explained.air is None else air)
-    explained = replace(explained, known_air=air, left_aside=aside)
+    aside = left_aside(given, aircraft.effects, () if explained.air is None else AIR)
+    explained = replace(explained, known=given, left_aside=aside)
     return (_checked_against_path(explained, flown, weight) if measured else explained), kinematics
 
 

@@ -289,8 +289,18 @@ def moving(strength):
 
 
 @pytest.mark.parametrize(
-    ("known", "found"), [({}, True), ({"turbulence": 1.0}, False), ({"turbulence": 0.5}, True)]
+    ("known", "found"),
+    [({}, True), ({"turbulence": {"sigma_w_m_s": 1.0}}, False), ({"turbulence": {"sigma_w_m_s": 0.5}}, True)],
 )
 def test_air_as_strong_as_the_files_is_no_cause(monkeypatch, known, found):
     monkeypatch.setattr(outside_fit, "moving_air_of", lambda _: moving(1.05))
-    assert (outside_fit.air_cause(SimpleNamespace(known_air=known)) is not None) is found
+    assert (outside_fit.air_cause(SimpleNamespace(known=known)) is not None) is found
+
+
+@pytest.mark.parametrize(("stated", "found"), [({"exponent": -0.5}, True), ({"change": 0.12}, False)])
+def test_a_speed_that_varies_as_the_file_states_is_no_cause(stated, found):
+    e = SimpleNamespace(known={"airspeed_variation": stated})
+    cause = Cause(
+        "airspeed_variation", "force_equation", 0.0, {"change": Value(0.125, 0.01)}, (), "", 0.0, True
+    )
+    assert (outside_fit.beyond_file(e, cause) is not None) is found

@@ -22,6 +22,8 @@ _IN_FILE = 1e-5
 """Relative precision of a number in the improved file, which has six digits."""
 Effects = Mapping[str, Mapping[str, float]]
 """Effect name to its parameters, in the units of the aircraft file."""
+AIR = frozenset(name for name, effect in EFFECTS.items() if effect.block == "air")
+"""Effects of moving air, which no fit can carry from one flight to another."""
 
 
 def with_known(
@@ -103,15 +105,6 @@ def stated_in(aircraft: Aircraft, effect: str) -> float | None:
 def lasting(effects: Effects) -> Effects:
     """Return the file's effects without those that belong to one flight alone."""
     return {name: values for name, values in effects.items() if not EFFECTS[name].of_one_flight}
-
-
-def air_in(effects: Effects) -> Mapping[str, float]:
-    """Return the strength of the file's moving air by effect: standard deviation, or amplitude, m/s."""
-    return {
-        name: abs(next(iter(values.values()), 0.0))
-        for name, values in effects.items()
-        if EFFECTS[name].block == "air"
-    }
 
 
 def left_aside(effects: Effects, *shown: Collection[str]) -> tuple[str, ...]:

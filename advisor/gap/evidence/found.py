@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from advisor.flight.signals.messages import FloatArray
+from advisor.gap.candidates.known import Effects
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.search.air import MovingAir, SoughtAir
@@ -42,7 +43,7 @@ class Evidence:
     laws: Mapping[str, float] = field(default_factory=dict)
     """Gain of the best uncatalogued law of each block; log likelihood minus the price of its parameters."""
     sets: FoundSets = field(default_factory=dict)
-    known_air: Mapping[str, float] = field(default_factory=dict)
-    """Moving air of the aircraft file: ``turbulence``, standard deviation, and ``gust``, amplitude, m/s."""
+    known: Effects = field(default_factory=dict)
+    """Effects of the aircraft file."""
     left_aside: tuple[str, ...] = ()
     """Changes in flight of the aircraft file that this flight does not show."""

@@ -8,6 +8,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.instruments.kinematics import KinematicCheck
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.catalogue import variants_for
+from advisor.gap.candidates.known import AIR
 from advisor.gap.candidates.nuisances import PROPELLER
 from advisor.gap.decision import LEAST_SIGMA
 from advisor.gap.evidence.found import Evidence
@@ -103,7 +104,7 @@ def answer(
     if len(problem.flights) == 1:
         # A single manoeuvre proves no cause, and the judge was fitted on none.
         return diagnosis
-    if examined.known_air and air_cause(examined) is None:
+    if not examined.known.keys().isdisjoint(AIR) and air_cause(examined) is None:
         examined = replace(examined, sought_air=SoughtAir())
     found = measured(examined, kinematics)
     sets = [stated_as(*names) for names in found.sets]

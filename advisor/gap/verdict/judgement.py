@@ -17,7 +17,7 @@ from advisor.gap.search.speed import airspeed_cause, speed_costs, speed_is_a_cau
 from advisor.gap.search.stage import added_in
 from advisor.gap.verdict.causes import causes_of, with_model_errors
 from advisor.gap.verdict.ledger import decisions_of
-from advisor.gap.verdict.outside_fit import air_cause, alpha_bias_cause
+from advisor.gap.verdict.outside_fit import air_cause, alpha_bias_cause, beyond_file
 from advisor.gap.verdict.wrong_derivatives import WrongDerivatives, wrong_derivatives
 
 _MOSTLY = 0.98
@@ -96,7 +96,7 @@ def _found(e: Evidence, kinematics: KinematicCheck) -> _Found:
     outside_fit = tuple(c for c in (air_cause(e), bias) if c is not None)
     speed = None
     if all(judged.effect != "airspeed_variation" for judged in named):
-        speed = airspeed_cause(problem, e.constant_speed, last, floor)
+        speed = beyond_file(e, airspeed_cause(problem, e.constant_speed, last, floor))
     outweighs = _speed_outweighs(e, max(derivatives.gap, removed))
     is_explained = (named or bias or derivatives.are_wrong) and not outweighs
     judge_speed = thrust_is_uncommanded if is_explained else speed_is_a_cause

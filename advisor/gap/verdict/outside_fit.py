@@ -56,11 +56,15 @@ def alpha_bias_cause(
 def air_cause(e: Evidence) -> Cause | None:
     """Return turbulence or a gust as a cause; None in the air of any flight, and where the aircraft file has
     air of that strength."""
-    cause = moving_air_of(e)
-    if cause is None or cause.effect not in e.known_air:
+    return beyond_file(e, moving_air_of(e))
+
+
+def beyond_file(e: Evidence, cause: Cause | None) -> Cause | None:
+    """Return a cause; None where the aircraft file has as much of it, within the 95 % interval."""
+    if cause is None or cause.effect not in e.known:
         return cause
-    strength = next(iter(cause.parameters.values()))
-    is_more = abs(strength.value) - NORMAL_95 * strength.std > e.known_air[cause.effect]
+    name, size = next(iter(cause.parameters.items()))
+    is_more = abs(size.value) - NORMAL_95 * size.std > abs(e.known[cause.effect].get(name, 0.0))
     return cause if is_more else None
 
 
