@@ -101,6 +101,7 @@ def natural_size(theta: FloatArray) -> Mapping[str, float]:
 
     Rates set the size: that of the roll mode, |L_p|, and that of the Dutch roll, √|N_β|. A control has the
     size of the larger of its two moments; its force turns the path as fast as this moment does within 1/ω.
+    A control that was not flown has no moment yet; its size is ω² for a radian.
     """
     value: dict[str, float] = dict(zip(LATERAL.names.reported, (abs(float(v)) for v in theta), strict=True))
     yaw = max(np.sqrt(value["N_beta"]), 1e-6)
@@ -108,6 +109,6 @@ def natural_size(theta: FloatArray) -> Mapping[str, float]:
     sizes = {"Y_beta": yaw, "Y_p": 1.0, "Y_r": 1.0, "L_p": roll, "L_r": roll, "N_p": yaw, "N_r": yaw}
     sizes |= {"L_beta": max(value["L_beta"], yaw**2), "N_beta": yaw**2}
     for control in ("delta_a", "delta_r"):
-        power = max(value[f"L_{control}"], value[f"N_{control}"])
+        power = max(value[f"L_{control}"], value[f"N_{control}"]) or yaw**2
         sizes |= {f"L_{control}": power, f"N_{control}": power, f"Y_{control}": power / yaw}
     return sizes

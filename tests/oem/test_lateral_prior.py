@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from advisor.model.lateral import LATERAL
+from advisor.model.lateral import LATERAL, natural_size
 from advisor.oem.prior import priors_of
 from tests.oem.lateral_builders import JET, both_inputs, vector
 
@@ -42,3 +42,11 @@ def test_a_measured_side_force_needs_no_prior_of_the_moments():
     free = priors_of(both_inputs(JET, measured=("p", "r", "bank", "a_y")), vector(JET))
     for name in FITS:
         assert np.isinf(free.std[LATERAL.names.shared.index(name)])
+
+
+def test_a_control_that_was_not_flown_has_a_size_as_every_derivative_has():
+    theta = np.ones(15)
+    theta[[LATERAL.names.reported.index(f"{letter}_delta_r") for letter in "YLN"]] = 0.0
+    sizes = natural_size(theta)
+    assert all(size > 0.0 for size in sizes.values())
+    assert sizes["N_delta_r"] == sizes["N_beta"]
