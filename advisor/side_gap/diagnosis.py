@@ -1,7 +1,7 @@
 """Explanations of a lateral flight: no gap, wrong numbers, side gusts, one effect, or two at once."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -117,7 +117,9 @@ def _second(case: Case, stage: Stage, table: Sequence[SideEffect], prior: FieldP
     if found is None:
         return
     share = share_of(found.fit)
-    plain = refitted(case, found.fit, ERROR_IF_WRONG, share)
+    # With the effect, another lateness of commands and outputs changes the outputs by something else.
+    anew = replace(found.fit, free=tuple(one._replace(column=None) for one in found.fit.free))
+    plain = refitted(case, anew, ERROR_IF_WRONG, share)
     if plain is not None:
         others = [e for e in table if not set(e.places) & set(found.effect.places)]
         yield stage_of(case, plain, share, others, prior)

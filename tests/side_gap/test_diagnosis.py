@@ -16,6 +16,7 @@ from advisor.side_gap import diagnosis
 from advisor.side_gap.comparison import SideGap
 from advisor.side_gap.diagnosis import SideCause, SideDiagnosis, diagnose_side
 from advisor.side_gap.evidence import Gain
+from advisor.side_gap.fit import Fit, Free
 from advisor.side_gap.models import case_of
 from tests.oem.lateral_builders import JET
 from tests.side_gap.test_comparison import maneuvers
@@ -106,10 +107,14 @@ def test_a_second_effect_is_sought_only_after_a_first_and_elsewhere(found, monke
     first, same, elsewhere = (
         SimpleNamespace(places=places) for places in ((("p", "scale"),), (("p", "scale"),), (("r", "scale"),))
     )
-    one = SimpleNamespace(found=SimpleNamespace(effect=first, fit="fit") if found else None)
-    tables = []
+    late = Free(("aileron", "delay_s"), 0.01, 1e-3, column=np.ones(3))
+    fit = Fit(None, None, (late,), *(np.ones(3) for _ in range(2)), 0.0, *(np.ones((3, 1)) for _ in range(3)))
+    one = SimpleNamespace(found=SimpleNamespace(effect=first, fit=fit) if found else None)
+    tables, again = [], []
     monkeypatch.setattr(diagnosis, "share_of", lambda _: 1.0)
-    monkeypatch.setattr(diagnosis, "refitted", lambda *_: "again")
+    monkeypatch.setattr(diagnosis, "refitted", lambda case, fit, *_: again.append(fit) or fit)
     monkeypatch.setattr(diagnosis, "stage_of", lambda *given: tables.append(given[3]))
     assert len(list(diagnosis._second(None, one, [first, same, elsewhere], None))) == int(found)
     assert tables == ([[elsewhere]] if found else [])
+    # The effect changes what a late command does: its derivative is taken anew.
+    assert all(free.column is None for fit in again for free in fit.free)
