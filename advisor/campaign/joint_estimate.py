@@ -48,7 +48,7 @@ class _Joint:
 
 
 class Together:
-    """Estimates manoeuvres jointly and keeps the two newest results.
+    """Estimates manoeuvres jointly and keeps the newest result.
 
     Parameters
     ----------
@@ -58,7 +58,8 @@ class Together:
 
     def __init__(self, aircraft: Aircraft) -> None:
         self._aircraft = aircraft
-        self._kept: tuple[_Joint, ...] = ()
+        self._kept: _Joint | None = None
+        self._group: tuple[tuple[Maneuver, ...], bool] = ((), False)
 
     def estimate(self, maneuvers: Sequence[Maneuver]) -> Estimate | None:
         """Return the joint estimate over manoeuvres; None without manoeuvres."""
@@ -80,16 +81,20 @@ class Together:
         none, the next group is waited for.
         """
         whole = len(accepted) - len(accepted) % NEWEST
-        if whole and not self._of(accepted[whole - NEWEST : whole]).tells_lag:
+        if whole and not self._group_tells_lag(accepted[whole - NEWEST : whole]):
             return None
         return self.of_lag(accepted[-NEWEST:])
 
+    def _group_tells_lag(self, group: Sequence[Maneuver]) -> bool:
+        if not _same(self._group[0], group):
+            self._group = tuple(group), self._of(group).tells_lag
+        return self._group[1]
+
     def _of(self, maneuvers: Sequence[Maneuver]) -> _Joint:
-        found = next((kept for kept in self._kept if _same(kept.maneuvers, maneuvers)), None)
-        if found is None:
-            found = _Joint.of(maneuvers, self._aircraft)
-        self._kept = (found, *[kept for kept in self._kept if kept is not found][:1])
-        return found
+        if self._kept is None or not _same(self._kept.maneuvers, maneuvers):
+            self._kept = None  # of hundreds of manoeuvres a fit is a hundred megabytes
+            self._kept = _Joint.of(maneuvers, self._aircraft)
+        return self._kept
 
 
 def _same(some: Sequence[Maneuver], others: Sequence[Maneuver]) -> bool:
