@@ -12,7 +12,7 @@ from multiprocessing.context import SpawnContext, SpawnProcess
 class _Child(SpawnProcess):
     """Child that is ended by a signal that it cannot ignore.
 
-    From Python 3.12 on, a pool whose worker has died calls ``terminate`` on the others and waits for them.
+    A pool whose worker has died calls ``terminate`` on the others and waits for them (Python 3.12 and later).
     Children of this program ignore SIGTERM, which is their parent's.
     """
 

@@ -10,16 +10,16 @@ from advisor.gap.fitting.fit import EffectFit, evidence_of, fit
 from advisor.gap.fitting.problem import EffectProblem, counts
 from advisor.gap.search.screen import Screen
 
-_SLIGHT = (0.005,)
+_SLIGHT_S = 0.005
 """Numerical: delay or lag from which its fit begins, s."""
 
 
 def read_command(linear: EffectProblem, fitted: EffectFit) -> tuple[EffectProblem, EffectFit]:
     """Return the baseline model with the command held or linear between its stamps, as the data decide.
 
-    A held command looks like a linear one with a delay of half an interval. The held reading is chosen where
-    it explains more without a delay and a lag than the linear one does with both, at their price (Schwarz).
-    Otherwise half an interval goes into the delay's error.
+    A held command looks like a linear one with a delay of half an interval. The linear reading may have a delay
+    and a lag, at their price (Schwarz). The held one is chosen where it explains more without them. Otherwise
+    half an interval goes into the delay's error.
     """
     best = min(Screen(linear, fitted).quick_fits((DELAY, LAG)), key=lambda s: s.cost, default=None)
     if best is None:
@@ -30,7 +30,7 @@ def read_command(linear: EffectProblem, fitted: EffectFit) -> tuple[EffectProble
     price = float(np.log(np.sum(counts(linear))))
     if as_linear <= as_held and fitted.cost - best.cost < 2.0 * price:
         return linear, fitted
-    late = fit(linear, best.point.with_effect(other, _SLIGHT), best.noise, 8)
+    late = fit(linear, best.point.with_effect(other, (_SLIGHT_S,)), best.noise, 8)
     is_held = as_held < min(as_linear, evidence_of(linear, late) + 2.0 * price)
     return (held, plainly_held) if is_held else (linear, fitted)
 
