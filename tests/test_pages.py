@@ -172,24 +172,18 @@ def room(tmp_path):
 
 def test_a_constant_stands_on_the_page_with_the_docstring_below_it(room):
     page = decisions.page(room('_LEAST = 0.3\n"""Share of the peak\nthat counts."""\n'))
-    assert "| `module.py` | `_LEAST` | `0.3` | Share of the peak that counts. |" in page
-    assert "1 constants" in page
+    assert "| `module.py` | `_LEAST` | `0.3` | **decides** | Share of the peak that counts. |" in page
+    assert "Of 1 constants 1 decide" in page
 
 
 def test_two_constants_of_one_assignment_have_a_value_each(room):
-    (row,) = decisions.rows_of(room('_FEW, _MANY = 3, 5.0\n"""Of each."""\n') / "module.py")
-    assert row.values == (("_FEW", "3"), ("_MANY", "5.0"))
+    page = decisions.page(room('_FEW, _MANY = 3, 5.0\n"""Of each."""\n'))
+    assert "| `module.py` | `_FEW`<br>`_MANY` | `3`<br>`5.0` | **decides** | Of each. |" in page
 
 
 def test_an_index_of_an_array_and_a_description_are_no_decision(room):
-    assert (
-        list(
-            decisions.rows_of(
-                room("SPEED, HEIGHT = range(2)\nSIZE = Size(3)\nFIRST = ALL[:3]\n") / "module.py"
-            )
-        )
-        == []
-    )
+    page = decisions.page(room("SPEED, HEIGHT = range(2)\nSIZE = Size(3)\nFIRST = ALL[:3]\n"))
+    assert "Of 0 constants 0 decide" in page
 
 
 def test_the_page_of_decisions_has_every_number_of_the_diagnosis_with_its_value():
