@@ -11,8 +11,6 @@ from advisor.gap.diagnose import diagnose
 from advisor.gap.records.prepare import prepare
 from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.simulator.layout import INDEX
-from advisor.gap.uncatalogued.airspeed_scale import AirspeedScale
-from advisor.gap.uncatalogued.weight_check import WeightReading
 from tests.gap.generator import Setup, fly
 
 pytestmark = pytest.mark.study
@@ -226,9 +224,3 @@ def test_an_accelerometer_that_does_not_carry_the_weight_is_unknown_where_the_dy
 def test_an_accelerometers_zero_that_is_off_by_a_common_amount_is_no_cause():
     found = diagnose(with_reading(Setup(maneuvers=6, seed=5), "a_z", lambda y: y + 0.6), Aircraft())
     assert found.verdict == "none"
-
-
-@pytest.mark.parametrize(("height_explains", "wrong"), [(0.30, False), (0.20, True), (0.0, True)])
-def test_a_low_air_speed_is_wrong_where_the_height_does_not_explain_it(height_explains, wrong):
-    weight_is_read_right = WeightReading(1.0, 0.004)
-    assert AirspeedScale(0.31, 0.003).is_wrong(weight_is_read_right, height_explains) is wrong
