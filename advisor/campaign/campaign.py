@@ -5,22 +5,15 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.campaign.elevator import ElevatorCampaign
 from advisor.campaign.hand_decisions import NOTHING, ByHand, Remark
-from advisor.campaign.instruments import as_known_by, together, with_fit
-from advisor.campaign.joint_estimate import NEWEST, Together
+from advisor.campaign.instruments import together, with_fit
 from advisor.campaign.journal import Journal
 from advisor.campaign.late_limits import recount
 from advisor.campaign.lateral import OF_ELEVATOR, JudgedLateral, LateralCampaign
-from advisor.campaign.learning import learnt as learnt_from
-from advisor.campaign.learning import may_learn, of_another_power_on, reserved, told
 from advisor.campaign.running_estimate import Settling
-from advisor.campaign.single_maneuver import assess
 from advisor.campaign.state import CampaignState, JudgedManeuver
 from advisor.campaign.whole_flight import WholeFlights
-from advisor.decision.course import CriterionCourse
-from advisor.decision.history import CandidateManeuver
-from advisor.decision.judge import judge_campaign
-from advisor.decision.stopping import flight_test
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.flight.maneuvers.events import (
     READER_NOTICE,
@@ -38,8 +31,6 @@ from advisor.flight.maneuvers.marks import MARK_NOTICES, Mark
 from advisor.flight.signals.messages import Columns
 from advisor.flight.stream.flights import Flights
 from advisor.flight.stream.stream import FlightStream
-from advisor.oem.estimate import Estimate
-from advisor.oem.estimator import lag_is_unknown
 from advisor.oem.solution import Method
 from advisor.words.problems import Problem
 from advisor.words.vehicle_time import clock
@@ -103,26 +94,18 @@ class Campaign:
         names: Sequence[str] = (),
         lateral: bool = False,
     ) -> None:
+        self._journal = Journal()
+        self._elevator = ElevatorCampaign(aircraft, method, self._journal.write)
         self._lateral = LateralCampaign(aircraft) if lateral else None
         self._aircraft = aircraft
-        self._learnt = aircraft
-        self._told_by: set[tuple[int, int]] = set()
-        self._method: Method = method
         self._tell = tell
         self._flights = Flights(aircraft, target_system, (*marks, *by_hand.marks), names, lateral)
         self.by_hand = by_hand
         """All decisions by hand so far."""
         self._to_remark = list(by_hand.remarks)
-        self._maneuvers: list[Maneuver] = []
-        self._history: list[CandidateManeuver] = []
-        self._journal = Journal()
         self._mark_notes: tuple[str, ...] = ()
         self._reader_notes: tuple[str, ...] = ()
         self._activity: tuple[Activity, ...] = ()
-        self._judged: tuple[JudgedManeuver, ...] = ()
-        self._course = CriterionCourse(aircraft.campaign)
-        self._flight_test = flight_test((), aircraft.campaign, aircraft, self._course)
-        self._together = Together(aircraft)
         self._whole_flights = WholeFlights()
         self._ended = False
         self._settling = Settling() if settle else None
@@ -140,10 +123,9 @@ class Campaign:
             self.end_maneuver()
         told = self._take(self._flights.finish())
         self._ended = True
-        self._decide()
+        self._elevator.finish()
         if self._lateral is not None:
             self._lateral.finish()
-        self._learn()
         for problem in self._stream.marks.problems():
             self._journal.write(str(problem))
         return told
@@ -151,26 +133,24 @@ class Campaign:
     @property
     def state(self) -> CampaignState:
         """State after the newest message, as shown on screens."""
-        stream, flights = self._stream, self._flights
-        flying, channels = flights.so_far(), stream.channels
-        joined = self._joined
-        model = self._together.estimate([judged.maneuver for judged in joined])
-        settled = self._settling.follow(flying, self._learnt, model) if self._settling else None
+        stream, flights, elevator = self._stream, self._flights, self._elevator
+        flying, channels, model = flights.so_far(), stream.channels, elevator.model
+        settled = self._settling.follow(flying, elevator.learnt, model) if self._settling else None
         return CampaignState(
             vehicle=stream.vehicle,
             now_s=stream.now_s,
             duration_s=flights.duration_s,
             mode=stream.mode,
             channels=channels,
-            maneuvers=self._judged,
-            flight_test=self._flight_test,
+            maneuvers=elevator.judged,
+            flight_test=elevator.flight_test,
             model=model,
             flying=flying,
             marking_since_s=stream.marks.by_hand_since_s,
             settling=settled.estimate if settled else None,
             readable=settled is not None and settled.readable,
             enough=settled.enough if settled else None,
-            estimate_from=tuple(judged.maneuver.number for judged in joined),
+            estimate_from=tuple(judged.maneuver.number for judged in elevator.joined),
             elevator_notes=flights.elevator_notes,
             reader_notes=(
                 *self._reader_notes,
@@ -182,9 +162,9 @@ class Campaign:
             no_data=stream.no_data,
             serves=stream.serves,
             instruments=with_fit(
-                together((*self._maneuvers, *self._side_maneuvers), stream.instruments),
+                together((*elevator.maneuvers, *self._side_maneuvers), stream.instruments),
                 model,
-                (flown.estimate for flown in self._history),
+                elevator.estimates,
                 self._aircraft,
             ),
             mark_notes=self._mark_notes,
@@ -255,9 +235,21 @@ class Campaign:
 
     def note(self, number: int, text: str) -> None:
         """Write a note on a manoeuvre."""
-        self.by_hand = self.by_hand.noting(self._maneuvers[self._index(number)], text)
+        self.by_hand = self.by_hand.noting(self._numbered(number), text)
         self._journal.write(f"note on manoeuvre {number}: {text}", self._stream.now_s)
-        self._decide()
+        self._elevator.note(number, text)
+
+    def _decide_by_hand(self, number: int, because: str | None) -> None:
+        self.by_hand = self.by_hand.excluding(self._numbered(number), because)
+        what = "included again" if because is None else f"excluded: {because}"
+        self._journal.write(f"manoeuvre {number} {what}", self._stream.now_s)
+        self._elevator.exclude(number, because)
+
+    def _numbered(self, number: int) -> Maneuver:
+        return self._judged(number).maneuver
+
+    def _judged(self, number: int) -> JudgedManeuver:
+        return next(judged for judged in self._elevator.judged if judged.maneuver.number == number)
 
     def _take(self, events: Sequence[FlightEvent]) -> list[CampaignEvent]:
         told: list[CampaignEvent] = []
@@ -286,19 +278,13 @@ class Campaign:
         return told
 
     def _judge(self, maneuver: Maneuver) -> ManeuverJudged:
-        """Estimate and judge a manoeuvre that has just been flown, and decide anew whether to stop."""
-        self._maneuvers.append(maneuver)
-        flown = self._assess(maneuver)
-        because = self.by_hand.excluded_because(maneuver)
-        self._history.append(replace(flown, excluded_because=because))
-        self._blame_instruments(maneuver)
-        self._decide()
-        self._learn()
-        span = maneuver.span
-        verdict = f"manoeuvre {maneuver.number} ({clock(span.start_s)}): {self._judged[-1].verdict.sentence}"
+        """Judge a manoeuvre that has just been flown, and write its verdict and the flight test's."""
+        self._elevator.take(maneuver, self.by_hand)
+        judged, span = self._elevator.judged[-1], maneuver.span
+        verdict = f"manoeuvre {maneuver.number} ({clock(span.start_s)}): {judged.verdict.sentence}"
         self._journal.write_of_past(verdict, span.end_s)
-        self._journal.write_of_past(self._flight_test.sentence, span.end_s)
-        return ManeuverJudged(self._judged[-1], self._flight_test)
+        self._journal.write_of_past(self._elevator.flight_test.sentence, span.end_s)
+        return ManeuverJudged(judged, self._elevator.flight_test)
 
     @property
     def _side_maneuvers(self) -> tuple[Maneuver, ...]:
@@ -316,15 +302,6 @@ class Campaign:
         self._journal.write_of_past(f"roll and yaw: {told.flight_test.sentence}", span.end_s)
         return [told]
 
-    def _blame_instruments(self, newest: Maneuver) -> None:
-        """Judge the earlier manoeuvres again where the newest one contradicts their instruments."""
-        for i, maneuver in enumerate(self._maneuvers[:-1]):
-            known = as_known_by(maneuver, newest)
-            if known is not maneuver:
-                self._maneuvers[i] = known
-                flown = self._assess(known)
-                self._history[i] = replace(flown, excluded_because=self._history[i].excluded_because)
-
     def _note_down(self, notice: Notice) -> None:
         """Keep the notices about marks and about the reader for the report."""
         if notice.code in MARK_NOTICES:
@@ -336,9 +313,6 @@ class Campaign:
         """Take a manoeuvre that came a second time: the better record counts, and an exclusion of either
         holds."""
         maneuver = event.maneuver
-        i = self._index(maneuver.number)
-        known = self._history[i].excluded_because
-        because = known if known is not None else self.by_hand.excluded_because(maneuver)
         where = f" in {self._flights.name}" if self._flights.name else ""
         better = "; this record holds more and takes the place" if event.takes_place else ""
         self._journal.write_of_past(
@@ -346,33 +320,23 @@ class Campaign:
             f"it counts once{better}",
             maneuver.span.end_s,
         )
-        if not event.takes_place and because == known:
+        known = self._judged(maneuver.number).excluded_because
+        because = known if known is not None else self.by_hand.excluded_because(maneuver)
+        if not event.takes_place:
+            if because != known:
+                self._elevator.exclude(maneuver.number, because)
             return []
-        if event.takes_place:
-            self._maneuvers[i] = maneuver
-            self._history[i] = self._assess(maneuver)
-        self._history[i] = replace(self._history[i], excluded_because=because)
-        self._decide()
-        self._learn()
-        return [ManeuverJudged(self._judged[i], self._flight_test)] if event.takes_place else []
+        self._elevator.take_better(maneuver, because)
+        return [ManeuverJudged(self._judged(maneuver.number), self._elevator.flight_test)]
 
     def _count_anew(self, event: ElevatorRescaled) -> list[CampaignEvent]:
         """Count earlier manoeuvres by a limit that is heard late, so that no two scales are pooled."""
-        again = recount(self._maneuvers, event)
+        again = recount(self._elevator.maneuvers, event)
         if again.notice is None:
             return []
-        for maneuver in again.anew:
-            i = self._index(maneuver.number)
-            self._maneuvers[i] = maneuver
-            known = self._history[i].excluded_because
-            self._history[i] = replace(self._assess(maneuver), excluded_because=known)
-        for i in map(self._index, again.lost):
-            known = self._history[i].excluded_because
-            self._history[i] = replace(self._history[i], excluded_because=known or event.heard)
         self._note_down(again.notice)
         self._journal.take(again.notice)
-        self._decide()
-        self._learn()
+        self._elevator.count_anew(again)
         return [again.notice]
 
     @property
@@ -391,81 +355,3 @@ class Campaign:
         for remark in [r for r in self._to_remark if (r.flight, r.boot, r.at_s) <= now]:
             self._to_remark.remove(remark)
             self._journal.write(f"mark: {remark.text}", remark.at_s)
-
-    def _decide(self) -> None:
-        plan = self._aircraft.campaign
-        verdicts = judge_campaign(self._history, plan, self._course)
-        judged = (
-            JudgedManeuver(
-                maneuver,
-                flown.estimate,
-                verdict,
-                flown.excluded_because,
-                self.by_hand.notes_on(maneuver),
-            )
-            for maneuver, flown, verdict in zip(self._maneuvers, self._history, verdicts, strict=True)
-        )
-        self._judged = tuple(judged)
-        self._flight_test = flight_test(self._history, plan, self._aircraft, self._course)
-        if lag_is_unknown(self._learnt):
-            model = self._of_lag
-            self._judged = tuple(
-                replace(judged, verdict=reserved(judged.verdict, judged.estimate, model))
-                for judged in self._judged
-            )
-
-    @property
-    def _joined(self) -> Sequence[JudgedManeuver]:
-        """Manoeuvres of the joint estimate: the newest accepted ones in flight, all accepted ones at the
-        end."""
-        accepted = self._accepted
-        return accepted if self._ended else accepted[-NEWEST:]
-
-    @property
-    def _accepted(self) -> Sequence[JudgedManeuver]:
-        return [judged for judged in self._judged if judged.verdict.accepted]
-
-    @property
-    def _of_lag(self) -> Estimate | None:
-        """Joint estimate that tells the servo's lag; None where there is none yet."""
-        accepted = [judged.maneuver for judged in self._accepted]
-        return self._together.of_lag(accepted) if self._ended else self._together.of_lag_so_far(accepted)
-
-    def _learn(self) -> None:
-        """Examine all manoeuvres again when they have told more of the instruments."""
-        joined = self._joined
-        all_of_them = len(joined) == len(self._accepted)
-        if not may_learn(self._learnt, all_of_them):
-            return
-        flown = [judged.maneuver for judged in joined]
-        model = self._of_lag if self._aircraft.elevator.lag_s is None else self._together.estimate(flown)
-        told_by = {judged.maneuver.power_on for judged in joined}
-        learnt = learnt_from(self._learnt, model, one_power_on=len(told_by) == 1, exactly=self._ended)
-        if learnt is self._learnt:
-            return
-        self._learnt, self._told_by = learnt, told_by
-        again = [self._assess(maneuver) for maneuver in self._maneuvers]
-        self._history = [
-            replace(flown, excluded_because=before.excluded_because)
-            for flown, before in zip(again, self._history, strict=True)
-        ]
-        if sentence := told(learnt):
-            self._journal.write(sentence)
-        self._decide()
-
-    def _assess(self, maneuver: Maneuver) -> CandidateManeuver:
-        """Estimate and examine one manoeuvre with what the others have told of the instruments."""
-        known = self._learnt if maneuver.power_on in self._told_by else of_another_power_on(self._learnt)
-        return assess(maneuver, known, self._method)
-
-    def _decide_by_hand(self, number: int, because: str | None) -> None:
-        i = self._index(number)
-        self._history[i] = replace(self._history[i], excluded_because=because)
-        self.by_hand = self.by_hand.excluding(self._maneuvers[i], because)
-        what = "included again" if because is None else f"excluded: {because}"
-        self._journal.write(f"manoeuvre {number} {what}", self._stream.now_s)
-        self._decide()
-        self._learn()
-
-    def _index(self, number: int) -> int:
-        return [maneuver.number for maneuver in self._maneuvers].index(number)

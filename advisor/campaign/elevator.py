@@ -1,0 +1,204 @@
+"""The elevator's half of a campaign: its manoeuvres, their estimates and verdicts, and the joint estimate."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.campaign.hand_decisions import ByHand
+from advisor.campaign.instruments import as_known_by
+from advisor.campaign.joint_estimate import NEWEST, Together
+from advisor.campaign.late_limits import Recount
+from advisor.campaign.learning import learnt as learnt_from
+from advisor.campaign.learning import may_learn, of_another_power_on, reserved, told
+from advisor.campaign.single_maneuver import assess
+from advisor.campaign.state import JudgedManeuver
+from advisor.decision.course import CriterionCourse
+from advisor.decision.history import CandidateManeuver
+from advisor.decision.judge import judge_campaign
+from advisor.decision.stopping import flight_test
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.oem.estimate import Estimate, NoEstimate
+from advisor.oem.estimator import lag_is_unknown
+from advisor.oem.solution import Method
+
+
+@dataclass(slots=True)
+class _Flown:
+    """A manoeuvre, its examination, and what an engineer noted on it."""
+
+    maneuver: Maneuver
+    examined: CandidateManeuver
+    notes: tuple[str, ...]
+
+    def exclude(self, because: str | None) -> None:
+        """Exclude the manoeuvre for a reason; None: the manoeuvre counts."""
+        self.examined = replace(self.examined, excluded_because=because)
+
+
+class ElevatorCampaign:
+    """Estimates and judges manoeuvres of the elevator as they come, and learns from them of the instruments.
+
+    Parameters
+    ----------
+    aircraft
+        The crew's aircraft file.
+    method
+        Search for each manoeuvre's optimum: Gauss-Newton, or the paper's simplex.
+    say
+        Called with a sentence where the manoeuvres have told more of the instruments.
+    """
+
+    def __init__(self, aircraft: Aircraft, method: Method, say: Callable[[str], object]) -> None:
+        self._aircraft = aircraft
+        self.learnt = aircraft
+        """The crew's aircraft with what the manoeuvres have told of the instruments."""
+        self._told_by: set[tuple[int, int]] = set()
+        self._method: Method = method
+        self._say = say
+        self._flown: list[_Flown] = []
+        self._together = Together(aircraft)
+        self._course = CriterionCourse(aircraft.campaign)
+        self._ended = False
+        self.judged: tuple[JudgedManeuver, ...] = ()
+        """Manoeuvres in the order flown, each with its estimate and verdict."""
+        self.flight_test = flight_test((), aircraft.campaign, aircraft, self._course)
+        """Whether the test may stop, and the next manoeuvre."""
+
+    def take(self, maneuver: Maneuver, by_hand: ByHand) -> None:
+        """Estimate and judge a manoeuvre that has just been flown, and decide anew whether to stop."""
+        flown = _Flown(maneuver, self._assess(maneuver), by_hand.notes_on(maneuver))
+        flown.exclude(by_hand.excluded_because(maneuver))
+        self._flown.append(flown)
+        self._blame_instruments(maneuver)
+        self.decide()
+
+    def take_better(self, maneuver: Maneuver, because: str | None) -> None:
+        """Take another record of a manoeuvre in the former one's place; exclude it where a reason is
+        given."""
+        self._replace(maneuver)
+        self.exclude(maneuver.number, because)
+
+    def count_anew(self, again: Recount) -> None:
+        """Count manoeuvres by a limit that was heard late, and leave out those it makes useless."""
+        for maneuver in again.anew:
+            self._replace(maneuver)
+        for number in again.lost:
+            flown = self._of(number)
+            flown.exclude(flown.examined.excluded_because or again.heard)
+        self.decide()
+
+    def exclude(self, number: int, because: str | None) -> None:
+        """Exclude a manoeuvre from every decision for a reason; None: include the manoeuvre again."""
+        self._of(number).exclude(because)
+        self.decide()
+
+    def note(self, number: int, text: str) -> None:
+        """Add a note on a manoeuvre."""
+        flown = self._of(number)
+        flown.notes += (text,)
+        self._judge()
+
+    def finish(self) -> None:
+        """Take the end of the flight, after which the joint estimate is over all accepted manoeuvres."""
+        self._ended = True
+        self.decide()
+
+    def decide(self) -> None:
+        """Judge all manoeuvres, and examine them again where they have told more of the instruments."""
+        self._judge()
+        self._learn()
+
+    @property
+    def maneuvers(self) -> tuple[Maneuver, ...]:
+        """Manoeuvres in the order flown."""
+        return tuple(flown.maneuver for flown in self._flown)
+
+    @property
+    def estimates(self) -> tuple[Estimate | NoEstimate, ...]:
+        """Estimates of the single manoeuvres."""
+        return tuple(flown.examined.estimate for flown in self._flown)
+
+    @property
+    def joined(self) -> Sequence[JudgedManeuver]:
+        """Manoeuvres of the joint estimate: the newest accepted ones in flight, all accepted ones at the
+        end."""
+        accepted = self._accepted
+        return accepted if self._ended else accepted[-NEWEST:]
+
+    @property
+    def model(self) -> Estimate | None:
+        """The joint estimate; None without an accepted manoeuvre."""
+        return self._together.estimate([judged.maneuver for judged in self.joined])
+
+    def _of(self, number: int) -> _Flown:
+        return next(flown for flown in self._flown if flown.maneuver.number == number)
+
+    def _replace(self, maneuver: Maneuver) -> None:
+        """Examine a manoeuvre in the place of the one with its number."""
+        flown = self._of(maneuver.number)
+        flown.maneuver = maneuver
+        self._examine(flown)
+
+    def _examine(self, flown: _Flown) -> None:
+        """Estimate and examine a manoeuvre again. Its exclusion holds."""
+        because = flown.examined.excluded_because
+        flown.examined = self._assess(flown.maneuver)
+        flown.exclude(because)
+
+    def _assess(self, maneuver: Maneuver) -> CandidateManeuver:
+        """Estimate and examine one manoeuvre with what the others have told of the instruments."""
+        known = self.learnt if maneuver.power_on in self._told_by else of_another_power_on(self.learnt)
+        return assess(maneuver, known, self._method)
+
+    def _blame_instruments(self, newest: Maneuver) -> None:
+        """Judge the earlier manoeuvres again where the newest one contradicts their instruments."""
+        for flown in self._flown[:-1]:
+            known = as_known_by(flown.maneuver, newest)
+            if known is not flown.maneuver:
+                self._replace(known)
+
+    def _judge(self) -> None:
+        """Judge the manoeuvres and the flight test from the examinations."""
+        plan = self._aircraft.campaign
+        history = [flown.examined for flown in self._flown]
+        verdicts = judge_campaign(history, plan, self._course)
+        self.judged = tuple(
+            JudgedManeuver(
+                flown.maneuver, flown.examined.estimate, verdict, flown.examined.excluded_because, flown.notes
+            )
+            for flown, verdict in zip(self._flown, verdicts, strict=True)
+        )
+        self.flight_test = flight_test(history, plan, self._aircraft, self._course)
+        if lag_is_unknown(self.learnt):
+            model = self._of_lag
+            self.judged = tuple(
+                replace(judged, verdict=reserved(judged.verdict, judged.estimate, model))
+                for judged in self.judged
+            )
+
+    @property
+    def _accepted(self) -> Sequence[JudgedManeuver]:
+        return [judged for judged in self.judged if judged.verdict.accepted]
+
+    @property
+    def _of_lag(self) -> Estimate | None:
+        """Joint estimate that tells the servo's lag; None where there is none yet."""
+        accepted = [judged.maneuver for judged in self._accepted]
+        return self._together.of_lag(accepted) if self._ended else self._together.of_lag_so_far(accepted)
+
+    def _learn(self) -> None:
+        """Examine all manoeuvres again when they have told more of the instruments."""
+        joined = self.joined
+        if not may_learn(self.learnt, len(joined) == len(self._accepted)):
+            return
+        model = self._of_lag if self._aircraft.elevator.lag_s is None else self.model
+        told_by = {judged.maneuver.power_on for judged in joined}
+        learnt = learnt_from(self.learnt, model, one_power_on=len(told_by) == 1, exactly=self._ended)
+        if learnt is self.learnt:
+            return
+        self.learnt, self._told_by = learnt, told_by
+        for flown in self._flown:
+            self._examine(flown)
+        if sentence := told(learnt):
+            self._say(sentence)
+        self._judge()
