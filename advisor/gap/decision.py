@@ -21,8 +21,7 @@ SIGMAS = 5.0
 speed, weight, offset of α, and the speeds of manoeuvres. Their errors are not Gaussian, so three would not
 do."""
 CHANCE = 1e-3
-"""Largest probability by chance with which a test rejects: of a wind's gradient (Student's t), and of the
-aircraft file's derivatives (chi square)."""
+"""Largest probability by chance with which the test of a wind's gradient rejects (Student's t)."""
 
 
 @dataclass(frozen=True, slots=True)

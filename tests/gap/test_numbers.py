@@ -111,7 +111,8 @@ def test_of_a_gust_and_wrong_numbers_the_larger_part_of_the_gap_is_the_answer(
 ):
     _, right = sound
     model = {name: off.get(name, 1.0) * value.value for name, value in right.model.items()}
-    found = diagnose(fly(Setup(maneuvers=4, gust_pulse=gust_m_s, seed=26)), Aircraft(model=model))
+    given = Aircraft(model=model, reference_airspeed_m_s=right.reference_airspeed_m_s)
+    found = diagnose(fly(Setup(maneuvers=4, gust_pulse=gust_m_s, seed=26)), given)
     assert found.verdict == verdict
     assert said in found.sentence
     assert [c.effect for c in found.causes if c.present] == ["gust"]

@@ -6,12 +6,11 @@ power, the explanation that keeps the file's derivatives is likelier.
 """
 
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
-from scipy.special import chdtri
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.decision import CHANCE
 from advisor.gap.effects import effect_named
 from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.model.response import SHARED
@@ -89,21 +88,30 @@ class Distance:
     """Distance of fitted derivatives from the aircraft file's, relative to prior error and covariance."""
 
     statistic: float
-    """Squared distance; chi square with six degrees of freedom."""
-    limit: float
+    """Squared distance from derivatives that are right; chi square with six degrees of freedom."""
+    log_odds: float
+    """Log odds, nats, of some wrong derivatives against none. The prior odds are even, and each derivative
+    is wrong independently of the others."""
 
     @property
     def is_off(self) -> bool:
-        """Whether the file's derivatives cannot be right."""
-        return self.statistic > self.limit
+        """Whether some of the file's derivatives are likelier wrong than all are right."""
+        return self.log_odds > 0.0
 
 
 def distance_of(derivatives: FloatArray, covariance: FloatArray, prior: FloatArray) -> Distance:
     """Return the distance of fitted derivatives from the file's; ``log_prior`` has the arguments."""
     scale = derivative_scale(prior)
-    covariance_of_error = covariance / np.outer(scale, scale) + ERROR_IF_RIGHT**2 * np.eye(6)
-    limit = float(chdtri(len(prior), CHANCE))
-    return Distance(_distance((derivatives - prior) / scale, covariance_of_error), limit)
+    off, known = (derivatives - prior) / scale, covariance / np.outer(scale, scale)
+    wrong = np.array(list(product((False, True), repeat=len(off))))
+    widths = np.where(wrong, ERROR_IF_WRONG, ERROR_IF_RIGHT)
+    errors = known + np.square(widths)[:, :, None] * np.eye(len(off))
+    squares = np.linalg.solve(errors, np.broadcast_to(off, wrong.shape)[..., None])[..., 0] @ off
+    each = 1.0 - 0.5 ** (1.0 / len(off))
+    log_share = np.where(wrong, np.log(each), np.log(1.0 - each)).sum(axis=1)
+    densities = log_share - 0.5 * (squares + np.linalg.slogdet(errors)[1])
+    # The first set has no wrong derivative.
+    return Distance(float(squares[0]), float(np.logaddexp.reduce(densities[1:]) - densities[0]))
 
 
 def _distance(off: FloatArray, covariance_of_error: FloatArray) -> float:

@@ -42,11 +42,7 @@ def _of_the_derivatives(e: Evidence, derivatives: WrongDerivatives) -> list[Deci
         return []
     unit = "mean square over the noise, beyond fitted numbers"
     gap = Decision("parameters", "gap", derivatives.gap, VISIBLE, unit)
-    distance = Decision(
-        "parameters",
-        "distance",
-        derivatives.distance.statistic,
-        derivatives.distance.limit,
-        "chi square of six",
+    odds = Decision(
+        "parameters", "odds", derivatives.distance.log_odds, 0.0, "log odds of wrong numbers, nats"
     )
-    return [gap, distance]
+    return [gap, odds]
