@@ -151,13 +151,20 @@ def test_a_curve_keeps_the_angle_that_the_file_states_wherever_it_is_flown():
     assert numbers[0, INDEX["M_alpha"]] == pytest.approx(2.0 * 20.0 * 0.05)
 
 
+def test_a_dead_band_keeps_the_deflection_that_the_file_states_whatever_the_trim():
+    flights = prepare(fly(Setup(maneuvers=3, seed=10)), Aircraft())
+    effects = {"actuator_deadband": {"half_width_rad": 0.012, "neutral_rad": -0.02}}
+    numbers = with_known(np.zeros(len(ENTRIES)), effects, flights, variants_for(flights))
+    middles = numbers[:, INDEX["neutral_rad"]] + [flight.u_trim for flight in flights.flights]
+    assert middles == pytest.approx(-0.02)
+
+
 @pytest.mark.study
 def test_a_dead_band_that_the_file_has_is_no_gap():
     flown = fly(Setup(maneuvers=6, switches={"deadband": 0.012}, seed=7))
-    found = diagnose(
-        flown, Aircraft(effects={"actuator_deadband": {"half_width_rad": 0.012, "neutral_rad": 0.0}})
-    )
-    assert found.verdict == "none"
+    trim = float(np.median([flight.u_trim for flight in prepare(flown, Aircraft()).flights]))
+    stated = {"actuator_deadband": {"half_width_rad": 0.012, "neutral_rad": trim}}
+    assert diagnose(flown, Aircraft(effects=stated)).verdict == "none"
 
 
 def test_what_is_found_beyond_a_number_of_the_file_is_added_to_it():

@@ -16,14 +16,18 @@ _TRIMS_DIFFER_RAD = 0.005
 """Least range of the trims in rad that distinguishes a dead band moving with the trim from a fixed one."""
 
 
+def _trims(flights: PreparedManeuvers) -> FloatArray:
+    """Return the deflection before each manoeuvre, rad, shape (manoeuvres,)."""
+    return np.array([flight.u_trim for flight in flights.flights])
+
+
 def _about_neutral(p: FloatArray, values: Values, flights: PreparedManeuvers) -> None:
-    """Set a dead band about one neutral deflection of the aircraft, whatever the trim of each manoeuvre.
+    """Set a dead band about one deflection of the aircraft, whatever the trim of each manoeuvre.
 
     The band need not lie about the trim, because pilots and autopilots trim to one edge of the band.
     """
-    trims = np.array([flight.u_trim for flight in flights.flights])
     p[:, INDEX["half_deadband_rad"]] += values[0]
-    p[:, INDEX["neutral_rad"]] = np.median(trims) + values[1] - trims
+    p[:, INDEX["neutral_rad"]] = values[1] - _trims(flights)
 
 
 def _about_trim(p: FloatArray, values: Values, _: PreparedManeuvers) -> None:
@@ -47,8 +51,15 @@ DEADBAND_ABOUT_TRIM = replace(
 
 
 def _variants(flights: PreparedManeuvers) -> Sequence[Variant]:
-    moves = float(np.ptp([f.u_trim for f in flights.flights])) > _TRIMS_DIFFER_RAD
-    return (_DEADBAND, DEADBAND_ABOUT_TRIM) if moves else (_DEADBAND,)
+    trims = _trims(flights)
+    rest = float(np.median(trims))
+    half, (below, above) = _DEADBAND.bounds
+    about = replace(
+        _DEADBAND,
+        starts=tuple((width, rest + place) for width, place in _DEADBAND.starts),
+        bounds=(half, (rest + below, rest + above)),
+    )
+    return (about, DEADBAND_ABOUT_TRIM) if float(np.ptp(trims)) > _TRIMS_DIFFER_RAD else (about,)
 
 
 EFFECT = Effect(
