@@ -9,7 +9,9 @@ from advisor.gap.result import Cause
 from advisor.gap.verdict import judgement
 from advisor.gap.verdict.wrong_derivatives import WrongDerivatives
 
-WRONG = WrongDerivatives(1.0, Distance(30.0, 8.0), are_wrong=True, are_imitated=False, outweigh_the_air=True)
+WRONG = WrongDerivatives(
+    1.0, Distance(30.0, 0.0, 8.0), are_wrong=True, are_imitated=False, outweigh_the_air=True
+)
 EFFECT = Cause("actuator_backlash", "input", 0.9, {}, (), "", 0.0, True)
 
 

@@ -89,9 +89,15 @@ class Distance:
 
     statistic: float
     """Squared distance from derivatives that are right; chi square with six degrees of freedom."""
-    log_odds: float
-    """Log odds, nats, of some wrong derivatives against none. The prior odds are even, and each derivative
-    is wrong independently of the others."""
+    log_right: float
+    """Log probability density, up to a constant, of the fitted derivatives where all of the file are right."""
+    log_wrong: float
+    """The same where some are wrong, each independently of the others. Both cases are alike likely before."""
+
+    @property
+    def log_odds(self) -> float:
+        """Log odds, nats, of some wrong derivatives against none."""
+        return self.log_wrong - self.log_right
 
     @property
     def is_off(self) -> bool:
@@ -111,7 +117,7 @@ def distance_of(derivatives: FloatArray, covariance: FloatArray, prior: FloatArr
     log_share = np.where(wrong, np.log(each), np.log(1.0 - each)).sum(axis=1)
     densities = log_share - 0.5 * (squares + np.linalg.slogdet(errors)[1])
     # The first set has no wrong derivative.
-    return Distance(float(squares[0]), float(np.logaddexp.reduce(densities[1:]) - densities[0]))
+    return Distance(float(squares[0]), float(densities[0]), float(np.logaddexp.reduce(densities[1:])))
 
 
 def _distance(off: FloatArray, covariance_of_error: FloatArray) -> float:

@@ -7,7 +7,7 @@ last. Derivatives of the trim speed can then be off by some per cent, all by the
 import numpy as np
 
 from advisor.gap.fitting.fit import EffectFit
-from advisor.gap.fitting.prior import distance_of, log_prior
+from advisor.gap.fitting.prior import distance_of
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.fitting.uncertainty import covariance, distance_from_file, effective_samples
 from advisor.gap.simulator.layout import DERIVATIVES, SPEED
@@ -35,8 +35,9 @@ def prior_speed(problem: EffectProblem, baseline: EffectFit) -> float | None:
     n = len(prior)
     known = covariance(problem, baseline, effective_samples(problem, baseline.innovations))[:n, :n]
     shares = np.linspace(lowest, highest, _TRIED)
-    at_speeds = [prior * share**-_POWERS for share in shares]
-    best = int(np.argmax([log_prior(baseline.point.derivatives, known, there) for there in at_speeds]))
-    if distance_of(baseline.point.derivatives, known, at_speeds[best]).is_off:
+    off = [distance_of(baseline.point.derivatives, known, prior * share**-_POWERS) for share in shares]
+    right, wrong = [d.log_right for d in off], [d.log_wrong for d in off]
+    # Any speed that was flown is alike likely, for right and for wrong derivatives.
+    if np.logaddexp.reduce(wrong) > np.logaddexp.reduce(right):
         return None
-    return float(shares[best] * flights.reference_m_s)
+    return float(shares[int(np.argmax(right))] * flights.reference_m_s)

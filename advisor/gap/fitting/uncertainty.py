@@ -33,7 +33,7 @@ def log_prior_of(problem: EffectProblem, fitted: EffectFit, effective: FloatArra
 def distance_from_file(problem: EffectProblem, fitted: EffectFit) -> Distance:
     """Return the distance of the fitted derivatives from the aircraft file's, or zero without a file."""
     if problem.prior_derivatives is None:
-        return Distance(0.0, -np.inf)
+        return Distance(0.0, 0.0, -np.inf)
     n = len(problem.prior_derivatives)
     known = covariance(problem, fitted, effective_samples(problem, fitted.innovations))[:n, :n]
     return distance_of(fitted.point.derivatives, known, problem.prior_derivatives)

@@ -133,12 +133,14 @@ def in_one_maneuver(problem: EffectProblem, fitted: EffectFit, i: int) -> tuple[
     problem, fitted = unfiltered(problem, fitted)
     flights = replace(problem.flights, flights=(problem.flights.flights[i],))
     # An effect between manoeuvres needs all of them, so its value here becomes part of the base.
-    p = problem.driving(fitted.point)[i]
+    base = problem.driving(fitted.point)[i]
+    derivatives = base[: len(DERIVATIVES)].copy()
+    base[: len(DERIVATIVES)] = 0.0  # the point adds them
     return (
-        replace(problem, flights=flights, base=p),
+        replace(problem, flights=flights, base=base, changes=()),
         replace(
             fitted,
-            point=SearchPoint(p[: len(DERIVATIVES)], fitted.point.own[i : i + 1]),
+            point=SearchPoint(derivatives, fitted.point.own[i : i + 1]),
             innovations=(fitted.residuals[i],),
             residuals=(fitted.residuals[i],),
             linear=(fitted.linear[i],),
