@@ -11,7 +11,6 @@ from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.fit import fit
 from advisor.gap.fitting.whitening import Filters
-from advisor.gap.noise.quiet import in_one_maneuver
 from advisor.gap.noise.stamps import rates_of, stamp_jitter
 from advisor.gap.records.prepare import prepare
 from advisor.gap.search.air import moving_air
@@ -125,15 +124,6 @@ def test_what_a_gyro_adds_in_every_manoeuvre_is_an_offset_and_no_slow_noise():
     found = diagnose(fly(Setup(maneuvers=6, q_bias=0.02, noise=0.004, seed=61)), Aircraft())
     assert found.causes[0].effect == "pitch_rate_bias"
     assert found.causes[0].parameters["bias_rad_s"].value == pytest.approx(0.02, rel=0.1)
-
-
-def test_one_manoeuvre_seen_alone_keeps_what_changes_between_manoeuvres():
-    problem, fitted = fit_baseline(prepare(fly(Setup(maneuvers=4, seed=62)), Aircraft()), Aircraft())
-    drift = next(v for v in variants_for(problem.flights) if v.effect == "cg_shift")
-    point = fitted.point.with_effect(drift, (0.004,))
-    whole = problem.fly(problem.flights.flights[3], problem.driving(point)[3])
-    alone, seen = in_one_maneuver(problem, replace(fitted, point=point), 3)
-    assert alone.fly(alone.flights.flights[0], alone.driving(seen.point)[0]) == pytest.approx(whole)
 
 
 def wandering(channel, share, memory_s, others=0.0):

@@ -1,9 +1,12 @@
 """An unknown disturbance is let into one block after the other: it must act there as a real one does."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.fitting.linear import unit_pulse
 from advisor.gap.noise.probes import DYNAMIC, probe_blocks
 from advisor.gap.noise.quiet import in_one_maneuver, instrument_noise, unfiltered
@@ -52,3 +55,12 @@ def test_a_gust_is_the_airs_and_not_the_vanes_though_it_is_largest_there():
         best, *others = probe_blocks(*in_one_maneuver(problem, fitted, i), noise)
         assert best.block == "air"
         assert best.gain > 1.1 * others[0].gain
+
+
+def test_one_manoeuvre_seen_alone_keeps_what_changes_between_manoeuvres():
+    problem, fitted = fit_baseline(prepare(fly(Setup(maneuvers=4, seed=62)), Aircraft()), Aircraft())
+    drift = next(v for v in variants_for(problem.flights) if v.effect == "cg_shift")
+    point = fitted.point.with_effect(drift, (0.004,))
+    whole = problem.fly(problem.flights.flights[3], problem.driving(point)[3])
+    alone, seen = in_one_maneuver(problem, replace(fitted, point=point), 3)
+    assert alone.fly(alone.flights.flights[0], alone.driving(seen.point)[0]) == pytest.approx(whole)

@@ -1,5 +1,6 @@
 """The air speed is a cause where work was done on the aircraft, not where it was exchanged for height."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -156,7 +157,8 @@ def test_forces_that_do_not_grow_with_the_speed_squared_are_named_with_their_pow
     assert [c.effect for c in found.causes if c.present] == ["airspeed_variation"]
     exponent = found.causes[0].parameters["exponent"]
     assert abs(exponent.value + 0.8) < 2.5 * exponent.std
-    assert "with its power 1.2" in found.sentence
+    # The moments may have a power of their own.
+    assert re.search("with (its power )?1.2", found.sentence)
     assert [effect for effect, _ in found.waterfall] == ["airspeed_variation"]
 
 
@@ -261,21 +263,21 @@ def test_speeds_that_nothing_measured_come_before_a_smaller_effect_besides():
 
 
 @pytest.mark.study
-@pytest.mark.parametrize("off", [0.85, 0.9, 0.95, 1.03])
-def test_an_air_speed_that_is_not_quite_the_true_one_is_no_cause_and_is_said(off):
-    setup = Setup(maneuvers=6, speed_change=0.06, seed=53)
-    read = [
-        replace(
-            m,
-            channels={
-                **m.channels,
-                "airspeed": replace(m.channels["airspeed"], y=off * m.channels["airspeed"].y),
-            },
-        )
-        for m in fly(setup)
-    ]
+@pytest.mark.parametrize(
+    ("off", "height_m", "verdict"),
+    [(0.95, 0.0, "none"), (1.03, 0.0, "none"), (0.86, 3000.0, "none"), (0.86, 0.0, "unknown")],
+)
+def test_an_air_speed_that_is_not_quite_the_true_one_is_said_and_no_cause_where_thin_air_explains_it(
+    off, height_m, verdict
+):
+    read = []
+    for m in fly(Setup(maneuvers=6, speed_change=0.06, seed=53)):
+        true = m.channels["airspeed"]
+        height = replace(true, y=np.full(len(true.y), height_m))
+        indicated = replace(true, y=off * true.y)
+        read.append(replace(m, channels={**m.channels, "airspeed": indicated, "altitude": height}))
     found = diagnose(read, Aircraft())
-    assert found.verdict == "none"
+    assert found.verdict == verdict
     [said] = [note for note in found.notes if note.startswith("The motion shows a true air speed")]
     assert float(said.split()[7]) == pytest.approx(100.0 / off - 100.0, abs=0.7)
 

@@ -90,7 +90,7 @@ class Distance:
     statistic: float
     """Squared distance from derivatives that are right; chi square with six degrees of freedom."""
     log_right: float
-    """Log probability density, up to a constant, of the fitted derivatives where all of the file are right."""
+    """Log probability density, up to a constant, of the fitted derivatives where all of the file's hold."""
     log_wrong: float
     """The same where some are wrong, each independently of the others. Both cases are alike likely before."""
 

@@ -115,6 +115,12 @@ class JudgedAddition:
         return all(decision.holds != (decision.name == _HOLD_OUT) for decision in self.decisions)
 
     @property
+    def is_only_small(self) -> bool:
+        """Whether its size alone, or how little it changes, rejects the effect."""
+        refused = {decision.name for decision in self.decisions if not decision.holds}
+        return bool(refused) and refused <= {"size", "change"}
+
+    @property
     def least_gain(self) -> float:
         """Least value of ``gain``. Where the data leave a choice and the file decides, a positive gain is
         enough."""

@@ -117,7 +117,9 @@ def _is_law(
     """Return whether a law explains more than all named effects, and is not one of them in disguise."""
     held, disputed = stages[0].held_out, stages[-1].disputed
     # Effective sample sizes depend on the fit that gives them: both gains are computed with the same ones.
-    named = max(_gain_of_all(problem, stages, effective), 0.0 if disputed is None else disputed.gain)
+    # An effect of the catalogue that is too small to be named is no law either.
+    small = max((one.gain for one in stages[0].considered if one.is_only_small), default=0.0)
+    named = max(_gain_of_all(problem, stages, effective), 0.0 if disputed is None else disputed.gain, small)
     if not judged.is_accepted or judged.gain < max(CERTAIN, named + LEAST_GAIN):
         return False
     after, before = (np.sum(h.by_maneuver / held.mean_square, axis=1) for h in (judged.held_out, held))
