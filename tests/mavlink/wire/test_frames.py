@@ -67,7 +67,7 @@ def test_the_result_does_not_depend_on_where_the_stream_is_cut(data: st.DataObje
     assert sorted(order for c in pieces for order in c.order) == sorted(
         order for c in at_once for order in c.order
     )
-    assert scanner.statistics == whole.statistics
+    assert repr(scanner.statistics) == repr(whole.statistics)  # NaN equals nothing
 
 
 def test_a_stream_fed_byte_by_byte_gives_each_message_once() -> None:
