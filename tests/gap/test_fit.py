@@ -30,7 +30,8 @@ def settled():
 
 def test_a_fit_begun_at_its_optimum_is_flown_once_and_stays_there(settled):
     problem, fitted = settled
-    again = fit(problem, fitted.point, fitted.noise)
+    # The cost is rough, so that a search may end next to a step that promises a little more than a tenth.
+    again = fit(problem, fitted.point, fitted.noise, tolerance=0.2)
     assert again.iterations == 1
     assert again.cost == pytest.approx(fitted.cost, abs=0.1)
 

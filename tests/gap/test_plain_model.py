@@ -19,12 +19,13 @@ from advisor.gap.records.as_stamped import as_stamped
 from advisor.gap.records.prepare import prepare
 from advisor.gap.records.unmeasured_alpha import alpha_by_motion
 from advisor.gap.records.usable import outputs_of
-from advisor.gap.search.baseline import base_entries
+from advisor.gap.search.baseline import base_entries, fit_unfiltered
 from advisor.gap.simulator.layout import SPEED
 from advisor.oem.instruments import COMMAND_DELAY
 from tests.gap.generator import Setup, fly
 
 FLOWN = fly(Setup(maneuvers=3, seed=71))
+IMU = ("q", "a_z")
 DERIVATIVES = np.array([-4.0, 0.0, -0.3, -30.0, -4.0, -45.0])
 
 
@@ -53,6 +54,17 @@ def test_a_transport_delay_is_named_only_beyond_that_of_telemetry(delay_s, named
 def test_a_filter_that_a_parameter_states_is_taken_out_of_the_stamps():
     there, due = (outputs_of(changed(FLOWN[0], "q", delay_s=late))["q"] for late in (0.011, 0.0))
     assert due.t - there.t == pytest.approx(0.011)
+
+
+def test_a_filter_of_the_imu_that_no_parameter_states_is_part_of_the_plain_model():
+    late = []
+    for m in FLOWN:
+        own = {c: replace(m.channels[c], t=m.channels[c].t + 0.011) for c in IMU}
+        late.append(replace(m, channels={**m.channels, **own}))
+    there, due = (fit_unfiltered(prepare(flown, Aircraft()), Aircraft())[1] for flown in (late, FLOWN))
+    found = there.point.values[there.point.index_of("imu_late")]
+    assert found == pytest.approx(0.011, abs=1e-3)
+    assert there.noise == pytest.approx(due.noise, rel=0.01)
 
 
 def test_a_delay_that_the_examination_removed_is_put_back_once():

@@ -8,7 +8,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import changes_in, lasting, stated_in, with_known
-from advisor.gap.candidates.nuisances import LOOP, OWN_ALPHA, PROPELLER, TRUE_AIR_SPEED, filters, latency
+from advisor.gap.candidates.nuisances import IMU, LOOP, OWN_ALPHA, PROPELLER, TRUE_AIR_SPEED, filters, latency
 from advisor.gap.effects import EFFECTS
 from advisor.gap.fitting.fit import EffectFit, fit, rms_of
 from advisor.gap.fitting.neighbourhood import Neighbourhood
@@ -50,6 +50,8 @@ def everywhere(point: SearchPoint, flights: PreparedManeuvers, latency_s: float 
         own = filters(flights)
         late = late.with_effect(own, (0.0,) * len(own.names))
         late = late.with_effect(OWN_ALPHA, (0.0, 0.0))
+    elif {"alpha", "theta"} & set(flights.channels):
+        late = late.with_effect(IMU, (0.0,))
     if {"alpha", "a_z"} <= set(flights.channels):
         late = late.with_effect(TRUE_AIR_SPEED, (0.0,))
     return late.with_effect(PROPELLER, (0.0, 0.0, 0.0)) if flights.speed_measured else late
