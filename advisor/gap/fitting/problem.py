@@ -213,9 +213,9 @@ class EffectProblem:
         """
         stamps = flight.t_held if self.held else flight.t_u
         command = (flight.h, flight.n, stamps, flight.u, self.held, flight.u_trim)
-        delta, above = surfaces(LAYOUT, *command, p, LANES)
+        moved = surfaces(LAYOUT, *command, p)
         doses = np.zeros(len(p)) if doses is None else doses
-        return simulate(LAYOUT, flight.h, delta, above, flight.slow, disturbance, doses, flight.trim, p)
+        return simulate(LAYOUT, flight.h, *moved, LANES, flight.slow, disturbance, doses, flight.trim, p)
 
     def read_all(
         self, flight: PreparedManeuver, packs: FloatArray, p: FloatArray, flown: np.ndarray | None = None
