@@ -16,6 +16,7 @@ from advisor.gap.fitting.measure import file_model_of, whole_gap
 from advisor.gap.fitting.problem import EffectProblem, counts
 from advisor.gap.fitting.uncertainty import distance_from_file, effective_samples
 from advisor.gap.kit.variant import Variant
+from advisor.gap.noise.probes import Probe, probe_blocks
 from advisor.gap.noise.quiet import quiet_rms
 from advisor.gap.noise.stamps import stamp_power
 from advisor.gap.records.floor import stated_floor, tolerance_of
@@ -35,7 +36,12 @@ from advisor.gap.uncatalogued.airspeed_scale import airspeed_scale_of
 from advisor.gap.uncatalogued.law_search import Law, search_law
 from advisor.gap.uncatalogued.spectral_line import ringing_hz
 from advisor.gap.uncatalogued.sustained_oscillation import sustained_oscillation
-from advisor.gap.uncatalogued.unexplained import Unexplained, located, unexplained_residual
+from advisor.gap.uncatalogued.unexplained import (
+    Unexplained,
+    innovation_noise,
+    located,
+    unexplained_residual,
+)
 
 _HARDLY_DAMPED = 0.02
 """Numerical: damping ratio at which the search for a structural mode starts, of bare metal or a boom. A start
@@ -69,8 +75,9 @@ def explain(problem: EffectProblem, baseline: EffectFit, aircraft: Aircraft, pro
     air = sought.found
     first, last, tolerance = stages[0].fitted, stages[-1].fitted, tolerance_of(problem.flights)
     unexplained = None if law is None else law.unexplained
+    probes = probe_blocks(problem, last, innovation_noise(problem))
     if unexplained is None:
-        unexplained = _unexplained(problem, stages, tolerance, air is not None)
+        unexplained = _unexplained(problem, stages, tolerance, air is not None, probes)
     floor = _floor(problem, stages[-1], tolerance)
     # Without a law that was found, the model would fit its air speed to the law's motion.
     airspeed_scale = airspeed_scale_of(problem, last) if law is None else None
@@ -82,27 +89,32 @@ def explain(problem: EffectProblem, baseline: EffectFit, aircraft: Aircraft, pro
     speed = at_constant_speed(problem, last)
     return Evidence(
         problem, stages, unexplained, air, floor, file_model, with_effects, speed, airspeed_scale,
-        sought_air=sought, laws=laws.gains, sets=sets_in(searched, stages),
+        sought_air=sought, laws=laws.gains, sets=sets_in(searched, stages), probes=tuple(probes),
     )  # fmt: skip
 
 
 def _unexplained(
-    problem: EffectProblem, stages: Sequence[Stage], tolerance: FloatArray, moving_air: bool
+    problem: EffectProblem,
+    stages: Sequence[Stage],
+    tolerance: FloatArray,
+    moving_air: bool,
+    probes: Sequence[Probe],
 ) -> Unexplained | None:
     """Return a sustained oscillation, or else the unexplained residual of the last model.
 
-    ``tolerance`` and ``moving_air`` are defined in ``unexplained_residual``.
+    ``tolerance``, ``moving_air`` and ``probes`` are defined in ``unexplained_residual``.
     """
     first, last = stages[0].fitted, stages[-1].fitted
     found = sustained_oscillation(problem, first, last, tolerance)
     if found is not None:
         return found
-    found = unexplained_residual(problem, first, last, tolerance, moving_air)
+    found = unexplained_residual(problem, first, last, tolerance, moving_air, probes)
     slight = None if found is None else stages[-1].slight_in(found.block)
     if slight is None:
         return found
     # A known effect below its physical minimum explains the residual of its block.
-    return unexplained_residual(problem, first, slight.fitted, tolerance, moving_air)
+    probes = probe_blocks(problem, slight.fitted, innovation_noise(problem))
+    return unexplained_residual(problem, first, slight.fitted, tolerance, moving_air, probes)
 
 
 def _floor(problem: EffectProblem, last: Stage, tolerance: FloatArray) -> FloatArray:

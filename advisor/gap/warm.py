@@ -6,7 +6,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS
 from advisor.gap.foresight.plan import foresee_plan
 from advisor.gap.simulator.layout import ENTRIES, LAYOUT
-from advisor.gap.simulator.reading import differences, filtered, superposed
+from advisor.gap.simulator.reading import differences, filtered
 from advisor.gap.simulator.right_sides import MOTION, right_sides
 
 _ANY_AIRCRAFT = dict(zip(PARAMETERS, (0.0, -4.0, 0.0, -0.3, 0.0, -30.0, -4.0, -50.0), strict=True))
@@ -14,12 +14,11 @@ _ANY_AIRCRAFT = dict(zip(PARAMETERS, (0.0, -4.0, 0.0, -0.3, 0.0, -30.0, -4.0, -5
 
 
 def warm_up() -> None:
-    """Foresee a tiny plan, then compare, sum and filter some samples, so that every kernel is compiled."""
+    """Foresee a tiny plan, then compare and filter some samples, so that every kernel is compiled."""
     foresee_plan(Aircraft(model=_ANY_AIRCRAFT), ("pulse", "pulse"), 50.0, 1.0)
     right_sides(LAYOUT, np.zeros((2, len(ENTRIES))), np.ones(len(MOTION)), 1.0, np.ones(2), np.ones(2))
     none = np.zeros(2, dtype=np.int64)
     differences(np.ones((4, 2)), np.ones(4), none, np.ones(2))
-    superposed(np.ones((4, 4)), 0.005, np.ones(2), np.ones(2))
     filtered(np.ones((1, 4, 4, 2)), 0.005, none, np.asfortranarray(np.ones((2, 3))))
 
 

@@ -9,6 +9,8 @@ from typing import Any
 
 def plain(value: Any) -> Any:
     """Return a dataclass as a mapping, a sequence as a list, and an undefined number as None."""
+    if isinstance(value, float):  # most values; a look-up of abstract classes takes ten times as long
+        return float(value) if isfinite(value) else None
     if value is None or isinstance(value, str | bool | Integral):
         return value
     if isinstance(value, Real):

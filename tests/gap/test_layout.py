@@ -30,9 +30,9 @@ p = np.zeros((1, len(ENTRIES)))
 for place, name in enumerate(sorted(ENTRIES)):
     p[0, INDEX[name]] = 0.01 + 0.001 * place
 t, u, n = np.array([0.0, 0.02, 0.04]), np.array([0.0, 0.1, -0.1]), 20
-delta, above = surfaces(LAYOUT, 0.005, n, t, u, False, 0.0, p, LANES)
+moved = surfaces(LAYOUT, 0.005, n, t, u, False, 0.0, p)
 slow = np.full((7, n), 20.0)
-flown = simulate(LAYOUT, 0.005, delta, above, slow, np.zeros((4, 0)), np.zeros(1), np.ones(4), p)
+flown = simulate(LAYOUT, 0.005, *moved, LANES, slow, np.zeros((4, 0)), np.zeros(1), np.ones(4), p)
 print(ENTRIES[0], flown[0, :, :, 0].tolist())
 """
 
@@ -74,13 +74,13 @@ def test_a_flight_is_the_same_whatever_the_order_of_the_effects_numbers(tmp_path
 
 def _surface(layout: int, numbers: int) -> None:
     t, u = np.array([0.0, 0.1]), np.zeros(2)
-    surfaces(layout, 0.005, N, t, u, False, 0.0, np.zeros((1, numbers)), LANES)
+    surfaces(layout, 0.005, N, t, u, False, 0.0, np.zeros((1, numbers)))
 
 
 def _simulate(layout: int, numbers: int) -> np.ndarray:
-    still, none, trim = np.zeros((1, N, LANES)), np.zeros((4, 0)), np.array([0.0, 0.0, 20.0, 1.0])
-    slow = np.full((len(SLOW), N), 20.0)
-    return simulate(layout, 0.005, still, still, slow, none, np.zeros(1), trim, np.zeros((1, numbers)))
+    still, none, trim = np.zeros((1, 2, N)), np.zeros((4, 0)), np.array([0.0, 0.0, 20.0, 1.0])
+    slow, moved, p = np.full((len(SLOW), N), 20.0), np.zeros(1, dtype=np.int64), np.zeros((1, numbers))
+    return simulate(layout, 0.005, still, moved, LANES, slow, none, np.zeros(1), trim, p)
 
 
 def _fly(root: Path) -> tuple[str, str]:

@@ -7,6 +7,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.known import Effects
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.problem import EffectProblem
+from advisor.gap.noise.probes import Probe
 from advisor.gap.search.air import MovingAir, SoughtAir
 from advisor.gap.search.stage import FoundSets, Stage
 from advisor.gap.uncatalogued.airspeed_scale import AirspeedScale
@@ -42,6 +43,8 @@ class Evidence:
     """The search for moving air, whether or not air was found."""
     laws: Mapping[str, float] = field(default_factory=dict)
     """Gain of the best uncatalogued law of each block; log likelihood minus the price of its parameters."""
+    probes: tuple[Probe, ...] = ()
+    """Free disturbances in the residual of the last model, likeliest first."""
     sets: FoundSets = field(default_factory=dict)
     known: Effects = field(default_factory=dict)
     """Effects of the aircraft file."""

@@ -1,6 +1,6 @@
 """The measurements of a diagnosis as plain numbers, from which the columns of the evidence are made."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -14,7 +14,7 @@ from advisor.gap.fitting.holdout import HeldOut, mean_squares
 from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.fitting.problem import EffectProblem, counts
 from advisor.gap.fitting.uncertainty import distance_from_file, effective_samples
-from advisor.gap.noise.probes import probe_blocks
+from advisor.gap.noise.probes import Probe, probe_blocks
 from advisor.gap.search.acceptance import JudgedAddition, size_of
 from advisor.gap.search.score import difference, support_of
 from advisor.gap.search.screen import Screened, penalty
@@ -131,13 +131,15 @@ def measured(e: Evidence, kinematics: KinematicCheck) -> Measured:
     effective = effective_samples(problem, last.fitted.innovations) / np.maximum(counts(problem), 1.0)
     samples = np.array([[len(f.outputs[c].t) for c in problem.channels] for f in problem.flights.flights])
     number = float(np.sum(counts(problem)))
-    base = residual_of(problem, first.fitted)
+    left = residual_of(problem, last.fitted, e.probes)
     offset = kinematics.offset
     return Measured(
         channels=problem.channels,
         samples=samples * effective,
-        base=base,
-        last=base if len(e.stages) == 1 else residual_of(problem, last.fitted),
+        base=left if len(e.stages) == 1 else residual_of(
+            problem, first.fitted, probe_blocks(problem, first.fitted, noise)
+        ),
+        last=left,
         base_gap=whole_gap(first.held_out.mean_square, e.floor),
         base_held=_power(problem, first.held_out, noise),
         screened={s.variant.effect: _quick(first.fitted.cost, s, number) for s in first.screened},
@@ -178,7 +180,7 @@ def _offset_gap(e: Evidence, offset_rad: float) -> float:
     return float((offset_rad / e.floor[channels.index("alpha")]) ** 2) / len(channels)
 
 
-def residual_of(problem: EffectProblem, fitted: EffectFit) -> Residual:
+def residual_of(problem: EffectProblem, fitted: EffectFit, probes: Sequence[Probe]) -> Residual:
     """Return the residual of a fitted model, with a free disturbance tried in every block."""
     noise = _noise(problem, fitted)
     active, quiet = power_by_activity(problem, fitted.innovations)
@@ -188,7 +190,7 @@ def residual_of(problem: EffectProblem, fitted: EffectFit) -> Residual:
         by_maneuver=mean_squares(problem, fitted.innovations) / noise**2,
         of_peak=np.sqrt(np.maximum(beyond, 0.0)) / np.maximum(problem.flights.peaks, 1e-12),
         activity=active / np.maximum(quiet, 1e-300),
-        probes={p.block: (p.gain, p.explained) for p in probe_blocks(problem, fitted, noise)},
+        probes={p.block: (p.gain, p.explained) for p in probes},
     )
 
 

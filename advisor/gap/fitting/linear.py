@@ -12,7 +12,7 @@ from advisor.gap.fitting.own_prior import own_mean, own_precision
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.records.flights import PreparedManeuver
 from advisor.gap.simulator.layout import DISTURB_INPUT, INDEX, NUISANCES, OUTPUTS, SPEED
-from advisor.gap.simulator.reading import differences, lane, packed, superposed
+from advisor.gap.simulator.reading import differences, lane
 
 _DERIVATIVE_STEP = 1e-3
 """Numerical: finite-difference step of a derivative, relative to its size: far above rounding, far below
@@ -185,10 +185,13 @@ def measured_columns(
         own, speeds = seen[:, k + 1 :][:, : len(NUISANCES)], seen[:, k + 1 + len(NUISANCES) :]
         answers = np.hstack([own, _offsets(problem, flight), speeds @ flight.speed_error_factor])
     pulse = (lane(packs, len(rows) - 1) - lane(packs, 0)) / _PULSE
+    to_edges = _answers_to_edges(problem, flight, pulse, p)
     if edges is not None:
-        with_them = rows[[0, *(1 + k for k in times)]]
-        shared[:, times] += _turned(problem, flight, pulse, edges, with_them) / steps[times]
-    columns = np.hstack([answers, _answers_to_edges(problem, flight, pulse, p), shared, residual])
+        for time in times:
+            # Delay and latency shift the response to moved edges, a skew shifts its reading.
+            turned = _answers_to_edges(problem, flight, pulse, shifted[time]) - to_edges
+            shared[:, time] += turned @ edges / steps[time]
+    columns = np.hstack([answers, to_edges, shared, residual])
     return SensitivityColumns(columns, columns.shape[1] - k - 1)
 
 
@@ -272,48 +275,31 @@ def unit_pulse(flight: PreparedManeuver, where: int, lag_s: float = 0.0) -> Floa
 
 
 def linearise(
-    problem: EffectProblem, point: SearchPoint, near: Sequence[Linear] | None = None
+    problem: EffectProblem,
+    point: SearchPoint,
+    near: Sequence[Linear] | None = None,
+    shared: bool = True,
 ) -> tuple[Linear, ...]:
     """Return the linear model of all manoeuvres about a point.
 
     ``near`` is a linear model about a nearby point, whose sensitivities to nuisance parameters other than
-    edges are reused.
+    edges are reused. ``shared`` is False where no sensitivities to shared parameters are needed.
 
     Edges may lie far from their stamps, as in a command logged 25 times per second. A search that kept their
     sensitivities while a delay changes would go astray. It would end where its gradient vanishes and that of
     the cost does not.
     """
-    p, steps = problem.driving(point), shared_steps(point)
-    shifted = np.stack([problem.driving(moved) for moved in shifted_points(point, range(len(steps)))], axis=1)
-    times = [k for k, name in enumerate(point.names) if name in _TIMES]
+    p, steps = problem.driving(point), shared_steps(point) if shared else np.empty(0)
+    there = shifted_points(point, range(len(steps)))
+    shifted = np.array([problem.driving(moved) for moved in there]).reshape(len(steps), *p.shape)
+    times = [k for k, name in enumerate(point.names) if shared and name in _TIMES]
     blocks = []
     for i, flight in enumerate(problem.flights.flights):
         moved = None if point.edges is None or not times else point.edges[i]
         known = None if near is None else near[i].measured.own[:, : near[i].m - len(flight.edges)]
-        measured = measured_columns(problem, i, p[i], shifted[i], steps, moved, times, known)
+        measured = measured_columns(problem, i, p[i], shifted[:, i], steps, moved, times, known)
         prior, departure = _own_prior(problem, flight, measured.m), np.zeros(measured.m)
         departure[: len(NUISANCES)] = own_mean(flight) - point.own[i]
         columns = problem.innovations(i, measured.columns)
         blocks.append(Linear(columns, measured.m, prior, departure, measured, tuple(problem.rows(flight))))
     return tuple(blocks)
-
-
-def _turned(
-    problem: EffectProblem, flight: PreparedManeuver, pulse: FloatArray, edges: FloatArray, rows: FloatArray
-) -> FloatArray:
-    """Return how the response to moved edges changes from the first of ``rows`` to each other, shape (rows, k
-    - 1).
-
-    ``rows`` has shape (k, entries). The first row holds the driving numbers of the point; each other row is
-    that row with one time changed by its finite-difference step. Delay and latency shift the response, a skew
-    only shifts its reading.
-    """
-    late = np.round(rows[:, INDEX["delay_s"]] + rows[:, INDEX["latency_s"]], 9).tolist()
-    places = {seconds: k for k, seconds in enumerate(dict.fromkeys(late))}
-    courses = []
-    for seconds in places:
-        delays, areas = _pulses(problem, flight, rows[late.index(seconds)])
-        parts = [superposed(pulse, flight.h, begin, areas * edges) for begin in delays]
-        courses.append(np.asarray(sum(parts)))
-    read = problem.read_all(flight, packed(courses), rows, np.array([places[seconds] for seconds in late]))
-    return read[:, 1:] - read[:, :1]

@@ -19,7 +19,7 @@ from advisor.gap.kit.variant import Values, Variant
 from advisor.gap.records.flights import PreparedManeuver, PreparedManeuvers
 from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, FILTER, INDEX, LAYOUT, NUISANCES, SKEWS
 from advisor.gap.simulator.pack import LANES
-from advisor.gap.simulator.reading import delayed, filtered, lane, packed, read_rows
+from advisor.gap.simulator.reading import filtered, lane, packed, read_late, read_rows
 from advisor.gap.simulator.simulate import simulate
 from advisor.gap.simulator.surface import surfaces
 
@@ -213,9 +213,9 @@ class EffectProblem:
         """
         stamps = flight.t_held if self.held else flight.t_u
         command = (flight.h, flight.n, stamps, flight.u, self.held, flight.u_trim)
-        delta, above = surfaces(LAYOUT, *command, p, LANES)
+        moved = surfaces(LAYOUT, *command, p)
         doses = np.zeros(len(p)) if doses is None else doses
-        return simulate(LAYOUT, flight.h, delta, above, flight.slow, disturbance, doses, flight.trim, p)
+        return simulate(LAYOUT, flight.h, *moved, LANES, flight.slow, disturbance, doses, flight.trim, p)
 
     def read_all(
         self, flight: PreparedManeuver, packs: FloatArray, p: FloatArray, flown: np.ndarray | None = None
@@ -259,7 +259,13 @@ class EffectProblem:
         self, flight: PreparedManeuver, response: FloatArray, delays: FloatArray, p: FloatArray
     ) -> FloatArray:
         """Return one series delayed by each of ``delays``, read at the channels' stamps, shape (rows, k)."""
-        return self.read_all(flight, delayed(response, flight.h, delays), np.tile(p, (len(delays), 1)))
+        if np.any(p[_FILTER_ENTRIES[:1]] > 0.0):
+            # Nothing comes before the response.
+            begun = packed([np.pad(response, ((0, 0), (1, 0)))])
+            filters = p[None, _FILTER_ENTRIES]
+            response = lane(filtered(begun, flight.h, np.zeros(1, np.int64), filters)[:, 1:], 0)
+        skews = p[_SKEW_ENTRIES]
+        return np.asarray(read_late(response, flight.h, flight.stamps, flight.output, skews, delays))
 
     def read(self, flight: PreparedManeuver, grid: FloatArray, p: FloatArray) -> FloatArray:
         """Return one series on the grid, read at the channels' stamps, shape (rows,)."""

@@ -54,7 +54,7 @@ def own_refitted(problem: EffectProblem, point: SearchPoint, noise: FloatArray) 
     for start in (point.own, np.array([_steady(flight) for flight in flights])):
         own = np.array([np.clip(x, *ends) for x, ends in zip(start, ranges, strict=True)])
         for _ in range(_ROUNDS):
-            linear = linearise(problem, replace(point, own=own, edges=None))
+            linear = linearise(problem, replace(point, own=own, edges=None), shared=False)
             for i, block in enumerate(linear):
                 here, step = _refitted(problem, block, own[i], ranges[i], 1.0 / noise)
                 known = best[i]

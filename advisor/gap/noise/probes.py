@@ -76,39 +76,56 @@ def probe_blocks(
     shown = {*problem.channels, *(["air"] if problem.flights.shows_air else [])}
     needed = {**SENSOR_CHANNELS, "air": "air"}
     there = [block for block in wanted if needed.get(block, "q") in shown]
-    return sorted((_probe(problem, fitted, noise, block) for block in there), key=lambda p: -p.gain)
+    probed = [_probed(problem, fitted, noise, i) for i in range(len(problem.flights))]
+    return sorted((_probe(problem, probed, block) for block in there), key=lambda p: -p.gain)
 
 
-def _probe(problem: EffectProblem, fitted: EffectFit, noise: FloatArray, block: str) -> Probe:
-    weights = 1.0 / noise
-    p = problem.driving(fitted.point)
-    spectra, powers, unit = [], [], None
-    total_before = 0.0
-    for i, flight in enumerate(problem.flights.flights):
-        w = row_weights(problem, i, weights)
-        B = problem.innovations(i, disturbance_columns(problem, flight, p[i], block)) * w[:, None]
-        if unit is None:
-            unit = float(np.sqrt(np.mean(np.sum(B**2, axis=1)))) + 1e-300
-        B = B / unit
-        own = fitted.linear[i].own
-        A, r = own * w[:, None], fitted.innovations[i] * w
-        chol = factor(A, fitted.linear[i].prior)
-        AB, Ar = A.T @ B, A.T @ r
-        gram = B.T @ B - AB.T @ solved(chol, AB)
+@dataclass(frozen=True)
+class _Probed:
+    """One manoeuvre, with what is equal for the disturbances of all blocks."""
+
+    i: int
+    p: FloatArray
+    """Shape (entries,): driving numbers."""
+    weights: FloatArray
+    own: FloatArray
+    """Shape (rows, m): weighted sensitivities to the nuisance parameters."""
+    residual: FloatArray
+    """Shape (rows,): weighted residual."""
+    unabsorbed: FloatArray
+    """Shape (rows,): the same without the part that the nuisance parameters absorb."""
+    chol: FloatArray
+    colour: FloatArray
+
+
+def _probed(problem: EffectProblem, fitted: EffectFit, noise: FloatArray, i: int) -> _Probed:
+    w, block = row_weights(problem, i, 1.0 / noise), fitted.linear[i]
+    own, residual = block.own * w[:, None], fitted.innovations[i] * w
+    chol = factor(own, block.prior)
+    unabsorbed = residual - own @ solved(chol, own.T @ residual)
+    p = problem.driving(fitted.point)[i]
+    return _Probed(i, p, w, own, residual, unabsorbed, chol, _colour(problem.flights.flights[i]))
+
+
+def _probe(problem: EffectProblem, probed: Sequence[_Probed], block: str) -> Probe:
+    spectra, powers, unit = [], [], 0.0
+    for one in probed:
+        at_knots = _answers_at_knots(problem, problem.flights.flights[one.i], one.p, block)
+        # The knots are coloured last: they are fewer than the rows.
+        B, C = problem.innovations(one.i, at_knots) * one.weights[:, None], one.colour
+        AB, BB = one.own.T @ B, B.T @ B
+        unit = unit or float(np.sqrt(np.sum(C * (BB @ C)) / len(B))) + 1e-300
+        gram = C.T @ (BB - AB.T @ solved(one.chol, AB)) @ C / unit**2
         value, vector = np.linalg.eigh((gram + gram.T) / 2.0)
         spectra.append(np.maximum(value, 0.0))
-        powers.append((vector.T @ (B.T @ r - AB.T @ solved(chol, Ar))) ** 2)
-        total_before += float(r @ r)
-    value, power = np.concatenate(spectra), np.concatenate(powers)
-    gains, taken = [], []
-    for size in _SIZES:
-        shrunk = 1.0 / (1.0 / size**2 + value)
-        gains.append(0.5 * float(np.sum(power * shrunk - np.log1p(size**2 * value))))
-        taken.append(float(np.sum(power * shrunk * (2.0 - value * shrunk))))
+        powers.append((vector.T @ (C.T @ (B.T @ one.unabsorbed)) / unit) ** 2)
+    value, power, squares = np.concatenate(spectra), np.concatenate(powers), _SIZES[:, None] ** 2
+    shrunk = 1.0 / (1.0 / squares + value)
+    gains = 0.5 * np.sum(power * shrunk - np.log1p(squares * value), axis=1)
     best = int(np.argmax(gains))
-    assert unit is not None
-    explained = min(taken[best] / max(total_before, 1e-300), 1.0)
-    return Probe(block, gains[best], _SIZES[best] / unit, explained)
+    taken = float(np.sum(power * shrunk[best] * (2.0 - value * shrunk[best])))
+    total = float(sum(one.residual @ one.residual for one in probed))
+    return Probe(block, float(gains[best]), _SIZES[best] / unit, min(taken / max(total, 1e-300), 1.0))
 
 
 def disturbance_columns(
@@ -118,6 +135,13 @@ def disturbance_columns(
 
     A gust is read by a vane, not by an estimate of α from inertial sensors.
     """
+    return np.asarray(_answers_at_knots(problem, flight, p, block) @ _colour(flight))
+
+
+def _answers_at_knots(
+    problem: EffectProblem, flight: PreparedManeuver, p: FloatArray, block: str
+) -> FloatArray:
+    """Return the response of all channels to a disturbance at one knot after the other, shape (rows, k)."""
     knots = np.arange(0.0, flight.duration_s, KNOTS_S)
     hat = round(KNOTS_S / flight.h)
     shape = np.concatenate([np.arange(1, hat + 1), np.arange(hat - 1, 0, -1)]) / hat
@@ -132,8 +156,7 @@ def disturbance_columns(
         if block == "air" and problem.flights.alpha_is_derived:
             response[OUTPUTS.index("alpha"), : len(shape)] -= shape * (1.0 + p[INDEX["alpha_scale"]])
     # The rising side of the hat function lies before its knot.
-    columns = problem.read_delayed(flight, response, knots[1:] - KNOTS_S, p)
-    return np.asarray(columns @ _colour(flight))
+    return problem.read_delayed(flight, response, knots[1:] - KNOTS_S, p)
 
 
 @dataclass(frozen=True)

@@ -78,40 +78,40 @@ def differences(read: FloatArray, measured: FloatArray, base: np.ndarray, step: 
 
 
 @kernel(error_model="numpy")
-def delayed(response: FloatArray, h: float, delays: FloatArray) -> FloatArray:
-    """Return a response, shape (4, n + 1), delayed by each of ``delays`` in s, as one pack for ``read_rows``.
-
-    Between two points of the grid the response is interpolated linearly.
-    """
-    n = response.shape[1]
-    out = np.zeros((1, n, 4, len(delays)))
-    steps = np.maximum(delays, 0.0) / h
-    for i in range(n):
-        for j in range(len(delays)):
-            k = i - int(steps[j])
-            part = steps[j] - int(steps[j])
-            for c in range(4):
-                if k >= 0:
-                    out[0, i, c, j] = (1.0 - part) * response[c, k]
-                if k > 0:
-                    out[0, i, c, j] += part * response[c, k - 1]
-    return out
+def _late(response: FloatArray, c: int, k: int, part: float) -> float:
+    """Return an output ``k`` points and a ``part`` of a step after the start of a response; 0 before it."""
+    here = response[c, k] if k >= 0 else 0.0
+    before = response[c, k - 1] if k > 0 else 0.0
+    return float((1.0 - part) * here + part * before)
 
 
 @kernel(error_model="numpy")
-def superposed(response: FloatArray, h: float, delays: FloatArray, weights: FloatArray) -> FloatArray:
-    """Return the weighted sum of a response delayed by each of ``delays``, shape (4, n + 1)."""
-    n = response.shape[1]
-    out = np.zeros((4, n))
-    for j in range(len(delays)):
-        steps = max(delays[j], 0.0) / h
-        first = int(steps)
-        part = steps - first
-        for c in range(4):
-            for i in range(first, n):
-                before = response[c, i - first - 1] if i > first else 0.0
-                out[c, i] += weights[j] * ((1.0 - part) * response[c, i - first] + part * before)
-    return out
+def read_late(
+    response: FloatArray,
+    h: float,
+    stamps: FloatArray,
+    output: np.ndarray,
+    skews: FloatArray,
+    delays: FloatArray,
+) -> FloatArray:
+    """Return a response, shape (4, n + 1), delayed by each of ``delays`` in s and read like ``read_rows``.
+
+    The delayed response is interpolated linearly to the points of the grid. ``skews`` has shape (4,), the
+    result shape (rows, k).
+    """
+    last = response.shape[1] - 2
+    y = np.empty((len(stamps), len(delays)))
+    steps = np.maximum(delays, 0.0) / h
+    for i in range(len(stamps)):
+        c = output[i]
+        x = (stamps[i] - skews[c]) / h
+        at = min(max(int(x), 0), last)
+        part = min(max(x - at, 0.0), 1.0)
+        for j in range(len(delays)):
+            first = int(steps[j])
+            here = _late(response, c, at - first, steps[j] - first)
+            y[i, j] = here + part * (_late(response, c, at + 1 - first, steps[j] - first) - here)
+    return y
 
 
 @kernel(error_model="numpy")

@@ -40,8 +40,9 @@ from advisor.process.compiled import kernel
 def simulate(
     layout: int,
     h: float,
-    delta: FloatArray,
-    above: FloatArray,
+    deflections: FloatArray,
+    moved: np.ndarray,
+    lanes: int,
     slow: FloatArray,
     disturbance: FloatArray,
     doses: FloatArray,
@@ -56,10 +57,10 @@ def simulate(
         ``layout.LAYOUT``, which says how ``p`` and the other arrays are laid out.
     h
         Step in s.
-    delta
-        Shape (packs, n, LANES). Mean deflection over each step relative to trim, from ``surfaces``.
-    above
-        Shape (packs, n, LANES). Mean deflection minus the deflection at the start of the step.
+    deflections, moved
+        Result of ``surfaces``.
+    lanes
+        ``LANES``, as in ``advisor.gap.simulator.step``.
     slow
         Shape (7, n). Speed (m/s), a_x (m/s²), bank (rad), throttle relative to its start, height (m), thrust
         minus drag over weight relative to its mean, and r sin φ (rad/s), which a turn subtracts from θ̇.
@@ -84,9 +85,10 @@ def simulate(
     """
     if layout != LAYOUT or p.shape[1] != len(AT):
         raise ValueError(OTHER_LAYOUT)
-    packs, n, lanes = delta.shape
+    packs, n = (len(p) + LANES - 1) // LANES, deflections.shape[2]
     out = np.empty((packs, n + 1, len(READ), LANES))
-    x = np.empty((ROWS, LANES))
+    x, which = np.empty((ROWS, LANES)), np.empty(LANES, dtype=np.int64)
+    delta, above = np.empty(LANES), np.empty(LANES)
     alpha_trim, theta_from, reference = trim[TRIM.alpha], trim[TRIM.theta], trim[TRIM.reference]
     scaled = trim[TRIM.scaled] > 0.5
     disturbed = disturbance.shape[1] == n
@@ -96,6 +98,7 @@ def simulate(
         low, stalls, powers, separates = False, False, False, False
         for m in range(LANES):
             j = min(k * LANES + m, len(p) - 1)
+            which[m] = moved[j]
             begin(x, m, p[j], doses[j], h, slow[SLOW.speed, 0], trim)
             low, stalls = low or p[j, AT.scale_m] > 0.0, stalls or p[j, AT.stall_sharpness] > 0.0
             powers = powers or p[j, AT.speed_power] != 0.0 or p[j, AT.moment_power] != 0.0
@@ -108,8 +111,10 @@ def simulate(
             take_speed(x, lanes, slow[SLOW.speed, j], 2.0 * j / n - 1.0, reference, scaled, powers)
             if low:
                 near_ground(x, lanes, slow[SLOW.height, j])
+            for m in range(LANES):
+                delta[m], above[m] = deflections[which[m], 0, j], deflections[which[m], 1, j]
             forced = (d_delta, d_force, d_moment)
-            hold_over_step(x, lanes, delta[k, j], above[k, j], slow[:, j], level[j], forced)
+            hold_over_step(x, lanes, delta, above, slow[:, j], level[j], forced)
             # The midpoint rule: with a step of a hundredth of the period, its error is far below that of any
             # derivative.
             for stage in range(2):

@@ -93,7 +93,7 @@ def hold_over_step(
     Parameters
     ----------
     delta, above
-        Shape (LANES,): rows of the arguments of ``simulate``.
+        Shape (LANES,): mean deflection over the step relative to trim, and that minus the one at its start.
     slow
         Shape (7,): the slow inputs of the step.
     level

@@ -20,39 +20,30 @@ _UNLIMITED = 1e6
 
 @kernel()
 def surfaces(
-    layout: int, h: float, n: int, t_u: FloatArray, u: FloatArray, held: bool, trim: float, p: FloatArray,
-    lanes: int,
-) -> tuple[FloatArray, FloatArray]:  # fmt: skip
-    """Return the deflections for every row of ``p``, shape (k, entries), in the lanes of ``simulate``.
+    layout: int, h: float, n: int, t_u: FloatArray, u: FloatArray, held: bool, trim: float, p: FloatArray
+) -> tuple[FloatArray, np.ndarray]:
+    """Return the different deflections among the rows of ``p``, shape (k, entries), and which each row has.
 
-    Both arrays have shape (packs, n, lanes): the mean over each step, and that mean minus the deflection at
-    the start of the step. Rows that differ in no entry of the surface share a deflection. Spare lanes repeat
-    the last row. Raises ValueError where the function was compiled for another ``layout``
-    (``layout.LAYOUT``).
+    Deflections have shape (different, 2, n): the mean over each step, and that mean minus the deflection at
+    the start of the step. The second result has shape (k,), int64. Raises ValueError where the function was
+    compiled for another ``layout`` (``layout.LAYOUT``).
     """
     if layout != LAYOUT or p.shape[1] != len(AT):
         raise ValueError(OTHER_LAYOUT)
-    packs = (len(p) + lanes - 1) // lanes
     different = np.empty((len(p), 2, n))
-    which = np.empty(packs * lanes, dtype=np.int64)
+    which, first = np.empty(len(p), dtype=np.int64), np.empty(len(p), dtype=np.int64)
     count = 0
-    for j in range(packs * lanes):
-        if j > 0 and (j >= len(p) or not _differ(p[j], p[j - 1])):
-            which[j] = which[j - 1]
-        elif j > 0 and not _differ(p[j], p[0]):
-            which[j] = 0
-        else:
+    for j in range(len(p)):
+        found = 0
+        while found < count and _differ(p[j], p[first[found]]):
+            found += 1
+        which[j] = found
+        if found == count:
             different[count, 0] = surface(h, n, t_u, u, held, trim, p[j])
             different[count, 1] = above_start(different[count, 0])
-            which[j] = count
+            first[count] = j
             count += 1
-    delta, above = np.empty((packs, n, lanes)), np.empty((packs, n, lanes))
-    for pack in range(packs):
-        for i in range(n):
-            for lane in range(lanes):
-                delta[pack, i, lane] = different[which[pack * lanes + lane], 0, i]
-                above[pack, i, lane] = different[which[pack * lanes + lane], 1, i]
-    return delta, above
+    return different, which
 
 
 @kernel()

@@ -64,6 +64,7 @@ def unexplained_residual(
     last: EffectFit,
     tolerance: FloatArray,
     moving_air: bool,
+    probes: Sequence[Probe],
 ) -> Unexplained | None:
     """Return the residual of the last model, if it is more than noise.
 
@@ -75,6 +76,8 @@ def unexplained_residual(
         Shape (channels,): assumed noise of channels that were filtered before storage, else 0.
     moving_air
         Whether the air moves. Its filter is then a low-order approximation.
+    probes
+        Free disturbances in the residual of ``last``, likeliest first.
     """
     noise = innovation_noise(problem)
     powers = (rms_of(problem, last.innovations) / noise) ** 2
@@ -86,7 +89,6 @@ def unexplained_residual(
     nothing = not np.any(telling)
     if nothing and jumping is None:
         return None
-    probes = probe_blocks(problem, last, noise)
     best = probes[0]
     # A residual that a Gauss-Markov disturbance describes did not jump.
     if jumping is not None and best.explained < _LEAST_SHARE:
