@@ -92,7 +92,8 @@ class Distance:
     log_right: float
     """Log probability density, up to a constant, of the fitted derivatives where all of the file's hold."""
     log_wrong: float
-    """The same where some are wrong, each independently of the others. Both cases are alike likely before."""
+    """Log probability density where some are wrong, each independently of the others. Both cases are alike
+    likely before."""
 
     @property
     def log_odds(self) -> float:
