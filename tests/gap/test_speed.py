@@ -255,11 +255,11 @@ def test_speeds_that_nothing_measured_come_before_numbers_that_are_a_little_off_
 
 @pytest.mark.study
 def test_speeds_that_nothing_measured_come_before_a_smaller_effect_besides():
-    flown = without_instrument(fly(Setup(maneuvers=8, speed_change=0.25, switches={"delay": 0.04}, seed=54)))
+    flown = without_instrument(fly(Setup(maneuvers=8, speed_change=0.25, switches={"delay": 0.06}, seed=54)))
     found = diagnose(flown, Aircraft(airspeed_m_s=UAV.speed))
     present = {c.effect: c.parameters for c in found.causes if c.present}
     assert [*present][:2] == ["airspeed_variation", "transport_delay"]
-    assert present["transport_delay"]["delay_s"].value == pytest.approx(0.04, abs=0.004)
+    assert present["transport_delay"]["delay_s"].value == pytest.approx(0.06, abs=0.004)
 
 
 @pytest.mark.study
