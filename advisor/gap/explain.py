@@ -36,12 +36,7 @@ from advisor.gap.uncatalogued.airspeed_scale import airspeed_scale_of
 from advisor.gap.uncatalogued.law_search import Law, search_law
 from advisor.gap.uncatalogued.spectral_line import ringing_hz
 from advisor.gap.uncatalogued.sustained_oscillation import sustained_oscillation
-from advisor.gap.uncatalogued.unexplained import (
-    Unexplained,
-    innovation_noise,
-    located,
-    unexplained_residual,
-)
+from advisor.gap.uncatalogued.unexplained import Unexplained, innovation_noise, located, unexplained_residual
 
 _HARDLY_DAMPED = 0.02
 """Numerical: damping ratio at which the search for a structural mode starts, of bare metal or a boom. A start
@@ -94,27 +89,23 @@ def explain(problem: EffectProblem, baseline: EffectFit, aircraft: Aircraft, pro
 
 
 def _unexplained(
-    problem: EffectProblem,
-    stages: Sequence[Stage],
-    tolerance: FloatArray,
-    moving_air: bool,
-    probes: Sequence[Probe],
+    problem: EffectProblem, stages: Sequence[Stage], tolerance: FloatArray, air: bool, probes: Sequence[Probe]
 ) -> Unexplained | None:
     """Return a sustained oscillation, or else the unexplained residual of the last model.
 
-    ``tolerance``, ``moving_air`` and ``probes`` are defined in ``unexplained_residual``.
+    ``tolerance``, ``air`` (``moving_air``) and ``probes`` are defined in ``unexplained_residual``.
     """
     first, last = stages[0].fitted, stages[-1].fitted
     found = sustained_oscillation(problem, first, last, tolerance)
     if found is not None:
         return found
-    found = unexplained_residual(problem, first, last, tolerance, moving_air, probes)
+    found = unexplained_residual(problem, first, last, tolerance, air, probes)
     slight = None if found is None else stages[-1].slight_in(found.block)
     if slight is None:
         return found
     # A known effect below its physical minimum explains the residual of its block.
     probes = probe_blocks(problem, slight.fitted, innovation_noise(problem))
-    return unexplained_residual(problem, first, slight.fitted, tolerance, moving_air, probes)
+    return unexplained_residual(problem, first, slight.fitted, tolerance, air, probes)
 
 
 def _floor(problem: EffectProblem, last: Stage, tolerance: FloatArray) -> FloatArray:

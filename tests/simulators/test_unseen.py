@@ -81,9 +81,9 @@ def test_a_model_that_does_not_fit_gets_no_initial_state_that_no_aircraft_had(mo
     simulated = []
     linearise = refit.linearise
 
-    def seen(problem, point):
+    def seen(problem, point, **how):
         simulated.append(point.own)
-        return linearise(problem, point)
+        return linearise(problem, point, **how)
 
     monkeypatch.setattr(refit, "linearise", seen)
     refit.own_refitted(problem, point, problem.flights.white)

@@ -136,9 +136,7 @@ def measured(e: Evidence, kinematics: KinematicCheck) -> Measured:
     return Measured(
         channels=problem.channels,
         samples=samples * effective,
-        base=left if len(e.stages) == 1 else residual_of(
-            problem, first.fitted, probe_blocks(problem, first.fitted, noise)
-        ),
+        base=left if len(e.stages) == 1 else residual_of(problem, first.fitted),
         last=left,
         base_gap=whole_gap(first.held_out.mean_square, e.floor),
         base_held=_power(problem, first.held_out, noise),
@@ -180,7 +178,7 @@ def _offset_gap(e: Evidence, offset_rad: float) -> float:
     return float((offset_rad / e.floor[channels.index("alpha")]) ** 2) / len(channels)
 
 
-def residual_of(problem: EffectProblem, fitted: EffectFit, probes: Sequence[Probe]) -> Residual:
+def residual_of(problem: EffectProblem, fitted: EffectFit, probes: Sequence[Probe] = ()) -> Residual:
     """Return the residual of a fitted model, with a free disturbance tried in every block."""
     noise = _noise(problem, fitted)
     active, quiet = power_by_activity(problem, fitted.innovations)
@@ -190,7 +188,7 @@ def residual_of(problem: EffectProblem, fitted: EffectFit, probes: Sequence[Prob
         by_maneuver=mean_squares(problem, fitted.innovations) / noise**2,
         of_peak=np.sqrt(np.maximum(beyond, 0.0)) / np.maximum(problem.flights.peaks, 1e-12),
         activity=active / np.maximum(quiet, 1e-300),
-        probes={p.block: (p.gain, p.explained) for p in probes},
+        probes={p.block: (p.gain, p.explained) for p in probes or probe_blocks(problem, fitted, noise)},
     )
 
 

@@ -171,19 +171,19 @@ def measured_columns(
     flight, k = problem.flights.flights[i], len(steps)
     names = () if answers is not None else (*NUISANCES, *_SPEEDS[: len(flight.speed_error_factor)])
     moves = np.array([*_OWN_STEPS, *[_SPEED_STEP * flight.slow[SPEED, 0]] * len(_SPEEDS)])[: len(names)]
-    others = np.tile(p, (len(names), 1))
-    others[range(len(names)), [INDEX[name] for name in names]] += moves
-    rows = np.vstack([p, shifted, others, p])
+    rows = np.repeat(p[None], 1 + k + len(names) + 1, axis=0)
+    rows[1 : k + 1] = shifted
+    rows[range(k + 1, len(rows) - 1), [INDEX[name] for name in names]] += moves
     doses = np.zeros(len(rows))
     doses[-1] = _PULSE
     packs = problem.fly_all(flight, rows, unit_pulse(flight, DISTURB_INPUT, p[INDEX["lag_s"]]), doses)
     read = problem.read_all(flight, packs, rows[:-1])
     moved = np.concatenate([[0.0], steps, moves])
     seen = differences(read, problem.measured(flight), np.zeros(len(moved), dtype=np.int64), moved)
-    residual, shared = seen[:, :1], seen[:, 1 : k + 1]
-    if answers is None:
+    residual, shared, known = seen[:, :1], seen[:, 1 : k + 1], answers
+    if known is None:
         own, speeds = seen[:, k + 1 :][:, : len(NUISANCES)], seen[:, k + 1 + len(NUISANCES) :]
-        answers = np.hstack([own, _offsets(problem, flight), speeds @ flight.speed_error_factor])
+        known = np.hstack([own, _offsets(problem, flight), speeds @ flight.speed_error_factor])
     pulse = (lane(packs, len(rows) - 1) - lane(packs, 0)) / _PULSE
     to_edges = _answers_to_edges(problem, flight, pulse, p)
     if edges is not None:
@@ -191,7 +191,7 @@ def measured_columns(
             # Delay and latency shift the response to moved edges, a skew shifts its reading.
             turned = _answers_to_edges(problem, flight, pulse, shifted[time]) - to_edges
             shared[:, time] += turned @ edges / steps[time]
-    columns = np.hstack([answers, to_edges, shared, residual])
+    columns = np.hstack([known, to_edges, shared, residual])
     return SensitivityColumns(columns, columns.shape[1] - k - 1)
 
 
@@ -275,10 +275,7 @@ def unit_pulse(flight: PreparedManeuver, where: int, lag_s: float = 0.0) -> Floa
 
 
 def linearise(
-    problem: EffectProblem,
-    point: SearchPoint,
-    near: Sequence[Linear] | None = None,
-    shared: bool = True,
+    problem: EffectProblem, point: SearchPoint, near: Sequence[Linear] | None = None, shared: bool = True
 ) -> tuple[Linear, ...]:
     """Return the linear model of all manoeuvres about a point.
 

@@ -76,55 +76,45 @@ def probe_blocks(
     shown = {*problem.channels, *(["air"] if problem.flights.shows_air else [])}
     needed = {**SENSOR_CHANNELS, "air": "air"}
     there = [block for block in wanted if needed.get(block, "q") in shown]
-    probed = [_probed(problem, fitted, noise, i) for i in range(len(problem.flights))]
-    return sorted((_probe(problem, probed, block) for block in there), key=lambda p: -p.gain)
+    spectra: dict[str, list[FloatArray]] = {block: [] for block in there}
+    powers: dict[str, list[FloatArray]] = {block: [] for block in there}
+    units: dict[str, float] = {}
+    p, total = problem.driving(fitted.point), 0.0
+    for i, flight in enumerate(problem.flights.flights):
+        w, colour = row_weights(problem, i, 1.0 / noise), _colour(flight)
+        A, r = fitted.linear[i].own * w[:, None], fitted.innovations[i] * w
+        chol = factor(A, fitted.linear[i].prior)
+        unabsorbed = r - A @ solved(chol, A.T @ r)
+        total += float(r @ r)
+        for block in there:
+            B = problem.innovations(i, _answers_at_knots(problem, flight, p[i], block)) * w[:, None]
+            AB, BB = A.T @ B, B.T @ B
+            # The knots are coloured last: they are fewer than the rows.
+            unit = units.setdefault(block, float(np.sqrt(np.sum(colour * (BB @ colour)) / len(B))) + 1e-300)
+            gram = colour.T @ (BB - AB.T @ solved(chol, AB)) @ colour / unit**2
+            value, vector = np.linalg.eigh((gram + gram.T) / 2.0)
+            spectra[block].append(np.maximum(value, 0.0))
+            powers[block].append((vector.T @ (colour.T @ (B.T @ unabsorbed)) / unit) ** 2)
+    found = (_likeliest(b, np.hstack(spectra[b]), np.hstack(powers[b]), units[b], total) for b in there)
+    return sorted(found, key=lambda p: -p.gain)
 
 
-@dataclass(frozen=True)
-class _Probed:
-    """One manoeuvre, with what is equal for the disturbances of all blocks."""
+def _likeliest(block: str, value: FloatArray, power: FloatArray, unit: float, total: float) -> Probe:
+    """Return the disturbance of a block at the likeliest of its sizes.
 
-    i: int
-    p: FloatArray
-    """Shape (entries,): driving numbers."""
-    weights: FloatArray
-    own: FloatArray
-    """Shape (rows, m): weighted sensitivities to the nuisance parameters."""
-    residual: FloatArray
-    """Shape (rows,): weighted residual."""
-    unabsorbed: FloatArray
-    """Shape (rows,): the same without the part that the nuisance parameters absorb."""
-    chol: FloatArray
-    colour: FloatArray
-
-
-def _probed(problem: EffectProblem, fitted: EffectFit, noise: FloatArray, i: int) -> _Probed:
-    w, block = row_weights(problem, i, 1.0 / noise), fitted.linear[i]
-    own, residual = block.own * w[:, None], fitted.innovations[i] * w
-    chol = factor(own, block.prior)
-    unabsorbed = residual - own @ solved(chol, own.T @ residual)
-    p = problem.driving(fitted.point)[i]
-    return _Probed(i, p, w, own, residual, unabsorbed, chol, _colour(problem.flights.flights[i]))
-
-
-def _probe(problem: EffectProblem, probed: Sequence[_Probed], block: str) -> Probe:
-    spectra, powers, unit = [], [], 0.0
-    for one in probed:
-        at_knots = _answers_at_knots(problem, problem.flights.flights[one.i], one.p, block)
-        # The knots are coloured last: they are fewer than the rows.
-        B, C = problem.innovations(one.i, at_knots) * one.weights[:, None], one.colour
-        AB, BB = one.own.T @ B, B.T @ B
-        unit = unit or float(np.sqrt(np.sum(C * (BB @ C)) / len(B))) + 1e-300
-        gram = C.T @ (BB - AB.T @ solved(one.chol, AB)) @ C / unit**2
-        value, vector = np.linalg.eigh((gram + gram.T) / 2.0)
-        spectra.append(np.maximum(value, 0.0))
-        powers.append((vector.T @ (C.T @ (B.T @ one.unabsorbed)) / unit) ** 2)
-    value, power, squares = np.concatenate(spectra), np.concatenate(powers), _SIZES[:, None] ** 2
+    Parameters
+    ----------
+    value, power
+        Shape (directions,): information on each direction of the disturbance, and the square of its
+        gradient, for a size of ``unit``.
+    total
+        Weighted power of the residual.
+    """
+    squares = _SIZES[:, None] ** 2
     shrunk = 1.0 / (1.0 / squares + value)
     gains = 0.5 * np.sum(power * shrunk - np.log1p(squares * value), axis=1)
     best = int(np.argmax(gains))
     taken = float(np.sum(power * shrunk[best] * (2.0 - value * shrunk[best])))
-    total = float(sum(one.residual @ one.residual for one in probed))
     return Probe(block, float(gains[best]), _SIZES[best] / unit, min(taken / max(total, 1e-300), 1.0))
 
 
