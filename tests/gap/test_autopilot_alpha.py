@@ -10,6 +10,7 @@ from advisor.gap.diagnose import diagnose
 from advisor.gap.effects import EFFECTS
 from advisor.gap.records.floor import prefiltered
 from advisor.gap.records.prepare import prepare
+from advisor.gap.records.provenance import is_estimate
 from tests.gap.generator import Setup, fly
 
 # One diagnosis serves two tests.
@@ -44,6 +45,16 @@ def test_what_one_imu_cannot_show_of_itself_is_said_to_be_unseen(alike):
     unseen = {u.effect: u.would_need for u in alike.cannot_see}
     hidden = [name for name, effect in EFFECTS.items() if effect.of_one_imu]
     assert {name: unseen[name] for name in hidden} == dict.fromkeys(hidden, "a vane")
+
+
+@pytest.mark.parametrize(("share", "of_estimator"), [(slice(None, None, 5), True), (slice(None), False)])
+def test_an_angle_of_attack_that_is_renewed_as_slowly_as_arduplanes_is_an_estimate_however_rough(
+    share, of_estimator
+):
+    (flown,) = fly(Setup(maneuvers=1, seed=71))
+    alpha = flown.channels["alpha"]
+    sent = replace(alpha, t=alpha.t[share], y=alpha.y[share], source="AOA_SSA.AOA", provenance="derived")
+    assert is_estimate(replace(flown, channels={**flown.channels, "alpha": sent}), False) == of_estimator
 
 
 @pytest.mark.study

@@ -20,7 +20,7 @@ from advisor.gap.records.edges import edges_of, held_from
 from advisor.gap.records.flights import PreparedManeuver, PreparedManeuvers
 from advisor.gap.records.grid import STEP_S, smooth
 from advisor.gap.records.provenance import is_estimate
-from advisor.gap.records.smoothness import is_filtered, is_rough, is_smoothed, white_part
+from advisor.gap.records.smoothness import is_filtered, is_smoothed, white_part
 from advisor.gap.records.unmeasured_speed import speed_without_instrument, speeds_about
 from advisor.gap.records.usable import outputs_of, recorded, usable_of
 from advisor.gap.simulator.layout import OUTPUTS, SLOW, SPEED, THETA_FROM, THRUST
@@ -106,10 +106,10 @@ def _kind_of_alpha(
     def quiet(channel: str) -> list[FloatArray]:
         return [y for f in flights for y in f.quiet_stretches(channel)]
 
-    smoothed, rough = in_all and is_smoothed(quiet("alpha")), in_all and is_rough(quiet("alpha"))
+    smoothed = in_all and is_smoothed(quiet("alpha"))
     # Where the whole record was filtered on the ground, a smooth α does not indicate an estimator.
     of_estimator = smoothed and not is_filtered(quiet("q"))
-    return smoothed, any(is_estimate(m, of_estimator, rough) for m in usable)
+    return smoothed, any(is_estimate(m, of_estimator) for m in usable)
 
 
 def _departure(y: FloatArray) -> float:

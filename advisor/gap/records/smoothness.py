@@ -14,11 +14,8 @@ from advisor.flight.signals.robust import robust_std
 
 _WEIGHTS = np.array([1.0, -4.0, 6.0, -4.0, 1.0])
 """Numerical: weights of a fourth difference."""
-_ROUGH = 1.6
-"""Largest growth of the differences from one to two samples that is ascribed to an instrument. ArduPilot's
-estimates show 2.4 and more."""
 _SMOOTHED = 2.0
-"""Growth of the differences above which the record was filtered."""
+"""Growth of the differences above which the record was filtered. ArduPilot's estimates show 2.4 and more."""
 _FILTERED = 6.0
 """Growth of the differences above which a filter left almost nothing above its edge. No estimator on board
 does that."""
@@ -37,11 +34,6 @@ def white_part(series: Sequence[FloatArray], stride: int = 1) -> float:
     if not differences:
         return 0.0
     return robust_std(np.concatenate(differences)) / float(np.sqrt(np.sum(_WEIGHTS**2)))
-
-
-def is_rough(quiet: Sequence[FloatArray]) -> bool:
-    """Return whether quiet stretches are as rough as white noise."""
-    return white_part(quiet) > 0.0 and _growth(quiet) < _ROUGH
 
 
 def is_smoothed(quiet: Sequence[FloatArray]) -> bool:
