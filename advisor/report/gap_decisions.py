@@ -22,7 +22,6 @@ _OF_A_BLOCK: Mapping[str, str] = {
 }
 _OF_THE_NUMBERS: Mapping[str, str] = {
     "gap": "the given derivatives leave a gap of {value} times the noise (at least {limit})",
-    "clear gap": "for a large gap, the given derivatives leave {value} times the noise (at least {limit})",
     "odds": "log odds of wrong against right numbers in the file: {value} nats (at least {limit})",
 }
 """Name of a decision to its sentence."""

@@ -97,6 +97,15 @@ def test_each_decision_about_a_name_holds_where_it_is_named(late):
     assert all(decision.holds for decision in judged.decisions) == judged.is_accepted
 
 
+@pytest.mark.parametrize(
+    ("otherwise", "only_small"),
+    [({"smallest": 1.0}, True), ({"smallest": 1.0, "support": 0.0}, False), ({}, False)],
+)
+def test_an_effect_is_only_small_where_nothing_but_its_size_rejects_it(late, otherwise, only_small):
+    _, judged = late
+    assert replace(judged, **otherwise).is_only_small is only_small
+
+
 def test_no_derivative_makes_an_aircraft_that_nobody_can_fly(late):
     problem, judged = late
     astray = replace(judged.fitted.point, derivatives=judged.fitted.point.derivatives.copy())

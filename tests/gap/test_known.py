@@ -152,7 +152,12 @@ def test_a_curve_keeps_the_angle_that_the_file_states_wherever_it_is_flown():
 
 
 def test_a_dead_band_keeps_the_deflection_that_the_file_states_whatever_the_trim():
-    flights = prepare(fly(Setup(maneuvers=3, seed=10)), Aircraft())
+    flown = []
+    for maneuver, above in zip(fly(Setup(maneuvers=3, seed=10)), (0.03, -0.02, 0.01), strict=True):
+        command = maneuver.channels["elevator"]
+        moved = replace(command, y=command.y + above)
+        flown.append(replace(maneuver, channels={**maneuver.channels, "elevator": moved}))
+    flights = prepare(flown, Aircraft())
     effects = {"actuator_deadband": {"half_width_rad": 0.012, "neutral_rad": -0.02}}
     numbers = with_known(np.zeros(len(ENTRIES)), effects, flights, variants_for(flights))
     middles = numbers[:, INDEX["neutral_rad"]] + [flight.u_trim for flight in flights.flights]
