@@ -1,9 +1,13 @@
 """A sample flight comes with the program, in the repository and in a wheel."""
 
+from fnmatch import fnmatch
 from pathlib import Path
 
 from advisor.aircraft_file.read import load_aircraft
+from advisor.process.installed import SAMPLE, SLOW_SAMPLE
 from tests.conftest import Advisor
+
+ROOT = Path(__file__).parents[2]
 
 
 def test_the_sample_is_written_with_its_aircraft_file(advisor: Advisor, tmp_path: Path) -> None:
@@ -21,3 +25,11 @@ def test_a_file_of_that_name_is_kept(advisor: Advisor, tmp_path: Path) -> None:
 
 def test_the_version_is_that_of_the_installed_package(advisor: Advisor) -> None:
     assert advisor("--version").stdout.startswith("advisor, version ")
+
+
+def test_the_source_archive_holds_every_file_of_the_sample() -> None:
+    rules = (ROOT / "MANIFEST.in").read_text(encoding="utf-8").splitlines()
+    excluded = [pattern for rule in rules if rule.startswith("exclude ") for pattern in rule.split()[1:]]
+    assert any(fnmatch("logs/bundled-demo.tlog", pattern) for pattern in excluded)
+    for name in (f"{SAMPLE}.tlog", f"{SAMPLE}.yaml", f"{SLOW_SAMPLE}.tlog"):
+        assert not any(fnmatch(f"logs/{name}", pattern) for pattern in excluded), name
