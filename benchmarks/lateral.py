@@ -24,13 +24,13 @@ from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.aircraft_file.read import load_aircraft
 from advisor.analysis.log_series import LogSeries
 from advisor.campaign.campaign import Campaign
-from advisor.campaign.lateral import LateralState
+from advisor.campaign.lateral_state import LateralState
 from advisor.model.lateral import LATERAL
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.lateral_estimate import LateralSolution, solve_lateral
-from advisor.oem.lateral_estimator import LateralEstimate
 from advisor.oem.lateral_prediction import predicted_lateral
 from advisor.oem.lateral_problem import LateralProblem, LateralRecord
+from advisor.oem.lateral_result import LateralEstimate
 from advisor.oem.rows import Signal
 from benchmarks.public.segments import is_rolled, maneuver_of, read_segments, rolled
 

@@ -17,11 +17,10 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
-from advisor.aircraft.reference import PARAMETERS
+from advisor.aircraft.reference import PARAMETERS, SPEED_EXPONENTS
 from advisor.campaign.campaign import Campaign
 from advisor.campaign.state import CampaignState
 from advisor.mavlink.logs.logs import open_log
-from advisor.model.short_period import SPEED_EXPONENTS
 from advisor.session.timeline import Timeline
 from sim.flight import Flight
 from sim.record import record

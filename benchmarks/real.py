@@ -21,7 +21,7 @@ from typing import Any
 
 import yaml
 
-from advisor.model.short_period import SPEED_EXPONENTS
+from advisor.aircraft.reference import SPEED_EXPONENTS
 from advisor.words.quantities import symbol
 
 RECORDS = Path(__file__).with_name("real_records.yaml")

@@ -29,6 +29,12 @@ def test_help_imports_no_heavy_library(arguments: list[str]) -> None:
     assert not imported.intersection(HEAVY)
 
 
+def test_the_screens_wait_for_no_library_that_estimates() -> None:
+    imported = modules_after("import advisor.tui.app, advisor.cli.screen, advisor.session.remote")
+    assert "textual.app" in imported
+    assert not imported.intersection({"scipy", "numba", "pymavlink", "advisor.model.response"})
+
+
 @pytest.mark.parametrize("module", ["advisor.analysis.gap", "advisor.oem.estimator"])
 def test_numbers_wait_for_no_library_that_takes_longer_to_import_than_its_use(module: str) -> None:
     imported = modules_after(f"import {module}")

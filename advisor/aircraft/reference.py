@@ -8,6 +8,20 @@ from advisor.aircraft.key import Key
 
 PARAMETERS = ("Z_0", "Z_alpha", "Z_q", "Z_delta_e", "M_0", "M_alpha", "M_q", "M_delta_e")
 """Names of the eight parameters θ, Eq. (3), in the order of every vector of parameters in this program."""
+SPEED_EXPONENTS: Mapping[str, int] = {
+    "Z_0": 1,
+    "Z_alpha": 1,
+    "Z_q": 0,
+    "Z_delta_e": 1,
+    "M_0": 2,
+    "M_alpha": 2,
+    "M_q": 1,
+    "M_delta_e": 2,
+}
+"""Power of the air speed with which each parameter grows at constant density.
+
+Z = -ρVS·C_L/(2m) and M = ρV²Sc·C_m/(2I_yy); a rate derivative carries another c/(2V).
+"""
 SIDE_PARAMETERS = tuple(f"{y}_{x}" for y in "YLN" for x in ("beta", "p", "r", "delta_a", "delta_r"))
 """Names of the fifteen derivatives of roll and yaw, in the order of every vector of theirs."""
 

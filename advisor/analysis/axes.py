@@ -2,7 +2,7 @@
 
 from typing import Literal
 
-from advisor.campaign.lateral import OF_ELEVATOR
+from advisor.campaign.lateral_state import OF_ELEVATOR
 from advisor.campaign.state import CampaignState
 from advisor.flight.stream.flights import FlightHeard
 from advisor.words.problems import Problem

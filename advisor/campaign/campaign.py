@@ -10,7 +10,8 @@ from advisor.campaign.hand_decisions import NOTHING, ByHand, Remark
 from advisor.campaign.instruments import together, with_fit
 from advisor.campaign.journal import Journal
 from advisor.campaign.late_limits import recount
-from advisor.campaign.lateral import OF_ELEVATOR, JudgedLateral, LateralCampaign
+from advisor.campaign.lateral import LateralCampaign
+from advisor.campaign.lateral_state import OF_ELEVATOR, JudgedLateral
 from advisor.campaign.running_estimate import Settling
 from advisor.campaign.state import CampaignState, JudgedManeuver
 from advisor.campaign.whole_flight import WholeFlights

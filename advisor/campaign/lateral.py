@@ -1,8 +1,7 @@
 """The lateral half of a campaign: its manoeuvres, their estimates and verdicts, and the joint estimate."""
 
-from dataclasses import dataclass
-
 from advisor.aircraft.aircraft import Aircraft
+from advisor.campaign.lateral_state import JudgedLateral, LateralState
 from advisor.decision.acceptance import MANEUVER_RULES
 from advisor.decision.lateral_advice import FlownInput
 from advisor.decision.lateral_quality import judge_lateral
@@ -10,32 +9,9 @@ from advisor.decision.lateral_test import lateral_flight_test
 from advisor.decision.verdict import FlightTestVerdict, ManeuverVerdict, Reason
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.estimate import NoEstimate
-from advisor.oem.lateral_estimator import LateralEstimate, estimate_lateral
+from advisor.oem.lateral_estimator import estimate_lateral
+from advisor.oem.lateral_result import LateralEstimate
 
-
-@dataclass(frozen=True, slots=True)
-class JudgedLateral:
-    """One lateral manoeuvre, its estimate and the verdict on it."""
-
-    maneuver: Maneuver
-    estimate: LateralEstimate | NoEstimate
-    verdict: ManeuverVerdict
-
-
-@dataclass(frozen=True, slots=True)
-class LateralState:
-    """State of the lateral half of a campaign."""
-
-    maneuvers: tuple[JudgedLateral, ...]
-    flight_test: FlightTestVerdict
-    model: LateralEstimate | None
-    """Joint estimate: over the newest accepted manoeuvres in flight, over all of them after the end."""
-    estimate_from: tuple[int, ...]
-    """Numbers of the manoeuvres that ``model`` is made from."""
-
-
-OF_ELEVATOR = frozenset({"no_maneuver", "no_elevator", "no_alpha"})
-"""Codes of problems that concern the elevator's axis alone."""
 NEWEST = 7
 """Number of newest accepted manoeuvres that are estimated together during the flight. The elevator has the
 same number."""

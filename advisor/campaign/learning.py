@@ -10,9 +10,8 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.reference import PARAMETERS
+from advisor.aircraft.reference import PARAMETERS, SPEED_EXPONENTS
 from advisor.decision.verdict import ManeuverVerdict
-from advisor.model.short_period import SPEED_EXPONENTS
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.found import FoundInstruments, found_of, with_found
 from advisor.oem.instruments import KNOWN_TO

@@ -12,10 +12,9 @@ import numpy as np
 from scipy.special import chdtri
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.reference import PARAMETERS
+from advisor.aircraft.reference import PARAMETERS, SPEED_EXPONENTS
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import FloatArray
-from advisor.model.short_period import SPEED_EXPONENTS
 from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import lag_is_unknown
 from advisor.oem.following import Follower

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from statistics import median
 
-from advisor.campaign.lateral import LateralState
+from advisor.campaign.lateral_state import LateralState
 from advisor.campaign.whole_flight import WholeFlight
 from advisor.decision.verdict import FlightTestVerdict, ManeuverVerdict
 from advisor.flight.elevator.elevator_guess import Guess

@@ -13,11 +13,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from advisor.aircraft.reference import PARAMETERS
+from advisor.aircraft.reference import PARAMETERS, SPEED_EXPONENTS
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.decision.inverses import covariance_of, information_of
 from advisor.flight.signals.messages import FloatArray
-from advisor.model.short_period import SPEED_EXPONENTS
 from advisor.oem.estimate import Estimate
 
 INTERCEPTS = (PARAMETERS.index("Z_0"), PARAMETERS.index("M_0"))

@@ -12,13 +12,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from advisor.aircraft.reference import PARAMETERS
+from advisor.aircraft.reference import PARAMETERS, SPEED_EXPONENTS
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.pooling import DERIVATIVES
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import N_LOCAL, N_PARAMETERS, SHARED, respond
-from advisor.model.short_period import SPEED_EXPONENTS
 from advisor.oem.estimate import Estimate
 from advisor.oem.prediction import half_widths
 from advisor.oem.problem import OutputErrorProblem, Record, assemble

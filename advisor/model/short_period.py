@@ -18,22 +18,6 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.model.axis import Names
 from advisor.model.response import LOCAL, OUTPUTS, SHARED
 
-SPEED_EXPONENTS: Mapping[str, int] = {
-    "Z_0": 1,
-    "Z_alpha": 1,
-    "Z_q": 0,
-    "Z_delta_e": 1,
-    "M_0": 2,
-    "M_alpha": 2,
-    "M_q": 1,
-    "M_delta_e": 2,
-}
-"""Power of the air speed with which each parameter grows at constant density.
-
-Z = -ρVS·C_L/(2m) and M = ρV²Sc·C_m/(2I_yy); a rate derivative carries another c/(2V).
-"""
-
-
 NAMES = Names(OUTPUTS, SHARED, LOCAL, PARAMETERS)
 """Names of the short period. Z_0 and M_0 are reported as means over the manoeuvres."""
 

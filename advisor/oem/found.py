@@ -13,9 +13,8 @@ from typing import Literal
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.reference import PARAMETERS
+from advisor.aircraft.reference import PARAMETERS, SPEED_EXPONENTS
 from advisor.flight.signals.messages import FloatArray
-from advisor.model.short_period import SPEED_EXPONENTS
 
 InstrumentName = Literal[
     "servo_lag_s",

@@ -1,7 +1,6 @@
 """From lateral manoeuvres to derivatives and modes: the function that the rest of the program calls."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -13,24 +12,10 @@ from advisor.oem.estimator import channel_fits
 from advisor.oem.identifiability import correlated
 from advisor.oem.lateral_estimate import LateralSolution, N, lateral_not_identifiable, solve_lateral
 from advisor.oem.lateral_instruments import nuisances_of
-from advisor.oem.lateral_modes import Errors, LateralModes, lateral_modes
+from advisor.oem.lateral_modes import Errors, lateral_modes
 from advisor.oem.lateral_prepare import prepare_lateral
+from advisor.oem.lateral_result import LateralEstimate
 from advisor.oem.prediction import prediction_band
-
-
-@dataclass(frozen=True, slots=True)
-class LateralEstimate:
-    """The lateral derivatives from one manoeuvre, or from several together, with the modes."""
-
-    estimate: Estimate
-    """Derivatives, in the order of ``LATERAL``."""
-    modes: LateralModes
-    nuisances: Mapping[str, tuple[float, float]]
-    """Lag or delay by name, to its value and standard deviation, s."""
-    flown: tuple[str, ...]
-    """Controls of the test: ``aileron``, ``rudder``."""
-    scales_with_speed: bool = False
-    """Whether the derivatives hold at their air speed and grow with the measured one."""
 
 
 def estimate_lateral(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> LateralEstimate | NoEstimate:

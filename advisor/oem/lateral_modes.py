@@ -5,8 +5,6 @@ it by dλ = wᵀ·dA·v/(wᵀ·v) (Wilkinson, *The Algebraic Eigenvalue Problem*
 frequency ω = |λ| and the damping ζ = -Re λ/ω, and the roll mode has the time constant -1/λ.
 """
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
@@ -15,23 +13,9 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.model.lateral import LATERAL, Trim, modes_of, state_matrix
 from advisor.oem.between import widened_by_scatter
 from advisor.oem.flying_qualities import Quality
+from advisor.oem.lateral_result import LateralModes
 
 _STATES = len(LATERAL.states)
-
-
-@dataclass(frozen=True, slots=True)
-class LateralModes:
-    """Modes of an estimate; an absent one has its reason in ``left_out``."""
-
-    dutch_roll_omega: Quality | None
-    """Undamped natural frequency of the Dutch roll, rad/s."""
-    dutch_roll_zeta: Quality | None
-    """Damping ratio of the Dutch roll."""
-    roll_time_constant: Quality | None
-    """Time constant of the roll mode, s."""
-    spiral_pole: Quality | None
-    """Eigenvalue of the spiral, 1/s; positive where the spiral diverges."""
-    left_out: Mapping[str, str] = field(default_factory=dict)
 
 
 class Errors(NamedTuple):

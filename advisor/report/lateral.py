@@ -4,13 +4,12 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.campaign.lateral import JudgedLateral, LateralState
+from advisor.campaign.lateral_state import JudgedLateral, LateralState
 from advisor.decision.lateral_levels import GROUPS, SOURCE
 from advisor.model.mil_f_8785c import CATEGORIES, MANNED
 from advisor.oem.estimate import Estimate
 from advisor.oem.flying_qualities import Quality
-from advisor.oem.lateral_estimator import LateralEstimate
-from advisor.oem.lateral_modes import LateralModes
+from advisor.oem.lateral_result import LateralEstimate, LateralModes
 from advisor.report.lateral_qualities import (
     MODES,
     levels_document,

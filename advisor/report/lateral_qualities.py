@@ -8,14 +8,14 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import SIDE_PARAMETERS
-from advisor.campaign.lateral import JudgedLateral, LateralState
+from advisor.campaign.lateral_state import JudgedLateral, LateralState
 from advisor.decision.lateral_levels import GROUPS, SOURCE, LateralLevels, lateral_levels
 from advisor.decision.lateral_qualification import LateralTest, lateral_qualification
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.model.lateral import Trim
 from advisor.model.mil_f_8785c import CATEGORIES, MANNED
 from advisor.oem.flying_qualities import Quality
-from advisor.oem.lateral_modes import LateralModes
+from advisor.oem.lateral_result import LateralModes
 from advisor.words.plain import picked
 
 MODES: Mapping[str, tuple[str, str]] = {

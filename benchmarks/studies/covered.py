@@ -15,7 +15,7 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft, CampaignPlan
 from advisor.aircraft.controls import Elevator
-from advisor.aircraft.reference import PARAMETERS
+from advisor.aircraft.reference import PARAMETERS, SPEED_EXPONENTS
 from advisor.bundled.study.flying import Scene, fly_named, respond
 from advisor.campaign.campaign import Campaign, ManeuverJudged
 from advisor.campaign.state import CampaignState
@@ -24,7 +24,6 @@ from advisor.decision.tolerance import tolerances
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.messages import FloatArray
 from advisor.mavlink.logs.logs import open_log
-from advisor.model.short_period import SPEED_EXPONENTS
 from advisor.oem.estimate import Estimate
 from advisor.oem.findings import findings_of
 from advisor.session.timeline import Timeline

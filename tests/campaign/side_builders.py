@@ -5,15 +5,15 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.campaign.lateral import JudgedLateral, LateralState
+from advisor.campaign.lateral_state import JudgedLateral, LateralState
 from advisor.decision.lateral_test import lateral_flight_test
 from advisor.decision.verdict import ManeuverVerdict, Reason
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.record import Channel
 from advisor.model.lateral import LATERAL, Trim
 from advisor.oem.estimate import ChannelFit, Estimate
-from advisor.oem.lateral_estimator import LateralEstimate
 from advisor.oem.lateral_modes import Errors, lateral_modes
+from advisor.oem.lateral_result import LateralEstimate
 from tests.oem.lateral_builders import JET, vector
 
 T = np.arange(0.0, 10.0, 0.04)

@@ -12,7 +12,7 @@ from advisor.gap.result import Value
 from advisor.model.lateral import Trim
 from advisor.oem.estimate import Estimate
 from advisor.oem.lateral_estimate import WITHOUT_FORCE
-from advisor.oem.lateral_estimator import LateralEstimate
+from advisor.oem.lateral_result import LateralEstimate
 from advisor.report.lateral_qualities import trim_of
 from advisor.words.problems import ConfigurationError
 

@@ -6,12 +6,12 @@ last. Derivatives of the trim speed can then be off by some per cent, all by the
 
 import numpy as np
 
+from advisor.aircraft.reference import SPEED_EXPONENTS
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.prior import distance_of
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.fitting.uncertainty import covariance, distance_from_file, effective_samples
 from advisor.gap.simulator.layout import DERIVATIVES, SPEED
-from advisor.model.short_period import SPEED_EXPONENTS
 
 _POWERS = np.array([float(SPEED_EXPONENTS[name]) for name in DERIVATIVES])
 """Power of the air speed with which each derivative grows."""
