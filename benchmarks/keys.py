@@ -96,7 +96,7 @@ def answers(log: Path, size: tuple[int, int], count: int) -> list[tuple[str, flo
     """Kind of key and milliseconds to its answer, ``count`` of them."""
     measured: list[tuple[str, float]] = []
     with terminal(str(log), "--speed", "max", size=size, screen="engineer") as here:
-        here.until(says("✓ GOOD"), 60.0)
+        here.until(says("✓ ACCEPTED"), 60.0)
         themes = cycle((*NAMES[1:], NAMES[0]))
         while len(measured) < count:
             for key in dialogue(themes):
