@@ -1,5 +1,6 @@
 """Residuals, correlation and history: each shows what its estimate holds, and nothing else."""
 
+import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -13,12 +14,15 @@ from advisor.tui.panes.correlation import Correlation
 from advisor.tui.panes.courses import Courses
 from advisor.tui.panes.criterion import Criterion
 from advisor.tui.panes.history import course, history_chart
+from advisor.tui.panes.pane import Pane
 from advisor.tui.panes.residuals import Residuals
 from advisor.tui.plot.widget import Plot
+from advisor.tui.screens.engineer import PANES
 from advisor.tui.settings import Settings
 from advisor.words.quantiles import NORMAL_95
 from tests.tui import flights
 from tests.tui.stage import Stage, stage
+from tests.tui.stand_ins import HandFedSource
 
 ENGINEER = Settings(screen="engineer")
 
@@ -74,6 +78,19 @@ async def test_the_joint_correlation_stands_above_the_diagonal_and_the_manoeuvre
         assert lines[2 + i].split()[1 + j] == "0.95"
         assert lines[2 + j].split()[1 + i] == "0.00"
         assert lines[-1] == "joint: Z_α and M_q 0.950"
+
+
+@pytest.mark.parametrize("pane", PANES, ids=lambda pane: pane.TITLE)
+async def test_a_pane_in_sight_takes_the_next_estimates(pane: type[Pane]):
+    states = [pickle.loads(pickle.dumps(flights.state(count))) for count in (2, 2, 3)]  # new objects each
+    source = HandFedSource()
+    async with stage(*states, settings=ENGINEER, size=(80, 24), source=source) as here:
+        await here.press(pane.TITLE[0])
+        for state in states[1:]:
+            source.deliver()
+            await here.until(lambda state=state: here.app.view.state.model is state.model)
+        assert here.app.is_running
+        assert here.app.screen.query_one(pane).display
 
 
 async def test_a_parameter_without_variance_has_no_correlation_on_the_screen():

@@ -62,7 +62,7 @@ grow at the cost of the other. An input with other frequencies tells them apart.
             return
         single = judged.estimate if isinstance(judged.estimate, Estimate) else None
         number = judged.maneuver.number
-        if (self._joint, self._single, self._number) == (view.state.model, single, number):
+        if self._joint is view.state.model and self._single is single and self._number == number:
             return
         self._joint, self._single, self._number = view.state.model, single, number
         self.subtitle(f"manoeuvre {number}")
