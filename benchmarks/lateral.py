@@ -27,10 +27,10 @@ from advisor.campaign.campaign import Campaign
 from advisor.campaign.lateral_state import LateralState
 from advisor.model.lateral import LATERAL
 from advisor.oem.estimate import NoEstimate
-from advisor.oem.lateral_estimate import LateralSolution, solve_lateral
+from advisor.oem.lateral_estimate import LateralEstimate
 from advisor.oem.lateral_prediction import predicted_lateral
 from advisor.oem.lateral_problem import LateralProblem, LateralRecord
-from advisor.oem.lateral_result import LateralEstimate
+from advisor.oem.lateral_solution import LateralSolution, solve_lateral
 from advisor.oem.rows import Signal
 from benchmarks.public.segments import is_rolled, maneuver_of, read_segments, rolled
 

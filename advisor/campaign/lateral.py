@@ -9,8 +9,8 @@ from advisor.decision.lateral_test import lateral_flight_test
 from advisor.decision.verdict import FlightTestVerdict, ManeuverVerdict, Reason
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.estimate import NoEstimate
+from advisor.oem.lateral_estimate import LateralEstimate
 from advisor.oem.lateral_estimator import estimate_lateral
-from advisor.oem.lateral_result import LateralEstimate
 
 NEWEST = 7
 """Number of newest accepted manoeuvres that are estimated together during the flight. The elevator has the

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from advisor.decision.verdict import FlightTestVerdict, ManeuverVerdict
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.estimate import NoEstimate
-from advisor.oem.lateral_result import LateralEstimate
+from advisor.oem.lateral_estimate import LateralEstimate
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,7 +13,7 @@ from typing import Literal
 
 from advisor.model.mil_f_8785c import CATEGORIES, WORSE, Category, LevelFound
 from advisor.oem.flying_qualities import Quality
-from advisor.oem.lateral_result import LateralModes
+from advisor.oem.lateral_estimate import LateralModes
 
 SOURCE = "MIL-F-8785C, paragraphs 3.3.1.1 to 3.3.1.3"
 Group = Literal["I, II-C, IV", "II-L, III"]

@@ -25,7 +25,7 @@ from advisor.decision.quality import LEAST_R2, WIDEST_PREDICTION_PERCENT, refusa
 from advisor.decision.verdict import UNTRUSTED, Reason
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.estimate import NoEstimate
-from advisor.oem.lateral_result import LateralEstimate
+from advisor.oem.lateral_estimate import LateralEstimate
 from advisor.words.digits import distinct_texts
 from advisor.words.quantiles import NORMAL_95
 

@@ -23,7 +23,7 @@ from advisor.decision.verdict import (
 )
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.lateral import LATERAL
-from advisor.oem.lateral_result import LateralEstimate
+from advisor.oem.lateral_estimate import LateralEstimate
 from advisor.words.quantiles import NORMAL_95
 
 JUDGED: Mapping[str, str] = {

@@ -11,7 +11,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.oem.found import FoundInstruments, InstrumentName
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class ChannelFit:
     """Measured and fitted values of one output at its own stamps."""
 
@@ -73,10 +73,13 @@ class InstrumentEstimate:
     """Whether the data tell the value alone, instead of a prior together with them."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Estimate:
     """The parameters of one axis from one manoeuvre, or from several together: by default the eight of
-    Eq. (3)."""
+    Eq. (3).
+
+    Estimates, fits and channels are equal where they are one object: == of arrays has no single truth.
+    """
 
     theta: FloatArray
     """Shape (8,), in the order of ``names``. In a joint estimate Z_0 and M_0 are means over the

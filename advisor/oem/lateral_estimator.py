@@ -10,11 +10,11 @@ from advisor.model.lateral import LATERAL, Trim
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import channel_fits
 from advisor.oem.identifiability import correlated
-from advisor.oem.lateral_estimate import LateralSolution, N, lateral_not_identifiable, solve_lateral
+from advisor.oem.lateral_estimate import LateralEstimate
 from advisor.oem.lateral_instruments import nuisances_of
 from advisor.oem.lateral_modes import Errors, lateral_modes
 from advisor.oem.lateral_prepare import prepare_lateral
-from advisor.oem.lateral_result import LateralEstimate
+from advisor.oem.lateral_solution import LateralSolution, N, lateral_not_identifiable, solve_lateral
 from advisor.oem.prediction import prediction_band
 
 

@@ -13,7 +13,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.model.lateral import LATERAL, Trim, modes_of, state_matrix
 from advisor.oem.between import widened_by_scatter
 from advisor.oem.flying_qualities import Quality
-from advisor.oem.lateral_result import LateralModes
+from advisor.oem.lateral_estimate import LateralModes
 
 _STATES = len(LATERAL.states)
 

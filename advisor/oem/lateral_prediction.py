@@ -11,10 +11,10 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.model.axis_response import respond_axis
 from advisor.model.lateral import LATERAL
 from advisor.oem.estimate import ChannelFit, NoEstimate
+from advisor.oem.lateral_estimate import LateralEstimate
 from advisor.oem.lateral_instruments import nuisances_of
 from advisor.oem.lateral_prepare import prepare_lateral
 from advisor.oem.lateral_problem import CAUSES, LateralAssembly, LateralProblem, assemble_lateral
-from advisor.oem.lateral_result import LateralEstimate
 from advisor.oem.lateral_start import lateral_start
 
 ROUNDS = 12

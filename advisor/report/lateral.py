@@ -9,7 +9,7 @@ from advisor.decision.lateral_levels import GROUPS, SOURCE
 from advisor.model.mil_f_8785c import CATEGORIES, MANNED
 from advisor.oem.estimate import Estimate
 from advisor.oem.flying_qualities import Quality
-from advisor.oem.lateral_result import LateralEstimate, LateralModes
+from advisor.oem.lateral_estimate import LateralEstimate, LateralModes
 from advisor.report.lateral_qualities import (
     MODES,
     levels_document,

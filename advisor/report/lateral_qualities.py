@@ -15,7 +15,7 @@ from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.model.lateral import Trim
 from advisor.model.mil_f_8785c import CATEGORIES, MANNED
 from advisor.oem.flying_qualities import Quality
-from advisor.oem.lateral_result import LateralModes
+from advisor.oem.lateral_estimate import LateralModes
 from advisor.words.plain import picked
 
 MODES: Mapping[str, tuple[str, str]] = {

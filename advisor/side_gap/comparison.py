@@ -19,9 +19,9 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.gap.judge.prior import FIELD, FieldPrior
 from advisor.gap.result import ComparedDerivative, Value
 from advisor.oem.estimate import NoEstimate
+from advisor.oem.lateral_estimate import LateralEstimate
 from advisor.oem.lateral_estimator import estimate_lateral
 from advisor.oem.lateral_prediction import predicted_lateral
-from advisor.oem.lateral_result import LateralEstimate
 from advisor.side_gap.diagnosis import SideDiagnosis, diagnose_side
 from advisor.side_gap.models import case_of
 

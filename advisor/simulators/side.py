@@ -19,14 +19,14 @@ from advisor.gap.effects.transport_delay import DELAY
 from advisor.model.lateral import LATERAL
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.extra import Prior
-from advisor.oem.lateral_estimate import (
+from advisor.oem.lateral_instruments import FIRST_LAG_S, Nuisance
+from advisor.oem.lateral_prepare import prepare_lateral
+from advisor.oem.lateral_problem import NEEDED, LateralProblem, LateralRecord
+from advisor.oem.lateral_solution import (
     LateralSolution,
     lateral_not_identifiable,
     solve_lateral,
 )
-from advisor.oem.lateral_instruments import FIRST_LAG_S, Nuisance
-from advisor.oem.lateral_prepare import prepare_lateral
-from advisor.oem.lateral_problem import NEEDED, LateralProblem, LateralRecord
 from advisor.oem.rows import Signal
 from advisor.oem.surface import Servo
 from advisor.simulators.air import refuse_unknown_air, standard_heights, winds

@@ -16,8 +16,8 @@ from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.library import estimate
 from advisor.oem.estimate import Estimate, NoEstimate
+from advisor.oem.lateral_estimate import LateralEstimate
 from advisor.oem.lateral_estimator import estimate_lateral
-from advisor.oem.lateral_result import LateralEstimate
 from benchmarks.public.segments import (
     STROKE_RAD,
     FloatArray,

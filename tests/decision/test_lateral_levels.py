@@ -6,7 +6,7 @@ import pytest
 
 from advisor.decision.lateral_levels import lateral_levels
 from advisor.oem.flying_qualities import Quality
-from advisor.oem.lateral_result import LateralModes
+from advisor.oem.lateral_estimate import LateralModes
 
 BELOW, ABOVE = 1.0 - 1e-9, 1.0 + 1e-9
 GOOD = {"omega": 3.0, "zeta": 0.5, "roll": 0.5, "pole": -0.01}

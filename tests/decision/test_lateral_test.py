@@ -4,8 +4,8 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.decision.lateral_test import lateral_flight_test, lateral_knowledge
 from advisor.model.lateral import LATERAL, Trim
 from advisor.oem.estimate import Estimate
+from advisor.oem.lateral_estimate import LateralEstimate
 from advisor.oem.lateral_modes import Errors, lateral_modes
-from advisor.oem.lateral_result import LateralEstimate
 from tests.oem.lateral_builders import JET, vector
 
 N = len(LATERAL.shared)

@@ -6,10 +6,10 @@ import pytest
 from advisor.model.lateral import LATERAL, Trim, modes_of, state_matrix
 from advisor.oem.extra import Prior
 from advisor.oem.gauss_newton import CONVERGED
-from advisor.oem.lateral_estimate import solve_lateral
 from advisor.oem.lateral_instruments import LONGEST_LAG_S, Nuisance, moved_by
 from advisor.oem.lateral_problem import LateralProblem, assemble_lateral
 from advisor.oem.lateral_search import fit_lateral
+from advisor.oem.lateral_solution import solve_lateral
 from advisor.oem.lateral_start import lateral_start
 from advisor.oem.prior import Priors
 from advisor.oem.rows import Signal

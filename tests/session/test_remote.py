@@ -40,6 +40,13 @@ def ended(report: SessionReport) -> bool:
     return report.health.condition == "ended"
 
 
+def test_what_another_process_sends_twice_can_be_compared():
+    once, again = (pickle.loads(pickle.dumps(flights.state(2))) for _ in range(2))
+    assert once.maneuvers == once.maneuvers
+    assert once.maneuvers != again.maneuvers
+    assert once.model != again.model
+
+
 def test_another_process_comes_to_the_same_bits():
     here = last_report(Conductor(elsewhere.first_manoeuvres(), elsewhere.campaign), ended)
     task = ConductorTask(elsewhere.first_manoeuvres, elsewhere.campaign)

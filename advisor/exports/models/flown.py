@@ -11,8 +11,8 @@ from advisor.flight.signals.standard_atmosphere import standard_height
 from advisor.gap.result import Value
 from advisor.model.lateral import Trim
 from advisor.oem.estimate import Estimate
-from advisor.oem.lateral_estimate import WITHOUT_FORCE
-from advisor.oem.lateral_result import LateralEstimate
+from advisor.oem.lateral_estimate import LateralEstimate
+from advisor.oem.lateral_solution import WITHOUT_FORCE
 from advisor.report.lateral_qualities import trim_of
 from advisor.words.problems import ConfigurationError
 

@@ -36,7 +36,7 @@ ALL_UNITS = UNITS | AIR_UNITS | WIND_UNITS
 """Every channel that a manoeuvre or a whole flight may hold."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Channel:
     """One quantity over time. A gap is a longer interval between stamps, because nothing is resampled."""
 

@@ -7,7 +7,7 @@ from advisor.campaign.lateral_state import LateralState
 from advisor.decision.lateral_levels import GROUPS, SOURCE
 from advisor.decision.lateral_qualification import LateralTest
 from advisor.model.mil_f_8785c import MANNED
-from advisor.oem.lateral_result import LateralEstimate
+from advisor.oem.lateral_estimate import LateralEstimate
 from advisor.report.lateral_qualities import MODES, NAMES, levels_of, modes_told, tests_of
 from advisor.report.page.blocks import Block, Paragraph, Section, listing
 from advisor.report.page.content import Content

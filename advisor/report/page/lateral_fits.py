@@ -9,7 +9,7 @@ from advisor.campaign.lateral_state import JudgedLateral, LateralState
 from advisor.flight.signals.record import Channel
 from advisor.model.lateral import LATERAL
 from advisor.oem.estimate import ChannelFit
-from advisor.oem.lateral_result import LateralEstimate
+from advisor.oem.lateral_estimate import LateralEstimate
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph
 from advisor.report.page.drawing import picture
 from advisor.report.page.fits import paint_input, paint_output

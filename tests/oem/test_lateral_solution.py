@@ -5,14 +5,14 @@ import pytest
 
 from advisor.model.lateral import LATERAL
 from advisor.oem.extra import Prior
-from advisor.oem.lateral_estimate import (
+from advisor.oem.lateral_instruments import FARTHEST_S, Nuisance
+from advisor.oem.lateral_problem import LateralProblem
+from advisor.oem.lateral_search import fit_lateral
+from advisor.oem.lateral_solution import (
     LateralSolution,
     lateral_not_identifiable,
     solve_lateral,
 )
-from advisor.oem.lateral_instruments import FARTHEST_S, Nuisance
-from advisor.oem.lateral_problem import LateralProblem
-from advisor.oem.lateral_search import fit_lateral
 from advisor.oem.prior import SIDE_FORCE_STD, priors_of
 from advisor.oem.rows import Signal
 from advisor.oem.solution import RUNS_AWAY
