@@ -93,6 +93,18 @@ async def test_a_pane_in_sight_takes_the_next_estimates(pane: type[Pane]):
         assert here.app.screen.query_one(pane).display
 
 
+async def test_correlations_are_written_again_for_a_new_estimate_alone(monkeypatch: pytest.MonkeyPatch):
+    async with stage(flights.state(2), settings=ENGINEER, size=(80, 24)) as here:
+        await here.press("0")
+        pane, written = here.app.screen.query_one(Correlation), list[None]()
+        monkeypatch.setattr(pane, "_write", lambda: written.append(None))
+        now = view(here.app.view.state)
+        pane.show(now)
+        assert len(written) == 0
+        pane.show(view(pickle.loads(pickle.dumps(now.state))))
+        assert len(written) == 1
+
+
 async def test_a_parameter_without_variance_has_no_correlation_on_the_screen():
     state = flights.state(2)
     model = replace(state.model, covariance=np.diag(np.r_[0.0, flights.SPREAD[1:] ** 2]))
