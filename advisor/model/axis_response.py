@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import Index
+from advisor.process.arrays import FloatArray
 from advisor.process.compiled import kernel
 
 REACH = 0.25

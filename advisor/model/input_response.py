@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import Grid, Index, advanced, fill_transitions, force_slopes, rates
 from advisor.model.transition import WIDTH
+from advisor.process.arrays import FloatArray
 from advisor.process.compiled import kernel
 
 BY_VANE, BY_ACCELEROMETER, BY_ALPHA_DELAY = 0, 1, 2

@@ -26,9 +26,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.model import outputs
 from advisor.model.transition import WIDTH, divisions, fill
+from advisor.process.arrays import FloatArray
 from advisor.process.compiled import kernel
 
 Index = NDArray[np.int64]

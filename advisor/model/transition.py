@@ -9,7 +9,7 @@ pitch angle.
 
 import math
 
-from advisor.flight.signals.messages import FloatArray
+from advisor.process.arrays import FloatArray
 from advisor.process.compiled import kernel
 
 ORDERS = 4

@@ -8,8 +8,8 @@ small systems in a search. LAPACK serves the larger ones, and those with bounds.
 import numpy as np
 from scipy.linalg.lapack import dpotrf, dpotrs
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import Index
+from advisor.process.arrays import FloatArray
 from advisor.process.compiled import kernel
 
 BLOCK = 64

@@ -9,16 +9,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.aircraft.reference import PARAMETERS
-from advisor.flight.signals.messages import FloatArray
-from advisor.model.response import N_SHARED, Grid, Index
-from advisor.oem.arrow import cholesky, normal_equations, solve_lower
+from advisor.model.response import N_SHARED, Index
 from advisor.oem.covariance import REPORTED
+from advisor.oem.each import solve_each
 from advisor.oem.estimate import NoEstimate
-from advisor.oem.gauss_newton import CONVERGED, descend
 from advisor.oem.problem import OutputErrorProblem, Record, assemble
 from advisor.oem.rows import Signal
 from advisor.oem.solution import noise_floor, solve
-from advisor.process.compiled import kernel
+from advisor.process.arrays import FloatArray
+
+_POSITION = np.array([index if is_shared else N_SHARED + index for is_shared, index in REPORTED])
+"""Index of each of the eight parameters among all parameters."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +70,7 @@ def solve_many(elevator: Signal, t: FloatArray, alpha: FloatArray, q: FloatArray
         return Batch(nothing, nothing, nothing[:, :2], np.zeros(len(alpha), np.int64))
     assembly = assemble(problem(alpha[0], q[0]))
     z = np.ascontiguousarray(np.concatenate([alpha, q], axis=1))
-    found, bounds, noise, iterations = _each(
+    found, bounds, noise, iterations = solve_each(
         assembly.grid,
         z,
         assembly.channel,
@@ -78,6 +79,7 @@ def solve_many(elevator: Signal, t: FloatArray, alpha: FloatArray, q: FloatArray
         noise_floor(assembly),
         first.optimum.shared,
         first.optimum.local,
+        _POSITION,
     )
     for i in np.flatnonzero(iterations < 0):
         again = solve(problem(alpha[i], q[i]))
@@ -87,44 +89,3 @@ def solve_many(elevator: Signal, t: FloatArray, alpha: FloatArray, q: FloatArray
             noise[i] = again.optimum.noise[:2]
         iterations[i] = 0 if isinstance(again, NoEstimate) else again.optimum.iterations
     return Batch(found, bounds, noise, iterations)
-
-
-_POSITION = np.array([index if is_shared else N_SHARED + index for is_shared, index in REPORTED])
-"""Index of each of the eight parameters among all parameters."""
-
-
-@kernel()
-def _each(
-    grid: Grid,
-    z: FloatArray,
-    channel: Index,
-    owner: Index,
-    free: Index,
-    floor: FloatArray,
-    shared: FloatArray,
-    local: FloatArray,
-) -> tuple[FloatArray, FloatArray, FloatArray, Index]:
-    """Solve every row of ``z`` (n, N); iterations are -1 where the search did not converge."""
-    rows = len(z)
-    found = np.full((rows, 8), np.nan)
-    bounds = np.full((rows, 8), np.nan)
-    noise = np.full((rows, 2), np.nan)
-    iterations = np.full(rows, -1)
-    for i in range(rows):
-        optimum = descend(grid, z[i], channel, owner, free, floor, np.zeros(N_SHARED), shared, local)
-        if optimum.status != CONVERGED:
-            continue
-        information, _ = normal_equations(
-            1, z[i] - optimum.fitted, optimum.sensitivities, channel, owner, free, optimum.noise
-        )
-        if not cholesky(information[0]):
-            continue
-        inverse = np.eye(len(free))
-        solve_lower(information[0], inverse)
-        for j in range(8):
-            at = np.searchsorted(free, _POSITION[j])
-            bounds[i, j] = np.sqrt(np.sum(inverse[:, at] ** 2))
-            found[i, j] = optimum.shared[_POSITION[j]] if j % 4 else optimum.local[0, j // 4]
-        noise[i] = optimum.noise[:2]
-        iterations[i] = optimum.iterations
-    return found, bounds, noise, iterations

@@ -15,10 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import minimize
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.oem.recursion import accumulated
-from advisor.oem.whitening import schedule, whiten
-from advisor.process.compiled import kernel
+from advisor.oem.restricted import restricted
+from advisor.process.arrays import FloatArray
 
 MEMORIES = (-0.4, 0.3, 0.5, 0.7, 0.8, 0.87, 0.92, 0.95, 0.97, 0.985, 0.993)
 """Starting values of φ in the search."""
@@ -73,7 +72,7 @@ def find_colour(stretches: Sequence[Stretch]) -> Colour:
     freedom = sum(max(len(block) - block.shape[1] + 1, 1) for block in prepared)
 
     def pooled(memory: float, share: float) -> tuple[float, float]:
-        parts = [_restricted(block, memory, share) for block in prepared]
+        parts = [restricted(block, memory, share) for block in prepared]
         return sum(power for power, _ in parts), sum(determinant for _, determinant in parts)
 
     def cost(memory: float, share: float) -> tuple[float, float]:
@@ -153,36 +152,6 @@ def _orthogonal(stretch: Stretch, scale: float) -> FloatArray:
     return np.ascontiguousarray(
         np.column_stack([basis[:, values > 1e-9 * values[0]], stretch.residual / scale])
     )
-
-
-@kernel(fastmath={"reassoc", "contract"})
-def _restricted(block: FloatArray, memory: float, share: float) -> tuple[float, float]:
-    """Return the residual power after whitening and regression, and log det Γ + log det XᵀΓ⁻¹X.
-
-    ``block`` (n, p + 1): regressors and residual; Γ that of unit-variance x.
-    """
-    n, width = block.shape
-    scale, gain, determinants = schedule(n, memory, share)
-    white = whiten(block, memory, scale, gain)
-    gram = np.empty((width, width))
-    for i in range(width):
-        for j in range(i + 1):
-            dot = 0.0
-            for k in range(n):
-                dot += white[i, k] * white[j, k]
-            gram[i, j] = dot
-    for j in range(width):
-        for k in range(j):
-            gram[j, j] -= gram[j, k] ** 2
-        if j == width - 1:
-            return gram[j, j], determinants
-        gram[j, j] = np.sqrt(max(gram[j, j], 1e-300))
-        determinants += 2.0 * np.log(gram[j, j])
-        for i in range(j + 1, width):
-            for k in range(j):
-                gram[i, j] -= gram[i, k] * gram[j, k]
-            gram[i, j] /= gram[j, j]
-    return 0.0, determinants
 
 
 def _uncertainty(cost: Callable[[FloatArray], float], centre: FloatArray) -> FloatArray:

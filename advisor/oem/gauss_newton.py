@@ -12,9 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import Grid, Index, respond
 from advisor.oem.arrow import arrow_step, normal_equations
+from advisor.process.arrays import FloatArray
 from advisor.process.compiled import kernel
 
 FLAT = 1e-11

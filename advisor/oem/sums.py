@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.oem.colour import Colour
-from advisor.process.compiled import kernel
+from advisor.oem.running_sums import add_samples
+from advisor.process.arrays import FloatArray
 
 
 @dataclass(slots=True)
@@ -36,35 +36,10 @@ class Sums:
     def add(self, derivatives: FloatArray, residual: FloatArray) -> None:
         """Add further samples in order of time: derivatives (k, n) and residuals (k,)."""
         memory, white = self.colour.memory, self.colour.white_share
-        _add(self.gram, self.coloured, self.kept, derivatives, residual, memory, white)
+        add_samples(self.gram, self.coloured, self.kept, derivatives, residual, memory, white)
         self.samples += len(residual)
 
     def power(self, step: FloatArray) -> float:
         """Return the mean square of the residual after a step of the parameters (n,)."""
         moved = np.append(-step, 1.0)
         return max(float(moved @ self.gram @ moved), 0.0) / self.samples
-
-
-@kernel()
-def _add(
-    gram: FloatArray,
-    coloured: FloatArray,
-    kept: FloatArray,
-    derivatives: FloatArray,
-    residual: FloatArray,
-    memory: float,
-    white: float,
-) -> None:
-    n = len(kept)
-    for i in range(len(residual)):
-        for j in range(n):
-            value = derivatives[i, j]
-            for k in range(n):
-                other = derivatives[i, k]
-                gram[j, k] += value * other
-                coloured[j, k] += (1.0 + white) * value * other + value * kept[k] + kept[j] * other
-            gram[j, n] += value * residual[i]
-            gram[n, j] += value * residual[i]
-        gram[n, n] += residual[i] ** 2
-        for j in range(n):
-            kept[j] = memory * (kept[j] + derivatives[i, j])

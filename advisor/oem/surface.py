@@ -12,10 +12,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.input_response import InputChange
+from advisor.oem.lag import lag_changes, lagged
 from advisor.oem.rows import Signal, padded
-from advisor.process.compiled import kernel
+from advisor.process.arrays import FloatArray
 
 LONGEST_STEP_S = 0.0105
 
@@ -91,7 +91,7 @@ class Servo:
         if self.lag_s <= 0.0:
             late = np.column_stack([-rate, -rate])
             return _change(late, late, step, -jump)
-        begin, end, slower = _changes(step, rate, jump, self.lag_s)
+        begin, end, slower = lag_changes(step, rate, jump, self.lag_s)
         first = len(run) - len(t)
         start, arrival = (
             np.column_stack([begin, slower])[first:-1],
@@ -128,38 +128,3 @@ def _change(start: FloatArray, arrival: FloatArray, step: FloatArray, impulse: F
     return InputChange(
         (after + before) / 2.0, after, slope, np.repeat(impulse[:, None], start.shape[1], axis=1)
     )
-
-
-@kernel()
-def _changes(
-    step: FloatArray, rate: FloatArray, jump: FloatArray, lag: float
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the derivatives of a lagged surface by the delay, after and before each stamp, and by the lag.
-
-    Parameters
-    ----------
-    rate : (n,) of the command in each step; jump : (n + 1,) of the command at each stamp.
-    """
-    begin, end, slower = np.zeros(len(jump)), np.zeros(len(jump)), np.zeros(len(jump))
-    for i in range(len(step)):
-        begin[i] = end[i] - jump[i] / lag
-        kept = np.exp(-step[i] / lag)
-        forgotten = (begin[i] + rate[i]) * kept
-        end[i + 1] = forgotten - rate[i]
-        slower[i + 1] = slower[i] * kept - rate[i] * (1.0 - kept) + forgotten * step[i] / lag
-    begin[-1] = end[-1]
-    return begin, end, slower
-
-
-@kernel()
-def lagged(
-    step: FloatArray, start: FloatArray, arrival: FloatArray, lag: float, initial: float
-) -> FloatArray:
-    """Return the first-order lag of a command that moves linearly from ``start`` to ``arrival`` in each
-    ``step``."""
-    surface = np.empty(len(step) + 1)
-    surface[0] = initial
-    for i in range(len(step)):
-        trailing = lag * (arrival[i] - start[i]) / step[i]
-        surface[i + 1] = arrival[i] - trailing + (surface[i] - start[i] + trailing) * np.exp(-step[i] / lag)
-    return surface

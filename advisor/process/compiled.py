@@ -3,7 +3,7 @@
 Numba freezes into a kernel's machine code the functions that the kernel calls and the constants that it
 reads. Numba's own cache depends only on the text of the kernel's file, so that stale machine code would
 survive a change elsewhere. The key here is the text of the kernel's file and of every module of the package
-that it imports, directly or through others.
+that it imports, directly or through others. A contract of imports (``pyproject.toml``) keeps these few.
 """
 
 import ast

@@ -4,7 +4,7 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.simulator.layout import EFFECT_ENTRIES, INDEX, SKEWS
-from advisor.oem.surface import lagged
+from advisor.oem.lag import lagged
 
 COMMAND = EFFECT_ENTRIES[: EFFECT_ENTRIES.index("M_delta2")]
 """Entries between command and surface."""

@@ -14,7 +14,8 @@ from sim.compare import distances
 from sim.effects.fitting import flight_of
 from sim.effects.terms import problems_with
 from sim.linear import RESEARCH_JET
-from sim.linear_aircraft import LinearAircraft, rates
+from sim.linear_aircraft import LinearAircraft
+from sim.linear_motion import rates
 from sim.modelled import modelled_flight
 from sim.record import record
 from sim.scenario import Scenario, scenario_from

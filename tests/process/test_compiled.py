@@ -4,6 +4,7 @@ import os
 import shutil
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -68,6 +69,17 @@ def test_a_kernel_runs_where_no_folder_can_keep_its_machine_code(folder: Path) -
 def test_a_kernel_is_loaded_after_a_change_of_a_module_that_it_does_not_import(folder: Path) -> None:
     (folder / "flown" / "other.py").write_text("ELSEWHERE = 1.0\n")
     assert _call(folder) == (2.0, 1)
+
+
+def test_the_contract_of_imports_names_every_module_with_a_compiled_function() -> None:
+    contracts = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["importlinter"]["contracts"]
+    (named,) = (one["source_modules"] for one in contracts if one["name"].startswith("Compiled functions"))
+    texts = {file: file.read_text() for room in ("advisor", "sim") for file in (ROOT / room).rglob("*.py")}
+    compiled = {
+        file.relative_to(ROOT).with_suffix("") for file, text in texts.items() if "\n@kernel(" in text
+    }
+    assert len(compiled) > 10
+    assert {".".join(path.parts) for path in compiled} <= set(named)
 
 
 def _write(

@@ -13,7 +13,8 @@ from advisor.gap.effects import EFFECTS
 from sim.compare import distances
 from sim.effects.fitting import flight_of
 from sim.linear import RESEARCH_JET
-from sim.linear_aircraft import LinearAircraft, rates
+from sim.linear_aircraft import LinearAircraft
+from sim.linear_motion import rates
 from sim.loading import ScenarioError
 from sim.modelled import modelled_flight
 from sim.record import record

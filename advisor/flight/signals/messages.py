@@ -7,10 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from advisor.process.arrays import FloatArray as FloatArray
+from advisor.process.arrays import IntArray as IntArray
 from advisor.words.mends import Carrier
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,8 +12,8 @@ from zlib import crc32
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.model import outputs
+from advisor.process.arrays import FloatArray
 
 DERIVATIVES = ("Z_alpha", "Z_q", "Z_delta_e", "M_alpha", "M_q", "M_delta_e")
 NUISANCES = ("alpha_start", "q_start", "Z_trim", "M_trim")

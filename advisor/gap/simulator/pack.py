@@ -7,8 +7,8 @@ simulation.
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.simulator.layout import AT, TRIM
+from advisor.process.arrays import FloatArray
 from advisor.process.compiled import kernel
 
 LANES = 8

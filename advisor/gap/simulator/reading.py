@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.simulator.layout import FILTERED
+from advisor.process.arrays import FloatArray
 from advisor.process.compiled import kernel
 
 

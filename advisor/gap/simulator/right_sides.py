@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.simulator import pack as row
 from advisor.gap.simulator.layout import AT, LAYOUT, OTHER_LAYOUT, SLOW
 from advisor.gap.simulator.pack import ROWS
 from advisor.gap.simulator.step import hold_over_step, moment, near_ground, normal_force, stall, take_speed
+from advisor.process.arrays import FloatArray
 from advisor.process.compiled import kernel
 
 MOTION = SPEED, HEIGHT, ALPHA, ALPHA_DOT, Q, DEFLECTION, ALPHA_TRIM = range(7)

@@ -21,7 +21,6 @@ the time of one.
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.simulator.layout import AT, DISTURBED, LAYOUT, OTHER_LAYOUT, READ, SLOW, TRIM
 from advisor.gap.simulator.pack import LANES, ROWS, begin
 from advisor.gap.simulator.step import (
@@ -33,6 +32,7 @@ from advisor.gap.simulator.step import (
     stall,
     take_speed,
 )
+from advisor.process.arrays import FloatArray
 from advisor.process.compiled import kernel
 
 

@@ -7,10 +7,10 @@ loops lane by lane instead of using wide registers.
 import numpy as np
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.simulator import pack as row
 from advisor.gap.simulator.circle import cos_sin
 from advisor.gap.simulator.layout import AT, READ, SLOW
+from advisor.process.arrays import FloatArray
 from advisor.process.compiled import kernel
 
 _inlined = kernel(error_model="numpy", fastmath={"contract"}, inline="always")

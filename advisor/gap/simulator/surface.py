@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.simulator.layout import AT, LAYOUT, OTHER_LAYOUT
 from advisor.gap.simulator.servo import ARRIVED_RAD, through_friction, through_servo
+from advisor.process.arrays import FloatArray
 from advisor.process.compiled import kernel
 
 _READ = (

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from advisor.flight.signals.messages import IntArray
+from advisor.process.arrays import IntArray
 from advisor.process.compiled import kernel
 
 HEADER = b"\xa3\x95"
