@@ -63,9 +63,14 @@ imports: .venv/.developed ## the walls of the house
 sizes: .venv/.developed ## lines, constants and names of the gap's rules, each with an upper bound
 	$(BIN)/python -m benchmarks.gap_size
 
-.PHONY: mutants
-mutants: .venv/.developed ## changed numbers that decide or are shown: tests must notice each (four minutes)
-	$(BIN)/python -m benchmarks.mutants
+.PHONY: mutants mutants-nightly
+MUTANT_SEED ?= 1
+mutants: .venv/.developed ## 24 lines that decide, drawn and changed: tests must notice 22 (MUTANT_SEED=...; ten minutes)
+	$(BIN)/python -m benchmarks.mutants --seed $(MUTANT_SEED)
+
+NIGHT := $(shell date +%Y%m%d)
+mutants-nightly: .venv/.developed ## mutants of three seeds, new ones every night
+	$(BIN)/python -m benchmarks.mutants --seed $(NIGHT)1 $(NIGHT)2 $(NIGHT)3
 
 .PHONY: english
 english: .venv/.developed ## docstrings, messages and pages against docs/developer/style.md

@@ -10,7 +10,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
 from advisor.campaign import joint_estimate
 from advisor.campaign.campaign import Campaign
-from advisor.campaign.joint_estimate import NEWEST, Together
+from advisor.campaign.joint_estimate import Together
 from advisor.campaign.learning import may_learn
 from advisor.campaign.state import CampaignState
 from advisor.flight.maneuvers.maneuver import Maneuver
@@ -20,6 +20,9 @@ from advisor.oem.estimator import estimate_jointly
 from advisor.oem.found import FoundInstruments, with_found
 from sim.scenario import Scenario
 from tests.flights import recorded
+
+NEWEST = 7
+"""Manoeuvres that one estimate shares: those of a whole campaign of the paper."""
 
 KNOWN = Aircraft(elevator=Elevator(lag_s=0.0))
 LEARNT = with_found(Aircraft(), FoundInstruments((), np.empty(0), np.empty(0), np.eye(8), None))

@@ -14,8 +14,10 @@ from advisor.decision.information import Knowledge
 from advisor.decision.information import knowledge as known_from
 from advisor.decision.stopping import flight_test
 from advisor.oem.estimate import Estimate
-from advisor.words.quantiles import NORMAL_95
 from tests.decision.campaigns import THETA, drawn, estimate, with_change
+
+NORMAL_95 = 1.959964
+"""Half the width of a 95 % interval of the normal distribution, in standard deviations."""
 
 PLAN = CampaignPlan(rule="information")
 UP, DOWN = (as_maneuver(fly_named(Scene(), name)) for name in ("3211", "rev"))

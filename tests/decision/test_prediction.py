@@ -8,17 +8,16 @@ import pytest
 from advisor.bundled.study.flying import Scene, as_maneuver, fly_named, follow
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.pooling import DERIVATIVES
-from advisor.decision.prediction import MOMENTS, missed_percent, predict, response_to
+from advisor.decision.prediction import missed_percent, predict, response_to
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.record import Channel
 from advisor.oem.surface import Servo
-from advisor.words.quantiles import NORMAL_95
 from tests.decision.campaigns import THETA, estimate
 
 SCENE = Scene()
 FLIGHT = fly_named(SCENE, "3211")
 MANEUVER = as_maneuver(FLIGHT)
-MOMENTS_S = np.linspace(FLIGHT.t[0], FLIGHT.t[-1], MOMENTS)
+MOMENTS_S = np.linspace(FLIGHT.t[0], FLIGHT.t[-1], 200)  # the moments of a prediction
 DERIVED = THETA[list(DERIVATIVES)]
 ONE = CandidateManeuver(estimate(), maneuver=MANEUVER)
 
@@ -87,7 +86,7 @@ def test_the_band_is_that_of_responses_drawn_from_the_covariance() -> None:
     drawn = [response_to(ONE, d, None) for d in rng.multivariate_normal(DERIVED, covariance, 1500)]
     spread = np.std([r.values for r in drawn if r is not None], axis=0)
     for k, name in ((0, "alpha"), (1, "q")):
-        widest = 100.0 * NORMAL_95 * np.max(spread[k]) / here.peak[k]
+        widest = 196.0 * np.max(spread[k]) / here.peak[k]
         assert band[name] == pytest.approx(widest, rel=0.08)
 
 
@@ -110,7 +109,7 @@ def test_an_unstable_aircraft_is_predicted_until_a_deviation_has_doubled() -> No
     response = response_to(ONE, unstable, None)
     assert response is not None
     # The first step comes after one second; it is a step, so q begins as M_delta_e times its size.
-    step_s = (1.0 + np.log(2.0) / growth) / (MOMENTS - 1)
+    step_s = (1.0 + np.log(2.0) / growth) / 199.0
     moving = np.argmax(np.abs(response.values[1]) > 0.0)
     assert moving * step_s == pytest.approx(1.0, abs=0.05)
     band = predict([ONE], unstable, None).percent(np.diag((0.02 * unstable) ** 2))

@@ -8,9 +8,8 @@ import pytest
 from advisor.aircraft.controls import Elevator
 from advisor.doctor.examination import ElevatorFound, Limit
 from advisor.doctor.expectation import NOISE, TYPICAL, Assumed, frequency
-from advisor.doctor.instruments import COARSE_DEG, LOSSY_PERCENT, elevator_limits, loss_limits, path_limits
-from advisor.doctor.pace import ENOUGH_PER_PERIOD, FEWEST_PER_PERIOD, Paced, rate_limits
-from advisor.flight.stream.suitability import SLOWEST_HZ
+from advisor.doctor.instruments import elevator_limits, loss_limits, path_limits
+from advisor.doctor.pace import Paced, rate_limits
 from advisor.flight.vehicle.vehicle import Vehicle
 
 HAIR = 1e-4
@@ -21,10 +20,10 @@ def numbers(limit: Limit) -> list[str]:
     return re.findall(r"\d+(?:\.\d+)?", limit.text)
 
 
-@pytest.mark.parametrize("per_period", [FEWEST_PER_PERIOD, ENOUGH_PER_PERIOD])
+@pytest.mark.parametrize("per_period", [6.0, 20.0])
 def test_a_rate_just_too_low_reads_lower_than_what_is_asked_for(per_period: float) -> None:
     assumed = Assumed(TYPICAL, NOISE, "a typical aircraft")
-    too_slow_hz = (1.0 - HAIR) * max(SLOWEST_HZ, per_period * frequency(TYPICAL) / (2.0 * np.pi))
+    too_slow_hz = (1.0 - HAIR) * max(8.0, per_period * frequency(TYPICAL) / (2.0 * np.pi))
     paced = {name: Paced(name, "ATTITUDE", 50.0, 50.0) for name in ("elevator", "alpha")}
     paced["q"] = Paced("q", "ATTITUDE", too_slow_hz, too_slow_hz)
     (limit,) = rate_limits(paced, assumed, Vehicle(1, 1, "ardupilot", 1), 25.0)
@@ -32,22 +31,32 @@ def test_a_rate_just_too_low_reads_lower_than_what_is_asked_for(per_period: floa
     asked = re.search(r"at least ([\d.]+), better ([\d.]+)", limit.text)
     assert samples
     assert asked
-    missed = asked[1] if per_period == FEWEST_PER_PERIOD else asked[2]
+    missed = asked[1] if per_period == 6.0 else asked[2]
     assert float(samples[1]) < float(missed)
-    assert limit.stops is (per_period == FEWEST_PER_PERIOD)
+    assert limit.stops is (per_period == 6.0)
 
 
 def test_a_step_just_too_coarse_reads_coarser_than_the_limit() -> None:
-    found = ElevatorFound((2,), COARSE_DEG * (1.0 + HAIR), calibrated=True)
+    found = ElevatorFound((2,), 0.5 * (1.0 + HAIR), calibrated=True)
     (limit,) = elevator_limits(found, Elevator(lag_s=0.1))
     step, most = numbers(limit)
-    assert float(step) > float(most)
+    assert float(step) > float(most) == 0.5
 
 
 def test_a_loss_just_too_high_reads_higher_than_the_limit() -> None:
-    (limit,) = loss_limits(LOSSY_PERCENT * (1.0 + HAIR))
+    (limit,) = loss_limits(5.0 * (1.0 + HAIR))
     lost, most = numbers(limit)
-    assert float(lost) > float(most)
+    assert float(lost) > float(most) == 5.0
+
+
+def test_a_step_of_half_a_degree_is_fine_enough() -> None:
+    found = ElevatorFound((2,), 0.5, calibrated=True)
+    assert elevator_limits(found, Elevator(lag_s=0.1)) == []
+
+
+@pytest.mark.parametrize("lost_percent", [None, 0.0, 4.9])
+def test_a_loss_of_less_than_a_packet_in_twenty_is_no_limit(lost_percent: float | None) -> None:
+    assert loss_limits(lost_percent) == []
 
 
 def test_a_second_path_is_told_with_its_share_its_lateness_and_a_mend() -> None:

@@ -8,7 +8,7 @@ import pytest
 
 from advisor.model.response import N_PARAMETERS, respond
 from advisor.oem import surface
-from advisor.oem.edges import WIDTH_S, Edges, _by_edges, _edged, large_steps
+from advisor.oem.edges import Edges, _by_edges, _edged, large_steps
 from advisor.oem.instrument_columns import instrument_columns
 from advisor.oem.instruments import BY_NAME
 from advisor.oem.problem import assemble
@@ -101,7 +101,7 @@ def test_the_column_of_a_step_is_the_slope_of_the_outputs_by_its_time(lag_s):
         ends = []
         for sign in (1.0, -1.0):
             moved = [Edges(e.interval, e.stamps, e.time.copy()) for e in edges]
-            moved[m].time[j] += sign * WIDTH_S
+            moved[m].time[j] += sign * 1e-4
             ends.append(outputs(_edged(plain, moved, records)))
-        slope = (ends[0] - ends[1]) / (2.0 * WIDTH_S)
+        slope = (ends[0] - ends[1]) / 2e-4
         np.testing.assert_allclose(columns[:, 2 * m + j], slope, atol=2e-3 * np.max(np.abs(slope)))

@@ -6,7 +6,7 @@ import pytest
 from advisor.model.lateral import LATERAL, Trim, modes_of, state_matrix
 from advisor.oem.extra import Prior
 from advisor.oem.gauss_newton import CONVERGED
-from advisor.oem.lateral_instruments import LONGEST_LAG_S, Nuisance, moved_by
+from advisor.oem.lateral_instruments import Nuisance, moved_by
 from advisor.oem.lateral_problem import LateralProblem, assemble_lateral
 from advisor.oem.lateral_search import fit_lateral
 from advisor.oem.lateral_solution import solve_lateral
@@ -101,8 +101,8 @@ def test_a_lag_stays_within_its_range_and_everything_else_follows(doublets):
     fit = fit_lateral(problem, (lag,), KNOWN_NOTHING, lateral_start(problem))
     assert fit.optimum.status == CONVERGED
     assert lag.read(fit.problem) == 0.0
-    farther = moved_by(np.array([9.0]), lag.write(problem, LONGEST_LAG_S), (lag,))
-    assert lag.read(farther) == LONGEST_LAG_S
+    farther = moved_by(np.array([9.0]), lag.write(problem, 0.4), (lag,))
+    assert lag.read(farther) == 0.4
 
 
 def test_a_prior_of_a_derivative_pulls_by_its_share(doublets):

@@ -10,7 +10,6 @@ from pathlib import Path
 
 import numpy as np
 
-from advisor.simulators.isolated import MOST_MEMORY_BYTES
 from advisor.simulators.protocol import Condition, Increments, Inputs, Replay, State
 from advisor.words.problems import UnusableInputError
 
@@ -96,7 +95,7 @@ class Faulty(Level):
         if self._fault == "nan":
             flown.q[3] = np.nan
         if self._fault == "devour":
-            np.ones(MOST_MEMORY_BYTES // 8)
+            np.ones(2**30)  # 8 GiB
         if self._fault.startswith("helper"):
             helper = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(3600)"])
             Path(self._fault.partition(":")[2]).write_text(str(helper.pid))

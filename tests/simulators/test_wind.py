@@ -155,7 +155,6 @@ def test_an_fmu_begins_with_the_wind_that_its_mapping_names(tmp_path: Path):
 def test_jsbsim_drifts_with_the_wind_and_flies_in_the_air_as_in_still_air(tmp_path: Path):
     pytest.importorskip("jsbsim")
     from advisor.simulators.jsbsim import Jsbsim
-    from advisor.simulators.jsbsim_flight import FOOT_M
     from advisor.simulators.jsbsim_model import find_model
 
     # JSBSim's rate of α comes from the velocity over the ground, which a wind changes. It plays no part here.
@@ -164,7 +163,7 @@ def test_jsbsim_drifts_with_the_wind_and_flies_in_the_air_as_in_still_air(tmp_pa
     simulator = Jsbsim(path)
     still, blown = (simulator.replay(condition, STEP) for condition in (STILL, BLOWN))
     fdm = simulator._flight.fdm
-    north, east = (FOOT_M * fdm[f"velocities/v-{axis}-fps"] for axis in ("north", "east"))
+    north, east = (0.3048 * fdm[f"velocities/v-{axis}-fps"] for axis in ("north", "east"))
     assert (north, east) == pytest.approx((42.0, 5.0), abs=0.4)
     for name in ("alpha", "q", "a_z", "airspeed_m_s"):
         one, other = getattr(still, name), getattr(blown, name)

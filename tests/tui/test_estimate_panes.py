@@ -19,7 +19,6 @@ from advisor.tui.panes.residuals import Residuals
 from advisor.tui.plot.widget import Plot
 from advisor.tui.screens.engineer import PANES
 from advisor.tui.settings import Settings
-from advisor.words.quantiles import NORMAL_95
 from tests.tui import flights
 from tests.tui.stage import Stage, stage
 from tests.tui.stand_ins import HandFedSource
@@ -42,7 +41,7 @@ def test_a_course_holds_each_manoeuvre_that_tells_the_parameter():
     k = PARAMETERS.index("M_alpha")
     assert of.numbers.tolist() == [1.0, 2.0, 3.0, 4.0]
     assert of.value.tolist() == [j.estimate.theta[k] for j in state.maneuvers]
-    assert of.half == pytest.approx(NORMAL_95 * flights.SPREAD[k])
+    assert of.half == pytest.approx(1.959964 * flights.SPREAD[k])
     assert of.model == state.model.theta[k]
     assert of.prior == pytest.approx(1.1 * flights.TRUTH[k])
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from advisor.aircraft.aircraft import Aircraft, Markers
 from advisor.flight.maneuvers.events import Activity, Notice
-from advisor.flight.maneuvers.marks import LONGEST_S, Mark
+from advisor.flight.maneuvers.marks import Mark
 from advisor.flight.stream.stream import FlightStream
 from tests.flight.columns import Wire, attitude, fly, heartbeat, hud, plane_parameters, servo, switch, text
 from tests.flight.stream.test_stream import ONE, as_plain, flown, maneuvers
@@ -193,9 +193,9 @@ def test_a_receiver_without_the_channel_switches_nothing():
 
 
 def test_a_switch_left_on_for_too_long_is_told_and_hides_nothing():
-    wire = one_input(LONGEST_S + 20.0)
+    wire = one_input(120.0)  # a mark lasts 100 s at most
     switch(wire, 1001.0, 51.0, 1900)
-    switch(wire, 1000.5 + LONGEST_S + 10.0, 50.5 + LONGEST_S + 10.0, 1100)
+    switch(wire, 1110.5, 160.5, 1100)
     _, events = flown(wire, BY_SWITCH)
     assert [m.span.closed_by for m in maneuvers(events)] == ["quiet"]
     assert "at most 100 s" in next(

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from advisor.flight.maneuvers.maneuver import Span
-from advisor.flight.maneuvers.steady_speed import FOLLOWED_PERCENT, LEFT, at_steady_speed
+from advisor.flight.maneuvers.steady_speed import LEFT, at_steady_speed
 from advisor.flight.signals.record import Channel
 
 T = np.arange(9.0, 30.0, 0.1)
@@ -48,5 +48,5 @@ def test_without_an_air_speed_nothing_is_cut_off(airspeed):
 
 
 def test_a_wider_limit_of_the_user_does_not_widen_what_the_model_follows():
-    wide, followed = (at_steady_speed(STEP, slowing(0.02), limit) for limit in (60.0, FOLLOWED_PERCENT))
+    wide, followed = (at_steady_speed(STEP, slowing(0.02), limit) for limit in (60.0, 15.0))  # %
     assert wide == followed

@@ -6,7 +6,7 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.events import ManeuverFlown, NoData, Notice, VehicleFound
 from advisor.flight.stream.stream import FlightStream
-from advisor.flight.vehicle.following import FOLLOW, GIVEN_UP_AFTER_S, SERVED_S
+from advisor.flight.vehicle.following import FOLLOW
 from tests.flight.columns import Wire, aoa, attitude, fly, heartbeat, hud, plane_parameters, servo, text
 
 START_S = 1000.0
@@ -93,10 +93,10 @@ def test_between_two_others_nobody_chooses_but_the_crew():
 def test_a_vehicle_that_has_served_is_kept_however_long_it_is_silent():
     wire = Wire()
     plane_parameters(wire, START_S - 0.9, system=1)
-    end_s = START_S + SERVED_S + 10.0
+    end_s = START_S + 70.0  # a minute of service, and more
     send(wire, START_S, end_s, system=1)
     plane_parameters(wire, START_S + 0.1, system=2)
-    send(wire, START_S, end_s + 2 * GIVEN_UP_AFTER_S, system=2)
+    send(wire, START_S, end_s + 30.0, system=2)
     assert followed(wire)[0] == [1]
 
 

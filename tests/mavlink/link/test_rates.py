@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
-from advisor.mavlink.link.link import UNREACHABLE_S, Link
-from advisor.mavlink.link.message_request import AT_ONCE, LONGEST_REST_S, MOST_TRIES, SHORTEST_REST_S
-from advisor.mavlink.link.rates import ANSWER_WITHIN_S, MEASURE_S, RateRequest
+from advisor.mavlink.link.link import Link
+from advisor.mavlink.link.rates import RateRequest
 from advisor.mavlink.link.ratewatch import RateWatch
 from advisor.mavlink.wire.framing import FrameCutter
 from tests.mavlink.link.builders import (
@@ -56,9 +55,9 @@ def test_rates_are_asked_one_at_a_time_each_after_the_answer_to_the_last() -> No
 
 def test_an_unanswered_request_is_repeated_with_its_confirmation_counted_up_then_rests() -> None:
     request = RateRequest({"ATTITUDE": 50.0})
-    sent = [request.speak(VEHICLE, i * ANSWER_WITHIN_S) for i in range(MOST_TRIES)]
-    assert [message.confirmation for (message,) in sent] == list(range(MOST_TRIES))
-    assert request.speak(VEHICLE, MOST_TRIES * ANSWER_WITHIN_S) == []
+    sent = [request.speak(VEHICLE, float(i)) for i in range(5)]
+    assert [message.confirmation for (message,) in sent] == [0, 1, 2, 3, 4]
+    assert request.speak(VEHICLE, 5.0) == []
     assert request.answers == {"ATTITUDE": "no answer"}
     (sentence,) = request.report()
     assert "SYSID_MYGCS (MAV_GCS_SYSID)" in sentence
@@ -90,8 +89,8 @@ def test_a_refused_request_is_asked_again_after_a_rest(result: int) -> None:
     request = RateRequest({"ATTITUDE": 50.0})
     request.speak(VEHICLE, 0.0)
     answer(request, result, 0.1)
-    assert request.speak(VEHICLE, 1.0) == []
-    assert len(request.speak(VEHICLE, 0.2 + SHORTEST_REST_S)) == 1
+    assert request.speak(VEHICLE, 5.0) == []
+    assert len(request.speak(VEHICLE, 5.2)) == 1  # five seconds after the refusal
     answer(request, dialect.MAV_RESULT_ACCEPTED, 6.0)
     assert request.answers == {"ATTITUDE": "granted"}
 
@@ -155,8 +154,8 @@ def test_what_is_delivered_is_measured_not_believed() -> None:
     answer(request, dialect.MAV_RESULT_ACCEPTED, 0.1)
     request.speak(VEHICLE, 0.1)
     for i in range(75):
-        hear(request, attitude(40 * i), 0.1 + i * MEASURE_S / 75)
-    request.speak(VEHICLE, 0.1 + MEASURE_S)
+        hear(request, attitude(40 * i), 0.1 + i / 25)
+    request.speak(VEHICLE, 3.1)
     assert request.delivered_hz == {"ATTITUDE": 25.0}
     assert request.report() == ["delivered: ATTITUDE 25.0 Hz of 50 asked"]
 
@@ -178,9 +177,9 @@ def cut_in_flight(request: RateRequest, until_s: float) -> list[float]:
 def test_a_rate_taken_away_in_flight_is_told_and_asked_against_at_once_then_after_rests() -> None:
     request = RateRequest({"ATTITUDE": 50.0})
     asked_at = cut_in_flight(request, 300.0)[1:]
-    assert 20.0 < asked_at[0] < 20.0 + 2 * MEASURE_S + 1.0
-    assert asked_at[AT_ONCE - 1] - asked_at[0] < AT_ONCE * (MEASURE_S + 1.0)
-    assert all(later - earlier <= LONGEST_REST_S + 4.0 for earlier, later in pairwise(asked_at))
+    assert 20.0 < asked_at[0] < 27.0  # two measurements of 3 s
+    assert asked_at[2] - asked_at[0] < 12.0
+    assert all(later - earlier <= 64.0 for earlier, later in pairwise(asked_at))
     assert len([at_s for at_s in asked_at if at_s > 120.0]) <= 4
     told = [sentence for sentence in request.report() if "rates fell" in sentence]
     assert len(told) == 1
@@ -248,12 +247,12 @@ def test_nothing_is_sent_into_a_silence_and_the_request_comes_when_the_vehicle_i
     request = RateRequest({"ATTITUDE": 50.0})
     with Link(f"udpin:127.0.0.1:{port}", talkers=[request]):
         vehicle.send(heartbeat())
-        vehicle.socket.settimeout(UNREACHABLE_S + 1.5)
+        vehicle.socket.settimeout(4.5)  # after 3 s of silence the vehicle is out of reach
         heard = 0
         with contextlib.suppress(TimeoutError):
             while vehicle.hear():
                 heard += 1
-        assert heard <= UNREACHABLE_S / ANSWER_WITHIN_S + 1
+        assert heard <= 4
         assert request.answers == {}
         vehicle.send(heartbeat())
         vehicle.send(heartbeat())

@@ -1,0 +1,1 @@
+"""Mutants: a seed draws lines that decide, each is changed, and the nearest tests must notice."""
