@@ -112,11 +112,12 @@ def natural_period(maneuver: Maneuver, estimate: Estimate | NoEstimate) -> float
         square -= (1.0 + estimate.value("Z_q")) * estimate.value("M_alpha")
         if square > 0.0:
             return 2.0 * math.pi / math.sqrt(square)
-    onsets = [onset for onset, _ in maneuver.span.steps]
-    if len(onsets) < 2:
+    held_s = np.diff([onset for onset, _ in maneuver.span.steps])
+    held_s = held_s[held_s > 0.0]  # two steps between two samples have one onset
+    if len(held_s) == 0:
         return 1.0
     swept = maneuver.span.kind == "multisine"
-    return 2.0 * float(np.median(np.diff(onsets))) if swept else 2.5 * float(np.min(np.diff(onsets)))
+    return 2.0 * float(np.median(held_s)) if swept else 2.5 * float(np.min(held_s))
 
 
 def _knows_the_motion(estimate: Estimate) -> bool:

@@ -31,6 +31,8 @@ LARGEST_MEMORY = 0.9995
 SMALLEST_SHARE = 1e-4
 LOG_SMALLEST_SHARE = math.log(SMALLEST_SHARE)
 _NEARLY_ONE = 1.0 - 1e-9
+_ROUND_OFF = float(np.finfo(float).eps)
+"""Least residual power per degree of freedom, relative to the mean square before the regression."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,11 +75,12 @@ def find_colour(stretches: Sequence[Stretch]) -> Colour:
 
     def pooled(memory: float, share: float) -> tuple[float, float]:
         parts = [restricted(block, memory, share) for block in prepared]
-        return sum(power for power, _ in parts), sum(determinant for _, determinant in parts)
+        # A residual that the columns explain whole is left with round-off, of either sign.
+        power = max(sum(power for power, _ in parts), freedom * _ROUND_OFF)
+        return power, sum(determinant for _, determinant in parts)
 
     def cost(memory: float, share: float) -> tuple[float, float]:
         power, determinants = pooled(memory, share)
-        power = max(power, float(np.finfo(float).tiny))  # a residual of nothing but offsets
         return float(freedom * np.log(power / freedom) + determinants), power / freedom
 
     white, variance = cost(0.0, 0.0)

@@ -102,7 +102,10 @@ def influence(
     for rows in assembly.blocks:
         mine = g[rows][:, own]
         weighted = (mine * weight[rows, None]).T
-        inverse, left_open = inverse_of(weighted @ mine)
+        own_information = weighted @ mine
+        if not np.all(np.isfinite(own_information)):
+            return None
+        inverse, left_open = inverse_of(own_information)
         open_share[own] = np.maximum(open_share[own], left_open)
         mix = inverse @ (weighted @ shared_g[rows])
         projected[rows] = shared_g[rows] - mine @ mix

@@ -19,10 +19,10 @@ from advisor.oem.extra import Extra
 from advisor.oem.identifiability import LARGEST_ERROR
 from advisor.oem.lateral_instruments import Nuisance, begun
 from advisor.oem.lateral_problem import LateralAssembly, LateralProblem
-from advisor.oem.lateral_search import LateralFit, fit_lateral
+from advisor.oem.lateral_search import LEAST_NOISE, LateralFit, fit_lateral
 from advisor.oem.lateral_start import lateral_start
 from advisor.oem.prior import SIDE_FORCE_STD, Priors, priors_of
-from advisor.oem.solution import refused
+from advisor.oem.solution import RUNS_AWAY, refused
 from advisor.words.quantiles import NORMAL_95
 
 N = len(LATERAL.shared)
@@ -69,7 +69,9 @@ def solve_lateral(
     start = lateral_start(problem)
     prior = priors_of(problem, start[0])
     fit = fit_lateral(problem, (), prior, start, FIRST_LOOK)
-    solution = fit if isinstance(fit, NoEstimate) else _evaluated(fit, prior, ())
+    if isinstance(fit, NoEstimate):
+        return fit
+    solution = RUNS_AWAY if _has_diverged(fit) else _evaluated(fit, prior, ())
     for _ in range(2):
         if isinstance(solution, NoEstimate):
             return solution
@@ -84,6 +86,17 @@ def solve_lateral(
         problem, start = fit.problem, (fit.optimum.shared, fit.optimum.local)
         solution = _evaluated(fit, prior, weighed)
     return solution
+
+
+def _has_diverged(fit: LateralFit) -> bool:
+    """Return whether a fit explains the outputs worse than a constant value of each output does."""
+    assembly, noise = fit.assembly, fit.optimum.noise
+    gain = 0.0
+    for c in np.unique(assembly.channel):
+        z = assembly.z[assembly.channel == c]
+        still = max(float(np.std(z)), LEAST_NOISE[LATERAL.outputs[c]])
+        gain += len(z) * float(np.log(still / noise[c]))
+    return not gain >= 0.0
 
 
 def _share(solution: LateralSolution) -> float:

@@ -299,3 +299,13 @@ def test_the_limits_of_the_flight_come_before_the_hands_of_the_pilot():
         reason.code for reason in judge_quality(cut_short(maneuver, 0.1), uncertain(estimated), AIRCRAFT)
     ]
     assert codes.index("airspeed") < codes.index("free_response")
+
+
+def test_two_steps_of_one_onset_give_no_period_of_zero():
+    maneuver, _, _ = bad_flight()[0]
+    first, *others = maneuver.span.steps
+    twice = replace(maneuver, span=replace(maneuver.span, steps=(first, first, *others)))
+    untold = NoEstimate("x", "x")
+    assert natural_period(twice, untold) == natural_period(maneuver, untold)
+    assert natural_period(replace(twice, span=replace(twice.span, steps=(first, first))), untold) == 1.0
+    assert "steps" in {reason.code for reason in judge_quality(twice, untold, AIRCRAFT)}

@@ -36,6 +36,14 @@ def test_white_noise_is_called_white():
     assert np.mean([c.variance for c in found]) == pytest.approx(1.0, rel=0.05)
 
 
+def test_a_residual_that_the_columns_explain_whole_has_finite_errors():
+    rng = np.random.default_rng(3)
+    columns = rng.standard_normal((300, 5))
+    colour = find_colour([Stretch(1e-9 * columns[:, 0], columns)])
+    assert np.all(np.isfinite(colour.uncertainty))
+    assert 0.0 <= colour.variance < 1e-30
+
+
 def test_several_stretches_tell_the_colour_better_than_one():
     one = find_colour([stretch(0.9, 0.0, 0)])
     many = find_colour([stretch(0.9, 0.0, seed) for seed in range(8)])

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from advisor.model.lateral import LATERAL
+from advisor.oem import lateral_solution
 from advisor.oem.extra import Prior
 from advisor.oem.lateral_instruments import Nuisance
 from advisor.oem.lateral_problem import LateralProblem
@@ -145,3 +146,13 @@ def test_a_start_from_which_the_model_runs_away_gives_no_fit():
     unstable = vector({**JET, "L_p": 60.0})
     local = np.ones((len(problem.records), len(LATERAL.names.local)))
     assert fit_lateral(problem, (), priors_of(problem, unstable), (unstable, local)) is RUNS_AWAY
+
+
+def test_a_first_look_that_is_worse_than_no_motion_is_refused_before_it_is_evaluated(monkeypatch):
+    problem = both_inputs(JET, np.random.default_rng(1))
+    local = np.zeros((len(problem.records), len(LATERAL.names.local)))
+    local[:, LATERAL.names.local.index("L_0")] = 1e3
+    monkeypatch.setattr(lateral_solution, "lateral_start", lambda problem: (vector(JET), local))
+    monkeypatch.setattr(lateral_solution, "FIRST_LOOK", 0)
+    monkeypatch.setattr(lateral_solution, "_evaluated", lambda *fit: pytest.fail("the fit was evaluated"))
+    assert solve_lateral(problem) is RUNS_AWAY

@@ -41,9 +41,10 @@ class Extremes:
         t, y = t[late], y[late]
         if len(t) == 0:
             return
-        while float(np.max(t)) >= self._begin_s + MOST * self._length_s:
+        since_s = t - self._begin_s
+        while float(np.max(since_s)) / self._length_s >= MOST:
             self._halve()
-        places = ((t - self._begin_s) / self._length_s).astype(np.intp)
+        places = (since_s / self._length_s).astype(np.intp)
         np.minimum.at(self._low, places, y)
         np.maximum.at(self._high, places, y)
 

@@ -36,3 +36,11 @@ def test_a_silence_is_a_gap() -> None:
     found = Extremes()
     found.add(np.array([0.0, 0.1, 60.0]), np.array([1.0, 2.0, 3.0]))
     assert len(found.course.t) == 2
+
+
+def test_a_stamp_that_rounds_up_to_the_end_has_a_place() -> None:
+    begin_s = 33.586
+    stamp_s = np.nextafter(begin_s + 150.0, 0.0)
+    found = Extremes()
+    found.add(np.array([begin_s, stamp_s]), np.array([1.0, 2.0]))
+    assert found.course.high.max() == 2.0
