@@ -6,8 +6,10 @@ A pilot who brings the aircraft back to steady flight answers what the aircraft 
 
 with s the sign of the steadying side, and with a delay τ of the hand. Such a movement begins where the
 attitude is off, and ends where the attitude is back. A test input begins in steady flight, and moves the
-aircraft away. The coefficients are a non-negative least-squares fit (Lawson & Hanson, Solving Least Squares
-Problems, 1974, ch. 23). The fit begins at the onset, because hands that were still before begin to act there.
+aircraft away. An unstable aircraft is always fed back, also within a test input, so that the share alone
+refuses no movement. The coefficients are a non-negative least-squares fit (Lawson & Hanson, Solving Least
+Squares Problems, 1974, ch. 23). The fit begins at the onset, because hands that were still before begin to
+act there.
 """
 
 from collections.abc import Mapping

@@ -35,6 +35,10 @@ _MOSTLY = 0.5
 """Share of a movement's variation that feedback of the motion may explain. Beyond one half the movement is
 mostly an answer. Recoveries of an attitude by hand on record have 0.63 to 0.94. Test inputs that bring the
 attitude back have at most 0.35."""
+_OF_ANSWERS = 0.25
+"""Largest relative standard error of the effect by the external input alone, over the share that feedback
+leaves, where feedback explains most of the movement. Recoveries by hand have 0.29 to 9. Inputs to unstable
+aircraft, which are always fed back, have 0.09 to 0.25."""
 _STANDS_OUT = 4.0
 """Least ratio of a movement's fastest motion to the root mean square of the motion before. Chance exceeds
 four standard deviations in 2 % of movements of 300 samples. Hands that keep an attitude have 0.3 to 3.6,
@@ -159,7 +163,7 @@ def _tells_nothing(maneuver: Maneuver, motion: Mapping[str, Channel], loop: Loop
     if _is_swept(maneuver):
         return None
     answers = explained_by_feedback(maneuver.span, maneuver.channels[control], motion, found.effect, loop)
-    if answers > _MOSTLY:
+    if answers > _MOSTLY and found.external_error > _OF_ANSWERS * (1.0 - answers):
         shown, most = distinct_texts(100.0 * answers, 100.0 * _MOSTLY)
         follows = f"the {control} brought the attitude back, as feedback of the motion"
         return Because("feedback", f"{follows} explains to {shown} % (limit {most}); not a test input")

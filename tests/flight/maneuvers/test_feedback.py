@@ -78,6 +78,28 @@ def test_a_recovery_is_an_activity_and_the_input_before_it_is_a_test(which, reas
     assert (because and because.reason) == reason
 
 
+def unstable_flight():
+    """Channels of a statically unstable aircraft, steadied from α and q, with a doublet of 2 deg."""
+    shaken = 0.02 * DEG * coloured(np.random.default_rng(6), T, 1.0)
+    elevator, q, theta, alpha = (np.zeros(len(T)) for _ in range(4))
+    for i in range(1, len(T)):
+        since_s = T[i - 1] - TEST_S
+        moved = 2.0 * DEG * ((0.0 <= since_s < 0.5) - 1.0 * (0.5 <= since_s < 1.0))
+        elevator[i - 1] = moved + 1.2 * (alpha[i - 1] + shaken[i - 1]) + 0.4 * q[i - 1]
+        alpha[i] = alpha[i - 1] + STEP_S * (-1.4 * alpha[i - 1] + q[i - 1])
+        q[i] = q[i - 1] + STEP_S * (9.6 * alpha[i - 1] - 3.7 * q[i - 1] - 12.8 * elevator[i - 1])
+        theta[i] = theta[i - 1] + STEP_S * q[i - 1]
+    values = {"elevator": elevator, "q": q, "theta": theta}
+    return {name: Channel(name, T, y) for name, y in values.items()}
+
+
+def test_an_input_to_an_unstable_aircraft_counts_though_feedback_explains_most_of_it():
+    channels, doublet = unstable_flight(), span(TEST_S, TEST_S + 1.0, 2.0 * DEG)
+    record = {name: channel.cut(doublet.record_from_s, doublet.end_s) for name, channel in channels.items()}
+    assert share(doublet, channels) > 0.5
+    assert not_an_input(Maneuver(1, 0, doublet, record, "MANUAL"), None, channels) is None
+
+
 def test_hands_that_move_no_faster_than_before_fly_no_test():
     channels = flight(tremor=1.0)
     calm = span(14.0, 16.0, 0.3 * DEG)
