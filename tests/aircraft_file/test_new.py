@@ -14,9 +14,10 @@ from advisor.aircraft_file.read import load_aircraft
 from advisor.flight.elevator.elevator_guess import Guess
 from advisor.flight.elevator.elevator_outputs import find_elevator
 from advisor.flight.vehicle.ardupilot_wiring import WORDS
+from advisor.flight.vehicle.mixers import ELEVONS
 from advisor.flight.vehicle.surfaces import Scale
 from advisor.flight.vehicle.vehicle import Vehicle
-from advisor.flight.vehicle.wiring import Role, Wiring
+from advisor.flight.vehicle.wiring import Wiring
 from tests.conftest import Advisor
 
 CASES = Path(__file__).parents[1] / "cases"
@@ -136,7 +137,7 @@ def test_questions_without_answers_leave_no_file(
 
 
 def test_elevons_are_found_by_the_parameters_and_both_are_described() -> None:
-    left, right = Role("elevon", "left"), Role("elevon", "right")
+    left, right = ELEVONS
     scale = Scale(1000.0, 1500.0, 2000.0, reversed=True)
     wiring = Wiring(WORDS, {1: left, 2: right}, {1: scale, 2: scale}, frozenset({1, 2}))
     surface = find_elevator(Elevator(), wiring)

@@ -1,23 +1,19 @@
 """The elevator: its servo outputs, their mixing, and the sentences for the user on both.
 
-Elevons, the halves of a V-tail or A-tail and differential spoilers all follow the pitch demand upwards. They
-follow the other demand in opposite directions (ArduPlane, ``servos.cpp``; PX4's control allocation). The mean
-of the left and the right side is therefore the elevator, and the other demand cancels.
+The rows of ``mixers.py`` give each output's share.
 """
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 from advisor.aircraft.controls import Elevator, ElevatorOutput, Pairs
+from advisor.flight.elevator.mixed_parts import parts_of
+from advisor.flight.vehicle.mixers import NOTHING, ROWS, Control, Role, sides_of
 from advisor.flight.vehicle.surfaces import Calibration, Part, Surface, in_shares, joined_numbers, listed
-from advisor.flight.vehicle.wiring import ELEVATOR, Role, Wiring
+from advisor.flight.vehicle.wiring import Wiring
 from advisor.words.problems import Problem
 
-_CANCELS = {
-    "elevon": "their effects in roll cancel",
-    "V-tail": "their effects in yaw cancel",
-    "A-tail": "their effects in yaw cancel",
-    "differential spoiler": "their effects in roll and yaw cancel",
-}
+_AXES: Mapping[Control, str] = {"aileron": "roll", "rudder": "yaw"}
+"""Other control that a mixed output follows, to the axis in which the members of the pair cancel."""
 
 _OF_ELEVATOR = "Z_δe and M_δe"
 
@@ -86,27 +82,9 @@ def _as_given(output: int, calibration: Pairs | None, wiring: Wiring, why: str) 
 
 
 def _as_found(calibration: Pairs | None, wiring: Wiring) -> Surface | Problem:
-    # Groups of outputs that each make a whole elevator: all plain ones, and all pairs of one kind.
-    kinds = dict.fromkeys(role.surface for role in wiring.roles.values() if role.surface in _CANCELS)
-    groups = [[wiring.outputs_of(ELEVATOR)]]
-    groups += [
-        [wiring.outputs_of(Role(kind, "left")), wiring.outputs_of(Role(kind, "right"))] for kind in kinds
-    ]
-    whole = [sides for sides in groups if all(sides)]
-    if not whole:
+    parts = parts_of("elevator", wiring)
+    if not parts:
         return _nothing_found(wiring)
-    parts = in_shares(
-        Part(
-            n,
-            wiring.scale(n),
-            1.0 / (len(sides) * len(side)),
-            _has_known_direction(n, wiring),
-            f"{wiring.roles[n].surface} {wiring.roles[n].side}",
-        )
-        for sides in whole
-        for side in sides
-        for n in side
-    )
     found = list(dict.fromkeys(wiring.roles[n].surface for n in _numbers(parts) if _is_half(n, wiring)))
     if calibration is not None:
         return _carried_over(calibration, parts, found, wiring)
@@ -181,12 +159,12 @@ def without_calibration(parts: tuple[Part, ...], begin: str, derivatives: str, w
 
 def _is_half(n: int, wiring: Wiring) -> bool:
     """Return whether output ``n`` is known to be one half of a pair that also pitches."""
-    return n in wiring.roles and wiring.roles[n].surface in _CANCELS
+    return n in wiring.roles and wiring.roles[n].is_mixed and bool(wiring.roles[n].elevator)
 
 
 def _has_known_direction(n: int, wiring: Wiring) -> bool:
     """Return whether the parameters give the direction in which a pitch demand moves output ``n``."""
-    return (wiring.roles.get(n) == ELEVATOR or _is_half(n, wiring)) and n in wiring.known_directions
+    return n in wiring.known_directions and bool(wiring.roles.get(n, NOTHING).elevator)
 
 
 def _formed(parts: Sequence[Part], why: str, kinds: Sequence[str]) -> str:
@@ -196,8 +174,14 @@ def _formed(parts: Sequence[Part], why: str, kinds: Sequence[str]) -> str:
         made = f"the mean of outputs {joined_numbers(_numbers(parts))}"
     else:
         made = listed([f"{100.0 * part.share:.0f} % of output {part.output}" for part in parts])
-    cancels = "".join(f"; {_CANCELS[kind]}" for kind in kinds)
+    cancels = "".join(f"; their effects in {_cancelled(kind)} cancel" for kind in kinds)
     return f"The elevator is {made} ({why}){cancels}."
+
+
+def _cancelled(kind: str) -> str:
+    """Return the axes in which the members of a pair cancel, in words."""
+    rows = [row for row in ROWS if row.surface == kind]
+    return listed([axis for control, axis in _AXES.items() if any(row.weight(control) for row in rows)])
 
 
 def _why(kinds: Sequence[str], wiring: Wiring) -> str:
@@ -205,8 +189,8 @@ def _why(kinds: Sequence[str], wiring: Wiring) -> str:
 
 
 def _one_sided(halves: Collection[Role]) -> list[str]:
-    kinds = sorted(half.surface for half in halves)
-    return [kind for kind in kinds if kinds.count(kind) == 1]
+    kinds = sorted({half.surface for half in halves})
+    return [k for k in kinds if not sides_of(k, "elevator") <= {h.side for h in halves if h.surface == k}]
 
 
 def _nothing_found(wiring: Wiring) -> Problem:
@@ -219,10 +203,12 @@ def _nothing_found(wiring: Wiring) -> Problem:
             f"Output {joined_numbers(mixed)} is one side of a {kinds} pair without the other.",
             f"Record all {words.function}, or list the elevator's outputs in elevator.outputs.",
         )
+    passing = [f"output {n} passes radio channel {k} through" for n, k in sorted(wiring.passed.items())]
+    passed = f"; {listed(passing)}" if passing else ""
     if wiring.roles:
         return Problem(
             "no_elevator",
-            f"No output has {words.elevator} (elevator), nor an elevon or V-tail pair.",
+            f"No output has {words.elevator} (elevator), nor an elevon or V-tail pair{passed}.",
             "Set elevator.output and elevator.calibration, or elevator.outputs, in the aircraft file.",
         )
     return Problem(

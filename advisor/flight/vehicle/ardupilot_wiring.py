@@ -1,28 +1,31 @@
-"""Roles and scales of servo outputs from ArduPilot's parameters SERVOn_*."""
+"""Roles and scales of servo outputs from ArduPilot's parameters SERVOn_*.
+
+An output can pass a radio channel through: its own (function 1, raw), or channel k (functions 50 + k, raw,
+and 139 + k, on the output's own travel). Where nothing else is the control of a stick, the output that passes
+this stick through is.
+"""
+
+from collections.abc import Mapping
 
 from advisor.flight.vehicle.limits import limits
-from advisor.flight.vehicle.surfaces import Scale
-from advisor.flight.vehicle.wiring import AILERON, ELEVATOR, RUDDER, Parameters, Role, Wiring, Words
+from advisor.flight.vehicle.mixers import AILERON, ELEVATOR, RUDDER, Control, Role, arduplane_roles
+from advisor.flight.vehicle.surfaces import Scale, listed
+from advisor.flight.vehicle.wiring import Parameters, Wiring, Words
 
-PREFIXES = ("SERVO",)
+_CHANNELS = range(1, 17)
+PREFIXES = ("SERVO", "RCMAP_", "DSPOILER_OPTS", *(f"RC{k}_REVERSED" for k in _CHANNELS))
 """Beginnings of these parameters' names."""
 _OUTPUTS = range(1, 33)
-_ROLES = {
-    4: AILERON,
-    19: ELEVATOR,
-    21: RUDDER,
-    24: Role("flaperon", "left"),
-    25: Role("flaperon", "right"),
-    77: Role("elevon", "left"),
-    78: Role("elevon", "right"),
-    79: Role("V-tail", "left"),
-    80: Role("V-tail", "right"),
-    16: Role("differential spoiler", "left"),
-    86: Role("differential spoiler", "left"),
-    17: Role("differential spoiler", "right"),
-    87: Role("differential spoiler", "right"),
+_PASSES_OWN = 1
+_PASSES_RAW, _PASSES_SCALED = 50, 139
+"""Value of SERVOn_FUNCTION that passes radio channel k through, less k: raw, or on the output's travel."""
+_STICKS: Mapping[Control, tuple[str, int, Role]] = {
+    "aileron": ("RCMAP_ROLL", 1, AILERON),
+    "elevator": ("RCMAP_PITCH", 2, ELEVATOR),
+    "rudder": ("RCMAP_YAW", 4, RUDDER),
 }
-"""Values of SERVOn_FUNCTION, ArduPilot's SRV_Channel.h."""
+"""Control to the parameter of its stick's radio channel, the default, and the role of an output that passes
+the stick through."""
 
 WORDS = Words(
     function="SERVOn_FUNCTION",
@@ -38,19 +41,55 @@ WORDS = Words(
 def ardupilot_wiring(parameters: Parameters) -> Wiring:
     """Return the outputs by SERVOn_FUNCTION, MIN, TRIM, MAX and REVERSED, with ArduPilot's defaults where
     unknown."""
-    functions = {n: parameters[f"SERVO{n}_FUNCTION"] for n in _OUTPUTS if f"SERVO{n}_FUNCTION" in parameters}
+    functions = {
+        n: int(parameters[f"SERVO{n}_FUNCTION"]) for n in _OUTPUTS if f"SERVO{n}_FUNCTION" in parameters
+    }
+    passed = {n: k for n, value in functions.items() if (k := _passed_channel(n, value))}
+    roles = arduplane_roles(functions, _whole(parameters.get("DSPOILER_OPTS")))
+    sticks = _passing(roles, passed, parameters)
+    raw = {n for n in sticks if not _is_scaled(functions[n])}
+    senses = {n: f"RC{passed[n]}_REVERSED" if n in raw else f"SERVO{n}_REVERSED" for n in _OUTPUTS}
     scaled = {
         n: limits(
             (f"SERVO{n}_MIN", f"SERVO{n}_TRIM", f"SERVO{n}_MAX"),
             parameters,
-            Scale(reversed=bool(parameters.get(f"SERVO{n}_REVERSED", 0.0))),
+            Scale(reversed=bool(parameters.get(senses[n], 0.0))),
         )
         for n in _OUTPUTS
     }
+    pitching = sorted({f"radio channel {passed[n]}, passed through" for n in sticks if sticks[n] == ELEVATOR})
     return Wiring(
         WORDS,
-        {n: _ROLES.get(int(function), Role("")) for n, function in functions.items()},
+        roles | sticks,
         {n: scale for n, (scale, _) in scaled.items()},
-        frozenset(n for n in _OUTPUTS if f"SERVO{n}_REVERSED" in parameters),
+        frozenset(n for n in _OUTPUTS if senses[n] in parameters),
+        assumed=listed(pitching),
         doubts={n: doubt for n, (_, doubt) in scaled.items() if doubt is not None},
+        passed=passed,
     )
+
+
+def _whole(value: float | None) -> int | None:
+    return None if value is None else int(value)
+
+
+def _is_scaled(function: int) -> bool:
+    return function > _PASSES_SCALED
+
+
+def _passed_channel(n: int, function: int) -> int:
+    """Return the radio channel that output ``n`` passes through; 0 where its function is another."""
+    if function == _PASSES_OWN:
+        return n
+    channel = function - (_PASSES_SCALED if _is_scaled(function) else _PASSES_RAW)
+    return channel if channel in _CHANNELS else 0
+
+
+def _passing(roles: Mapping[int, Role], passed: Mapping[int, int], parameters: Parameters) -> dict[int, Role]:
+    """Return the roles of outputs that pass a stick through, for controls that no other output makes."""
+    found: dict[int, Role] = {}
+    for control, (name, usual, role) in _STICKS.items():
+        if not any(one.weight(control) for one in roles.values()):
+            channel = int(parameters.get(name, usual))
+            found |= {n: role for n, k in passed.items() if k == channel}
+    return found

@@ -5,12 +5,14 @@ positive command of an elevator lifts the nose where its torque effectiveness CA
 (PX4 since 1.13: ActuatorEffectivenessControlSurfaces.hpp, mixer_module.cpp.)
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from math import copysign
 
 from advisor.flight.vehicle.limits import assumed_limits
+from advisor.flight.vehicle.mixers import ELEVATOR, NOTHING, PX4, Control, Role, Torque
 from advisor.flight.vehicle.surfaces import Scale
-from advisor.flight.vehicle.wiring import AILERON, ELEVATOR, RUDDER, Parameters, Role, Wiring, Words
+from advisor.flight.vehicle.wiring import Parameters, Wiring, Words
 
 GROUPS = {
     "PWM_MAIN": Scale(1000.0, 1500.0, 2000.0),
@@ -33,23 +35,9 @@ _SURFACES = range(8)
 _SERVO_1 = 201
 """Output function of servo 0. Functions 101 to 112 are motors."""
 _SERVOS = range(16)
-_ROLES = {
-    1: AILERON,
-    2: AILERON,
-    3: ELEVATOR,
-    4: RUDDER,
-    5: Role("elevon", "left"),
-    6: Role("elevon", "right"),
-    7: Role("V-tail", "left"),
-    8: Role("V-tail", "right"),
-    13: Role("A-tail", "left"),
-    14: Role("A-tail", "right"),
-    15: AILERON,
-}
-"""Value of CA_SV_CSn_TYPE to the role of the surface."""
 _CUSTOM = 12
-_AXES = {AILERON: "R", RUDDER: "Y"}
-"""Axis about which a surface acts that does not pitch."""
+_AXES: Mapping[Control, int] = {"aileron": 0, "elevator": 1, "rudder": 2}
+"""Control to the place of its torque in roll, pitch and yaw."""
 
 WORDS = Words(
     function="CA_SV_CSn_TYPE",
@@ -98,16 +86,16 @@ def servo_outputs(parameters: Parameters) -> list[ServoOutput]:
 
 def px4_wiring(parameters: Parameters) -> Wiring:
     """Return the outputs by the surfaces that they drive, else by the findings of a reader of logs."""
-    surfaces = dict(_surfaces(parameters))
+    surfaces = {n: (role, _torque(n, kind, parameters)) for n, kind, role in _surfaces(parameters)}
     if not surfaces:
         return _followers(parameters)
     carried = [output for output in servo_outputs(parameters) if output.servo in surfaces]
     stated = _stated_limits(parameters)
     return Wiring(
         WORDS,
-        {output.number: surfaces[output.servo] for output in carried},
-        {output.number: _turned(output, surfaces[output.servo], parameters) for output in carried},
-        frozenset(output.number for output in carried if _effect(output.servo, "P", parameters)),
+        {output.number: _signed(*surfaces[output.servo]) for output in carried},
+        {output.number: _turned(output.scale, *surfaces[output.servo]) for output in carried},
+        frozenset(output.number for output in carried if _stated_torque(output.servo, parameters)[1]),
         doubts={
             output.number: assumed_limits(output.number, output.scale)
             for output in carried
@@ -126,27 +114,50 @@ def _stated_limits(parameters: Parameters) -> frozenset[int]:
     )
 
 
-def _surfaces(parameters: Parameters) -> Iterator[tuple[int, Role]]:
-    """Yield the servo and the role of each surface that is in use."""
+def _surfaces(parameters: Parameters) -> Iterator[tuple[int, int, Role]]:
+    """Yield the servo, the kind and the role of each surface that is in use."""
     count = int(parameters.get("CA_SV_CS_COUNT", len(_SURFACES)))
     for n in _SURFACES:
         kind = int(parameters.get(f"CA_SV_CS{n}_TYPE", 0.0))
         if n < count and kind:
-            pitches_alone = _effect(n, "P", parameters) and not any(
-                _effect(n, axis, parameters) for axis in "RY"
-            )
-            yield n, ELEVATOR if kind == _CUSTOM and pitches_alone else _ROLES.get(kind, Role(""))
+            roll, pitch, yaw = _stated_torque(n, parameters)
+            pitches_alone = kind == _CUSTOM and pitch and not roll and not yaw
+            yield n, kind, ELEVATOR if pitches_alone else PX4.get(kind, (NOTHING,))[0]
 
 
-def _effect(n: int, axis: str, parameters: Parameters) -> float:
-    """Return the torque of surface ``n`` in roll, pitch or yaw (R, P, Y); 0 where unknown."""
-    return parameters.get(f"CA_SV_CS{n}_TRQ_{axis}", 0.0)
+def _stated_torque(n: int, parameters: Parameters) -> Torque:
+    """Return the torque of surface ``n`` in roll, pitch and yaw; 0 where unknown."""
+    roll, pitch, yaw = (parameters.get(f"CA_SV_CS{n}_TRQ_{axis}", 0.0) for axis in "RPY")
+    return roll, pitch, yaw
 
 
-def _turned(output: ServoOutput, role: Role, parameters: Parameters) -> Scale:
+def _torque(n: int, kind: int, parameters: Parameters) -> Torque:
+    """Return the torque of surface ``n``; what is not stated is the usual one of its kind."""
+    usual = PX4.get(kind, (NOTHING, (0.0, 0.0, 0.0)))[1]
+    roll, pitch, yaw = (own or other for own, other in zip(_stated_torque(n, parameters), usual, strict=True))
+    return roll, pitch, yaw
+
+
+def _main_torque(role: Role, torque: Torque) -> float:
+    """Return the torque about a surface's main axis: pitch for a mixed surface."""
+    mains: tuple[Control, ...] = ("elevator", "aileron", "rudder")
+    return next((torque[_AXES[control]] for control in mains if role.weight(control)), 0.0)
+
+
+def _turned(scale: Scale, role: Role, torque: Torque) -> Scale:
     """Return the scale of an output, reversed where its surface acts in reverse about its main axis."""
-    lowers = _effect(output.servo, _AXES.get(role, "P"), parameters) < 0.0
-    return replace(output.scale, reversed=output.scale.reversed != lowers)
+    return replace(scale, reversed=scale.reversed != (_main_torque(role, torque) < 0.0))
+
+
+def _signed(role: Role, torque: Torque) -> Role:
+    """Return a mixed surface's role with the signs of its torque, on the scale of its main axis."""
+    if not role.is_mixed:
+        return role
+    main = _main_torque(role, torque)
+    aileron, elevator, rudder = (
+        copysign(role.weight(control), torque[axis] * main) for control, axis in _AXES.items()
+    )
+    return replace(role, aileron=aileron, elevator=elevator, rudder=rudder)
 
 
 def _scale(group: str, k: int, parameters: Parameters) -> Scale:

@@ -2,28 +2,14 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Literal
 
 from advisor.flight.vehicle.limits import assumed_limits
+from advisor.flight.vehicle.mixers import Role
 from advisor.flight.vehicle.surfaces import Scale
 from advisor.words.problems import Problem
 
 Parameters = Mapping[str, float]
 """Name to the value of each of the vehicle's parameters."""
-
-
-@dataclass(frozen=True, slots=True)
-class Role:
-    """Surface that an output moves."""
-
-    surface: str
-    """``elevator``, ``aileron``, ``rudder``, or a mixed pair: ``elevon``, ``V-tail``, ``A-tail``,
-    ``flaperon``, ``differential spoiler``."""
-    side: Literal["", "left", "right"] = ""
-    """Half of a mixed pair; empty for a plain surface."""
-
-
-ELEVATOR, AILERON, RUDDER = Role("elevator"), Role("aileron"), Role("rudder")
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,6 +47,8 @@ class Wiring:
     """Sentence on guesses among the roles."""
     doubts: Mapping[int, Problem] = field(default_factory=dict)
     """Output number to the problem of its limits, where some of them are assumed."""
+    passed: Mapping[int, int] = field(default_factory=dict)
+    """Output number to the radio channel that it passes through without a mixer."""
 
     def scale(self, n: int) -> Scale:
         """Return the scale of output ``n``, with ArduPilot's defaults for unknown parameters."""
@@ -71,7 +59,3 @@ class Wiring:
         if n in self.scales:
             return self.doubts.get(n)
         return assumed_limits(n, self.scale(n))
-
-    def outputs_of(self, role: Role) -> list[int]:
-        """Return the outputs with this role, rising."""
-        return sorted(n for n, mine in self.roles.items() if mine == role)

@@ -181,19 +181,6 @@ def test_more_pulse_rolls_to_the_right_which_is_negative_and_reversed_the_other_
     assert np.degrees(turned.deflection(pulse)[0]) == pytest.approx(25.0)
 
 
-@pytest.mark.parametrize(
-    ("left", "right", "name", "down"),
-    [(77, 78, "aileron", "right"), (24, 25, "aileron", "right"), (79, 80, "rudder", "left")],
-)
-def test_half_of_the_difference_of_a_pair_is_its_aileron_or_rudder(left, right, name, down):
-    surface = side(name, {"SERVO1_FUNCTION": float(left), "SERVO2_FUNCTION": float(right)})
-    # 1100 us is trailing edge down for an output that is not reversed.
-    apart = np.array([[1100.0, 1900.0] if down == "left" else [1900.0, 1100.0]])
-    together = np.array([[1100.0, 1100.0]])
-    assert np.degrees(surface.deflection(apart)[0]) == pytest.approx(25.0)
-    assert surface.deflection(together)[0] == pytest.approx(0.0)
-
-
 def test_flaperons_are_no_elevator():
     assert isinstance(find_elevator(Elevator(), {"SERVO1_FUNCTION": 24.0, "SERVO2_FUNCTION": 25.0}), Problem)
 
@@ -208,3 +195,10 @@ def test_idle_outputs_carry_no_pulse():
     pulses = np.array([[0.0], [65535.0], [900.0], [1500.0]])
     assert driven(pulses, "ardupilot").all(axis=1).tolist() == [False, False, True, True]
     assert driven(pulses, "px4").all(axis=1).tolist() == [False, False, False, True]
+
+
+def test_outputs_that_pass_other_radio_channels_through_are_named():
+    problem = find_elevator(Elevator(), {"SERVO3_FUNCTION": 1.0, "SERVO6_FUNCTION": 57.0})
+    assert isinstance(problem, Problem)
+    assert "output 3 passes radio channel 3 through" in problem.text
+    assert "output 6 passes radio channel 7 through" in problem.text
