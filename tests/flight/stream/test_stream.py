@@ -318,6 +318,19 @@ def test_an_input_flown_as_soon_as_the_pilot_took_over_is_the_pilots(taken_over_
     assert len(maneuvers(flown(wire)[1])) == listed
 
 
+@pytest.mark.parametrize(("changed_s", "counts"), [(1002.0, True), (1012.0, False)])
+def test_a_limit_that_changes_after_an_input_no_longer_scales_the_elevator(changed_s, counts):
+    """The input begins after 4 s and its movement ends before 9 s."""
+    wire = Wire()
+    fly(wire, 1000.0, 50.0, ONE, 14.0)
+    parameter(wire, 1000.5, "SERVO2_MAX", 1900.0)
+    parameter(wire, changed_s, "SERVO2_MAX", 2000.0)
+    stream, events = flown(wire)
+    (told,) = (e.text for e in events if isinstance(e, Notice) and e.text.startswith("SERVO2_MAX"))
+    assert ("is still counted" in told) is not counts
+    assert stream.elevator.parts[0].scale.high_us == (2000.0 if counts else 1900.0)
+
+
 def test_an_assumed_scale_of_the_elevator_is_said_once():
     wire = Wire()
     fly(wire, 1000.0, 50.0, ONE, 14.0)
