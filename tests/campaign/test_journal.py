@@ -100,3 +100,11 @@ def test_the_event_log_does_not_depend_on_how_messages_arrive_and_its_times_run_
     seconds = [60.0 * int(m) + float(s) for m, _, s in (t.partition(":") for t in times)]
     assert len(seconds) > 3
     assert seconds == sorted(seconds)
+
+
+@pytest.mark.parametrize(("behind_s", "named"), [(0.9, ""), (1.1, "at 1:18.9, ")])
+def test_a_sentence_more_than_a_second_behind_names_the_time_of_its_event(behind_s, named):
+    journal = Journal()
+    journal.write("mode MANUAL", 80.0)
+    journal.write("a manoeuvre", 80.0 - behind_s)
+    assert lines(journal)[1] == f"1:20.0  {named}a manoeuvre"
