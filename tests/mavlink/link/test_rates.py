@@ -136,6 +136,15 @@ def test_on_leaving_every_rate_asked_for_goes_back_to_its_default_until_the_vehi
     assert request.leave(10.4) is None
 
 
+def test_a_deaf_vehicle_is_asked_three_times_to_put_a_rate_back() -> None:
+    request = RateRequest({"ATTITUDE": 50.0})
+    request.speak(VEHICLE, 0.0)
+    answer(request, dialect.MAV_RESULT_ACCEPTED, 0.1)
+    sent = [request.leave(10.0 + 0.3 * k) for k in range(4)]
+    assert [len(messages or ()) for messages in sent] == [1, 1, 1, 0]
+    assert sent[-1] is None
+
+
 def test_who_asked_for_nothing_has_nothing_to_put_back() -> None:
     assert RateRequest({"ATTITUDE": 50.0}).leave(0.0) is None
 
