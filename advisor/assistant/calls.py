@@ -10,9 +10,6 @@ from anyio import CapacityLimiter, fail_after, run_process
 from advisor.assistant.folders import RefusedError
 from advisor.process.children import python_module
 
-_MOST_BYTES = 1_000_000
-"""Longest answer, bytes. A longer one would fill the context of an assistant."""
-
 
 class Calls:
     """Calls of the advisor's commands, one at a time.
@@ -54,7 +51,7 @@ class Calls:
             raise RefusedError(said or f"advisor {arguments[0]} ended with exit code {code}.")
 
     async def _run(self, arguments: Sequence[str]) -> tuple[int, bytes, str]:
-        """Return exit code, standard output and standard error of a command."""
+        """Return exit code, standard output and the last line on standard error of a command."""
         words = [*python_module("advisor"), *arguments]
         try:
             async with self._one:
@@ -63,16 +60,6 @@ class Calls:
         except TimeoutError:
             limit = f"{self._limit_s:.0f} s"
             raise RefusedError(f"advisor {arguments[0]} was ended after {limit}, the limit here.") from None
-        return done.returncode, done.stdout, done.stderr.decode(errors="replace").strip()
-
-
-def refuse_long(text: str) -> None:
-    """Refuse an answer that is too long for an assistant.
-
-    Raises
-    ------
-    RefusedError
-        The answer is longer than 1 MB.
-    """
-    if len(text.encode()) > _MOST_BYTES:
-        raise RefusedError("The answer is longer than 1 MB: ask for fewer logs at a time.")
+        # Progress and warnings come first, the sentence on the failure last.
+        said = done.stderr.decode(errors="replace").strip().rpartition("\n")[2]
+        return done.returncode, done.stdout, said

@@ -34,17 +34,34 @@ class Folders:
         RefusedError
             The path leaves the folders, names no file, or the file is too large.
         """
+        if not name.strip():
+            raise RefusedError(
+                "The name of the file is empty: give a path inside the folders of this server."
+            )
+        if "\0" in name:
+            raise RefusedError("The name of the file holds a zero byte, which no path may hold.")
+        try:
+            return self._file(name)
+        except (OSError, RuntimeError) as error:  # a name too long, a folder that may not be read, a loop
+            why = error.strerror if isinstance(error, OSError) else "its links lead in a circle"
+            raise RefusedError(f"{name[:100]} cannot be read: {why}.") from None
+
+    def _file(self, name: str) -> Path:
         candidates = [(root / name).resolve() for root in self.roots]
         inside = [path for path in candidates if any(path.is_relative_to(root) for root in self.roots)]
         if not inside:
             raise RefusedError(f"{name} lies outside the folders of this server: {self.listed}.")
         found = next((path for path in inside if path.is_file()), None)
         if found is None:
-            raise RefusedError(f"There is no file {name} in {self.listed}.")
+            other = next((path for path in inside if path.exists()), None)
+            if other is None:
+                raise RefusedError(f"There is no file {name} in {self.listed}.")
+            kind = "a folder: name a log in it" if other.is_dir() else "a pipe, socket or device, not a file"
+            raise RefusedError(f"{name} is {kind}.")
         size = found.stat().st_size
         if size > self.most_bytes:
-            most = f"{self.most_bytes / 1e6:.3g} MB"
-            raise RefusedError(f"{name} has {size / 1e6:.3g} MB, and this server reads at most {most}.")
+            most = _amount(self.most_bytes)
+            raise RefusedError(f"{name} has {_amount(size)}, and this server reads at most {most}.")
         return found
 
     @property
@@ -57,6 +74,14 @@ class Folders:
         for root in self.roots:
             found = (path for path in root.rglob("*") if path.suffix.lower() in LOGS and path.is_file())
             yield from sorted(path for path in found if path.resolve().is_relative_to(root))
+
+
+def _amount(count: int) -> str:
+    """Return a number of bytes in words, in the largest unit that it fills."""
+    for unit, size in (("GB", 1e9), ("MB", 1e6), ("kB", 1e3)):
+        if count >= size:
+            return f"{count / size:.{0 if count >= 10.0 * size else 1}f} {unit}".replace(".0 ", " ")
+    return f"{count} bytes"
 
 
 def folders_of(roots: Sequence[Path], most_bytes: int) -> Folders:

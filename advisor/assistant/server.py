@@ -1,7 +1,6 @@
 """The server of the Model Context Protocol: four read-only tools over the advisor's own commands."""
 
-import json
-from collections.abc import Awaitable, Callable, Sequence
+from collections.abc import Awaitable, Callable
 from functools import wraps
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -13,7 +12,8 @@ from mcp.types import ToolAnnotations
 
 from advisor import __version__
 from advisor.aircraft_file.read import load_aircraft
-from advisor.assistant.calls import Calls, refuse_long
+from advisor.assistant.calls import Calls
+from advisor.assistant.fitting import MOST_BYTES, written
 from advisor.assistant.folders import Folders, RefusedError
 from advisor.words.problems import ConfigurationError
 
@@ -24,11 +24,17 @@ _INSTRUCTIONS = """\
 Flight-test analysis of fixed-wing aircraft from MAVLink logs (.tlog, .bin, .ulg). Ask doctor first whether
 a log can serve, analyze for verdicts and derivatives, gap for why the aircraft does not fly like its
 simulator, report for a page. Documents are in SI units. Quote values with their ci95, and quote the
-sentences of verdicts as they stand. Paths may be relative to: {folders}. Logs: {logs}.
+sentences of verdicts as they stand. An answer has at most 20 kB; what it leaves out names the "part" to ask
+for. Paths may be relative to: {folders}. Logs: {logs}.
 """
 _LISTED = 50
 """Most logs that the instructions name."""
 
+_EVIDENCE = ("traces", "evidence", "decisions")
+"""Parts of a gap's document that only a request for them answers."""
+
+Names = list[str] | str | None
+"""Names of logs: several, one, or none."""
 Tool = Callable[..., Awaitable[Any]]
 
 
@@ -47,51 +53,61 @@ def server_of(folders: Folders, calls: Calls) -> MCPServer[Any]:
     told = _INSTRUCTIONS.format(folders=folders.listed, logs=named or "none yet")
     server: MCPServer[Any] = MCPServer("inflight-advisor", instructions=told, version=__version__)
 
-    async def doctor(log: str, aircraft: str | None = None) -> dict[str, Any]:
+    async def doctor(
+        log: str | None = None, logs: Names = None, aircraft: str | None = None, part: str = ""
+    ) -> str:
         """Say whether the telemetry of a log is good enough, and what to change (advisor.doctor/1)."""
-        return await calls.document(["doctor", str(folders.file(log)), *_aircraft(folders, aircraft)])
+        files = _files(folders, log, logs)
+        if len(files) > 1:
+            raise RefusedError("doctor reads one log at a time: name one.")
+        return written(await calls.document(["doctor", *files, *_aircraft(folders, aircraft)]), part)
 
-    async def analyze(logs: list[str], aircraft: str | None = None) -> dict[str, Any]:
+    async def analyze(
+        log: str | None = None, logs: Names = None, aircraft: str | None = None, part: str = ""
+    ) -> str:
         """Judge every manoeuvre, estimate the derivatives, and say stop or continue (advisor.analyze/1)."""
-        return await calls.document(["analyze", *_files(folders, logs), *_aircraft(folders, aircraft)])
+        words = ["analyze", *_files(folders, log, logs), *_aircraft(folders, aircraft)]
+        return written(await calls.document(words), part)
 
-    async def gap(logs: list[str], aircraft: str | None = None) -> dict[str, Any]:
-        """Say why the aircraft does not fly like its simulator (advisor.gap/1, without traces)."""
-        words = ["gap", *_files(folders, logs), *_aircraft(folders, aircraft, flies=True)]
-        return {**await calls.document(words), "traces": []}
+    async def gap(
+        log: str | None = None, logs: Names = None, aircraft: str | None = None, part: str = ""
+    ) -> str:
+        """Say why the aircraft does not fly like its simulator (advisor.gap/1)."""
+        words = ["gap", *_files(folders, log, logs), *_aircraft(folders, aircraft, flies=True)]
+        return written(await calls.document(words), part, _EVIDENCE)
 
-    async def report(logs: list[str], aircraft: str | None = None) -> str:
+    async def report(log: str | None = None, logs: Names = None, aircraft: str | None = None) -> str:
         """Write the page of a flight, as Markdown."""
         with TemporaryDirectory() as folder:
             page = Path(folder) / "report.md"
-            words = ["report", *_files(folders, logs), *_aircraft(folders, aircraft), "-o", str(page)]
+            words = ["report", *_files(folders, log, logs), *_aircraft(folders, aircraft), "-o", str(page)]
             await calls.done(words)
-            return page.read_text(encoding="utf-8")
+            text = page.read_text(encoding="utf-8").encode()
+        cut = text[: MOST_BYTES - 100].decode(errors="ignore")
+        return text.decode() if len(text) <= MOST_BYTES else f"{cut}\n\nCut here: analyze has the rest."
 
-    for tool, structured in ((doctor, True), (analyze, True), (gap, True), (report, False)):
-        server.add_tool(
-            _answering(tool), name=tool.__name__, annotations=_READS, structured_output=structured
-        )
+    for tool in (doctor, analyze, gap, report):
+        server.add_tool(_answering(tool), name=tool.__name__, annotations=_READS, structured_output=False)
     return server
 
 
 def _answering(tool: Tool) -> Tool:
-    """Return the tool with an answer of a limited length, and a refusal as a sentence."""
+    """Return the tool with a refusal as a sentence."""
 
     @wraps(tool)
     async def answer(**arguments: Any) -> Any:
         try:
-            told = await tool(**arguments)
-            refuse_long(told if isinstance(told, str) else json.dumps(told))
+            return await tool(**arguments)
         except RefusedError as refused:
             raise ToolError(str(refused)) from refused
-        return told
 
     return answer
 
 
-def _files(folders: Folders, names: Sequence[str]) -> list[str]:
-    """Return the paths of the logs; none of them can be taken for an option."""
+def _files(folders: Folders, log: str | None, logs: Names) -> list[str]:
+    """Return the paths of the logs of both arguments; none of them can be taken for an option."""
+    names = [log] if log is not None else []
+    names += [logs] if isinstance(logs, str) else logs or []
     if not names:
         raise RefusedError("Name at least one log.")
     return [str(folders.file(name)) for name in names]

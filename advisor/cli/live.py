@@ -136,6 +136,7 @@ def command(
             logs=[*start.earlier, *recordings],
             show=show,
             aircraft_file=asked.aircraft_file,
+            door=process.door,
         )
     if recordings and show is None and not headless():
         click.echo(_page((*start.earlier, *recordings), asked.aircraft_file), err=True)

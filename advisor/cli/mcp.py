@@ -43,4 +43,7 @@ def command(folders: tuple[Path, ...], most_mb: float, limit_s: float) -> None:
     from advisor.assistant.folders import folders_of
     from advisor.assistant.server import server_of
 
-    server_of(folders_of(folders, round(1e6 * most_mb)), Calls(limit_s)).run("stdio")
+    try:
+        server_of(folders_of(folders, round(1e6 * most_mb)), Calls(limit_s)).run("stdio")
+    except* (BrokenPipeError, ConnectionError):
+        pass  # the client has gone, and its answer with it

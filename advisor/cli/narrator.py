@@ -16,7 +16,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing, suppress
 from dataclasses import replace
 from functools import partial
-from math import inf
+from math import inf, nan
 from threading import Thread
 from time import monotonic, sleep
 from typing import IO, TYPE_CHECKING
@@ -24,8 +24,11 @@ from typing import IO, TYPE_CHECKING
 import click
 
 from advisor.flight.signals.messages import Columns
+from advisor.mavlink.link.health import LinkStatistics
+from advisor.mavlink.link.observer import LinkObserver
 from advisor.process import interrupt
 from advisor.process.liveness import Beat, Watch
+from advisor.session.behind import BehindTeller, backlog_s
 from advisor.session.child_process import pause_s, said_of, start_child
 from advisor.session.remote import ConductorTask
 from advisor.session.source import Playable, Source
@@ -59,13 +62,38 @@ def narrate(task: ConductorTask, say: Callable[[str], object], warn: Callable[[s
     """
     said: Counter[str] = Counter()
     deaths = hangs = 0
-    while (ended := _narrate_once(task, say, said, warn, hangs))[0]:
-        deaths += 1
-        hangs += ended[1].ended_after_s is not None
-        warn(f"the estimating process {said_of(*ended)}; it is started again")
-        sleep(pause_s(deaths))
-        if task.kept is not None:
-            task = replace(task, by_hand=task.kept())
+    backlog = _Backlog(warn)
+    with LinkObserver(task.door, backlog.hear_link) as backlog.observer:
+        while (ended := _narrate_once(task, say, said, warn, hangs, backlog))[0]:
+            deaths += 1
+            hangs += ended[1].ended_after_s is not None
+            warn(f"the estimating process {said_of(*ended)}; it is started again")
+            sleep(pause_s(deaths))
+            if task.kept is not None:
+                task = replace(task, by_hand=task.kept())
+
+
+class _Backlog:
+    """Warns when the estimating process falls behind the link.
+
+    Parameters
+    ----------
+    warn
+        Takes one line on what goes wrong.
+    """
+
+    def __init__(self, warn: Callable[[str], object]) -> None:
+        self._warn, self._teller = warn, BehindTeller()
+        self.observer: LinkObserver | None = None
+        self.read_to_s = nan
+        """Host time of the newest record that was given to the campaign, seconds since 1970."""
+
+    def hear_link(self, link: LinkStatistics) -> None:
+        """Take the health of the link, told by its process."""
+        if sentence := self._teller.hear(backlog_s(link.newest_s, self.read_to_s)):
+            self._warn(f"{sentence}: the newest line above is that old" if "behind" in sentence else sentence)
+            if self.observer is not None:
+                self.observer.announce(sentence)
 
 
 def _narrate_once(
@@ -74,6 +102,7 @@ def _narrate_once(
     said: "Counter[str]",
     warn: Callable[[str], object],
     hangs: int,
+    backlog: _Backlog,
 ) -> tuple[int, Watch]:
     """Run one process from its start to its end; return its exit code and its watch."""
     repeated = said.copy()
@@ -99,9 +128,10 @@ def _narrate_once(
                     message = pickle.load(process.stdout)
                     if isinstance(message, BaseException):
                         raise message
-                    watch.heard(patient=message is Beat.BUSY)
+                    watch.heard(patient=isinstance(message, Beat) and message.busy)
                     old.clear()
                     if isinstance(message, Beat):
+                        backlog.read_to_s = message.read_to_s
                         continue
                     if repeated[message] > 0:
                         repeated[message] -= 1
@@ -120,7 +150,7 @@ def narrate_here(
     source: Source,
     campaign: "Campaign",
     say: Callable[[str], object],
-    beat: Callable[[Beat], object] = lambda beat: None,
+    beat: Callable[[Beat], object] | None = None,
 ) -> None:
     """Conduct a campaign in this process, to the end of its source.
 
@@ -129,7 +159,7 @@ def narrate_here(
     say
         Takes one line of text.
     beat
-        Called before each wait for data, at most every ``BEAT_S``.
+        Called after each wait for data, at most every ``BEAT_S``. None: a backlog is printed here.
 
     Raises
     ------
@@ -139,9 +169,22 @@ def narrate_here(
     from advisor.report.follow import follow
 
     with closing(source):
-        follow(_batches(source, beat), campaign, say, of_log=isinstance(source, Playable))
+        follow(
+            _batches(source, beat or _printing_backlog()), campaign, say, of_log=isinstance(source, Playable)
+        )
     if campaign.problems:
         raise UnusableInputError.of(campaign.problems[:1])
+
+
+def _printing_backlog() -> Callable[[Beat], None]:
+    """Return a listener to beats that prints a backlog on standard error."""
+    teller = BehindTeller()
+
+    def listen(beat: Beat) -> None:
+        if sentence := teller.hear(beat.behind_s):
+            click.echo(sentence, err=True)
+
+    return listen
 
 
 def _batches(source: Source, beat: Callable[[Beat], object]) -> Iterator[Sequence[Columns]]:
@@ -149,8 +192,8 @@ def _batches(source: Source, beat: Callable[[Beat], object]) -> Iterator[Sequenc
     while (columns := source.read(READ_S)) is not None:
         if monotonic() - told_s >= BEAT_S:
             told_s = monotonic()
-            busy = source.health().condition == "waiting"
-            beat(Beat.BUSY if busy else Beat.LISTENING)
+            health = source.health()
+            beat(Beat(health.condition == "waiting", health.behind_s, health.read_to_s))
         for notice in source.take_notices():
             click.echo(f"link: {notice}", err=True)
         yield columns

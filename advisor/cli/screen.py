@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from advisor.campaign.hand_decisions import ByHand
     from advisor.campaign.state import CampaignState
     from advisor.flight.maneuvers.marks import Mark
+    from advisor.mavlink.link.keeping import Door
     from advisor.session.remote import ConductorTask
 
 Listener = Callable[[object], object]
@@ -53,6 +54,7 @@ def advise(
     logs: "Sequence[Path]" = (),
     show: "Show | None" = None,
     aircraft_file: "Path | None" = None,
+    door: "Door | None" = None,
 ) -> None:
     """Run a campaign on a source: on screens, as lines of text, or as ``show`` does.
 
@@ -81,6 +83,8 @@ def advise(
         Shows the campaign elsewhere; None: the terminal does, or lines of text come without a terminal.
     aircraft_file
         File of the aircraft, for the commands that the screens name.
+    door
+        Address of the process of the link; None without one.
 
     Raises
     ------
@@ -94,10 +98,10 @@ def advise(
     before = by_hand or NOTHING
     make_campaign = partial(_campaign, aircraft, target_system, tell, tuple(marks), tuple(names))
     if show is not None or not headless():
-        task = ConductorTask(open_source, partial(make_campaign, True), before, kept)
+        task = ConductorTask(open_source, partial(make_campaign, True), before, kept, door)
         (show or partial(_show, tuple(logs), aircraft_file))(task, aircraft, title, tempo)
     elif kept is not None:
-        task = ConductorTask(open_source, partial(make_campaign, False), before, kept)
+        task = ConductorTask(open_source, partial(make_campaign, False), before, kept, door)
         narrate(task, click.echo, partial(click.echo, err=True))
     else:
         narrate_here(open_source(), make_campaign(False, before), click.echo)

@@ -5,8 +5,8 @@ end. No exception tells of that. So the age of the newest message is measured.
 """
 
 from collections.abc import Callable
-from enum import Enum
-from math import inf
+from dataclasses import dataclass
+from math import inf, nan
 from subprocess import Popen
 from threading import Event, Thread
 from time import monotonic
@@ -25,11 +25,16 @@ functions that no folder keeps are compiled within this time. Patience holds as 
 _LOOK_EVERY_S = 0.5
 
 
-class Beat(Enum):
+@dataclass(frozen=True, slots=True)
+class Beat:
     """Message of a process that has nothing else to say."""
 
-    LISTENING = "waits for data"
-    BUSY = "reads what has been recorded so far"
+    busy: bool
+    """Whether the process reads what has been recorded so far, which may take long."""
+    behind_s: float = 0.0
+    """Backlog of the process as it knows it, s."""
+    read_to_s: float = nan
+    """Host time of the newest record that the process was given, seconds since 1970."""
 
 
 class Watch:

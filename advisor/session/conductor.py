@@ -119,13 +119,17 @@ class Conductor:
                 self._keep(campaign)
                 self._arrive()
             elif batch:
+                # Before a long estimate, whoever waits learns how old the data are.
+                self._report_if_due(campaign)
                 campaign.feed(batch)
             if self._pending:
                 self._decide_what_is_due(campaign)
             if self._goal and self._goal.reached(campaign.state, self._position_s()):
                 self._arrive()
-            if ended or monotonic() - self._told_s >= REPORT_EVERY_S:
+            if ended:
                 self._report(campaign)
+            else:
+                self._report_if_due(campaign)
 
     def _answer(self, campaign: CampaignLike, timeout_s: float) -> None:
         """Serve the requests of the screens, after waiting for a first one."""
@@ -134,6 +138,10 @@ class Conductor:
         except Empty:
             return
         self._report(campaign)
+
+    def _report_if_due(self, campaign: CampaignLike) -> None:
+        if monotonic() - self._told_s >= REPORT_EVERY_S:
+            self._report(campaign)
 
     def _report(self, campaign: CampaignLike) -> None:
         for sentence in self._source.take_notices():

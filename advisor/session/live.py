@@ -2,6 +2,8 @@
 
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
+from dataclasses import replace
+from math import isnan
 from shutil import disk_usage
 from typing import Protocol
 
@@ -10,6 +12,7 @@ from advisor.campaign.hand_decisions import ByHand
 from advisor.flight.signals.messages import Columns
 from advisor.mavlink.link.health import LinkNotice, LinkStatistics
 from advisor.process.liveness import OLD_AFTER_S
+from advisor.session.behind import backlog_s
 from advisor.session.source import Condition, LinkHealth, LinkRequest
 
 SILENT_S = 2.0
@@ -22,6 +25,10 @@ class LinkLike(Protocol):
     @property
     def statistics(self) -> LinkStatistics:
         """Health of the link now."""
+
+    @property
+    def read_to_s(self) -> float:
+        """Host time of the newest record that was read, seconds since 1970."""
 
     @property
     def catching_up(self) -> bool:
@@ -59,6 +66,7 @@ class LinkSource:
     ) -> None:
         self._connection, self._over = connection, over
         self._link: LinkLike | None = None
+        self._ended = False
 
     def read(self, timeout_s: float) -> Sequence[Columns] | None:
         """Return the next batch; None when the far end has finished and everything was read.
@@ -72,20 +80,19 @@ class LinkSource:
             self._link = self._connection.__enter__()
         over = self._over()
         columns = self._link.read(timeout_s)
-        return None if over and not columns else columns
+        self._ended = over and not columns
+        return None if self._ended else columns
 
     def health(self) -> LinkHealth:
         """Return the state of the data's arrival."""
         if self._link is None:
             return LinkHealth("waiting", "Opening the connection.")
-        statistics = self._link.statistics
-        condition, sentence = _glance(statistics)
-        alarm = statistics.recording_problem or (sentence if condition == "stale" else "")
-        if self._over():
-            condition, sentence = "ended", "The flight is over."
-        elif self._link.catching_up:
-            condition, sentence = "waiting", "The recording so far is being read."
-        return LinkHealth(condition, sentence, _figures(statistics), alarm, recording_line(statistics))
+        health = _health(self._link.statistics, self._link.read_to_s)
+        if self._ended:
+            return replace(health, condition="ended", sentence="The flight is over.")
+        if self._link.catching_up:
+            return replace(health, condition="waiting", sentence="The recording so far is being read.")
+        return health
 
     def take_notices(self) -> Sequence[str]:
         """Return the notices of the link since the last call."""
@@ -115,6 +122,40 @@ class LinkSource:
             self._connection.__exit__(None, None, None)
 
 
+def renewed(health: LinkHealth, link: LinkStatistics) -> LinkHealth:
+    """Return the health with newer counts of the link.
+
+    Parameters
+    ----------
+    health
+        Health as the reader of the records knew it, which holds the decoder's counts.
+    link
+        Counts that the process of the link has told since.
+    """
+    decoded = health.link or LinkStatistics()
+    link = replace(
+        link,
+        vehicle_messages=decoded.vehicle_messages,
+        lost=decoded.lost,
+        repeated=decoded.repeated,
+        repeated_after_s=decoded.repeated_after_s,
+        late=decoded.late,
+    )
+    newer = _health(link, health.read_to_s)
+    if health.condition == "waiting" and isnan(health.read_to_s):
+        return replace(newer, condition=health.condition, sentence=health.sentence)
+    return newer
+
+
+def _health(link: LinkStatistics, read_to_s: float) -> LinkHealth:
+    condition, sentence = _glance(link)
+    health = LinkHealth(
+        condition, sentence, _figures(link, read_to_s), "", recording_line(link), link, read_to_s
+    )
+    old = sentence if condition == "stale" else ""
+    return replace(health, alarm=link.recording_problem or old or health.behind)
+
+
 def _glance(link: LinkStatistics) -> tuple[Condition, str]:
     if link.unanswered_s >= OLD_AFTER_S:
         return "stale", f"LINK NOT ANSWERING for {link.unanswered_s:.0f} s: what stands below is old"
@@ -129,7 +170,7 @@ def _glance(link: LinkStatistics) -> tuple[Condition, str]:
     return "good", f"{link.messages_per_s:.0f} messages/s."
 
 
-def _figures(link: LinkStatistics) -> tuple[tuple[str, str], ...]:
+def _figures(link: LinkStatistics, read_to_s: float) -> tuple[tuple[str, str], ...]:
     figures = [
         ("messages", f"{link.messages} ({link.messages_per_s:.0f}/s)"),
         ("lost", f"{link.lost} ({link.lost_percent:.1f} %)"),
@@ -137,6 +178,7 @@ def _figures(link: LinkStatistics) -> tuple[tuple[str, str], ...]:
         ("bad checksum", f"{link.bad_crc}"),
         ("silent for", f"{link.silent_s:.1f} s"),
         ("reconnects", f"{link.reconnects}"),
+        ("this computer behind by", f"{backlog_s(link.newest_s, read_to_s):.1f} s"),
     ]
     figures += [(f"refused, {why}", f"{count}") for why, count in link.refused.items()]
     if link.recording is not None:

@@ -6,16 +6,21 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
 from queue import Empty, SimpleQueue
-from threading import Event, Thread
+from threading import Event, Lock, Thread
 from typing import IO
 
 from advisor.campaign.hand_decisions import NOTHING, ByHand
+from advisor.mavlink.link.health import LinkStatistics
+from advisor.mavlink.link.keeping import Door
+from advisor.mavlink.link.observer import LinkObserver
 from advisor.process.liveness import Watch
+from advisor.session.behind import BehindTeller
 from advisor.session.campaign_like import CampaignLike
 from advisor.session.changes import Changes
 from advisor.session.child_process import pause_s, said_of, start_child
 from advisor.session.conducting import SessionReport, Tell
 from advisor.session.hand import HandDecision
+from advisor.session.live import renewed
 from advisor.session.source import LinkHealth, LinkRequest, Source, Tempo
 
 Request = tuple[str, tuple[object, ...]]
@@ -36,6 +41,9 @@ class ConductorTask:
     kept: Callable[[], ByHand] | None = None
     """Function that reads the decisions by hand since the start. None: the source cannot be read again from
     its beginning."""
+    door: Door | None = None
+    """Address of the process of the link, which tells the link's health without delay. None: no such
+    process."""
 
 
 class RemoteConductor:
@@ -43,7 +51,8 @@ class RemoteConductor:
 
     Where the source can be read again from its beginning, the death of the other process ends nothing. The
     process is restarted, and the last report stands until the new process has caught up. A process that hangs
-    is ended and restarted likewise, and meanwhile the last report is passed on with its age.
+    is ended and restarted likewise, and meanwhile the last report is passed on with its age. The health of a
+    link comes directly from the process of the link, so that a slow estimate never makes it old.
 
     Parameters
     ----------
@@ -59,6 +68,12 @@ class RemoteConductor:
         self._hangs = 0
         self._watch: Watch | None = None
         self._stopped = Event()
+        self._lock = Lock()
+        self._link: LinkStatistics | None = None
+        self._age_s = 0.0
+        """Age of the last report, s, while the estimating process does not answer; else 0."""
+        self._behind = BehindTeller()
+        self._observer: LinkObserver | None = None
 
     def run(self, tell: Tell) -> None:
         """Start the process and take its reports until it ends.
@@ -70,15 +85,8 @@ class RemoteConductor:
         RuntimeError
             The process was ended from outside, and the source cannot be read again.
         """
-        while (ended := self._conduct(tell))[0]:
-            if self._stopped.is_set():
-                return
-            if self._task.kept is None:
-                raise RuntimeError(f"The estimating process ended with exit code {ended[0]}.")
-            self._deaths.append(f"the estimating process {said_of(*ended)}; it is started again")
-            self._tell_of_death(tell)
-            self._stopped.wait(pause_s(len(self._deaths)))
-            self._task = replace(self._task, by_hand=self._task.kept())
+        with LinkObserver(self._task.door, partial(self._hear_link, tell)) as self._observer:
+            self._conduct_to_the_end(tell)
 
     def stop(self) -> None:
         """End ``run`` at the next opportunity."""
@@ -110,6 +118,18 @@ class RemoteConductor:
     def step(self) -> None:
         """Play the next tenth of a second of a paused replay."""
         self._requests.put(("step", ()))
+
+    def _conduct_to_the_end(self, tell: Tell) -> None:
+        """Run one process after another until one comes to its end."""
+        while (ended := self._conduct(tell))[0]:
+            if self._stopped.is_set():
+                return
+            if self._task.kept is None:
+                raise RuntimeError(f"The estimating process ended with exit code {ended[0]}.")
+            self._deaths.append(f"the estimating process {said_of(*ended)}; it is started again")
+            self._tell_of_death(tell)
+            self._stopped.wait(pause_s(len(self._deaths)))
+            self._task = replace(self._task, by_hand=self._task.kept())
 
     def _conduct(self, tell: Tell) -> tuple[int, Watch]:
         """Run one process from its start to its end; return its exit code and its watch."""
@@ -181,12 +201,33 @@ class RemoteConductor:
             report = replace(report, log=(*report.log, *self._deaths))
             if self._last is not None and report.health.condition == "waiting":
                 report = replace(self._last, health=report.health, log=report.log)
-        self._last = report
-        tell(report)
+        self._last, self._age_s = report, 0.0
+        self._tell_last(tell)
+
+    def _hear_link(self, tell: Tell, link: LinkStatistics) -> None:
+        """Pass on the last report with the health of the link at this moment."""
+        self._link = link
+        if self._last is not None:
+            self._tell_last(tell)
+
+    def _tell_last(self, tell: Tell) -> None:
+        """Pass on the last report with the newest health of the link, its backlog or its age."""
+        with self._lock:
+            report = self._last
+            assert report is not None
+            if self._link is not None and report.health.link is not None:
+                report = replace(report, health=renewed(report.health, self._link))
+            sentence = self._behind.hear(report.health.behind_s)
+            if sentence and self._observer is not None:
+                self._observer.announce(sentence)
+            if self._age_s and not report.health.behind:
+                report = report.grown_old("ESTIMATOR", self._age_s)
+            tell(report)
 
     def _tell_of_age(self, tell: Tell, age_s: float) -> None:
+        self._age_s = age_s
         if self._last is not None:
-            tell(self._last.grown_old("ESTIMATOR", age_s))
+            self._tell_last(tell)
 
     def _tell_of_death(self, tell: Tell) -> None:
         if self._last is not None:

@@ -2,10 +2,13 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import nan
 from typing import Literal, Protocol, runtime_checkable
 
 from advisor.campaign.hand_decisions import ByHand
 from advisor.flight.signals.messages import Columns
+from advisor.mavlink.link.health import LinkStatistics
+from advisor.session.behind import backlog_s, behind_sentence
 
 Condition = Literal["good", "poor", "waiting", "lost", "stale", "ended"]
 """State of the data's arrival. Stale: a process of the advisor does not answer, and all that is shown is
@@ -25,6 +28,20 @@ class LinkHealth:
     """Loss at this moment; empty without one."""
     recording: str = ""
     """State of the recording with its size and the free disk; empty for a log."""
+    link: LinkStatistics | None = None
+    """Counts of the link. None for a log, and before the link is open."""
+    read_to_s: float = nan
+    """Host time of the newest record that the campaign was given, seconds since 1970."""
+
+    @property
+    def behind_s(self) -> float:
+        """Time by which everything that is judged is older than the newest record of the link, s."""
+        return backlog_s(self.link.newest_s, self.read_to_s) if self.link is not None else 0.0
+
+    @property
+    def behind(self) -> str:
+        """Sentence on a backlog that the crew must know; empty without one."""
+        return behind_sentence(self.behind_s)
 
 
 @dataclass(frozen=True, slots=True)

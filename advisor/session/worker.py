@@ -16,10 +16,6 @@ from advisor.session.changes import changes
 from advisor.session.conducting import SessionReport
 from advisor.session.conductor import Conductor
 
-_GIVES_WAY = 5
-"""Niceness of the process. Where processors are scarce, an estimate may come later, but the answer to a key
-may not."""
-
 
 class Reporter:
     """Writes the first report, then the changes of each later one."""
@@ -50,7 +46,6 @@ def serve(conductor: Conductor, requests: IO[bytes]) -> None:
 
 def main() -> None:
     """Conduct one campaign from its task to its end. An error that ends the campaign is the last message."""
-    os.nice(_GIVES_WAY)
     # A signal is for the screens, which then stop this process in order.
     interrupt.ignore()
     # Closed at the end, after which the other side closes the requests and ``serve`` returns.

@@ -5,7 +5,7 @@ from typing import Literal
 
 from advisor.session.view import View
 
-Word = Literal["CONTINUE", "REPEAT", "TEST COMPLETE", "RECOVER", "WAIT", "NO LINK", "NO DATA"]
+Word = Literal["CONTINUE", "REPEAT", "TEST COMPLETE", "RECOVER", "WAIT", "BEHIND", "NO LINK", "NO DATA"]
 Tone = Literal["good", "warn", "bad", "quiet"]
 
 
@@ -18,6 +18,9 @@ class Advice:
     tone: Tone
 
 
+_OLD = "the verdicts below are that old, and the link and its recording go on."
+
+
 def advise(view: View) -> Advice:
     """Return the most important advice: a lost link, unusable data, the manoeuvre in the air, or the
     verdicts.
@@ -27,6 +30,8 @@ def advise(view: View) -> Advice:
     state, verdict = view.state, view.state.flight_test
     if view.health.condition == "stale":
         return Advice("WAIT", view.health.sentence, "bad")
+    if view.health.behind:
+        return Advice("BEHIND", f"{view.health.behind.capitalize()}: {_OLD}", "bad")
     if view.health.condition == "lost":
         return Advice("NO LINK", f"{view.health.sentence}{_another(view)}", "bad")
     if view.obstacles and verdict.decision != "stop":

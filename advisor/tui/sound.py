@@ -54,7 +54,7 @@ def _hurries(view: View) -> bool:
 
 def _spoken(view: View, *, more: bool) -> str:
     """Return the new verdict, if there is one, and the word: ``Manoeuvre 3 good. Continue.``"""
-    word = f"{advise(view).word.capitalize()}."
+    word = f"{(view.health.behind or advise(view).word).capitalize()}."
     if not more:
         return word
     newest = view.state.maneuvers[-1]

@@ -1,5 +1,6 @@
 """An assistant reads files inside its folders only."""
 
+import os
 from pathlib import Path
 
 import pytest
@@ -29,10 +30,36 @@ def test_a_path_that_leaves_the_folders_is_refused(folders: Folders, name: str) 
         folders.file(name)
 
 
-@pytest.mark.parametrize("name", ["deep", "none.tlog", "--help"])
+@pytest.mark.parametrize("name", ["none.tlog", "--help"])
 def test_what_is_no_file_is_refused(folders: Folders, name: str) -> None:
     with pytest.raises(RefusedError, match="no file"):
         folders.file(name)
+
+
+@pytest.mark.parametrize(
+    ("name", "why"),
+    [
+        ("deep", "deep is a folder: name a log in it."),
+        ("fifo.tlog", "fifo.tlog is a pipe, socket or device, not a file."),
+        ("", "The name of the file is empty: give a path inside the folders of this server."),
+        ("a\0b", "The name of the file holds a zero byte, which no path may hold."),
+        ("circle.tlog", "circle.tlog cannot be read: its links lead in a circle."),
+        ("x" * 300, f"{'x' * 100} cannot be read: File name too long."),
+    ],
+)
+def test_each_refusal_is_one_sentence_with_its_reason(folders: Folders, name: str, why: str) -> None:
+    os.mkfifo(folders.roots[0] / "fifo.tlog")
+    (folders.roots[0] / "circle.tlog").symlink_to("circle.tlog")
+    with pytest.raises(RefusedError) as refused:
+        folders.file(name)
+    assert str(refused.value) == why
+
+
+def test_large_sizes_are_said_in_gigabytes(tmp_path: Path) -> None:
+    with (tmp_path / "sparse.bin").open("wb") as file:
+        file.truncate(2_500_000_000)
+    with pytest.raises(RefusedError, match=r"has 2\.5 GB, and this server reads at most 2 GB\."):
+        folders_of([tmp_path], 2_000_000_000).file("sparse.bin")
 
 
 def test_a_file_above_the_limit_is_refused(folders: Folders) -> None:

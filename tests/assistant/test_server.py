@@ -1,15 +1,17 @@
 """The tools of the Model Context Protocol, called by the SDK's own client."""
 
+import json
 import shutil
+import subprocess
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import pytest
 from mcp import Client, StdioServerParameters
 
-from advisor.assistant.calls import Calls, refuse_long
+from advisor.assistant.calls import Calls
 from advisor.assistant.folders import RefusedError, folders_of
 from advisor.assistant.server import server_of
 
@@ -46,22 +48,35 @@ async def test_the_tools_are_doctor_analyze_gap_and_report_and_only_read(flights
         tools = (await client.list_tools()).tools
         assert [tool.name for tool in tools] == ["doctor", "analyze", "gap", "report"]
         assert all(tool.annotations is not None and tool.annotations.read_only_hint for tool in tools)
-        assert set(tools[1].input_schema["properties"]) == {"logs", "aircraft"}
+        assert set(tools[1].input_schema["properties"]) == {"log", "logs", "aircraft", "part"}
 
 
 async def test_a_tool_answers_with_the_commands_document(flights: Path) -> None:
     calls = Noted({"schema": "advisor.analyze/1", "usable": True})
     async with Client(server_of(folders_of([flights], 1000), calls)) as client:
         told = await client.call_tool("analyze", {"logs": ["a.tlog"], "aircraft": "plain.yaml"})
-    assert told.structured_content == calls.answer
+    assert answer(told) == calls.answer
+    assert told.structured_content is None
     assert calls.called == [["analyze", str(flights / "a.tlog"), "--aircraft", str(flights / "plain.yaml")]]
 
 
-async def test_the_gap_comes_without_its_traces(flights: Path) -> None:
-    calls = Noted({"schema": "advisor.gap/1", "traces": [1, 2, 3]})
+@pytest.mark.parametrize("arguments", [{"log": "a.tlog"}, {"logs": ["a.tlog"]}, {"logs": "a.tlog"}])
+async def test_log_and_logs_name_the_same(flights: Path, arguments: dict[str, Any]) -> None:
+    calls = Noted({})
     async with Client(server_of(folders_of([flights], 1000), calls)) as client:
-        told = await client.call_tool("gap", {"logs": ["a.tlog"]})
-    assert told.structured_content == {"schema": "advisor.gap/1", "traces": []}
+        for tool in ("doctor", "analyze", "gap", "report"):
+            await client.call_tool(tool, arguments)
+    assert [called[1] for called in calls.called] == [str(flights / "a.tlog")] * 4
+
+
+async def test_the_gap_gives_its_evidence_on_request(flights: Path) -> None:
+    calls = Noted({"schema": "advisor.gap/1", "evidence": [1, 2, 3], "traces": []})
+    async with Client(server_of(folders_of([flights], 1000), calls)) as client:
+        told = await client.call_tool("gap", {"log": "a.tlog"})
+        asked = await client.call_tool("gap", {"log": "a.tlog", "part": "evidence"})
+    left_out = "left out, 0.0 kB; ask for part evidence"
+    assert answer(told) == {"schema": "advisor.gap/1", "evidence": left_out, "traces": []}
+    assert answer(asked) == [1, 2, 3]
 
 
 async def test_the_report_is_markdown(flights: Path) -> None:
@@ -99,9 +114,40 @@ async def test_a_command_that_prints_no_document_is_refused_with_its_sentence() 
         await Calls(60.0).document(["none of theirs"])
 
 
-def test_an_answer_above_a_megabyte_is_refused() -> None:
-    with pytest.raises(RefusedError, match="longer than 1 MB"):
-        refuse_long("x" * 1_000_001)
+@pytest.mark.parametrize("reads_on", [True, False])
+def test_a_client_that_leaves_during_a_call_ends_the_server_quietly(reads_on: bool) -> None:
+    command = [sys.executable, "-m", "advisor", "mcp", str(LOGS)]
+    process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    assert process.stdin is not None
+    assert process.stdout is not None
+    assert process.stderr is not None
+    with process, process.stdin, process.stdout, process.stderr:
+        hello = {
+            "protocolVersion": "2025-06-18",
+            "capabilities": {},
+            "clientInfo": {"name": "x", "version": "1"},
+        }
+        asked = {"name": "doctor", "arguments": {"log": "arduplane-default-rates.tlog"}}
+        _say(process.stdin, id=1, method="initialize", params=hello)
+        process.stdout.readline()
+        _say(process.stdin, method="notifications/initialized")
+        _say(process.stdin, id=2, method="tools/call", params=asked)
+        if not reads_on:
+            process.stdout.close()
+        process.stdin.close()
+        assert process.wait(60.0) == 0
+        assert process.stderr.read() == b""
+
+
+def _say(pipe: IO[bytes], **message: Any) -> None:
+    pipe.write(json.dumps({"jsonrpc": "2.0", **message}).encode() + b"\n")
+    pipe.flush()
+
+
+def answer(told: Any) -> Any:
+    """The document in the one text of an answer."""
+    (text,) = told.content
+    return json.loads(text.text)
 
 
 async def test_the_command_serves_a_log_to_a_client_over_its_streams(tmp_path: Path) -> None:
@@ -112,5 +158,5 @@ async def test_the_command_serves_a_log_to_a_client_over_its_streams(tmp_path: P
     )
     async with Client(server) as client:
         told = await client.call_tool("doctor", {"log": "slow.tlog"})
-    assert told.structured_content["schema"] == "advisor.doctor/1"
-    assert told.structured_content["limits"]
+    assert answer(told)["schema"] == "advisor.doctor/1"
+    assert answer(told)["limits"]

@@ -20,4 +20,4 @@ def test_no_campaign_asks_for_patience_while_it_waits_for_data(lateral: bool) ->
     beats: list[Beat] = []
     with suppress(UnusableInputError):
         narrate_here(source, Campaign(Aircraft(), lateral=lateral), lambda line: None, beats.append)
-    assert beats[-1] is Beat.LISTENING
+    assert not beats[-1].busy

@@ -1,6 +1,5 @@
 """A campaign in a process of its own says what it says in this one, and breaks off as it does here."""
 
-import os
 import pickle
 from collections.abc import Callable
 from dataclasses import fields, replace
@@ -97,13 +96,6 @@ def test_decisions_by_hand_reach_the_other_process():
     conductor.decide(HandDecision("exclude", "a gust", 2))
     report = last_report(conductor, lambda r: any(j.excluded_because == "a gust" for j in r.state.maneuvers))
     assert [j.excluded_because for j in report.state.maneuvers] == [None, "a gust", None]
-
-
-def test_where_processors_are_scarce_estimates_give_way_to_the_screens():
-    report = last_report(
-        RemoteConductor(ConductorTask(elsewhere.polite, elsewhere.staged)), lambda report: True
-    )
-    assert int(report.health.sentence) == min(19, os.nice(0) + 5)
 
 
 def test_unusable_input_is_the_same_error_here():

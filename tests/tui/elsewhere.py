@@ -9,7 +9,7 @@ from math import inf
 from pathlib import Path
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.campaign.campaign import Campaign
+from advisor.campaign.campaign import Campaign, CampaignEvent
 from advisor.campaign.hand_decisions import NOTHING, ByHand
 from advisor.flight.signals.messages import Columns
 from advisor.mavlink.logs.logs import open_log
@@ -74,6 +74,19 @@ def _estimate() -> None:
         sum(k * k for k in range(1000))
 
 
+class _Slow(Campaign):
+    """Takes 6 s for each batch."""
+
+    def feed(self, columns: Sequence[Columns]) -> list[CampaignEvent]:
+        time.sleep(6.0)
+        return super().feed(columns)
+
+
+def slow(by_hand: ByHand) -> Campaign:
+    """A real one on a computer that is too slow."""
+    return _Slow(Aircraft(), by_hand=by_hand)
+
+
 def ending(by_hand: ByHand) -> StagedCampaign:
     """Takes its process with it when it is fed."""
     return StagedCampaign([flights.state(0)], on_feed=lambda: os._exit(9))
@@ -83,13 +96,6 @@ def talking() -> HandFedSource:
     """A source with one message."""
     source = HandFedSource()
     source.deliver()
-    return source
-
-
-def polite() -> HandFedSource:
-    """A source that tells its process's niceness."""
-    source = talking()
-    source.condition = LinkHealth("good", str(os.nice(0)))
     return source
 
 

@@ -75,6 +75,10 @@ class Announcer(Talker):
         if stop is not None and axis not in self._stops_told:
             self._stops_told.add(axis)
             sentence = f"{stop} ({sentence})"
+        self.say(sentence)
+
+    def say(self, sentence: str) -> None:
+        """Take a sentence that is no verdict."""
         self._waiting.append(SPOKEN + sentence)
 
     def source(self, own: Ids, vehicle: Ids) -> Ids:

@@ -48,6 +48,12 @@ class LinkStatistics:
     silent_s: float = 0.0
     """Time since the vehicle was last heard."""
     reconnects: int = 0
+    newest_s: float = math.nan
+    """Host time of the newest record, seconds since 1970. NaN before the first record."""
+    bank_rad: float = math.nan
+    """Bank of the vehicle by its newest ATTITUDE, rad. NaN before the first."""
+    airspeed_m_s: float = math.nan
+    """Air speed of the vehicle by its newest VFR_HUD, m/s. NaN before the first."""
     unanswered_s: float = 0.0
     """Time for which the process of the link has not answered its reader, s."""
     recording: Path | None = None

@@ -24,6 +24,7 @@ from advisor.mavlink.link.health import LinkNotice
 from advisor.mavlink.link.inquiry import Inquiry
 from advisor.mavlink.link.keeping import (
     Alive,
+    Announce,
     AnnounceVerdict,
     CallOrder,
     Guard,
@@ -31,6 +32,7 @@ from advisor.mavlink.link.keeping import (
     Hello,
     Keeping,
     Listen,
+    Observe,
     Stop,
     Told,
 )
@@ -55,12 +57,13 @@ _Message = Hello | Heard | Told
 class Reader:
     """Sends to one reader from a separate thread, so that a slow reader delays nobody."""
 
-    def __init__(self, connection: Connection, hello: Hello) -> None:
+    def __init__(self, connection: Connection, hello: Hello | None = None) -> None:
         self._connection = connection
         self._waiting: SimpleQueue[_Message] = SimpleQueue()
         self._behind_bytes = 0
         self.gone = False
-        self.send(hello)
+        if hello is not None:
+            self.send(hello)
         Thread(target=self._run, daemon=True).start()
 
     def send(self, message: _Message) -> None:
@@ -105,6 +108,7 @@ class Keeper:
         self._listener = Listener(keeping.door.address, authkey=keeping.door.key)
         self._arrived: SimpleQueue[Connection] = SimpleQueue()
         self._readers: list[Reader] = []
+        self._observers: list[Reader] = []
         self._passed_on = 0
         self._looked_s = time.monotonic()
         self._guards = 0
@@ -138,7 +142,7 @@ class Keeper:
             while not self._stop.is_set() and not self._abandoned():
                 records = self._link.read_records(0.05)
                 if records:
-                    self._send(Heard(self._passed_on, records))
+                    self._send(Heard(self._passed_on, records, self._link.read_to_s))
                     self._passed_on += len(records)
                 self._looked_s = time.monotonic()
                 self._admit()
@@ -168,7 +172,12 @@ class Keeper:
 
     def _tell(self) -> None:
         notices: tuple[LinkNotice, ...] = tuple(self._link.take_notices()) if self._readers else ()
-        self._send(Told(self._link.statistics, notices))
+        statistics = self._link.statistics
+        self._send(Told(statistics, notices))
+        with self._lock:
+            self._observers = [observer for observer in self._observers if not observer.gone]
+        for observer in self._observers:
+            observer.send(Told(statistics, ()))
 
     def _send(self, message: _Message) -> None:
         self._readers = [reader for reader in self._readers if not reader.gone]
@@ -202,6 +211,9 @@ class Keeper:
                 match connection.recv():
                     case Listen():
                         self._arrived.put(connection)
+                    case Observe():
+                        with self._lock:
+                            self._observers.append(Reader(connection))
                     case Guard():
                         guards = True
                         self._lend_socket(connection)
@@ -211,6 +223,8 @@ class Keeper:
                         connection.send(time.monotonic() - at_work_s)
                     case AnnounceVerdict(maneuver, sentence, stop, axis) if self._announcer:
                         self._announcer.judged(maneuver, sentence, stop, axis)
+                    case Announce(sentence) if self._announcer:
+                        self._announcer.say(sentence)
                     case CallOrder(method, arguments):
                         getattr(self._link, method)(*arguments)
                     case Stop():

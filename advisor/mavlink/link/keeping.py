@@ -88,6 +88,8 @@ class Heard:
     at: int
     """Position of the records in the recording, bytes from its start."""
     records: bytes
+    newest_s: float
+    """Host time of the newest record, seconds since 1970."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,6 +112,13 @@ class AnnounceVerdict:
 
 
 @dataclass(frozen=True, slots=True)
+class Announce:
+    """Asks the process of the link to announce a sentence, where announcements are on."""
+
+    sentence: str
+
+
+@dataclass(frozen=True, slots=True)
 class CallOrder:
     """Asks for a call of one of the link's methods, with a request of a crew or a reader."""
 
@@ -120,6 +129,11 @@ class CallOrder:
 @dataclass(frozen=True, slots=True)
 class Listen:
     """Asks for everything heard so far, and for all later records."""
+
+
+@dataclass(frozen=True, slots=True)
+class Observe:
+    """Asks for the health of the link only, without records and notices."""
 
 
 @dataclass(frozen=True, slots=True)

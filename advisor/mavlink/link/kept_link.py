@@ -2,9 +2,8 @@
 
 import time
 from collections.abc import Iterator
-from dataclasses import replace
 from functools import cached_property
-from math import inf
+from math import nan
 from multiprocessing.connection import Connection
 from types import TracebackType
 from typing import TYPE_CHECKING, Self
@@ -13,6 +12,7 @@ from advisor.aircraft.controls import Elevator
 from advisor.flight.signals.messages import Columns
 from advisor.mavlink.link.health import LinkNotice, LinkStatistics
 from advisor.mavlink.link.keeping import AnnounceVerdict, CallOrder, Door, Heard, Hello, Listen, Told
+from advisor.mavlink.link.reported_health import ReportedHealth
 from advisor.process.liveness import OLD_AFTER_S
 
 if TYPE_CHECKING:
@@ -21,8 +21,6 @@ if TYPE_CHECKING:
 PIECE_BYTES = 262_144
 """Bytes of the recording that one ``read`` decodes: some 5,000 messages."""
 RETRY_EVERY_S = 0.1
-STARTED_WITHIN_S = 0.5
-"""Time before the first connection to a new process, s, at most, within which that process began."""
 
 
 class KeptLink:
@@ -54,9 +52,9 @@ class KeptLink:
         self._next_try_s = 0.0
         self._notices: list[LinkNotice] = []
         self._broken = False
-        self._told = LinkStatistics()
-        self._connected_s = self._vehicle_heard_s = -inf
-        self._unanswered_s = 0.0
+        self._health = ReportedHealth()
+        self.read_to_s = nan
+        """Host time of the newest record that was read, seconds since 1970."""
         self.catching_up = True
         """Whether earlier records are still being read."""
 
@@ -78,6 +76,8 @@ class KeptLink:
             self.catching_up = False
             piece = self._hear(timeout_s)
         columns = self._decoding.feed(piece) if piece else []
+        if self.catching_up:
+            self.read_to_s = max((float(part.arrival_s[-1]) for part in columns), default=self.read_to_s)
         # A process that was started again knows no vehicle, and a silent one would stay unknown.
         if self._connection is not None and (vehicle := self._decoding.newly_followed()) is not None:
             self._send(CallOrder("listen_to", (vehicle,)))
@@ -86,7 +86,7 @@ class KeptLink:
     @property
     def statistics(self) -> LinkStatistics:
         """Health of the link, as reported last."""
-        return self._decoding.counted(replace(self._told, unanswered_s=self._unanswered_s))
+        return self._decoding.counted(self._health.statistics)
 
     def take_notices(self) -> list[LinkNotice]:
         """Return the notices since the last call, oldest first."""
@@ -132,7 +132,7 @@ class KeptLink:
         assert isinstance(hello, Hello)
         if self._broken:
             self._say("the process of the link has ended and was started again; the recording goes on")
-            self._connected_s = time.monotonic()
+            self._health.reconnected()
         self._connection, self._broken = connection, False
         if hello.process != self._process:
             # The recording may lack what the last process passed on in its last moment: what follows is new.
@@ -167,11 +167,12 @@ class KeptLink:
             while self._connection.poll(timeout_s):
                 self._answered()
                 match self._connection.recv():
-                    case Heard(at, records) if at + len(records) > self._position:
+                    case Heard(at, records, newest_s) if at + len(records) > self._position:
                         self._position = at + len(records)
+                        self.read_to_s = newest_s
                         return records
                     case Told(statistics, notices):
-                        self._told = self._remembering(statistics)
+                        self._health.take(statistics)
                         self._notices += notices
                         return b""
             self._wait_in_vain(timeout_s)
@@ -179,26 +180,14 @@ class KeptLink:
             self._lose()
         return b""
 
-    def _remembering(self, statistics: LinkStatistics) -> LinkStatistics:
-        """Return statistics with the vehicle and the silence that an earlier process knew of."""
-        now_s = time.monotonic()
-        heard_s = now_s - statistics.silent_s
-        # A process counts the silence from its own start.
-        if heard_s > self._connected_s + STARTED_WITHIN_S:
-            self._vehicle_heard_s = heard_s
-        vehicle = statistics.vehicle or self._told.vehicle
-        return replace(statistics, vehicle=vehicle, silent_s=now_s - self._vehicle_heard_s)
-
     def _wait_in_vain(self, seconds: float) -> None:
-        """Take note of a wait in which the process has said nothing. It says something every 0.2 s."""
-        before_s, self._unanswered_s = self._unanswered_s, self._unanswered_s + seconds
-        if before_s < OLD_AFTER_S <= self._unanswered_s:
+        """Take note of a wait in which the process has said nothing."""
+        if self._health.waited(seconds):
             self._say(f"the process of the link has not answered for {OLD_AFTER_S:.0f} s")
 
     def _answered(self) -> None:
-        if self._unanswered_s >= OLD_AFTER_S:
+        if self._health.answered():
             self._say("the process of the link answers again")
-        self._unanswered_s = 0.0
 
     def _send(self, message: object) -> None:
         try:

@@ -6,6 +6,7 @@ that reads logs. So the live messages and the replayed ones are equal, in equal 
 """
 
 import contextlib
+import math
 import struct
 import threading
 import time
@@ -27,6 +28,7 @@ from advisor.mavlink.link.inquiry import Inquiry
 from advisor.mavlink.link.intake import Intake
 from advisor.mavlink.link.line import Line
 from advisor.mavlink.link.link_watch import LinkWatch
+from advisor.mavlink.link.motion_now import MotionNow
 from advisor.mavlink.link.outgoing import OWN_COMPONENT, OWN_SYSTEM, Heartbeat, Ids, Talker
 from advisor.mavlink.link.recorder import Recorder
 from advisor.mavlink.link.transport import ConnectionCutError
@@ -113,7 +115,11 @@ class Link:
         self._orders: deque[bytes | Talker | Ids] = deque()
         self._watch = LinkWatch(connection)
         self._notices: deque[LinkNotice] = deque(maxlen=1000)
-        self._queue: Queue[bytes] = Queue(QUEUE_LENGTH)
+        self._motion = MotionNow()
+        self._queue: Queue[tuple[float, bytes]] = Queue(QUEUE_LENGTH)
+        """Batches of records, each with the host time of its handing over, s."""
+        self.newest_s = self.read_to_s = math.nan
+        """Host times of the newest batch and of the newest batch that was read, seconds since 1970."""
         self._recorder: Recorder | None = None
         self._failure: BaseException | None = None
         self._stop = threading.Event()
@@ -194,7 +200,8 @@ class Link:
     def read_records(self, timeout_s: float = 0.1) -> bytes:
         """Return the next micro-batch as records of a tlog, or nothing when none came in time."""
         with contextlib.suppress(Empty):
-            return self._queue.get(timeout=timeout_s)
+            self.read_to_s, records = self._queue.get(timeout=timeout_s)
+            return records
         if self._failure is not None:
             raise self._failure
         return b""
@@ -243,6 +250,9 @@ class Link:
             refused=dict(counters.refused),
             silent_s=self._watch.silent_s(now_s),
             reconnects=self._watch.reconnects,
+            newest_s=self.newest_s,
+            bank_rad=self._motion.bank_rad,
+            airspeed_m_s=self._motion.airspeed_m_s,
             recording=self._recorder.path if self._recorder else None,
             recorded_bytes=self._recorder.bytes_written if self._recorder else 0,
             recording_problem=self._recorder.problem if self._recorder else None,
@@ -272,6 +282,8 @@ class Link:
             batch += self._records(self._talk(frames, now_s), now_s, _SENT_BY_US)
             self._say(self._watch.look(self._intake, frames, now_s), now_s)
             self._say(self._recorder.take_notices() if self._recorder else (), now_s)
+            if self._intake.vehicle is not None:
+                self._motion.look(frames, self._intake.vehicle[0])
             if batch and now_s - since_s >= BATCH_S:
                 self._hand_over(bytes(batch))
                 batch.clear()
@@ -316,6 +328,7 @@ class Link:
                     texts.append(self._conversation.note(text, time.time()))
                 case vehicle if vehicle != self._intake.vehicle:
                     self._intake.follow(vehicle)
+                    self._motion = MotionNow()
                     self._watch.start_again()
         return texts
 
@@ -340,9 +353,10 @@ class Link:
     def _hand_over(self, records: bytes) -> None:
         if self._recorder is not None:
             self._recorder.write(records)
+        self.newest_s = time.monotonic() + self._unix_offset_s
         while not self._stop.is_set():
             with contextlib.suppress(Full):  # the reader is a minute behind; the socket's buffer waits
-                self._queue.put(records, timeout=0.2)
+                self._queue.put((self.newest_s, records), timeout=0.2)
                 return
 
     def _say(self, texts: Iterable[str], now_s: float) -> None:

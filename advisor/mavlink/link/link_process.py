@@ -14,7 +14,7 @@ from types import TracebackType
 from typing import Self
 
 from advisor.aircraft.controls import Elevator
-from advisor.mavlink.link.keeping import Alive, Guard, Keeping, Stop
+from advisor.mavlink.link.keeping import Alive, Door, Guard, Keeping, Stop
 from advisor.mavlink.link.kept_link import KeptLink
 from advisor.mavlink.link.running_links import RunningLink
 from advisor.process.children import python_module
@@ -62,6 +62,11 @@ class LinkProcess:
             parameters.
         """
         return KeptLink(self._keeping.door, elevator, self._keeping.target_system)
+
+    @property
+    def door(self) -> Door:
+        """Address of the process."""
+        return self._keeping.door
 
     @property
     def master(self) -> str:

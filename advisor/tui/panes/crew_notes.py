@@ -9,6 +9,8 @@ from advisor.tui.panes.part import Part
 
 def flying_in_words(view: View) -> str:
     """Return a line on the manoeuvre in the air."""
+    if view.health.behind:
+        return f"not known: {view.health.behind}"
     marked_s = view.state.marking_since_s
     if marked_s is not None:
         return f"marked by hand for {view.state.now_s - marked_s:.0f} s"

@@ -24,14 +24,36 @@ def limits_now(view: View) -> str:
     """
     limits = view.aircraft.limits
     said = [
-        _of_bank(_newest(view, "bank"), limits.bank_deg),
-        _of_speed(_newest(view, "airspeed"), _speed_of_tests(view), limits.airspeed_change_percent),
+        _of_bank(_bank_rad(view), limits.bank_deg),
+        _of_speed(_airspeed_m_s(view), _speed_of_tests(view), limits.airspeed_change_percent),
         _of_alpha(_newest(view, "alpha"), limits.alpha_deg),
     ]
     return _APART.join(filter(None, said)) or "bank, air speed and angle of attack are not received"
 
 
+def _bank_rad(view: View) -> float | None:
+    """Return the bank, rad, of the link itself where there is one; None: not received."""
+    link = view.health.link
+    return link.bank_rad if link is not None and isfinite(link.bank_rad) else _newest(view, "bank")
+
+
+def _airspeed_m_s(view: View) -> float | None:
+    """Return the air speed, m/s; None: not received.
+
+    The campaign's air speed is the true one where that is known. While the campaign is behind, the air speed
+    of the link itself stands in its place.
+    """
+    link = view.health.link
+    if view.health.behind and link is not None and isfinite(link.airspeed_m_s):
+        return link.airspeed_m_s
+    return _newest(view, "airspeed")
+
+
 def _newest(view: View, name: str) -> float | None:
+    """Return the newest value that the campaign was given. None: not received, or older than the crew
+    thinks."""
+    if view.health.behind:
+        return None
     status = view.state.channels.get(name)
     return status.newest if status is not None and isfinite(status.newest) else None
 

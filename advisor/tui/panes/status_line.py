@@ -1,5 +1,6 @@
 """The first line of every screen: aircraft, mode, and condition of the link."""
 
+from advisor.session.behind import spoken
 from advisor.session.view import View
 from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.part import Part
@@ -25,6 +26,7 @@ class StatusLine(Part, Lines):
         vehicle = str(state.vehicle) if state.vehicle else "no vehicle yet"
         parts = [
             CONDITIONS[view.health.condition],
+            f"✗ {spoken(view.health.behind_s)} BEHIND" if view.health.behind else "",
             view.health.recording,
             view.aircraft.name,
             vehicle,
@@ -35,3 +37,4 @@ class StatusLine(Part, Lines):
         self.write("  ·  ".join(part for part in parts if part))
         for condition in CONDITIONS:
             self.set_class(condition == view.health.condition, f"-{condition}")
+        self.set_class(bool(view.health.behind), "-behind")

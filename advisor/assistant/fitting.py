@@ -1,0 +1,113 @@
+"""Documents cut to a size that an assistant can read, with the address of each part left out."""
+
+import json
+from collections.abc import Sequence
+from typing import Any
+
+from advisor.assistant.folders import RefusedError
+
+MOST_BYTES = 20_000
+"""Longest answer, bytes: some 7,000 tokens, a small share of an assistant's context."""
+_LEAST_BYTES = 200
+"""Least share of an answer, bytes, that a part is shortened to. A smaller share is left out."""
+_ITEM_BYTES = 800
+"""Least share of a list item, bytes: one manoeuvre with its verdict and reasons. Later items are left out."""
+_DIGITS = 7
+"""Significant digits of a number: a time of one hour keeps its millisecond."""
+
+
+def part_of(document: Any, path: str) -> Any:
+    """Return a part of a document.
+
+    Parameters
+    ----------
+    path
+        Keys and list positions with dots between: ``lateral.maneuvers.2``. Empty: the whole document.
+
+    Raises
+    ------
+    RefusedError
+        The document has no such part.
+    """
+    found = document
+    for step in filter(None, path.split(".")):
+        if isinstance(found, dict) and step in found:
+            found = found[step]
+        elif isinstance(found, list) and step.isdigit() and int(step) < len(found):
+            found = found[int(step)]
+        else:
+            there = ", ".join(found) if isinstance(found, dict) else f"0 to {len(found) - 1}"
+            if not isinstance(found, dict | list) or not found:
+                there = "nothing"
+            raise RefusedError(f"There is no part {path}: at {step} there are {there}.")
+    return found
+
+
+def written(document: Any, path: str = "", without: Sequence[str] = ()) -> str:
+    """Return a document, or its part at ``path``, as JSON of at most ``MOST_BYTES``.
+
+    The largest parts are shortened first. A sentence in the place of a part names the path to ask for.
+
+    Parameters
+    ----------
+    without
+        Keys of the document that only a request by path answers.
+    """
+    whole = _rounded(part_of(document, path))
+    if not path and isinstance(whole, dict):
+        whole = {k: _left_out(v, k) if k in without and v else v for k, v in whole.items()}
+    budget = MOST_BYTES
+    while _size(shortened := _shortened(whole, budget, path)) > MOST_BYTES:
+        budget = budget * 9 // 10
+    return _json(shortened)
+
+
+def _shortened(value: Any, budget: int, path: str) -> Any:
+    """Return a value whose parts share a budget, bytes: small parts are whole, large ones share the rest."""
+    if _size(value) <= budget:
+        return value
+    if budget < _LEAST_BYTES:
+        return _left_out(value, path)
+    if isinstance(value, dict):
+        return _shared(value, budget, path)
+    if isinstance(value, list):
+        kept: list[Any] = []
+        for k, item in enumerate(value):
+            share = max(budget // (len(value) - k), _ITEM_BYTES)
+            shorter = _shortened(item, share, f"{path}.{k}".lstrip("."))
+            budget -= _size(shorter)
+            if budget < _LEAST_BYTES:
+                return [*kept, f"{len(value) - k} more; ask for part {path}.{k} and so on".replace(" .", " ")]
+            kept.append(shorter)
+        return kept
+    return _left_out(value, path)
+
+
+def _shared(value: dict[str, Any], budget: int, path: str) -> dict[str, Any]:
+    shorter = {}
+    by_size = sorted(value, key=lambda key: _size(value[key]))
+    for k, key in enumerate(by_size):
+        share = budget // (len(by_size) - k)
+        shorter[key] = _shortened(value[key], share, f"{path}.{key}".lstrip("."))
+        budget -= _size(shorter[key]) + len(key) + 4
+    return {key: shorter[key] for key in value}
+
+
+def _left_out(value: Any, path: str) -> str:
+    return f"left out, {_size(value) / 1000.0:.1f} kB; ask for part {path}"
+
+
+def _rounded(value: Any) -> Any:
+    if isinstance(value, float):
+        return float(f"{value:.{_DIGITS}g}")
+    if isinstance(value, dict):
+        return {key: _rounded(item) for key, item in value.items()}
+    return [_rounded(item) for item in value] if isinstance(value, list) else value
+
+
+def _size(value: Any) -> int:
+    return len(_json(value).encode())
+
+
+def _json(value: Any) -> str:
+    return json.dumps(value, ensure_ascii=False, separators=(",", ":"))

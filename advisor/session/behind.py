@@ -1,0 +1,41 @@
+"""Backlog of the advisor itself: the time between the newest record heard and the newest one judged."""
+
+from math import inf, isfinite
+
+BEHIND_S = 2.0
+"""Backlog, s, above which the crew reads that this computer is behind. A joint estimate of seven manoeuvres
+delays the next record by up to 2 s on a laptop. A manoeuvre takes 10 s."""
+
+
+def backlog_s(newest_s: float, read_to_s: float) -> float:
+    """Return the backlog, s; 0 while either time is unknown."""
+    backlog = newest_s - read_to_s
+    return max(0.0, backlog) if isfinite(backlog) else 0.0
+
+
+def behind_sentence(behind_s: float) -> str:
+    """Return the sentence on a backlog above ``BEHIND_S``; empty on a smaller one."""
+    return f"this computer is {spoken(behind_s)} behind" if behind_s > BEHIND_S else ""
+
+
+def spoken(behind_s: float) -> str:
+    """Return a backlog with its unit: seconds up to ten minutes, then minutes."""
+    return f"{behind_s:.0f} s" if behind_s < 600.0 else f"{behind_s / 60.0:.0f} min"
+
+
+class BehindTeller:
+    """Chooses the moments at which lines of text and announcements tell of the backlog."""
+
+    def __init__(self) -> None:
+        self._told_s = 0.0
+
+    def hear(self, behind_s: float) -> str:
+        """Return a sentence on the first backlog, on each doubling and on its end; empty otherwise."""
+        sentence = behind_sentence(behind_s)
+        if sentence and behind_s >= 2.0 * (self._told_s or -inf):
+            self._told_s = behind_s
+            return sentence
+        if self._told_s and behind_s < 0.5 * BEHIND_S:
+            self._told_s = 0.0
+            return "this computer is up to date again"
+        return ""
