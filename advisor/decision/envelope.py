@@ -143,9 +143,9 @@ def short_response(maneuver: Maneuver, period_s: float) -> list[Reason]:
     """Return a reason where the record ends before the motion has died down."""
     if maneuver.span.closed_by == LEFT:
         return _left_too_soon(maneuver)
-    if _is_broken_off(maneuver.span):
+    if is_broken_off(maneuver.span):
         what, mend = _CUT_SHORT_BY[maneuver.span.closed_by]
-        return [Reason("aborted", f"{what} before the elevator came to rest; {mend}", 0.0, 1.0)]
+        return [Reason("aborted", f"{what} before the input is over; {mend}", 0.0, 1.0)]
     free, least = maneuver.span.end_s - maneuver.span.last_step_s, _SHORTEST_FREE * period_s
     if free >= least:
         return []
@@ -163,8 +163,8 @@ def _left_too_soon(maneuver: Maneuver) -> list[Reason]:
     return [Reason("airspeed", text, lasted, maneuver.span.end_s - maneuver.span.record_from_s)]
 
 
-def _is_broken_off(span: Span) -> bool:
-    """Return whether something ended the record while the elevator was still away from trim."""
+def is_broken_off(span: Span) -> bool:
+    """Return whether something ended the record while the control was still away from trim."""
     return span.closed_by in _CUT_SHORT_BY and bool(span.steps) and span.steps[-1][1] != 0.0
 
 

@@ -13,6 +13,7 @@ from advisor.decision.envelope import (
     banked,
     changed_speed,
     flown,
+    is_broken_off,
     other_controls,
     saturated,
     short_response,
@@ -21,9 +22,17 @@ from advisor.decision.envelope import (
     too_slow,
     with_gap,
 )
-from advisor.decision.quality import LEAST_R2, WIDEST_PREDICTION_PERCENT, refusals
+from advisor.decision.quality import (
+    LEAST_R2,
+    LEAST_SIGNAL,
+    WIDEST_PREDICTION_PERCENT,
+    half_range,
+    refusals,
+    white_part,
+)
 from advisor.decision.verdict import UNTRUSTED, Reason
 from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.maneuvers.purpose import LEAST_PITCH_RATE_DEG_S
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.lateral_estimate import LateralEstimate
 from advisor.words.digits import distinct_texts
@@ -39,6 +48,16 @@ _USUAL_PERIOD_S = 2.0
 """Period of the Dutch roll where no estimate gives one, s. Small aircraft have 1.8 s, jets 3.5 s."""
 _RATE_OF = {"aileron": "p", "rudder": "r"}
 _NEEDED = ("p", "r", "bank")
+_DETERMINED = {"aileron": ("L_p", "L_delta_a"), "rudder": ("N_beta", "N_r", "N_delta_r")}
+"""Control to the derivatives that its test determines."""
+
+
+_TRIMMING = Reason(
+    "information",
+    "the movement determines no derivative, as a pilot's trimming; fly a doublet, from rest",
+    math.nan,
+    math.nan,
+)
 
 
 def judge_lateral(
@@ -72,12 +91,35 @@ def judge_lateral(
     reasons += [*_unsteady_alpha(maneuver), *throttled(maneuver)]
     reasons += other_controls(maneuver, ("elevator",), "hold the nose with less elevator")
     reasons += [*_pitching(maneuver), *changed_speed(maneuver, aircraft)]
+    short = [] if _is_informed(estimate) else short_response(maneuver, period_s)
     if isinstance(estimate, NoEstimate):
         untold = Reason(estimate.code, estimate.text, math.nan, math.nan)
-        return (*reasons, *short_response(maneuver, period_s), untold)
-    lacking = _badly_explained(estimate) or _poor(estimate)
-    # A record that tells enough needs no longer tail.
-    return (*reasons, *(short_response(maneuver, period_s) if lacking else ()), *lacking)
+        return (*reasons, *short, untold)
+    if is_broken_off(maneuver.span):
+        # A record that ends within its input tells no free motion, however narrow its intervals are.
+        short = short_response(maneuver, period_s)
+    gentle = _too_gentle(maneuver, estimate)
+    lacking = _badly_explained(estimate) or ([] if gentle else _poor(maneuver, estimate))
+    return (*reasons, *short, *gentle, *lacking)
+
+
+def _is_informed(estimate: LateralEstimate | NoEstimate) -> bool:
+    """Return whether a manoeuvre determines its axis, whatever the length of its free response.
+
+    The band of each flown control's predicted rate is narrow, and the intervals of damping and control, with
+    the rudder those of stiffness too, exclude zero.
+    """
+    if isinstance(estimate, NoEstimate) or not estimate.flown:
+        return False
+    found = estimate.estimate
+    known = all(
+        name not in found.not_identifiable
+        and abs(found.value(name)) > NORMAL_95 * float(found.std[found.names.index(name)])
+        for control in estimate.flown
+        for name in _DETERMINED[control]
+    )
+    bands = [100.0 * found.prediction[_RATE_OF[name]] for name in estimate.flown] if known else [math.inf]
+    return max(bands) <= WIDEST_PREDICTION_PERCENT
 
 
 def _period_s(estimate: LateralEstimate | NoEstimate) -> float:
@@ -118,6 +160,25 @@ def _rms(x: np.ndarray) -> float:
     return float(np.sqrt(np.mean(x**2)))
 
 
+def _too_gentle(maneuver: Maneuver, estimate: LateralEstimate) -> list[Reason]:
+    """Return a reason where no rate that a control moves exceeds the noise."""
+    rates = {name: _RATE_OF[name] for name in estimate.flown}
+    fits = estimate.estimate.fits[0]
+    wanting = []
+    for control, rate in rates.items():
+        peak = math.degrees(half_range(maneuver, rate))
+        noise = math.degrees(white_part(fits[rate].residual)) if rate in fits else 0.0
+        limit = max(LEAST_SIGNAL["q"] * noise, LEAST_PITCH_RATE_DEG_S)
+        wanting.append((peak / limit, peak, limit, control))
+    share, peak, limit, control = max(wanting, default=(1.0, 0.0, 0.0, ""))
+    if share >= 1.0:
+        return []
+    rate_said = "roll rate" if control == "aileron" else "yaw rate"
+    shown, least = distinct_texts(peak, limit, 2, "g")
+    text = f"too gentle, {rate_said} {shown} deg/s (at least {least}); use more {control}"
+    return [Reason("amplitude", text, peak, limit)]
+
+
 def _badly_explained(estimate: LateralEstimate) -> list[Reason]:
     """Return a reason where the model does not explain the rate of a control that was flown."""
     fits = estimate.estimate.fits[0]
@@ -143,13 +204,14 @@ def _unknown_modes(estimate: LateralEstimate) -> list[Reason]:
     return [Reason("information", text, width, WIDEST_PREDICTION_PERCENT)]
 
 
-def _poor(estimate: LateralEstimate) -> list[Reason]:
+def _poor(maneuver: Maneuver, estimate: LateralEstimate) -> list[Reason]:
     """Return a reason where the estimate predicts the rate of a control too poorly.
 
-    Where only the modes are told, the frequency of the Dutch roll stands for the prediction.
+    Where a test input determines the modes only, the frequency of the Dutch roll stands for the prediction.
+    A movement without the shape of a test that determines no derivative is a pilot's trimming.
     """
     if set(estimate.estimate.not_identifiable) == set(estimate.estimate.names):
-        return _unknown_modes(estimate)
+        return [_TRIMMING] if maneuver.span.kind == "other" else _unknown_modes(estimate)
     bands = {name: 100.0 * estimate.estimate.prediction[_RATE_OF[name]] for name in estimate.flown}
     widest = max(bands, key=lambda name: bands[name], default="")
     if not widest or bands[widest] <= WIDEST_PREDICTION_PERCENT:

@@ -148,16 +148,16 @@ def _too_gentle(maneuver: Maneuver, fits: Mapping[str, ChannelFit]) -> list[Reas
     for name, least in LEAST_SIGNAL.items():
         if name not in (fits or ("q",)):
             continue
-        peak = _peak(maneuver, name)
-        noise = _white(fits[name].residual if name in fits else maneuver.channels[name].y)
+        peak = half_range(maneuver, name)
+        noise = white_part(fits[name].residual if name in fits else maneuver.channels[name].y)
         wanting.append((least * noise / peak if peak > 0.0 else math.inf, name))
-    rate = math.degrees(_peak(maneuver, "q"))
+    rate = math.degrees(half_range(maneuver, "q"))
     wanting.append((LEAST_PITCH_RATE_DEG_S / rate if rate > 0.0 else math.inf, "q"))
     factor, name = max(wanting)
     if factor <= 1.0:
         return []
     what, unit = ("pitch rate", "deg/s") if name == "q" else ("angle of attack", "deg")
-    peak = math.degrees(_peak(maneuver, name))
+    peak = math.degrees(half_range(maneuver, name))
     limit = peak * factor if peak > 0.0 else LEAST_PITCH_RATE_DEG_S
     shown, least_peak = distinct_texts(peak, limit, 2, "g")
     text = f"too gentle, {what} {shown} {unit} (at least {least_peak}); use about {_times(factor)} the stick"
@@ -174,7 +174,7 @@ def _badly_explained(estimate: Estimate) -> list[Reason]:
         fit = estimate.fits[0].get(name)
         if fit is None or (name == "alpha" and estimate.filtered):
             continue
-        noise = _white(fit.residual) ** 2
+        noise = white_part(fit.residual) ** 2
         spread = float(np.var(fit.measured)) - noise
         explained = 1.0 - max(0.0, fit.rms**2 - noise) / spread if spread > 0.0 else 1.0
         if explained < least:
@@ -211,13 +211,13 @@ def _mended(maneuver: Maneuver, reasons: list[Reason]) -> list[Reason]:
     return [replace(r, text=f"{r.text.partition('; ')[0]}; {wrong.text}: {wrong.fix}") for r in reasons]
 
 
-def _peak(maneuver: Maneuver, name: str) -> float:
+def half_range(maneuver: Maneuver, name: str) -> float:
     """Return half the range of a channel during the manoeuvre."""
     y = flown(maneuver, name)
     return float(np.ptp(y)) / 2.0 if len(y) else 0.0
 
 
-def _white(values: FloatArray) -> float:
+def white_part(values: FloatArray) -> float:
     """Return the standard deviation of the white part of a signal, from second differences."""
     if len(values) < 3:
         return 0.0

@@ -3,13 +3,16 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.decision.lateral_quality import judge_lateral
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.record import Channel
-from advisor.oem.estimate import NoEstimate
+from advisor.model.lateral import LATERAL
+from advisor.oem.estimate import ChannelFit, NoEstimate
+from tests.campaign.side_builders import estimate
 
 T = np.arange(0.0, 10.0, 0.02)
 REVERSED = InstrumentFinding(
@@ -34,3 +37,62 @@ def test_a_contradiction_of_an_instrument_is_the_one_reason():
 def test_a_contradiction_that_the_estimate_allows_for_is_no_reason():
     codes = [r.code for r in judge_lateral(maneuver(replace(REVERSED, used=True)), NONE, Aircraft())]
     assert "a_y_sign" not in codes
+
+
+def flown(kind="rudder doublet", closed_by="quiet", free_s=6.0, level=0.0, size=1.0):
+    """Return a record of a rudder input at 1 to 4 s, with a free response of this length."""
+    yawing = size * 0.1 * np.sin(3.0 * T)
+    moved = {"p": yawing, "r": yawing, "bank": 0.1 * np.cos(T), "rudder": 0.05 * (T > 1.0)}
+    channels = {name: Channel(name, T, y, "ATTITUDE", "measured") for name, y in moved.items()}
+    span = Span(0.0, 1.0, 4.0, 4.0 + free_s, kind, ((1.0, 0.05), (4.0, level)), closed_by)
+    return Maneuver(1, 0, span, channels)
+
+
+def told(untold=(), band=0.05, noise=1e-4):
+    """Return an estimate of the jet's rudder with relative errors of 2 %."""
+    yaw = Channel("r", T, 0.1 * np.sin(3.0 * T), "ATTITUDE", "measured")
+    error = noise * np.random.default_rng(3).standard_normal(len(T))
+    fits = ({name: ChannelFit(name, T, yaw.y + error, yaw.y, noise) for name in ("p", "r")},)
+    whole = estimate("rudder", untold=dict.fromkeys(untold, "collinear"), fits=fits)
+    known = replace(whole.estimate, prediction={"p": band, "r": band})
+    return replace(whole, estimate=known)
+
+
+def codes(record, found):
+    return [reason.code for reason in judge_lateral(record, found, Aircraft())]
+
+
+def test_a_rudder_test_that_determines_its_derivatives_needs_no_longer_free_response():
+    assert codes(flown(), told()) == []
+    assert codes(flown(free_s=0.3), told()) == []
+
+
+@pytest.mark.parametrize("cause", ["end of log", "gap", "mode change"])
+def test_a_record_that_ends_within_its_input_is_no_test_however_much_it_determines(cause):
+    assert codes(flown(closed_by=cause, free_s=0.4, level=0.05), told()) == ["aborted"]
+
+
+@pytest.mark.parametrize("name", ["N_beta", "N_r", "N_delta_r"])
+def test_a_short_free_response_counts_only_where_stiffness_damping_and_control_are_known(name):
+    assert codes(flown(free_s=0.3), told(untold=[name])) == ["free_response"]
+    assert codes(flown(free_s=6.0), told(untold=[name])) == []
+
+
+def test_a_short_free_response_counts_only_where_the_predicted_rate_is_known():
+    assert codes(flown(free_s=0.3), told(band=0.3)) == ["free_response", "information"]
+
+
+def test_a_trimming_movement_that_determines_no_derivative_is_no_test():
+    found = told(untold=LATERAL.names.reported)
+    assert codes(flown("other"), found) == ["information"]
+    assert codes(flown("dutch roll release"), found) == []
+
+
+def test_a_rate_that_hardly_exceeds_its_noise_is_too_gentle():
+    assert codes(flown(), told(noise=0.008)) == []
+    assert codes(flown(), told(noise=0.009)) == ["amplitude"]
+
+
+def test_a_yaw_rate_below_one_degree_a_second_is_too_gentle():
+    assert codes(flown(size=0.175), told()) == []
+    assert codes(flown(size=0.173), told()) == ["amplitude"]
