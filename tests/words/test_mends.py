@@ -39,3 +39,21 @@ def test_an_unknown_autopilot_is_told_no_parameter():
 def test_a_slow_topic_of_px4_is_mended_by_the_bit_that_logs_it_at_its_full_rate():
     assert "bit 4 of SDLOG_PROFILE" in mends_of("px4", "ulog").faster("ATTITUDE")
     assert "bit 1 of SDLOG_PROFILE" in mends_of("px4", "ulog").faster("VFR_HUD")
+
+
+@pytest.mark.parametrize(
+    ("profile", "message", "advice"),
+    [
+        (1, "SERVO_OUTPUT_RAW", "bit 4 of"),
+        (0b10001, "SERVO_OUTPUT_RAW", "bit 3 of"),
+        (0b11001, "SERVO_OUTPUT_RAW", "SDLOG_PROFILE 25 already logs actuator_outputs"),
+        (0b00010, "VFR_HUD", "SDLOG_PROFILE 2 already logs airspeed"),
+    ],
+)
+def test_no_advice_names_a_bit_that_the_log_shows_as_set(profile, message, advice):
+    assert advice in mends_of("px4", "ulog", profile).faster(message)
+
+
+def test_a_topic_of_a_set_that_is_logged_is_missing_because_nothing_publishes_it():
+    assert "SDLOG_PROFILE 1 already logs" in mends_of("px4", "ulog", 1).present(["ATTITUDE"])
+    assert "bit 5 of" in mends_of("px4", "ulog", 1).present(["ATTITUDE", "NAMED_VALUE_FLOAT"])

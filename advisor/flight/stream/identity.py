@@ -14,7 +14,7 @@ from advisor.flight.stream.surfaces_heard import SurfacesHeard, speakers
 from advisor.flight.vehicle.following import FOLLOW, TAKE, Following, chosen
 from advisor.flight.vehicle.imu_filters import filter_delay_s
 from advisor.flight.vehicle.modes import in_hover, mode_name
-from advisor.flight.vehicle.parameters import AIRSPEED_SENSOR, Parameters
+from advisor.flight.vehicle.parameters import AIRSPEED_SENSOR, LOG_PROFILE, Parameters
 from advisor.flight.vehicle.surfaces import Surface
 from advisor.flight.vehicle.vehicle import Vehicle, VehicleFinder
 from advisor.words.printable import printable
@@ -78,6 +78,9 @@ class Identity:
     def vehicle(self) -> Vehicle | None:
         """Vehicle that is followed. None before its first heartbeat."""
         vehicle = self._finder.vehicle
+        if vehicle is not None and vehicle.carrier == "ulog":
+            profile = self._parameters.stated(speakers(vehicle), vehicle.autopilot).get(LOG_PROFILE)
+            vehicle = vehicle if profile is None else replace(vehicle, log_profile=int(profile))
         if vehicle is not None and vehicle.system in self._firmware:
             return vehicle.with_firmware(self._firmware[vehicle.system])
         return vehicle

@@ -15,6 +15,8 @@ _PREFIXES = (*ardupilot_wiring.PREFIXES, *px4_wiring.PREFIXES, *imu_filters.PREF
 
 AIRSPEED_SENSOR = ("ARSPD_TYPE", "ARSPD_USE")
 """ArduPilot's parameters of its air speed sensor: its kind, and its use. 0 means none."""
+LOG_PROFILE = "SDLOG_PROFILE"
+"""PX4's parameter of the topics that its log holds."""
 
 Sender = tuple[int, int]
 """System id and component id of a sender."""
@@ -23,9 +25,9 @@ Stated = tuple[float, float]
 
 
 def tells_of_outputs(name: str) -> bool:
-    """Return whether a parameter describes the servo outputs, a filter of the inertial sensors, or the use of
-    an air speed sensor."""
-    return name.startswith(_PREFIXES) or name in AIRSPEED_SENSOR
+    """Return whether a parameter describes the servo outputs, a filter of the inertial sensors, the use of an
+    air speed sensor, or the topics of a log."""
+    return name.startswith(_PREFIXES) or name in AIRSPEED_SENSOR or name == LOG_PROFILE
 
 
 def names_in(columns: Columns) -> list[str]:

@@ -9,6 +9,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from math import copysign
 
+import numpy as np
+
 from advisor.flight.vehicle.limits import assumed_limits
 from advisor.flight.vehicle.mixers import ELEVATOR, NOTHING, PX4, Control, Role, Torque
 from advisor.flight.vehicle.surfaces import Scale
@@ -102,6 +104,21 @@ def px4_wiring(parameters: Parameters) -> Wiring:
             if output.number not in stated
         },
     )
+
+
+def allocation(parameters: Parameters) -> dict[int, Torque]:
+    """Return each servo's command per unit of the torque set point in roll, pitch and yaw.
+
+    The commands are the pseudo-inverse of the torques. A torque that is not stated is PX4's default, one over
+    the number of surfaces with an effect about the axis.
+    """
+    surfaces = {n: _torque(n, kind, parameters) for n, kind, _ in _surfaces(parameters)}
+    given = {n: _stated_torque(n, parameters) for n in surfaces}
+    effect = np.array([*surfaces.values()], dtype=np.float64).reshape(-1, 3)
+    shares = np.maximum(np.count_nonzero(effect, axis=0), 1)
+    unstated = np.array([*given.values()], dtype=np.float64).reshape(-1, 3) == 0.0
+    commands = np.linalg.pinv(np.where(unstated, effect / shares, effect).T)
+    return {n: (row[0], row[1], row[2]) for n, row in zip(surfaces, commands.tolist(), strict=True)}
 
 
 def _stated_limits(parameters: Parameters) -> frozenset[int]:

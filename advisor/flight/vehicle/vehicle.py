@@ -30,6 +30,8 @@ class Vehicle:
     """Version that the vehicle states. None before the first statement."""
     carrier: Carrier = "telemetry"
     """Kind of record or link that brings the messages, which decides on the remedies."""
+    log_profile: int | None = None
+    """SDLOG_PROFILE of a PX4 log, None where unknown. No remedy names a bit that is set."""
 
     def __str__(self) -> str:
         return f"{self.autopilot} {self.system}/{self.component}"
@@ -53,7 +55,7 @@ class Vehicle:
     @property
     def mends(self) -> Mends:
         """Remedies for missing or slow messages, in the words of this autopilot."""
-        return mends_of(self.autopilot, self.carrier)
+        return mends_of(self.autopilot, self.carrier, self.log_profile)
 
     def with_firmware(self, firmware: str) -> "Vehicle":
         """Return the vehicle with a known version."""

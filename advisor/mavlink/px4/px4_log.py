@@ -17,7 +17,7 @@ def translate(log: Any, topics: Topics) -> list[TimedMessages]:
     breathed, said = air(topics)
     moved = outputs(topics, parameters)
     messages = [
-        *motion(topics),
+        *motion(topics, bool(parameters.get("SENS_BOARD_ROT"))),
         *breathed,
         *px4_vehicle.named_values(topics),
         *px4_vehicle.receiver(topics),
@@ -30,6 +30,6 @@ def translate(log: Any, topics: Topics) -> list[TimedMessages]:
         *px4_vehicle.vtol_states(topics),
         *px4_vehicle.version(log, start_us),
         *px4_vehicle.stated(log, moved.found, start_us),
-        *px4_vehicle.remarks([*said, *px4_vehicle.dropouts(log)], start_us),
+        *px4_vehicle.remarks([*said, *moved.said, *px4_vehicle.dropouts(log)], start_us),
         *messages,
     ]

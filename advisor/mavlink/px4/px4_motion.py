@@ -21,10 +21,16 @@ from advisor.mavlink.records.equivalent import side_by_side
 _RATES = ("rollspeed", "pitchspeed", "yawspeed")
 
 
-def motion(topics: Topics) -> Iterator[TimedMessages]:
-    """Yield attitude, specific force, static pressure and height, where the log has their values."""
+def motion(topics: Topics, is_turned: bool = False) -> Iterator[TimedMessages]:
+    """Yield attitude, specific force, static pressure and height, where the log has their values.
+
+    Parameters
+    ----------
+    is_turned
+        Whether the board is mounted turned, so that the axes of a raw sensor are not the body's.
+    """
     yield from _attitude(topics)
-    yield from _highres_imu(topics)
+    yield from _highres_imu(topics, is_turned)
     air = first(topics, "vehicle_air_data")
     if air is not None:
         at, hectopascal = sampled_us(air), 0.01 * air["baro_pressure_pa"]
@@ -47,9 +53,14 @@ def _attitude(topics: Topics) -> Iterator[TimedMessages]:
     if attitude is not None:
         records.append({"time_us": sampled_us(attitude), **euler_angles(vector(attitude, "q", 4))})
     turning, gyro = first(topics, "vehicle_angular_velocity"), first(topics, "sensor_combined")
-    chosen = best((turning, gyro))
-    if chosen is not None:
+    # PX4 before 1.9 has the rates in vehicle_attitude.
+    former = attitude if attitude is not None and set(_RATES) <= attitude.keys() else None
+    chosen = best((turning, gyro, former))
+    if chosen is not None and chosen is former:
+        rates = np.array([chosen[name] for name in _RATES], dtype=np.float64)
+    elif chosen is not None:
         rates = vector(chosen, "xyz" if chosen is turning else "gyro_rad", 3)
+    if chosen is not None:
         records.append({"time_us": sampled_us(chosen), **dict(zip(_RATES, rates, strict=True))})
     if records:
         fields: dict[str, ArrayLike] = dict(side_by_side(*records))
@@ -57,14 +68,18 @@ def _attitude(topics: Topics) -> Iterator[TimedMessages]:
         yield TimedMessages("ATTITUDE", time_us, {"time_boot_ms": milliseconds(time_us), **fields})
 
 
-def _highres_imu(topics: Topics) -> Iterator[TimedMessages]:
+def _highres_imu(topics: Topics, is_turned: bool) -> Iterator[TimedMessages]:
     """Yield the specific force at the stamps of the accelerometer."""
     raw, filtered = first(topics, "sensor_combined"), first(topics, "vehicle_acceleration")
-    chosen = best((raw, filtered))
+    sensor = None if is_turned else first(topics, "sensor_accel")
+    chosen = best((raw, filtered, sensor))
     if chosen is None:
         return
     at = published_us(chosen) if chosen is raw else sampled_us(chosen)
-    force = vector(chosen, "accelerometer_m_s2" if chosen is raw else "xyz", 3)
+    if chosen is sensor:
+        force = np.array([chosen[axis] for axis in "xyz"], dtype=np.float64)
+    else:
+        force = vector(chosen, "accelerometer_m_s2" if chosen is raw else "xyz", 3)
     fields: dict[str, ArrayLike] = {"time_usec": at}
     fields |= dict(zip(("xacc", "yacc", "zacc"), force, strict=True))
     yield TimedMessages("HIGHRES_IMU", at, fields)

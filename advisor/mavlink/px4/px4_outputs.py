@@ -15,12 +15,22 @@ from advisor.flight.vehicle.px4_wiring import (
     FOLLOWS_PITCH,
     OUTPUTS,
     STANDS_FOR_ELEVATOR,
+    allocation,
     banks,
     px4_wiring,
     servo_outputs,
 )
 from advisor.mavlink.px4.px4_pitch import Command, followers, pitch_commands
-from advisor.mavlink.px4.px4_topics import TimedMessages, Topic, Topics, best, first, published_us
+from advisor.mavlink.px4.px4_topics import (
+    TimedMessages,
+    Topic,
+    Topics,
+    best,
+    first,
+    published_us,
+    rate_hz,
+    vector,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,6 +40,8 @@ class Outputs:
     messages: Sequence[TimedMessages]
     found: Mapping[str, float]
     """Findings in the form of parameters."""
+    said: Sequence[str] = ()
+    """Sentences for the user on the source of the outputs."""
 
 
 def outputs(topics: Topics, parameters: Mapping[str, float]) -> Outputs:
@@ -37,11 +49,7 @@ def outputs(topics: Topics, parameters: Mapping[str, float]) -> Outputs:
     command."""
     moving = _moving(topics.get("actuator_outputs", []))
     if any(role.surface for role in px4_wiring(parameters).roles.values()):
-        servos = first(topics, "actuator_servos")
-        assigned = _assigned(moving, parameters)
-        if servos is not None and best([*assigned.values(), servos]) is servos:
-            return Outputs(_of_servos(servos, parameters), {})
-        return Outputs([_of_instance(port, topic) for port, topic in assigned.items()], {})
+        return _of_surfaces(topics, moving, parameters)
     commands = pitch_commands(topics)
     for command in commands:
         for port, topic in enumerate(moving):
@@ -52,6 +60,43 @@ def outputs(topics: Topics, parameters: Mapping[str, float]) -> Outputs:
     if commands and _varies(commands[0].axes["pitch"]):
         return Outputs([_of_command(commands[0])], {f"{FOLLOWS_PITCH}1": STANDS_FOR_ELEVATOR})
     return Outputs([_of_instance(port, topic) for port, topic in enumerate(moving)], {})
+
+
+def _of_surfaces(topics: Topics, moving: Sequence[Topic], parameters: Mapping[str, float]) -> Outputs:
+    """Return the outputs from the fastest of outputs, servo commands and torque set point.
+
+    By default PX4 logs outputs and servos every 100 ms, and the torque set point every 20 ms. The control
+    allocation of the surfaces gives the servo commands from the torque.
+    """
+    servos = first(topics, "actuator_servos")
+    # For a VTOL aircraft the last instance is the wing's.
+    torque = topics["vehicle_torque_setpoint"][-1] if "vehicle_torque_setpoint" in topics else None
+    assigned = _assigned(moving, parameters)
+    chosen = best([*assigned.values(), servos, torque])
+    if chosen is not None and chosen is torque:
+        slow = best([*assigned.values(), servos])
+        said = [] if slow is None else [_computed(torque, slow)]
+        return Outputs(_of_servos(_allocated(torque, parameters), parameters), {}, said)
+    if chosen is not None and chosen is servos:
+        return Outputs(_of_servos(servos, parameters), {})
+    return Outputs([_of_instance(port, topic) for port, topic in assigned.items()], {})
+
+
+def _computed(torque: Topic, slow: Topic) -> str:
+    return (
+        f"The surfaces' commands are computed from vehicle_torque_setpoint at {rate_hz(torque):.0f} Hz: the "
+        f"servo outputs are logged at {rate_hz(slow):.0f} Hz."
+    )
+
+
+def _allocated(torque: Topic, parameters: Mapping[str, float]) -> Topic:
+    """Return the servo commands that the control allocation makes from a torque set point."""
+    axes = vector(torque, "xyz", 3)
+    commands = {
+        f"control[{n}]": np.clip(np.asarray(gains) @ axes, -1.0, 1.0)
+        for n, gains in allocation(parameters).items()
+    }
+    return {"timestamp": torque["timestamp"], **commands}
 
 
 def _moving(instances: Sequence[Topic]) -> list[Topic]:

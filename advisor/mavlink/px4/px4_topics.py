@@ -20,6 +20,7 @@ TOPICS: dict[str, set[str]] = {
     "airspeed_validated": {"calibrated_airspeed_m_s"},
     "debug_key_value": {"key[9]", "value"},
     "input_rc": {"values[17]"},
+    "sensor_accel": {"x", "y", "z"},
     "sensor_combined": {"gyro_rad[2]", "accelerometer_m_s2[2]"},
     "vehicle_acceleration": {"xyz[2]"},
     "vehicle_angular_velocity": {"xyz[2]"},

@@ -13,7 +13,7 @@ Carrier = Literal["telemetry", "dataflash", "ulog", "sdlog2"]
 own log before 2017 (``.px4log``)."""
 
 
-def mends_of(autopilot: str, carrier: Carrier) -> Mends:
+def mends_of(autopilot: str, carrier: Carrier, log_profile: int | None = None) -> Mends:
     """Return the remedies for a vehicle.
 
     Parameters
@@ -22,11 +22,13 @@ def mends_of(autopilot: str, carrier: Carrier) -> Mends:
         ``ardupilot``, ``px4``, or another name.
     carrier
         Kind of record with the vehicle's messages.
+    log_profile
+        SDLOG_PROFILE of a PX4 log; None where unknown.
     """
     if carrier == "dataflash":
         return Dataflash()
     if carrier == "ulog":
-        return Ulog()
+        return Ulog(log_profile)
     if carrier == "sdlog2":
         return Sdlog2()
     telemetry: dict[str, Mends] = {"ardupilot": ArduPilotTelemetry(), "px4": Px4Telemetry()}

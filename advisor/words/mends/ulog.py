@@ -1,6 +1,6 @@
 """PX4's own log (``.ulg``): topics and the bits of SDLOG_PROFILE."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 _TOPICS = {
     "ATTITUDE": "vehicle_angular_velocity",
@@ -15,27 +15,40 @@ _TOPICS = {
 }
 """Message to its topic. The climb rate of the position gives the angle of attack that PX4 lacks."""
 
-_DEFAULT, _REPLAY, _HIGH_RATE, _DEBUG = (
-    (0, "default set"),
-    (1, "estimator replay"),
-    (4, "high rate"),
-    (5, "debug"),
-)
-_BITS = {
-    "ATTITUDE": _HIGH_RATE,
-    "SERVO_OUTPUT_RAW": _HIGH_RATE,
-    "ACTUATOR_CONTROL_TARGET": _HIGH_RATE,
-    "VFR_HUD": _REPLAY,
-    "NAMED_VALUE_FLOAT": _DEBUG,
+_Bit = tuple[int, str]
+_DEFAULT: _Bit = (0, "default set")
+_REPLAY: _Bit = (1, "estimator replay")
+_SYSTEM: _Bit = (3, "system identification")
+_HIGH_RATE: _Bit = (4, "high rate")
+_DEBUG: _Bit = (5, "debug")
+_BITS: Mapping[str, tuple[_Bit, ...]] = {
+    "ATTITUDE": (_HIGH_RATE, _SYSTEM),
+    "RAW_IMU": (_HIGH_RATE, _SYSTEM),
+    "HIGHRES_IMU": (_HIGH_RATE, _SYSTEM),
+    "SERVO_OUTPUT_RAW": (_HIGH_RATE, _SYSTEM),
+    "ACTUATOR_CONTROL_TARGET": (_HIGH_RATE, _SYSTEM),
+    "VFR_HUD": (_REPLAY,),
+    "NAMED_VALUE_FLOAT": (_DEBUG,),
 }
-"""Message to the bit of SDLOG_PROFILE that logs its topic at full rate (PX4's ``logged_topics.cpp``).
+"""Message to the bits of SDLOG_PROFILE that log its topic at full rate, the first preferred (PX4's
+``logged_topics.cpp``).
 
 With the bit for high rates, ``actuator_servos`` comes at full rate, and ``actuator_outputs`` stays at 10 Hz.
+The set for system identification has ``vehicle_torque_setpoint`` at full rate.
 """
 
 
 class Ulog:
-    """Topics of PX4's log."""
+    """Topics of PX4's log.
+
+    Parameters
+    ----------
+    profile
+        SDLOG_PROFILE of the log; None where unknown. No advice names a bit that is set.
+    """
+
+    def __init__(self, profile: int | None = None) -> None:
+        self._profile = profile
 
     def called(self, message: str) -> str:
         """Return the name of the topic."""
@@ -43,15 +56,30 @@ class Ulog:
 
     def faster(self, message: str) -> str:
         """Return the bit that logs the topic at its full rate."""
-        return f"set {_bit(_BITS.get(message, _DEFAULT))}"
+        return self._advice(_BITS.get(message, (_DEFAULT,)), self.called(message))
 
     def present(self, messages: Sequence[str]) -> str:
         """Return the bits that log the topics at all."""
-        bits = dict.fromkeys(_BITS[m] if _BITS.get(m) == _DEBUG else _DEFAULT for m in messages)
+        wanted = [_DEBUG if _BITS.get(m) == (_DEBUG,) else _DEFAULT for m in messages]
+        bits = [bit for bit in dict.fromkeys(wanted) if not self._has(bit)]
         topics = " and ".join(dict.fromkeys(self.called(message) for message in messages))
+        if not bits:
+            return f"{self._set()} already logs {topics}: see why the vehicle does not publish them"
         return f"set {' and '.join(map(_bit, bits))}, so that {topics} are logged"
 
+    def _advice(self, bits: Sequence[_Bit], topic: str) -> str:
+        free = [bit for bit in bits if not self._has(bit)]
+        if free:
+            return f"set {_bit(free[0])}"
+        return f"{self._set()} already logs {topic} as fast as it comes: use a faster card, or log less"
 
-def _bit(bit: tuple[int, str]) -> str:
+    def _has(self, bit: _Bit) -> bool:
+        return self._profile is not None and bool(self._profile >> bit[0] & 1)
+
+    def _set(self) -> str:
+        return f"SDLOG_PROFILE {self._profile}"
+
+
+def _bit(bit: _Bit) -> str:
     number, name = bit
     return f"bit {number} of SDLOG_PROFILE ({name}, {1 << number})"

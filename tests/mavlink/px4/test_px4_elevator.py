@@ -8,6 +8,7 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
 from advisor.flight.stream.stream import FlightStream
+from advisor.flight.vehicle.px4_wiring import allocation
 from advisor.flight.vehicle.surfaces import Surface
 from advisor.mavlink.logs.logs import open_log
 from tests.mavlink.px4_logs import PX4Log, every, flight, flown, pulses, stick
@@ -127,6 +128,36 @@ def test_servo_commands_stand_in_where_the_outputs_are_slower(tmp_path: Path, re
     assert outputs == (4,)
     assert first == pytest.approx(-STEP_RAD, rel=1e-3)
     assert flown(path)[0].channels["elevator"].rate_hz == pytest.approx(50.0, rel=0.01)
+
+
+def test_the_torque_set_point_gives_the_surfaces_commands_where_the_outputs_are_slower(tmp_path):
+    """PX4's default topics: outputs and servos at 10 Hz, torque at 50 Hz, and no torque of the surfaces."""
+    wired = {key: value for key, value in PLANE.items() if not key.endswith("TRQ_P")}
+    log = with_outputs(flight(**wired), {4: up}, rate_hz=10.0)
+    path = commanded(log, "vehicle_torque_setpoint", 50.0).write(tmp_path)
+    outputs, first = elevator(path)
+    assert (outputs, first) == ((4,), pytest.approx(-STEP_RAD, rel=1e-3))
+    stream, (one,), said = flown(path)
+    assert stream.channels["elevator"].rate_hz == pytest.approx(50.0, rel=0.01)
+    aileron = one.maneuver.channels["aileron"]
+    commands = np.radians(25.0) * 0.2 * np.sin(2.0 * aileron.t)
+    assert aileron.y == pytest.approx(-commands, abs=np.radians(0.1))
+    assert any("computed from vehicle_torque_setpoint at 50 Hz" in text for text in said)
+
+
+def test_the_commands_are_the_pseudo_inverse_of_the_torques():
+    """Elevons of unequal reach, whose torques return the set point."""
+    rows = {0: (-0.4, 0.5), 1: (0.6, 0.3)}
+    stated = {f"CA_SV_CS{n}_TYPE": 5.0 + n for n in rows} | {
+        f"CA_SV_CS{n}_TRQ_{axis}": value
+        for n, row in rows.items()
+        for axis, value in zip("RP", row, strict=True)
+    }
+    commands = allocation(stated | {"CA_SV_CS_COUNT": 2.0})
+    set_point = np.array([0.2, -0.1, 0.0])
+    servos = {n: float(np.dot(gains, set_point)) for n, gains in commands.items()}
+    torque = [sum(rows[n][k] * servos[n] for n in rows) for k in (0, 1)]
+    assert torque == pytest.approx([0.2, -0.1])
 
 
 def test_servo_commands_suffice_without_any_output(tmp_path: Path) -> None:

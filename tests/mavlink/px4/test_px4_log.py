@@ -51,6 +51,29 @@ def test_the_filtered_acceleration_stands_in_for_the_raw_sensor(tmp_path: Path) 
     assert channels(filtered.write(tmp_path))["a_z"].rate_hz == pytest.approx(20.0, rel=0.01)
 
 
+def former(**parameters: float) -> PX4Log:
+    """A log of 2018: the rates in vehicle_attitude, the specific force in sensor_accel."""
+    t = every(50.0)
+    theta, q = pitch(t)
+    zero = np.zeros(len(t))
+    half = theta / 2
+    attitude = np.column_stack([np.cos(half), zero, np.sin(half), zero])
+    without = log(**parameters).without("sensor_combined", "vehicle_angular_velocity")
+    without.topic("vehicle_attitude", t, q=attitude, rollspeed=0.0, pitchspeed=q, yawspeed=0.0)
+    return without.topic("sensor_accel", t, x=0.0, y=0.0, z=-G)
+
+
+def test_rates_and_force_under_their_former_names_are_read(tmp_path: Path) -> None:
+    stream, (one,), _ = flown(former().write(tmp_path), Aircraft(elevator=ELEVATOR))
+    q = one.maneuver.channels["q"]
+    assert q.y == pytest.approx(pitch(q.t)[1], abs=1e-6)
+    assert stream.channels["a_z"].rate_hz == pytest.approx(50.0, rel=0.01)
+
+
+def test_a_raw_sensor_of_a_turned_board_is_no_specific_force_of_the_body(tmp_path: Path) -> None:
+    assert "a_z" not in channels(former(SENS_BOARD_ROT=4).write(tmp_path))
+
+
 @pytest.mark.parametrize(
     ("nav_state", "mode"),
     [(0, "Manual"), (2, "Position"), (3, "Mission"), (4, "Hold"), (5, "Return"), (10, "Acro"),
