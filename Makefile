@@ -4,6 +4,8 @@ BIN := .venv/bin
 STAMP := .venv/.installed
 export OPENBLAS_NUM_THREADS ?= 1
 export PIP_DISABLE_PIP_VERSION_CHECK = 1
+# Every process of a run would otherwise compile all modules and rewrite all assertions for itself.
+export PYTHONDONTWRITEBYTECODE :=
 
 .DEFAULT_GOAL := help
 .PHONY: help setup run test check format lint types imports bench study study-advice study-change study-stops study-coverage accuracy robustness study-quality study-gap survival study-second study-third damage pictures clean

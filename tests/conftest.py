@@ -2,7 +2,7 @@
 
 import os
 import signal
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from functools import _lru_cache_wrapper
 from pathlib import Path
 from subprocess import CompletedProcess
@@ -31,6 +31,17 @@ MOST_DIAGNOSES = 30
 
 A gap of several manoeuvres takes two: the second search leaves out the manoeuvres that measure the shrink."""
 
+MOST_S = 2.0
+"""Processor time that a test may take on a quiet machine, s; what fixtures prepare does not count."""
+NOISE = 2.0
+"""Factor by which a test may exceed that limit, because processes that share a core cost each other time."""
+SLOW = tuple(
+    line
+    for line in (Path(__file__).parent / "slow.txt").read_text(encoding="utf-8").splitlines()
+    if line.startswith("tests/")
+)
+"""Beginnings of the names of tests that may take longer. The list only shrinks."""
+
 
 def pytest_sessionstart(session: pytest.Session) -> None:
     """Compile every kernel before the first test, because no test's time limit allows for it."""
@@ -52,6 +63,25 @@ def pytest_itemcollected(item: pytest.Item) -> None:
         item.add_marker(pytest.mark.xdist_group(name))
 
 
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_call(item: pytest.Item) -> Generator[None, None, None]:
+    """Let a test fail that takes more processor time than a test may."""
+    before_s = processor_time_s()
+    yield
+    taken_s = processor_time_s() - before_s
+    if taken_s > MOST_S * NOISE and not item.nodeid.startswith(SLOW) and not item.get_closest_marker("study"):
+        pytest.fail(
+            f"This test takes {taken_s:.1f} s of processor time, and {MOST_S:.0f} s are the most: make it "
+            "faster, or mark it with study.",
+            pytrace=False,
+        )
+
+
+def processor_time_s() -> float:
+    """Processor time of this process and of its children that have ended."""
+    return sum(os.times()[:4])
+
+
 @pytest.fixture
 def advisor(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Advisor:
     """The command with all that ends it, in this process: starting another takes longer than most calls."""
@@ -64,6 +94,14 @@ def advisor(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str])
         return CompletedProcess("advisor", ended.value.code, *capsys.readouterr())
 
     return call
+
+
+@pytest.fixture
+def recorded_analyses(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Commands in this process read analyses that other tests of this run have made of the same logs."""
+    from tests.recorded import use_recorded
+
+    use_recorded(monkeypatch)
 
 
 @pytest.fixture(scope="session", autouse=True)

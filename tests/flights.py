@@ -11,7 +11,7 @@ from sim.record import record
 from sim.scenario import Maneuver, Noise, Scenario
 
 FOLDER = Path(mkdtemp(prefix="flights-"))
-_SHARED = Path(gettempdir()) / f"recorded-{os.environ.get('PYTEST_XDIST_TESTRUNUID', FOLDER.name)}"
+SHARED = Path(gettempdir()) / f"recorded-{os.environ.get('PYTEST_XDIST_TESTRUNUID', FOLDER.name)}"
 """What all processes of this run of tests record."""
 TWO = (Maneuver("3211"), Maneuver("rev"))
 """Enough where each manoeuvre is as good as another."""
@@ -30,9 +30,9 @@ def recorded(
     noise = Noise(percent=noise_percent)
     scenario = Scenario(aircraft=aircraft, noise=noise, seed=seed, maneuvers=maneuvers)
     flown = f"{crc32(repr(scenario).encode()):08x}"
-    path = _SHARED / f"{aircraft}-{noise_percent}-{seed}-{len(maneuvers)}-{flown}.tlog"
+    path = SHARED / f"{aircraft}-{noise_percent}-{seed}-{len(maneuvers)}-{flown}.tlog"
     if not path.exists():
-        _SHARED.mkdir(exist_ok=True)
+        SHARED.mkdir(exist_ok=True)
         record(Flight(scenario), FOLDER / path.name)
         (FOLDER / path.name).replace(path)
     return path

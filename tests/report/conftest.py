@@ -16,6 +16,7 @@ from advisor.cli.log_options import LogsAsked
 from advisor.cli.page_content import gather
 from advisor.report.page.content import Content
 from tests.flights import FOUR, TWO, recorded
+from tests.recorded import use_recorded
 from tests.report.page_reader import Page
 
 AIRCRAFT = """
@@ -63,6 +64,7 @@ def reported(tmp_path_factory: pytest.TempPathFactory) -> Reported:
     path.write_text(AIRCRAFT, encoding="utf-8")
     aircraft = load_aircraft(path)
     with pytest.MonkeyPatch.context() as patch:
+        use_recorded(patch)
         call = _caller(patch)
         analysis = json.loads(call("analyze", log, "--aircraft", path, "--json"))
         gap = json.loads(call("gap", log, "--aircraft", path, "--json"))

@@ -116,6 +116,7 @@ def repeated(content: Content, count: int) -> Content:
     return replace(content, analysis=analysis, state=replace(content.state, maneuvers=tuple(numbered)))
 
 
+@pytest.mark.study
 @pytest.mark.skipif(BROWSER is None, reason="Debian's chromium is not installed")
 def test_thirty_manoeuvres_print_on_at_most_twelve_pages(reported: Reported, tmp_path: Path) -> None:
     assert printed_pages(page(repeated(reported.content, 30), "html"), tmp_path) <= 12

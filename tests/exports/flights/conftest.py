@@ -8,13 +8,15 @@ from typing import Any
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.analysis.whole_flights import WholeFlights, read_whole
+from advisor.analysis import whole_flights
+from advisor.analysis.whole_flights import WholeFlights
 from advisor.exports.flights.formats import WRITERS, write_formats
 from advisor.exports.flights.reading import dataset
 from advisor.exports.flights.staging import staged
 from advisor.exports.flights.table import Dataset
 from advisor.report.document import analysis_document
 from tests.flights import FOUR, recorded
+from tests.recorded import use_recorded
 
 
 @dataclass(frozen=True)
@@ -30,7 +32,9 @@ class Exported:
 @pytest.fixture(scope="package")
 def exported(tmp_path_factory: pytest.TempPathFactory) -> Exported:
     log, folder = recorded("uav", 1.0, maneuvers=FOUR), tmp_path_factory.mktemp("export")
-    flights = read_whole([log], Aircraft())
+    with pytest.MonkeyPatch.context() as patch:
+        use_recorded(patch)
+        flights = whole_flights.read_whole([log], Aircraft())
     data = dataset(flights)
     with staged(folder) as stage:
         write_formats(data, stage, tuple(WRITERS))

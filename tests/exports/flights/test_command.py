@@ -1,8 +1,8 @@
 """``advisor export`` on bad input: one sentence, the exit code, and nothing half-written."""
 
 import resource
-import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -12,6 +12,8 @@ from advisor.words.problems import ConfigurationError
 from tests.conftest import Advisor
 from tests.exports.flights.conftest import Exported
 from tests.flights import TWO, recorded
+
+pytestmark = pytest.mark.usefixtures("recorded_analyses")
 
 
 def test_the_default_is_csv(advisor: Advisor, tmp_path: Path) -> None:
@@ -78,17 +80,20 @@ def test_the_input_is_not_written_over(exported: Exported, advisor: Advisor, tmp
     assert log.read_bytes() == exported.log.read_bytes()
 
 
-def test_a_disk_that_is_full_in_the_middle_leaves_nothing_behind(exported: Exported, tmp_path: Path) -> None:
+@pytest.fixture
+def nearly_full_disk(exported: Exported) -> Iterator[None]:
     """A limit on the size of files stands for the disk: the smaller tables fit, the grid does not."""
-    command = [sys.executable, "-m", "advisor", "export", str(exported.log), "-o", str(tmp_path / "out")]
-    run = subprocess.run(
-        command,
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (300_000, 300_000)),
-    )
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (300_000, before[1]))
+    yield
+    resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+
+@pytest.mark.usefixtures("nearly_full_disk")
+def test_a_disk_that_is_full_in_the_middle_leaves_nothing_behind(
+    exported: Exported, advisor: Advisor, tmp_path: Path
+) -> None:
+    run = advisor("export", exported.log, "-o", tmp_path / "out")
     assert run.returncode == 2
     assert "File too large. Make room or name another place." in run.stderr
     assert "Traceback" not in run.stderr

@@ -10,6 +10,7 @@ from tests.conftest import Advisor
 from tests.exports.flights.conftest import Exported
 from tests.flights import SHIPPED, TWO, recorded
 
+pytestmark = pytest.mark.usefixtures("recorded_analyses")
 BASE_BIN = Path(__file__).parents[2] / "cases" / "base.bin"
 
 
@@ -24,17 +25,18 @@ def records(data: bytes) -> list[bytes]:
 
 
 def test_analyze_finds_the_manoeuvre_in_the_cut_log_with_the_estimate_of_the_whole_log(
-    exported: Exported, advisor: Advisor, tmp_path: Path
+    advisor: Advisor, tmp_path: Path
 ) -> None:
+    log = recorded("uav", 1.0, maneuvers=TWO)
     aircraft = tmp_path / "aircraft.yaml"
     aircraft.write_text("elevator: {lag_s: 0.02}\n")
-    cut = tmp_path / "m3.tlog"
-    run = advisor("export", exported.log, "--cut", "3", "-o", cut, "--aircraft", aircraft)
+    cut = tmp_path / "m2.tlog"
+    run = advisor("export", log, "--cut", "2", "-o", cut, "--aircraft", aircraft)
     assert run.returncode == 0, run.stderr
-    whole = json.loads(advisor("analyze", exported.log, "--aircraft", aircraft, "--json").stdout)
+    whole = json.loads(advisor("analyze", log, "--aircraft", aircraft, "--json").stdout)
     alone = json.loads(advisor("analyze", cut, "--aircraft", aircraft, "--json").stdout)
     (found,) = alone["maneuvers"]
-    told = whole["maneuvers"][2]
+    told = whole["maneuvers"][1]
     assert found["start_boot_s"] == told["start_boot_s"]
     assert found["end_boot_s"] == told["end_boot_s"]
     # The whole log tells more of servo and command than the cut one.
@@ -57,13 +59,28 @@ def test_the_packets_of_a_cut_log_are_those_of_the_whole_log_in_their_order_pack
 
 @pytest.mark.parametrize(
     ("log", "number"),
-    [("bundled-demo.tlog", 1), pytest.param("arduplane-calm.tlog", 7, marks=pytest.mark.study)],
+    [
+        pytest.param("bundled-demo.tlog", 1, marks=pytest.mark.study),
+        pytest.param("arduplane-calm.tlog", 7, marks=pytest.mark.study),
+    ],
 )
 def test_the_first_and_the_last_manoeuvre_of_a_shipped_log_are_cut(
     log: str, number: int, advisor: Advisor, tmp_path: Path
 ) -> None:
-    cut = tmp_path / "cut.tlog"
-    assert advisor("export", SHIPPED / log, "--cut", number, "-o", cut).returncode == 0
+    assert_cut_alone(SHIPPED / log, number, advisor, tmp_path)
+
+
+@pytest.mark.parametrize("number", [1, 2])
+def test_the_first_and_the_last_manoeuvre_of_a_log_are_cut(
+    number: int, advisor: Advisor, tmp_path: Path
+) -> None:
+    assert_cut_alone(recorded("linear", 1.0, maneuvers=TWO), number, advisor, tmp_path)
+
+
+def assert_cut_alone(log: Path, number: int, advisor: Advisor, folder: Path) -> None:
+    """One manoeuvre of the log is cut, and found alone in the cut log."""
+    cut = folder / "cut.tlog"
+    assert advisor("export", log, "--cut", number, "-o", cut).returncode == 0
     assert len(json.loads(advisor("analyze", cut, "--json").stdout)["maneuvers"]) == 1
 
 

@@ -1,5 +1,6 @@
 """Elevons, V-tails, split and mixed elevators give what a plain elevator gives on the same flight."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cache
 from itertools import pairwise
@@ -11,12 +12,15 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator, ElevatorOutput
 from advisor.flight.elevator.output_signs import pitch_signs
 from advisor.flight.maneuvers.events import ManeuverFlown
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.messages import Columns
 from advisor.flight.signals.record import Channel
 from advisor.flight.stream.stream import FlightStream
 from advisor.flight.vehicle.pieces import between
 from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import estimate_jointly
 from tests.flight.wiring import Pulse, flown, wired
+from tests.flights import FOUR, recorded
 
 DOWN = ((1100.0, -25.0), (1500.0, 0.0), (1900.0, 25.0))
 """More pulse is trailing edge down, as in the log."""
@@ -105,29 +109,45 @@ KINDS = {
 }
 
 
+def batches(made: Kind) -> Iterator[list[Columns]]:
+    """A flight of three manoeuvres with this elevator."""
+    return wired(made.outputs, made.parameters, recorded("linear", 1.0, maneuvers=FOUR[:3]))
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What is made of one flight."""
+
+    stream: FlightStream
+    maneuvers: list[Maneuver]
+    estimate: Estimate
+    notices: list[str]
+
+
 @cache
-def estimated(kind: str) -> tuple[FlightStream, Estimate, list[str]]:
+def estimated(kind: str) -> Answer:
     made = KINDS.get(kind, PLAIN)
-    stream, found, notices = flown(wired(made.outputs, made.parameters), made.aircraft)
-    estimate = estimate_jointly([event.maneuver for event in found], made.aircraft)
+    stream, found, notices = flown(batches(made), made.aircraft)
+    maneuvers = [event.maneuver for event in found]
+    estimate = estimate_jointly(maneuvers, made.aircraft)
     assert isinstance(estimate, Estimate)
-    return stream, estimate, [notice.code for notice in notices]
+    return Answer(stream, maneuvers, estimate, [notice.code for notice in notices])
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_derivatives_are_those_of_the_plain_elevator(kind: str) -> None:
-    flight, plain, _ = estimated("plain")
-    stream, mine, _ = estimated(kind)
+    plain, mine = estimated("plain"), estimated(kind)
     effect = np.array([1.0, 1.0, 1.0, KINDS[kind].share, 1.0, 1.0, 1.0, KINDS[kind].share])
-    assert stream.maneuvers == flight.maneuvers
-    assert np.all(np.abs(mine.theta * effect - plain.theta) < 1.96 * plain.std)
+    assert len(mine.maneuvers) == len(plain.maneuvers) == 3
+    away = np.abs(mine.estimate.theta * effect - plain.estimate.theta)
+    assert np.all(away < 1.96 * plain.estimate.std)
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_what_the_elevator_is_made_of_is_said(kind: str) -> None:
-    stream, _, notices = estimated(kind)
-    assert "elevator_scale" in notices
-    said = stream.elevator_notes[0]
+    answer = estimated(kind)
+    assert "elevator_scale" in answer.notices
+    said = answer.stream.elevator_notes[0]
     assert said.startswith("The elevator is ")
     assert all(str(n) in said for n in KINDS[kind].outputs)
 
@@ -139,31 +159,30 @@ def test_before_the_aircraft_has_answered_it_is_said_that_nothing_is_known() -> 
 
 
 def test_what_the_aircraft_answered_is_said_once() -> None:
-    stream, _, notices = estimated("elevons by the aircraft's response")
-    assert notices.count("elevator_mixing") == 1
-    assert "the sign of output 1 is turned" in stream.elevator_notes[1]
-    assert len(stream.elevator_notes) == 2
-    assert "elevator_backwards" not in notices
+    answer = estimated("elevons by the aircraft's response")
+    assert answer.notices.count("elevator_mixing") == 1
+    assert "the sign of output 1 is turned" in answer.stream.elevator_notes[1]
+    assert len(answer.stream.elevator_notes) == 2
+    assert "elevator_backwards" not in answer.notices
 
 
 @pytest.mark.parametrize("kind", ["elevons by the aircraft's response", "elevons in two banks"])
 def test_live_and_replay_see_the_same_elevator(kind: str) -> None:
     made = KINDS[kind]
-    whole, _, _ = estimated(kind)
     stream = FlightStream(made.aircraft)
     events = []
-    for batch in wired(made.outputs, made.parameters):
+    for batch in batches(made):
         past = max(int(c.order[-1]) for c in batch) + 1
-        edges = np.linspace(0, past, 3000).astype(int).tolist()
+        edges = np.linspace(0, past, 800).astype(int).tolist()
         for a, b in pairwise(edges):
             events += stream.feed(between(batch, a, b))
     events += stream.finish()
     mine = [event.maneuver for event in events if isinstance(event, ManeuverFlown)]
-    _, found, _ = flown(wired(made.outputs, made.parameters), made.aircraft)
-    assert len(mine) == len(found) == whole.maneuvers
+    found = estimated(kind).maneuvers
+    assert len(mine) == len(found) == 3
     for one, other in zip(mine, found, strict=True):
-        assert one.span == other.maneuver.span
-        np.testing.assert_array_equal(one.channels["elevator"].y, other.maneuver.channels["elevator"].y)
+        assert one.span == other.span
+        np.testing.assert_array_equal(one.channels["elevator"].y, other.channels["elevator"].y)
 
 
 def test_signs_with_which_the_outputs_cancel_are_a_problem_that_names_them() -> None:

@@ -13,6 +13,8 @@ from advisor.flight.stream.stream import FlightStream
 from tests.flight.columns import Wire, attitude, fly, heartbeat, hud, plane_parameters, servo, switch, text
 from tests.flight.stream.test_stream import ONE, as_plain, flown, maneuvers
 
+PIECE = 9
+"""Messages that arrive together in a flight that is followed."""
 BY_SWITCH = Aircraft(markers=Markers(rc=9))
 
 
@@ -244,10 +246,10 @@ def test_texts_of_a_ground_station_mark_nothing():
 
 
 def by_hand(wire: Wire, begin_s: float, end_s: float, hand: bool = True):
-    """Message by message, with marks set when the vehicle's clock has come to these times."""
+    """In pieces of some 40 ms, with marks set when the vehicle's clock has come to these times."""
     stream, events, at = FlightStream(BY_SWITCH), [], []
-    for i in range(len(wire)):
-        events += stream.feed(wire.columns([i]))
+    for i in range(0, len(wire), PIECE):
+        events += stream.feed(wire.columns(range(i, min(i + PIECE, len(wire)))))
         now_s = stream.now_s
         if hand and not at and now_s >= begin_s:
             at.append(now_s)
@@ -282,8 +284,8 @@ def test_a_hand_wins_over_a_switch_in_flight_as_in_a_replay_and_that_is_told(on_
 def test_a_mark_that_is_begun_anew_gives_back_what_the_first_one_held():
     wire = one_input(20.0)
     stream, events, begun = FlightStream(Aircraft()), [], []
-    for i in range(len(wire)):
-        events += stream.feed(wire.columns([i]))
+    for i in range(0, len(wire), PIECE):
+        events += stream.feed(wire.columns(range(i, min(i + PIECE, len(wire)))))
         for at_s in (55.0, 67.0):
             if stream.now_s >= at_s and at_s not in begun:
                 begun.append(at_s)
