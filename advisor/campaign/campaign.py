@@ -12,7 +12,7 @@ from advisor.campaign.journal import Journal
 from advisor.campaign.late_limits import recount
 from advisor.campaign.lateral import LateralCampaign
 from advisor.campaign.lateral_state import OF_ELEVATOR, JudgedLateral
-from advisor.campaign.running_estimate import Settling
+from advisor.campaign.running_estimate import Settled, Settling
 from advisor.campaign.state import CampaignState, JudgedManeuver
 from advisor.campaign.whole_flight import WholeFlights
 from advisor.decision.verdict import FlightTestVerdict
@@ -29,10 +29,13 @@ from advisor.flight.maneuvers.events import (
 )
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.marks import MARK_NOTICES, Mark
+from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.messages import Columns
 from advisor.flight.stream.flights import Flights
 from advisor.flight.stream.stream import FlightStream
+from advisor.oem.estimate import Estimate
 from advisor.oem.solution import Method
+from advisor.process.parts import Parts
 from advisor.words.problems import Problem
 from advisor.words.vehicle_time import clock
 
@@ -96,8 +99,9 @@ class Campaign:
         lateral: bool = False,
     ) -> None:
         self._journal = Journal()
-        self._elevator = ElevatorCampaign(aircraft, method, self._journal.write)
-        self._lateral = LateralCampaign(aircraft) if lateral else None
+        self._parts = Parts(lambda failed: self._journal.write(str(failed.problem)))
+        self._elevator = ElevatorCampaign(aircraft, method, self._journal.write, self._parts)
+        self._lateral = LateralCampaign(aircraft, self._parts) if lateral else None
         self._aircraft = aircraft
         self._tell = tell
         self._flights = Flights(aircraft, target_system, (*marks, *by_hand.marks), names, lateral)
@@ -136,7 +140,9 @@ class Campaign:
         """State after the newest message, as shown on screens."""
         stream, flights, elevator = self._stream, self._flights, self._elevator
         flying, channels, model = flights.so_far(), stream.channels, elevator.model
-        settled = self._settling.follow(flying, elevator.learnt, model) if self._settling else None
+        settled = self._settled(flying, model)
+        instruments = self._parts.make("instruments", lambda: self._contradictions(model), lambda _: ())
+        lateral = self._lateral.state if self._lateral is not None else None
         return CampaignState(
             vehicle=stream.vehicle,
             now_s=stream.now_s,
@@ -162,20 +168,33 @@ class Campaign:
             whole_flight=self._whole_flights.now(self.power_on, stream.now_s, stream.courses),
             no_data=stream.no_data,
             serves=stream.serves,
-            instruments=with_fit(
-                together((*elevator.maneuvers, *self._side_maneuvers), stream.instruments),
-                model,
-                elevator.estimates,
-                self._aircraft,
-            ),
+            instruments=instruments,
             mark_notes=self._mark_notes,
             notices=self._journal.lines,
             flight=flights.flight,
             boot=stream.boot,
             flights=flights.heard(channels, self._ended),
-            lateral=self._lateral.state if self._lateral is not None else None,
+            lateral=lateral,
             activity=self._activity,
+            failed=self._parts.failed,
         )
+
+    def _settled(self, flying: Maneuver | None, model: Estimate | None) -> Settled | None:
+        """Return the estimate of the manoeuvre being flown, for live faces."""
+        settling = self._settling
+        if settling is None:
+            return None
+        return self._parts.make(
+            "estimate of the manoeuvre being flown",
+            lambda: settling.follow(flying, self._elevator.learnt, model),
+            lambda _: None,
+        )
+
+    def _contradictions(self, model: Estimate | None) -> tuple[InstrumentFinding, ...]:
+        """Return the contradictions of the instruments, by the motion and by the fits."""
+        maneuvers = (*self._elevator.maneuvers, *self._side_maneuvers)
+        by_motion = together(maneuvers, self._stream.instruments)
+        return with_fit(by_motion, model, self._elevator.estimates, self._aircraft)
 
     @property
     def power_on(self) -> tuple[int, int]:

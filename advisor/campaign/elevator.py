@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.campaign.hand_decisions import ByHand
@@ -10,16 +11,18 @@ from advisor.campaign.joint_estimate import NEWEST, Together
 from advisor.campaign.late_limits import Recount
 from advisor.campaign.learning import learnt as learnt_from
 from advisor.campaign.learning import may_learn, of_another_power_on, reserved, told
-from advisor.campaign.single_maneuver import assess
+from advisor.campaign.single_maneuver import assess, failed, objection
 from advisor.campaign.state import JudgedManeuver
 from advisor.decision.course import CriterionCourse
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.judge import judge_campaign
 from advisor.decision.stopping import flight_test
+from advisor.decision.verdict import ManeuverVerdict
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import lag_is_unknown
 from advisor.oem.solution import Method
+from advisor.process.parts import FailedPart, Parts
 
 
 @dataclass(slots=True)
@@ -46,10 +49,15 @@ class ElevatorCampaign:
         Search for each manoeuvre's optimum: Gauss-Newton, or the paper's simplex.
     say
         Called with a sentence where the manoeuvres have told more of the instruments.
+    parts
+        Makes manoeuvres, verdicts and the joint estimate, each of which may fail alone.
     """
 
-    def __init__(self, aircraft: Aircraft, method: Method, say: Callable[[str], object]) -> None:
+    def __init__(
+        self, aircraft: Aircraft, method: Method, say: Callable[[str], object], parts: Parts
+    ) -> None:
         self._aircraft = aircraft
+        self._parts = parts
         self.learnt = aircraft
         """The crew's aircraft with what the manoeuvres have told of the instruments."""
         self._told_by: set[tuple[int, int]] = set()
@@ -106,7 +114,7 @@ class ElevatorCampaign:
     def decide(self) -> None:
         """Judge all manoeuvres, and examine them again where they have told more of the instruments."""
         self._judge()
-        self._learn()
+        self._parts.make("pitch, instruments told by the manoeuvres", self._learn, lambda _: None)
 
     @property
     def maneuvers(self) -> tuple[Maneuver, ...]:
@@ -128,7 +136,10 @@ class ElevatorCampaign:
     @property
     def model(self) -> Estimate | None:
         """The joint estimate; None without an accepted manoeuvre."""
-        return self._together.estimate([judged.maneuver for judged in self.joined])
+        joined = [judged.maneuver for judged in self.joined]
+        return self._parts.make(
+            "pitch, joint estimate", lambda: self._together.estimate(joined), lambda _: None
+        )
 
     def _of(self, number: int) -> _Flown:
         return next(flown for flown in self._flown if flown.maneuver.number == number)
@@ -148,7 +159,11 @@ class ElevatorCampaign:
     def _assess(self, maneuver: Maneuver) -> CandidateManeuver:
         """Estimate and examine one manoeuvre with what the others have told of the instruments."""
         known = self.learnt if maneuver.power_on in self._told_by else of_another_power_on(self.learnt)
-        return assess(maneuver, known, self._method)
+        return self._parts.make(
+            f"pitch, manoeuvre {maneuver.number}",
+            lambda: assess(maneuver, known, self._method),
+            partial(failed, maneuver),
+        )
 
     def _blame_instruments(self, newest: Maneuver) -> None:
         """Judge the earlier manoeuvres again where the newest one contradicts their instruments."""
@@ -158,6 +173,22 @@ class ElevatorCampaign:
                 self._replace(known)
 
     def _judge(self) -> None:
+        """Judge the manoeuvres and the flight test; leave all unjudged where a fault ends that."""
+        self._parts.make("pitch, verdicts", self._judged, self._unjudged)
+
+    def _unjudged(self, part: FailedPart) -> None:
+        """Accept no manoeuvre, and go on."""
+        why = objection(part)
+        verdict = ManeuverVerdict(False, why.text, (why,), {})
+        self.judged = tuple(
+            JudgedManeuver(
+                one.maneuver, one.examined.estimate, verdict, one.examined.excluded_because, one.notes
+            )
+            for one in self._flown
+        )
+        self.flight_test = flight_test((), self._aircraft.campaign, self._aircraft)
+
+    def _judged(self) -> None:
         """Judge the manoeuvres and the flight test from the examinations."""
         plan = self._aircraft.campaign
         history = [flown.examined for flown in self._flown]

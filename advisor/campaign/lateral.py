@@ -2,6 +2,7 @@
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.campaign.lateral_state import JudgedLateral, LateralState
+from advisor.campaign.single_maneuver import objection, untold
 from advisor.decision.acceptance import MANEUVER_RULES
 from advisor.decision.lateral_advice import FlownInput
 from advisor.decision.lateral_quality import judge_lateral
@@ -11,6 +12,7 @@ from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.lateral_estimate import LateralEstimate
 from advisor.oem.lateral_estimator import estimate_lateral
+from advisor.process.parts import Parts
 
 NEWEST = 7
 """Number of newest accepted manoeuvres that are estimated together during the flight. The elevator has the
@@ -24,20 +26,32 @@ class LateralCampaign:
     ----------
     aircraft
         The crew's aircraft file.
+    parts
+        Makes manoeuvres, decision and joint estimate, each of which may fail alone.
     """
 
-    def __init__(self, aircraft: Aircraft) -> None:
+    def __init__(self, aircraft: Aircraft, parts: Parts) -> None:
         self._aircraft = aircraft
+        self._parts = parts
         self._flown: list[tuple[Maneuver, LateralEstimate | NoEstimate, tuple[Reason, ...]]] = []
         self._ended = False
         self._state: LateralState | None = None
 
     def take(self, maneuver: Maneuver) -> JudgedLateral:
         """Estimate and examine a manoeuvre that has just been flown."""
-        estimate = estimate_lateral([maneuver], self._aircraft)
-        self._flown.append((maneuver, estimate, judge_lateral(maneuver, estimate, self._aircraft)))
+        estimate, reasons = self._parts.make(
+            f"lateral, manoeuvre {maneuver.number}",
+            lambda: self._examined(maneuver),
+            lambda part: (untold(part), (objection(part),)),
+        )
+        self._flown.append((maneuver, estimate, reasons))
         self._state = None
         return self._judged()[-1]
+
+    def _examined(self, maneuver: Maneuver) -> tuple[LateralEstimate | NoEstimate, tuple[Reason, ...]]:
+        """Return the estimate of a manoeuvre, and the objections to it."""
+        estimate = estimate_lateral([maneuver], self._aircraft)
+        return estimate, judge_lateral(maneuver, estimate, self._aircraft)
 
     @property
     def maneuvers(self) -> tuple[Maneuver, ...]:
@@ -54,7 +68,9 @@ class LateralCampaign:
         """State after the newest manoeuvre; the identical object while none is added."""
         if self._state is None:
             joined = self._joined()
-            model = estimate_lateral(joined, self._aircraft)
+            model = self._parts.make(
+                "lateral, joint estimate", lambda: estimate_lateral(joined, self._aircraft), untold
+            )
             found = model if isinstance(model, LateralEstimate) else None
             numbers = tuple(maneuver.number for maneuver in joined) if found else ()
             self._state = LateralState(self._judged(), self.flight_test, found, numbers)
@@ -68,7 +84,11 @@ class LateralCampaign:
             for _, estimate, reasons in self._flown
         ]
         inputs = [FlownInput.of(maneuver, reasons) for maneuver, _, reasons in self._flown]
-        return lateral_flight_test(history, self._aircraft, inputs)
+        return self._parts.make(
+            "lateral, stop or continue",
+            lambda: lateral_flight_test(history, self._aircraft, inputs),
+            lambda _: lateral_flight_test([], self._aircraft, []),
+        )
 
     def _joined(self) -> list[Maneuver]:
         """Return the manoeuvres of the joint estimate: the newest accepted ones in flight, all at the end."""

@@ -5,6 +5,7 @@ import math
 from advisor.aircraft.aircraft import Aircraft
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.quality import judge_quality
+from advisor.decision.verdict import Reason
 from advisor.flight.instruments.kinematics import check_alpha
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.marked_input import MARKED
@@ -13,6 +14,7 @@ from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import estimate
 from advisor.oem.solution import Method
 from advisor.oem.surface import Servo
+from advisor.process.parts import INTERNAL, FailedPart
 
 
 def assess(maneuver: Maneuver, aircraft: Aircraft, method: Method = "gauss-newton") -> CandidateManeuver:
@@ -26,6 +28,21 @@ def assess(maneuver: Maneuver, aircraft: Aircraft, method: Method = "gauss-newto
         air_moved=isinstance(estimated, Estimate) and estimated.gust_rad is not None,
         servo=_servo(estimated, aircraft),
     )
+
+
+def failed(maneuver: Maneuver, part: FailedPart) -> CandidateManeuver:
+    """Return a manoeuvre whose estimate or examination a fault of the advisor ended."""
+    return CandidateManeuver(untold(part), (objection(part),), maneuver=maneuver)
+
+
+def untold(part: FailedPart) -> NoEstimate:
+    """Return the missing estimate of a part that a fault of the advisor ended."""
+    return NoEstimate(INTERNAL, str(part.problem))
+
+
+def objection(part: FailedPart) -> Reason:
+    """Return the reason against a manoeuvre that a fault of the advisor leaves unjudged."""
+    return Reason(INTERNAL, str(part.problem), math.nan, math.nan)
 
 
 def _servo(estimated: Estimate | NoEstimate, aircraft: Aircraft) -> Servo:

@@ -15,6 +15,7 @@ from advisor.flight.signals.track import ChannelStatus
 from advisor.flight.stream.flights import FlightHeard
 from advisor.flight.vehicle.vehicle import Vehicle
 from advisor.oem.estimate import Estimate, NoEstimate
+from advisor.process.parts import FailedPart
 from advisor.words.problems import Problem
 
 
@@ -90,6 +91,8 @@ class CampaignState:
     """Lateral half of the campaign. None where it was not asked for."""
     activity: tuple[Activity, ...] = ()
     """Movements of the elevator that were no test inputs, oldest first. Similar neighbours are one entry."""
+    failed: tuple[FailedPart, ...] = ()
+    """Parts that a fault of the advisor ended."""
 
     @property
     def progress(self) -> str:

@@ -79,7 +79,9 @@ def command(
         click.echo(f"Wrote {printable(str(out))}: manoeuvre {cut}, {len(data)} bytes.")
         return 0
     with staged(out, inputs) as stage:
-        write_formats(dataset(flights), stage, chosen)
+        failed = write_formats(dataset(flights), stage, chosen)
+    for part in failed:
+        click.echo(part.told, err=True)
     click.echo(
         f"Wrote {printable(str(out))}; manoeuvres: {len(flights.state.maneuvers)}; "
         f"formats: {', '.join(chosen)}."

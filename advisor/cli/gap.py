@@ -20,6 +20,7 @@ from advisor.cli.options import (
     writing,
 )
 from advisor.cli.stages import Stages
+from advisor.process.parts import FailedPart, attempt
 from advisor.words.printable import printable
 from advisor.words.problems import ConfigurationError, UnusableInputError
 
@@ -142,9 +143,7 @@ def command(
     decided = [decided_on(log, asked.no_marks) for log in asked.logs]
     by_hand = [replace(before, marks=(*asked.marks, *before.marks)) for before in decided]
     if out is not None:
-        refuse_unwritable("--out", out)
-        if asked.aircraft_file is not None and out.resolve() == asked.aircraft_file.resolve():
-            raise ConfigurationError(f"--out: {out} is the aircraft file itself; name another file.")
+        _refuse_out(out, asked.aircraft_file)
     refuse_figure(figure, [*asked.inputs, out])
     orders = orders_of(exports, aircraft, [*asked.inputs, out])
     from advisor.analysis.gap import compare_logs, named_simulator
@@ -159,10 +158,12 @@ def command(
         with Stages() as progress:
             simulator = named_simulator(aircraft, asked.target_system)
             shares = FIELD if prior is None else field_prior(prior)
-            compared = compare_logs(
-                asked.logs, aircraft, simulator, holdout, asked.target_system, progress, by_hand, shares
+            compared = attempt(
+                "pitch, diagnosis",
+                lambda: compare_logs(
+                    asked.logs, aircraft, simulator, holdout, asked.target_system, progress, by_hand, shares
+                ),
             )
-        found = compared.diagnosis
     except UnusableInputError as error:
         if as_json:
             click.echo(json.dumps(gap_document(None, error.problems), indent=1))
@@ -171,6 +172,9 @@ def command(
     finally:
         if simulator is not None:
             simulator.close()
+    if isinstance(compared, FailedPart):
+        return _say_without(compared, as_json)
+    found = compared.diagnosis
     improvable = found.verdict in ("effect", "parameters")
     if out is not None and improvable:
         with writing("--out", out):
@@ -195,6 +199,23 @@ def command(
         written = printable(str(out)) if out and improvable else None
         PlainConsole().print(GapScreen(found, written, why, steps))
     return USAGE if any(one.problem for one in outcomes) else 0
+
+
+def _refuse_out(out: Path, aircraft_file: Path | None) -> None:
+    """Refuse an improved file that could not be written, or that would replace the aircraft file."""
+    refuse_unwritable("--out", out)
+    if aircraft_file is not None and out.resolve() == aircraft_file.resolve():
+        raise ConfigurationError(f"--out: {out} is the aircraft file itself; name another file.")
+
+
+def _say_without(failed: FailedPart, as_json: bool) -> int:
+    """Print the answer of which a fault ended the diagnosis; return the exit code of the answer."""
+    if as_json:
+        from advisor.gap.document import gap_document
+
+        click.echo(json.dumps(gap_document(None, failed=(failed,)), indent=1))
+    click.echo(failed.told, err=True)
+    return 0
 
 
 def _refuse_foreign(foreign: Mapping[str, str], where: str) -> None:

@@ -21,6 +21,7 @@ from advisor.cli.log_options import LogsAsked
 from advisor.doctor.document import doctor_document
 from advisor.gap.document import gap_document
 from advisor.gap.search.waterfall import Progress
+from advisor.process.parts import FailedPart, attempt
 from advisor.report.document import analysis_document
 from advisor.report.gap_steps import next_steps
 from advisor.report.page.content import Content, Document, Origin
@@ -95,12 +96,17 @@ def _gap(flights: WholeFlights, aircraft: Aircraft, asked: LogsAsked, tell: Prog
     simulator = None
     try:
         simulator = named_simulator(aircraft, target_system)
-        compared = compare_logs(logs, aircraft, simulator, None, target_system, tell, decided)
+        compared = attempt(
+            "pitch, diagnosis",
+            lambda: compare_logs(logs, aircraft, simulator, None, target_system, tell, decided),
+        )
     except UnusableInputError as error:
         return gap_document(None, error.problems)
     finally:
         if simulator is not None:
             simulator.close()
+    if isinstance(compared, FailedPart):
+        return gap_document(None, failed=(compared,))
     steps = next_steps(compared.diagnosis, list(map(str, logs)), asked.aircraft_text, aircraft.simulator)
     return {**gap_document(compared.diagnosis), "next": plain(steps)}
 

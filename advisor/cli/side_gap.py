@@ -15,6 +15,7 @@ from advisor.cli.options import UNUSABLE
 from advisor.cli.stages import Stages
 from advisor.gap.document import changed_document, gap_document
 from advisor.gap.judge.prior import FIELD, field_prior
+from advisor.process.parts import FailedPart, attempt
 from advisor.report.gap_reasons import in_percent
 from advisor.report.gap_sizes import sizes_of
 from advisor.side_gap.comparison import SideGap
@@ -32,20 +33,28 @@ def compare_lateral(asked: LogsAsked, aircraft: Aircraft, as_json: bool, prior: 
         with Stages() as tell:
             tell("reading", 0.0)
             shares = FIELD if prior is None else field_prior(prior)
-            found = side_gap_of(
-                asked.logs,
-                aircraft,
-                asked.target_system,
-                asked.marks,
-                no_marks=asked.no_marks,
-                prior=shares,
-                progress=tell,
+            found = attempt(
+                "lateral, diagnosis",
+                lambda: side_gap_of(
+                    asked.logs,
+                    aircraft,
+                    asked.target_system,
+                    asked.marks,
+                    no_marks=asked.no_marks,
+                    prior=shares,
+                    progress=tell,
+                ),
             )
     except UnusableInputError as error:
         if as_json:
             click.echo(json.dumps(gap_document(None, error.problems), indent=1))
         click.echo(str(error), err=True)
         return UNUSABLE
+    if isinstance(found, FailedPart):
+        if as_json:
+            click.echo(json.dumps(gap_document(None, failed=(found,)), indent=1))
+        click.echo(found.told, err=True)
+        return 0
     if as_json:
         document = gap_document(None) | {"usable": True, "lateral": side_gap_document(found)}
         click.echo(json.dumps(document, allow_nan=False, indent=1))

@@ -11,6 +11,7 @@ from advisor.gap.result import Cause, ComparedDerivative, Diagnosis, InSimulator
 from advisor.gap.verdict.as_judged import answered
 from advisor.gap.verdict.limits import limits_of
 from advisor.gap.verdict.text import in_words
+from advisor.process.parts import FailedPart
 from advisor.words.plain import picked, plain
 from advisor.words.problems import Problem
 
@@ -27,13 +28,19 @@ _NOTHING: Mapping[str, Any] = {
 
 
 def gap_document(
-    diagnosis: Diagnosis | None, problems: Sequence[Problem] = (), improved_model: str | None = None
+    diagnosis: Diagnosis | None,
+    problems: Sequence[Problem] = (),
+    improved_model: str | None = None,
+    failed: Sequence[FailedPart] = (),
 ) -> dict[str, Any]:
-    """Build the document of ``advisor gap --json``; without a diagnosis it holds the problems alone."""
+    """Build the document of ``advisor gap --json``; without a diagnosis it holds the problems alone.
+
+    A log whose diagnosis a fault of the advisor ended (``failed``) is usable.
+    """
     document: dict[str, Any] = {
         "schema": SCHEMA,
-        "usable": diagnosis is not None and not problems,
-        "problems": plain(problems),
+        "usable": not problems and (diagnosis is not None or bool(failed)),
+        "problems": [*plain(problems), *(part.entry for part in failed)],
         "exports": [],
         "next": [],
     }

@@ -62,7 +62,8 @@ def analysis_document(
             {**plain(problem), **of_log(flight)}
             for flight, found in sorted(left_out.items())
             for problem in found
-        ],
+        ]
+        + [one.entry for one in (state.failed if state else ())],
         "log": {**logs[0], "notes": read},
         **({"logs": logs, "notes": list(notes)} if several else {}),
         **_OF_NO_CAMPAIGN,

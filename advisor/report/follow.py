@@ -47,7 +47,10 @@ def follow(
         begun = begun or campaign.serves
     for event in campaign.finish():
         _say(event, say)
-    return campaign.state
+    state = campaign.state
+    for part in state.failed:
+        say(part.told)
+    return state
 
 
 def _say(event: CampaignEvent, say: Callable[[str], object]) -> None:

@@ -38,6 +38,7 @@ class GapTask:
         from advisor.analysis.gap import compare_logs, named_simulator
         from advisor.analysis.marks_file import read_by_hand
         from advisor.gap.document import gap_document
+        from advisor.process.parts import FailedPart, attempt
         from advisor.report.gap_steps import next_steps
         from advisor.words.plain import plain
         from advisor.words.problems import UnusableInputError
@@ -46,12 +47,18 @@ class GapTask:
         try:
             simulator = named_simulator(self.aircraft)
             by_hand = [read_by_hand(log) for log in self.logs]
-            found = compare_logs(self.logs, self.aircraft, simulator, by_hand=by_hand).diagnosis
+            compared = attempt(
+                "pitch, diagnosis",
+                lambda: compare_logs(self.logs, self.aircraft, simulator, by_hand=by_hand),
+            )
         except UnusableInputError as error:
             return gap_document(None, error.problems)
         finally:
             if simulator is not None:
                 simulator.close()
+        if isinstance(compared, FailedPart):
+            return gap_document(None, failed=(compared,))
+        found = compared.diagnosis
         file = str(self.aircraft_file) if self.aircraft_file else None
         steps = next_steps(found, list(map(str, self.logs)), file, self.aircraft.simulator)
         return {**gap_document(found), "next": plain(steps)}

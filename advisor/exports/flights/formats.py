@@ -1,11 +1,13 @@
 """Formats of an export by name, each imported only on use."""
 
 from collections.abc import Sequence
+from functools import partial
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from advisor.process.parts import FailedPart, attempt
 from advisor.words.problems import ConfigurationError
 
 if TYPE_CHECKING:
@@ -42,14 +44,18 @@ def parse_formats(text: str) -> tuple[str, ...]:
     return formats
 
 
-def write_formats(data: "Dataset", folder: Path, formats: Sequence[str]) -> None:
+def write_formats(data: "Dataset", folder: Path, formats: Sequence[str]) -> tuple[FailedPart, ...]:
     """Write a dataset in several formats into a folder, with a layout for PlotJuggler where it reads the
-    format."""
+    format. Return the formats that a fault ended."""
     from advisor.exports.flights.plotjuggler import write_layouts
 
+    failed = []
     for name in formats:
         module, writer = WRITERS[name]
-        getattr(import_module(f"advisor.exports.flights.{module}"), writer)(data, folder)
+        write = getattr(import_module(f"advisor.exports.flights.{module}"), writer)
+        made = attempt(f"export {name}", partial(write, data, folder))
+        failed += [made] if isinstance(made, FailedPart) else []
     readable = [name for name in formats if name in ("csv", "parquet")]
     if readable:
         write_layouts(data, folder, readable[0])
+    return tuple(failed)

@@ -22,6 +22,7 @@ from advisor.exports.models.jsbsim.side import side_text
 from advisor.exports.models.matlab_side import both_axes_text
 from advisor.gap.result import Diagnosis
 from advisor.process.atomic_file import write_atomically
+from advisor.process.parts import FailedPart, attempt
 from advisor.report.improved import write_improved
 from advisor.words.problems import ConfigurationError
 
@@ -125,7 +126,8 @@ def carry_out(orders: Sequence[ExportOrder], diagnosis: Diagnosis, aircraft: Air
 
 def _outcome(order: ExportOrder, carry: Callable[[], ExportOutcome]) -> ExportOutcome:
     try:
-        return carry()
+        made = attempt(f"export {order.format}", carry)
+        return ExportOutcome(order, problem=made.told) if isinstance(made, FailedPart) else made
     except ConfigurationError as error:
         return ExportOutcome(order, problem=str(error))
     except OSError as error:

@@ -3,6 +3,7 @@
 import io
 import re
 from collections.abc import Callable
+from html import escape
 from math import ceil, floor, log10
 from pathlib import Path
 from typing import Any, TypeVarTuple
@@ -12,6 +13,7 @@ from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure as Drawing
 
 from advisor.process.atomic_file import write_atomically
+from advisor.process.parts import FailedPart, attempt
 
 BLUE, ORANGE, GREY, BLACK = "#0b5394", "#b45f06", "#9a9a9a", "#222222"
 """Colours that also differ in lightness. Lines that differ in colour also differ in style."""
@@ -55,7 +57,13 @@ def picture(
     *shown: *Shown,
 ) -> Callable[[], str]:
     """Return a picture that is drawn on demand, with the parameters of :func:`draw`."""
-    return lambda: draw(name, width_in, height_in, paint, *shown)
+    return lambda: _drawn(name, lambda: draw(name, width_in, height_in, paint, *shown))
+
+
+def _drawn(name: str, draw_it: Callable[[], str]) -> str:
+    """Return a picture, or in its place the sentence on the fault that ended it."""
+    made = attempt(f"picture {name}", draw_it)
+    return f'<p class="note">{escape(str(made.problem))}</p>' if isinstance(made, FailedPart) else made
 
 
 def save(

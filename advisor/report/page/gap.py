@@ -31,7 +31,7 @@ def gap(content: Content) -> Section | None:
 
 
 def _blocks(found: Document) -> Iterator[Block]:
-    if not found["usable"]:
+    if found["gap"] is None:
         yield Paragraph("The gap could not be diagnosed.")
         yield from listing([f"{p['text']} {p['fix']}" for p in found["problems"]])
         return

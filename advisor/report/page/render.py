@@ -1,13 +1,16 @@
 """From the data of a flight to the page, as HTML or Markdown."""
 
+from collections.abc import Callable
+from functools import partial
 from importlib.resources import files
 from typing import Literal
 
 from jinja2 import Environment, FunctionLoader, StrictUndefined
 from markupsafe import Markup
 
+from advisor.process.parts import FailedPart, attempt
 from advisor.report.page.assumptions import assumptions
-from advisor.report.page.blocks import Block, Section
+from advisor.report.page.blocks import Block, Paragraph, Section
 from advisor.report.page.content import Content
 from advisor.report.page.criterion import criterion
 from advisor.report.page.estimates import estimates
@@ -31,8 +34,17 @@ _PARTS = (
 
 def sections(content: Content) -> list[Section]:
     """Return all sections in the order of the page."""
-    found = (part(content) for part in _PARTS)
+    found = (_made(part, content) for part in _PARTS)
     return [section for section in found if section is not None]
+
+
+def _made(part: Callable[[Content], Section | None], content: Content) -> Section | None:
+    """Return a section, or in its place the sentence on the fault that ended it."""
+    name = part.__name__
+    made = attempt(f"page, {name.replace('_', ' ')}", partial(part, content))
+    if not isinstance(made, FailedPart):
+        return made
+    return Section(name, name.replace("_", " ").capitalize(), (Paragraph(str(made.problem), "note"),))
 
 
 def page(content: Content, form: PageFormat) -> str:

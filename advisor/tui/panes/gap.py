@@ -81,7 +81,7 @@ findings.
     def _told(self, document: Document) -> None:
         """Show a diagnosis."""
         self._say(list(answer_rows(document)))
-        if not document["usable"]:
+        if document["gap"] is None:
             return
         worst = max(document["gap"]["by_maneuver"], key=lambda one: one["before"])["number"]
         self.subtitle(f"manoeuvre {worst}, the largest gap")
@@ -103,7 +103,7 @@ findings.
 
 def answer_rows(document: Document) -> Iterator[Labelled]:
     """Yield the answer, how sure it is, its limits, what differs, the shrink, the steps, the reasons."""
-    if not document["usable"]:
+    if document["gap"] is None:
         yield from (("✗ ", f"{problem['text']} {problem['fix']}") for problem in document["problems"])
         return
     yield "", document["sentence"]

@@ -2,12 +2,14 @@
 
 from collections.abc import Callable
 from contextlib import suppress
+from functools import partial
 
 from textual.css.query import NoMatches
 from textual.events import Event, ScreenResume
 from textual.message import Message
 from textual.screen import Screen
 
+from advisor.process.parts import FailedPart, attempt
 from advisor.session.hand import HandDecision
 from advisor.session.view import View
 from advisor.tui.panes.ask import Ask
@@ -51,4 +53,7 @@ class Face(Screen[None]):
         with suppress(NoMatches):
             for node in self.walk_children():
                 if isinstance(node, Part) and node.wants_showing:
-                    node.show(view if node.EITHER_AXIS else view.elevator or view)
+                    shown = view if node.EITHER_AXIS else view.elevator or view
+                    made = attempt(f"pane {type(node).__name__}", partial(node.show, shown))
+                    if isinstance(made, FailedPart):
+                        self.notify(str(made.problem), severity="error", markup=False)

@@ -1,0 +1,90 @@
+"""Parts of an answer that may fail alone: a manoeuvre, an axis, an effect, a pane, a picture, an export.
+
+A numerical fault inside a part is a value with its reason. The rest of the answer stands, and every face
+names the part that is missing.
+"""
+
+import os
+import traceback
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import TypeVar
+
+import numpy as np
+
+from advisor.words.problems import Problem
+
+FAULTS = (np.linalg.LinAlgError, ZeroDivisionError, FloatingPointError, OverflowError, IndexError)
+"""Errors of numbers that end one part. Every other error is no matter of numbers and ends the program."""
+INTERNAL = "internal"
+"""Code of a part that failed by a fault of the advisor."""
+_Made = TypeVar("_Made")
+
+
+@dataclass(frozen=True, slots=True)
+class FailedPart:
+    """A part of an answer that a numerical fault of the advisor ended."""
+
+    part: str
+    """Name of the part, as in ``lateral, manoeuvre 3``."""
+    reason: str
+    """Kind and message of the fault."""
+    trace: str = field(default="", compare=False, repr=False)
+    """Traceback of the fault."""
+
+    @property
+    def problem(self) -> Problem:
+        """Sentence on the missing part, with the next step."""
+        text = f"A fault of the advisor, not yours, ended this part: {self.part} ({self.reason})."
+        fix = "The rest of the answer stands. Set ADVISOR_TRACEBACK=1 to see where, and please report it."
+        return Problem(INTERNAL, text, fix)
+
+    @property
+    def entry(self) -> dict[str, str]:
+        """Entry of ``problems`` in a JSON document."""
+        problem = self.problem
+        return {"code": problem.code, "part": self.part, "text": problem.text, "fix": problem.fix}
+
+    @property
+    def told(self) -> str:
+        """Sentence for people, and the traceback where ``ADVISOR_TRACEBACK`` asks for one."""
+        wanted = self.trace and os.environ.get("ADVISOR_TRACEBACK")
+        return f"{self.problem}\n{self.trace}" if wanted else str(self.problem)
+
+
+def attempt(part: str, work: Callable[[], _Made]) -> _Made | FailedPart:
+    """Return what ``work`` makes, or why a numerical fault ended the part."""
+    try:
+        return work()
+    except FAULTS as fault:
+        return FailedPart(part, f"{type(fault).__name__}: {fault}", traceback.format_exc())
+
+
+class Parts:
+    """Makes the parts of one answer, and keeps those that failed.
+
+    Parameters
+    ----------
+    tell
+        Called with each part that fails for the first time.
+    """
+
+    def __init__(self, tell: Callable[[FailedPart], object] = lambda failed: None) -> None:
+        self._tell = tell
+        self._failed: dict[str, FailedPart] = {}
+
+    @property
+    def failed(self) -> tuple[FailedPart, ...]:
+        """Parts whose newest attempt failed, in the order of their first failures."""
+        return tuple(self._failed.values())
+
+    def make(self, part: str, work: Callable[[], _Made], instead: Callable[[FailedPart], _Made]) -> _Made:
+        """Return what ``work`` makes; what ``instead`` makes of the failure where a fault ends the part."""
+        made = attempt(part, work)
+        if not isinstance(made, FailedPart):
+            self._failed.pop(part, None)
+            return made
+        if part not in self._failed:
+            self._tell(made)
+        self._failed[part] = made
+        return instead(made)
