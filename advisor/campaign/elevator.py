@@ -215,7 +215,10 @@ class ElevatorCampaign:
     def _of_lag(self) -> Estimate | None:
         """Joint estimate that tells the servo's lag; None where there is none yet."""
         accepted = [judged.maneuver for judged in self._accepted]
-        return self._together.of_lag(accepted) if self._ended else self._together.of_lag_so_far(accepted)
+        estimate = self._together.of_lag if self._ended else self._together.of_lag_so_far
+        return self._parts.make(
+            "pitch, joint estimate of the servo's lag", lambda: estimate(accepted), lambda _: None
+        )
 
     def _learn(self) -> None:
         """Examine all manoeuvres again when they have told more of the instruments."""
