@@ -16,10 +16,14 @@ from advisor.flight.stream.identity import READER
 from advisor.flight.vehicle.parameters import Sender, names_in, tells_of_outputs
 from advisor.flight.vehicle.vehicle import MULTICOPTERS, is_aircraft
 from advisor.mavlink.logs.logs import open_log
+from advisor.mavlink.logs.parameter_file import MESSAGE, stated_by_file
 from advisor.mavlink.records.equivalent import message
 from advisor.mavlink.wire.frames import FrameScanner
 from advisor.words.printable import printable
 from advisor.words.problems import UnusableInputError
+
+_STATE = ("PARAM_VALUE", MESSAGE)
+"""Messages that state parameters: one by one, and as a file."""
 
 
 def read_whole_log(
@@ -50,7 +54,7 @@ def read_whole_log(
     if first is None:
         return
     is_tlog = first[0].carrier == "telemetry"
-    telling = list(open_log(path, ["HEARTBEAT", "PARAM_VALUE"])) if is_tlog else [first]
+    telling = list(open_log(path, ["HEARTBEAT", *_STATE])) if is_tlog else [first]
     known, notes = _stated(telling), []
     if not known:
         lender, known = _lent(others)
@@ -89,7 +93,9 @@ def _stated(batches: Iterable[Sequence[Columns]]) -> list[Columns]:
     """Return the first value of each parameter of the servo outputs, one message each, by sender."""
     heard: set[tuple[int, int, str]] = set()
     found: list[Columns] = []
-    for columns in (c for batch in batches for c in batch if c.name == "PARAM_VALUE"):
+    all_heard = list(batches)
+    singly = [c for batch in all_heard for c in batch if c.name == "PARAM_VALUE"]
+    for columns in [*singly, *stated_by_file(all_heard)]:
         rows = np.zeros(len(columns), dtype=bool)
         for row, name in enumerate(names_in(columns)):
             key = (columns.system, columns.component, name)
@@ -104,7 +110,7 @@ def _lent(others: Sequence[Path]) -> tuple[Path | None, list[Columns]]:
     """Return the first log that states parameters, with the parameters; None without such a log."""
     for other in others:
         try:
-            known = _stated(open_log(other, ["PARAM_VALUE"]))
+            known = _stated(open_log(other, _STATE))
         except UnusableInputError:
             continue
         if known:

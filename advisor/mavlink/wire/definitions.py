@@ -53,6 +53,8 @@ HIGHRES_IMU 105: uint64 time_usec, float xacc, float yacc, float zacc, float xgy
     float temperature, uint16 fields_updated + uint8 id
 RADIO_STATUS 109: uint8 rssi, uint8 remrssi, uint8 txbuf, uint8 noise, uint8 remnoise, uint16 rxerrors,
     uint16 fixed
+FILE_TRANSFER_PROTOCOL 110: uint8 target_network, uint8 target_system, uint8 target_component, uint8[251]
+    payload
 SCALED_IMU2 116: uint32 time_boot_ms, int16 xacc, int16 yacc, int16 zacc, int16 xgyro, int16 ygyro, int16
     zgyro, int16 xmag, int16 ymag, int16 zmag + int16 temperature
 SCALED_IMU3 129: uint32 time_boot_ms, int16 xacc, int16 yacc, int16 zacc, int16 xgyro, int16 ygyro, int16
