@@ -1,6 +1,7 @@
 """The lines of a campaign without a screen."""
 
 from collections.abc import Sequence
+from types import SimpleNamespace
 from typing import Any, cast
 
 import pytest
@@ -19,7 +20,7 @@ class Told:
     def __init__(self, *events: Sequence[object]) -> None:
         self._events = list(events)
         self.serves = False
-        self.state = None
+        self.state = SimpleNamespace(failed=())
 
     def feed(self, columns: object) -> Sequence[object]:
         events = self._events.pop(0)
