@@ -88,6 +88,8 @@ def test_a_lateral_manoeuvre_that_fails_leaves_the_other(monkeypatch):
     assert second.verdict.accepted
 
 
+@pytest.mark.study
+@pytest.mark.timeout(600)
 @pytest.mark.parametrize("log", ["arduplane-default-rates.tlog", "bundled-demo.tlog"])
 def test_no_part_fails_on_a_log_of_this_repository(log, request):
     path = request.config.rootpath / "logs" / log
