@@ -154,7 +154,10 @@ def _run() -> int:
     """Call the command that the user names. Raise every message or exit that click would handle itself."""
     if asked := os.environ.get(COMPLETION_VARIABLE):
         return shell_complete(advisor, {}, "advisor", COMPLETION_VARIABLE, asked)
-    with advisor.make_context("advisor", sys.argv[1:]) as context:
+    words = sys.argv[1:]
+    if words[:1] == ["help"]:
+        words = [*words[1:], "--help"]
+    with advisor.make_context("advisor", words) as context:
         code = advisor.invoke(context)
     sys.stdout.flush()
     return code if isinstance(code, int) else 0

@@ -62,7 +62,7 @@ def narrate(task: ConductorTask, say: Callable[[str], object], warn: Callable[[s
     """
     said: Counter[str] = Counter()
     deaths = hangs = 0
-    backlog = _Backlog(warn)
+    backlog = Backlog(warn)
     with LinkObserver(task.door, backlog.hear_link) as backlog.observer:
         while (ended := _narrate_once(task, say, said, warn, hangs, backlog))[0]:
             deaths += 1
@@ -73,7 +73,7 @@ def narrate(task: ConductorTask, say: Callable[[str], object], warn: Callable[[s
                 task = replace(task, by_hand=task.kept())
 
 
-class _Backlog:
+class Backlog:
     """Warns when the estimating process falls behind the link.
 
     Parameters
@@ -102,7 +102,7 @@ def _narrate_once(
     said: "Counter[str]",
     warn: Callable[[str], object],
     hangs: int,
-    backlog: _Backlog,
+    backlog: Backlog,
 ) -> tuple[int, Watch]:
     """Run one process from its start to its end; return its exit code and its watch."""
     repeated = said.copy()

@@ -114,6 +114,8 @@ class AdvisorApp(replay_actions.ReplayActions, link_actions.LinkActions, HandAct
         self._garbage = Garbage()
         self._side: SideView | None = None
         """Views of roll and yaw, while that axis is shown."""
+        self._axis_chosen = False
+        """Whether the axis that is shown is settled: by a key, or by the first manoeuvre."""
         self._sheets = Sheets(THEMES)
         self._voice = Voice()
         self._sound = Sound(self.bell, self._speak)
@@ -178,10 +180,22 @@ class AdvisorApp(replay_actions.ReplayActions, link_actions.LinkActions, HandAct
             log=report.log,
             problems=report.problems,
         )
+        self._open_on_the_axis_flown(report)
         if report.health.condition == "ended" and report.problems:
             problem = report.problems[0]
             self.failure = UnusableInputError(problem.code, problem.text, problem.fix)
         self.show(view)
+
+    def _open_on_the_axis_flown(self, report: SessionReport) -> None:
+        """Show the axis of the first manoeuvre, unless a key has chosen an axis."""
+        lateral = report.state.lateral
+        sideways = lateral is not None and bool(lateral.maneuvers)
+        if self._axis_chosen or not (report.state.maneuvers or sideways):
+            return
+        self._axis_chosen = True
+        if not report.state.maneuvers:
+            self._side = SideView()
+            self.refresh_bindings()
 
     def on_worker_state_changed(self, event: Worker.StateChanged) -> None:
         """Leave when the input is found unusable. The caller prints the reason."""
@@ -242,6 +256,7 @@ class AdvisorApp(replay_actions.ReplayActions, link_actions.LinkActions, HandAct
 
     def action_other_axis(self) -> None:
         """Show roll and yaw in the place of the elevator's axis, or the elevator's axis again."""
+        self._axis_chosen = True
         self._side = SideView() if self._side is None else None
         self.show(self.view)
         self.refresh_bindings()

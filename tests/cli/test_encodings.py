@@ -84,6 +84,11 @@ def test_help_needs_no_unicode(command: list[str], said: Said) -> None:
     assert "Example:" in out
 
 
+def test_the_word_help_is_the_option(said: Said) -> None:
+    for words in ((), ("locate",)):
+        assert said("utf-8", "help", *words) == said("utf-8", *words, "--help")
+
+
 def test_a_file_named_in_another_script_is_named_in_a_sentence(tmp_path: Path, said: Said) -> None:
     code, _, err = said("ascii", "analyze", tmp_path / "полёт-β.tlog")
     assert code == 3
@@ -97,6 +102,8 @@ def test_a_file_named_in_another_script_is_named_in_a_sentence(tmp_path: Path, s
         ("▶ CONTINUE", "> CONTINUE"),
         ("α → θ", "alpha -> theta"),
         ("┌─┬│╰", "+-+|+"),
+        ("▁▁▔▔▁", "__--_"),
+        ("███··", "###--"),
         ("Müller", "Muller"),
         ("\udcff飞", "??"),
     ],

@@ -83,3 +83,13 @@ def test_a_lateral_input_is_drawn_with_right_above_and_left_below():
     assert said == "next aileron doublet, 1.0 s steps, 40 % stick, ±10.0 deg of aileron"
     assert [line.split()[0] for line in (lines[1], lines[3])] == ["right", "left"]
     assert drawn(advised, 60, large=False).endswith("▔▔▁▁  right first")
+
+
+async def test_the_screen_opens_on_roll_and_yaw_where_only_they_are_flown_and_counts_them():
+    flown = replace(flights.state(0), lateral=state(judged(1, "aileron"), judged(2, "aileron")))
+    async with stage(flown, size=(100, 35)) as here:
+        await here.until(lambda: "accepted so far" in here.words("Gauge"))
+        assert "2 accepted so far" in here.words("Gauge")
+        assert "2 accepted of 2" in here.words("Gauge")
+        await here.press("r")
+        assert "none flown yet" in here.words("Gauge")

@@ -31,6 +31,9 @@ def how_far(view: View) -> str:
     if verdict.decision == "stop":
         return f"{bar(1.0, _BAR)}  complete"
     remaining = verdict.next.remaining if verdict.next is not None else None
+    accepted = sum(j.verdict.accepted and j.excluded_because is None for j in view.state.maneuvers)
+    if remaining is None and accepted:
+        return f"{bar(0.0, _BAR)}  {accepted} accepted so far"
     if remaining is None:
         return f"{bar(0.0, _BAR)}  known after the first good manoeuvre"
     if remaining.median is None:
