@@ -57,7 +57,7 @@ def by_hand(aircraft):
     return dict(zip(HANDS, flown, strict=True)), spans(heard(flight, f"hands-{aircraft}"))
 
 
-@pytest.mark.parametrize("aircraft", ["uav", "light", "linear"])
+@pytest.mark.parametrize("aircraft", ["uav", "light"])
 @pytest.mark.parametrize("how", HANDS)
 def test_an_input_is_found_however_a_hand_flies_it(aircraft, how):
     flown, found = by_hand(aircraft)
@@ -70,7 +70,7 @@ def test_an_input_is_found_however_a_hand_flies_it(aircraft, how):
 
 
 def test_hands_find_at_most_one_manoeuvre_that_was_none():
-    for aircraft in ("uav", "light", "linear"):
+    for aircraft in ("uav", "light"):
         flown, found = by_hand(aircraft)
         assert len(flown) <= len(found) <= len(flown) + 1
 
