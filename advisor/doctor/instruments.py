@@ -28,16 +28,13 @@ STRAYED_SHARE = 0.01
 """Share of a message's stamps that may fit on neither clock. Around a reboot a few always do."""
 
 _A_VANE = "fit a vane that sends {} (alpha.source: named_value:NAME)"
-_RECORD_IT = " and record the telemetry, for ArduPilot's own log does not keep it"
 
 
 def alpha_limits(alpha: ChannelStatus, vehicle: Vehicle) -> list[Limit]:
     """Return the limits of an angle of attack that comes from no vane."""
     if alpha.provenance != "derived":
         return []
-    vane = _A_VANE.format(vehicle.mends.called("NAMED_VALUE_FLOAT")) + (
-        _RECORD_IT if vehicle.carrier == "dataflash" else ""
-    )
+    vane = _A_VANE.format(vehicle.mends.called("NAMED_VALUE_FLOAT"))
     if alpha.source.startswith("AOA_SSA"):
         name = vehicle.mends.called("AOA_SSA")
         text = f"{name} is the autopilot's own estimate, not a vane: late, and blind to gusts"

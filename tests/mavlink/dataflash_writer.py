@@ -9,7 +9,7 @@ Definitions = Mapping[str, tuple[str, str, Callable[[float], Mapping[str, float]
 """Record name to format, columns, and the values of some columns by the time in s."""
 _SIZES = {"B": 1, "M": 1, "h": 2, "H": 2, "c": 2, "C": 2, "i": 4, "I": 4, "f": 4, "e": 4, "L": 4, "n": 4}
 _SIZES |= {"Q": 8, "N": 16, "Z": 64}
-_PACK = {"B": "B", "M": "B", "Q": "Q", "I": "I", "f": "f"}
+_PACK = {"B": "B", "M": "B", "Q": "Q", "I": "I", "f": "f", "N": "16s"}
 HEALTH_AT = {"IMU": 37, "ARSP": 20}
 """Where GH of IMU and H of ARSP lie behind the stamp."""
 _HEAD = b"\xa3\x95"

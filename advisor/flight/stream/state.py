@@ -22,6 +22,7 @@ from advisor.flight.signals.record import Channel
 from advisor.flight.signals.track import ChannelStatus
 from advisor.flight.signals.tracks import Tracks
 from advisor.flight.signals.trust import Distrust, frozen
+from advisor.flight.stream.asked_sources import AskedSources
 from advisor.flight.stream.cutting import Cutting
 from advisor.flight.stream.elevator_path import ElevatorPath
 from advisor.flight.stream.identity import Identity
@@ -54,6 +55,7 @@ class StreamState:
         lateral: bool = False,
     ) -> None:
         self._aircraft = aircraft
+        self._asked = AskedSources(aircraft)
         self._keep_s = np.inf if keep_all else KEEP_S
         self._clock_heard: list[Master] = []
         self.power_ons: list[PowerOn] = []

@@ -60,7 +60,7 @@ class FlightStream(StreamState):
         """Take the end of the messages, and close every open movement."""
         if self._cutting.maneuvers == self._flown_before:
             self._instruments.finish(self._first_s, self._master_s)
-        events = self._finish_boot()
+        events = [*self._finish_boot(), *self._asked.finish()]
         self._service.end()
         self._over = True
         return events
@@ -185,9 +185,11 @@ class FlightStream(StreamState):
             t = clock[now] if companion else stamps(columns, clock[now])
             if columns.name == "HEARTBEAT" and np.isfinite(t[-1]):
                 self._heartbeat_s = float(t[-1])
+            self._asked.hear(columns)
             for new in decoded(columns, t, self._aircraft, companion):
                 self._tracks.append(new)
                 if self._tracks.serves(new):
+                    self._asked.take(new)
                     self._service.take(new.channel, new.source, arrivals(columns, new.order))
             if columns.name == "VFR_HUD" and self._tracks.derives_alpha:
                 bring = promised(columns, self._aircraft.airspeed_m_s)

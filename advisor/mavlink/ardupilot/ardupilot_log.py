@@ -37,6 +37,8 @@ _RECORDS: dict[str, set[str]] = {
     "NKF1": {"VD"},
     "NKF2": {"VWN", "VWE"},
     "NTUN": {"Arspd"},
+    "NVAL": {"Name", "Value"},
+    "NVF": {"Name", "Value"},
     "POS": {"Lat", "Lng", "Alt", "RelHomeAlt"},
     "RCIN": {"C1"},
     "RCOU": {"C1"},

@@ -89,6 +89,8 @@ class Translation:
         self._drop("ATT", "IMU", "ACC", *RATE_RECORDS)
         translations = {
             "AOA": self._aoa_ssa,
+            "NVAL": self._named_value_float,
+            "NVF": self._named_value_float,
             "POS": self._global_position_int,
             "RCIN": self._rc_channels,
         }
@@ -160,6 +162,12 @@ class Translation:
     def _aoa_ssa(self, aoa: RecordTable) -> Columns:
         angles = {"AOA": aoa.fields["AOA"], "SSA": aoa.fields["SSA"]}
         return self._message("AOA_SSA", aoa, {"time_usec": aoa.time_us, **angles})
+
+    def _named_value_float(self, named: RecordTable) -> Columns:
+        """Return the values of NVAL (received from another system) or of NVF (sent by a script)."""
+        fields: dict[str, ArrayLike] = {"time_boot_ms": _milliseconds(named.time_us)}
+        fields |= {"name": named.fields["Name"], "value": named.fields["Value"]}
+        return self._message("NAMED_VALUE_FLOAT", named, fields)
 
     def _scaled_pressure(self, baro: RecordTable) -> Columns:
         hectopascal = 0.01 * baro.fields["Press"].astype(np.float64)

@@ -85,7 +85,7 @@ def _of_surfaces(topics: Topics, moving: Sequence[Topic], parameters: Mapping[st
 def _computed(torque: Topic, slow: Topic) -> str:
     return (
         f"The surfaces' commands are computed from vehicle_torque_setpoint at {rate_hz(torque):.0f} Hz: the "
-        f"servo outputs are logged at {rate_hz(slow):.0f} Hz."
+        f"servo outputs are logged at {rate_hz(slow):.0f} Hz"
     )
 
 

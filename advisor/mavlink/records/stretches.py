@@ -188,7 +188,7 @@ class _Collected:
 
     def _tables(self, keep_from: float = math.inf) -> dict[str, RecordTable]:
         """Return the collected records, and keep copies of those that come again."""
-        tables = {}
+        tables: dict[str, RecordTable] = {}
         for number, name, layout, divisors in self._defined():
             if layout is None or name not in self._wanted:
                 continue
@@ -205,8 +205,19 @@ class _Collected:
                 if field in stored:
                     values = stored.pop(field)
                     fields[field] = values if divisor is None else values / divisor
-            tables[name] = RecordTable(order, fields)
+            table = RecordTable(order, fields)
+            tables[name] = _merged(tables[name], table) if name in tables else table
         return tables
+
+
+def _merged(one: RecordTable, other: RecordTable) -> RecordTable:
+    """Return the records of two types with one name, in the order of the file, with the fields of both."""
+    order = np.concatenate([one.order, other.order])
+    rows = np.argsort(order)
+    both = [name for name in one.fields if name in other.fields]
+    return RecordTable(
+        order[rows], {name: np.concatenate([one.fields[name], other.fields[name]])[rows] for name in both}
+    )
 
 
 def _grown(stored: Mapping[str, NDArray[Any]]) -> dict[str, _Growing]:
