@@ -108,18 +108,23 @@ def flown(maneuver: Maneuver, name: str) -> FloatArray:
     return channel.cut(maneuver.span.start_s, maneuver.span.end_s).y
 
 
+def needed_hz(period_s: float) -> float:
+    """Return the least rate of a channel, Hz, for a motion of this period, s."""
+    return SAMPLES_PER_PERIOD / period_s
+
+
 def too_slow(channels: Sequence[Channel], period_s: float) -> list[Reason]:
     """Return a reason for each channel that arrives too slowly for a motion of this period, s."""
-    needed_hz = SAMPLES_PER_PERIOD / period_s
+    least_hz = needed_hz(period_s)
     reasons = []
     for c in channels:
-        if not c.rate_hz >= needed_hz:
-            rate, needed = distinct_texts(c.rate_hz, needed_hz, 1)
+        if not c.rate_hz >= least_hz:
+            rate, needed = distinct_texts(c.rate_hz, least_hz, 1)
             text = (
                 f"{c.name} arrived at {rate} Hz (this aircraft needs {needed}); "
                 "let it come faster, advisor doctor says how"
             )
-            reasons.append(Reason("rate", text, c.rate_hz, needed_hz))
+            reasons.append(Reason("rate", text, c.rate_hz, least_hz))
     return reasons
 
 

@@ -1,6 +1,6 @@
 """The examination itself: messages in, findings out, without input or output of its own."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from advisor.doctor.expectation import NOISE, TYPICAL, Assumed, expect, frequenc
 from advisor.doctor.instruments import (
     alpha_limits,
     clock_limits,
+    clock_notes,
     company_limits,
     distrust_limits,
     elevator_limits,
@@ -158,6 +159,7 @@ class Examiner:
                 *self._notes,
                 *dict.fromkeys(note for m in self._maneuvers for note in m.data_notes),
                 *(self._survey.pauses if self._survey else ()),
+                *(clock_notes(clocks) if clocks else ()),
             ),
         )
 
@@ -192,14 +194,15 @@ class Examiner:
             status = self._stream.channels.get(name)
             if status is None or name in dead or not status.rate_hz > 0.0:
                 continue
-            message = _message(status)
+            message = _message(status, arrivals)
             arrival = arrivals.get(self._surveyed(message))
             if arrival is None:
                 continue
-            renewed_hz = status.rate_hz
+            rate_hz = float(np.fmin(status.rate_hz, arrival.rate_hz))
+            renewed_hz = rate_hz
             if name == "alpha":
                 renewed_hz = min(renewed_hz, _renewal(arrival, status))
-            paced[name] = Paced(name, message, status.rate_hz, renewed_hz)
+            paced[name] = Paced(name, message, rate_hz, renewed_hz)
         return paced
 
     def _surveyed(self, message: str) -> str:
@@ -281,9 +284,12 @@ def _stopping(problem: Problem, vehicle: Vehicle | None) -> Limit:
     return Limit(problem.code, problem.text.rstrip("."), f"{fix[:1].lower()}{fix[1:]}", stops=True)
 
 
-def _message(status: ChannelStatus) -> str:
-    """Return the message that sets the pace of a channel."""
-    return "VFR_HUD" if status.source.startswith("theta") else status.source.partition(".")[0]
+def _message(status: ChannelStatus, arrivals: Mapping[str, Arrival]) -> str:
+    """Return the message that sets the pace of a channel, the slower of two for a derived one."""
+    if not status.source.startswith("theta"):
+        return status.source.partition(".")[0]
+    both = [arrivals[name] for name in ("VFR_HUD", "ATTITUDE") if name in arrivals]
+    return min(both, key=lambda arrival: arrival.rate_hz).name if both else "VFR_HUD"
 
 
 def _renewal(arrival: Arrival, status: ChannelStatus) -> float:

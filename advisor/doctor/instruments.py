@@ -19,6 +19,8 @@ REPEATED_PERCENT = 1.0
 """Share of repeated packets, %, above which a second path is assumed. A network alone repeats only single
 packets."""
 DRIFTING_PERCENT = 1.0
+SIMULATED_PERCENT = 10.0
+"""Drift beyond which a clock is a simulator's, %. Crystals err by .01 %, the worst RC oscillators by 5 %."""
 _MOTION = ("ATTITUDE", "RAW_IMU", "SCALED_IMU", "HIGHRES_IMU")
 """Messages whose values change with every sample of a sensor in flight."""
 _MOSTLY_NEW = 0.7
@@ -132,7 +134,7 @@ def clock_limits(clocks: Clocks) -> list[Limit]:
                 f"check that one vehicle alone sends {name} under this system id",
             )
         )
-    if abs(clocks.drift_percent) > DRIFTING_PERCENT:
+    if abs(clocks.drift_percent) > DRIFTING_PERCENT and not _is_simulated(clocks):
         limits.append(
             Limit(
                 "clock_drift",
@@ -141,6 +143,19 @@ def clock_limits(clocks: Clocks) -> list[Limit]:
             )
         )
     return limits
+
+
+def clock_notes(clocks: Clocks) -> list[str]:
+    """Return a sentence on the clock of a simulator that runs faster or slower than the host's."""
+    if not _is_simulated(clocks):
+        return []
+    times = 1.0 + 0.01 * clocks.drift_percent
+    runs = f"The vehicle's clock runs {times:.2g} times as fast as the host's, as a simulator's does"
+    return [f"{runs}: rates count on the vehicle's clock."]
+
+
+def _is_simulated(clocks: Clocks) -> bool:
+    return abs(clocks.drift_percent) > SIMULATED_PERCENT
 
 
 def sender_limits(two_senders: Problem | None) -> list[Limit]:

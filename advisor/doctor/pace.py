@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from advisor.decision.envelope import needed_hz
 from advisor.doctor.examination import Limit
 from advisor.doctor.expectation import Assumed, ExpectedErrors, expect, frequency
 from advisor.doctor.survey import Arrival
@@ -13,8 +14,6 @@ from advisor.flight.vehicle.vehicle import Vehicle
 from advisor.words.digits import distinct_texts
 from advisor.words.mends import GOOD_HZ, Carrier
 
-FEWEST_PER_PERIOD = 6.0
-"""Samples in one natural period below which the short period cannot be followed."""
 ENOUGH_PER_PERIOD = 20.0
 """Samples in one natural period above which faster telemetry hardly helps."""
 GAP_INTERVALS = 3.0
@@ -36,7 +35,7 @@ class Paced:
     channel: str
     message: str
     rate_hz: float
-    """Samples per second over the best ten seconds, counted as in ``advisor analyze``."""
+    """Samples per second over the whole record."""
     renewed_hz: float
     """New values per second, at most ``rate_hz``."""
 
@@ -53,7 +52,7 @@ def rate_limits(
         speed are measured.
     """
     period_s = 2.0 * np.pi / frequency(assumed.model)
-    fewest_hz = max(SLOWEST_HZ, FEWEST_PER_PERIOD / period_s)
+    fewest_hz = max(SLOWEST_HZ, needed_hz(period_s))
     enough_hz = max(SLOWEST_HZ, ENOUGH_PER_PERIOD / period_s)
     good = {name: max(float(GOOD_HZ), channel.renewed_hz) for name, channel in paced.items()}
     best = expect(assumed, good, airspeed_m_s)

@@ -32,7 +32,8 @@ _TELLING = {
 _EVENTS = frozenset({"PARAM_VALUE", "STATUSTEXT", "COMMAND_ACK", "COMMAND_LONG", "AUTOPILOT_VERSION"})
 """Messages that come on events and so have no rate."""
 _SILENCE = 5.0
-"""Multiple of the median interval above which an interval is a gap of the link, not the pace of a message."""
+"""Multiple of the typical interval above which an interval is a gap of the link, not the pace of a
+message."""
 _LIVELY_S = 0.5
 """Time, s, after which an unchanged value counts as at rest. A value at rest says nothing about its
 renewal."""
@@ -251,7 +252,7 @@ def _arrival(name: str, sender: _Sender, pauses: Sequence[_Pause]) -> Arrival:
     steps = _intervals(t[fresh], boot[fresh])
     if len(steps) < 2:
         return Arrival(name, len(t), np.nan, np.nan, np.nan, np.nan, np.nan)
-    pace = steps[steps <= _SILENCE * np.median(steps)]
+    pace = steps[steps <= _SILENCE * _typical(steps)]
     renewals = _intervals(t[fresh & news], boot[fresh & news])
     renewals = renewals[renewals <= max(_LIVELY_S, 3.0 * float(np.median(steps)))]
     return Arrival(
@@ -282,6 +283,15 @@ def _lowest_rate(t: FloatArray, boot: NDArray[np.int64]) -> float:
         counts = np.searchsorted(mine, whole + _WINDOW_S) - np.arange(len(whole))
         rates += (counts / _WINDOW_S).tolist()
     return float(min(rates)) if rates else np.nan
+
+
+def _typical(steps: FloatArray) -> float:
+    """Return the interval, s, below which half of the time is spent; longer silences than ``_WINDOW_S`` do
+    not count. A rate that falls for most of a record is then no row of gaps."""
+    ordered = np.sort(steps[steps <= _WINDOW_S])
+    if len(ordered) == 0:
+        return float(np.median(steps))
+    return float(ordered[np.searchsorted(np.cumsum(ordered), 0.5 * np.sum(ordered))])
 
 
 def _against_the_host(pairs: FloatArray) -> tuple[float, float]:

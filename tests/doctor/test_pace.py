@@ -31,13 +31,13 @@ def limits(**hz: float) -> list[tuple[str, bool]]:
 
 def test_the_samples_are_the_rate_times_the_natural_period() -> None:
     ((text, stops),) = limits(q=25.0)
-    shown = "12.5 samples of pitch rate in a natural period of 0.50 s (at least 6, better 20.0)"
+    shown = "12.5 samples of pitch rate in a natural period of 0.50 s (at least 8, better 20.0)"
     assert text == f"ATTITUDE arrives at 25.0 Hz: {shown}"
     assert not stops
 
 
 @pytest.mark.parametrize(
-    ("hz", "samples", "stops"), [(8.0, "4.0", True), (11.6, "5.8", True), (12.8, "6.4", False)]
+    ("hz", "samples", "stops"), [(8.0, "4.0", True), (15.6, "7.8", True), (16.4, "8.2", False)]
 )
 def test_fewer_samples_than_the_least_stop_the_flight(hz: float, samples: str, stops: bool) -> None:
     ((text, found),) = limits(elevator=hz)

@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from advisor.doctor.instruments import clock_limits, clock_notes
 from advisor.doctor.survey import Arrival, Survey
 from advisor.flight.signals.messages import Carrier, Columns
 from advisor.flight.vehicle.vehicle import Vehicle
@@ -99,6 +100,36 @@ def test_drift_and_jitter_of_arrival_are_told_against_the_hosts_clock() -> None:
     survey, _ = surveyed([attitude(t, arrival_s=t / 1.03 + dice.normal(0.0, 0.004, len(t)))])
     assert survey.clocks.drift_percent == pytest.approx(3.0, abs=0.05)
     assert survey.clocks.arrival_jitter_ms == pytest.approx(4.0, rel=0.1)
+
+
+def test_a_rate_that_falls_for_most_of_a_record_is_the_mean_and_no_row_of_gaps() -> None:
+    """50 Hz for 14 s, then 6.25 Hz for 62 s."""
+    t = np.concatenate([np.arange(0.0, 14.0, 0.02), np.arange(14.0, 76.0, 0.16)])
+    _, arrivals = surveyed([attitude(t)])
+    assert arrivals["ATTITUDE"].rate_hz == pytest.approx(1088 / 76.0, rel=0.005)
+    assert arrivals["ATTITUDE"].lowest_hz == pytest.approx(6.25, abs=0.3)
+
+
+def test_a_silence_of_the_link_is_a_gap_and_changes_no_rate() -> None:
+    t = np.arange(0.0, 60.0, 0.02)
+    _, arrivals = surveyed([attitude(t[(t < 20.0) | (t > 23.0)])])
+    assert arrivals["ATTITUDE"].rate_hz == pytest.approx(50.0)
+
+
+@pytest.mark.parametrize("times", [5.0, 1.0 / 3.0])
+def test_the_clock_of_a_simulator_is_no_defect_and_is_said(times: float) -> None:
+    t = np.arange(0.0, 60.0, 0.02)
+    survey, _ = surveyed([attitude(t, arrival_s=t / times)])
+    assert clock_limits(survey.clocks) == []
+    (said,) = clock_notes(survey.clocks)
+    assert f"runs {times:.2g} times as fast" in said
+
+
+def test_a_clock_that_errs_by_three_percent_is_a_defect() -> None:
+    t = np.arange(0.0, 60.0, 0.02)
+    survey, _ = surveyed([attitude(t, arrival_s=t / 1.03)])
+    assert [limit.code for limit in clock_limits(survey.clocks)] == ["clock_drift"]
+    assert clock_notes(survey.clocks) == []
 
 
 def test_stamps_of_another_clock_are_counted_as_strayed() -> None:
