@@ -130,6 +130,10 @@ FLIGHTS ?= ../shared/flights
 real: .venv/.developed ## records of real aircraft against what is known of them (FLIGHTS=folder)
 	$(BIN)/python -m benchmarks.real $(FLIGHTS) --write docs/data/real.json
 
+.PHONY: cases
+cases: .venv/.developed ## the logs of ../shared/cases against tests/shared_cases.yaml (five minutes)
+	$(BIN)/python -m benchmarks.shared_cases
+
 accuracy: .venv/.developed ## the estimator against the Cramér-Rao bound, intervals against the truth
 	$(BIN)/python -m benchmarks.accuracy --write docs/data/accuracy.md
 

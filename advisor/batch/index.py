@@ -129,13 +129,19 @@ def _row(number: int, flight: Analyzed, log: str, aircraft: str, report: str | N
         f"{datetime.fromtimestamp(flight.began_s, UTC):%Y-%m-%d %H:%M}" if dated else "not dated",
         aircraft,
         f"{verdicts.count('accepted')} of {len(verdicts)}",
-        test.get("sentence", "") if flight.usable else f"Cannot be used: {' '.join(flight.reasons)}",
+        _result(test.get("sentence", "")) if flight.usable else f"Cannot be used: {' '.join(flight.reasons)}",
     )
     shown = [_shown(cell) for cell in cells]
     if report is not None:
         shown[1] = f'<a href="{quote(report)}">{shown[1]}</a>'
     told = "".join(f'<td data-label="{name}">{cell}</td>' for name, cell in zip(_COLUMNS, shown, strict=True))
     return f"<tr>{told}</tr>"
+
+
+def _result(sentence: str) -> str:
+    """Return the sentence of a flight test for a flight that is over: it asks for nothing more."""
+    begin, _, rest = sentence.partition(": ")
+    return f"Not complete: {rest}" if begin == "CONTINUE" else sentence
 
 
 def _shown(text: str) -> str:

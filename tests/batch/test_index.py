@@ -23,7 +23,7 @@ def flown(number: int, elevator: float = 1.0) -> Analyzed:
         "problems": [],
         "log": {"vehicle": {"system": 1, "autopilot": "px4"}},
         "maneuvers": [{"verdict": "accepted"}, {"verdict": "rejected"}],
-        "flight_test": {"sentence": "Continue: the criterion is 40 %."},
+        "flight_test": {"sentence": "CONTINUE: the criterion is 40 %."},
     }
     joint = {
         "theta": found.theta.tolist(),
@@ -61,7 +61,7 @@ def test_a_row_is_a_flight_with_its_day_and_what_came_of_it(page: Page) -> None:
         "2027-01-16 08:00",
         "Talon",
         "1 of 2",
-        "Continue: the criterion is 40 %.",
+        "Not complete: the criterion is 40 %.",
     ]
     assert last[2] == "not dated"
     assert last[5] == "Cannot be used: The log is <b>empty</b>. Give another."
