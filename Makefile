@@ -158,6 +158,13 @@ DAMAGE_SEED ?= 0
 damage: .venv/.developed ## 10,000 damaged logs and more, read and analysed (DAMAGE_CASES of each of three kinds, DAMAGE_SEED)
 	DAMAGE_CASES=$(DAMAGE_CASES) DAMAGE_SEED=$(DAMAGE_SEED) $(BIN)/python -m pytest --timeout 0 tests/test_damaged_logs.py
 
+.PHONY: endure
+ENDURE_CASES ?= 5000
+ENDURE_SEED ?= 0
+ENDURE_MINUTES ?= inf
+endure: .venv/.developed ## 5,000 flights in every unkind form, each answered (ENDURE_CASES, ENDURE_SEED, ENDURE_MINUTES; hours)
+	$(BIN)/python -m benchmarks.endure --cases $(ENDURE_CASES) --seed $(ENDURE_SEED) --minutes $(ENDURE_MINUTES)
+
 .PHONY: site words pages examples
 SAMPLES := build/samples/report.html build/samples/gap.html
 PAGE := .venv/.developed $(shell find advisor -name '*.py' -o -name 'page.*')

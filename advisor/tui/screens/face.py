@@ -9,7 +9,7 @@ from textual.events import Event, ScreenResume
 from textual.message import Message
 from textual.screen import Screen
 
-from advisor.process.parts import FailedPart, attempt
+from advisor.process.parts import Parts
 from advisor.session.hand import HandDecision
 from advisor.session.view import View
 from advisor.tui.panes.ask import Ask
@@ -28,6 +28,10 @@ class Face(Screen[None]):
         def __init__(self, decision: HandDecision) -> None:
             super().__init__()
             self.decision = decision
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._parts = Parts(lambda failed: self.notify(str(failed.problem), severity="error", markup=False))
 
     async def on_event(self, event: Event) -> None:
         """Return to the state at leaving. A theme that changed meanwhile is applied by the switch itself."""
@@ -54,6 +58,5 @@ class Face(Screen[None]):
             for node in self.walk_children():
                 if isinstance(node, Part) and node.wants_showing:
                     shown = view if node.EITHER_AXIS else view.elevator or view
-                    made = attempt(f"pane {type(node).__name__}", partial(node.show, shown))
-                    if isinstance(made, FailedPart):
-                        self.notify(str(made.problem), severity="error", markup=False)
+                    name = f"pane {node.id or type(node).__name__}"
+                    self._parts.make(name, partial(node.show, shown), lambda failed: None)

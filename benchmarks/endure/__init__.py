@@ -1,0 +1,1 @@
+"""Endurance: flights in every unkind form, each answered by the advisor."""

@@ -1,0 +1,57 @@
+"""An export that a fault ends is named, and the other files are written."""
+
+from pathlib import Path
+from typing import Any, NoReturn
+
+import numpy as np
+import pytest
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.exports.flights import mat_file, mcap_files
+from advisor.exports.flights.formats import write_formats
+from advisor.exports.models import write
+from advisor.exports.models.exported import Exported
+from advisor.exports.models.write import carry_out, order_of
+
+NO_DATA: Any = None
+
+
+def fails(*_: object) -> NoReturn:
+    raise np.linalg.LinAlgError("Singular matrix")
+
+
+def test_a_format_that_fails_is_named_and_the_next_one_is_written(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(mat_file, "write_mat", fails)
+    monkeypatch.setattr(mcap_files, "write_mcap", lambda data, folder: (folder / "x.mcap").touch())
+    (failed,) = write_formats(NO_DATA, tmp_path, ("mat", "mcap"))
+    assert failed.part == "export mat"
+    assert failed.reason == "LinAlgError: Singular matrix"
+    assert (tmp_path / "x.mcap").exists()
+
+
+def test_a_fault_that_is_none_of_numbers_ends_the_export(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    def broken(*_: object) -> NoReturn:
+        raise TypeError("no number")
+
+    monkeypatch.setattr(mat_file, "write_mat", broken)
+    with pytest.raises(TypeError):
+        write_formats(NO_DATA, tmp_path, ("mat",))
+
+
+def test_a_model_that_cannot_be_written_is_named_and_the_next_one_is_written(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(write, "improvement_of", lambda *_: None)
+    monkeypatch.setattr(write.matlab, "script_text", fails)
+    monkeypatch.setattr(write.ardupilot, "servo_text", lambda _: Exported("SERVO2_RATE 50\n"))
+    orders = [order_of(f"matlab:{tmp_path}/model.m"), order_of(f"ardupilot:{tmp_path}/servo.parm")]
+    failed, written = carry_out(orders, NO_DATA, Aircraft())
+    assert "A fault of the advisor, not yours, ended this part: export matlab" in failed.problem
+    assert "LinAlgError: Singular matrix" in failed.problem
+    assert not (tmp_path / "model.m").exists()
+    assert written.problem == ""
+    assert (tmp_path / "servo.parm").read_text(encoding="utf-8") == "SERVO2_RATE 50\n"
