@@ -106,8 +106,8 @@ def judge_lateral(
 def _is_informed(estimate: LateralEstimate | NoEstimate) -> bool:
     """Return whether a manoeuvre determines its axis, whatever the length of its free response.
 
-    The band of each flown control's predicted rate is narrow, and the intervals of damping and control, with
-    the rudder those of stiffness too, exclude zero.
+    The band of each flown control's predicted rate is narrow. The intervals of damping and control exclude
+    zero, and with the rudder the interval of stiffness does too.
     """
     if isinstance(estimate, NoEstimate) or not estimate.flown:
         return False

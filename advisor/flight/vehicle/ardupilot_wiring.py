@@ -1,8 +1,8 @@
 """Roles and scales of servo outputs from ArduPilot's parameters SERVOn_*.
 
-An output can pass a radio channel through: its own (function 1, raw), or channel k (functions 50 + k, raw,
-and 139 + k, on the output's own travel). Where nothing else is the control of a stick, the output that passes
-this stick through is.
+An output can pass a radio channel through. Function 1 passes the output's own channel raw, and function
+50 + k passes channel k raw. Function 139 + k passes channel k on the output's own travel. Where no output has
+the function of a control, the output that passes its stick through is this control.
 """
 
 from collections.abc import Mapping

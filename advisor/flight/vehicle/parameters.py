@@ -25,8 +25,8 @@ Stated = tuple[float, float]
 
 
 def tells_of_outputs(name: str) -> bool:
-    """Return whether a parameter describes the servo outputs, a filter of the inertial sensors, the use of an
-    air speed sensor, or the topics of a log."""
+    """Return whether a parameter describes servo outputs, filters, an air speed sensor, or a log's
+    topics."""
     return name.startswith(_PREFIXES) or name in AIRSPEED_SENSOR or name == LOG_PROFILE
 
 

@@ -1,8 +1,8 @@
 """Parameters that a ground station fetched as a file by MAVLink FTP: ``@PARAM/param.pck``.
 
 QGroundControl, MAVProxy and Mission Planner read ArduPilot's parameters so. The vehicle answers with pieces
-of the file in FILE_TRANSFER_PROTOCOL, some twice and out of order. The file packs each parameter as its kind,
-the rest of its name behind the letters that it shares with the name before, and its value (ArduPilot,
+of the file in FILE_TRANSFER_PROTOCOL, some twice and out of order. The file holds the kind, name and value
+of each parameter. A name leaves out the first letters that it shares with the name before (ArduPilot,
 ``AP_Filesystem_Param.cpp``).
 """
 
@@ -82,8 +82,8 @@ def _contiguous(pieces: dict[int, bytes]) -> bytes:
 
 
 def unpacked(data: bytes) -> Iterator[tuple[str, float]]:
-    """Yield name and value of each parameter in a packed file; nothing where the file is another, and what
-    stands before a break where it is broken."""
+    """Yield name and value of each parameter in a packed file, up to the first break. Another file yields
+    nothing."""
     if len(data) < 6 or struct.unpack_from("<H", data)[0] not in (_PLAIN, _WITH_DEFAULTS):
         return
     at, before = 6, b""
