@@ -6,6 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 
+from benchmarks.endure import trial
 from benchmarks.endure.cases import Case, Unkindness, parsed
 from benchmarks.endure.forms import FORMS
 from benchmarks.endure.packets import Flight, changed, name, read, seconds, value, written
@@ -153,6 +154,20 @@ def test_what_is_no_answer_is_a_failure_of_its_kind(code: int, out: str, kind: s
 @pytest.mark.parametrize("code", [0, 3])
 def test_a_document_with_a_problem_of_the_log_is_an_answer(code: int):
     assert judged(code, '{"problems": [{"code": "rate", "text": "Too slow.", "fix": "Faster."}]}', "") is None
+
+
+@pytest.mark.parametrize("command", ["doctor", "analyze", "live"])
+def test_an_error_that_leaves_the_advisor_is_a_failure_with_its_kind(
+    command: str, monkeypatch: pytest.MonkeyPatch
+):
+    def divide(*_: object, **__: object) -> float:
+        raise ZeroDivisionError
+
+    monkeypatch.setattr(trial.cli, "main", divide)
+    monkeypatch.setattr(trial, "LogSeries", divide)
+    found = failure(Case(command, str(recorded("linear", 1.0, maneuvers=TWO))))
+    assert found is not None
+    assert found.kind.startswith("exit 70: ZeroDivisionError")
 
 
 def for_ever():
