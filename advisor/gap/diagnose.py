@@ -1,5 +1,6 @@
 """The diagnosis: where the gap lies, which effect causes it, and how far it shrinks with that effect."""
 
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -11,6 +12,8 @@ from advisor.gap.candidates.known import AIR, left_aside
 from advisor.gap.evidence.found import Evidence
 from advisor.gap.explain import evidence_of_one_maneuver, explain
 from advisor.gap.fitting.prior_speed import prior_speed
+from advisor.gap.inference.answer import answer_of
+from advisor.gap.inference.diagnose import infer
 from advisor.gap.judge.prior import FIELD, FieldPrior
 from advisor.gap.records.airspeed import measures_speed
 from advisor.gap.records.as_stamped import as_stamped
@@ -92,18 +95,21 @@ def examine(
     aircraft = _with_speed(usable_of(maneuvers), aircraft)
     offset = aircraft.effects.get("alpha_bias", {}).get("bias_rad", 0.0)
     maneuvers = alpha_by_motion([_without_offset(m, offset) for m in maneuvers], aircraft)
-    evidence, kinematics = _explained(maneuvers, aircraft, progress)
-    progress("measuring the gap", 0.9)
-    diagnosis = answer(evidence, aircraft, kinematics, holdout, prior)
+    found = _explained(maneuvers, aircraft, holdout, prior, progress)
+    diagnosis, evidence = found.diagnosis, found.evidence
     used = {flight.number for flight in evidence.problem.flights.flights}
     missing = left_out([m for m in maneuvers if m.number not in used])
     return DiagnosisEvidence(replace(diagnosis, notes=(*diagnosis.notes, *missing)), evidence)
 
 
 def _explained(
-    maneuvers: Sequence[Maneuver], aircraft: Aircraft, progress: Progress
-) -> tuple[Evidence, KinematicCheck]:
-    """Return the evidence of the manoeuvres, and the check of α against the kinematics alone."""
+    maneuvers: Sequence[Maneuver],
+    aircraft: Aircraft,
+    holdout: int | None,
+    prior: FieldPrior,
+    progress: Progress,
+) -> DiagnosisEvidence:
+    """Return the diagnosis of the manoeuvres with its evidence."""
     flights = prepare(maneuvers, aircraft)
     _refuse(flights, maneuvers)
     arms = aircraft.accelerometer.arm_m, aircraft.alpha.vane_arm_m
@@ -131,11 +137,19 @@ def _explained(
         flights = prepare(maneuvers, aircraft, over_read)
         problem, baseline = at_another_speed(problem, baseline, flights)
     if len(flights) == 1:
-        return evidence_of_one_maneuver(problem, baseline), kinematics
+        alone = evidence_of_one_maneuver(problem, baseline)
+        return DiagnosisEvidence(answer(alone, aircraft, kinematics, holdout, prior), alone)
+    if os.environ.get("ADVISOR_GAP_ENGINE", "rules") == "one":
+        found = infer(problem, baseline, aircraft, kinematics, prior, progress)
+        progress("measuring the gap", 0.9)
+        aside = left_aside(given, aircraft.effects, () if found.sought_air.found is None else AIR)
+        return DiagnosisEvidence(*answer_of(found, aircraft, kinematics, holdout, given, aside, weight))
     explained = explain(problem, baseline, aircraft, progress)
     aside = left_aside(given, aircraft.effects, () if explained.air is None else AIR)
     explained = replace(explained, known=given, left_aside=aside)
-    return (_checked_against_path(explained, flown, weight) if measured else explained), kinematics
+    explained = _checked_against_path(explained, flown, weight) if measured else explained
+    progress("measuring the gap", 0.9)
+    return DiagnosisEvidence(answer(explained, aircraft, kinematics, holdout, prior), explained)
 
 
 def _refuse(flights: PreparedManeuvers, maneuvers: Sequence[Maneuver]) -> None:

@@ -1,0 +1,183 @@
+"""From the plain fit of a flight to the posterior of its explanations."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.instruments.kinematics import KinematicCheck
+from advisor.flight.signals.messages import FloatArray
+from advisor.gap.candidates.catalogue import variants_for
+from advisor.gap.candidates.known import beyond_known, beyond_servo
+from advisor.gap.fitting.fit import EffectFit
+from advisor.gap.fitting.problem import EffectProblem
+from advisor.gap.inference.evidence import FlightProblem
+from advisor.gap.inference.explanation import Explanation, Row
+from advisor.gap.inference.posterior import NONE, Posterior, posterior_of, relabelled, rows_of, stated_as
+from advisor.gap.inference.sizes import with_sizes
+from advisor.gap.inference.stage import Stage, stage_of
+from advisor.gap.judge.prior import FieldPrior
+from advisor.gap.kit.variant import Variant
+from advisor.gap.noise.probes import Probe, probe_blocks
+from advisor.gap.noise.quiet import quiet_rms
+from advisor.gap.noise.stamps import stamp_power
+from advisor.gap.records.floor import tolerance_of
+from advisor.gap.search.air import SoughtAir, moving_air
+from advisor.gap.uncatalogued.candidate_laws import laws_for
+from advisor.gap.uncatalogued.unexplained import innovation_noise
+
+Progress = Callable[[str, float], None]
+"""Function that receives a sentence about the work and the share done, 0 to 1."""
+_SECOND = 3
+"""Numerical: number of effects that are fitted in full as a second cause."""
+_SET_WITHIN_RAD = {True: 0.009, False: 0.0035}
+"""Prior: standard deviation of an offset of α without a fault, rad, of an autopilot's estimate and of a vane.
+ArduPlane's estimate is off by 0.2 to 0.5 degrees; a vane's zero is set to 0.2 degrees."""
+_OFF_BY_RAD = 0.03
+"""Prior: standard deviation of an offset of α that is a fault, rad."""
+
+
+@dataclass(frozen=True)
+class Inference:
+    """Everything that the answer reads."""
+
+    problem: EffectProblem
+    posteriors: tuple[Posterior, ...]
+    """Posterior of the first effect, and of a second one beside the first."""
+    chosen: tuple[Explanation, ...]
+    """The plain model, then the model of each added effect."""
+    heat: float
+    """Nats of white noise that count as one."""
+    sought_air: SoughtAir
+    probes: tuple[Probe, ...]
+    floor: FloatArray
+    """Shape (channels,): noise where nothing was flown."""
+
+
+def infer(
+    problem: EffectProblem,
+    baseline: EffectFit,
+    aircraft: Aircraft,
+    kinematics: KinematicCheck,
+    prior: FieldPrior,
+    progress: Progress,
+) -> Inference:
+    """Return the posterior of all explanations of a flight.
+
+    Parameters
+    ----------
+    problem, baseline
+        The data, and the plain model fitted to the data.
+    aircraft
+        The aircraft file, whose effects are part of every model.
+    kinematics
+        Check of α against the motion, which alone shows a constant offset.
+    """
+    flight = FlightProblem.of(problem, baseline)
+    table, laws = _table(problem, flight, aircraft)
+    progress(f"trying {len(table) + len(laws)} ways to explain the residual", 0.2)
+    stage = stage_of(flight, baseline, table, laws)
+    best = stage.best
+    progress("looking for what has no name", 0.6)
+    probes = probe_blocks(problem, best.fitted, innovation_noise(problem))
+    names = sorted({v.effect for v in table})
+    rows = rows_of(problem, stage, names, sorted({v.effect for v in laws}), _shares(probes, stage.heat), prior)
+    rows = _with_offset(rows, kinematics, problem, prior, len(names))
+    progress("looking at the air", 0.7)
+    sought = moving_air(problem, best.fitted)
+    rows = _with_air(rows, stage, sought, _known_air(problem, aircraft))
+    floor = _floor(problem, best)
+    posterior = posterior_of(rows)
+    posteriors, chosen = [posterior], [stage.plain]
+    answer = posterior.answer
+    if answer.kind == "effect" and answer.name in {one.name for one in stage.effects}:
+        first = posterior.explanation_of(answer)
+        chosen.append(first)
+        others = [v for v in table if v.effect != answer.name]
+        progress("looking for a second cause", 0.8)
+        second = stage_of(first.problem, first.fitted, others, laws, _SECOND)
+        rows = rows_of(
+            problem, second, sorted({v.effect for v in others}), sorted({v.effect for v in laws}),
+            _shares(probes, second.heat), prior,
+        )  # fmt: skip
+        posteriors.append(posterior_of(rows))
+        also = posteriors[-1].answer
+        if also.kind == "effect":
+            chosen.append(posteriors[-1].explanation_of(also))
+    return Inference(problem, tuple(posteriors), tuple(chosen), stage.heat, sought, tuple(probes), floor)
+
+
+def _table(
+    problem: EffectProblem, flight: FlightProblem, aircraft: Aircraft
+) -> tuple[list[Variant], list[Variant]]:
+    """Return the effects of the catalogue beyond those of the file, and laws outside of it, with sizes."""
+    stated = {change.effect for change, _ in problem.changes}
+    variants = beyond_known(aircraft.effects, beyond_servo(aircraft, variants_for(problem.flights)))
+    described = [w for v in variants if v.effect not in stated for w in (v, *v.likewise)]
+    return (
+        [with_sizes(v, flight.mean, problem.flights) for v in described if v.starts],
+        [with_sizes(v, flight.mean, problem.flights) for v in laws_for(problem.flights) if v.starts],
+    )
+
+
+def _shares(probes: Sequence[Probe], heat: float) -> Mapping[str, float]:
+    """Return the probability of each block, given that something without a name acts in one."""
+    gains = np.array([probe.gain for probe in probes]) / heat
+    parts = np.exp(gains - np.max(gains))
+    return {probe.block: float(part) for probe, part in zip(probes, parts / np.sum(parts), strict=True)}
+
+
+def _with_offset(
+    rows: Sequence[Row], kinematics: KinematicCheck, problem: EffectProblem, prior: FieldPrior, names: int
+) -> list[Row]:
+    """Return the rows with a constant offset of α as one more explanation.
+
+    Trims absorb an offset, so that it goes with every other explanation. Only "nothing" excludes it.
+    """
+    offset = kinematics.offset
+    if "alpha" not in problem.channels or not offset.stays or not np.isfinite(offset.rad):
+        return list(rows)
+    natural = np.hypot(_SET_WITHIN_RAD[problem.flights.alpha_is_derived], offset.std_rad)
+    faulty = np.hypot(_OFF_BY_RAD, offset.std_rad)
+    gain = 0.5 * offset.rad**2 * (natural**-2 - faulty**-2) - float(np.log(faulty / natural))
+    told = [row for row in rows if row.alternative == NONE]
+    share = float(np.log(prior.effect / max(names, 1) / prior.none))
+    return [
+        *(_gaining(row, max(0.0, gain + share)) if row.alternative != NONE else row for row in rows),
+        *(relabelled(_gaining(row, gain + share), stated_as("alpha_bias")) for row in told),
+    ]
+
+
+def _gaining(row: Row, nats: float) -> Row:
+    return replace(row, terms={**row.terms, "offset": nats})
+
+
+def _known_air(problem: EffectProblem, aircraft: Aircraft) -> float:
+    """Return the gust angle, rad, that the aircraft file states of the air."""
+    sigma = aircraft.effects.get("turbulence", {}).get("sigma_w_m_s", 0.0)
+    return float(sigma) / problem.flights.reference_m_s
+
+
+def _with_air(rows: Sequence[Row], stage: Stage, sought: SoughtAir, known: float) -> list[Row]:
+    """Return the rows with moving air as the main cause where another explanation gains less than the air."""
+    air = sought.found
+    if air is None or air.is_natural or (not air.gust and air.angle_std <= known):
+        return list(rows)
+    name = stated_as("gust" if air.gust else "turbulence")
+    plain = stage.plain.fitted.cost
+
+    def outweighed(row: Row) -> bool:
+        if row.alternative.kind == "unknown":
+            return False
+        return 0.5 * (plain - row.explanation.fitted.cost) < sought.gain
+
+    return [relabelled(row, name) if outweighed(row) else row for row in rows]
+
+
+def _floor(problem: EffectProblem, last: Explanation) -> FloatArray:
+    """Return the noise of each channel where nothing was flown, shape (channels,)."""
+    # Jitter of the stamps belongs to the instruments, but appears only where a channel moves.
+    measured = quiet_rms(problem, last.fitted) ** 2 + stamp_power(problem, last.fitted)
+    tolerance = tolerance_of(problem.flights)
+    return np.maximum(np.sqrt(np.minimum(measured, last.held_out.mean_square)), tolerance)

@@ -1,0 +1,169 @@
+"""Marginal likelihood of a fitted model (Laplace), with the file's derivatives right or wrong one by one.
+
+About a fit the log likelihood is quadratic, so the integral over all numbers is closed for every Gaussian
+prior. No simulator is right to the last digit: the residual of the best model is coloured, and alike in all
+manoeuvres. A nat of white noise therefore counts as 1/``temperature`` nats.
+"""
+
+from dataclasses import dataclass, replace
+from itertools import product
+
+import numpy as np
+
+from advisor.flight.signals.messages import FloatArray
+from advisor.gap.fitting.fit import EffectFit
+from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG, derivative_scale, small_without_alpha
+from advisor.gap.fitting.problem import EffectProblem, SearchPoint, counts
+from advisor.gap.records.floor import effective_sample_size
+from advisor.gap.simulator.layout import DERIVATIVES
+
+_UNSTATED = 1.0
+"""Prior: relative standard deviation of derivatives that no file states."""
+_FLAT = 1e6
+"""Numerical: prior standard deviation of a nuisance parameter without a stated one."""
+_WRONG = np.array(list(product((False, True), repeat=len(DERIVATIVES))))
+"""Shape (64, 6): every set of wrong derivatives; the first has none."""
+_EACH = 1.0 - 0.5 ** (1.0 / len(DERIVATIVES))
+"""Prior probability that a derivative is wrong: all of the file's are right in half of the flights."""
+_LOG_SHARE = np.where(_WRONG, np.log(_EACH), np.log(1.0 - _EACH)).sum(axis=1)
+"""Shape (64,): log prior probability of every set."""
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """Log marginal likelihood of one explanation, nats."""
+
+    right: float
+    """With all of the file's derivatives right."""
+    wrong: float
+    """With some of them wrong, each by itself."""
+
+    @property
+    def either(self) -> float:
+        """Log marginal likelihood where both cases are alike likely before the flight."""
+        return float(np.logaddexp(self.right, self.wrong) - np.log(2.0))
+
+    def more(self, nats: float) -> "Evidence":
+        """Return the evidence with ``nats`` added in both cases."""
+        return Evidence(self.right + nats, self.wrong + nats)
+
+
+@dataclass(frozen=True)
+class FlightProblem(EffectProblem):
+    """A flight with a tolerance of the simulator's derivatives."""
+
+    tolerance: float = ERROR_IF_WRONG
+    """Relative standard deviation of the file's derivatives in a fit."""
+    centre: FloatArray | None = None
+    """Shape (6,): mean of the derivatives' prior where no file states them."""
+
+    @classmethod
+    def of(cls, plain: EffectProblem, fitted: EffectFit) -> "FlightProblem":
+        """Return the problem with the derivatives of the plain fit as centre of an unstated prior."""
+        fields = {name: getattr(plain, name) for name in EffectProblem.__dataclass_fields__}
+        return cls(**fields, centre=fitted.point.derivatives)
+
+    @property
+    def is_stated(self) -> bool:
+        """Whether the aircraft file states all derivatives."""
+        return self.prior_derivatives is not None
+
+    @property
+    def mean(self) -> FloatArray:
+        """Shape (6,): prior mean of the derivatives."""
+        mean = self.prior_derivatives if self.prior_derivatives is not None else self.centre
+        assert mean is not None
+        return mean
+
+    def within(self, tolerance: float) -> "FlightProblem":
+        """Return the problem with another tolerance of the file's derivatives."""
+        return replace(self, tolerance=tolerance)
+
+    def prior_of(self, point: SearchPoint) -> tuple[FloatArray, FloatArray]:
+        """Return inverse prior variances of the shared parameters, and prior mean minus values, shapes
+        (k,)."""
+        width = self.tolerance if self.is_stated else _UNSTATED
+        return self.prior_with(point, np.full(len(DERIVATIVES), width))
+
+    def prior_with(self, point: SearchPoint, widths: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the same for relative errors ``widths`` of the derivatives, shape (6,)."""
+        inverse = [1.0 / (widths * derivative_scale(self.mean)) ** 2]
+        expected = [self.mean]
+        if "alpha" not in self.channels:
+            # No instrument shows Z_q and Z_δe: the prior of the estimate keeps both small.
+            small = small_without_alpha(point.derivatives)
+            expected = [inverse[0] * self.mean / (inverse[0] + small)]
+            inverse = [inverse[0] + small]
+        for effect, values in zip(point.effects, point.values, strict=True):
+            inverse.append(1.0 / np.array(effect.prior_std or (_FLAT,) * len(values)) ** 2)
+            expected.append(np.zeros(len(values)))
+        return np.concatenate(inverse), np.concatenate(expected) - point.shared
+
+
+def temperature(problem: EffectProblem, fitted: EffectFit) -> float:
+    """Return the number of nats of white noise that count as one, at least 1.
+
+    The residual's colour within a manoeuvre leaves fewer independent samples. Power beyond the known noise is
+    a misfit that all manoeuvres share, so that they are one witness.
+    """
+    power = float(np.mean(fitted.noise**2)) if problem.knows_the_noise else 1.0
+    shared = max(0.0, 1.0 - 1.0 / max(power, 1e-9))
+    return colour_of(problem, fitted) * (1.0 + shared * (len(problem.flights) - 1))
+
+
+def colour_of(problem: EffectProblem, fitted: EffectFit) -> float:
+    """Return the number of samples that count as one independent sample of the innovations, at least 1."""
+    effective = sum(
+        effective_sample_size(residual[rows])
+        for flight, residual in zip(problem.flights.flights, fitted.innovations, strict=True)
+        for rows in problem.rows(flight)
+    )
+    return max(float(np.sum(counts(problem))) / max(effective, 1.0), 1.0)
+
+
+def log_likelihood(problem: EffectProblem, fitted: EffectFit) -> float:
+    """Return the log likelihood of a fit, profiled over the noise, up to a constant of the flight."""
+    return -0.5 * (fitted.cost - problem.prior_cost(fitted.point))
+
+
+def evidence_of(problem: FlightProblem, fitted: EffectFit, heat: float) -> Evidence:
+    """Return the evidence of a model; ``problem`` is the one of its fit.
+
+    About the fit the gradient of the log likelihood balances the pull of the fit's own prior.
+    """
+    if not problem.is_stated:
+        told = float(_log_marginals(problem, fitted, heat, np.full((1, len(DERIVATIVES)), _UNSTATED))[0])
+        return Evidence(told, told)
+    widths = np.where(_WRONG, ERROR_IF_WRONG, ERROR_IF_RIGHT)
+    each = _log_marginals(problem, fitted, heat, widths)
+    wrong = _LOG_SHARE[1:] - np.log(1.0 - np.exp(_LOG_SHARE[0]))
+    return Evidence(float(each[0]), float(np.logaddexp.reduce(each[1:] + wrong)))
+
+
+def _log_marginals(
+    problem: FlightProblem, fitted: EffectFit, heat: float, widths: FloatArray
+) -> FloatArray:
+    """Return the log marginal likelihood for each row of relative errors, shape (sets, 6), as (sets,)."""
+    own_precision, own_pull = problem.prior_of(fitted.point)
+    data = (fitted.information - np.diag(own_precision)) / heat
+    gradient = -own_precision * own_pull / heat
+    priors = [problem.prior_with(fitted.point, row) for row in widths]
+    precision, pull = (np.array([prior[k] for prior in priors]) for k in (0, 1))
+    slope = gradient + precision * pull
+    whole = data + precision[:, :, None] * np.eye(len(data))
+    scale = 1.0 / np.sqrt(np.diagonal(whole, axis1=1, axis2=2))
+    scaled = whole * scale[:, :, None] * scale[:, None, :]
+    volume = 0.5 * (np.sum(np.log(precision), axis=1) - np.linalg.slogdet(scaled)[1])
+    volume += np.sum(np.log(scale), axis=1)
+    reached = np.linalg.solve(scaled, (scale * slope)[..., None])[..., 0]
+    gained = 0.5 * np.sum(scale * slope * reached, axis=1) - 0.5 * np.sum(precision * pull**2, axis=1)
+    return np.asarray(log_likelihood(problem, fitted) / heat + volume + gained)
+
+
+def covariance_of(problem: EffectProblem, fitted: EffectFit, heat: float) -> FloatArray:
+    """Return the posterior covariance of the shared parameters, shape (k, k); the prior is not widened."""
+    precision, _ = problem.prior_of(fitted.point)
+    information = (fitted.information - np.diag(precision)) / heat + np.diag(precision)
+    scale = 1.0 / np.sqrt(np.maximum(np.diag(information), 1e-300))
+    inverse = np.linalg.pinv(information * np.outer(scale, scale), hermitian=True)
+    return np.asarray(inverse * np.outer(scale, scale))

@@ -1,0 +1,74 @@
+"""Prior width of every number of every effect, before a flight is looked at.
+
+A width says how large the number is on an aircraft that has the effect. Widths follow from physics and from
+data sheets of servos and sensors. No test flight set them.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from advisor.flight.signals.messages import FloatArray
+from advisor.gap.fitting.prior import derivative_scale
+from advisor.gap.kit.variant import Variant
+from advisor.gap.records.flights import PreparedManeuvers
+
+_TIME_S, _SHARE = 0.05, 0.1
+"""Prior standard deviations of late stamps, s, and of relative errors of a reading."""
+_BENT = 0.5
+"""Prior standard deviation of a curve at the largest departure flown, relative to the linear term."""
+_LEAST_ALPHA_RAD, _LEAST_DELTA_RAD = 0.05, 0.02
+"""Least departures of angle of attack and elevator for which a curve's width is computed, rad."""
+_OF_EFFECT = {
+    "actuator_lag.lag_s": 0.05, "transport_delay.delay_s": 0.05, "actuator_rate_limit.rate_rad_s": 1.5,
+    "actuator_backlash.half_width_rad": 0.01, "actuator_deadband.half_width_rad": 0.01,
+    "actuator_deadband.neutral_rad": 0.01,
+    "alpha_lag.lag_s": 0.08, "alpha_vane_offset.arm_m": 1.0, "accelerometer_offset.arm_m": 0.3,
+    "pitch_rate_bias.bias_rad_s": 0.01, "structural_mode.frequency_hz": 4.0,
+    "structural_mode.omega_rad_s": 25.0, "structural_mode.damping": 0.05, "structural_mode.gain": 1.0,
+    "structural_mode.rate_gain": 0.3,
+    "alpha_dot.M_alpha_dot": 1.5, "unsteady_lift.share": 0.3, "unsteady_lift.lag_s": 0.4,
+    "nonlinear_lift.stall_rad": 0.2, "nonlinear_lift.sharpness": 40.0, "ground_effect.lift_h": 0.3,
+    "ground_effect.scale_m": 5.0, "airspeed_variation.exponent": 0.5, "airspeed_variation.exponent_M": 0.5,
+    "thrust_moment.lag_s": 0.5,
+    "mass_change.step": 0.15, "mass_change.inertia": 0.15, "cg_shift.step": 0.2, "icing.Z_alpha": 0.15,
+    "icing.Z_delta_e": 0.15, "icing.M_alpha": 0.15, "icing.M_delta_e": 0.15,
+}  # fmt: skip
+"""Prior standard deviations by effect and number, in the unit of the search."""
+_OF_RANGE = 0.5
+"""Prior standard deviation of any other number, as a share of the largest value that is searched."""
+
+
+def with_sizes(variant: Variant, derivatives: FloatArray, flights: PreparedManeuvers) -> Variant:
+    """Return the variant with a Gaussian prior about zero on each of its numbers; one that it has stays.
+
+    Parameters
+    ----------
+    derivatives
+        Shape (6,): derivatives of the simulator, or fitted ones where no file states them.
+    """
+    if variant.prior_std:
+        return variant
+    z_alpha, _, _, m_alpha, _, m_delta = derivative_scale(derivatives)
+    alpha, delta = _departures(flights)
+    span = max(float(flights.flights[-1].started_s - flights.flights[0].started_s), 1.0)
+    of_number = {
+        "M_delta2": _BENT * m_delta / delta, "M_delta3": _BENT * m_delta / delta**2,
+        "M_alpha2": _BENT * m_alpha / alpha, "M_alpha3": _BENT * m_alpha / alpha**2,
+        "Z_alpha2": _BENT * z_alpha / alpha, "Z_alpha3": _BENT * z_alpha / alpha**2,
+        "M_throttle": 2.0 * m_delta * delta, "M_h": m_delta * delta, "Z_h": z_alpha * alpha,
+        "at_s": span, "over_s": span, "rate_per_s": 0.2 / span, "skew_s": _TIME_S, "scale": _SHARE,
+        "step": _SHARE,
+    }  # fmt: skip
+    stds = [
+        _OF_EFFECT.get(f"{variant.effect}.{name}", of_number.get(name, _OF_RANGE * max(map(abs, bounds))))
+        for name, bounds in zip(variant.names, variant.bounds, strict=True)
+    ]
+    return replace(variant, prior_std=tuple(stds))
+
+
+def _departures(flights: PreparedManeuvers) -> tuple[float, float]:
+    """Return half of the range flown of angle of attack and elevator, rad."""
+    alphas = [np.ptp(f.outputs["alpha"].y) / 2.0 for f in flights.flights if "alpha" in f.outputs]
+    deltas = [np.ptp(f.u) / 2.0 for f in flights.flights]
+    return float(max([_LEAST_ALPHA_RAD, *alphas])), float(max([_LEAST_DELTA_RAD, *deltas]))
