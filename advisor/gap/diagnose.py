@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.instruments.atmosphere import thin_air
-from advisor.flight.instruments.kinematics import KinematicCheck, check_alpha, combine
+from advisor.flight.instruments.kinematics import check_alpha, combine
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.candidates.known import AIR, left_aside
 from advisor.gap.evidence.found import Evidence

@@ -1,1 +1,1 @@
-"""Every explanation of a flight as a full model with its marginal likelihood; their posterior is the answer."""
+"""Every explanation of a flight as a full model with its evidence; their posterior is the answer."""

@@ -1,7 +1,7 @@
 """The answer: a reader of the posterior. Sizes, numbers and sentences are those of the answer's own model."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from advisor.gap.effects import EFFECTS
 from advisor.gap.evidence.found import Evidence
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.measure import file_model_of, whole_gap
+from advisor.gap.fitting.uncertainty import effective_samples
 from advisor.gap.foresight.foresee import unseen_effects
 from advisor.gap.inference.diagnose import Inference
 from advisor.gap.inference.evidence import covariance_of
@@ -29,9 +30,9 @@ from advisor.gap.inference.posterior import (
 from advisor.gap.records.floor import tolerance_of
 from advisor.gap.result import Cause, Diagnosis, Gap, GapVerdict, Value, Where
 from advisor.gap.search.indistinguishable import way_to_distinguish
+from advisor.gap.search.score import addition
 from advisor.gap.search.speed import at_constant_speed
 from advisor.gap.search.stage import Stage as ModelStage
-from advisor.gap.search.score import addition
 from advisor.gap.uncatalogued.airspeed_scale import airspeed_scale_of
 from advisor.gap.uncatalogued.candidate_laws import sentence_of as sentence_of_law
 from advisor.gap.uncatalogued.unexplained import Unexplained
@@ -53,7 +54,6 @@ from advisor.gap.verdict.numbers import (
 from advisor.gap.verdict.outside_fit import moving_air_of
 from advisor.gap.verdict.statements import in_simulator
 from advisor.gap.verdict.text import in_words, sentence_of
-from advisor.gap.fitting.uncertainty import effective_samples
 
 DECIDED = 0.6
 """Contract: least probability of an answer that is decided."""
@@ -100,7 +100,7 @@ def answer_of(
     e = Evidence(
         problem, stages, _unexplained(posterior, answer, law), air, floor, file_model, None,
         at_constant_speed(problem, last), airspeed_scale_of(problem, last),
-        weight=weight, sought_air=found.sought_air, probes=found.probes, known=known, left_aside=left_aside,
+        weight=weight, sought_air=found.sought_air, known=known, left_aside=left_aside,
     )  # fmt: skip
     return _diagnosed(found, posterior, e, aircraft, kinematics, holdout, named), e
 
@@ -254,7 +254,7 @@ def _causes(
         present.append(_offset(kinematics, posterior, gap, True))
     taken = {c.effect for c in present}
     left = 1.0 - sum(c.probability for c in present)
-    others = []
+    others: list[Cause] = []
     for alternative, p in posterior.by_alternative.items():
         if not alternative.is_effect or alternative.name in taken or len(others) + len(taken) >= MOST_CAUSES:
             continue
@@ -298,9 +298,7 @@ def _offset(kinematics: KinematicCheck, posterior: Posterior, gap: Gap, present:
     )  # fmt: skip
 
 
-def _not_told_from(
-    name: str, posterior: Posterior, channels: Sequence[str]
-) -> tuple[tuple[str, ...], str]:
+def _not_told_from(name: str, posterior: Posterior, channels: Sequence[str]) -> tuple[tuple[str, ...], str]:
     """Return the effects that the evidence does not exclude beside one, and what would distinguish them."""
     names = [
         a.name

@@ -1,6 +1,6 @@
 """From the plain fit of a flight to the posterior of its explanations."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -19,13 +19,11 @@ from advisor.gap.inference.sizes import with_sizes
 from advisor.gap.inference.stage import Stage, stage_of
 from advisor.gap.judge.prior import FieldPrior
 from advisor.gap.kit.variant import Variant
-from advisor.gap.noise.probes import Probe, probe_blocks
 from advisor.gap.noise.quiet import quiet_rms
 from advisor.gap.noise.stamps import stamp_power
 from advisor.gap.records.floor import tolerance_of
 from advisor.gap.search.air import SoughtAir, moving_air
 from advisor.gap.uncatalogued.candidate_laws import laws_for
-from advisor.gap.uncatalogued.unexplained import innovation_noise
 
 Progress = Callable[[str, float], None]
 """Function that receives a sentence about the work and the share done, 0 to 1."""
@@ -50,7 +48,6 @@ class Inference:
     heat: float
     """Nats of white noise that count as one."""
     sought_air: SoughtAir
-    probes: tuple[Probe, ...]
     floor: FloatArray
     """Shape (channels,): noise where nothing was flown."""
 
@@ -80,9 +77,8 @@ def infer(
     stage = stage_of(flight, baseline, table, laws)
     best = stage.best
     progress("looking for what has no name", 0.6)
-    probes = probe_blocks(problem, best.fitted, innovation_noise(problem))
     names = sorted({v.effect for v in table})
-    rows = rows_of(problem, stage, names, sorted({v.effect for v in laws}), _shares(probes, stage.heat), prior)
+    rows = rows_of(problem, stage, names, sorted({v.effect for v in laws}), prior)
     rows = _with_offset(rows, kinematics, problem, prior, len(names))
     progress("looking at the air", 0.7)
     sought = moving_air(problem, best.fitted)
@@ -97,15 +93,13 @@ def infer(
         others = [v for v in table if v.effect != answer.name]
         progress("looking for a second cause", 0.8)
         second = stage_of(first.problem, first.fitted, others, laws, _SECOND)
-        rows = rows_of(
-            problem, second, sorted({v.effect for v in others}), sorted({v.effect for v in laws}),
-            _shares(probes, second.heat), prior,
-        )  # fmt: skip
+        names = sorted({v.effect for v in others})
+        rows = rows_of(problem, second, names, sorted({v.effect for v in laws}), prior)
         posteriors.append(posterior_of(rows))
         also = posteriors[-1].answer
         if also.kind == "effect":
             chosen.append(posteriors[-1].explanation_of(also))
-    return Inference(problem, tuple(posteriors), tuple(chosen), stage.heat, sought, tuple(probes), floor)
+    return Inference(problem, tuple(posteriors), tuple(chosen), stage.heat, sought, floor)
 
 
 def _table(
@@ -119,13 +113,6 @@ def _table(
         [with_sizes(v, flight.mean, problem.flights) for v in described if v.starts],
         [with_sizes(v, flight.mean, problem.flights) for v in laws_for(problem.flights) if v.starts],
     )
-
-
-def _shares(probes: Sequence[Probe], heat: float) -> Mapping[str, float]:
-    """Return the probability of each block, given that something without a name acts in one."""
-    gains = np.array([probe.gain for probe in probes]) / heat
-    parts = np.exp(gains - np.max(gains))
-    return {probe.block: float(part) for probe, part in zip(probes, parts / np.sum(parts), strict=True)}
 
 
 def _with_offset(

@@ -126,22 +126,28 @@ def log_likelihood(problem: EffectProblem, fitted: EffectFit) -> float:
     return -0.5 * (fitted.cost - problem.prior_cost(fitted.point))
 
 
-def evidence_of(problem: FlightProblem, fitted: EffectFit, heat: float) -> Evidence:
+def evidence_of(problem: FlightProblem, fitted: EffectFit, heat: float, narrower: float = 1.0) -> Evidence:
     """Return the evidence of a model; ``problem`` is the one of its fit.
 
     About the fit the gradient of the log likelihood balances the pull of the fit's own prior.
+
+    Parameters
+    ----------
+    narrower
+        Factor on the prior widths of the effect that was added last.
     """
     if not problem.is_stated:
-        told = float(_log_marginals(problem, fitted, heat, np.full((1, len(DERIVATIVES)), _UNSTATED))[0])
+        unstated = np.full((1, len(DERIVATIVES)), _UNSTATED)
+        told = float(_log_marginals(problem, fitted, heat, unstated, narrower)[0])
         return Evidence(told, told)
     widths = np.where(_WRONG, ERROR_IF_WRONG, ERROR_IF_RIGHT)
-    each = _log_marginals(problem, fitted, heat, widths)
+    each = _log_marginals(problem, fitted, heat, widths, narrower)
     wrong = _LOG_SHARE[1:] - np.log(1.0 - np.exp(_LOG_SHARE[0]))
     return Evidence(float(each[0]), float(np.logaddexp.reduce(each[1:] + wrong)))
 
 
 def _log_marginals(
-    problem: FlightProblem, fitted: EffectFit, heat: float, widths: FloatArray
+    problem: FlightProblem, fitted: EffectFit, heat: float, widths: FloatArray, narrower: float
 ) -> FloatArray:
     """Return the log marginal likelihood for each row of relative errors, shape (sets, 6), as (sets,)."""
     own_precision, own_pull = problem.prior_of(fitted.point)
@@ -149,6 +155,8 @@ def _log_marginals(
     gradient = -own_precision * own_pull / heat
     priors = [problem.prior_with(fitted.point, row) for row in widths]
     precision, pull = (np.array([prior[k] for prior in priors]) for k in (0, 1))
+    if narrower != 1.0:
+        precision[:, fitted.point.place(len(fitted.point.effects) - 1)] /= narrower**2
     slope = gradient + precision * pull
     whole = data + precision[:, :, None] * np.eye(len(data))
     scale = 1.0 / np.sqrt(np.diagonal(whole, axis1=1, axis2=2))

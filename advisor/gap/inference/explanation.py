@@ -13,6 +13,9 @@ from advisor.gap.fitting.problem import EffectProblem, counts
 from advisor.gap.inference.evidence import Evidence, FlightProblem, evidence_of, log_likelihood
 from advisor.gap.kit.variant import Variant
 
+_NATURAL = 0.2
+"""Prior: what every aircraft has of an effect, as a share of what an aircraft with the effect has: of a
+servo's lag 10 ms of 50, of a curve 10 % of the linear term at the largest departure, of a scale 2 %."""
 _SYMMETRIC = float(np.log(2.0))
 """Log prior gain, nats, of a number that cannot be negative: its Gaussian prior has half the range."""
 
@@ -28,6 +31,8 @@ class Explanation:
     fitted: EffectFit
     held_out: HeldOut
     evidence: Evidence
+    natural: Evidence
+    """Evidence with as little of the effect as every aircraft has."""
     likelihood: float
     """Log likelihood over the temperature, nats: the part of the evidence that the fit makes."""
     unseen: float
@@ -50,7 +55,8 @@ class Explanation:
 
     def lifted(self, nats: float) -> "Explanation":
         """Return the explanation with evidence for the error of every simulator."""
-        return replace(self, evidence=self.evidence.more(nats), model_error=nats)
+        more = self.evidence.more(nats), self.natural.more(nats)
+        return replace(self, evidence=more[0], natural=more[1], model_error=nats)
 
 
 @dataclass(frozen=True)
@@ -91,29 +97,24 @@ def explained(
             extra -= float(np.log(max(len(problem.flights) - 1, 1)))
         if not variant.needs:
             unseen = _lost_unseen(problem, plain, made, held) / heat
+    told = evidence_of(problem, made, heat).more(extra + unseen)
+    natural = told if variant is None else evidence_of(problem, made, heat, _NATURAL).more(extra + unseen)
     return Explanation(
-        variant, problem, made, held,
-        evidence_of(problem, made, heat).more(extra + unseen),
+        variant, problem, made, held, told, natural,
         log_likelihood(problem, made) / heat, unseen, change_of(problem, plain, made),
     )  # fmt: skip
 
 
 def change_of(problem: EffectProblem, one: EffectFit, other: EffectFit) -> float:
     """Return the largest difference between two models, as a share of each telling channel's peak."""
-    squares = mean_squares(
-        problem, [a - b for a, b in zip(one.residuals, other.residuals, strict=True)]
-    )
+    squares = mean_squares(problem, [a - b for a, b in zip(one.residuals, other.residuals, strict=True)])
     share = np.sqrt(np.mean(squares, axis=0)) / problem.flights.peaks
     return float(np.max(share[problem.flights.telling]))
 
 
-def _lost_unseen(
-    problem: EffectProblem, plain: EffectFit, made: EffectFit, held: HeldOut
-) -> float:
+def _lost_unseen(problem: EffectProblem, plain: EffectFit, made: EffectFit, held: HeldOut) -> float:
     """Return by how much less an effect gains on manoeuvres held out than in the fit, nats; at most 0."""
     n = counts(problem)
     in_fit = float(np.sum(n * np.log(plain.noise / made.noise)))
-    was, now = (
-        np.maximum(h.innovation_square, 1e-12) for h in (hold_out(problem, plain), held)
-    )
+    was, now = (np.maximum(h.innovation_square, 1e-12) for h in (hold_out(problem, plain), held))
     return min(0.0, float(np.sum(0.5 * n * np.log(was / now))) - in_fit)

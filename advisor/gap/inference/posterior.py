@@ -1,6 +1,6 @@
 """From evidence to probabilities: one row for each way in which an alternative may be true."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,14 +9,17 @@ from advisor.gap.alternative import Alternative, Probabilities
 from advisor.gap.effects import EFFECTS
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.inference.explanation import Explanation, Row
-from advisor.gap.inference.stage import Stage, misfit_of
+from advisor.gap.inference.residual import Residual, residual_of
+from advisor.gap.inference.stage import Stage
 from advisor.gap.judge.prior import FieldPrior
 
-_RIGHT_MISFIT, _UNKNOWN_MISFIT = (np.log(0.006), 0.9), (np.log(0.04), 0.9)
-"""Prior: mean and standard deviation of the log of the residual that a right model leaves, and a model that
-lacks a law, as shares of the motion."""
-_LEAST_MISFIT = 0.002
+_RIGHT, _LACKING = (np.log(0.004), 0.6), (np.log(0.02), 0.6)
+"""Prior: mean and standard deviation of the log of the motion that a disturbance of free course explains of
+the residual, as a share of the peaks: of a right model, and of one that lacks a law."""
+_LEAST_MISFIT = 0.001
 """Numerical: share of the motion below which a residual is not told from none."""
+_WITHIN = 25.0
+"""Numerical: nats behind the likeliest row beyond which a model's residual is not searched."""
 
 
 @dataclass(frozen=True)
@@ -76,12 +79,7 @@ NONE, PARAMETERS = Alternative("none", "none"), Alternative("parameters", "param
 
 
 def rows_of(
-    problem: EffectProblem,
-    stage: Stage,
-    names: Sequence[str],
-    laws: Sequence[str],
-    blocks: Mapping[str, float],
-    prior: FieldPrior,
+    problem: EffectProblem, stage: Stage, names: Sequence[str], laws: Sequence[str], prior: FieldPrior
 ) -> list[Row]:
     """Return the rows of one stage.
 
@@ -89,30 +87,64 @@ def rows_of(
     ----------
     names, laws
         Effects of the catalogue, and laws outside of it, that were tried.
-    blocks
-        Share of each block in an unknown law, summing to 1.
     prior
         How often each kind of answer is right before a flight is looked at.
     """
-    each = prior.effect / max(len(names), 1)
-    stated = stage.plain.problem.is_stated
+    ways = list(_ways(stage, names, laws, prior))
+    best = max(way.weight for way in ways)
+    near = {id(way.explanation): way.explanation for way in ways if way.weight > best - _WITHIN}
+    residuals = {key: residual_of(problem, one.fitted, stage.heat) for key, one in near.items()}
+    return [row for way in ways for row in _with_residual(way, residuals.get(id(way.explanation)), prior)]
+
+
+def _ways(stage: Stage, names: Sequence[str], laws: Sequence[str], prior: FieldPrior) -> Iterator[Row]:
+    """Yield the ways in which each alternative may be true, without a look at the residual."""
+    plain, each = stage.plain, prior.effect / max(len(names), 1)
+    stated = plain.problem.is_stated
     none = prior.none + (0.0 if stated else prior.parameters)
-    rows = _told(problem, NONE, stage.plain, stage.plain.evidence.right, none)
-    rows += _lacking(problem, stage.plain, stage.plain.evidence.right, 0.5 * prior.unknown, blocks)
+    natural = 0.5 / max(len(stage.effects), 1)
+    yield _row(NONE, plain, plain.evidence.right, 0.5 * none)
     if stated:
-        wrong = stage.plain.evidence.wrong
-        rows += _told(problem, PARAMETERS, stage.plain, wrong, prior.parameters)
-        rows += _lacking(problem, stage.plain, wrong, 0.5 * prior.unknown, blocks)
-    forms = {name: sum(one.name == name for one in stage.effects) for name in names}
+        yield _row(PARAMETERS, plain, plain.evidence.wrong, 0.5 * prior.parameters)
     for one in stage.effects:
-        rows += _told(problem, stated_as(one.name), one, one.evidence.either, each / forms[one.name])
-        share = 0.5 * prior.unknown / max(len(names), 1)
-        rows += _lacking(problem, one, one.evidence.either, share, blocks)
+        # As little of an effect as every aircraft has is no finding.
+        yield _row(NONE, one, one.natural.right, natural * none)
+        if stated:
+            yield _row(PARAMETERS, one, one.natural.wrong, natural * prior.parameters)
+        forms = sum(other.name == one.name for other in stage.effects)
+        yield _row(stated_as(one.name), one, one.evidence.either, each / forms)
     for one in stage.laws:
         assert one.variant is not None
         alternative = Alternative("unknown", "unknown", one.variant.block)
-        rows += _told(problem, alternative, one, one.evidence.either, 0.5 * prior.unknown / len(laws))
-    return rows
+        yield _row(alternative, one, one.evidence.either, 0.5 * prior.unknown / len(laws))
+
+
+def _row(alternative: Alternative, one: Explanation, evidence: float, share: float) -> Row:
+    numbers = evidence - one.likelihood - one.unseen - one.model_error
+    return Row(
+        alternative, one,
+        {"prior": float(np.log(share)), "fit": one.likelihood, "numbers": numbers, "unseen": one.unseen,
+         "model_error": one.model_error},
+    )  # fmt: skip
+
+
+def _with_residual(way: Row, residual: Residual | None, prior: FieldPrior) -> Iterator[Row]:
+    """Yield the way as right, and as one that only resembles a law outside the table.
+
+    Such a law leaves a residual that a disturbance of free course explains, in one block.
+    """
+    if residual is None:
+        yield way
+        return
+    yield replace(way, terms={**way.terms, "residual": _log_normal(residual.size, _RIGHT)})
+    lacking = float(np.log(0.5 * prior.unknown / (prior.none + prior.parameters + prior.effect)))
+    for block, share in residual.blocks.items():
+        terms = {
+            **way.terms,
+            "prior": way.terms["prior"] + lacking + float(np.log(share)),
+            "residual": _log_normal(residual.size, _LACKING),
+        }
+        yield replace(way, alternative=Alternative("unknown", "unknown", block), terms=terms)
 
 
 def posterior_of(rows: Iterable[Row]) -> Posterior:
@@ -121,41 +153,6 @@ def posterior_of(rows: Iterable[Row]) -> Posterior:
     weights = np.array([row.weight for row in ordered])
     shares = np.exp(weights - np.max(weights))
     return Posterior(tuple(ordered), tuple(map(float, shares / np.sum(shares))))
-
-
-def _told(
-    problem: EffectProblem, alternative: Alternative, one: Explanation, evidence: float, share: float
-) -> list[Row]:
-    """Return the row of an explanation that is right, so that it leaves little."""
-    return [_row(problem, alternative, one, evidence, share, _RIGHT_MISFIT)]
-
-
-def _lacking(
-    problem: EffectProblem, one: Explanation, evidence: float, share: float, blocks: Mapping[str, float]
-) -> list[Row]:
-    """Return the rows of a law outside the table, which an explanation only resembles."""
-    return [
-        _row(problem, Alternative("unknown", "unknown", block), one, evidence, share * part, _UNKNOWN_MISFIT)
-        for block, part in blocks.items()
-        if part > 1e-12
-    ]
-
-
-def _row(
-    problem: EffectProblem,
-    alternative: Alternative,
-    one: Explanation,
-    evidence: float,
-    share: float,
-    misfit: tuple[float, float],
-) -> Row:
-    left = _log_normal(misfit_of(problem, one.fitted), misfit)
-    numbers = evidence - one.likelihood - one.unseen - one.model_error
-    return Row(
-        alternative, one,
-        {"prior": float(np.log(share)), "fit": one.likelihood, "numbers": numbers, "unseen": one.unseen,
-         "model_error": one.model_error, "residual": left},
-    )  # fmt: skip
 
 
 def _log_normal(x: float, told: tuple[float, float]) -> float:

@@ -12,18 +12,21 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.prior import derivative_scale
 from advisor.gap.kit.variant import Variant
 from advisor.gap.records.flights import PreparedManeuvers
+from advisor.gap.simulator.layout import natural_frequency
 
 _TIME_S, _SHARE = 0.05, 0.1
 """Prior standard deviations of late stamps, s, and of relative errors of a reading."""
 _BENT = 0.5
 """Prior standard deviation of a curve at the largest departure flown, relative to the linear term."""
+_SLOWEST_RAD_S = 0.5
+"""Numerical: least frequency of a short period from which a length follows, rad/s."""
 _LEAST_ALPHA_RAD, _LEAST_DELTA_RAD = 0.05, 0.02
 """Least departures of angle of attack and elevator for which a curve's width is computed, rad."""
 _OF_EFFECT = {
     "actuator_lag.lag_s": 0.05, "transport_delay.delay_s": 0.05, "actuator_rate_limit.rate_rad_s": 1.5,
     "actuator_backlash.half_width_rad": 0.01, "actuator_deadband.half_width_rad": 0.01,
     "actuator_deadband.neutral_rad": 0.01,
-    "alpha_lag.lag_s": 0.08, "alpha_vane_offset.arm_m": 1.0, "accelerometer_offset.arm_m": 0.3,
+    "alpha_lag.lag_s": 0.08,
     "pitch_rate_bias.bias_rad_s": 0.01, "structural_mode.frequency_hz": 4.0,
     "structural_mode.omega_rad_s": 25.0, "structural_mode.damping": 0.05, "structural_mode.gain": 1.0,
     "structural_mode.rate_gain": 0.3,
@@ -35,6 +38,9 @@ _OF_EFFECT = {
     "icing.Z_delta_e": 0.15, "icing.M_alpha": 0.15, "icing.M_delta_e": 0.15,
 }  # fmt: skip
 """Prior standard deviations by effect and number, in the unit of the search."""
+_ARM = {"alpha_vane_offset": 0.2, "accelerometer_offset": 0.1}
+"""Prior standard deviation of an arm, as a share of the way flown in one radian of the short period. That way
+is 2.5 m for a small UAV and 50 m for a jet, whose nose boom is 13 m long."""
 _OF_RANGE = 0.5
 """Prior standard deviation of any other number, as a share of the largest value that is searched."""
 
@@ -51,6 +57,7 @@ def with_sizes(variant: Variant, derivatives: FloatArray, flights: PreparedManeu
         return variant
     z_alpha, _, _, m_alpha, _, m_delta = derivative_scale(derivatives)
     alpha, delta = _departures(flights)
+    way_m = flights.reference_m_s / max(natural_frequency(derivatives), _SLOWEST_RAD_S)
     span = max(float(flights.flights[-1].started_s - flights.flights[0].started_s), 1.0)
     of_number = {
         "M_delta2": _BENT * m_delta / delta, "M_delta3": _BENT * m_delta / delta**2,
@@ -58,7 +65,7 @@ def with_sizes(variant: Variant, derivatives: FloatArray, flights: PreparedManeu
         "Z_alpha2": _BENT * z_alpha / alpha, "Z_alpha3": _BENT * z_alpha / alpha**2,
         "M_throttle": 2.0 * m_delta * delta, "M_h": m_delta * delta, "Z_h": z_alpha * alpha,
         "at_s": span, "over_s": span, "rate_per_s": 0.2 / span, "skew_s": _TIME_S, "scale": _SHARE,
-        "step": _SHARE,
+        "step": _SHARE, "arm_m": _ARM.get(variant.effect, 0.0) * way_m,
     }  # fmt: skip
     stds = [
         _OF_EFFECT.get(f"{variant.effect}.{name}", of_number.get(name, _OF_RANGE * max(map(abs, bounds))))

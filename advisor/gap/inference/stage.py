@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.fit import EffectFit, fit
 from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG
 from advisor.gap.fitting.problem import EffectProblem
@@ -105,7 +104,12 @@ def _at_the_files(one: Explanation, plain: EffectFit, heat: float, best: float) 
     right = explained(near, one.variant, made, plain, heat)
     told = right.evidence.right if one.variant else max(right.evidence.right, one.evidence.right)
     kept = right if told > one.evidence.wrong else one
-    return replace(kept, evidence=replace(one.evidence, right=told))
+    natural = max(right.natural.right, one.natural.right)
+    return replace(
+        kept,
+        evidence=replace(one.evidence, right=told),
+        natural=replace(one.natural, right=natural),
+    )
 
 
 def _within_model_error(problem: EffectProblem, everyone: Sequence[Explanation]) -> list[Explanation]:
@@ -123,11 +127,3 @@ def _within_model_error(problem: EffectProblem, everyone: Sequence[Explanation])
         return one.lifted(max(0.0, least - one.evidence.either))
 
     return [one if one is best else lifted(one) for one in everyone]
-
-
-def misfit_of(problem: EffectProblem, fitted: EffectFit) -> float:
-    """Return the residual beyond the noise, as a share of the motion, in the worst telling channel."""
-    assert problem.instruments is not None
-    noise: FloatArray = fitted.noise if problem.knows_the_noise else fitted.noise / problem.instruments
-    excess = np.sqrt(np.maximum(noise**2 - 1.0, 0.0)) * problem.instruments / problem.flights.peaks
-    return float(np.max(excess[problem.flights.telling]))

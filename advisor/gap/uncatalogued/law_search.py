@@ -85,8 +85,8 @@ def _likeliest(
     rivals = {j.block: _share(j, judged) for j in reversed(stages[0].considered)}
     ranking = sorted(((b, s) for b, s in rivals.items() if b != block), key=lambda pair: -pair[1])
     share = float(np.clip(1.0 - np.mean(judged.held_out.mean_square / held.mean_square), 0.0, 1.0))
-    unexplained = Unexplained(block, share, ((block, 1.0), *ranking), note=sentence_of(judged.effect, judged.value))
-    return Law(unexplained, fitted)
+    note = sentence_of(judged.effect, judged.value)
+    return Law(Unexplained(block, share, ((block, 1.0), *ranking), note=note), fitted)
 
 
 def _fits(problem: EffectProblem, stages: list[Stage]) -> list[tuple[Variant, EffectFit]]:

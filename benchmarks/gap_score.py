@@ -1,0 +1,195 @@
+"""Fly blind cases of every generator and score the diagnosis.
+
+    python -m benchmarks.gap_score --each 20 --seed 5150     # about ten seconds a flight and core
+    python -m benchmarks.gap_score --seed 5150 --table       # the table of the answers kept so far
+
+The flights are drawn from the seed in each generator's own mixture, with natural nuisances, and with more
+flights that have no name for their cause. A process is given the log and the aircraft file of a case and
+nothing else. Answers are kept in ``build/gap-score``, a line a flight: a run goes on where it stopped.
+"""
+
+import json
+import sys
+import tempfile
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any, cast
+
+import click
+import numpy as np
+
+from advisor.cli.running import runner_of
+from benchmarks.sealed.answer import answer
+from benchmarks.sealed.generator import COMPARED
+from benchmarks.second_generator.cases import cases as second
+from benchmarks.third_generator.files import cases as third
+from sim.blind.draw import GROUPS, Group
+from sim.blind.generate import draw
+from sim.sealed.cases import SealedCase, write_case
+from sim.sealed.score import wilson
+
+DRAWS: Mapping[str, Callable[[int, int, str | None], Iterator[SealedCase]]] = {
+    "own": lambda count, seed, only: draw(count, seed, GROUPS if only is None else (cast(Group, only),)),
+    "second": second,
+    "third": third,
+}
+"""Flights of each generator by number, seed, and kind."""
+STRATA = ((None, 1.0), ("outside", 0.4), ("none", 0.2))
+"""Kinds that are drawn, None for all in the generator's mixture, with their numbers relative to the first."""
+SURE = 0.9
+"""Probability from which a reader takes an answer for sure."""
+FOLDER = Path("build") / "gap-score"
+
+
+def drawn(each: int, seed: int) -> Iterator[tuple[str, SealedCase]]:
+    """Yield the flights of every generator and stratum with their names, in turns over the generators."""
+    for stratum, (only, share) in enumerate(STRATA):
+        count = max(round(share * each), 1)
+        streams = [(name, draw_of(count, seed + stratum, only)) for name, draw_of in DRAWS.items()]
+        for _ in range(count):
+            for name, stream in streams:
+                if (case := next(stream, None)) is not None:
+                    yield f"{name}/{seed + stratum}/{case.name}", case
+
+
+def answered(name: str, case: SealedCase) -> dict[str, Any]:
+    """Return the answer to a case with its key."""
+    with tempfile.TemporaryDirectory() as folder:
+        write_case(case, Path(folder) / "case")
+        document, seconds = answer(Path(folder) / "case")
+    kept = ("verdict", "probabilities", "gap", "shrink")
+    return {
+        "case": name,
+        "truth": json.loads(json.dumps(case.truth, default=float)),
+        "answer": {key: document.get(key) for key in kept} | {"first": _first(document)},
+        "seconds": seconds,
+    }
+
+
+def _first(document: Mapping[str, Any]) -> dict[str, Any]:
+    """Return name, block and sizes of the first answer of a document."""
+    verdict = document.get("verdict") or "none"
+    if verdict == "effect":
+        cause = document["causes"][0]
+        return {"name": cause["effect"], "sizes": cause["parameters"]}
+    return {"name": verdict, "block": (document.get("where") or {}).get("block"), "sizes": {}}
+
+
+def is_right(one: Mapping[str, Any]) -> bool:
+    """Return whether the first answer is right.
+
+    Of two effects either is right. Without an effect the air, where it moved, is right too. Without a name
+    "unknown" is right in any block.
+    """
+    truth, name = one["truth"], one["answer"]["first"]["name"]
+    kind = truth["kind"]
+    if kind == "outside":
+        return bool(name == "unknown")
+    if kind in ("one", "two"):
+        return name in truth["effects"]
+    return name == kind or (kind == "none" and name in truth["background"])
+
+
+def stated(one: Mapping[str, Any]) -> float:
+    """Return the probability that the answer states for itself."""
+    told = one["answer"]["probabilities"]
+    name = one["answer"]["first"]["name"]
+    if told is None:
+        return 0.0
+    if name == "unknown":
+        return float(sum(told["unknown"].values()))
+    return float(told["effects"].get(name, told.get(name) or 0.0))
+
+
+def follows(one: Mapping[str, Any]) -> bool:
+    """Return whether no other answer is likelier than the one that is given."""
+    told = one["answer"]["probabilities"]
+    if told is None:
+        return True
+    others = [told["none"], told["parameters"], sum(told["unknown"].values()), *told["effects"].values()]
+    return stated(one) >= max(others) - 1e-9
+
+
+def sizes_inside(one: Mapping[str, Any]) -> Iterator[bool]:
+    """Yield whether each size of a right first cause lies within its 95 % interval."""
+    first, truth = one["answer"]["first"], one["truth"]["effects"]
+    if not isinstance(truth, Mapping):
+        return
+    for name, value in truth.get(first["name"], {}).items():
+        found = first["sizes"].get(name)
+        if name in COMPARED and found is not None:
+            yield abs(found["value"] - value) <= 1.96 * found["std"]
+
+
+def table(flights: Sequence[Mapping[str, Any]]) -> Iterator[str]:
+    """Yield the rows of the table: a figure, its 95 % interval and its number."""
+
+    def share(name: str, hits: Sequence[bool]) -> str:
+        if not hits:
+            return f"{name:56s} no case"
+        low, high = wilson(sum(hits), len(hits))
+        return f"{name:56s} {sum(hits):4d} of {len(hits):<4d} [{100 * low:3.0f}, {100 * high:3.0f}] %"
+
+    for generator in DRAWS:
+        mine = [f for f in flights if f["case"].startswith(generator)]
+        named = [f for f in mine if f["truth"]["kind"] != "outside"]
+        yield share(f"first answer right, {generator}", [is_right(f) for f in mine])
+        yield share(f"  without the nameless, {generator}", [is_right(f) for f in named])
+    kinds = {k: [f for f in flights if f["truth"]["kind"] == k] for k in ("none", "outside", "parameters")}
+    alarm = [not is_right(f) and f["answer"]["first"]["name"] != "parameters" for f in kinds["none"]]
+    yield share("false alarms, nothing withheld", alarm)
+    yield share("wrong numbers, told", [is_right(f) for f in kinds["parameters"]])
+    outside = [f["answer"]["first"]["name"] for f in kinds["outside"]]
+    yield share("without a name: unknown", [name == "unknown" for name in outside])
+    yield share("without a name: another name", [n not in ("unknown", "none", "parameters") for n in outside])
+    yield share("right where P is at least .9", [is_right(f) for f in flights if stated(f) >= SURE])
+    yield share("verdict follows from the probabilities", [follows(f) for f in flights])
+    yield share("sizes inside 95 %", [inside for f in flights if is_right(f) for inside in sizes_inside(f)])
+    told = np.array([stated(f) for f in flights])
+    right = np.array([is_right(f) for f in flights], float)
+    yield f"{'calibration error, Brier score of the answer':56s} {calibration_error(told, right):.3f}, " + (
+        f"{np.mean((told - right) ** 2):.3f}"
+    )
+    yield f"{'mean probability where right':56s} {np.mean(told[right > 0]):.2f}"
+    yield f"{'processor time of a diagnosis, median':56s} {np.median([f['seconds'] for f in flights]):.1f} s"
+
+
+def calibration_error(told: np.ndarray, right: np.ndarray) -> float:
+    """Return the mean difference of stated probability and share of right answers, over five equal parts."""
+    parts = np.array_split(np.argsort(told), 5)
+    return float(sum(len(p) * abs(np.mean(told[p]) - np.mean(right[p])) for p in parts if len(p)) / len(told))
+
+
+@click.command
+@click.option("--each", type=click.IntRange(1), default=20, show_default=True, help="Flights a generator.")
+@click.option("--seed", type=click.IntRange(0), required=True, help="Equal seeds give equal flights.")
+@click.option("--label", default="", help="Name of the answers' file, to compare two states of the code.")
+@click.option("--table", "only_table", is_flag=True, help="Print the table and fly nothing.")
+@click.option("--workers", type=click.IntRange(1), help="Processes; by default one a core.")
+def main(each: int, seed: int, label: str, only_table: bool, workers: int | None) -> None:
+    """Fly, answer and score."""
+    kept = FOLDER / f"{seed}{label}.jsonl"
+    kept.parent.mkdir(parents=True, exist_ok=True)
+    lines = kept.read_text(encoding="utf-8").splitlines() if kept.exists() else []
+    flights = [json.loads(line) for line in lines]
+    done = {flight["case"] for flight in flights}
+    if not only_table:
+        cases = [pair for pair in drawn(each, seed) if pair[0] not in done]
+        with kept.open("a", encoding="utf-8") as out:
+            for _, result in runner_of(workers, None)(_answered, cases):
+                if isinstance(result, Exception):
+                    raise result
+                out.write(json.dumps(result) + "\n")
+                out.flush()
+                flights.append(result)
+                print(result["case"], result["answer"]["first"]["name"], file=sys.stderr)
+    for row in table(flights):
+        click.echo(row)
+
+
+def _answered(pair: tuple[str, SealedCase]) -> dict[str, Any]:
+    return answered(*pair)
+
+
+if __name__ == "__main__":
+    main()
