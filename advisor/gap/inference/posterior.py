@@ -13,11 +13,11 @@ from advisor.gap.inference.residual import Residual, residual_of
 from advisor.gap.inference.stage import Stage
 from advisor.gap.judge.prior import FieldPrior
 
-_RIGHT, _LACKING = (np.log(0.004), 0.6), (np.log(0.02), 0.6)
-"""Prior: mean and standard deviation of the log of the motion that a disturbance of free course explains of
-the residual, as a share of the peaks: of a right model, and of one that lacks a law."""
-_LEAST_MISFIT = 0.001
-"""Numerical: share of the motion below which a residual is not told from none."""
+_RIGHT, _LACKING = (0.0, 0.6), (np.log(5.0), 0.6)
+"""Prior: mean and standard deviation of the log of the residual's size (``Residual.size``), of a right model
+and of one that lacks a law."""
+_LEAST_MISFIT = 0.25
+"""Numerical: size of a residual below which it is not told from none."""
 _WITHIN = 25.0
 """Numerical: nats behind the likeliest row beyond which a model's residual is not searched."""
 

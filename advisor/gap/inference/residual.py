@@ -6,12 +6,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.gap.fitting.fit import EffectFit
-from advisor.gap.fitting.problem import EffectProblem, row_weights
+from advisor.gap.fitting.holdout import mean_squares
+from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.noise.probes import probe_blocks
+from advisor.gap.records.floor import tolerance_of
 from advisor.gap.uncatalogued.unexplained import innovation_noise
 
 _HARDLY = 1e-6
 """Numerical: share below which a block counts as excluded."""
+_NATURAL = 0.004
+"""Prior: motion that a right simulator leaves unexplained, as a share of a channel's peak."""
 
 
 @dataclass(frozen=True)
@@ -19,7 +23,8 @@ class Residual:
     """What a model leaves that is no noise."""
 
     size: float
-    """Root mean square of the likeliest disturbance's response, as a share of the peaks."""
+    """Motion beyond the noise that the likeliest disturbance explains, over what every simulator leaves, in the
+    channel where that ratio is largest."""
     blocks: Mapping[str, float]
     """Probability of each block, given that something without a name acts in one."""
 
@@ -33,17 +38,14 @@ def residual_of(problem: EffectProblem, fitted: EffectFit, heat: float) -> Resid
         Nats of white noise that count as one (``evidence.temperature``).
     """
     assert problem.instruments is not None
-    noise = innovation_noise(problem)
-    probes = probe_blocks(problem, fitted, noise)
-    power = np.mean(
-        np.concatenate(
-            [(left * row_weights(problem, i, 1.0 / noise)) ** 2 for i, left in enumerate(fitted.innovations)]
-        )
-    )
-    telling = (problem.instruments / problem.flights.peaks)[problem.flights.telling]
-    size = float(np.sqrt(max(probe.explained for probe in probes) * power) * np.max(telling))
+    probes = probe_blocks(problem, fitted, innovation_noise(problem))
+    powers = np.mean(mean_squares(problem, fitted.innovations), axis=0) / innovation_noise(problem) ** 2
+    share = np.sqrt(probes[0].explained * powers) * problem.instruments / problem.flights.peaks
+    natural = np.hypot(_NATURAL, tolerance_of(problem.flights) / problem.flights.peaks)
     gains = np.array([probe.gain for probe in probes]) / heat
     parts = np.exp(gains - np.max(gains))
     parts /= np.sum(parts)
-    blocks = {probe.block: float(p) for probe, p in zip(probes, parts, strict=True) if p > _HARDLY}
-    return Residual(size, blocks)
+    return Residual(
+        float(np.max((share / natural)[problem.flights.telling])),
+        {probe.block: float(p) for probe, p in zip(probes, parts, strict=True) if p > _HARDLY},
+    )
