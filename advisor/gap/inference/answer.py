@@ -9,7 +9,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.instruments.kinematics import KinematicCheck
 from advisor.gap.alternative import Alternative, AlternativeEvidence, Column, Contribution
 from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.decision import Decision
+from advisor.gap.decision import CERTAIN, Decision
 from advisor.gap.effects import EFFECTS
 from advisor.gap.evidence.found import Evidence
 from advisor.gap.fitting.holdout import HeldOut
@@ -58,7 +58,7 @@ from advisor.gap.verdict.text import in_words, sentence_of
 DECIDED = 0.6
 """Contract: least probability of an answer that is decided."""
 MOST_CAUSES = 5
-"""Contract: most causes that are stated."""
+"""Words: most causes that are stated."""
 _GAP_AT_5_PERCENT = 2.0
 """Contract: gap on held-out manoeuvres at which "no gap" has a probability of 5 % at most."""
 _CREDIBLE = 0.05
@@ -111,7 +111,7 @@ def _none_means_no_gap(
     """Return the posterior in which "none" means that nothing is above the floor.
 
     A visible gap moves the probability of "none" to wrong numbers, as far as fitted derivatives remove the
-    gap, and to the likeliest block of the unknown.
+    gap. The rest goes to the likeliest block of the unknown.
     """
     if file_model is None:
         return posterior
@@ -299,7 +299,7 @@ def _offset(kinematics: KinematicCheck, posterior: Posterior, gap: Gap, present:
 
 
 def _not_told_from(name: str, posterior: Posterior, channels: Sequence[str]) -> tuple[tuple[str, ...], str]:
-    """Return the effects that the evidence does not exclude beside one, and what would distinguish them."""
+    """Return the effects that the evidence does not exclude, and what would distinguish them."""
     names = [
         a.name
         for a, p in posterior.by_alternative.items()
@@ -371,10 +371,18 @@ def _why(posterior: Posterior, rival: Alternative) -> Iterator[Contribution]:
     mine, other = (_best_row(posterior, a) for a in (posterior.answer, rival))
     names = dict.fromkeys([*mine.terms, *other.terms])
     parts = {name: mine.terms.get(name, 0.0) - other.terms.get(name, 0.0) for name in names}
-    p, q = (_together(posterior, a) for a in (posterior.answer, rival))
-    parts["rest"] = float(np.log(p / q)) - sum(parts.values())
+    parts["rest"] = _log_odds(posterior, rival) - sum(parts.values())
     for name, nats in sorted(parts.items(), key=lambda item: -abs(item[1])):
         yield Contribution(name, nats, _WORDS[name])
+
+
+def _log_odds(posterior: Posterior, rival: Alternative) -> float:
+    """Return the log odds of the answer against a rival, nats; all blocks of the unknown count together."""
+    mine, other = (
+        np.logaddexp.reduce([r.weight for r in posterior.rows if r.alternative.name == a.name])
+        for a in (posterior.answer, rival)
+    )
+    return float(mine - other)
 
 
 def _best_row(posterior: Posterior, alternative: Alternative) -> Row:
@@ -383,10 +391,9 @@ def _best_row(posterior: Posterior, alternative: Alternative) -> Row:
 
 def _decisions(found: Inference, posterior: Posterior, rival: Alternative) -> Iterator[Decision]:
     """Yield every statistic that is compared with a limit on the way to the verdict."""
-    p, q = (_together(posterior, a) for a in (posterior.answer, rival))
-    label = posterior.answer.name
-    yield Decision(label, "odds", float(np.log(p / q)), 0.0, f"log odds against {in_words(rival)}, nats")
-    yield Decision(label, "decided", p, DECIDED, "probability")
+    label, odds = posterior.answer.name, _log_odds(posterior, rival)
+    yield Decision(label, "odds", odds, 0.0, f"log odds against {in_words(rival)}, nats")
+    yield Decision(label, "decided", _together(posterior, posterior.answer), DECIDED, "probability")
     if found.sought_air.found is not None:
         air = found.sought_air.found
-        yield Decision("gust" if air.gust else "turbulence", "likelihood", air.gain, 30.0, "nats")
+        yield Decision("gust" if air.gust else "turbulence", "likelihood", air.gain, CERTAIN, "nats")

@@ -42,7 +42,7 @@ class Inference:
 
     problem: EffectProblem
     posteriors: tuple[Posterior, ...]
-    """Posterior of the first effect, and of a second one beside the first."""
+    """Posterior of the first effect, and of a second one in addition to it."""
     chosen: tuple[Explanation, ...]
     """The plain model, then the model of each added effect."""
     heat: float

@@ -14,8 +14,8 @@ from advisor.gap.inference.evidence import Evidence, FlightProblem, evidence_of,
 from advisor.gap.kit.variant import Variant
 
 _NATURAL = 0.2
-"""Prior: what every aircraft has of an effect, as a share of what an aircraft with the effect has: of a
-servo's lag 10 ms of 50, of a curve 10 % of the linear term at the largest departure, of a scale 2 %."""
+"""Prior: size of an effect that every aircraft has, as a share of its size on an aircraft with the effect.
+Every servo has 10 ms of 50, every curve 10 % of the linear term, every scale 2 %."""
 _SYMMETRIC = float(np.log(2.0))
 """Log prior gain, nats, of a number that cannot be negative: its Gaussian prior has half the range."""
 

@@ -20,11 +20,11 @@ _NATURAL = 0.004
 
 @dataclass(frozen=True)
 class Residual:
-    """What a model leaves that is no noise."""
+    """Motion that a model does not explain and that is no noise."""
 
     size: float
-    """Motion beyond the noise that the likeliest disturbance explains, over what every simulator leaves, in the
-    channel where that ratio is largest."""
+    """Motion beyond the noise that the likeliest disturbance explains, over what every simulator leaves. The
+    channel counts in which that ratio is largest."""
     blocks: Mapping[str, float]
     """Probability of each block, given that something without a name acts in one."""
 

@@ -15,13 +15,13 @@ from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import natural_frequency
 
 _TIME_S, _SHARE = 0.05, 0.1
-"""Prior standard deviations of late stamps, s, and of relative errors of a reading."""
+"""Prior: standard deviations of late stamps, s, and of relative errors of a reading."""
 _BENT = 0.5
-"""Prior standard deviation of a curve at the largest departure flown, relative to the linear term."""
+"""Prior: standard deviation of a curve at the largest departure flown, relative to the linear term."""
 _SLOWEST_RAD_S = 0.5
 """Numerical: least frequency of a short period from which a length follows, rad/s."""
 _LEAST_ALPHA_RAD, _LEAST_DELTA_RAD = 0.05, 0.02
-"""Least departures of angle of attack and elevator for which a curve's width is computed, rad."""
+"""Numerical: least departures of angle of attack and elevator for which a curve's width is computed, rad."""
 _OF_EFFECT = {
     "actuator_lag.lag_s": 0.05, "transport_delay.delay_s": 0.05, "actuator_rate_limit.rate_rad_s": 1.5,
     "actuator_backlash.half_width_rad": 0.01, "actuator_deadband.half_width_rad": 0.01,
@@ -37,12 +37,12 @@ _OF_EFFECT = {
     "mass_change.step": 0.15, "mass_change.inertia": 0.15, "cg_shift.step": 0.2, "icing.Z_alpha": 0.15,
     "icing.Z_delta_e": 0.15, "icing.M_alpha": 0.15, "icing.M_delta_e": 0.15,
 }  # fmt: skip
-"""Prior standard deviations by effect and number, in the unit of the search."""
+"""Prior: standard deviations by effect and number, in the unit of the search."""
 _ARM = {"alpha_vane_offset": 0.2, "accelerometer_offset": 0.1}
-"""Prior standard deviation of an arm, as a share of the way flown in one radian of the short period. That way
+"""Prior: standard deviation of an arm, as a share of the way flown in one radian of the short period. That way
 is 2.5 m for a small UAV and 50 m for a jet, whose nose boom is 13 m long."""
 _OF_RANGE = 0.5
-"""Prior standard deviation of any other number, as a share of the largest value that is searched."""
+"""Prior: standard deviation of any other number, as a share of the largest value that is searched."""
 
 
 def with_sizes(variant: Variant, derivatives: FloatArray, flights: PreparedManeuvers) -> Variant:

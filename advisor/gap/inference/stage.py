@@ -20,8 +20,8 @@ _FORMS = 2
 _REFINED = 120.0
 """Numerical: nats behind the best explanation beyond which none is fitted at the file's derivatives."""
 _MODEL_ERROR, _FORM_ERROR = 0.005, 0.03
-"""Prior: error of every simulator as a share of each channel's peak, and error of the form of an effect as a
-share of the effect's change."""
+"""Prior: error of every simulator, as a share of each channel's peak; error of an effect's form, as a share of
+its change."""
 _INDEPENDENT = 40.0
 """Prior: number of independent numbers that such an error has."""
 
@@ -115,8 +115,8 @@ def _at_the_files(one: Explanation, plain: EffectFit, heat: float, best: float) 
 def _within_model_error(problem: EffectProblem, everyone: Sequence[Explanation]) -> list[Explanation]:
     """Return all explanations, none of which is less likely than the error of a simulator allows.
 
-    Two models whose outputs differ by less than every simulator is off by, or by less than the form of an
-    effect is known, cannot be distinguished by their residuals, however many samples there are.
+    Residuals cannot distinguish two models whose outputs differ by less than such an error. More samples do
+    not help.
     """
     best = max(everyone, key=lambda one: one.evidence.either)
     error = float(np.hypot(_MODEL_ERROR, _FORM_ERROR * best.change))

@@ -1,0 +1,106 @@
+"""Every explanation is a row with its parts in nats; their posterior is the answer."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.gap.alternative import Alternative
+from advisor.gap.candidates.catalogue import variants_for
+from advisor.gap.diagnose import diagnose
+from advisor.gap.inference.answer import _doubt, _none_means_no_gap, _rival, _why
+from advisor.gap.inference.explanation import Row
+from advisor.gap.inference.posterior import NONE, PARAMETERS, posterior_of, stated_as
+from advisor.gap.inference.sizes import with_sizes
+from advisor.gap.records.prepare import prepare
+from tests.gap.generator import Setup, fly
+
+MOMENT = Alternative("unknown", "unknown", "moment_equation")
+LIFT = Alternative("unknown", "unknown", "force_equation")
+DELAY, LAG = stated_as("transport_delay"), stated_as("actuator_lag")
+EVERY = (NONE, PARAMETERS, MOMENT, LIFT, DELAY, LAG)
+
+
+def row(alternative, fit=0.0, prior=0.0):
+    return Row(alternative, SimpleNamespace(name=alternative.name), {"prior": prior, "fit": fit})
+
+
+@given(st.lists(st.floats(-1e4, 1e4), min_size=6, max_size=6))
+def test_the_answer_is_the_likeliest_with_all_blocks_of_the_unknown_together(nats):
+    told = posterior_of(map(row, EVERY, nats))
+    p = told.probabilities
+    each = {"none": p.none, "parameters": p.parameters, "unknown": sum(p.unknown.values()), **p.effects}
+    assert sum(each.values()) == pytest.approx(1.0)
+    assert each[told.answer.name] == pytest.approx(max(each.values()))
+
+
+def test_two_blocks_of_the_unknown_outweigh_one_likelier_effect():
+    told = posterior_of([row(DELAY, 1.0), row(MOMENT, 0.7), row(LIFT, 0.6)])
+    assert told.answer == MOMENT
+
+
+def test_two_ways_of_one_answer_add_up():
+    told = posterior_of([row(NONE), row(DELAY), row(DELAY)])
+    assert told.of(DELAY) == pytest.approx(2.0 / 3.0)
+
+
+@given(st.lists(st.floats(-500.0, 500.0), min_size=6, max_size=6))
+def test_the_reasons_add_up_to_the_log_odds_even_where_the_rival_has_no_chance(nats):
+    told = posterior_of(map(row, EVERY, nats))
+    parts = [part.nats for part in _why(told, _rival(told))]
+    mine = np.logaddexp.reduce([r.weight for r in told.rows if r.alternative.name == told.answer.name])
+    other = np.logaddexp.reduce([r.weight for r in told.rows if r.alternative.name == _rival(told).name])
+    assert sum(parts) == pytest.approx(mine - other, abs=1e-6)
+
+
+def test_an_answer_below_six_tenths_names_its_rival():
+    near = posterior_of([row(DELAY, 0.2), row(LAG)])
+    assert _doubt(near) == "Not decided between transport delay (55 %) and actuator lag (45 %)."
+    assert _doubt(posterior_of([row(DELAY, 1.0), row(LAG)])) == ""
+
+
+def held(gap):
+    """Return a hold-out whose mean square is ``gap`` above that of a floor of 1."""
+    return SimpleNamespace(mean_square=np.array([1.0 + gap]))
+
+
+@pytest.mark.parametrize("gap", [2.0, 5.0, 40.0])
+def test_with_a_gap_of_two_no_gap_is_at_most_five_per_cent(gap):
+    sure = posterior_of([row(NONE, 50.0), row(PARAMETERS), row(MOMENT)])
+    assert _none_means_no_gap(sure, held(gap), np.ones(1), held(0.0)).of(NONE) <= 0.05
+
+
+def test_a_gap_within_the_noise_leaves_no_gap_as_it_is():
+    sure = posterior_of([row(NONE, 50.0), row(PARAMETERS), row(MOMENT)])
+    assert _none_means_no_gap(sure, held(0.0), np.ones(1), held(0.0)).of(NONE) > 0.99
+
+
+def test_a_visible_gap_goes_to_the_numbers_as_far_as_fitted_ones_remove_it():
+    sure = posterior_of([row(NONE, 50.0), row(PARAMETERS), row(MOMENT)])
+    told = _none_means_no_gap(sure, held(10.0), np.ones(1), held(4.0))
+    assert told.of(PARAMETERS) == pytest.approx(0.6, abs=0.01)
+    assert told.of(MOMENT) == pytest.approx(0.4, abs=0.01)
+
+
+def test_every_number_of_every_effect_has_a_width_that_follows_the_aircraft():
+    flights = prepare(fly(Setup(maneuvers=3, seed=4)), Aircraft())
+    derivatives = np.array([-4.0, 0.0, -0.4, -40.0, -5.0, -60.0])
+    sized = [with_sizes(v, derivatives, flights) for v in variants_for(flights)]
+    assert all(len(v.prior_std) == len(v.names) and min(v.prior_std) > 0.0 for v in sized)
+    faster = [with_sizes(v, 4.0 * derivatives, flights) for v in variants_for(flights)]
+    moments = [(a, b) for a, b in zip(sized, faster, strict=True) if "M_delta2" in a.names]
+    assert all(b.prior_std[0] == pytest.approx(4.0 * a.prior_std[0]) for a, b in moments)
+
+
+@pytest.mark.study
+@pytest.mark.parametrize(
+    ("switches", "answer"), [({"delay": 0.06}, "transport_delay"), ({}, "none")], ids=["delay", "nothing"]
+)
+def test_the_engine_of_evidence_names_what_was_withheld(monkeypatch, switches, answer):
+    monkeypatch.setenv("ADVISOR_GAP_ENGINE", "one")
+    found = diagnose(fly(Setup(maneuvers=6, switches=switches, seed=23)), Aircraft())
+    assert (found.causes[0].effect if found.verdict == "effect" else found.verdict) == answer
+    assert found.probabilities is not None
