@@ -19,6 +19,7 @@ from advisor.gap.foresight.foresee import unseen_effects
 from advisor.gap.inference.diagnose import Inference
 from advisor.gap.inference.evidence import covariance_of
 from advisor.gap.inference.explanation import Explanation, Row
+from advisor.gap.inference.laws import sentence_of_law
 from advisor.gap.inference.posterior import (
     NONE,
     PARAMETERS,
@@ -34,7 +35,6 @@ from advisor.gap.search.score import addition
 from advisor.gap.search.speed import at_constant_speed
 from advisor.gap.search.stage import Stage as ModelStage
 from advisor.gap.uncatalogued.airspeed_scale import airspeed_scale_of
-from advisor.gap.uncatalogued.candidate_laws import sentence_of as sentence_of_law
 from advisor.gap.uncatalogued.unexplained import Unexplained
 from advisor.gap.uncatalogued.weight_check import WeightReading
 from advisor.gap.verdict.answer import _improvements, _of_the_derivatives, _speed_is_known

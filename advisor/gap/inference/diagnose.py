@@ -14,6 +14,7 @@ from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.inference.evidence import FlightProblem
 from advisor.gap.inference.explanation import Explanation, Row
+from advisor.gap.inference.laws import laws_of
 from advisor.gap.inference.posterior import NONE, Posterior, posterior_of, relabelled, rows_of, stated_as
 from advisor.gap.inference.sizes import with_sizes
 from advisor.gap.inference.stage import Stage, stage_of
@@ -23,7 +24,6 @@ from advisor.gap.noise.quiet import quiet_rms
 from advisor.gap.noise.stamps import stamp_power
 from advisor.gap.records.floor import tolerance_of
 from advisor.gap.search.air import SoughtAir, moving_air
-from advisor.gap.uncatalogued.candidate_laws import laws_for
 
 Progress = Callable[[str, float], None]
 """Function that receives a sentence about the work and the share done, 0 to 1."""
@@ -111,7 +111,7 @@ def _table(
     described = [w for v in variants if v.effect not in stated for w in (v, *v.likewise)]
     return (
         [with_sizes(v, flight.mean, problem.flights) for v in described if v.starts],
-        [with_sizes(v, flight.mean, problem.flights) for v in laws_for(problem.flights) if v.starts],
+        [with_sizes(v, flight.mean, problem.flights) for v in laws_of(problem.flights) if v.starts],
     )
 
 

@@ -39,8 +39,9 @@ _OF_EFFECT = {
 }  # fmt: skip
 """Prior: standard deviations by effect and number, in the unit of the search."""
 _ARM = {"alpha_vane_offset": 0.2, "accelerometer_offset": 0.1}
-"""Prior: standard deviation of an arm, as a share of the way flown in one radian of the short period. That way
-is 2.5 m for a small UAV and 50 m for a jet, whose nose boom is 13 m long."""
+"""Prior: standard deviation of an arm, as a share of the way flown in one radian of the short period.
+
+A small UAV flies 2.5 m in that time. A jet with a nose boom of 13 m flies 50 m."""
 _OF_RANGE = 0.5
 """Prior: standard deviation of any other number, as a share of the largest value that is searched."""
 

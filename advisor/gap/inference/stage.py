@@ -20,7 +20,7 @@ _FORMS = 2
 _REFINED = 120.0
 """Numerical: nats behind the best explanation beyond which none is fitted at the file's derivatives."""
 _MODEL_ERROR, _FORM_ERROR = 0.005, 0.03
-"""Prior: error of every simulator, as a share of each channel's peak; error of an effect's form, as a share of
+"""Prior: error of every simulator, as a share of the peak; error of an effect's form, as a share of
 its change."""
 _INDEPENDENT = 40.0
 """Prior: number of independent numbers that such an error has."""

@@ -75,12 +75,6 @@ _READINGS = {
         ),
     ),
 }  # fmt: skip
-_AIR_SPEED = Variant(
-    "air_speed_scale", "accelerometer", ("scale",), ((0.0,),), (0.002,), ((-0.7, 3.0),), 0.03,
-    entries=("speed_scale",), prior_std=(0.15,),
-)  # fmt: skip
-"""An air speed that reads too little or too much, by more than a static port does. An accelerometer's scale
-looks the same."""
 _MOMENTS = (
     Variant(
         "damping_curve", "moment_equation", ("M_q_abs", "M_q_q"), ((0.0, 0.0),), (0.05, 0.1),
@@ -107,8 +101,6 @@ RINGING = Variant(
 _SENTENCES = {
     "accelerometer_curve": "The accelerometer does not read in proportion: it clips, rectifies or bends.",
     "alpha_curve": "The angle of attack does not read in proportion: its vane bends, rubs or meets a stop.",
-    "air_speed_scale": "The air speed reads {percent:+.0f} % less than the motion says, or the accelerometer "
-    "as much more.",
     "attitude_scale": "The attitude reads {percent:+.1f} % against what the pitch rate says.",
     _RUBS: "The vane's bearing rubs: the air turns by {degrees} deg before it follows.",
     VANE_STOP: "The vane turns {degrees} deg from its trim and no further: it meets a stop.",
@@ -161,8 +153,7 @@ def laws_for(flights: PreparedManeuvers) -> list[Variant]:
     of_readings += vane_stops(flights) if "alpha" in readings else []
     of_lift = [lift_memory(flights), flow_lets_go(flights)] if "alpha" in flights.channels else []
     of_input = [*surface_stops(flights), RINGING, _sticking(flights), *_weaker(flights)]
-    of_speed = [_AIR_SPEED] if {"alpha", "a_z"} <= set(flights.channels) else []
-    return [*of_readings, *of_speed, *_MOMENTS, *of_input, *of_lift]
+    return [*of_readings, *_MOMENTS, *of_input, *of_lift]
 
 
 def sentence_of(law: str, values: FloatArray) -> str:

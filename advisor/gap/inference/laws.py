@@ -1,0 +1,27 @@
+"""Laws outside the catalogue that rival the effects: where one is the likeliest, the answer is "unknown"."""
+
+from advisor.flight.signals.messages import FloatArray
+from advisor.gap.kit.variant import Variant
+from advisor.gap.records.flights import PreparedManeuvers
+from advisor.gap.uncatalogued.candidate_laws import laws_for, sentence_of
+
+AIR_SPEED = Variant(
+    "air_speed_scale", "accelerometer", ("scale",), ((0.0,),), (0.002,), ((-0.7, 3.0),), 0.0,
+    entries=("speed_scale",), prior_std=(0.15,),
+)  # fmt: skip
+"""An air speed that reads too little or too much, by more than a static port does. An accelerometer's scale
+looks the same."""
+
+
+def laws_of(flights: PreparedManeuvers) -> list[Variant]:
+    """Return all laws that the recorded channels allow."""
+    speed = [AIR_SPEED] if {"alpha", "a_z"} <= set(flights.channels) else []
+    return [*laws_for(flights), *speed]
+
+
+def sentence_of_law(law: str, values: FloatArray) -> str:
+    """Return a sentence about a law with its numbers, of shape (numbers,)."""
+    if law == AIR_SPEED.effect:
+        percent = 100.0 * float(values[0])
+        return f"The true air speed is {percent:+.0f} % off the one that is read, by the motion."
+    return sentence_of(law, values)
