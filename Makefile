@@ -120,6 +120,11 @@ study-third: .venv/.developed ## the diagnosis on 240 flights of the third gener
 corpus: .venv/.developed ## 160 flights whose keys are open: at most 2 % of the verdicts may flip (about ten minutes)
 	$(BIN)/python -m benchmarks.corpus
 
+.PHONY: score-gap
+EACH_OF ?= 20
+score-gap: .venv/.developed ## blind flights of every generator, diagnosed and scored (SEED=..., EACH_OF=20; ADVISOR_GAP_ENGINE=one)
+	$(BIN)/python -m benchmarks.gap_score --each $(EACH_OF) --seed $(SEED) --label "-$(or $(ADVISOR_GAP_ENGINE),rules)"
+
 .PHONY: judge
 judge: .venv/.developed ## fit the probabilities of the gap diagnosis on flights with known causes (EACH=100 a generator; an hour)
 	$(BIN)/python -m benchmarks.judge --each $(EACH)
