@@ -26,6 +26,8 @@ CHANGES: dict[str, Callable[[float], float]] = {
     "millionth": lambda x: 1e-6 * x,
     "negative": lambda x: -x,
 }
+SAMPLES = 32
+"""Samples of a message that tell whether a channel changes. A channel that rests carries nothing to spoil."""
 IDLE_HZ = 4.0
 """Rate of every message while nothing happens, Hz."""
 
@@ -41,14 +43,14 @@ class Form:
 
 
 def channels(flight: Flight) -> tuple[str, ...]:
-    """Return the channels of motion and control in a flight, as ``MESSAGE.field``."""
-    numbers = sorted(n for n in {packet.number for packet in flight} if name(n) in MOTION)
-    return tuple(
-        f"{name(number)}.{field}"
-        for number in numbers
-        for field in fields(number)
-        if not field.endswith(("_id", "name"))
-    )
+    """Return the channels of motion and control that change in a flight, as ``MESSAGE.field``."""
+    found = []
+    for number in sorted(n for n in {packet.number for packet in flight} if name(n) in MOTION):
+        sent = [packet for packet in flight if packet.number == number]
+        some = sent[:: max(1, len(sent) // SAMPLES)]
+        named = [field for field in fields(number) if not field.endswith(("_id", "name"))]
+        found += [f"{name(number)}.{field}" for field in named if len({value(p, field) for p in some}) > 1]
+    return tuple(found)
 
 
 def _each(flight: Flight, channel: str, change: Callable[[float], float]) -> Flight:
@@ -208,10 +210,12 @@ def _share(rng: np.random.Generator) -> float:
 
 
 def _a_cut(flight: Flight, rng: np.random.Generator) -> Sequence[Word]:
-    """Draw a piece, of a length that is uniform in its logarithm between a second and the whole."""
-    part = float(rng.uniform(math.log(min(1.0, 1.0 / max(seconds(flight), 1.0))), 0.0))
-    long = math.exp(part)
-    begin = float(rng.random()) * (1.0 - long)
+    """Draw a beginning, an end, or a piece whose length is uniform in its logarithm from one second on."""
+    kind, place = int(rng.integers(3)), float(rng.random())
+    if kind < 2:
+        return (0.0, round(place, 4)) if kind == 0 else (round(place, 4), 1.0)
+    long = math.exp(float(rng.uniform(-math.log(max(seconds(flight), 1.0)), 0.0)))
+    begin = place * (1.0 - long)
     return round(begin, 4), round(begin + long, 4)
 
 
