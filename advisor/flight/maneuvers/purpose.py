@@ -37,8 +37,8 @@ mostly an answer. Recoveries of an attitude by hand on record have 0.63 to 0.94.
 attitude back have at most 0.35."""
 _OF_ANSWERS = 0.25
 """Largest relative standard error of the effect by the external input alone, over the share that feedback
-leaves, where feedback explains most of the movement. Recoveries by hand have 0.29 to 9. Inputs to unstable
-aircraft, which are always fed back, have 0.09 to 0.25."""
+leaves, where feedback explains most of the movement. Recoveries by hand have 0.29 to 9. A record of an
+unstable aircraft, which is always fed back, has 0.09, and simulated ones have 0.1 to 1.2."""
 _STANDS_OUT = 4.0
 """Least ratio of a movement's fastest motion to the root mean square of the motion before. Chance exceeds
 four standard deviations in 2 % of movements of 300 samples. Hands that keep an attitude have 0.3 to 3.6,
