@@ -18,8 +18,9 @@ _RIGHT, _LACKING = (0.0, 0.6), (np.log(5.0), 0.6)
 and of one that lacks a law."""
 _LEAST_MISFIT = 0.25
 """Numerical: size of a residual below which it is not told from none."""
-_WITHIN = 25.0
-"""Numerical: nats behind the likeliest row beyond which a model's residual is not searched."""
+_SEARCHED = 2
+"""Numerical: number of models, the likeliest, whose residual is searched. Others count with the
+residual of the likeliest."""
 
 
 @dataclass(frozen=True)
@@ -90,11 +91,16 @@ def rows_of(
     prior
         How often each kind of answer is right before a flight is looked at.
     """
-    ways = list(_ways(stage, names, laws, prior))
-    best = max(way.weight for way in ways)
-    near = {id(way.explanation): way.explanation for way in ways if way.weight > best - _WITHIN}
-    residuals = {key: residual_of(problem, one.fitted, stage.heat) for key, one in near.items()}
-    return [row for way in ways for row in _with_residual(way, residuals.get(id(way.explanation)), prior)]
+    ways = sorted(_ways(stage, names, laws, prior), key=lambda way: -way.weight)
+    models = {id(way.explanation): way.explanation for way in ways}
+    near = list(models.items())[:_SEARCHED]
+    residuals = {key: residual_of(problem, one.fitted, stage.heat) for key, one in near}
+    of_others = residuals[near[0][0]]
+    return [
+        row
+        for way in ways
+        for row in _with_residual(way, residuals.get(id(way.explanation), of_others), prior)
+    ]
 
 
 def _ways(stage: Stage, names: Sequence[str], laws: Sequence[str], prior: FieldPrior) -> Iterator[Row]:
@@ -128,14 +134,11 @@ def _row(alternative: Alternative, one: Explanation, evidence: float, share: flo
     )  # fmt: skip
 
 
-def _with_residual(way: Row, residual: Residual | None, prior: FieldPrior) -> Iterator[Row]:
+def _with_residual(way: Row, residual: Residual, prior: FieldPrior) -> Iterator[Row]:
     """Yield the way as right, and as one that only resembles a law outside the table.
 
     Such a law leaves a residual that a disturbance of free course explains, in one block.
     """
-    if residual is None:
-        yield way
-        return
     yield replace(way, terms={**way.terms, "residual": _log_normal(residual.size, _RIGHT)})
     lacking = float(np.log(0.5 * prior.unknown / (prior.none + prior.parameters + prior.effect)))
     for block, share in residual.blocks.items():

@@ -2,11 +2,9 @@
 
 import math
 from collections import Counter, deque
-from collections.abc import Mapping
+from collections.abc import Mapping, Sized
 from dataclasses import dataclass, field
 from pathlib import Path
-
-from advisor.mavlink.wire.framing import Frame
 
 RATE_WINDOW_S = 2.0
 
@@ -81,7 +79,7 @@ class LinkCounters:
         self.refused: Counter[str] = Counter()
         self._recent: deque[tuple[float, int]] = deque()
 
-    def add(self, frames: list[Frame], now_s: float) -> None:
+    def add(self, frames: Sized, now_s: float) -> None:
         """Count a batch of accepted frames."""
         self.messages += len(frames)
         self._recent.append((now_s, len(frames)))
