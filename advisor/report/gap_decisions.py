@@ -25,6 +25,11 @@ _OF_THE_NUMBERS: Mapping[str, str] = {
     "odds": "log odds of wrong against right numbers in the file: {value} nats (at least {limit})",
 }
 """Name of a decision to its sentence."""
+_OF_THE_ANSWER: Mapping[str, str] = {
+    "against its rival": "its log odds against the next answer are {value} nats (at least {limit})",
+    "decided": "its probability is {value} (at least {limit})",
+}
+"""Name of a decision on the whole answer to its sentence."""
 
 
 def decision_in_words(decision: Decision) -> str:
@@ -36,6 +41,8 @@ def decision_in_words(decision: Decision) -> str:
 def _about(name: str) -> str:
     if name == "parameters":
         return "wrong numbers"
+    if name == "none":
+        return "no gap"
     return f"something without a name {place(name)}" if name in BLOCKS else spelled(name)
 
 
@@ -45,7 +52,9 @@ def _found(decision: Decision) -> str:
     if decision.name == "size" and decision.parameter:
         return _of_the_size(decision)
     table = _OF_AN_EFFECT
-    if decision.about in BLOCKS:
+    if decision.name in _OF_THE_ANSWER:
+        table = _OF_THE_ANSWER
+    elif decision.about in BLOCKS:
         table = _OF_A_BLOCK
     elif decision.about == "parameters":
         table = _OF_THE_NUMBERS

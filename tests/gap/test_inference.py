@@ -11,11 +11,12 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.alternative import Alternative
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.diagnose import diagnose
-from advisor.gap.inference.answer import _doubt, _none_means_no_gap, _rival, _why
 from advisor.gap.inference.explanation import Row
 from advisor.gap.inference.posterior import NONE, PARAMETERS, posterior_of, stated_as
+from advisor.gap.inference.reasons import decisions_of, doubt_of, none_means_no_gap, rival_of, why_of
 from advisor.gap.inference.sizes import with_sizes
 from advisor.gap.records.prepare import prepare
+from advisor.report.gap_decisions import decision_in_words
 from tests.gap.generator import Setup, fly
 
 MOMENT = Alternative("unknown", "unknown", "moment_equation")
@@ -50,16 +51,27 @@ def test_two_ways_of_one_answer_add_up():
 @given(st.lists(st.floats(-500.0, 500.0), min_size=6, max_size=6))
 def test_the_reasons_add_up_to_the_log_odds_even_where_the_rival_has_no_chance(nats):
     told = posterior_of(map(row, EVERY, nats))
-    parts = [part.nats for part in _why(told, _rival(told))]
+    parts = [part.nats for part in why_of(told, rival_of(told))]
     mine = np.logaddexp.reduce([r.weight for r in told.rows if r.alternative.name == told.answer.name])
-    other = np.logaddexp.reduce([r.weight for r in told.rows if r.alternative.name == _rival(told).name])
+    other = np.logaddexp.reduce([r.weight for r in told.rows if r.alternative.name == rival_of(told).name])
     assert sum(parts) == pytest.approx(mine - other, abs=1e-6)
 
 
-def test_an_answer_below_six_tenths_names_its_rival():
+def test_an_answer_below_six_tenths_names_itsrival_of():
     near = posterior_of([row(DELAY, 0.2), row(LAG)])
-    assert _doubt(near) == "Not decided between transport delay (55 %) and actuator lag (45 %)."
-    assert _doubt(posterior_of([row(DELAY, 1.0), row(LAG)])) == ""
+    assert doubt_of(near) == "Not decided between transport delay (55 %) and actuator lag (45 %)."
+    assert doubt_of(posterior_of([row(DELAY, 1.0), row(LAG)])) == ""
+
+
+@pytest.mark.parametrize("answer", EVERY)
+def test_every_decision_on_an_answer_has_a_sentence(answer):
+    told = posterior_of([row(answer, 3.0), *(row(other) for other in EVERY if other != answer)])
+    found = SimpleNamespace(sought_air=SimpleNamespace(found=None))
+    lines = [decision_in_words(one) for one in decisions_of(found, told, rival_of(told))]
+    assert lines[0].endswith("its log odds against the next answer are 3 nats (at least 0)") or (
+        answer.kind == "unknown" and "passed" in lines[0]
+    )
+    assert "its probability is" in lines[1]
 
 
 def held(gap):
@@ -70,17 +82,17 @@ def held(gap):
 @pytest.mark.parametrize("gap", [2.0, 5.0, 40.0])
 def test_with_a_gap_of_two_no_gap_is_at_most_five_per_cent(gap):
     sure = posterior_of([row(NONE, 50.0), row(PARAMETERS), row(MOMENT)])
-    assert _none_means_no_gap(sure, held(gap), np.ones(1), held(0.0)).of(NONE) <= 0.05
+    assert none_means_no_gap(sure, held(gap), np.ones(1), held(0.0)).of(NONE) <= 0.05
 
 
 def test_a_gap_within_the_noise_leaves_no_gap_as_it_is():
     sure = posterior_of([row(NONE, 50.0), row(PARAMETERS), row(MOMENT)])
-    assert _none_means_no_gap(sure, held(0.0), np.ones(1), held(0.0)).of(NONE) > 0.99
+    assert none_means_no_gap(sure, held(0.0), np.ones(1), held(0.0)).of(NONE) > 0.99
 
 
 def test_a_visible_gap_goes_to_the_numbers_as_far_as_fitted_ones_remove_it():
     sure = posterior_of([row(NONE, 50.0), row(PARAMETERS), row(MOMENT)])
-    told = _none_means_no_gap(sure, held(10.0), np.ones(1), held(4.0))
+    told = none_means_no_gap(sure, held(10.0), np.ones(1), held(4.0))
     assert told.of(PARAMETERS) == pytest.approx(0.6, abs=0.01)
     assert told.of(MOMENT) == pytest.approx(0.4, abs=0.01)
 

@@ -77,13 +77,13 @@ def answer(
     fitted = stages[-1].fitted
     known = covariance(problem, fitted, effective_samples(problem, fitted.innovations))
     where = (
-        _of_the_derivatives(problem, fitted, known, gap)
+        of_the_derivatives(problem, fitted, known, gap)
         if verdict == "parameters"
         else _where(e, verdict, causes)
     )
     waterfall = waterfall_of(stages, e.floor, judged.outside_fit, judged.speed, gap.before)
     present = {c.effect for c in causes if c.present}
-    effects = _improvements(fitted, np.sqrt(np.maximum(np.diag(known), 0.0)), causes)
+    effects = improvements(fitted, np.sqrt(np.maximum(np.diag(known), 0.0)), causes)
     nuisances = effects.keys() - present if shrink is not None else ()
     is_single = len(problem.flights) == 1 and verdict == "unknown"
     sentence = sentence_of(verdict, gap, where, causes, shrink, in_simulator(aircraft))
@@ -94,7 +94,7 @@ def answer(
         causes=causes, shrink=shrink, waterfall=waterfall,
         cannot_see=unseen_effects(problem, fitted, variants_for(problem.flights), e.floor, present),
         kinematics=kinematics, model=model_of(problem, fitted, known),
-        reference_airspeed_m_s=problem.flights.reference_m_s if _speed_is_known(problem, aircraft) else None,
+        reference_airspeed_m_s=problem.flights.reference_m_s if speed_is_known(problem, aircraft) else None,
         effects=effects, share_irreducible=irreducible(with_air, e.floor, gap), decisions=judged.decisions,
         yardsticks=fidelity_of(problem, before, last), traces=traces_of(problem, before, last),
         derivatives=compared_derivatives(problem, fitted, known),
@@ -111,13 +111,13 @@ def answer(
     return as_judged(diagnosis, posterior(rows_of(found, answered(diagnosis, sets)), prior))
 
 
-def _speed_is_known(problem: EffectProblem, aircraft: Aircraft) -> bool:
+def speed_is_known(problem: EffectProblem, aircraft: Aircraft) -> bool:
     """Return whether the air speed of the derivatives was measured, stated in the file, or derived from the
     motion."""
     return problem.flights.speed_measured or aircraft.stated_airspeed_m_s is not None
 
 
-def _improvements(
+def improvements(
     fitted: EffectFit, std: FloatArray, causes: tuple[Cause, ...]
 ) -> dict[str, dict[str, float]]:
     """Return the effects of the improved simulator: the named ones, and the propeller's terms where
@@ -142,7 +142,7 @@ def _where(e: Evidence, verdict: GapVerdict, causes: tuple[Cause, ...]) -> Where
     return Where(block, float(np.clip(1.0 - remaining / total, 0.0, 1.0)) if causes else 0.0, ranking)
 
 
-def _of_the_derivatives(problem: EffectProblem, fitted: EffectFit, known: FloatArray, gap: Gap) -> Where:
+def of_the_derivatives(problem: EffectProblem, fitted: EffectFit, known: FloatArray, gap: Gap) -> Where:
     """Return the equation whose derivatives in the aircraft file are further off, relative to their
     uncertainty."""
     assert problem.prior_derivatives is not None

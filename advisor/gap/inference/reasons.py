@@ -1,0 +1,124 @@
+"""The reasons of an answer: its rival, its doubt, and the parts of its log odds, which add up."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from advisor.flight.signals.messages import FloatArray
+from advisor.gap.alternative import Alternative, AlternativeEvidence, Column, Contribution
+from advisor.gap.decision import CERTAIN, Decision
+from advisor.gap.fitting.holdout import HeldOut
+from advisor.gap.fitting.measure import whole_gap
+from advisor.gap.inference.diagnose import Inference
+from advisor.gap.inference.explanation import Row
+from advisor.gap.inference.posterior import NONE, PARAMETERS, Posterior, posterior_of, relabelled
+from advisor.gap.verdict.text import in_words
+
+DECIDED = 0.6
+"""Contract: least probability of an answer that is decided."""
+_GAP_AT_5_PERCENT = 2.0
+"""Contract: gap on held-out manoeuvres at which "no gap" has a probability of 5 % at most."""
+_WORDS = {
+    "prior": "how often each is right, before the flight is looked at",
+    "fit": "fit to the manoeuvres",
+    "numbers": "price of its numbers, and agreement with the aircraft file",
+    "unseen": "loss on manoeuvres kept out of the fit",
+    "model_error": "allowance for the error of every simulator",
+    "residual": "residual that is left",
+    "offset": "offset of the angle of attack by the flight path",
+    "gap": "visible gap of the simulator as given",
+    "rest": "other ways in which each may be true",
+}
+"""Words: parts of the log odds."""
+
+
+def rival_of(posterior: Posterior) -> Alternative:
+    """Return the likeliest alternative with another name than the answer."""
+    name = posterior.answer.name
+    return next(a for a in posterior.by_alternative if a.name != name)
+
+
+def together(posterior: Posterior, alternative: Alternative) -> float:
+    """Return the probability of an alternative; all blocks of the unknown count together."""
+    return sum(p for a, p in posterior.by_alternative.items() if a.name == alternative.name)
+
+
+def doubt_of(posterior: Posterior) -> str:
+    """Return the sentence on the two likeliest answers; empty where one is decided."""
+    answer, rival = posterior.answer, rival_of(posterior)
+    p, q = (100.0 * together(posterior, one) for one in (answer, rival))
+    if p >= 100.0 * DECIDED:
+        return ""
+    return f"Not decided between {in_words(answer)} ({p:.0f} %) and {in_words(rival)} ({q:.0f} %)."
+
+
+def evidence_in(posterior: Posterior) -> Iterator[AlternativeEvidence]:
+    """Yield every alternative with the parts of its likeliest row."""
+    for alternative, p in posterior.by_alternative.items():
+        row = _best_row(posterior, alternative)
+        columns = tuple(Column(n, value, "nats", _WORDS[n]) for n, value in row.terms.items())
+        yield AlternativeEvidence(alternative, columns, p)
+
+
+def why_of(posterior: Posterior, rival: Alternative) -> Iterator[Contribution]:
+    """Yield the parts of the log odds of the answer against its rival, the largest first; they add up."""
+    mine, other = (_best_row(posterior, a) for a in (posterior.answer, rival))
+    names = dict.fromkeys([*mine.terms, *other.terms])
+    parts = {name: mine.terms.get(name, 0.0) - other.terms.get(name, 0.0) for name in names}
+    parts["rest"] = _log_odds(posterior, rival) - sum(parts.values())
+    for name, nats in sorted(parts.items(), key=lambda item: -abs(item[1])):
+        yield Contribution(name, nats, _WORDS[name])
+
+
+def _log_odds(posterior: Posterior, rival: Alternative) -> float:
+    """Return the log odds of the answer against a rival, nats; all blocks of the unknown count together."""
+    mine, other = (
+        np.logaddexp.reduce([r.weight for r in posterior.rows if r.alternative.name == a.name])
+        for a in (posterior.answer, rival)
+    )
+    return float(mine - other)
+
+
+def _best_row(posterior: Posterior, alternative: Alternative) -> Row:
+    return max((r for r in posterior.rows if r.alternative == alternative), key=lambda row: row.weight)
+
+
+def decisions_of(found: Inference, posterior: Posterior, rival: Alternative) -> Iterator[Decision]:
+    """Yield every statistic that is compared with a limit on the way to the verdict."""
+    answer, odds = posterior.answer, _log_odds(posterior, rival)
+    label = answer.block if answer.kind == "unknown" else answer.name
+    yield Decision(label, "against its rival", odds, 0.0, "nats")
+    yield Decision(label, "decided", together(posterior, posterior.answer), DECIDED, "probability")
+    if found.sought_air.found is not None:
+        air = found.sought_air.found
+        yield Decision("gust" if air.gust else "turbulence", "likelihood", air.gain, CERTAIN, "nats")
+
+
+def none_means_no_gap(
+    posterior: Posterior, file_model: HeldOut | None, floor: FloatArray, plain: HeldOut
+) -> Posterior:
+    """Return the posterior in which "none" means that nothing is above the floor.
+
+    A visible gap moves the probability of "none" to wrong numbers, as far as fitted derivatives remove the
+    gap. The rest goes to the likeliest block of the unknown.
+    """
+    if file_model is None:
+        return posterior
+    gap, left = (whole_gap(held.mean_square, floor) for held in (file_model, plain))
+    stays = 0.05 ** ((gap / _GAP_AT_5_PERCENT) ** 2)
+    by_numbers = float(np.clip(1.0 - left / max(gap, 1e-12), 0.0, 1.0))
+    blocks = [row.alternative for row in posterior.rows if row.alternative.kind == "unknown"]
+    rows: list[Row] = []
+    for row in posterior.rows:
+        if row.alternative != NONE:
+            rows.append(row)
+            continue
+        parts = [(NONE, stays), (PARAMETERS, (1.0 - stays) * by_numbers)]
+        parts += [(blocks[0], (1.0 - stays) * (1.0 - by_numbers))] if blocks else []
+        rows += [
+            relabelled(replace(row, terms={**row.terms, "gap": float(np.log(part))}), name)
+            for name, part in parts
+            if part > 1e-300
+        ]
+    return posterior_of(rows)
