@@ -33,6 +33,8 @@ UNUSABLE = 3
 SOUND_CODES = (0, UNUSABLE)
 S_A_MINUTE, LEAST_S = 20.0, 20.0
 """Processor time that an answer may take, s for each minute of log, and the least limit, s."""
+LONGEST_S = 3600.0
+"""Longest limit of one case, s."""
 HANGS = 60.0
 """Wall time after which an answer hangs, as a multiple of its processor time. A loaded machine is slow."""
 
@@ -148,7 +150,11 @@ def _live(log: Path, aircraft_file: Path | None) -> int:
 
 @contextmanager
 def limited(limit_s: float) -> Iterator[None]:
-    """End what takes longer than a limit of this process's processor time."""
+    """End what takes longer than a limit of this process's processor time.
+
+    A log whose clock is wild has a limit that no timer takes, so an hour is the longest.
+    """
+    limit_s = min(limit_s, LONGEST_S)
 
     def late(number: int, frame: object) -> None:
         raise TooLong
