@@ -14,7 +14,7 @@ from advisor.gap.inference.evidence import covariance_of
 from advisor.gap.inference.explanation import Explanation
 from advisor.gap.inference.posterior import Posterior, stated_as
 from advisor.gap.result import Cause, Gap, Value
-from advisor.gap.search.indistinguishable import way_to_distinguish
+from advisor.gap.search.indistinguishable import imitations, way_to_distinguish
 from advisor.gap.verdict.causes import parameters_of, with_model_errors
 from advisor.gap.verdict.outside_fit import moving_air_of
 
@@ -99,11 +99,7 @@ def _not_told_from(name: str, posterior: Posterior, channels: Sequence[str]) -> 
         if a.is_effect and a.name != name and p >= _CREDIBLE
     ]
     ways = [way for other in names if (way := way_to_distinguish(name, other))]
-    effect = EFFECTS[name]
-    alike = [] if effect.imitated_by is None else [effect.imitated_by]
-    if effect.imitated_without is not None and effect.imitated_without[0] not in channels:
-        alike.append(effect.imitated_without[1:])
-    for looks, way in alike:
+    for looks, way in imitations(name, channels):
         names.append(looks)
         ways.append(way)
     if names and not ways:

@@ -12,6 +12,15 @@ def way_to_distinguish(effect: str, other: str) -> str:
     return EFFECTS[effect].distinguished_by.get(other) or EFFECTS[other].distinguished_by.get(effect, "")
 
 
+def imitations(name: str, channels: Sequence[str]) -> list[tuple[str, str]]:
+    """Return the causes outside the catalogue that look like an effect, each with what distinguishes it."""
+    effect = EFFECTS[name]
+    alike = [] if effect.imitated_by is None else [effect.imitated_by]
+    if effect.imitated_without is not None and effect.imitated_without[0] not in channels:
+        alike.append(effect.imitated_without[1:])
+    return alike
+
+
 def indistinguishable_from(
     best: JudgedAddition, others: Sequence[JudgedAddition], channels: Sequence[str]
 ) -> tuple[tuple[str, ...], str]:
@@ -23,11 +32,7 @@ def indistinguishable_from(
         found = way_to_distinguish(best.effect, name)
         if found:
             ways.append(found)
-    effect = EFFECTS[best.effect]
-    alike = [] if effect.imitated_by is None else [effect.imitated_by]
-    if effect.imitated_without is not None and effect.imitated_without[0] not in channels:
-        alike.append(effect.imitated_without[1:])
-    for looks, way in alike:
+    for looks, way in imitations(best.effect, channels):
         names.append(looks)
         ways.append(way)
     if names and not ways:
