@@ -11,10 +11,13 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.alternative import Alternative
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.diagnose import diagnose
+from advisor.gap.inference import stage
 from advisor.gap.inference.explanation import Row
-from advisor.gap.inference.posterior import NONE, PARAMETERS, posterior_of, stated_as
+from advisor.gap.inference.posterior import NONE, PARAMETERS, _with_residual, posterior_of, stated_as
 from advisor.gap.inference.reasons import decisions_of, doubt_of, none_means_no_gap, rival_of, why_of
+from advisor.gap.inference.residual import Residual
 from advisor.gap.inference.sizes import with_sizes
+from advisor.gap.judge.prior import FieldPrior
 from advisor.gap.records.prepare import prepare
 from advisor.report.gap_decisions import decision_in_words
 from tests.gap.generator import Setup, fly
@@ -72,6 +75,32 @@ def test_every_decision_on_an_answer_has_a_sentence(answer):
         answer.kind == "unknown" and "passed" in lines[0]
     )
     assert "its probability is" in lines[1]
+
+
+class Model(SimpleNamespace):
+    """An explanation with a log evidence, whose change of the outputs by its effect is nothing."""
+
+    def lifted(self, nats):
+        return Model(evidence=SimpleNamespace(either=self.evidence.either + nats), fitted=self.fitted)
+
+
+@pytest.mark.parametrize(("apart", "nats"), [(0.0, 0.0), (0.0025, 5.0), (0.005, 20.0), (0.05, 1000.0)])
+def test_a_difference_below_a_simulators_own_error_decides_by_few_nats(monkeypatch, apart, nats):
+    """The error is half a per cent of the peak, with forty independent numbers: 20 nats at its size."""
+    monkeypatch.setattr(stage, "change_of", lambda problem, one, other: apart)
+    best, other = (
+        Model(evidence=SimpleNamespace(either=either), fitted=None, change=0.0) for either in (1000.0, 0.0)
+    )
+    told = stage._within_model_error(None, [best, other])
+    assert told[0].evidence.either - told[1].evidence.either == pytest.approx(nats)
+
+
+@pytest.mark.parametrize(("size", "likelier"), [(1.0, True), (10.0, False)])
+def test_a_residual_far_beyond_a_simulators_own_is_likelier_of_a_law_without_a_name(size, likelier):
+    prior = FieldPrior(none=0.25, parameters=0.25, effect=0.25, unknown=0.25)
+    rows = list(_with_residual(row(DELAY), Residual(size, {"moment_equation": 1.0}), prior))
+    assert [r.alternative for r in rows] == [DELAY, MOMENT]
+    assert (rows[0].weight > rows[1].weight) is likelier
 
 
 def held(gap):
