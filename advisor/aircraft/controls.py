@@ -95,10 +95,16 @@ class SideControl:
     output: Annotated[int | Literal["auto"], Key(
         "Servo output 1..32. ``auto``: all outputs whose SERVOn_FUNCTION is the control's (4 aileron, 21 "
         "rudder), with elevons, flaperons and V-tails.",
+        example="auto",
+        cost="The autopilot's parameters must name the output; without them roll and yaw are not analyzed.",
+        mend="write the number of the servo output",
     )] = "auto"  # fmt: skip
     calibration: Annotated[Pairs | None, Key(
         "Pairs (PWM in us, deflection in deg), with linear interpolation. A positive aileron rolls to the "
         "left, a positive rudder yaws to the left. None: SERVOn_MIN/TRIM/MAX and ±25 deg.",
+        example="[[1100, -25.0], [1500, 0.0], [1900, 25.0]]",
+        cost="The servo's end points count as 25 deg, so Y, L and N by this control have an assumed scale.",
+        mend="measure the deflection at three pulse widths",
     )] = None  # fmt: skip
     lag_s: Annotated[float | None, Key(
         "First-order lag of the servo, s. None: unknown.",

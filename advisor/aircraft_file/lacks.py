@@ -51,6 +51,8 @@ def _given(path: str, aircraft: Aircraft) -> bool:
     match path:
         case "elevator.output":
             return aircraft.elevator.output != "auto" or bool(aircraft.elevator.outputs)
+        case "aileron.output" | "rudder.output":
+            return attrgetter(path)(aircraft) != "auto"
         case "elevator.calibration":
             return aircraft.elevator.is_calibrated
         case "model":
@@ -63,6 +65,9 @@ def _counts(path: str, aircraft: Aircraft, facts: LogFacts | None) -> bool:
     match path:
         case "elevator.output":
             return facts is None or not isinstance(facts.elevator, Surface)
+        case "aileron.output" | "rudder.output":
+            # An aircraft whose parameters name other surfaces may have no rudder.
+            return facts is None or not facts.wiring.roles
         case "airspeed_m_s":
             return facts is not None and facts.airspeed_m_s is None
         case "alpha.vane_arm_m":

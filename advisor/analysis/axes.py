@@ -1,5 +1,6 @@
 """Axes of an analysis: which flights tell nothing of the axis that is asked for."""
 
+from collections.abc import Mapping, Sequence
 from typing import Literal
 
 from advisor.campaign.lateral_state import OF_ELEVATOR
@@ -32,14 +33,19 @@ def left_out_of(axis: Axis, state: CampaignState) -> dict[int, tuple[Problem, ..
     return {flight: problems for flight, problems in left_out.items() if flight not in told} | elsewhere
 
 
+def holds_no_test(left_out: Mapping[int, Sequence[Problem]]) -> bool:
+    """Return whether the absence of test inputs is all that keeps these flights from counting."""
+    return bool(left_out) and all(p.code in _UNTESTED for several in left_out.values() for p in several)
+
+
+_UNTESTED = frozenset({"no_maneuver", "no_aileron"})
+"""Codes of problems of a flight whose telemetry can serve, and which holds no test input."""
+
+
 def no_lateral(flight: FlightHeard) -> Problem:
     """Return why a flight has no lateral manoeuvre."""
-    if not {"aileron", "rudder"} & set(flight.channels):
-        return Problem(
-            "no_aileron",
-            "Nothing says which servo outputs are the aileron and the rudder.",
-            "State aileron.output and rudder.output in the aircraft file, or record the parameters.",
-        )
+    if flight.sides_unknown is not None:
+        return flight.sides_unknown
     return Problem(
         "no_maneuver",
         "No test manoeuvre of the aileron or the rudder was found.",

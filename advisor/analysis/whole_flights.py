@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.analysis.axes import Axis, left_out_of
+from advisor.analysis.axes import Axis, holds_no_test, left_out_of
 from advisor.analysis.log_series import LogSeries
 from advisor.campaign.campaign import Campaign
 from advisor.campaign.hand_decisions import NOTHING, ByHand
@@ -59,6 +59,7 @@ def read_whole(
     *,
     no_marks: bool = False,
     axis: Axis = "pitch",
+    untested: bool = False,
 ) -> WholeFlights:
     """Read and analyze logs as one campaign, and keep every sample of their channels.
 
@@ -74,6 +75,8 @@ def read_whole(
         Whether to ignore earlier decisions by hand on the logs.
     axis
         Axes to judge.
+    untested
+        Whether flights without a test input are an answer of their own.
 
     Raises
     ------
@@ -108,7 +111,7 @@ def read_whole(
         campaign.finish()
         left_out |= left_out_of(axis, campaign.state)
     left_out = dict(sorted(left_out.items()))
-    if len(left_out) == len(series.logs):
+    if len(left_out) == len(series.logs) and not (untested and holds_no_test(left_out)):
         raise UnusableInputError.of([problem for several in left_out.values() for problem in several])
     for stream in streams.values():
         stream.finish()

@@ -142,7 +142,11 @@ class Campaign:
         flying, channels, model = flights.so_far(), stream.channels, elevator.model
         settled = self._settled(flying, model)
         instruments = self._parts.make("instruments", lambda: self._contradictions(model), lambda _: ())
-        lateral = self._lateral.state if self._lateral is not None else None
+        heard = flights.heard(channels, self._ended)
+        lateral = None
+        if self._lateral is not None:
+            unknown = [one.sides_unknown for one in heard]
+            lateral = self._lateral.state(unknown[-1] if all(unknown) else None)
         return CampaignState(
             vehicle=stream.vehicle,
             now_s=stream.now_s,
@@ -173,7 +177,7 @@ class Campaign:
             notices=self._journal.lines,
             flight=flights.flight,
             boot=stream.boot,
-            flights=flights.heard(channels, self._ended),
+            flights=heard,
             lateral=lateral,
             activity=self._activity,
             failed=self._parts.failed,
@@ -213,7 +217,7 @@ class Campaign:
         Manoeuvres of aileron and rudder need none of the elevator's.
         """
         found = self._flights.problems()
-        if self._lateral is None or not self._lateral.state.maneuvers:
+        if self._lateral is None or not self._lateral.maneuvers:
             return found
         return [problem for problem in found if problem.code not in OF_ELEVATOR]
 

@@ -1,5 +1,7 @@
 """The lateral half of a campaign: its manoeuvres, their estimates and verdicts, and the joint estimate."""
 
+from dataclasses import replace
+
 from advisor.aircraft.aircraft import Aircraft
 from advisor.campaign.lateral_state import JudgedLateral, LateralState
 from advisor.campaign.single_maneuver import objection, untold
@@ -13,6 +15,7 @@ from advisor.oem.estimate import NoEstimate
 from advisor.oem.lateral_estimate import LateralEstimate
 from advisor.oem.lateral_estimator import estimate_lateral
 from advisor.process.parts import Parts
+from advisor.words.problems import Problem
 
 NEWEST = 7
 """Number of newest accepted manoeuvres that are estimated together during the flight. The elevator has the
@@ -36,6 +39,7 @@ class LateralCampaign:
         self._flown: list[tuple[Maneuver, LateralEstimate | NoEstimate, tuple[Reason, ...]]] = []
         self._ended = False
         self._state: LateralState | None = None
+        self._unknown: Problem | None = None
 
     def take(self, maneuver: Maneuver) -> JudgedLateral:
         """Estimate and examine a manoeuvre that has just been flown."""
@@ -63,17 +67,26 @@ class LateralCampaign:
         self._ended = True
         self._state = None
 
-    @property
-    def state(self) -> LateralState:
-        """State after the newest manoeuvre; the identical object while none is added."""
-        if self._state is None:
+    def state(self, unknown: Problem | None = None) -> LateralState:
+        """Return the state after the newest manoeuvre; the identical object while nothing is added.
+
+        Parameters
+        ----------
+        unknown
+            Reason for which aileron or rudder cannot be followed. None: their outputs are known.
+        """
+        if self._state is None or unknown != self._unknown:
+            self._unknown = unknown
             joined = self._joined()
             model = self._parts.make(
                 "lateral, joint estimate", lambda: estimate_lateral(joined, self._aircraft), untold
             )
             found = model if isinstance(model, LateralEstimate) else None
             numbers = tuple(maneuver.number for maneuver in joined) if found else ()
-            self._state = LateralState(self._judged(), self.flight_test, found, numbers)
+            verdict = self.flight_test
+            if unknown is not None and not self._flown:
+                verdict = replace(verdict, sentence=str(unknown), next=None)
+            self._state = LateralState(self._judged(), verdict, found, numbers)
         return self._state
 
     @property

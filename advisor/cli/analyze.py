@@ -12,6 +12,7 @@ from advisor.cli.improvement_export import export_option, orders_of, write_flown
 from advisor.cli.log_options import LogsAsked, log_options
 from advisor.cli.options import UNUSABLE, json_option
 from advisor.cli.stages import Stages
+from advisor.cli.untested import print_untested
 from advisor.words.printable import printable
 from advisor.words.problems import Problem
 
@@ -68,6 +69,7 @@ def command(
     """
     aircraft = asked.read_aircraft()
     orders = orders_of(exports, aircraft, asked.inputs, of_flight=True)
+    from advisor.analysis.axes import holds_no_test
     from advisor.analysis.log_series import LogSeries
 
     series = LogSeries(asked.logs)
@@ -106,7 +108,9 @@ def command(
             state, list(map(printable, series.names)), aircraft, every_movement, pitch=axis != "lateral"
         )
         PlainConsole(soft_wrap=True).print(shown)
-    elif state is not None and every_movement:
+    elif state is not None and holds_no_test(left_out):
+        print_untested(state, series, aircraft, asked.target_system, axis)
+    if state is not None and not usable and every_movement and not as_json:
         from advisor.report.text import activity_line
 
         for activity in state.activity:

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from advisor import __version__
 from advisor.aircraft.aircraft import Aircraft
+from advisor.analysis.axes import holds_no_test
 from advisor.analysis.gap import compare_logs, named_simulator
 from advisor.analysis.log_series import SINCE_1970_S, began_s
 from advisor.analysis.whole_flights import WholeFlights, read_whole
@@ -57,7 +58,9 @@ def gather(
         As :func:`advisor.analysis.marks_file.read_by_hand`.
     """
     tell("reading and judging", 0.0)
-    flights = read_whole(asked.logs, aircraft, asked.target_system, no_marks=asked.no_marks, axis="both")
+    flights = read_whole(
+        asked.logs, aircraft, asked.target_system, no_marks=asked.no_marks, axis="both", untested=True
+    )
     said = flights.said
     tell("examining the telemetry", 0.5)
     doctor = tuple(_examined(log, aircraft, asked.target_system) for log in flights.logs)
@@ -70,7 +73,9 @@ def gather(
         aircraft=aircraft,
         power_ons=flights.power_ons,
         doctor=doctor,
-        gap=_gap(flights, aircraft, asked, tell) if with_gap else None,
+        gap=_gap(flights, aircraft, asked, tell)
+        if with_gap and not holds_no_test(flights.left_out)
+        else None,
         begun=tuple(map(_date, flights.logs)),
         origin=Origin(
             _hashes(flights, asked.aircraft_file),

@@ -7,10 +7,7 @@ from pathlib import Path
 import click
 
 from advisor.cli.log_options import LogsAsked, log_options
-from advisor.cli.options import (
-    refuse_unwritable,
-    writing,
-)
+from advisor.cli.options import UNUSABLE, refuse_unwritable, writing
 from advisor.cli.stages import Stages
 from advisor.words.printable import printable
 from advisor.words.problems import ConfigurationError
@@ -59,7 +56,7 @@ def command(
     for sentence in said:
         click.echo(sentence, err=True)
     click.echo(f"Wrote {printable(str(out))}.", err=True)
-    return 0
+    return 0 if content.analysis["usable"] else UNUSABLE
 
 
 def _refuse(inputs: Sequence[Path], out: Path) -> None:

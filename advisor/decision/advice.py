@@ -9,7 +9,7 @@ from advisor.aircraft.reference import PARAMETERS
 from advisor.decision.choice import Choice, best_input
 from advisor.decision.conditions import Conditions, find_conditions, travel_of
 from advisor.decision.course import CriterionCourse
-from advisor.decision.history import CandidateManeuver, usable_ones
+from advisor.decision.history import CandidateManeuver, is_named, usable_ones
 from advisor.decision.information import Knowledge
 from advisor.decision.inputs import StepInput
 from advisor.decision.judge import accepted_estimates
@@ -45,7 +45,7 @@ def next_input(
     course = course or CriterionCourse(plan)
     conditions = find_conditions(history, aircraft, course)
     mend = _mend(history[-1]) if history else ""
-    if conditions is None and not history:
+    if conditions is None and not mend and not (history and is_named(history[-1])):
         return _first_input(aircraft)
     if conditions is None:
         return NextInput(f"next: {mend or _same_but_better(history[-1])}", None)

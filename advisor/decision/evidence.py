@@ -13,10 +13,8 @@ SPOKEN = {"alpha": "angle of attack", "q": "pitch rate", "a_z": "normal accelera
 """Predicted output to its name for people."""
 
 
-def sentence(known: Knowledge | None, stop: bool) -> str:
+def sentence(known: Knowledge, stop: bool) -> str:
     """Return the sentence on stop or continue, with its reason."""
-    if known is None:
-        return "CONTINUE: no usable manoeuvre yet."
     if stop:
         return _stop(known)
     if known.percent >= 100.0:

@@ -44,6 +44,22 @@ def usable_ones(history: Sequence[CandidateManeuver]) -> list[CandidateManeuver]
     return [flown for flown in history if flown.usable]
 
 
+def nothing_tested(history: Sequence[CandidateManeuver]) -> str:
+    """Return the sentence on a history without a usable manoeuvre; empty where one is usable."""
+    if usable_ones(history):
+        return ""
+    if not history:
+        return "No test input of the elevator has been flown."
+    one = len(history) == 1
+    which = "The one input" if one else f"None of the {len(history)} inputs"
+    return f"{which} of the elevator can{'not' if one else ''} be used."
+
+
+def is_named(flown: CandidateManeuver) -> bool:
+    """Return whether a crew can repeat the input: its shape has a name."""
+    return flown.maneuver is None or flown.maneuver.span.kind != "other"
+
+
 def estimates_of(usable: Sequence[CandidateManeuver]) -> list[Estimate]:
     """Return the estimates of the usable manoeuvres, in the order flown."""
     return [estimate for flown in usable if (estimate := flown.usable)]

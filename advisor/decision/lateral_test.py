@@ -33,6 +33,8 @@ JUDGED: Mapping[str, str] = {
     "N_delta_r": "rudder",
 }
 """Derivatives that must meet their tolerance, and the control whose input tells each best."""
+NOT_FLOWN = "No test input of the aileron or the rudder has been flown."
+"""Sentence of a flight without a lateral manoeuvre."""
 _PLACES = {name: LATERAL.names.reported.index(name) for name in JUDGED}
 _CONTROL_OF = {f"{letter}_{suffix}": name for letter in "YLN" for suffix, name in
                (("delta_a", "aileron"), ("delta_r", "rudder"))}  # fmt: skip
@@ -127,7 +129,7 @@ def lateral_flight_test(
     return FlightTestVerdict(
         rule="information",
         decision="stop" if stop else "continue",
-        sentence=_sentence(shares, accepted, stop),
+        sentence=_sentence(shares, accepted, stop) if history else NOT_FLOWN,
         criterion_percent=values[-1] if values else None,
         limit_percent=INFORMATION_LIMIT_PERCENT,
         stopped_at=stopped_at,

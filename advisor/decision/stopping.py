@@ -10,7 +10,7 @@ from advisor.decision.acceptance import MANEUVER_RULES
 from advisor.decision.advice import next_input
 from advisor.decision.course import CriterionCourse
 from advisor.decision.evidence import evidence, sentence
-from advisor.decision.history import CandidateManeuver, estimates_of, usable_ones
+from advisor.decision.history import CandidateManeuver, estimates_of, nothing_tested, usable_ones
 from advisor.decision.information import Knowledge
 from advisor.decision.judge import accepted_estimates, results_of
 from advisor.decision.scatter import scatter_percent, scattered_most, window
@@ -44,12 +44,14 @@ def flight_test(
     usable = usable_ones(history)
     known = course.known(usable) if usable else None
     stop = _holds_now(known, plan, criterion)
+    said = nothing_tested(history)
+    if known is not None:
+        by_information = plan.rule == "information"
+        said = sentence(known, stop) if by_information else _scatter_sentence(history, plan, criterion, stop)
     return FlightTestVerdict(
         rule=plan.rule,
         decision="stop" if stop else "continue",
-        sentence=sentence(known, stop)
-        if plan.rule == "information"
-        else _scatter_sentence(history, plan, criterion, stop),
+        sentence=said,
         criterion_percent=criterion,
         limit_percent=chosen.limit_percent,
         stopped_at=chosen.stopped_at,

@@ -57,6 +57,7 @@ def doctor_document(
         "elevator": elevator
         and {"output": elevator.outputs[0], **picked(elevator, "outputs resolution_deg calibrated")},
         "alpha": plain(findings.alpha),
+        "airspeed_m_s": plain(findings.airspeed_m_s),
         "limits": plain(findings.limits),
         "instruments": [instrument_document(found) for found in findings.instruments],
         "notes": list(findings.notes),

@@ -81,6 +81,8 @@ class Examination:
     """Model and noise behind the expected errors and the demands on rates."""
     instruments: tuple[InstrumentFinding, ...] = ()
     """Contradictions of the instruments. Each is a limit, too."""
+    airspeed_m_s: tuple[float, float] | None = None
+    """Lowest and highest air speed in flight, m/s. None: no air speed arrives, or nothing flies."""
     notes: tuple[str, ...] = ()
     """Choices made in reading the log, and pauses of the autopilot's own log, as sentences."""
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS
+from advisor.aircraft_file.log_facts import FLYING_SHARE, SLOWEST_M_S
 from advisor.campaign.instruments import together
 from advisor.doctor.examination import AlphaFound, ElevatorFound, Examination, Limit, in_order
 from advisor.doctor.expectation import NOISE, TYPICAL, Assumed, expect, frequency
@@ -155,8 +156,10 @@ class Examiner:
             expectation=expect(assumed, rates, speed) if complete else None,
             assumed=assumed,
             instruments=instruments,
+            airspeed_m_s=self._flown_at(),
             notes=(
                 *self._notes,
+                *([str(unknown)] if (unknown := self._stream.sides_unknown) else ()),
                 *dict.fromkeys(note for m in self._maneuvers for note in m.data_notes),
                 *(self._survey.pauses if self._survey else ()),
                 *(clock_notes(clocks) if clocks else ()),
@@ -221,6 +224,17 @@ class Examiner:
         if recent is None or len(recent) == 0:
             return None
         return max(10.0, float(np.median(recent.y)))  # on the ground: a speed to fly at
+
+    def _flown_at(self) -> tuple[float, float] | None:
+        """Return the lowest and highest air speed in flight; None without one."""
+        course = self._stream.courses().get("airspeed")
+        if course is None or not len(course.high):
+            return None
+        most = float(np.percentile(course.high, 95.0))
+        flying = course.low > FLYING_SHARE * most
+        if most < SLOWEST_M_S or not flying.any():
+            return None
+        return float(np.min(course.low[flying])), float(np.max(course.high[flying]))
 
     def _elevator(self) -> ElevatorFound | None:
         elevator = self._stream.elevator

@@ -37,6 +37,9 @@ class ExaminationText:
         yield Text(self._who())
         yield Text(self._elevator())
         yield Text(self._alpha())
+        if found.airspeed_m_s is not None:
+            low, high = found.airspeed_m_s
+            yield Text(f"air speed  {low:.1f} to {high:.1f} m/s read in flight")
         yield Text(self._clocks())
         yield Text()
         yield message_table("messages", plain(found.messages)).on_console()

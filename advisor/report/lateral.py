@@ -123,15 +123,13 @@ def lateral_maneuver_line(judged: JudgedLateral) -> str:
 
 def lateral_lines(state: LateralState, aircraft: Aircraft) -> Iterator[str]:
     """Yield the lines of the lateral half: verdicts, derivatives, modes, levels, stop or continue."""
-    if not state.maneuvers:
-        yield "No test input of the aileron or the rudder was found."
-        return
-    yield from map(lateral_maneuver_line, state.maneuvers)
-    yield ""
-    yield from lateral_results(state, aircraft)
-    yield ""
+    if state.maneuvers:
+        yield from map(lateral_maneuver_line, state.maneuvers)
+        yield ""
+        yield from lateral_results(state, aircraft)
+        yield ""
     yield state.flight_test.sentence
-    if state.flight_test.next is not None:
+    if state.maneuvers and state.flight_test.next is not None:
         yield f"  {state.flight_test.next.advice}"
 
 

@@ -175,7 +175,7 @@ class AnalysisText:
 
     def _decision(self) -> Iterator[Text]:
         verdict = self.state.flight_test
-        for name, progress in verdict.by_rule.items():
+        for name, progress in verdict.by_rule.items() if self.state.maneuvers else ():
             history = " ".join("–" if v is None else f"{v:.1f}" for v in progress.history_percent)
             stopped = "not yet" if progress.stopped_at is None else f"after manoeuvre {progress.stopped_at}"
             yield Text(f"rule {name:<12} stop: {stopped:<20} criterion %: {history}")

@@ -1,6 +1,9 @@
 """The next input as a drawing of the stick: pull above trim, push below, the seconds of each step."""
 
 from collections.abc import Sequence
+from math import degrees
+
+from advisor.decision.verdict import NextInput
 
 _UNIT_COLUMNS = 6
 """Columns of the shortest step, which holds its duration: ``0.4 s``."""
@@ -9,6 +12,25 @@ _LEAD = 3
 _PULL, _TRIM, _PUSH = 0, 1, 2
 _LEVELS = (_PULL, _TRIM, _PUSH)
 _SIDE_COLUMNS = 6
+_LABEL = "next        "
+SIDES = {"elevator": ("pull", "push"), "aileron": ("right", "left"), "rudder": ("right", "left")}
+"""Control to the names of both directions: above trim in the drawing, and below."""
+
+
+def drawn(advised: NextInput, width: int, *, large: bool) -> str:
+    """Return the advice, and the drawing of the input that the advice names."""
+    words = f"{_LABEL}{advised.advice.removeprefix('next: ')}"
+    flown = advised.input
+    if flown is None:
+        return words
+    words = f"{words}, ±{degrees(flown.amplitude_rad):.1f} deg of {flown.control}"
+    sides = SIDES[flown.control]
+    if not large:
+        first = sides[0] if flown.nose_up_first else sides[1]
+        return f"{words}\n{'':<{len(_LABEL)}}{stick_line(flown.steps)}  {first} first"
+    indent = " " * len(_LABEL)
+    picture = stick_drawing(flown.steps, width - len(_LABEL), sides)
+    return "\n".join([words, *(f"{indent}{line}" for line in picture.split("\n") if picture)])
 
 
 def stick_drawing(

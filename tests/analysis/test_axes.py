@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from advisor.analysis.axes import left_out_of
+from advisor.analysis.axes import holds_no_test, left_out_of
 from advisor.campaign.state import CampaignState
 from advisor.flight.stream.flights import FlightHeard
 from advisor.words.problems import Problem
@@ -29,3 +29,11 @@ def test_a_flight_that_lacks_what_only_the_elevator_needs_tells_of_roll_and_yaw(
 @pytest.mark.parametrize("axis", ["lateral", "both"])
 def test_a_flight_without_a_pitch_rate_tells_of_neither_axis(axis):
     assert list(left_out_of(axis, one_flight("no_pitch_rate"))) == [0]
+
+
+@pytest.mark.parametrize(("codes", "untested"), [
+    (("no_maneuver",), True), (("no_aileron",), True), (("no_maneuver", "rate"), False), ((), False),
+])  # fmt: skip
+def test_a_flight_holds_no_test_where_nothing_else_keeps_it_from_counting(codes, untested):
+    problems = tuple(Problem(code, "It lacks this.", "Add it.") for code in codes)
+    assert holds_no_test({0: problems} if codes else {}) is untested

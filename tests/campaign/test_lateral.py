@@ -189,3 +189,34 @@ def test_an_uncalibrated_aileron_is_per_assumed_degree(both):
     assert len(said) == 1
     assert "Y_δa, L_δa and N_δa are per assumed degree." in said[0]
     assert any(note.startswith("No rudder.calibration") for note in notes)
+
+
+def without_parameters(wire, aircraft):
+    """Return the state after a flight none of whose parameters was recorded."""
+    campaign = Campaign(aircraft, lateral=True)
+    campaign.feed([c for c in wire.columns() if c.name != "PARAM_VALUE"])
+    campaign.finish()
+    return campaign.state.lateral
+
+
+@pytest.mark.parametrize(
+    ("aircraft", "said"),
+    [
+        (AIRCRAFT, "The outputs of aileron and rudder are not known. For roll and yaw, give aileron.output"),
+        (
+            Aircraft(aileron=SideControl(output=5), rudder=KNOWN),
+            "The output of rudder is not known. For roll and yaw, give rudder.output in the aircraft file",
+        ),
+    ],
+)
+def test_where_nothing_states_an_output_that_is_said_and_not_that_nothing_was_flown(both, aircraft, said):
+    state = without_parameters(both, aircraft)
+    assert state.maneuvers == ()
+    assert state.flight_test.next is None
+    (line,) = lateral_lines(state, aircraft)
+    assert line.startswith(said)
+
+
+def test_outputs_of_the_file_need_no_parameters(both):
+    told = Aircraft(aileron=SideControl(output=1, lag_s=0.0, delay_s=0.0), rudder=SideControl(output=4))
+    assert len(without_parameters(both, told).maneuvers) == 2

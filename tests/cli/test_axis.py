@@ -3,10 +3,8 @@
 from pathlib import Path
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.analysis.axes import no_lateral
 from advisor.campaign.hand_decisions import NOTHING
 from advisor.cli.screen import _campaign
-from advisor.flight.stream.flights import FlightHeard
 from tests.conftest import Advisor
 from tests.flights import TWO, recorded
 
@@ -17,11 +15,6 @@ def test_a_log_whose_ailerons_did_not_move_asks_for_aileron_and_rudder_inputs(ad
     told = advisor("analyze", BIN, "--axis", "lateral")
     assert told.returncode == 3
     assert "Fly an aileron doublet and a rudder doublet" in told.stderr
-
-
-def test_a_log_that_names_no_aileron_asks_for_its_output() -> None:
-    asked = no_lateral(FlightHeard(0, "flight.tlog", None, 60.0, channels={}))
-    assert "State aileron.output and rudder.output" in asked.fix
 
 
 def test_the_axis_of_pitch_alone_leaves_out_roll_and_yaw(advisor: Advisor) -> None:

@@ -76,6 +76,14 @@ def test_while_none_was_usable_the_remedy_of_the_newest_is_repeated() -> None:
     assert advice.advice == "next: the same again, fly it in calmer air"
 
 
+def test_a_movement_without_a_name_cannot_be_repeated_so_the_first_input_is_advised() -> None:
+    short = Reason("aborted", "free response too short; let the recording run on", 0.0, 0.7)
+    moved = flown()
+    unnamed = replace(moved.maneuver, span=replace(moved.maneuver.span, kind="other"))
+    advice = next_input([replace(moved, maneuver=unnamed, reasons=(short,))], AIRCRAFT, stopped=False)
+    assert advice.advice == "next: 3-2-1-1, 0.5 s steps, 10 % stick, to begin gently"
+
+
 @pytest.mark.parametrize("code", sorted(NO_CURE_BY_INPUT))
 def test_while_a_channel_is_wrong_the_next_thing_is_its_mend(code: str) -> None:
     wrong = Reason(code, "pitch rate stands still at 0 deg/s; check the gyro", 0.0, 0.0)

@@ -45,7 +45,9 @@ def test_the_aileron_alone_does_not_stop_the_test_and_the_rudder_is_advised():
 
 
 def test_without_any_manoeuvre_the_aileron_comes_first():
-    assert lateral_flight_test([], AIRCRAFT).next.advice.startswith("next: aileron doublet")
+    verdict = lateral_flight_test([], AIRCRAFT)
+    assert verdict.sentence == "No test input of the aileron or the rudder has been flown."
+    assert verdict.next.advice.startswith("next: aileron doublet")
 
 
 def test_a_rejected_manoeuvre_tells_nothing():

@@ -9,17 +9,31 @@ from advisor.aircraft.aircraft import CampaignPlan
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.scatter import scatter_percent
 from advisor.decision.stopping import flight_test
+from advisor.decision.verdict import Reason
 from tests.decision.campaigns import THETA, drawn, estimate, flown, with_change
 from tests.decision.test_judge import moving
 
 PLAN = CampaignPlan(rule="continuous")
 
 
-def test_nothing_flown_means_continue() -> None:
-    verdict = flight_test([], PLAN)
+@pytest.mark.parametrize("rule", ["continuous", "separate", "information"])
+def test_without_a_manoeuvre_every_rule_says_that_no_test_input_has_been_flown(rule) -> None:
+    verdict = flight_test([], CampaignPlan(rule=rule))
     assert verdict.decision == "continue"
     assert verdict.criterion_percent is None
-    assert verdict.sentence == "CONTINUE: 0 of 3 accepted manoeuvres."
+    assert verdict.sentence == "No test input of the elevator has been flown."
+
+
+@pytest.mark.parametrize(
+    ("n", "said"),
+    [
+        (1, "The one input of the elevator cannot be used."),
+        (2, "None of the 2 inputs of the elevator can be used."),
+    ],
+)
+def test_where_no_manoeuvre_is_usable_the_sentence_gives_no_order(n, said) -> None:
+    banked = CandidateManeuver(estimate(THETA), (Reason("bank", "bank reached 43 deg", 43.0, 30.0),))
+    assert flight_test([banked] * n, PLAN).sentence == said
 
 
 def test_three_agreeing_manoeuvres_stop_the_test() -> None:

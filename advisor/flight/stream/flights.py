@@ -44,6 +44,8 @@ class FlightHeard:
     """Number of its manoeuvres that another log or power-on also holds."""
     problems: tuple[Problem, ...] = ()
     """Reasons for which the flight does not count, known at its end."""
+    sides_unknown: Problem | None = None
+    """Reason for which aileron or rudder cannot be followed; None where their outputs are known."""
 
 
 class Flights:
@@ -165,6 +167,7 @@ class Flights:
             channels,
             self._again,
             tuple(self._problems()) if over else (),
+            self.stream.sides_unknown,
         )
 
     def _problems(self) -> list[Problem]:

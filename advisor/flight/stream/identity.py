@@ -66,6 +66,11 @@ class Identity:
         """Elevator, aileron and rudder as their pulses are counted now, where known."""
         return self._outputs.counted
 
+    @property
+    def sides_unknown(self) -> Problem | None:
+        """Reason for which aileron or rudder cannot be followed; None where their outputs are known."""
+        return self._outputs.sides_unknown
+
     def rescaled(self, maneuver: Maneuver) -> Maneuver:
         """Return a manoeuvre whose pulses are counted by all limits heard."""
         return self._outputs.rescaled(maneuver)

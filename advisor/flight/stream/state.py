@@ -152,6 +152,11 @@ class StreamState:
         return tuple(said for said in sentences if said)
 
     @property
+    def sides_unknown(self) -> Problem | None:
+        """Reason for which aileron or rudder cannot be followed; None where their outputs are known."""
+        return self._who.sides_unknown
+
+    @property
     def now_s(self) -> float:
         """Vehicle time of the newest sample, s since boot; NaN before the first."""
         return self._clock.newest_s

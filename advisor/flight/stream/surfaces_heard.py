@@ -117,6 +117,28 @@ class SurfacesHeard:
             events += self._settle()
         return events
 
+    @property
+    def sides_unknown(self) -> Problem | None:
+        """Reason for which aileron or rudder cannot be followed: nothing states their outputs. None before a
+        vehicle is heard, and where both are known.
+
+        Where parameters name the outputs of other surfaces, an aircraft may have no rudder.
+        """
+        wiring, vehicle = self._wiring(self._vehicle), self._vehicle
+        missing = [name for name in ("aileron", "rudder") if name not in self.counted]
+        if vehicle is None or vehicle.no_elevator is not None or not missing:
+            return None
+        if len(missing) == 1 and wiring.roles:
+            return None
+        several = len(missing) > 1
+        keys = " and ".join(f"{name}.output" for name in missing)
+        return Problem(
+            "no_aileron",
+            f"The output{'s' if several else ''} of {' and '.join(missing)} {'are' if several else 'is'} not "
+            "known.",
+            f"For roll and yaw, give {keys} in the aircraft file, or record {wiring.words.function}.",
+        )
+
     def _notice(self, name: str, value: float, text: str) -> list[FlightEvent]:
         """Return a notice on a parameter's value, once."""
         if (name, value) in self._said_of:

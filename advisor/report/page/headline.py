@@ -24,16 +24,17 @@ def _blocks(content: Content) -> Iterator[Block]:
     mark = "■" if verdict["decision"] == "stop" else "▶"
     yield _flown(content)
     yield Paragraph(f"{mark} {verdict['sentence']}", "verdict")
-    yield Paragraph(
-        f"{len(accepted)} of {len(maneuvers)} manoeuvres are accepted. The rule {verdict['rule']} decides: "
-        f"{_criterion(verdict['criterion_percent'], verdict['limit_percent'])}."
-    )
+    if maneuvers:
+        yield Paragraph(
+            f"{len(accepted)} of {len(maneuvers)} manoeuvres are accepted. The rule {verdict['rule']} "
+            f"decides: {_criterion(verdict['criterion_percent'], verdict['limit_percent'])}."
+        )
     following = verdict["next"]
     if following is not None:
         yield Paragraph(f"Next: {following['advice'].removeprefix('next: ')}.".replace("..", "."))
     yield from listing([f"Warning: {warning}" for warning in verdict["warnings"]])
     side = content.state.lateral
-    if side is not None and side.maneuvers:
+    if side is not None:
         yield Paragraph(f"Roll and yaw: {side.flight_test.sentence}")
     joint = joint_table(content)
     if joint is not None:

@@ -31,10 +31,15 @@ _PARTS = (
     telemetry, assumptions, provenance,
 )  # fmt: skip
 
+_OF_NO_MANEUVER = (headline, telemetry, assumptions, provenance)
+"""Parts of the page of a flight without a test input."""
+
 
 def sections(content: Content) -> list[Section]:
     """Return all sections in the order of the page."""
-    found = (_made(part, content) for part in _PARTS)
+    side = content.state.lateral
+    flown = content.state.maneuvers or (side is not None and side.maneuvers)
+    found = (_made(part, content) for part in (_PARTS if flown else _OF_NO_MANEUVER))
     return [section for section in found if section is not None]
 
 
