@@ -51,8 +51,10 @@ def _given(path: str, aircraft: Aircraft) -> bool:
     match path:
         case "elevator.output":
             return aircraft.elevator.output != "auto" or bool(aircraft.elevator.outputs)
-        case "aileron.output" | "rudder.output":
-            return attrgetter(path)(aircraft) != "auto"
+        case "aileron.output":
+            return aircraft.aileron.output != "auto"
+        case "rudder.output":
+            return aircraft.rudder.output != "auto"
         case "elevator.calibration":
             return aircraft.elevator.is_calibrated
         case "model":

@@ -76,6 +76,22 @@ class Analyzed:
         return [f"{problem['text']} {problem['fix']}".strip() for problem in self.document["problems"]]
 
     @property
+    def maneuvers(self) -> list[dict[str, Any]]:
+        """Manoeuvres of the elevator, then those of aileron and rudder, as the document has them."""
+        return [*self.document["maneuvers"], *self.lateral.get("maneuvers", ())]
+
+    @property
+    def lateral(self) -> dict[str, Any]:
+        """Block ``lateral`` of the document; empty for a log that could not be analyzed."""
+        found: dict[str, Any] = self.document["lateral"] if self.document["flight_test"] else {}
+        return found
+
+    @property
+    def is_named(self) -> bool:
+        """Whether an aircraft file says which aircraft flew."""
+        return bool(self.aircraft_file)
+
+    @property
     def estimate(self) -> Estimate | None:
         """Joint estimate, with the parts that the comparison of flights needs."""
         if not self.joint:
@@ -100,19 +116,19 @@ _KEPT = ("theta", "covariance_cr", "covariance")
 
 def analyze(task: BatchTask) -> Analyzed:
     """Analyze a log like ``advisor analyze``. An unusable log has a result as well."""
+    from advisor.analysis.axes import left_out_of
     from advisor.analysis.log_series import LogSeries
     from advisor.campaign.campaign import Campaign
 
     series = LogSeries([task.log])
-    campaign = Campaign(task.aircraft, by_hand=series.read_by_hand())
+    campaign = Campaign(task.aircraft, by_hand=series.read_by_hand(), lateral=True)
     for columns in series.batches():
         campaign.feed(columns)
     if series.unreadable:
         return failed(task, list(series.unreadable.values()))
     campaign.finish()
     state = campaign.state
-    left_out = {one.flight: one.problems for one in state.flights if one.problems}
-    document = analysis_document(state, [str(task.log)], task.aircraft, left_out)
+    document = analysis_document(state, [str(task.log)], task.aircraft, left_out_of("both", state))
     joint: dict[str, Any] = {}
     if state.model is not None:
         joint = {name: plain(getattr(state.model, name)) for name in _KEPT}

@@ -15,7 +15,7 @@ from advisor.aircraft.reference import PARAMETERS
 from advisor.analysis.log_series import SINCE_1970_S
 from advisor.batch.flight import Analyzed
 from advisor.batch.picture import Point, trend_svg
-from advisor.batch.tables import aircraft_of, changes_of, estimates_of, names_of
+from advisor.batch.tables import aircraft_of, changes_of, estimates_of, names_of, not_told_apart
 from advisor.batch.trend import ChangeOverFlights, lying_apart
 from advisor.decision.pooling import DERIVATIVES, common_airspeed, posteriors_at_one_speed
 from advisor.oem.estimate import Estimate
@@ -41,10 +41,10 @@ def index_page(flights: Sequence[Analyzed], reports: Mapping[Path, str] = Mappin
         Log to the place of its page, relative to this page.
     """
     failures = sum(not flight.usable for flight in flights)
-    changes, names = changes_of(flights), names_of(flights)
+    changes, names, apart = changes_of(flights), names_of(flights), not_told_apart(flights)
     style = files("advisor.report.page").joinpath("page.css").read_text(encoding="utf-8")
     trends = [
-        _trends(names[identity], several, changes.get(identity))
+        _trends(names[identity], several, changes.get(identity), apart.get(identity, ""))
         for identity, several in estimates_of(flights).items()
     ]
     return "\n".join(
@@ -62,7 +62,9 @@ def index_page(flights: Sequence[Analyzed], reports: Mapping[Path, str] = Mappin
     )
 
 
-def _trends(name: str, flights: Sequence[tuple[int, Estimate]], change: ChangeOverFlights | None) -> str:
+def _trends(
+    name: str, flights: Sequence[tuple[int, Estimate]], change: ChangeOverFlights | None, apart: str
+) -> str:
     """Return the sentence of the change test for one aircraft, and a picture for each derivative."""
     estimates = [estimate for _, estimate in flights]
     posteriors = posteriors_at_one_speed(estimates)
@@ -80,7 +82,7 @@ def _trends(name: str, flights: Sequence[tuple[int, Estimate]], change: ChangeOv
     at = f" brought to an air speed of {speed:.1f} m/s" if speed is not None else ""
     return (
         f"<h2>{_shown(name) or 'Aircraft'}</h2>\n"
-        f'<p class="verdict">{_shown(_sentence(flights, change))}</p>\n'
+        f'<p class="verdict">{_shown(apart or _sentence(flights, change))}</p>\n'
         f'<p class="note">Joint estimate of each flight{at} with its 95 % interval; a dashed line marks'
         f' a change.</p>\n<div class="gallery">{"".join(pictures)}</div>'
     )
@@ -120,22 +122,40 @@ def _below_their_folder(logs: Sequence[str]) -> list[str]:
 
 
 def _row(number: int, flight: Analyzed, log: str, aircraft: str, report: str | None) -> str:
-    verdicts = [maneuver["verdict"] for maneuver in flight.document["maneuvers"]]
     dated = SINCE_1970_S <= flight.began_s < inf
-    test = flight.document["flight_test"] or {}
     cells = (
         str(number),
         log,
         f"{datetime.fromtimestamp(flight.began_s, UTC):%Y-%m-%d %H:%M}" if dated else "not dated",
         aircraft,
-        f"{verdicts.count('accepted')} of {len(verdicts)}",
-        _result(test.get("sentence", "")) if flight.usable else f"Cannot be used: {' '.join(flight.reasons)}",
+        _accepted(flight),
+        _results(flight) if flight.usable else f"Cannot be used: {' '.join(flight.reasons)}",
     )
     shown = [_shown(cell) for cell in cells]
     if report is not None:
         shown[1] = f'<a href="{quote(report)}">{shown[1]}</a>'
     told = "".join(f'<td data-label="{name}">{cell}</td>' for name, cell in zip(_COLUMNS, shown, strict=True))
     return f"<tr>{told}</tr>"
+
+
+def _accepted(flight: Analyzed) -> str:
+    """Return how many manoeuvres are accepted, of the elevator and of aileron and rudder."""
+    pitch, lateral = (
+        [one["verdict"] for one in several]
+        for several in (flight.document["maneuvers"], flight.lateral.get("maneuvers", ()))
+    )
+    counted = f"{pitch.count('accepted')} of {len(pitch)}"
+    if not lateral:
+        return counted
+    return f"{counted}; roll and yaw {lateral.count('accepted')} of {len(lateral)}"
+
+
+def _results(flight: Analyzed) -> str:
+    """Return the sentences of the flight tests, of the elevator and of roll and yaw where they were flown."""
+    said = [_result(flight.document["flight_test"]["sentence"])]
+    if flight.lateral.get("maneuvers"):
+        said.append(f"Roll and yaw: {_result(flight.lateral['flight_test']['sentence'])}")
+    return " ".join(said)
 
 
 def _result(sentence: str) -> str:

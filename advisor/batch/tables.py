@@ -1,7 +1,8 @@
 """The results of a batch as tables: flights, manoeuvres, changes."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from math import inf
 from typing import Any
 
@@ -11,10 +12,11 @@ from advisor import __version__
 from advisor.aircraft.reference import PARAMETERS
 from advisor.analysis.log_series import SINCE_1970_S
 from advisor.batch.flight import Analyzed
-from advisor.batch.trend import ChangeOverFlights, change_over_flights
+from advisor.batch.trend import ChangeOverFlights, change_over_flights, lying_apart
 from advisor.exports.flights.found import PARAMETER_UNITS
 from advisor.exports.flights.table import Column, Dataset, FlightTable, numbers, texts
 from advisor.oem.estimate import Estimate
+from advisor.words.quantities import SIDE_PARAMETERS
 
 
 def in_order(results: Sequence[Analyzed]) -> list[Analyzed]:
@@ -34,9 +36,32 @@ def estimates_of(flights: Sequence[Analyzed]) -> dict[str, list[tuple[int, Estim
 
 
 def changes_of(flights: Sequence[Analyzed]) -> dict[str, ChangeOverFlights]:
-    """Return the change over the flights of each aircraft, by the name of its aircraft."""
-    found = {name: change_over_flights(several) for name, several in estimates_of(flights).items()}
+    """Return the change over the flights of each aircraft, by the name of its aircraft.
+
+    Flights without an aircraft file may be those of several aircraft; no change is sought among them.
+    """
+    named = estimates_of([flight for flight in flights if flight.is_named])
+    found = {name: change_over_flights(several) for name, several in named.items()}
     return {name: change for name, change in found.items() if change is not None}
+
+
+def not_told_apart(flights: Sequence[Analyzed]) -> dict[str, str]:
+    """Return a sentence for each identity without an aircraft file whose flights do not agree.
+
+    A system id is 1 by default, so that it names no aircraft. Flights that agree count as those of one.
+    """
+    told = {}
+    nameless = [replace(f, joint={}) if f.is_named else f for f in flights]
+    for name, several in estimates_of(nameless).items():
+        apart = lying_apart(several)
+        if apart:
+            speeds = [e.airspeed_m_s for _, e in several if e.airspeed_m_s is not None]
+            flown = f" They were flown at {min(speeds):.0f} to {max(speeds):.0f} m/s." if speeds else ""
+            told[name] = (
+                f"Not told apart: {name} may be one aircraft that has changed, or several. {apart}{flown} "
+                "Give --aircraft for one aircraft, or --aircraft-map for several."
+            )
+    return told
 
 
 def aircraft_of(flight: Analyzed) -> str:
@@ -99,7 +124,9 @@ def is_whole(result: Analyzed) -> bool:
 def _flights(flights: Sequence[Analyzed]) -> FlightTable:
     documents = [flight.document for flight in flights]
     tests = [document["flight_test"] or {} for document in documents]
+    sides = [f.lateral.get("flight_test") or {} for f in flights]
     verdicts = [[m["verdict"] for m in document["maneuvers"]] for document in documents]
+    lateral = [[m["verdict"] for m in f.lateral.get("maneuvers", ())] for f in flights]
     columns = [
         Column("flight", np.arange(1, len(flights) + 1), "", "number in the order of flying"),
         Column("log", texts([f.log for f in flights]), "", "file of the log"),
@@ -113,7 +140,7 @@ def _flights(flights: Sequence[Analyzed]) -> FlightTable:
         Column(
             "accepted", np.array([v.count("accepted") for v in verdicts], np.int64), "1", "how many count"
         ),
-        Column("decision", texts([t.get("decision", "") for t in tests]), "", "stop or continue"),
+        Column("decision", texts(list(map(decided, tests))), "", "complete or not complete"),
         Column(
             "criterion_percent", numbers([t.get("criterion_percent") for t in tests]), "%", "stop criterion"
         ),
@@ -124,13 +151,31 @@ def _flights(flights: Sequence[Analyzed]) -> FlightTable:
             "air speed at which the derivatives are given",
         ),
         *_parameters([d["model"] for d in documents], "of the joint estimate"),
+        Column(
+            "lateral_maneuvers", np.array([len(v) for v in lateral], np.int64), "1", "those of roll and yaw"
+        ),
+        Column(
+            "lateral_accepted",
+            np.array([v.count("accepted") for v in lateral], np.int64),
+            "1",
+            "how many of them count",
+        ),
+        Column("lateral_decision", texts(list(map(decided, sides))), "", "complete or not complete"),
+        *_lateral_parameters([f.lateral.get("model") for f in flights], "of the joint estimate"),
     ]
     return FlightTable("flights", "A row is a flight: one log.", tuple(columns))
 
 
+def decided(test: Mapping[str, Any]) -> str:
+    """Return the word on the flight test of a flight that is over; empty without one."""
+    return {"stop": "complete", "continue": "not complete"}.get(test.get("decision", ""), "")
+
+
 def _maneuvers(flights: Sequence[Analyzed]) -> FlightTable:
-    rows = [(k, m) for k, f in enumerate(flights, start=1) for m in f.document["maneuvers"]]
+    rows = [(k, m) for k, f in enumerate(flights, start=1) for m in f.maneuvers]
     found = [m for _, m in rows]
+    pitch = [None if _is_lateral(m) else m["estimates"] for m in found]
+    lateral = [m["estimates"] if _is_lateral(m) else None for m in found]
     columns = [
         Column("flight", np.array([k for k, _ in rows], np.int64), "", "number of the flight"),
         Column("maneuver", np.array([m["number"] for m in found], np.int64), "", "number in the flight"),
@@ -143,7 +188,9 @@ def _maneuvers(flights: Sequence[Analyzed]) -> FlightTable:
         Column("sentence", texts([m["sentence"] for m in found]), "", "verdict as the pilot reads it"),
         Column("reason_codes", texts([_codes(m) for m in found]), "", "stable codes of the reasons"),
         Column("cost", numbers([m["cost"] for m in found]), "", "J of Eq. (7)"),
-        *_parameters([m["estimates"] for m in found], "of the manoeuvre"),
+        Column("axis", texts(["lateral" if _is_lateral(m) else "pitch" for m in found]), "", "axis tested"),
+        *_parameters(pitch, "of the manoeuvre"),
+        *_lateral_parameters(lateral, "of the manoeuvre"),
     ]
     return FlightTable("maneuvers", "A row is a manoeuvre.", tuple(columns))
 
@@ -177,6 +224,20 @@ def _parameters(estimates: Sequence[dict[str, Any] | None], of: str) -> list[Col
             values = numbers([e[name][key] if e else None for e in estimates])
             columns.append(Column(f"{name}{suffix}", values, PARAMETER_UNITS[name], f"{key} {of}"))
     return columns
+
+
+def _lateral_parameters(estimates: Sequence[dict[str, Any] | None], of: str) -> list[Column]:
+    """Return the value and standard deviation of each lateral derivative; NaN where there is none."""
+    columns = []
+    for name, quantity in SIDE_PARAMETERS.items():
+        for key, suffix in (("value", ""), ("std", "_std")):
+            values = numbers([e[name][key] if e and name in e else None for e in estimates])
+            columns.append(Column(f"{name}{suffix}", values, quantity.unit.replace("²", "^2"), f"{key} {of}"))
+    return columns
+
+
+def _is_lateral(maneuver: Mapping[str, Any]) -> bool:
+    return "modes" in maneuver
 
 
 def _codes(maneuver: dict[str, Any]) -> str:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from advisor.aircraft.aircraft import Aircraft
 from advisor.campaign.elevator import ElevatorCampaign
 from advisor.campaign.hand_decisions import NOTHING, ByHand, Remark
-from advisor.campaign.instruments import together, with_fit
+from advisor.campaign.instruments import side_signs, together, with_fit
 from advisor.campaign.journal import Journal
 from advisor.campaign.late_limits import recount
 from advisor.campaign.lateral import LateralCampaign
@@ -34,6 +34,7 @@ from advisor.flight.signals.messages import Columns
 from advisor.flight.stream.flights import Flights
 from advisor.flight.stream.stream import FlightStream
 from advisor.oem.estimate import Estimate
+from advisor.oem.lateral_estimate import LateralEstimate
 from advisor.oem.solution import Method
 from advisor.process.parts import Parts
 from advisor.words.problems import Problem
@@ -141,12 +142,13 @@ class Campaign:
         stream, flights, elevator = self._stream, self._flights, self._elevator
         flying, channels, model = flights.so_far(), stream.channels, elevator.model
         settled = self._settled(flying, model)
-        instruments = self._parts.make("instruments", lambda: self._contradictions(model), lambda _: ())
         heard = flights.heard(channels, self._ended)
         lateral = None
         if self._lateral is not None:
             unknown = [one.sides_unknown for one in heard]
             lateral = self._lateral.state(unknown[-1] if all(unknown) else None)
+        side = lateral.model if lateral is not None else None
+        instruments = self._parts.make("instruments", lambda: self._contradictions(model, side), lambda _: ())
         return CampaignState(
             vehicle=stream.vehicle,
             now_s=stream.now_s,
@@ -194,11 +196,14 @@ class Campaign:
             lambda _: None,
         )
 
-    def _contradictions(self, model: Estimate | None) -> tuple[InstrumentFinding, ...]:
+    def _contradictions(
+        self, model: Estimate | None, side: LateralEstimate | None
+    ) -> tuple[InstrumentFinding, ...]:
         """Return the contradictions of the instruments, by the motion and by the fits."""
         maneuvers = (*self._elevator.maneuvers, *self._side_maneuvers)
         by_motion = together(maneuvers, self._stream.instruments)
-        return with_fit(by_motion, model, self._elevator.estimates, self._aircraft)
+        found = with_fit(by_motion, model, self._elevator.estimates, self._aircraft)
+        return (*found, *side_signs(side, self._aircraft))
 
     @property
     def power_on(self) -> tuple[int, int]:

@@ -14,6 +14,7 @@ from advisor.campaign.learning import may_learn, of_another_power_on, reserved, 
 from advisor.campaign.single_maneuver import assess, failed, objection
 from advisor.campaign.state import JudgedManeuver
 from advisor.decision.course import CriterionCourse
+from advisor.decision.heard import Heard
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.judge import judge_campaign
 from advisor.decision.stopping import flight_test
@@ -66,6 +67,7 @@ class ElevatorCampaign:
         self._flown: list[_Flown] = []
         self._together = Together(aircraft)
         self._course = CriterionCourse(aircraft.campaign)
+        self._heard: list[Heard] = []
         self._ended = False
         self.judged: tuple[JudgedManeuver, ...] = ()
         """Manoeuvres in the order flown, each with its estimate and verdict."""
@@ -79,6 +81,8 @@ class ElevatorCampaign:
         self._flown.append(flown)
         self._blame_instruments(maneuver)
         self.decide()
+        usable = [i for i, one in enumerate(self._flown) if one.examined.usable]
+        self._heard.append(Heard.of(self.flight_test, usable))
 
     def take_better(self, maneuver: Maneuver, because: str | None) -> None:
         """Take another record of a manoeuvre in the former one's place; exclude it where a reason is
@@ -199,7 +203,10 @@ class ElevatorCampaign:
             )
             for flown, verdict in zip(self._flown, verdicts, strict=True)
         )
-        self.flight_test = flight_test(history, plan, self._aircraft, self._course)
+        # An exclusion by hand decides all anew: a replay with the file of decisions equals the flight.
+        excluded = any(one.excluded_because is not None for one in history)
+        heard = () if excluded else self._heard
+        self.flight_test = flight_test(history, plan, self._aircraft, self._course, heard)
         if lag_is_unknown(self.learnt):
             model = self._of_lag
             self.judged = tuple(

@@ -8,6 +8,10 @@ from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.findings import findings_of
+from advisor.oem.lateral_estimate import LateralEstimate
+from advisor.words.digits import with_half
+from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import symbol
 
 
 def as_known_by(maneuver: Maneuver, newest: Maneuver) -> Maneuver:
@@ -60,6 +64,43 @@ def with_fit(
     for one in told:
         found.setdefault(one.code, one)
     return tuple(found.values())
+
+
+def side_signs(model: LateralEstimate | None, aircraft: Aircraft) -> tuple[InstrumentFinding, ...]:
+    """Return in which direction a positive aileron rolls and a positive rudder yaws, where the motion tells.
+
+    The definition is left. Without a calibration nothing states the direction; the derivatives then have the
+    sign that the parameters of the outputs give. They stay in the log's sign where the motion contradicts it.
+    """
+    found = []
+    for control, name, moves in (("aileron", "L_delta_a", "rolls"), ("rudder", "N_delta_r", "yaws")):
+        if model is None or name in model.estimate.not_identifiable:
+            continue
+        value = model.estimate.value(name)
+        half = NORMAL_95 * float(model.estimate.std[model.estimate.names.index(name)])
+        if not half < abs(value):
+            continue
+        stated = getattr(aircraft, control).calibration is not None
+        side, wrong = ("left", False) if value < 0.0 else ("right", True)
+        told = f"a positive one {moves} to the {side} ({symbol(name)} {with_half(value, half)})"
+        text = f"{control}.calibration states the sign: {told}"
+        if not stated:
+            text = f"no {control}.calibration states the sign of the {control}: {told}"
+        if wrong:
+            text += "; positive is left, and the derivatives stay in this sign"
+        found.append(
+            InstrumentFinding(
+                control,
+                "sign",
+                "left" if stated else None,
+                side,
+                contradicts=wrong,
+                text=text,
+                fix=f"give {control}.calibration with positive to the left" if wrong else "",
+                used=wrong,
+            )
+        )
+    return tuple(found)
 
 
 def _codes(findings: Iterable[InstrumentFinding]) -> set[tuple[str, bool]]:

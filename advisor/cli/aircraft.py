@@ -1,6 +1,7 @@
 """``advisor aircraft``: write an aircraft file, or check one for missing keys."""
 
 import json
+import shlex
 from dataclasses import asdict
 from functools import partial
 from pathlib import Path
@@ -64,6 +65,7 @@ def new(log: Path | None, out: Path, blank: bool, force: bool, target_system: in
     from advisor.aircraft_file.read import load_aircraft
     from advisor.aircraft_file.text import Draft, aircraft_text
     from advisor.cli.asking import ask
+    from advisor.doctor.next_steps import USUAL_LINK
     from advisor.process.atomic_file import write_atomically
 
     if blank and log is not None:
@@ -82,10 +84,14 @@ def new(log: Path | None, out: Path, blank: bool, force: bool, target_system: in
     click.echo(f"Wrote {printable(str(out))}.")
     for sentence in draft.unsure:
         click.echo(f"! {sentence}")
-    examined = f" --log {log}" if log else ""
+    examined = ["--log", str(log)] if log else []
+    chosen = ["--target-system", str(target_system)] if target_system is not None else []
     click.echo("Next:")
-    click.echo(f"  advisor aircraft check {out}{examined}")
-    click.echo(f"  advisor doctor {log or 'LOG'} --aircraft {out}")
+    for command in (
+        ["aircraft", "check", str(out), *examined, *(chosen if log else [])],
+        ["doctor", str(log or USUAL_LINK), "--aircraft", str(out), *chosen],
+    ):
+        click.echo(f"  {printable(shlex.join(['advisor', *command]))}")
 
 
 @command.command

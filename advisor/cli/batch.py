@@ -180,7 +180,7 @@ def _fault(task: "BatchTask", error: Exception) -> Problem:
 def _told(results: "Sequence[Analyzed]", out: Path, pages: Mapping[Path, str]) -> int:
     """Write the tables, and print failures and changes."""
     from advisor.batch.index import index_page
-    from advisor.batch.tables import changes_of, in_order, mixed_up, tables_of
+    from advisor.batch.tables import changes_of, in_order, mixed_up, not_told_apart, tables_of
     from advisor.exports.flights.formats import write_formats
     from advisor.exports.flights.staging import staged
 
@@ -194,9 +194,11 @@ def _told(results: "Sequence[Analyzed]", out: Path, pages: Mapping[Path, str]) -
         click.echo(printable(f"{flight.log}: {' '.join(flight.reasons)}"), err=True)
     for sentence in mixed_up(flights):
         click.echo(printable(sentence), err=True)
+    for sentence in not_told_apart(flights).values():
+        click.echo(printable(sentence))
     for name, change in changes_of(flights).items():
         click.echo(printable(f"{name}: {change.sentence}"))
-    maneuvers = sum(len(flight.document["maneuvers"]) for flight in flights)
+    maneuvers = sum(len(flight.maneuvers) for flight in flights)
     click.echo(
         f"{printable(str(out))}: flights: {len(flights)}; manoeuvres: {maneuvers}; logs that cannot be used:"
         f" {len(failures)}; tables: flights.{form}, maneuvers.{form}, changes.{form}; page: {INDEX}."

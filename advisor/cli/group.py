@@ -131,7 +131,8 @@ def _say_version(context: click.Context, _: click.Parameter, wanted: bool) -> No
     help="Show the version.",
 )
 def advisor() -> None:
-    """Inflight advisor: was that manoeuvre good, may we stop testing.
+    """Inflight advisor: was that manoeuvre good, may we stop testing, and why does the aircraft not fly like
+    our simulator.
 
     \b
     Example:

@@ -1,5 +1,6 @@
 """``advisor sample``: a flight for trying every command."""
 
+import shlex
 import shutil
 from pathlib import Path
 
@@ -31,9 +32,5 @@ def command(folder: Path) -> None:
     for target in (log, aircraft, slow):
         shutil.copyfile(SAMPLES / target.name, target)
     click.echo(f"Wrote {log}, {aircraft} and {slow}. Next:")
-    for line in (
-        f"advisor doctor {log} --aircraft {aircraft}",
-        f"advisor replay {log} --aircraft {aircraft}",
-        f"advisor gap {log} --aircraft {aircraft}",
-    ):
-        click.echo(f"  {line}")
+    for name in ("doctor", "replay", "gap"):
+        click.echo(f"  {shlex.join(['advisor', name, str(log), '--aircraft', str(aircraft)])}")

@@ -1,18 +1,14 @@
-"""The lateral flight test: what all accepted manoeuvres tell together, whether to stop, and what to fly next.
+"""The lateral flight test: what the joint estimate tells, whether to stop, and what to fly next.
 
-Estimates of single manoeuvres are pooled by their information. A manoeuvre without a rudder tells nothing of
-the rudder's derivatives, and those are no part of its information. Where the manoeuvres scatter more than
-their errors allow, every error is enlarged by the Birge ratio (Birge, *Physical Review* 40, 1932).
+The joint estimate that every face shows is the one that decides.
 """
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
-import numpy as np
-
-from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.aircraft import Aircraft, Rule
 from advisor.decision.advice import ENOUGH
+from advisor.decision.heard import Heard, first_stop
 from advisor.decision.lateral_advice import FlownInput, next_lateral
 from advisor.decision.tolerance import SHARE
 from advisor.decision.verdict import (
@@ -21,7 +17,6 @@ from advisor.decision.verdict import (
     NextInput,
     RuleProgress,
 )
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.lateral import LATERAL
 from advisor.oem.lateral_estimate import LateralEstimate
 from advisor.words.quantiles import NORMAL_95
@@ -33,73 +28,35 @@ JUDGED: Mapping[str, str] = {
     "N_delta_r": "rudder",
 }
 """Derivatives that must meet their tolerance, and the control whose input tells each best."""
+CHECKED = 2
+"""Least number of accepted manoeuvres that move each control. A single manoeuvre has no scatter: nine
+derivatives of a single rudder doublet were wrong by many of their errors."""
+_RULE: Rule = "information"
 NOT_FLOWN = "No test input of the aileron or the rudder has been flown."
 """Sentence of a flight without a lateral manoeuvre."""
-_PLACES = {name: LATERAL.names.reported.index(name) for name in JUDGED}
-_CONTROL_OF = {f"{letter}_{suffix}": name for letter in "YLN" for suffix, name in
-               (("delta_a", "aileron"), ("delta_r", "rudder"))}  # fmt: skip
-_UNKNOWN = 1e-9
-"""Least eigenvalue of the pooled information, normalised to a unit diagonal. Below it nothing is known."""
 
 
-@dataclass(frozen=True, slots=True)
-class LateralKnowledge:
-    """Knowledge from all accepted manoeuvres together."""
-
-    theta: FloatArray
-    """(15,) derivatives; NaN where no manoeuvre tells one."""
-    std: FloatArray
-    """(15,) standard deviations; infinite where no manoeuvre tells one."""
-    flown: frozenset[str]
-    """Controls that were flown."""
-
-    def percent(self, tolerance_percent: float) -> Mapping[str, float]:
-        """Return each judged derivative's 95 % half-width, % of its tolerance; infinite for an unknown
-        one."""
-        found = {}
-        for name, k in _PLACES.items():
-            size = 0.01 * SHARE * tolerance_percent * abs(self.theta[k])
-            known = math.isfinite(self.std[k]) and size > 0.0 and JUDGED[name] in self.flown
-            found[name] = 100.0 * NORMAL_95 * float(self.std[k]) / size if known else math.inf
-        return found
-
-
-def lateral_knowledge(estimates: Sequence[LateralEstimate]) -> LateralKnowledge:
-    """Return the knowledge from accepted estimates, in any order."""
-    n = len(LATERAL.names.reported)
-    information, pull = np.zeros((n, n)), np.zeros(n)
-    parts = []
-    for one in estimates:
-        told = [k for k, name in enumerate(LATERAL.names.reported) if _CONTROL_OF.get(name, "") in
-                ("", *one.flown)]  # fmt: skip
-        own = np.linalg.pinv(one.estimate.covariance[np.ix_(told, told)], hermitian=True)
-        information[np.ix_(told, told)] += own
-        pull[told] += own @ one.estimate.theta[told]
-        parts.append((told, own, one.estimate.theta[told]))
-    known = np.diag(information) > 0.0
-    theta, std = np.full(n, np.nan), np.full(n, np.inf)
-    if known.any():
-        covariance = _inverse(information[np.ix_(known, known)])
-        theta[known] = covariance @ pull[known]
-        std[known] = np.sqrt(np.diag(covariance))
-    distance, freedom = 0.0, -int(np.count_nonzero(known))
-    for told, own, found in parts:
-        apart = found - theta[told]
-        distance += float(apart @ own @ apart)
-        freedom += len(told)
-    birge = math.sqrt(max(distance / freedom, 1.0)) if freedom > 0 else 1.0
-    return LateralKnowledge(theta, std * birge, frozenset(name for one in estimates for name in one.flown))
-
-
-def _inverse(information: FloatArray) -> FloatArray:
-    scale = 1.0 / np.sqrt(np.diag(information))
-    values, vectors = np.linalg.eigh(information * np.outer(scale, scale))
-    kept = 1.0 / np.maximum(values, _UNKNOWN)
-    return np.asarray((vectors * kept) @ vectors.T * np.outer(scale, scale))
+def shares_of(joint: LateralEstimate | None, tolerance_percent: float) -> Mapping[str, float]:
+    """Return each judged derivative's 95 % half-width in the joint estimate, % of its tolerance; infinite for
+    an unknown one."""
+    shares = dict.fromkeys(JUDGED, math.inf)
+    if joint is None:
+        return shares
+    estimate = joint.estimate
+    for name, control in JUDGED.items():
+        k = estimate.names.index(name)
+        size = 0.01 * SHARE * tolerance_percent * abs(float(estimate.theta[k]))
+        if control in joint.flown and name not in estimate.not_identifiable and size > 0.0:
+            shares[name] = 100.0 * NORMAL_95 * float(estimate.std[k]) / size
+    return shares
 
 
 def lateral_flight_test(
-    history: Sequence[LateralEstimate | None], aircraft: Aircraft, flown: Sequence[FlownInput] = ()
+    history: Sequence[LateralEstimate | None],
+    joint: LateralEstimate | None,
+    aircraft: Aircraft,
+    flown: Sequence[FlownInput] = (),
+    heard: Sequence[Heard] = (),
 ) -> FlightTestVerdict:
     """Return whether the lateral test may stop, and the next input.
 
@@ -107,59 +64,66 @@ def lateral_flight_test(
     ----------
     history
         Estimate of every manoeuvre in the order flown; None for one that was not accepted.
+    joint
+        Joint estimate over the accepted manoeuvres.
     aircraft
         The crew's aircraft file, with its tolerance.
     flown
         Inputs of all manoeuvres, accepted or not.
+    heard
+        What the crew heard after each earlier manoeuvre. A stop that the crew has heard stays.
     """
-    plan = aircraft.campaign
-    accepted: list[LateralEstimate] = []
-    values: list[float | None] = []
-    stopped_at = None
-    shares: Mapping[str, float] = dict.fromkeys(JUDGED, math.inf)
-    for number, one in enumerate(history, start=1):
-        if one is not None:
-            accepted.append(one)
-            shares = lateral_knowledge(accepted).percent(plan.tolerance_percent)
-        worst = max(shares.values())
-        values.append(worst if math.isfinite(worst) else None)
-        if stopped_at is None and worst < INFORMATION_LIMIT_PERCENT:
-            stopped_at = number
-    stop = max(shares.values()) < INFORMATION_LIMIT_PERCENT
+    accepted = [one for one in history if one is not None]
+    shares = shares_of(joint, aircraft.campaign.tolerance_percent)
+    worst = max(shares.values())
+    holds = worst < INFORMATION_LIMIT_PERCENT and not _flown_fewer_than(CHECKED, accepted)
+    now = worst if math.isfinite(worst) else None
+    told = tuple(one.percent.get(_RULE) for one in heard)
+    stopped_at = first_stop(heard, _RULE) or (len(history) if holds else None)
+    stop = stopped_at is not None
     return FlightTestVerdict(
-        rule="information",
+        rule=_RULE,
         decision="stop" if stop else "continue",
-        sentence=_sentence(shares, accepted, stop) if history else NOT_FLOWN,
-        criterion_percent=values[-1] if values else None,
+        sentence=_sentence(shares, accepted, stopped_at, holds) if history else NOT_FLOWN,
+        criterion_percent=now,
         limit_percent=INFORMATION_LIMIT_PERCENT,
         stopped_at=stopped_at,
         by_rule={
-            "information": RuleProgress(
+            _RULE: RuleProgress(
                 stopped_at,
-                tuple(values),
+                (*told, now) if len(told) < len(history) else told,
                 INFORMATION_LIMIT_PERCENT,
                 parameter_percent={k: v if math.isfinite(v) else None for k, v in shares.items()},
+                now_percent=now,
+                holds=holds,
             )
         },
         next=ENOUGH if stop else _next(shares, accepted, flown, aircraft),
     )
 
 
-def _missing(accepted: Sequence[LateralEstimate]) -> list[str]:
-    flown = {name for one in accepted for name in one.flown}
-    return [name for name in LATERAL.inputs if name not in flown]
+def _flown_fewer_than(n: int, accepted: Sequence[LateralEstimate]) -> list[str]:
+    """Return the controls that fewer than ``n`` accepted manoeuvres have moved."""
+    return [name for name in LATERAL.inputs if sum(name in one.flown for one in accepted) < n]
 
 
-def _sentence(shares: Mapping[str, float], accepted: Sequence[LateralEstimate], stop: bool) -> str:
-    if stop:
+def _sentence(
+    shares: Mapping[str, float], accepted: Sequence[LateralEstimate], stopped_at: int | None, holds: bool
+) -> str:
+    if stopped_at is not None and not holds:
+        return f"TEST COMPLETE since manoeuvre {stopped_at} of aileron and rudder."
+    if holds:
         return (
             f"TEST COMPLETE: roll and yaw are known within their tolerance from {len(accepted)} accepted "
             "manoeuvres."
         )
-    missing = _missing(accepted)
+    missing = _flown_fewer_than(1, accepted)
     if missing:
         return f"CONTINUE: no accepted manoeuvre has moved the {' or the '.join(missing)}."
     worst = max(shares, key=lambda name: shares[name])
+    if shares[worst] < INFORMATION_LIMIT_PERCENT:
+        once = _flown_fewer_than(CHECKED, accepted)
+        return f"CONTINUE: sure enough; one more input of the {' and the '.join(once)} to check the estimate."
     said = f"{shares[worst]:.0f} % of its tolerance" if math.isfinite(shares[worst]) else "unknown"
     return f"CONTINUE: the error of {worst} is {said}."
 
@@ -170,7 +134,7 @@ def _next(
     flown: Sequence[FlownInput],
     aircraft: Aircraft,
 ) -> NextInput:
-    missing = _missing(accepted)
+    missing = _flown_fewer_than(1, accepted) or _flown_fewer_than(CHECKED, accepted)
     worst = max(shares, key=lambda name: shares[name])
     control = missing[0] if missing else JUDGED[worst]
     percent = max(share for name, share in shares.items() if JUDGED[name] == control)

@@ -8,10 +8,11 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft, CampaignPlan, Rule
 from advisor.decision.acceptance import MANEUVER_RULES
 from advisor.decision.advice import next_input
+from advisor.decision.change import find_change
 from advisor.decision.course import CriterionCourse
 from advisor.decision.evidence import evidence, sentence
+from advisor.decision.heard import Heard, as_heard, first_stop
 from advisor.decision.history import CandidateManeuver, estimates_of, nothing_tested, usable_ones
-from advisor.decision.information import Knowledge
 from advisor.decision.judge import accepted_estimates, results_of
 from advisor.decision.scatter import scatter_percent, scattered_most, window
 from advisor.decision.verdict import FlightTestVerdict, RuleProgress, limit_percent
@@ -28,24 +29,41 @@ def flight_test(
     plan: CampaignPlan,
     aircraft: Aircraft | None = None,
     course: CriterionCourse | None = None,
+    heard: Sequence[Heard] = (),
 ) -> FlightTestVerdict:
     """Return whether testing may stop, and the next input, after the last manoeuvre of ``history``.
 
-    The decision says whether the chosen rule's criterion holds *now*; ``stopped_at`` keeps when it first
-    held. The two differ when a later manoeuvre contradicts the earlier ones. ``aircraft`` gives the limits of
-    the next input. A ``course`` keeps results of earlier decisions, and changes no verdict.
+    A stop holds where the chosen rule's criterion holds now. A stop that the crew has heard stays. It ends
+    where a change of the aircraft is found, or where one of its manoeuvres is no longer usable.
+
+    Parameters
+    ----------
+    aircraft
+        Gives the limits of the next input.
+    course
+        Keeps results of earlier decisions, and changes no verdict.
+    heard
+        What the crew heard after each earlier manoeuvre.
     """
     course = course or CriterionCourse(plan)
     by_rule: dict[str, RuleProgress] = {
-        rule: progress(history, rule, plan, course) for rule in MANEUVER_RULES
+        rule: as_heard(progress(history, rule, plan, course), rule, heard) for rule in MANEUVER_RULES
     }
     chosen = by_rule[plan.rule]
-    criterion = chosen.history_percent[-1] if chosen.history_percent else None
+    criterion = chosen.now_percent
     usable = usable_ones(history)
     known = course.known(usable) if usable else None
-    stop = _holds_now(known, plan, criterion)
+    change = find_change(history)
+    changed = change.sentence if change is not None and change.confirmed else ""
+    stop = chosen.holds or (not changed and _stays(history, plan.rule, heard))
     said = nothing_tested(history)
-    if known is not None:
+    if stop and not chosen.holds:
+        said = (
+            f"TEST COMPLETE since manoeuvre {chosen.stopped_at}: no change of the aircraft was found since."
+        )
+    elif not stop and changed and chosen.stopped_at is not None:
+        said = f"CONTINUE: {changed}"
+    elif known is not None:
         by_information = plan.rule == "information"
         said = sentence(known, stop) if by_information else _scatter_sentence(history, plan, criterion, stop)
     return FlightTestVerdict(
@@ -57,9 +75,16 @@ def flight_test(
         stopped_at=chosen.stopped_at,
         by_rule=by_rule,
         next=next_input(history, replace(aircraft or Aircraft(), campaign=plan), stop, course),
-        warnings=warnings(history, chosen, stop, course),
+        warnings=warnings(history, chosen, change, course),
         evidence=evidence(known) if known else (),
     )
+
+
+def _stays(history: Sequence[CandidateManeuver], rule: Rule, heard: Sequence[Heard]) -> bool:
+    """Return whether a stop that the crew has heard still rests on usable manoeuvres."""
+    stopped = first_stop(heard, rule)
+    now = {i for i, flown in enumerate(history) if flown.usable}
+    return stopped is not None and heard[stopped - 1].usable <= now
 
 
 def progress(
@@ -88,16 +113,18 @@ def progress(
         values.append(value)
         if sufficient and stopped_at is None:
             stopped_at = number
+    found = RuleProgress(
+        stopped_at, tuple(values), limit, now_percent=values[-1] if values else None,
+        hindsight_percent=tuple(values), hindsight_stopped_at=stopped_at, holds=sufficient,
+    )  # fmt: skip
     if rule != "information" or not taken:
-        return RuleProgress(stopped_at, tuple(values), limit)
+        return found
     known = course.known(taken)
     shares = {name: _finite(100.0 * share) for name, share in known.share.items()}
-    return RuleProgress(
-        stopped_at,
-        tuple(values),
-        limit,
-        {name: _finite(band) for name, band in known.prediction_percent.items()},
-        {name: shares[name] for name in known.named},
+    return replace(
+        found,
+        prediction_percent={name: _finite(band) for name, band in known.prediction_percent.items()},
+        parameter_percent={name: shares[name] for name in known.named},
     )
 
 
@@ -118,12 +145,6 @@ def _scatter(accepted: Sequence[Estimate], plan: CampaignPlan) -> float | None:
 
 def _finite(value: float) -> float | None:
     return value if np.isfinite(value) else None
-
-
-def _holds_now(known: Knowledge | None, plan: CampaignPlan, criterion: float | None) -> bool:
-    if plan.rule == "information":
-        return known is not None and known.sufficient
-    return criterion is not None and criterion < plan.limit_percent
 
 
 def _scatter_sentence(

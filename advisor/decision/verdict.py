@@ -68,9 +68,10 @@ class RuleProgress:
     """Stop criterion under one rule."""
 
     stopped_at: int | None
-    """Number of manoeuvres at the first stop of this rule. None: no stop yet."""
+    """Number of manoeuvres at the first stop of this rule that the crew heard. None: no stop yet."""
     history_percent: tuple[float | None, ...]
-    """Criterion after each manoeuvre. None while there are too few manoeuvres."""
+    """Criterion after each manoeuvre, as the crew heard it. None while there are too few manoeuvres; on
+    roll and yaw also after the stop."""
     limit_percent: float = 25.0
     """Limit of the criterion: 25 % of Eq. (12), or 100 % of the tolerance for ``information``."""
     prediction_percent: Mapping[str, float | None] = field(default_factory=dict)
@@ -78,11 +79,41 @@ class RuleProgress:
     unknown."""
     parameter_percent: Mapping[str, float | None] = field(default_factory=dict)
     """Under ``information``: named parameter to its 95 % half-width, % of its own tolerance."""
+    now_percent: float | None = None
+    """Criterion now, by the newest estimates. None: no value yet."""
+    hindsight_percent: tuple[float | None, ...] = ()
+    """Criterion after each manoeuvre by the newest estimates. Empty where no past is computed anew."""
+    hindsight_stopped_at: int | None = None
+    """Number of manoeuvres at the first stop in hindsight. None: no stop."""
+    holds: bool = False
+    """Whether the criterion holds now."""
 
     @property
     def percent_of_limit(self) -> tuple[float | None, ...]:
-        """Criterion after each manoeuvre in per cent of the rule's limit, the one scale of all rules."""
-        return tuple(None if v is None else 100.0 * v / self.limit_percent for v in self.history_percent)
+        """Criterion after each manoeuvre as the crew heard it, in per cent of the rule's limit, the one scale
+        of all rules."""
+        return tuple(map(self._of_limit, self.history_percent))
+
+    @property
+    def now_percent_of_limit(self) -> float | None:
+        """Criterion by the newest estimates, in per cent of the rule's limit; None without a value."""
+        return self._of_limit(self.now_percent)
+
+    @property
+    def hindsight(self) -> str:
+        """Sentence on a criterion that differs in hindsight; empty where it agrees with what was heard."""
+        again, heard = (
+            tuple("–" if v is None else f"{v:.1f}" for v in values)
+            for values in (self.hindsight_percent, self.history_percent)
+        )
+        if not again or again == heard:
+            return ""
+        enough = self.hindsight_stopped_at
+        stop = "no stop" if enough is None else f"manoeuvre {enough} would have been the last"
+        return f"by the newest estimates {' '.join(again)} %: {stop}"
+
+    def _of_limit(self, value: float | None) -> float | None:
+        return None if value is None else 100.0 * value / self.limit_percent
 
 
 @dataclass(frozen=True, slots=True)

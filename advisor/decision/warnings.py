@@ -6,7 +6,7 @@ import numpy as np
 
 from advisor.aircraft.aircraft import CampaignPlan
 from advisor.aircraft.reference import PARAMETERS
-from advisor.decision.change import find_change
+from advisor.decision.change import Change
 from advisor.decision.course import CriterionCourse
 from advisor.decision.history import CandidateManeuver, usable_ones
 from advisor.decision.judge import accepted_estimates, results_of
@@ -19,21 +19,28 @@ from advisor.words.quantities import symbol
 
 
 def warnings(
-    history: Sequence[CandidateManeuver], chosen: RuleProgress, stop: bool, course: CriterionCourse
+    history: Sequence[CandidateManeuver], chosen: RuleProgress, change: Change | None, course: CriterionCourse
 ) -> tuple[str, ...]:
-    """Return sentences on facts that the criterion alone does not show."""
+    """Return sentences on facts that the criterion alone does not show.
+
+    Parameters
+    ----------
+    chosen
+        Progress of the rule that decides.
+    change
+        Change between manoeuvres; None where noise explains all differences.
+    """
     plan, found = course.plan, []
-    if chosen.stopped_at is not None and not stop:
+    if chosen.stopped_at is not None and not chosen.holds:
         found.append(
             f"The criterion held after manoeuvre {chosen.stopped_at} and does not hold any more: "
             "later manoeuvres contradict the earlier ones."
         )
-    change = find_change(history)
     if change is not None:
         found.append(change.sentence)
     if plan.rule == "information":
         found += _left_out(history, course)
-    elif not stop:
+    elif not chosen.holds:
         found += _cannot_fall(accepted_estimates(history, plan.rule), plan)
         found += _locked_out(history, course)
     return tuple(found)

@@ -10,7 +10,7 @@ NEW_FILE = "aircraft.yaml"
 """Aircraft file that the commands name where none exists."""
 RECORDING = "flight.tlog"
 """Recording of a live link that the commands name."""
-_USUAL_LINK = "udpin:0.0.0.0:14550"
+USUAL_LINK = "udpin:0.0.0.0:14550"
 """Default address to which ground stations and simulators send telemetry."""
 _SLOW = frozenset({"rate", "renewal", "no_pitch_rate", "no_alpha", "no_airspeed", "no_accelerometer"})
 """Codes of limits that a request for faster streams remedies."""
@@ -63,7 +63,7 @@ def _after_log(findings: Examination, examined: ExaminedInput) -> tuple[str, str
         )
     if stopping & _NO_AIRCRAFT:
         sample = f"{SAMPLE}.tlog --aircraft {SAMPLE}.yaml"
-        return (f"advisor doctor {_USUAL_LINK}", "advisor sample", f"advisor doctor {sample}")
+        return (f"advisor doctor {USUAL_LINK}", "advisor sample", f"advisor doctor {sample}")
     if stopping & _SLOW:
         # This flight is lost for the purpose; the next one need not be.
         if examined.aircraft_file is None:
@@ -78,8 +78,8 @@ def _after_log(findings: Examination, examined: ExaminedInput) -> tuple[str, str
 
 def _next_flight(aircraft: str) -> tuple[str, str, str]:
     return (
-        f"advisor doctor {_USUAL_LINK} --request-rates --aircraft {aircraft}",
-        f"advisor live --master {_USUAL_LINK} --request-rates --record {RECORDING} --aircraft {aircraft}",
+        f"advisor doctor {USUAL_LINK} --request-rates --aircraft {aircraft}",
+        f"advisor live --master {USUAL_LINK} --request-rates --record {RECORDING} --aircraft {aircraft}",
         f"advisor analyze {RECORDING} --aircraft {aircraft}",
     )
 

@@ -187,7 +187,7 @@ def _flight_test(verdict: FlightTestVerdict) -> dict[str, Any]:
         **picked(verdict, "rule decision sentence criterion_percent limit_percent stopped_at warnings"),
         "by_rule": {
             # Only the rule ``information`` holds quantities to their tolerances.
-            name: picked(one, "stopped_at history_percent")
+            name: picked(one, "stopped_at history_percent hindsight_stopped_at hindsight_percent")
             | (
                 picked(one, "prediction_percent parameter_percent")
                 if one.prediction_percent or one.parameter_percent

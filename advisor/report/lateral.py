@@ -31,7 +31,10 @@ def lateral_document(state: LateralState, aircraft: Aircraft) -> dict[str, Any]:
         "flight_test": {
             **picked(verdict, "rule decision sentence criterion_percent limit_percent stopped_at warnings"),
             "by_rule": {
-                name: picked(one, "stopped_at history_percent parameter_percent")
+                name: picked(
+                    one,
+                    "stopped_at history_percent hindsight_stopped_at hindsight_percent parameter_percent",
+                )
                 for name, one in verdict.by_rule.items()
             },
             "next": verdict.next and picked(verdict.next, "advice holding_back"),

@@ -84,13 +84,17 @@ class InstrumentRow:
     unit: str
 
 
-def instrument_rows(estimate: object) -> list[InstrumentRow]:
-    """Return the parameters of the instruments, such as the servo's lag and a vane's place."""
+def instrument_rows(estimate: object, with_vane: bool) -> list[InstrumentRow]:
+    """Return the nuisance parameters of the instruments, such as the servo's lag and a vane's place.
+
+    Without a vane the place is that of a vane which would read like the angle of attack.
+    """
     if not isinstance(estimate, Estimate):
         return []
     rows = []
     for one in estimate.instruments:
-        name, unit, factor = _INSTRUMENTS.get(one.name, (one.name.replace("_", " "), "SI", 1.0))
+        key = one.name if with_vane or one.name != "vane_arm_m" else "no_vane_arm_m"
+        name, unit, factor = _INSTRUMENTS.get(key, (one.name.replace("_", " "), "SI", 1.0))
         half = NORMAL_95 * factor * one.std
         stated = "–" if one.stated is None else signed(factor * one.stated, decimals_for(half))
         rows.append(InstrumentRow(name, with_half(factor * one.value, half), stated, unit))
@@ -101,6 +105,7 @@ _INSTRUMENTS: Mapping[str, tuple[str, str, float]] = {
     "servo_lag_s": ("servo lag", "ms", 1e3),
     "command_delay_s": ("delay of the command", "ms", 1e3),
     "vane_arm_m": ("vane ahead of the centre of gravity", "m", 1.0),
+    "no_vane_arm_m": ("α reads like a vane ahead of the centre of gravity", "m", 1.0),
     "alpha_delay_s": ("delay of α", "ms", 1e3),
     "accelerometer_arm_m": ("accelerometer ahead of the centre of gravity", "m", 1.0),
     "steady_moment_rad": ("steady moment, as elevator", "deg", DEG),

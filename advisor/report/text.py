@@ -179,6 +179,8 @@ class AnalysisText:
             history = " ".join("–" if v is None else f"{v:.1f}" for v in progress.history_percent)
             stopped = "not yet" if progress.stopped_at is None else f"after manoeuvre {progress.stopped_at}"
             yield Text(f"rule {name:<12} stop: {stopped:<20} criterion %: {history}")
+            if progress.hindsight:
+                yield Text(f"{'':<18}{progress.hindsight}", style="dim")
         yield from (Text(f"information: {line}", style="dim") for line in verdict.evidence)
         yield from (Text(f"warning: {warning}", style="yellow") for warning in verdict.warnings)
         yield Text(stop_line(verdict), style="bold")

@@ -1,5 +1,7 @@
 """``advisor aircraft new``: what a log or a crew says becomes a commented file that loads."""
 
+import shlex
+import shutil
 from pathlib import Path
 
 import click
@@ -159,3 +161,16 @@ def test_a_guessed_elevator_is_marked_for_a_check() -> None:
     assert (draft.values["elevator.output"], draft.values["reference_airspeed_m_s"]) == (3, 10.5)
     assert draft.comments["elevator.output"].startswith("GUESS")
     assert "1000 hPa" in draft.head[1]
+
+
+def test_the_next_commands_run_as_they_are_printed(advisor: Advisor, tmp_path: Path) -> None:
+    log = tmp_path / "a flight.tlog"
+    shutil.copy(CASES / "t_base.tlog", log)
+    told = advisor(
+        "aircraft", "new", "--from", log, "-o", tmp_path / "my aircraft.yaml", "--target-system", 1
+    )
+    printed = [shlex.split(line) for line in told.stdout.splitlines() if line.startswith("  advisor ")]
+    assert [words[1] for words in printed] == ["aircraft", "doctor"]
+    for _, *words in printed:
+        assert advisor(*words).returncode == 0
+        assert words[-2:] == ["--target-system", "1"]

@@ -96,7 +96,10 @@ def test_a_centre_of_gravity_that_has_moved_is_told_since_its_first_flight(
         noise = Noise(percent=1.0)
         scenario = Scenario(aircraft="uav", noise=noise, seed=number, maneuvers=TWO, effects=aft)
         record(flight_of(scenario), tmp_path / f"flight-{number}.tlog")
-    run = advisor("batch", tmp_path, "-o", tmp_path / "out", "--workers", 1)
+    (tmp_path / "uav.yaml").write_text("name: uav\n")
+    run = advisor(
+        "batch", tmp_path, "-o", tmp_path / "out", "--workers", 1, "--aircraft", tmp_path / "uav.yaml"
+    )
     assert "Since flight 4 M_α is 35 % smaller; it looks like a shift of the centre of gravity." in run.stdout
     (row,) = pq.read_table(tmp_path / "out" / "changes.parquet").to_pylist()
     assert (row["since_flight"], row["parameter"], row["confirmed"]) == (4, "M_alpha", True)

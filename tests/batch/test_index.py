@@ -9,6 +9,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.batch.flight import Analyzed, BatchTask, failed
 from advisor.batch.index import index_page
 from advisor.batch.picture import Point, trend_svg
+from advisor.batch.tables import changes_of, not_told_apart
 from advisor.words.problems import Problem
 from tests.batch.test_trend import flight as estimate_of
 from tests.report.page_reader import Page
@@ -24,6 +25,7 @@ def flown(number: int, elevator: float = 1.0) -> Analyzed:
         "log": {"vehicle": {"system": 1, "autopilot": "px4"}},
         "maneuvers": [{"verdict": "accepted"}, {"verdict": "rejected"}],
         "flight_test": {"sentence": "CONTINUE: the criterion is 40 %."},
+        "lateral": {"maneuvers": []},
     }
     joint = {
         "theta": found.theta.tolist(),
@@ -149,3 +151,33 @@ def test_logs_are_named_below_the_folder_that_they_share() -> None:
 
 def test_an_aircraft_is_called_by_its_name_alone_where_no_other_shares_it() -> None:
     assert "<h2>Talon</h2>" in index_page([flown(1)])
+
+
+def test_lateral_tests_count_and_a_flight_that_is_over_gets_no_order() -> None:
+    lateral = {
+        "maneuvers": [{"verdict": "accepted"}] * 3,
+        "flight_test": {"sentence": "CONTINUE: the error of L_p is 140 % of its tolerance."},
+    }
+    one = flown(1)
+    row = Page.read(index_page([replace(one, document={**one.document, "lateral": lateral})])).tables[
+        "flights"
+    ][1]
+    assert row[4] == "1 of 2; roll and yaw 3 of 3"
+    assert row[5].endswith("Roll and yaw: Not complete: the error of L_p is 140 % of its tolerance.")
+
+
+def test_without_an_aircraft_file_flights_that_disagree_are_not_told_apart() -> None:
+    nameless = [replace(flown(n, 1.0 if n < 6 else 0.8), aircraft_file="") for n in range(1, 11)]
+    text = Page.read(index_page(nameless)).text
+    assert "Not told apart: px4 system 1 may be one aircraft that has changed, or several." in text
+    assert "lies apart" in text
+    assert "Since flight" not in text
+    assert changes_of(nameless) == {}
+
+
+def test_without_an_aircraft_file_flights_that_agree_count_as_those_of_one_aircraft() -> None:
+    assert not_told_apart([replace(flown(n), aircraft_file="") for n in (1, 2)]) == {}
+
+
+def test_an_aircraft_file_says_that_its_flights_are_of_one_aircraft() -> None:
+    assert not_told_apart([flown(n, 1.0 if n < 6 else 0.8) for n in range(1, 11)]) == {}

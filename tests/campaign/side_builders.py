@@ -62,4 +62,9 @@ def state(*maneuvers, aircraft=AIRCRAFT, model=None):
     """Return the state after these manoeuvres."""
     history = [one.estimate if one.verdict.accepted else None for one in maneuvers]
     accepted = tuple(one.maneuver.number for one in maneuvers if one.verdict.accepted)
-    return LateralState(maneuvers, lateral_flight_test(history, aircraft), model or estimate(), accepted)
+    return LateralState(
+        maneuvers,
+        lateral_flight_test(history, model or estimate("aileron", "rudder"), aircraft),
+        model or estimate(),
+        accepted,
+    )

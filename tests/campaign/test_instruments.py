@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator
+from advisor.aircraft.controls import Elevator, SideControl
 from advisor.campaign.campaign import Campaign
-from advisor.campaign.instruments import as_known_by, together
+from advisor.campaign.instruments import as_known_by, side_signs, together
 from advisor.campaign.state import CampaignState
 from advisor.doctor.examination import Examination
 from advisor.doctor.examiner import Examiner
@@ -20,6 +20,8 @@ from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.messages import Columns
 from advisor.flight.stream.stream import FlightStream
 from advisor.mavlink.logs.logs import open_log
+from advisor.oem.lateral_estimate import LateralEstimate
+from tests.campaign import side_builders
 
 CASES = Path(__file__).parents[1] / "cases"
 Fault = Callable[[Columns], Columns]
@@ -169,3 +171,33 @@ def test_a_specific_force_that_stands_still_is_named_and_nothing_is_computed_fro
     assert "a_z" not in maneuver.channels
     assert maneuver.channels["alpha"].provenance == "unknown"
     assert told(together([maneuver], ())) == [("a_z_rate", True)]
+
+
+def lateral(aileron: float) -> LateralEstimate:
+    """A joint estimate of the jet whose aileron rolls with this moment, known to 2 %."""
+    found = side_builders.estimate("aileron", "rudder")
+    k = found.estimate.names.index("L_delta_a")
+    theta = found.estimate.theta.copy()
+    theta[k] = aileron
+    return replace(found, estimate=replace(found.estimate, theta=theta))
+
+
+def test_without_a_calibration_the_sign_of_the_aileron_is_said_to_be_taken() -> None:
+    told = {f.code: f for f in side_signs(lateral(-6.0), Aircraft())}
+    assert set(told) == {"aileron_sign", "rudder_sign"}
+    assert told["aileron_sign"].quantity == "sign"
+    assert told["aileron_sign"].stated is None
+    assert told["aileron_sign"].value == "left"
+    assert not told["aileron_sign"].contradicts
+    assert told["aileron_sign"].text.startswith("no aileron.calibration states the sign of the aileron")
+
+
+def test_an_aileron_that_rolls_to_the_right_is_named_and_refuses_nothing() -> None:
+    aircraft = Aircraft(aileron=SideControl(calibration=((1000.0, -25.0), (2000.0, 25.0))))
+    (found,) = (f for f in side_signs(lateral(6.0), aircraft) if f.channel == "aileron")
+    assert (found.stated, found.value, found.contradicts, found.refuses) == ("left", "right", True, False)
+    assert found.fix == "give aileron.calibration with positive to the left"
+
+
+def test_without_a_lateral_estimate_no_sign_is_told() -> None:
+    assert side_signs(None, Aircraft()) == ()

@@ -1,5 +1,6 @@
 """A sample flight comes with the program, in the repository and in a wheel."""
 
+import shlex
 from fnmatch import fnmatch
 from pathlib import Path
 
@@ -15,6 +16,12 @@ def test_the_sample_is_written_with_its_aircraft_file(advisor: Advisor, tmp_path
     assert (tmp_path / "trial" / "arduplane-calm.tlog").stat().st_size > 1_000_000
     assert (tmp_path / "trial" / "arduplane-default-rates.tlog").stat().st_size > 100_000
     assert load_aircraft(tmp_path / "trial" / "arduplane-calm.yaml").elevator.output == 2
+
+
+def test_the_first_command_runs_as_it_is_printed(advisor: Advisor, tmp_path: Path) -> None:
+    told = advisor("sample", tmp_path / "a trial")
+    first = next(line for line in told.stdout.splitlines() if line.startswith("  advisor "))
+    assert advisor(*shlex.split(first)[1:]).returncode == 0
 
 
 def test_a_file_of_that_name_is_kept(advisor: Advisor, tmp_path: Path) -> None:

@@ -1,7 +1,8 @@
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.decision.lateral_test import lateral_flight_test, lateral_knowledge
+from advisor.decision.heard import Heard
+from advisor.decision.lateral_test import lateral_flight_test
 from advisor.model.lateral import LATERAL, Trim
 from advisor.oem.estimate import Estimate
 from advisor.oem.lateral_estimate import LateralEstimate
@@ -27,15 +28,52 @@ def told(*flown, percent=2.0, off=0.0):
     )
 
 
-def test_aileron_and_rudder_within_their_tolerance_stop_the_test():
-    verdict = lateral_flight_test([told("aileron"), told("rudder")], AIRCRAFT)
+def test_aileron_and_rudder_within_their_tolerance_and_checked_stop_the_test():
+    both = told("aileron", "rudder")
+    verdict = lateral_flight_test([told("aileron"), told("rudder")] * 2, both, AIRCRAFT)
     assert verdict.decision == "stop"
-    assert verdict.stopped_at == 2
+    assert verdict.stopped_at == 4
     assert verdict.next.advice == "no further manoeuvre needed"
 
 
+def test_a_control_that_one_manoeuvre_moved_is_flown_once_more_to_check_the_estimate():
+    both = told("aileron", "rudder")
+    verdict = lateral_flight_test([told("aileron"), told("rudder"), told("aileron")], both, AIRCRAFT)
+    assert verdict.decision == "continue"
+    assert verdict.sentence == "CONTINUE: sure enough; one more input of the rudder to check the estimate."
+    assert verdict.next.advice.startswith("next: rudder doublet")
+
+
+def test_the_joint_estimate_that_is_shown_decides_and_not_the_single_ones():
+    poor = [told("aileron", percent=40.0), told("rudder", percent=40.0)] * 2
+    good = told("aileron", "rudder", percent=2.0)
+    assert lateral_flight_test(poor, good, AIRCRAFT).decision == "stop"
+    verdict = lateral_flight_test([told("aileron"), told("rudder")] * 2, poor[0], AIRCRAFT)
+    assert verdict.decision == "continue"
+
+
+def test_the_share_that_is_said_is_that_of_the_joint_interval():
+    joint = told("aileron", "rudder", percent=9.0)
+    verdict = lateral_flight_test([told("aileron"), told("rudder")] * 2, joint, AIRCRAFT)
+    share = 100.0 * 1.96 * 0.09 / 0.10  # two times the tolerance of 5 %
+    assert np.isclose(verdict.by_rule["information"].parameter_percent["L_p"], share, rtol=1e-3)
+    assert "is 176 % of its tolerance" in verdict.sentence
+
+
+def test_a_stop_that_the_crew_has_heard_stays():
+    history = [told("aileron"), told("rudder")] * 2
+    first = lateral_flight_test(history, told("aileron", "rudder"), AIRCRAFT)
+    worse = told("aileron", "rudder", percent=30.0)
+    heard = [Heard({"information": None}, frozenset())] * 3 + [Heard.of(first)]
+    verdict = lateral_flight_test([*history, told("rudder")], worse, AIRCRAFT, (), heard)
+    assert verdict.decision == "stop"
+    assert verdict.stopped_at == 4
+    assert verdict.sentence == "TEST COMPLETE since manoeuvre 4 of aileron and rudder."
+    assert verdict.by_rule["information"].history_percent[3] == first.criterion_percent
+
+
 def test_the_aileron_alone_does_not_stop_the_test_and_the_rudder_is_advised():
-    verdict = lateral_flight_test([told("aileron")] * 5, AIRCRAFT)
+    verdict = lateral_flight_test([told("aileron")] * 5, told("aileron"), AIRCRAFT)
     assert verdict.decision == "continue"
     assert verdict.criterion_percent is None
     assert verdict.sentence == "CONTINUE: no accepted manoeuvre has moved the rudder."
@@ -45,34 +83,12 @@ def test_the_aileron_alone_does_not_stop_the_test_and_the_rudder_is_advised():
 
 
 def test_without_any_manoeuvre_the_aileron_comes_first():
-    verdict = lateral_flight_test([], AIRCRAFT)
+    verdict = lateral_flight_test([], None, AIRCRAFT)
     assert verdict.sentence == "No test input of the aileron or the rudder has been flown."
     assert verdict.next.advice.startswith("next: aileron doublet")
 
 
-def test_a_rejected_manoeuvre_tells_nothing():
-    assert lateral_flight_test([told("aileron"), None], AIRCRAFT).decision == "continue"
-
-
-def test_a_wide_error_delays_the_stop_and_is_named():
-    verdict = lateral_flight_test([told("aileron", percent=20.0), told("rudder", percent=20.0)], AIRCRAFT)
+def test_without_a_joint_estimate_nothing_is_known():
+    verdict = lateral_flight_test([told("aileron"), told("rudder")] * 2, None, AIRCRAFT)
     assert verdict.decision == "continue"
-    assert verdict.criterion_percent > 100.0
-    assert "of its tolerance" in verdict.sentence
-
-
-def test_two_equal_manoeuvres_have_an_error_smaller_by_the_root_of_two():
-    one, two = lateral_knowledge([told("aileron")]), lateral_knowledge([told("aileron")] * 2)
-    place = LATERAL.names.reported.index("L_p")
-    assert np.isclose(one.std[place] / two.std[place], np.sqrt(2.0))
-
-
-def test_manoeuvres_that_contradict_each_other_have_larger_errors():
-    agreeing = lateral_knowledge([told("aileron", "rudder"), told("aileron", "rudder")])
-    apart = lateral_knowledge([told("aileron", "rudder", off=4.0), told("aileron", "rudder", off=-4.0)])
-    assert np.all(apart.std > 3.0 * agreeing.std)
-
-
-def test_a_manoeuvre_without_rudder_says_nothing_of_the_rudder():
-    known = lateral_knowledge([told("aileron")])
-    assert np.isinf(known.std[LATERAL.names.reported.index("N_delta_r")])
+    assert verdict.sentence == "CONTINUE: the error of L_p is unknown."

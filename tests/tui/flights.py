@@ -1,6 +1,7 @@
 """A flight test made by hand: simulated manoeuvres with estimates and verdicts of known values."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -133,6 +134,12 @@ def _verdict(number: int, accepted: bool) -> ManeuverVerdict:
     return ManeuverVerdict(False, f"REPEAT: {text}.", reasons, rules, cautions)
 
 
+def _progress(stopped_at: int | None, history: Sequence[float | None], factor: float) -> RuleProgress:
+    """The progress of a rule, whose criterion is this multiple of the history."""
+    values = tuple(v and factor * v for v in history)
+    return RuleProgress(stopped_at, values, now_percent=values[-1] if values else None)
+
+
 def state(flown: int = 7, bad: tuple[int, ...] = (2,), in_the_air: bool = False) -> CampaignState:
     """The campaign after ``flown`` manoeuvres, those in ``bad`` rejected, one more in the air if wanted."""
     maneuvers = tuple(judged(k, accepted=k not in bad) for k in range(1, flown + 1))
@@ -151,9 +158,9 @@ def state(flown: int = 7, bad: tuple[int, ...] = (2,), in_the_air: bool = False)
         limit_percent=25.0,
         stopped_at=flown if stop else None,
         by_rule={
-            "continuous": RuleProgress(flown if stop else None, history),
-            "separate": RuleProgress(None, tuple(v and 1.4 * v for v in history)),
-            "information": RuleProgress(None, tuple(v and 4.0 * v for v in history), 100.0),
+            "continuous": _progress(flown if stop else None, history, 1.0),
+            "separate": _progress(None, history, 1.4),
+            "information": replace(_progress(None, history, 4.0), limit_percent=100.0),
         },
         next=NextInput(
             "next: reverse 3-2-1-1, 0.4 s steps, 60 % stick",

@@ -78,6 +78,7 @@ READINGS = (
     Reading("height", "GLOBAL_POSITION_INT", "relative_alt", _scaled(1e-3)),
     Reading("altitude", "GLOBAL_POSITION_INT", "alt", _scaled(1e-3)),
     Reading("altitude", "VFR_HUD", "alt", _scaled(1.0)),
+    Reading("altitude", "GPS_RAW_INT", "alt", _scaled(1e-3)),
     Reading("static_pressure", "SCALED_PRESSURE", "press_abs", _scaled(100.0)),
     Reading("static_pressure", "HIGHRES_IMU", "abs_pressure", _scaled(100.0)),
     Reading("heading", "ATTITUDE", "yaw", _scaled(1.0)),

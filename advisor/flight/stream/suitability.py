@@ -23,6 +23,8 @@ from advisor.words.problems import Problem
 
 SLOWEST_HZ = 8.0
 """Least rate of elevator, pitch rate and angle of attack for any aircraft, Hz."""
+_FIRST_BANK = 16
+"""Last output of the first SERVO_OUTPUT_RAW. Outputs beyond may come in another message, or in none."""
 _MOTION = ("a_z", "airspeed", "theta")
 """Channels that replace an angle of attack, in addition to the pitch rate."""
 
@@ -131,14 +133,17 @@ def _missing(
 ) -> list[Problem]:
     mends = vehicle.mends
     found = [elevator] if isinstance(elevator, Problem) else []
+    idle = isinstance(elevator, Surface) and _is_without_pulse(elevator, channels, seen)
+    if isinstance(elevator, Surface) and idle:
+        found.append(_without_pulse(elevator, vehicle))
     if vehicle.carrier != "telemetry":
-        return [*found, *_not_logged(elevator, channels, vehicle)]
+        return [*found, *_not_logged(elevator, channels, vehicle, idle)]
     if "q" not in channels:
         # Its stamps are the vehicle's clock: without it no other channel can be placed either.
         text = f"There is no pitch rate: no {mends.called('ATTITUDE')} arrived."
         found.append(Problem("no_pitch_rate", text, sentence(mends.faster("ATTITUDE"))))
         channels = _sent(seen)
-    if isinstance(elevator, Surface) and "elevator" not in channels:
+    if isinstance(elevator, Surface) and "elevator" not in channels and not idle:
         outputs = joined_numbers(elevator.outputs)
         found.append(
             Problem(
@@ -163,6 +168,27 @@ def _missing(
     return found
 
 
+def _is_without_pulse(
+    elevator: Surface, channels: Mapping[str, ChannelStatus], seen: Collection[str]
+) -> bool:
+    """Return whether the message of the elevator's outputs arrives, and never holds a pulse of them.
+
+    Without a pitch rate no message can be placed in time, so that no channel tells.
+    """
+    arrives = "q" in channels and "SERVO_OUTPUT_RAW" in seen
+    return arrives and "elevator" not in channels and max(elevator.outputs) <= _FIRST_BANK
+
+
+def _without_pulse(elevator: Surface, vehicle: Vehicle) -> Problem:
+    outputs = joined_numbers(elevator.outputs)
+    return Problem(
+        "no_elevator",
+        f"{vehicle.mends.called('SERVO_OUTPUT_RAW')} arrives, but output {outputs}, the elevator, carries no "
+        "pulse: it is 0 throughout.",
+        "Release the safety switch and arm the vehicle, or set elevator.output in the aircraft file.",
+    )
+
+
 def _sent(seen: Collection[str]) -> dict[str, ChannelStatus]:
     """Return channels whose messages came, although none could be placed in time."""
     sources = {reading.channel: reading.message for reading in READINGS if reading.message in seen}
@@ -174,13 +200,16 @@ def _sent(seen: Collection[str]) -> dict[str, ChannelStatus]:
 
 
 def _not_logged(
-    elevator: Surface | Problem, channels: Mapping[str, ChannelStatus], vehicle: Vehicle
+    elevator: Surface | Problem, channels: Mapping[str, ChannelStatus], vehicle: Vehicle, idle: bool
 ) -> list[Problem]:
-    """Return one problem with everything that a log of the autopilot lacks."""
+    """Return one problem with everything that a log of the autopilot lacks.
+
+    ``idle`` tells whether the elevator's output is logged without a pulse, which is a problem of its own.
+    """
     lacks: dict[str, tuple[str, str]] = {}
     if "q" not in channels:
         lacks["no_pitch_rate"] = ("pitch rate", "ATTITUDE")
-    if isinstance(elevator, Surface) and "elevator" not in channels:
+    if isinstance(elevator, Surface) and "elevator" not in channels and not idle:
         lacks["no_elevator"] = (
             f"pulse of servo output {joined_numbers(elevator.outputs)}",
             "SERVO_OUTPUT_RAW",

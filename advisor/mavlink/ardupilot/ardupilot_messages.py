@@ -97,6 +97,9 @@ class Translation:
         for name, translate in translations.items():
             if name in self._tables:
                 yield translate(self._tables.pop(name))
+        if "GPS" in self._tables and "Alt" in self._tables["GPS"].fields:
+            gps = self._tables["GPS"].first_instance()
+            yield self._message("GPS_RAW_INT", gps, {"alt": 1e3 * gps.fields["Alt"].astype(np.float64)})
         if "PARM" in self._tables:
             yield self._message("PARAM_VALUE", self._tables["PARM"], parameter_fields(self._tables["PARM"]))
         if "VER" in self._tables:

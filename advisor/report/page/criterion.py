@@ -8,7 +8,7 @@ from matplotlib.figure import Figure as Drawing
 from matplotlib.ticker import FixedLocator, FuncFormatter, MaxNLocator, NullLocator
 
 from advisor.decision.verdict import limit_percent
-from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section
+from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, listing
 from advisor.report.page.content import Content
 from advisor.report.page.drawing import BLACK, BLUE, log_ticks, picture
 from advisor.report.table import Table
@@ -18,7 +18,7 @@ _NEWEST = 12
 _EXPLAINED = (
     "The rules continuous and separate compare the scatter of the newest estimates with a limit (Eq. 12). "
     "The rule information compares errors with the tolerances of the aircraft file (100 %: met). "
-    "Dashes: the limit. Diamond: the rule says stop."
+    "Line: the criterion as it was told after each manoeuvre. Dashes: the limit. Diamond: the rule says stop."
 )
 
 
@@ -35,6 +35,8 @@ def _blocks(content: Content) -> Iterator[Block]:
         return
     yield Paragraph(_EXPLAINED)
     yield Gallery(tuple(_figure(rule, one, limits[rule]) for rule, one in by_rule.items()))
+    progress = content.state.flight_test.by_rule
+    yield from listing([f"Rule {rule}, {one.hindsight}." for rule, one in progress.items() if one.hindsight])
     flown = max((len(one["history_percent"]) for one in by_rule.values()), default=0)
     first = max(flown - _NEWEST, 0)
     newest = f", the newest {_NEWEST}" if first else ""

@@ -33,10 +33,13 @@ def _blocks(content: Content) -> Iterator[Block]:
         yield Paragraph("No manoeuvre is accepted, so there is no joint estimate.")
         return
     joint = {name: parameter_row(name, model, prior) for name in PARAMETERS}
-    if rows := instrument_rows(model):
+    alpha = content.state.channels.get("alpha")
+    with_vane = alpha is not None and alpha.provenance in ("vane", "simulated")
+    if rows := instrument_rows(model, with_vane):
         yield Table(
-            "instruments", "Instruments, estimated with the derivatives; ± is half the 95 % interval.",
-            ("instrument", "estimate ± 95 %", "aircraft file", "unit"),
+            "instruments",
+            "Nuisance parameters, estimated with the derivatives; ± is half the 95 % interval.",
+            ("nuisance parameter", "estimate ± 95 %", "aircraft file", "unit"),
             tuple((row.name, row.cell, row.stated, row.unit) for row in rows), frozenset({1, 2}),
         )  # fmt: skip
     alone = {

@@ -25,9 +25,11 @@ class Criterion(TextPane):
     HELP = """\
 # Criterion
 
-The stop criterion after each manoeuvre for the three rules, each in per cent of its own limit, as a line and
-as a curve on a logarithmic axis: the test may stop below the dashed line, at 100 %. The rule that decides is
-marked **►**; the other rules are always shown as well.
+The stop criterion after each manoeuvre for the three rules, as it was told at that time. Each rule is in per
+cent of its own limit, as a line and as a curve on a logarithmic axis: the test may stop below the dashed
+line, at 100 %. The rule that decides is marked **►**; the other rules are always shown as well.
+
+Where later estimates give another criterion, a line below the rule says so.
 
 The rule information stops when the 95 % band of the predicted response, each named derivative and the
 prediction of the newest manoeuvre are within their tolerances; the lines above the curves tell how far.
@@ -50,12 +52,14 @@ prediction of the newest manoeuvre are within their tolerances; the lines above 
 def _rows(verdict: FlightTestVerdict) -> list[Labelled]:
     rows: list[Labelled] = []
     for rule, progress in verdict.by_rule.items():
-        known = [value for value in progress.percent_of_limit if value is not None]
-        share = distinct_texts(known[-1], 100.0)[0] if known else ""
-        so_far = f"{share:>6} % of its limit" if known else f"{'too few manoeuvres':>21}"
+        now = progress.now_percent_of_limit
+        share = distinct_texts(now, 100.0)[0] if now is not None else ""
+        so_far = f"{share:>6} % of its limit" if now is not None else f"{'too few manoeuvres':>21}"
         says = f"stop since {progress.stopped_at}" if progress.stopped_at else "continue"
         mark = "►" if rule == verdict.rule else " "
         rows.append((f"{mark} ", f"{rule:<12}{so_far}  {says}"))
+        if progress.hindsight:
+            rows.append(("  ", f"{'':<12}{progress.hindsight}"))
     rows += [("  ", line) for line in verdict.evidence]
     return rows + [("! ", warning) for warning in verdict.warnings]
 

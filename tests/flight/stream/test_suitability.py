@@ -78,6 +78,20 @@ def test_a_missing_elevator_is_told_apart_from_one_that_is_not_sent():
     assert "never carried a pulse" in silent[0].text
 
 
+def test_an_output_without_a_pulse_asks_for_the_safety_switch_and_not_for_its_message():
+    wire = flight()
+    wire._sent = [
+        (*sent[:5], {k: 0 if k.endswith("_raw") else v for k, v in sent[5].items()})
+        if sent[2] == "SERVO_OUTPUT_RAW"
+        else sent
+        for sent in wire._sent
+    ]
+    (problem,) = problems(wire)
+    assert problem.code == "no_elevator"
+    assert problem.text.endswith("arrives, but output 2, the elevator, carries no pulse: it is 0 throughout.")
+    assert problem.fix.startswith("Release the safety switch and arm the vehicle")
+
+
 def test_without_attitude_there_is_no_clock_and_only_that_is_said():
     assert codes(flight(without=("ATTITUDE",))) == ["no_pitch_rate"]
 

@@ -1,0 +1,74 @@
+"""A criterion's history is what the crew heard, and a stop that was heard stays."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from advisor.aircraft.aircraft import CampaignPlan
+from advisor.decision.heard import Heard
+from advisor.decision.history import CandidateManeuver
+from advisor.decision.stopping import flight_test
+from advisor.decision.verdict import Reason
+from tests.decision.campaigns import THETA, estimate, with_change
+
+PLAN = CampaignPlan(rule="continuous")
+NOTHING = Heard({"continuous": None}, frozenset())
+AGREEING = [CandidateManeuver(estimate(k * THETA)) for k in (0.99, 1.0, 1.01)]
+
+
+def heard_so_far(history):
+    """What a crew heard after each of these manoeuvres."""
+    heard: list[Heard] = []
+    for n in range(1, len(history) + 1):
+        verdict = flight_test(history[:n], PLAN, heard=heard)
+        heard.append(Heard.of(verdict, range(n)))
+    return heard
+
+
+def test_later_estimates_make_a_line_of_their_own_and_no_other_past() -> None:
+    heard = [NOTHING, NOTHING, Heard({"continuous": 40.0}, frozenset())]
+    progress = flight_test(AGREEING, PLAN, heard=heard).by_rule["continuous"]
+    now = 5.0 * np.sqrt(8.0)
+    assert progress.history_percent == (None, None, 40.0)
+    assert progress.hindsight_percent == pytest.approx((None, None, now))
+    assert progress.hindsight == "by the newest estimates – – 14.1 %: manoeuvre 3 would have been the last"
+
+
+def test_without_later_estimates_there_is_no_second_line() -> None:
+    progress = flight_test(AGREEING, PLAN, heard=heard_so_far(AGREEING)).by_rule["continuous"]
+    assert progress.hindsight == ""
+    assert progress.stopped_at == 3
+
+
+def test_a_stop_that_only_later_estimates_show_is_heard_when_they_come() -> None:
+    history = [*AGREEING, AGREEING[1]]
+    late = [*[NOTHING] * 3, Heard({"continuous": 40.0}, frozenset())]
+    verdict = flight_test(history, PLAN, heard=late)
+    assert verdict.decision == "stop"
+    assert verdict.stopped_at == 4
+    assert verdict.by_rule["continuous"].hindsight_stopped_at == 3
+
+
+def test_a_stop_that_was_heard_stays_where_no_change_of_the_aircraft_is_found() -> None:
+    odd = CandidateManeuver(estimate(with_change("Z_q", 3.0), std_percent=100.0))
+    heard = heard_so_far(AGREEING)
+    verdict = flight_test([*AGREEING, odd], PLAN, heard=heard)
+    assert not verdict.by_rule["continuous"].holds
+    assert verdict.decision == "stop"
+    assert verdict.sentence.startswith("TEST COMPLETE since manoeuvre 3: no change of the aircraft")
+    assert verdict.next is not None
+    assert verdict.next.advice == "no further manoeuvre needed"
+
+
+def test_a_change_of_the_aircraft_ends_a_stop_and_is_the_sentence() -> None:
+    changed = CandidateManeuver(estimate(with_change("M_alpha", 1.5)))
+    verdict = flight_test([*AGREEING, changed, changed], PLAN, heard=[*heard_so_far(AGREEING), NOTHING])
+    assert verdict.decision == "continue"
+    assert verdict.sentence.startswith("CONTINUE: Something changed after manoeuvre 3: M_α")
+
+
+def test_a_stop_does_not_rest_on_a_manoeuvre_that_no_longer_counts() -> None:
+    refused = replace(AGREEING[2], reasons=(Reason("clock", "the clock leapt", 1.0, 0.0),))
+    verdict = flight_test([*AGREEING[:2], refused], PLAN, heard=heard_so_far(AGREEING))
+    assert verdict.decision == "continue"

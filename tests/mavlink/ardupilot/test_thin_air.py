@@ -1,0 +1,41 @@
+"""The indicated air speed of a ``.bin`` becomes the true one by the height that its GPS records state."""
+
+import struct
+from pathlib import Path
+
+import pytest
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.maneuvers.events import ManeuverFlown
+from advisor.flight.signals.record import Channel
+from advisor.flight.stream.stream import FlightStream
+from advisor.mavlink.logs.whole import read_whole_log
+
+LOG = Path(__file__).parents[2] / "cases" / "base.bin"
+"""One manoeuvre; only its GPS records, of format ``QBBIHBcLLeffffB``, state a height: 100 m."""
+_ALT_AT = 3 + 8 + 1 + 1 + 4 + 2 + 1 + 2 + 4 + 4
+_HEAD = b"\xa3\x95"
+
+
+def airspeed_at(height_m: float, folder: Path) -> Channel:
+    """Return the air speed of the manoeuvre, flown so high above mean sea level."""
+    log = bytearray(LOG.read_bytes())
+    at = log.index(b"GPS\0QBBIHBcLLeffffB")
+    gps = _HEAD + bytes([log[at - 2]])
+    where = log.find(gps)
+    while where >= 0:
+        struct.pack_into("<i", log, where + _ALT_AT, round(100.0 * height_m))
+        where = log.find(gps, where + 3)
+    high = folder / "high.bin"
+    high.write_bytes(log)
+    stream = FlightStream(Aircraft())
+    events = [event for columns in read_whole_log(high) for event in stream.feed(columns)] + stream.finish()
+    (flown,) = [event.maneuver for event in events if isinstance(event, ManeuverFlown)]
+    return flown.channels["airspeed"]
+
+
+@pytest.mark.parametrize(("height_m", "ratio"), [(100.0, 1.0048), (3000.0, 1.1607)])
+def test_the_height_of_gps_makes_an_indicated_air_speed_true(height_m, ratio, tmp_path: Path) -> None:
+    airspeed = airspeed_at(height_m, tmp_path)
+    assert airspeed.source.endswith("true by the height")
+    assert airspeed.gain == pytest.approx(ratio, abs=2e-4)
