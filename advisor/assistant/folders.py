@@ -4,7 +4,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-LOGS = (".tlog", ".bin", ".ulg", ".zip", ".gz", ".log", ".raw")
+from advisor.mavlink.logs.formats import ENDINGS
+
+LOGS = (*ENDINGS, ".zip", ".gz", ".log", ".raw")
 """Endings of the files that are listed as logs."""
 
 

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from fnmatch import fnmatch
 from pathlib import Path
 
+from advisor.mavlink.logs.formats import ENDINGS
 from advisor.process.yaml_file import read_yaml
 from advisor.words.problems import ConfigurationError, UnusableInputError
 
-ENDINGS = (".tlog", ".bin", ".ulg")
 PACKED = (".gz", ".zip")
 
 

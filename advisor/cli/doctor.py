@@ -20,8 +20,6 @@ from advisor.words.problems import Problem, UnusableInputError
 if TYPE_CHECKING:
     from advisor.doctor.examination import Examination
 
-_LOG_ENDINGS = (".tlog", ".bin", ".ulg")
-
 
 @click.command
 @click.argument(
@@ -92,7 +90,9 @@ def command(
 def _is_log(target: str) -> bool:
     """Return whether the target is a file, or can only be meant as a file: neither a network address nor a
     device."""
-    if Path(target).is_file() or target.lower().endswith(_LOG_ENDINGS):
+    from advisor.mavlink.logs.formats import ENDINGS
+
+    if Path(target).is_file() or target.lower().endswith(ENDINGS):
         return True
     return ":" not in target and "," not in target and not target.startswith("/dev/")
 

@@ -9,13 +9,14 @@ from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.diagnose import diagnose
 from advisor.gap.result import Diagnosis, spelled
 from advisor.gap.simulator.layout import DERIVATIVES
+from advisor.mavlink.logs.formats import ENDINGS
 from advisor.simulators.linear import LinearSimulator
 from advisor.words.problems import ConfigurationError, UnusableInputError
 from advisor.words.quantiles import NORMAL_95
 
 _LEAST = 2
 """Least number of manoeuvres in a simulator's log. A single one names no effect, for lack of a hold-out."""
-_SUFFIXES = (".tlog", ".bin", ".ulg", ".csv", ".txt", ".tsv", ".mat")
+_SUFFIXES = (*ENDINGS, ".csv", ".txt", ".tsv", ".mat")
 
 
 @dataclass(frozen=True)

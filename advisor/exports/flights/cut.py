@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from advisor.flight.signals.messages import Columns, IntArray
+from advisor.mavlink.logs.formats.telemetry import FORMAT as TLOG
 from advisor.mavlink.logs.kinds import recognised
 from advisor.mavlink.logs.tlog import read_tlog
 from advisor.mavlink.logs.unpack import beginning_of, unpacked
@@ -43,7 +44,7 @@ def cut_tlog(log: Path, first: int, last: int) -> bytes:
     beginning = beginning_of(log)
     with unpacked(log, beginning) as plain:
         found = recognised(beginning_of(plain) if plain is not log else beginning)
-        if found is None or found.kind != "tlog":
+        if found is None or found.format is not TLOG:
             raise ConfigurationError(
                 f"--cut: {log} is no tlog, and only tlogs are cut; "
                 "export the manoeuvre's channels with --format."

@@ -1,20 +1,14 @@
-"""Kind of a log file, recognised by its content and never by its name."""
+"""Format of a log file, recognised by its content and never by its name."""
 
-import re
 from dataclasses import dataclass
-from typing import Literal
 
-from advisor.mavlink.px4 import ulog
-from advisor.mavlink.records import dataflash, record_scan
-from advisor.mavlink.wire.frames import FrameScanner
-from advisor.mavlink.wire.scan import STAMP_BYTES
+from advisor.mavlink.logs.formats import FORMATS, GIVE
+from advisor.mavlink.logs.log_format import LogFormat
 from advisor.words.problems import Problem
 
 BEGINNING_BYTES = 1 << 20
 """Bytes of a file within which its log must begin. Text in front of a log is a few lines. A megabyte is read
 in milliseconds, so that huge and packed files are refused quickly."""
-
-Kind = Literal["tlog", "dataflash", "ulog"]
 
 _ARCHIVES = {
     b"BZh": "bzip2",
@@ -24,8 +18,6 @@ _ARCHIVES = {
     b"\x28\xb5\x2f\xfd": "zstd",
 }
 """First bytes of packed files that the advisor does not unpack, to the name of the archive."""
-_TEXT_LOG = re.compile(rb"^FMT, ?\d+, ?\d+, ?\w+, ?\w+, ?\w+", re.MULTILINE)
-"""A definition of records as text. Ground stations write a few lines about the vehicle before the first."""
 _PACKED_INSIDE = (b"\x1f\x8b", b"PK\x03\x04")
 
 
@@ -33,36 +25,25 @@ _PACKED_INSIDE = (b"\x1f\x8b", b"PK\x03\x04")
 class Found:
     """A log that has been recognised."""
 
-    kind: Kind
+    format: LogFormat
     starts_at: int
     """Bytes before the log's first record."""
 
 
 def recognised(beginning: bytes) -> Found | None:
-    """Return the kind of log that begins within the first ``BEGINNING_BYTES`` of a file; None for no log."""
-    if beginning.startswith(record_scan.HEADER):
-        return Found("dataflash", 0)
-    starts: dict[Kind, int] = {
-        "dataflash": dataflash.first_definition(beginning),
-        "ulog": beginning.find(ulog.MAGIC),
-    }
-    there = {kind: at for kind, at in starts.items() if at >= 0}
-    if there:
-        kind = min(there, key=lambda kind: there[kind])
-        return Found(kind, there[kind])
-    return _telemetry(beginning)
+    """Return the log that begins first within the first ``BEGINNING_BYTES`` of a file; None for no log.
 
-
-def _telemetry(beginning: bytes) -> Found | None:
-    scanner = FrameScanner()
-    columns = scanner.feed(beginning) + scanner.close()
-    if not columns:
-        return None
-    front = FrameScanner(())
-    front.feed(beginning[: min(int(c.order[0]) for c in columns)])
-    front.close()
-    # The stamp of the first record is found only with its frame: the scanner has counted it as skipped.
-    return Found("tlog", max(0, front.statistics.skipped_bytes - STAMP_BYTES))
+    A format without first bytes of its own is tried where no other begins.
+    """
+    for has_magic in (True, False):
+        there = [
+            Found(one, at)
+            for one in FORMATS
+            if one.has_magic is has_magic and (at := one.begins_at(beginning)) is not None
+        ]
+        if there:
+            return min(there, key=lambda found: found.starts_at)
+    return None
 
 
 def refusal(name: str, beginning: bytes) -> Problem:
@@ -90,18 +71,9 @@ def refusal(name: str, beginning: bytes) -> Problem:
             f"{name} is a web page, not a log.",
             "Download the file itself, not the page that shows it.",
         )
-    if beginning.startswith(b"ULogEnc"):
-        return Problem(
-            "encrypted",
-            f"{name} is an encrypted log of PX4.",
-            "Decrypt it with PX4's Tools/decrypt_ulog.py and the private key, and give the .ulg.",
-        )
-    if _TEXT_LOG.search(beginning):
-        return Problem(
-            "text_log",
-            f"{name} is a DataFlash log written as text.",
-            "Give the .bin that it was made from.",
-        )
+    for one in FORMATS:
+        if refused := one.refusal(name, beginning):
+            return refused
     archive = next((kind for magic, kind in _ARCHIVES.items() if beginning.startswith(magic)), None)
     if archive is not None or beginning.startswith(_PACKED_INSIDE):
         return Problem(
@@ -109,8 +81,9 @@ def refusal(name: str, beginning: bytes) -> Problem:
             f"{name} is packed{f' with {archive}' if archive else ' twice'}.",
             "Unpack it and give the log inside it.",
         )
+    holds = f"{', '.join(one.holds for one in FORMATS[:-1])} or {FORMATS[-1].holds}"
     return Problem(
         "not_a_tlog",
-        f"{name} holds no MAVLink messages, DataFlash records or ULog ({len(beginning)} bytes read).",
-        "Give a .tlog as a ground station records it, an ArduPilot .bin or a PX4 .ulg.",
+        f"{name} holds no {holds} ({len(beginning)} bytes read).",
+        GIVE,
     )

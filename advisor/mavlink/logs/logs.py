@@ -7,11 +7,8 @@ import numpy as np
 
 from advisor.flight.signals.messages import Columns
 from advisor.flight.stream.identity import READER
-from advisor.mavlink.ardupilot.ardupilot_log import read_dataflash
 from advisor.mavlink.logs.kinds import Found, recognised, refusal
-from advisor.mavlink.logs.tlog import scan_tlog
 from advisor.mavlink.logs.unpack import beginning_of, unpacked
-from advisor.mavlink.px4.ulog import read_ulog
 from advisor.mavlink.records.equivalent import message
 from advisor.mavlink.wire.frames import FrameScanner
 from advisor.words.problems import UnusableInputError
@@ -75,18 +72,8 @@ def _messages(
         found = recognised(beginning)
         if found is None:
             raise UnusableInputError.of([refusal(log.name, beginning)])
-        for number, batch in enumerate(_batches(log, found, wanted, scanner)):
+        for number, batch in enumerate(found.format.read(log, wanted, found.starts_at, scanner)):
             yield [_skipped(found, batch), *batch] if found.starts_at and number == 0 else batch
-
-
-def _batches(
-    log: Path, found: Found, wanted: Iterable[str] | None, scanner: FrameScanner
-) -> Iterator[list[Columns]]:
-    if found.kind == "ulog":
-        return read_ulog(log, wanted, found.starts_at)
-    if found.kind == "dataflash":
-        return read_dataflash(log, wanted)
-    return scan_tlog(log, scanner)
 
 
 def _skipped(found: Found, first: list[Columns]) -> Columns:

@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from advisor.mavlink.logs import logs, unpack
+from advisor.mavlink.logs import unpack
+from advisor.mavlink.logs.formats import dataflash
 from advisor.mavlink.logs.logs import open_log
 from advisor.words.problems import UnusableInputError
 from tests.conftest import Advisor
@@ -156,7 +157,7 @@ def test_whatever_breaks_a_reader_is_one_sentence_about_that_log(
 
     path = tmp_path / "flight.bin"
     path.write_bytes(dataflash_flight(2.0))
-    monkeypatch.setattr(logs, "read_dataflash", broken)
+    monkeypatch.setattr(dataflash, "read_dataflash", broken)
     with pytest.raises(UnusableInputError, match=r"^flight.bin ") as caught:
         list(open_log(path))
     assert caught.value.__cause__ is error

@@ -1,0 +1,28 @@
+"""Telemetry as a ground station records it (``.tlog``), with or without stamps."""
+
+from advisor.mavlink.logs.log_format import LogFormat
+from advisor.mavlink.logs.tlog import scan_tlog
+from advisor.mavlink.wire.frames import FrameScanner
+from advisor.mavlink.wire.scan import STAMP_BYTES
+
+
+def _begins_at(beginning: bytes) -> int | None:
+    scanner = FrameScanner()
+    columns = scanner.feed(beginning) + scanner.close()
+    if not columns:
+        return None
+    front = FrameScanner(())
+    front.feed(beginning[: min(int(c.order[0]) for c in columns)])
+    front.close()
+    # The stamp of the first record is found only with its frame: the scanner has counted it as skipped.
+    return max(0, front.statistics.skipped_bytes - STAMP_BYTES)
+
+
+FORMAT = LogFormat(
+    holds="MAVLink messages",
+    given="a .tlog as a ground station records it",
+    ending=".tlog",
+    begins_at=_begins_at,
+    read=lambda path, wanted, starts_at, scanner: scan_tlog(path, scanner),
+    has_magic=False,
+)
