@@ -9,8 +9,8 @@ from advisor.mavlink.wire.frames import FrameScanner
 from advisor.words.problems import Problem
 
 Read = Callable[[Path, Iterable[str] | None, int, FrameScanner], Iterator[list[Columns]]]
-"""Streams the messages of a log by its path, the names of the wanted messages (None: all), the bytes before
-the first record, and a scanner for telemetry."""
+"""Function that streams the messages of a log. It takes the path and the names of the wanted messages (None:
+all), then the bytes before the first record, and a scanner for telemetry."""
 
 
 def nothing_refused(name: str, beginning: bytes) -> Problem | None:
@@ -23,7 +23,7 @@ class LogFormat:
     """Format of a log file. A module of ``advisor.mavlink.logs.formats`` makes each."""
 
     holds: str
-    """What a log of the format holds, in words: ``DataFlash records``."""
+    """Content of a log in words: ``DataFlash records``."""
     given: str
     """How a user names such a log: ``an ArduPilot .bin``."""
     ending: str
@@ -32,7 +32,7 @@ class LogFormat:
     """Bytes before the first record within the beginning of a file; None: it holds no such log."""
     read: Read
     refusal: Callable[[str, bytes], Problem | None] = nothing_refused
-    """Problem of a file's name and beginning where the file is a relative of the format that cannot be read,
-    such as an encrypted log; else None."""
+    """Problem by a file's name and beginning, where the file is a relative of the format that cannot be read.
+    An encrypted log is such a relative."""
     has_magic: bool = True
     """Whether fixed first bytes tell the format. Telemetry has none, and is tried last."""

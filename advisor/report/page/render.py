@@ -31,15 +31,13 @@ _PARTS = (
     telemetry, assumptions, provenance,
 )  # fmt: skip
 
-_OF_NO_MANEUVER = (headline, telemetry, assumptions, provenance)
-"""Parts of the page of a flight without a test input."""
+_OF_MANEUVERS = frozenset({gap, estimates, criterion, flying, flight_picture, maneuvers, fits, prediction})
+"""Parts that the page of a flight without a test input leaves out."""
 
 
 def sections(content: Content) -> list[Section]:
     """Return all sections in the order of the page."""
-    side = content.state.lateral
-    flown = content.state.maneuvers or (side is not None and side.maneuvers)
-    found = (_made(part, content) for part in (_PARTS if flown else _OF_NO_MANEUVER))
+    found = (_made(part, content) for part in _PARTS if part not in _OF_MANEUVERS or content.is_flown)
     return [section for section in found if section is not None]
 
 
