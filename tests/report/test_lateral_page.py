@@ -8,6 +8,7 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.report.lateral import lateral_document, lateral_lines
 from advisor.report.page.blocks import Gallery, Listing, Paragraph
+from advisor.report.page.headline import headline
 from advisor.report.page.lateral import lateral
 from advisor.report.table import Table
 from tests.campaign.side_builders import AIRCRAFT, estimate, judged, state
@@ -97,3 +98,17 @@ def test_the_text_names_the_level_and_the_test_that_fails():
 def test_a_file_without_a_derivative_is_not_compared(missing):
     lacking = replace(AIRCRAFT, model={k: v for k, v in JET.items() if k != missing})
     assert lateral_document(FLOWN, lacking)["qualification"] == []
+
+
+def test_the_first_page_of_a_lateral_flight_has_the_lateral_verdict_and_table_and_no_order_for_the_elevator():
+    pitch = {"sentence": "No test input of the elevator has been flown.", "decision": "continue"}
+    content = SimpleNamespace(
+        state=SimpleNamespace(lateral=FLOWN, maneuvers=(), flights=()), aircraft=AIRCRAFT, begun=(),
+        names=("flight.tlog",), analysis={"flight_test": pitch, "maneuvers": []}, gap=None,
+    )  # fmt: skip
+    blocks = headline(content).blocks
+    assert [b.name for b in blocks if isinstance(b, Table)] == ["flown", "lateral-glance"]
+    said = [b.text for b in blocks if isinstance(b, Paragraph)]
+    assert said[0].endswith(FLOWN.flight_test.sentence)
+    assert said[-1] == "No test input of the elevator has been flown."
+    assert not any("3-2-1-1" in one for one in said)

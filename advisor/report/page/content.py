@@ -43,9 +43,3 @@ class Content:
     origin: Origin
     begun: tuple[str, ...] = ()
     """Date and time at which each log began."""
-
-    @property
-    def is_flown(self) -> bool:
-        """Whether a manoeuvre of any axis was flown."""
-        side = self.state.lateral
-        return bool(self.state.maneuvers or (side is not None and side.maneuvers))

@@ -7,6 +7,7 @@ from advisor.report.page.content import Content
 from advisor.report.page.estimates import joint_table
 from advisor.report.page.gap import answer
 from advisor.report.page.gap_picture import caption, gap_picture
+from advisor.report.page.lateral import derivatives, lateral_verdict
 from advisor.report.table import Table
 
 _GLANCE = 4
@@ -21,8 +22,15 @@ def headline(content: Content) -> Section:
 def _blocks(content: Content) -> Iterator[Block]:
     verdict, maneuvers = content.analysis["flight_test"], content.analysis["maneuvers"]
     accepted = [m["number"] for m in maneuvers if m["verdict"] == "accepted"]
-    mark = "■" if verdict["decision"] == "stop" else "▶"
     yield _flown(content)
+    side = content.state.lateral
+    if side is not None and side.maneuvers and not maneuvers:
+        yield from lateral_verdict(side)
+        if side.model is not None:
+            yield derivatives(side, side.model, content.aircraft.model, "lateral-glance")
+        yield Paragraph(verdict["sentence"])
+        return
+    mark = "■" if verdict["decision"] == "stop" else "▶"
     yield Paragraph(f"{mark} {verdict['sentence']}", "verdict")
     if maneuvers:
         yield Paragraph(
@@ -33,7 +41,6 @@ def _blocks(content: Content) -> Iterator[Block]:
     if following is not None:
         yield Paragraph(f"Next: {following['advice'].removeprefix('next: ')}.".replace("..", "."))
     yield from listing([f"Warning: {warning}" for warning in verdict["warnings"]])
-    side = content.state.lateral
     if side is not None:
         yield Paragraph(f"Roll and yaw: {side.flight_test.sentence}")
     joint = joint_table(content)

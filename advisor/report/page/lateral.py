@@ -29,11 +29,7 @@ def lateral(content: Content) -> Section | None:
 
 
 def _blocks(content: Content, state: LateralState) -> Iterator[Block]:
-    verdict = state.flight_test
-    mark = "■" if verdict.decision == "stop" else "▶"
-    yield Paragraph(f"{mark} {verdict.sentence}", "verdict")
-    if verdict.next is not None:
-        yield Paragraph(f"Next: {verdict.next.advice.removeprefix('next: ')}.")
+    yield from lateral_verdict(state)
     rows = tuple(
         maneuver_row(one, several=len(content.names) > 1) for one in content.analysis["lateral"]["maneuvers"]
     )
@@ -44,17 +40,27 @@ def _blocks(content: Content, state: LateralState) -> Iterator[Block]:
     if state.model is None:
         yield Paragraph("No manoeuvre is accepted, so there is no joint estimate.")
         return
-    yield _derivatives(state, state.model, content.aircraft.model)
+    yield derivatives(state, state.model, content.aircraft.model, "lateral-joint")
     yield from listing(_untold(state.model))
     yield from _modes(content, state)
     yield from lateral_fits(state)
 
 
-def _derivatives(state: LateralState, model: LateralEstimate, prior: Mapping[str, float]) -> Table:
+def lateral_verdict(state: LateralState) -> Iterator[Block]:
+    """Yield the sentence on the lateral test, and the next input."""
+    verdict = state.flight_test
+    mark = "■" if verdict.decision == "stop" else "▶"
+    yield Paragraph(f"{mark} {verdict.sentence}", "verdict")
+    if verdict.next is not None:
+        yield Paragraph(f"Next: {verdict.next.advice.removeprefix('next: ')}.")
+
+
+def derivatives(state: LateralState, model: LateralEstimate, prior: Mapping[str, float], name: str) -> Table:
+    """Return the table of the joint estimate under this name, which is unique on a page."""
     rows = [parameter_row(name, model.estimate, prior) for name in SIDE_PARAMETERS]
     numbers = ", ".join(map(str, state.estimate_from))
     return Table(
-        "lateral-joint",
+        name,
         f"Joint estimate from manoeuvres {numbers} at {model.estimate.airspeed_m_s:.1f} m/s; ± is half the "
         "95 % interval. L and N hold the products of inertia.",
         ("parameter", "estimate ± 95 %", "± 95 % if white", "simulator", "unit"),

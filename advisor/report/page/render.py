@@ -31,13 +31,13 @@ _PARTS = (
     telemetry, assumptions, provenance,
 )  # fmt: skip
 
-_OF_MANEUVERS = frozenset({gap, estimates, criterion, flying, flight_picture, maneuvers, fits, prediction})
-"""Parts that the page of a flight without a test input leaves out."""
+_OF_PITCH = frozenset({estimates, criterion, flying, flight_picture, maneuvers, fits, prediction})
+"""Parts that the page of a flight without a test input of the elevator leaves out."""
 
 
 def sections(content: Content) -> list[Section]:
     """Return all sections in the order of the page."""
-    found = (_made(part, content) for part in _PARTS if part not in _OF_MANEUVERS or content.is_flown)
+    found = (_made(part, content) for part in _PARTS if part not in _OF_PITCH or content.state.maneuvers)
     return [section for section in found if section is not None]
 
 
