@@ -63,6 +63,8 @@ class LogFacts:
     """``vane``, ``derived``, ``simulated``, or ``unknown``."""
     maneuvers_m_s: tuple[float, ...]
     """Mean air speed of every manoeuvre, m/s. NaN where a manoeuvre has none."""
+    sides_unknown: Problem | None = None
+    """Reason for which aileron or rudder cannot be followed; None where their outputs are known."""
 
     @property
     def frame(self) -> str:
@@ -137,6 +139,7 @@ def facts_of(
         alpha_source=alpha.source if alpha else None,
         alpha_provenance=alpha.provenance if alpha else "unknown",
         maneuvers_m_s=tuple(_mean_speed(e.maneuver) for e in events if isinstance(e, ManeuverFlown)),
+        sides_unknown=stream.sides_unknown,
     )
 
 

@@ -26,6 +26,8 @@ def proposed(facts: LogFacts, log: str) -> Draft:
     """
     draft = Draft(head=_head(facts, log))
     _elevator(facts, draft)
+    if facts.sides_unknown is not None:
+        draft.unsure.append(str(facts.sides_unknown))
     _alpha(facts, draft)
     _airspeed(facts, log, draft)
     return draft

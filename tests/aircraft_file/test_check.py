@@ -44,6 +44,16 @@ def test_a_log_that_names_the_elevator_stands_in_for_the_key(advisor: Advisor, t
     assert "elevator.output" not in _lacking(advisor, tmp_path, "", "--log", LOG)
 
 
+def test_outputs_of_aileron_and_rudder_are_missing_where_no_parameter_names_surfaces(
+    advisor: Advisor, tmp_path: Path
+) -> None:
+    text, nameless = "elevator: {output: 2}", LOG.parent / "u_base.ulg"
+    assert {"aileron.output", "rudder.output"} <= _lacking(advisor, tmp_path, text, "--log", nameless).keys()
+    assert "aileron.output" not in _lacking(advisor, tmp_path, text, "--log", LOG)
+    given = f"{text}\naileron: {{output: 1}}\nrudder: {{output: 4}}"
+    assert "aileron.output" not in _lacking(advisor, tmp_path, given, "--log", nameless)
+
+
 def test_pulses_beyond_the_calibration_contradict_it(advisor: Advisor, tmp_path: Path) -> None:
     narrow = "elevator: {output: 2, calibration: [[1495, 1], [1505, -1]]}"
     assert _lacking(advisor, tmp_path, narrow, "--log", LOG)["elevator.calibration"]

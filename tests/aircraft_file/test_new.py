@@ -50,6 +50,7 @@ def test_an_unknown_elevator_is_said_and_left_out(advisor: Advisor, tmp_path: Pa
     file = tmp_path / "a.yaml"
     run = advisor("aircraft", "new", "--from", CASES / "u_base.ulg", "-o", file)
     assert "The elevator is unknown" in run.stdout
+    assert "! The outputs of aileron and rudder are not known." in run.stdout
     assert load_aircraft(file).elevator.output == "auto"
 
 
