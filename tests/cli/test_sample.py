@@ -18,10 +18,15 @@ def test_the_sample_is_written_with_its_aircraft_file(advisor: Advisor, tmp_path
     assert load_aircraft(tmp_path / "trial" / "arduplane-calm.yaml").elevator.output == 2
 
 
-def test_the_first_command_runs_as_it_is_printed(advisor: Advisor, tmp_path: Path) -> None:
-    told = advisor("sample", tmp_path / "a trial")
-    first = next(line for line in told.stdout.splitlines() if line.startswith("  advisor "))
-    assert advisor(*shlex.split(first)[1:]).returncode == 0
+def test_the_commands_that_are_printed_name_the_files_that_were_written(
+    advisor: Advisor, tmp_path: Path
+) -> None:
+    folder = tmp_path / "a trial"
+    told = advisor("sample", folder).stdout.splitlines()
+    printed = [shlex.split(line) for line in told if line.startswith("  advisor ")]
+    assert [words[1] for words in printed] == ["doctor", "replay", "gap"]
+    for words in printed:
+        assert words[2:] == [str(folder / f"{SAMPLE}.tlog"), "--aircraft", str(folder / f"{SAMPLE}.yaml")]
 
 
 def test_a_file_of_that_name_is_kept(advisor: Advisor, tmp_path: Path) -> None:

@@ -41,7 +41,7 @@ def _blocks(content: Content) -> Iterator[Block]:
     if following is not None:
         yield Paragraph(f"Next: {following['advice'].removeprefix('next: ')}.".replace("..", "."))
     yield from listing([f"Warning: {warning}" for warning in verdict["warnings"]])
-    if side is not None:
+    if side is not None and (side.maneuvers or not maneuvers or side.flight_test.next is None):
         yield Paragraph(f"Roll and yaw: {side.flight_test.sentence}")
     joint = joint_table(content)
     if joint is not None:
