@@ -62,7 +62,7 @@ imports: .venv/.developed ## the walls of the house
 	$(BIN)/lint-imports
 
 .PHONY: sizes
-sizes: .venv/.developed ## lines, constants and names of the gap's rules, each with an upper bound
+sizes: .venv/.developed ## lines, constants and names of the gap diagnosis, each with an upper bound
 	$(BIN)/python -m benchmarks.gap_size
 
 .PHONY: mutants mutants-nightly
@@ -122,15 +122,9 @@ corpus: .venv/.developed ## 160 flights whose keys are open: at most 2 % of the 
 
 .PHONY: score-gap
 EACH_OF ?= 20
-score-gap: .venv/.developed ## blind flights of every generator, diagnosed and scored (SEED=..., EACH_OF=20; ADVISOR_GAP_ENGINE=one)
-	$(BIN)/python -m benchmarks.gap_score --each $(EACH_OF) --seed $(SEED) --label "-$(or $(ADVISOR_GAP_ENGINE),rules)"
+score-gap: .venv/.developed ## blind flights of every generator, diagnosed and scored (SEED=..., EACH_OF=20)
+	$(BIN)/python -m benchmarks.gap_score --each $(EACH_OF) --seed $(SEED)
 
-.PHONY: judge
-judge: .venv/.developed ## fit the probabilities of the gap diagnosis on flights with known causes (EACH=100 a generator; an hour)
-	$(BIN)/python -m benchmarks.judge --each $(EACH)
-	$(BIN)/ruff format advisor/gap/judge/weights.py
-
-EACH ?= 100
 FLIGHTS ?= ../shared/flights
 real: .venv/.developed ## records of real aircraft against what is known of them (FLIGHTS=folder)
 	$(BIN)/python -m benchmarks.real $(FLIGHTS) --write docs/data/real.json

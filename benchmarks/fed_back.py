@@ -25,8 +25,8 @@ from advisor.gap.diagnose import diagnose
 from advisor.gap.result import Diagnosis
 from advisor.report.improved import write_improved
 from advisor.words.problems import UnusableInputError
+from benchmarks.gap_score import DRAWS
 from benchmarks.halves import halves_of
-from benchmarks.judge.record import DRAWS
 from sim.sealed.cases import AIRCRAFT, LOG, SealedCase, write_case
 
 CLOSED = ("none", "parameters")

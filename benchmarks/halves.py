@@ -20,7 +20,6 @@ from advisor.analysis.refused import without_refused
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.diagnose import diagnose
 from advisor.gap.result import Diagnosis
-from advisor.gap.verdict.as_judged import answered
 from advisor.simulators.compare import compare
 from advisor.words.problems import ConfigurationError, UnusableInputError
 
@@ -50,9 +49,11 @@ class Answer:
 
 def answer_of(diagnosis: Diagnosis) -> Answer:
     """Return the first cause of a diagnosis, or else its verdict, with its probability."""
-    first = answered(diagnosis, [])
-    stated = [one.probability for one in diagnosis.evidence if one.alternative.first == first]
-    return Answer(first.name, sum(stated) if stated else None)
+    answer = diagnosis.answer
+    if answer is None:
+        return Answer(diagnosis.verdict, None)
+    same = [one.probability for one in diagnosis.evidence if one.alternative.name == answer.name]
+    return Answer(answer.name, sum(same))
 
 
 def agree(one: Answer, other: Answer) -> bool:

@@ -118,7 +118,7 @@ def few_diagnoses(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempP
     own = tmp_path_factory.getbasetemp()
     made = (own.parent if hasattr(request.config, "workerinput") else own) / "diagnoses"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(diagnose, "answer", counted(diagnose.answer, made))
+        patch.setattr(diagnose, "answer_of", counted(diagnose.answer_of, made))
         yield
 
 

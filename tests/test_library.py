@@ -13,6 +13,7 @@ import advisor as library
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
 from advisor.aircraft.reference import PARAMETERS
+from advisor.gap.document import gap_document
 from advisor.oem.found import with_found
 from tests.conftest import Advisor
 from tests.flights import FOUR, SHIPPED, recorded
@@ -107,7 +108,7 @@ def test_diagnose_gives_the_verdict_of_gap(flight: library.Flight, advisor: Advi
     aircraft.write_text("elevator: {lag_s: 0.02}\n")
     run = advisor("gap", flight.log, "--aircraft", aircraft, "--json", "--out", tmp_path / "improved.yaml")
     told, found = json.loads(run.stdout), library.diagnose(flight)
-    assert found.verdict == told["verdict"]
+    assert gap_document(found)["verdict"] == told["verdict"]
     assert [cause.effect for cause in found.causes] == [cause["effect"] for cause in told["causes"]]
 
 

@@ -24,7 +24,7 @@ ALLOWED = {
 """Modules whose numbers are no limits, and what they are."""
 UNCHECKED = tuple(
     f"advisor.gap.{room}."
-    for room in ("evidence", "fitting", "foresight", "judge", "search", "uncatalogued", "verdict")
+    for room in ("fitting", "foresight", "inference", "search", "uncatalogued", "verdict")
 )
 """Rooms of the gap diagnosis whose limits only whole diagnoses show."""
 

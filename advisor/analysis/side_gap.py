@@ -10,7 +10,7 @@ from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.analysis.whole_flights import read_whole
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.marks import Mark
-from advisor.gap.judge.prior import FIELD, FieldPrior
+from advisor.gap.inference.prior import FIELD, FieldPrior
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.lateral_estimator import estimate_lateral
 from advisor.side_gap.comparison import SideGap, compare_side

@@ -148,7 +148,7 @@ def command(
     orders = orders_of(exports, aircraft, [*asked.inputs, out])
     from advisor.analysis.gap import compare_logs, named_simulator
     from advisor.gap.document import gap_document
-    from advisor.gap.judge.prior import FIELD, field_prior
+    from advisor.gap.inference.prior import FIELD, field_prior
     from advisor.report.gap_steps import next_steps
     from advisor.report.improved import write_improved
     from advisor.words.plain import plain

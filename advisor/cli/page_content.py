@@ -21,7 +21,7 @@ from advisor.cli.doctor import examine_log
 from advisor.cli.log_options import LogsAsked
 from advisor.doctor.document import doctor_document
 from advisor.gap.document import gap_document
-from advisor.gap.search.waterfall import Progress
+from advisor.gap.inference.diagnose import Progress
 from advisor.process.parts import FailedPart, attempt
 from advisor.report.document import analysis_document
 from advisor.report.gap_steps import next_steps

@@ -14,7 +14,7 @@ from advisor.cli.log_options import LogsAsked
 from advisor.cli.options import UNUSABLE
 from advisor.cli.stages import Stages
 from advisor.gap.document import changed_document, gap_document
-from advisor.gap.judge.prior import FIELD, field_prior
+from advisor.gap.inference.prior import FIELD, field_prior
 from advisor.process.parts import FailedPart, attempt
 from advisor.report.gap_reasons import in_percent
 from advisor.report.gap_sizes import sizes_of

@@ -1,7 +1,7 @@
 """Alternatives: what may explain a flight, each with its evidence and its probability."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Literal
 
 Kind = Literal["none", "parameters", "effect", "air", "unknown"]
@@ -19,8 +19,6 @@ class Alternative:
     """``none``, ``parameters``, ``unknown``, or the name of an effect."""
     block: str = ""
     """Block of the simulator; empty for ``none`` and ``parameters``."""
-    second: str = ""
-    """Second effect of a set, whose main effect is ``name``; empty for a single answer."""
 
     @property
     def is_effect(self) -> bool:
@@ -28,21 +26,14 @@ class Alternative:
         return self.name not in ("none", "parameters", "unknown")
 
     @property
-    def first(self) -> "Alternative":
-        """The first cause: the main effect of a set, and any other alternative itself."""
-        return replace(self, second="")
-
-    @property
     def label(self) -> str:
-        """The names, with the block where the name alone does not say it: ``unknown@input``, ``a + b``."""
-        if self.kind == "unknown":
-            return f"{self.name}@{self.block}"
-        return f"{self.name} + {self.second}" if self.second else self.name
+        """The name, with the block where the name alone does not say it: ``unknown@input``."""
+        return f"{self.name}@{self.block}" if self.kind == "unknown" else self.name
 
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """One measured quantity of an alternative."""
+    """One part of the log weight of an alternative."""
 
     name: str
     value: float
@@ -52,15 +43,11 @@ class Column:
 
 @dataclass(frozen=True, slots=True)
 class AlternativeEvidence:
-    """The evidence on one alternative: every alternative has the same columns."""
+    """The evidence on one alternative: the parts of its likeliest model."""
 
     alternative: Alternative
     columns: tuple[Column, ...]
     probability: float
-
-    def value(self, name: str) -> float:
-        """Return the value of a column."""
-        return next(column.value for column in self.columns if column.name == name)
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +55,7 @@ class Contribution:
     """One part of the log odds of the answer against its strongest rival."""
 
     name: str
-    """Column, ``prior``, or ``rest``."""
+    """Part of the log weight, or ``rest``."""
     nats: float
     sentence: str
 

@@ -1,7 +1,4 @@
-"""One decision of the diagnosis, as the ledger keeps it: a statistic compared with its limit; and the levels.
-
-Every question of the same kind has the same level.
-"""
+"""One decision of the diagnosis: a statistic compared with its limit. Several modules share the limits."""
 
 from dataclasses import dataclass
 
@@ -11,9 +8,6 @@ differ by less are alike."""
 CERTAIN = 30.0
 """Gain in log likelihood, nats, above which something like an effect, or moving air, is certainly
 present. On 40 flights of two generators no gain of moving air lies between 21 and 64."""
-BEYOND_DOUBT = 100.0
-"""Gain in log likelihood, nats, beyond doubt. Residuals without a name gained above 11,000 in 40 flights, and
-those of right models at most 116."""
 LEAST_SIGMA = 3.0
 """Least number of standard deviations by which a parameter of an effect differs from zero."""
 SIGMAS = 5.0
@@ -29,17 +23,13 @@ class Decision:
     """One question, answered yes where the statistic is at least the limit."""
 
     about: str
-    """Effect, block or verdict that the question is about."""
+    """Effect, block or verdict of the question."""
     name: str
     """The question in one or two words."""
     statistic: float
     limit: float
     unit: str
     """Unit of the statistic and of the limit."""
-    parameter: str = ""
-    """Parameter of the effect that the question is about; empty for any other question."""
-    searched: tuple[float, float] | None = None
-    """Ends of that parameter's searched range, SI."""
 
     @property
     def margin(self) -> float:

@@ -1,20 +1,17 @@
 """The diagnosis: where the gap lies, which effect causes it, and how far it shrinks with that effect."""
 
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.flight.instruments.atmosphere import thin_air
 from advisor.flight.instruments.kinematics import check_alpha, combine
 from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.gap.candidates.alpha_offset import least_offset_rad
 from advisor.gap.candidates.known import AIR, left_aside
-from advisor.gap.evidence.found import Evidence
-from advisor.gap.explain import evidence_of_one_maneuver, explain
 from advisor.gap.fitting.prior_speed import prior_speed
-from advisor.gap.inference.answer import answer_of
-from advisor.gap.inference.diagnose import infer
-from advisor.gap.judge.prior import FIELD, FieldPrior
+from advisor.gap.inference.diagnose import Progress, infer
+from advisor.gap.inference.findings import Circumstances, Findings
+from advisor.gap.inference.prior import FIELD, FieldPrior
 from advisor.gap.records.airspeed import measures_speed
 from advisor.gap.records.as_stamped import as_stamped
 from advisor.gap.records.flights import PreparedManeuvers
@@ -23,25 +20,22 @@ from advisor.gap.records.unmeasured_alpha import alpha_by_motion, is_known
 from advisor.gap.records.unmeasured_speed import speed_of_the_motion
 from advisor.gap.records.usable import usable_of
 from advisor.gap.result import Diagnosis
-from advisor.gap.search.acceptance import least_offset_rad
 from advisor.gap.search.baseline import at_another_speed, fit_baseline, of_this_flight
-from advisor.gap.search.stage import added_in
-from advisor.gap.search.waterfall import Progress
 from advisor.gap.uncatalogued.airspeed_scale import airspeed_scale_of, true_over_read
-from advisor.gap.uncatalogued.unexplained import Unexplained, as_wind
-from advisor.gap.uncatalogued.weight_check import WeightReading, weight_reading
+from advisor.gap.uncatalogued.weight_check import weight_reading
 from advisor.gap.uncatalogued.wind_shear import wind_shear
-from advisor.gap.verdict.answer import answer
+from advisor.gap.verdict.answer import answer_of
 from advisor.gap.verdict.notes import left_out
+from advisor.gap.verdict.one_maneuver import answer_of_one
 from advisor.words.problems import UnusableInputError
 
 
 @dataclass(frozen=True)
-class DiagnosisEvidence:
-    """A diagnosis, together with the evidence that the diagnosis was made from."""
+class Examined:
+    """A diagnosis, together with the findings that the diagnosis is made from."""
 
     diagnosis: Diagnosis
-    evidence: Evidence
+    findings: Findings
 
 
 def diagnose(
@@ -82,8 +76,8 @@ def examine(
     holdout: int | None = None,
     progress: Progress = lambda *_: None,
     prior: FieldPrior = FIELD,
-) -> DiagnosisEvidence:
-    """Diagnose like ``diagnose``, and return the evidence too, so that a user's simulator can fly the result.
+) -> Examined:
+    """Diagnose like ``diagnose``, and return the findings too, so that a user's simulator can fly the result.
 
     Raises
     ------
@@ -96,10 +90,10 @@ def examine(
     offset = aircraft.effects.get("alpha_bias", {}).get("bias_rad", 0.0)
     maneuvers = alpha_by_motion([_without_offset(m, offset) for m in maneuvers], aircraft)
     found = _explained(maneuvers, aircraft, holdout, prior, progress)
-    diagnosis, evidence = found.diagnosis, found.evidence
-    used = {flight.number for flight in evidence.problem.flights.flights}
+    diagnosis, findings = found.diagnosis, found.findings
+    used = {flight.number for flight in findings.problem.flights.flights}
     missing = left_out([m for m in maneuvers if m.number not in used])
-    return DiagnosisEvidence(replace(diagnosis, notes=(*diagnosis.notes, *missing)), evidence)
+    return Examined(replace(diagnosis, notes=(*diagnosis.notes, *missing)), findings)
 
 
 def _explained(
@@ -108,8 +102,8 @@ def _explained(
     holdout: int | None,
     prior: FieldPrior,
     progress: Progress,
-) -> DiagnosisEvidence:
-    """Return the diagnosis of the manoeuvres with its evidence."""
+) -> Examined:
+    """Return the diagnosis of the manoeuvres with its findings."""
     flights = prepare(maneuvers, aircraft)
     _refuse(flights, maneuvers)
     arms = aircraft.accelerometer.arm_m, aircraft.alpha.vane_arm_m
@@ -136,20 +130,14 @@ def _explained(
         # An indicated air speed changes by less than the integral of the accelerations.
         flights = prepare(maneuvers, aircraft, over_read)
         problem, baseline = at_another_speed(problem, baseline, flights)
+    shear = wind_shear(flown, over_read) if measured else None
     if len(flights) == 1:
-        alone = evidence_of_one_maneuver(problem, baseline)
-        return DiagnosisEvidence(answer(alone, aircraft, kinematics, holdout, prior), alone)
-    if os.environ.get("ADVISOR_GAP_ENGINE", "rules") == "one":
-        found = infer(problem, baseline, aircraft, kinematics, prior, progress)
-        progress("measuring the gap", 0.9)
-        aside = left_aside(given, aircraft.effects, () if found.sought_air.found is None else AIR)
-        return DiagnosisEvidence(*answer_of(found, aircraft, kinematics, holdout, given, aside, weight))
-    explained = explain(problem, baseline, aircraft, progress)
-    aside = left_aside(given, aircraft.effects, () if explained.air is None else AIR)
-    explained = replace(explained, known=given, left_aside=aside)
-    explained = _checked_against_path(explained, flown, weight) if measured else explained
+        return Examined(*answer_of_one(problem, baseline, aircraft, kinematics))
+    found = infer(problem, baseline, aircraft, kinematics, prior, progress)
     progress("measuring the gap", 0.9)
-    return DiagnosisEvidence(answer(explained, aircraft, kinematics, holdout, prior), explained)
+    aside = left_aside(given, aircraft.effects, () if found.sought_air.found is None else AIR)
+    circumstances = Circumstances(shear, weight, given, aside)
+    return Examined(*answer_of(found, aircraft, kinematics, holdout, circumstances))
 
 
 def _refuse(flights: PreparedManeuvers, maneuvers: Sequence[Maneuver]) -> None:
@@ -189,39 +177,3 @@ def _without_offset(maneuver: Maneuver, offset: float) -> Maneuver:
     if "alpha" in channels:
         channels["alpha"] = replace(channels["alpha"], y=channels["alpha"].y - offset)
     return replace(maneuver, channels=channels)
-
-
-def _checked_against_path(e: Evidence, flown: Sequence[Maneuver], weight: WeightReading | None) -> Evidence:
-    """Return the evidence with what the flight path says of air speed and accelerometer, without
-    aerodynamics."""
-    shear = wind_shear(flown, true_over_read(e.airspeed_scale, weight))
-    of_gusts = shear is not None and shear.is_implausible and e.air is not None
-    if shear is not None and not of_gusts and not _mimics_wind(e.unexplained):
-        e = replace(e, shear=shear, unexplained=as_wind(e.unexplained))
-    is_off = weight is not None and weight.is_off
-    # An accelerometer error appears as a force too: an effect of the force equation is no separate
-    # explanation.
-    elsewhere = any(j.block != "force_equation" for j in added_in(e.stages))
-    if e.unexplained is None and ((is_off and not elsewhere) or _reads_another_speed(e, weight, flown)):
-        e = replace(e, unexplained=Unexplained("accelerometer", 1.0, (("accelerometer", 1.0),)))
-    return replace(e, weight=weight)
-
-
-def _reads_another_speed(e: Evidence, weight: WeightReading | None, flown: Sequence[Maneuver]) -> bool:
-    """Return whether no true air speed fits both air speed and accelerometer, and no effect was found."""
-    # A gust changes α, and the air speed that the motion implies, by more than its filter assumes.
-    alone = len(e.stages) == 1 and not (e.air is not None and e.air.gust)
-    scale = e.airspeed_scale
-    return alone and scale is not None and scale.is_wrong(weight, thin_air(flown))
-
-
-def _mimics_wind(unexplained: Unexplained | None) -> bool:
-    """Return whether an attitude error, or a known accelerometer law, looks like a wind gradient.
-
-    Climb and path speed are computed from these channels, so their errors grow with the height climbed.
-    """
-    if unexplained is None:
-        return False
-    return unexplained.block == "attitude_sensor" or (
-        unexplained.block == "accelerometer" and unexplained.note != ""
-    )

@@ -8,7 +8,6 @@ import numpy as np
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.alternative import AlternativeEvidence
 from advisor.gap.result import Cause, ComparedDerivative, Diagnosis, InSimulator, Qualification
-from advisor.gap.verdict.as_judged import answered
 from advisor.gap.verdict.limits import limits_of
 from advisor.gap.verdict.text import in_words
 from advisor.process.parts import FailedPart
@@ -22,7 +21,8 @@ _NOTHING: Mapping[str, Any] = {
     "reference_airspeed_m_s": None, "alpha_check": None, "yardsticks": None, "notes": [],
     "improved_model": None, "parameters_changed": [], "traces": [], "share_irreducible": None,
     "decisions": [], "simulator": None, "qualification": None, "static": [], "trims": [],
-    "probabilities": None, "evidence": [], "why": [], "answer": None, "rival": None,
+    "probabilities": None, "evidence": [], "why": [], "answer": None, "decided": None,
+    "rival": None,
 }  # fmt: skip
 """Keys and values of a document without a diagnosis."""
 
@@ -94,7 +94,8 @@ def _judged(d: Diagnosis) -> dict[str, Any]:
         "probabilities": d.probabilities,
         "evidence": [_evidence(one) for one in d.evidence],
         "why": [{"name": c.name, "nats": c.nats, "text": c.sentence} for c in d.why],
-        "answer": answered(d, [e.alternative for e in d.evidence]).label if d.why else None,
+        "answer": d.answer and d.answer.label,
+        "decided": d.answer is not None and not d.doubt,
         "rival": d.rival or None,
     }
 
@@ -133,7 +134,6 @@ def _cause(c: Cause) -> dict[str, Any]:
 def _evidence(one: AlternativeEvidence) -> dict[str, Any]:
     return {
         "alternative": one.alternative.label, **picked(one.alternative, "kind name block"),
-        "second": one.alternative.second or None,
         "text": in_words(one.alternative),
         "probability": one.probability,
         "columns": [picked(column, "name value unit") for column in one.columns],

@@ -6,7 +6,7 @@ from typing import Literal
 
 from advisor.flight.instruments.kinematics import KinematicCheck
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.alternative import AlternativeEvidence, Contribution, Probabilities
+from advisor.gap.alternative import Alternative, AlternativeEvidence, Contribution, Probabilities
 from advisor.gap.decision import Decision
 from advisor.words.quantiles import NORMAL_95
 
@@ -275,6 +275,8 @@ class Diagnosis:
     """The evidence on every alternative, likeliest first."""
     why: tuple[Contribution, ...] = ()
     """The answer against its strongest rival, in nats that add up to the log odds."""
+    answer: Alternative | None = None
+    """The likeliest alternative; None for a single manoeuvre."""
     rival: str = ""
     """Label of that rival; empty without ``why``."""
     doubt: str = ""

@@ -16,7 +16,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.judge.prior import FIELD, FieldPrior
+from advisor.gap.inference.prior import FIELD, FieldPrior
 from advisor.gap.result import ComparedDerivative, Value
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.lateral_estimate import LateralEstimate

@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 
 from advisor.gap.fitting.prior import ERROR_IF_WRONG
-from advisor.gap.judge.prior import FIELD, FieldPrior
+from advisor.gap.inference.prior import FIELD, FieldPrior
 from advisor.gap.result import Cause, Value
 from advisor.gap.verdict.statements import what
 from advisor.side_gap.effects import SideEffect, side_effects, unseen

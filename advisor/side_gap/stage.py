@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG
-from advisor.gap.judge.prior import FieldPrior
+from advisor.gap.inference.prior import FieldPrior
 from advisor.gap.search.air import NATURAL_GUST_ANGLE
 from advisor.side_gap.effects import SideEffect
 from advisor.side_gap.evidence import (

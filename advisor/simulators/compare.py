@@ -13,10 +13,10 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import with_known
-from advisor.gap.diagnose import DiagnosisEvidence, examine
+from advisor.gap.diagnose import Examined, examine
 from advisor.gap.effects import EFFECTS
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
-from advisor.gap.judge.prior import FIELD, FieldPrior
+from advisor.gap.inference.prior import FIELD, FieldPrior
 from advisor.gap.records.as_stamped import as_stamped
 from advisor.gap.records.prepare import prepare
 from advisor.gap.records.unmeasured_alpha import alpha_by_motion, is_known
@@ -129,7 +129,7 @@ def compare(
     )
     again = replace(flying, progress=lambda w, s: progress(w, _FOUND + (1.0 - _FOUND) * s))
     if isinstance(simulator, LinearSimulator):
-        reference = examined.evidence.problem.flights.reference_m_s
+        reference = examined.findings.problem.flights.reference_m_s
         surrogate = replace(surrogate, reference_m_s=reference)
         again = replace(again, simulator=replace(simulator, reference_m_s=reference))
     progress("searching again without the manoeuvres kept apart", _DIAGNOSED)
@@ -151,7 +151,7 @@ def compare(
 
 
 def _measured(
-    examined: DiagnosisEvidence,
+    examined: Examined,
     unseen: UnseenManeuvers | None,
     as_file: Aircraft,
     flown: Flown,

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.diagnose import DiagnosisEvidence
+from advisor.gap.diagnose import Examined
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
@@ -55,7 +55,7 @@ class Flown:
 
 
 def in_simulator(
-    whole: DiagnosisEvidence,
+    whole: Examined,
     unseen: UnseenManeuvers | None,
     flying: Flying,
     surrogate: Surrogate,
@@ -76,11 +76,11 @@ def in_simulator(
     as_flown
         Manoeuvre number to the manoeuvre as flown by the simulator.
     """
-    problem, floor = whole.evidence.problem, floor_of(whole)
+    problem, floor = whole.findings.problem, floor_of(whole)
     flights = problem.flights.flights
     kept = tuple(range(len(flights))) if unseen is None else unseen.kept
     derivatives = np.array([surrogate.derivatives[name] for name in DERIVATIVES])
-    given = as_given(derivatives, whole.evidence.stages[-1].fitted.point)
+    given = as_given(derivatives, whole.findings.last.fitted.point)
     before = predicted(problem, given, floor, kept, unknown_offset(whole.diagnosis, None))
     was = whole_gap(before.mean_square, floor)
     original = _with(problem, [as_flown[f.number].beyond for f in flights], 1.0)
@@ -175,7 +175,7 @@ def _with(problem: EffectProblem, grids: Sequence[FloatArray], sign: float) -> E
 
 
 def _without_air(
-    whole: DiagnosisEvidence,
+    whole: Examined,
     problem: EffectProblem,
     point: SearchPoint,
     kept: Sequence[int],
@@ -184,7 +184,7 @@ def _without_air(
     """Return the gap without what the air and the instruments' natural errors explain in the same samples."""
     floor = floor_of(whole)
     left = predicted(problem, point, floor, kept, offset_rad).mean_square
-    air, last = whole.evidence.air, whole.evidence.stages[-1].held_out
+    air, last = whole.findings.air, whole.findings.last.held_out
     if air is not None:
         left = left * np.minimum(air.mean_square_beyond_air / last.mean_square, 1.0)
     return whole_gap(left, floor)

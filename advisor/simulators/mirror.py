@@ -16,7 +16,7 @@ from advisor.flight.signals.record import Channel
 from advisor.gap.alternative import Probabilities
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import with_known
-from advisor.gap.diagnose import DiagnosisEvidence, examine
+from advisor.gap.diagnose import Examined, examine
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.result import VISIBLE, Cause, Diagnosis, Value
 from advisor.gap.search.baseline import base_entries
@@ -66,7 +66,7 @@ class Mirrored:
 
 
 def mirrored(
-    whole: DiagnosisEvidence,
+    whole: Examined,
     maneuvers: Sequence[Maneuver],
     flying: Flying,
     replays: Sequence[Replay],

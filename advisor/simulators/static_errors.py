@@ -10,7 +10,7 @@ from math import degrees
 
 import numpy as np
 
-from advisor.gap.diagnose import DiagnosisEvidence
+from advisor.gap.diagnose import Examined
 from advisor.gap.result import Diagnosis, TrimDifference
 from advisor.gap.simulator.layout import DERIVATIVES
 
@@ -36,7 +36,7 @@ _MOMENTS, _FORCES = ("M_alpha", "M_q", "M_delta_e"), ("Z_alpha",)
 
 
 def with_static_errors(
-    diagnosis: Diagnosis, examined: DiagnosisEvidence, trims: Sequence[TrimDifference] = ()
+    diagnosis: Diagnosis, examined: Examined, trims: Sequence[TrimDifference] = ()
 ) -> Diagnosis:
     """Return the diagnosis with its static errors told first.
 
@@ -66,16 +66,16 @@ def _of_the_trims(trims: Sequence[TrimDifference]) -> Iterator[str]:
         yield f"The simulator trims at {size} {more} {name} than the aircraft: {because}."
 
 
-def _of_the_speed(examined: DiagnosisEvidence) -> Iterator[str]:
-    found = examined.evidence.airspeed_scale
+def _of_the_speed(examined: Examined) -> Iterator[str]:
+    found = examined.findings.airspeed_scale
     if found is not None and abs(found.scale) > _READS_WRONG:
         read = 100.0 * (1.0 / (1.0 + found.scale) - 1.0)
         yield f"The air speed reads {abs(read):.0f} % {'low' if read < 0.0 else 'high'} by the motion."
 
 
-def _of_numbers_together(diagnosis: Diagnosis, examined: DiagnosisEvidence) -> Iterator[str]:
+def _of_numbers_together(diagnosis: Diagnosis, examined: Examined) -> Iterator[str]:
     """Yield the one physical number by which several derivatives differ alike."""
-    prior = examined.evidence.problem.prior_derivatives
+    prior = examined.findings.problem.prior_derivatives
     if prior is None or diagnosis.verdict != "parameters":
         return
     given = dict(zip(DERIVATIVES, prior, strict=True))

@@ -13,12 +13,12 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.nuisances import PROPELLER
-from advisor.gap.diagnose import DiagnosisEvidence, examine
+from advisor.gap.diagnose import Examined, examine
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.measure import shrink_interval, whole_gap
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.fitting.refit import own_refitted
-from advisor.gap.judge.prior import FIELD, FieldPrior
+from advisor.gap.inference.prior import FIELD, FieldPrior
 from advisor.gap.result import Diagnosis, Shrink, spelled
 from advisor.gap.verdict.holdout_numbers import over_maneuvers, with_offset
 from advisor.gap.verdict.statements import in_simulator
@@ -37,7 +37,7 @@ class UnseenManeuvers:
 
     kept: tuple[int, ...]
     """Indices of the manoeuvres kept apart, in the problem of the whole diagnosis."""
-    found: DiagnosisEvidence
+    found: Examined
 
 
 def kept_apart(n: int, holdout: int | None) -> tuple[int, ...]:
@@ -60,7 +60,7 @@ def changes_something(diagnosis: Diagnosis) -> bool:
 
 
 def unseen_of(
-    whole: DiagnosisEvidence,
+    whole: Examined,
     maneuvers: Sequence[Maneuver],
     aircraft: Aircraft,
     holdout: int | None,
@@ -75,7 +75,7 @@ def unseen_of(
     holdout, prior
         Arguments of ``advisor.gap.diagnose.diagnose``.
     """
-    numbers = [flight.number for flight in whole.evidence.problem.flights.flights]
+    numbers = [flight.number for flight in whole.findings.problem.flights.flights]
     kept = kept_apart(len(numbers), holdout)
     if not kept:
         return None
@@ -84,14 +84,14 @@ def unseen_of(
     return UnseenManeuvers(kept, examine(others, aircraft, prior=prior))
 
 
-def as_changed(unseen: UnseenManeuvers, whole: DiagnosisEvidence) -> SearchPoint:
+def as_changed(unseen: UnseenManeuvers, whole: Examined) -> SearchPoint:
     """Return the model that an export writes, for all manoeuvres.
 
     The nuisance parameters belong to the flight instead of the simulator; only a propeller is exported.
     Initial states, and the side on which a play rests, start from the whole diagnosis.
     """
-    found, everything = unseen.found, whole.evidence.stages[-1].fitted.point
-    point, written = found.evidence.stages[-1].fitted.point, found.diagnosis.effects
+    found, everything = unseen.found, whole.findings.last.fitted.point
+    point, written = found.findings.last.fitted.point, found.diagnosis.effects
     with_propeller = not written.get("thrust_moment", {}).keys().isdisjoint(PROPELLER.names)
     kept = [
         k
@@ -104,7 +104,7 @@ def as_changed(unseen: UnseenManeuvers, whole: DiagnosisEvidence) -> SearchPoint
 def with_nuisances(point: SearchPoint, unseen: UnseenManeuvers) -> SearchPoint:
     """Return a model together with the nuisance parameters of the diagnosis without the manoeuvres kept
     apart."""
-    found = unseen.found.evidence.stages[-1].fitted.point
+    found = unseen.found.findings.last.fitted.point
     for effect, values in zip(found.effects, found.values, strict=True):
         if effect.is_nuisance and effect not in point.effects:
             point = point.with_effect(effect, values)
@@ -153,12 +153,12 @@ def unknown_offset(whole: Diagnosis, model: Diagnosis | None) -> float:
     return removed - known
 
 
-def with_unseen_shrink(whole: DiagnosisEvidence, unseen: UnseenManeuvers, aircraft: Aircraft) -> Diagnosis:
+def with_unseen_shrink(whole: Examined, unseen: UnseenManeuvers, aircraft: Aircraft) -> Diagnosis:
     """Return the diagnosis against an aircraft file's model, with the shrink on the manoeuvres kept apart."""
-    diagnosis, problem = whole.diagnosis, whole.evidence.problem
+    diagnosis, problem = whole.diagnosis, whole.findings.problem
     if problem.prior_derivatives is None:
         return diagnosis
-    last = whole.evidence.stages[-1].fitted.point
+    last = whole.findings.last.fitted.point
     floor = floor_of(whole)
     given = as_given(problem.prior_derivatives, last)
     before = predicted(problem, given, floor, unseen.kept, unknown_offset(diagnosis, None))
@@ -169,9 +169,7 @@ def with_unseen_shrink(whole: DiagnosisEvidence, unseen: UnseenManeuvers, aircra
     return resaid(diagnosis, shrink_on(whole, unseen, before, after), aircraft)
 
 
-def shrink_on(
-    whole: DiagnosisEvidence, unseen: UnseenManeuvers, before: HeldOut, after: HeldOut
-) -> Shrink | None:
+def shrink_on(whole: Examined, unseen: UnseenManeuvers, before: HeldOut, after: HeldOut) -> Shrink | None:
     """Return the shrink from ``before`` to ``after`` on the manoeuvres kept apart."""
     shrink = whole.diagnosis.shrink
     if shrink is None:
@@ -180,7 +178,7 @@ def shrink_on(
     was, now = (whole_gap(held.mean_square, floor) for held in (before, after))
     percent = percent_of(was, now)
     low, high = shrink_interval(before.by_maneuver[kept], after.by_maneuver[kept], floor)
-    flights = whole.evidence.problem.flights.flights
+    flights = whole.findings.problem.flights.flights
     return replace(
         shrink,
         holdout=tuple(flights[i].number for i in kept),
@@ -207,10 +205,10 @@ def _finding(diagnosis: Diagnosis) -> str:
 
 
 def resaid(diagnosis: Diagnosis, shrink: Shrink | None, aircraft: Aircraft) -> Diagnosis:
-    """Return the diagnosis with another shrink, also in its sentence."""
+    """Return the diagnosis with another shrink, also in its sentence, which keeps its doubt."""
     d = diagnosis
     sentence = sentence_of(d.verdict, d.gap, d.where, d.causes, shrink, in_simulator(aircraft))
-    return replace(d, shrink=shrink, sentence=sentence)
+    return replace(d, shrink=shrink, sentence=" ".join(filter(None, [d.doubt, sentence])))
 
 
 def percent_of(was: float, now: float) -> float:
@@ -218,6 +216,6 @@ def percent_of(was: float, now: float) -> float:
     return 100.0 * (1.0 - now / was) if was > 1e-9 else 0.0
 
 
-def floor_of(whole: DiagnosisEvidence) -> FloatArray:
+def floor_of(whole: Examined) -> FloatArray:
     """Return the noise floor of the diagnosis, shape (channels,)."""
-    return np.array([whole.diagnosis.gap.floor[c] for c in whole.evidence.problem.channels])
+    return np.array([whole.diagnosis.gap.floor[c] for c in whole.findings.problem.channels])

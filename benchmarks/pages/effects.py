@@ -7,7 +7,7 @@ import numpy as np
 from advisor.gap.effects import EFFECTS
 from advisor.gap.kit.effect import BLOCKS, Effect, Said, without_sizes
 from advisor.gap.kit.variant import Variant
-from advisor.gap.verdict.causes import parameters_of
+from advisor.gap.verdict.sizes import parameters_of
 from advisor.report.gap_sizes import in_units, short
 from benchmarks.pages.planned import PLANS, Plan, described
 
@@ -20,13 +20,13 @@ This page is made from `advisor/gap/effects`.
 - *Said*: the sentence of a verdict. Letters in italics stand for sizes.
 - *Parameters*: names and units as in `effects:` of the aircraft file, and the range of the search. A dash
   marks a number that is not searched for.
-- *Named from*: the least size of the first parameter. Without an entry the change of the motion alone decides
-  ([decisions](gap-decisions.md), `search/acceptance.py` and `search/score.py`).
+- *Foreseen from*: the least size of the first parameter in a plan. Without an entry the change of the motion
+  alone decides.
 - *Needs*: channels, or a change in the flight, without which the effect cannot be seen.
 - *Apart from*: an effect that looks alike, and how to distinguish the two.
 
 "By the flight" marks a bound that depends on the length, the heights or the air speed of the flight. Where an
-autopilot has filtered the channels, times of sensors are named at `FILTERED_S` or more.
+autopilot has filtered the channels, times of sensors are foreseen at `FILTERED_S` or more.
 """
 _TITLES = {
     "input": "between command and surface",
@@ -39,10 +39,8 @@ _TITLES = {
     "timing": "time stamps",
 }
 _KINDS = {
-    "by_nature": "Every aircraft has some: faint, it is no finding.",
     "of_one_flight": "It belongs to one flight and is left aside where an aircraft file states it.",
     "of_one_imu": "An angle of attack that an autopilot estimates cannot show it.",
-    "takes": "Its size is what it takes away.",
 }
 _CHANNELS = {"alpha": "angle of attack", "a_z": "vertical acceleration", "theta": "attitude"}
 _SI_ENDINGS = {
@@ -70,7 +68,7 @@ def page() -> str:
 
 def _section(effect: Effect) -> str:
     lines = [f"### `{effect.name}`\n", *(f"- {said}" for said in _said(effect)), *_parameters(effect)]
-    lines += [f"- *Named from*: {size}." for size in _named_from(effect.name)]
+    lines += [f"- *Foreseen from*: {size}." for size in _foreseen_from(effect.name)]
     lines += [f"- *Needs*: {need}." for need in _needs(effect)]
     lines += [f"- *Apart from* {other}: {way}." for other, way in _apart(effect)]
     lines += [f"- {sentence}" for flag, sentence in _KINDS.items() if getattr(effect, flag)]
@@ -140,7 +138,7 @@ def _bounds(variant: Variant) -> Mapping[str, tuple[float, float]]:
     }
 
 
-def _named_from(effect: str) -> Iterator[str]:
+def _foreseen_from(effect: str) -> Iterator[str]:
     here, elsewhere = (_least(effect, plan) for plan in PLANS)
     for parameter, sizes in here.items():
         shown = " or ".join(sizes)
@@ -149,15 +147,13 @@ def _named_from(effect: str) -> Iterator[str]:
 
 
 def _least(effect: str, plan: Plan) -> Mapping[str, list[str]]:
-    """Of each size of an effect the least that has a name, in words, and the least beyond doubt."""
+    """Of each size of an effect the least that is foreseen, in words."""
     found: dict[str, list[str]] = {}
     for v in described(effect, plan):
         if v.smallest > 0.0:
             factor, unit = in_units(v.names[0])
             size = factor * (1.0 / v.smallest if v.inverted else v.smallest)
             text = f"{_rounded(size)} {unit}".rstrip() + (" and slower" if v.inverted else "")
-            if v.if_beyond_doubt < 1.0:
-                text += f" (beyond doubt {_rounded(v.if_beyond_doubt * size)} {unit})"
             known = found.setdefault(v.names[0], [])
             known += [text] if text not in known else []
     return found

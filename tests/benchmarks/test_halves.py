@@ -28,14 +28,19 @@ def test_halves_agree_on_one_answer_or_where_one_is_not_sure(one, other, same):
 def test_the_probability_of_a_verdict_without_a_cause_is_that_of_its_row():
     rows = (("parameters", 0.5), ("none", 0.45))
     evidence = tuple(AlternativeEvidence(Alternative(name, name), (), p) for name, p in rows)
-    assert answer_of(diagnosis(verdict="none", evidence=evidence)) == Answer("none", 0.45)
+    none = evidence[1].alternative
+    assert answer_of(diagnosis(verdict="none", answer=none, evidence=evidence)) == Answer("none", 0.45)
 
 
-def test_the_probability_of_a_set_counts_for_its_main_effect():
-    delay = Alternative("effect", "transport_delay", "input")
-    rows = ((delay, 0.3), (Alternative("effect", "transport_delay", "input", "gust"), 0.4))
-    evidence = tuple(AlternativeEvidence(one, (), p) for one, p in rows)
-    assert answer_of(diagnosis(evidence=evidence)) == Answer("transport_delay", pytest.approx(0.7))
+def test_the_blocks_of_the_unknown_count_together():
+    blocks = [Alternative("unknown", "unknown", block) for block in ("input", "force_equation")]
+    evidence = tuple(AlternativeEvidence(one, (), p) for one, p in zip(blocks, (0.3, 0.4), strict=True))
+    found = answer_of(diagnosis(verdict="unknown", answer=blocks[1], evidence=evidence))
+    assert found == Answer("unknown", pytest.approx(0.7))
+
+
+def test_a_single_manoeuvre_states_no_probability():
+    assert answer_of(diagnosis(verdict="unknown", answer=None)) == Answer("unknown", None)
 
 
 def test_of_seven_manoeuvres_the_second_half_has_four():

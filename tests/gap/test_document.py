@@ -1,7 +1,9 @@
 """The JSON document of a diagnosis is what its schema says."""
 
+import pytest
+
 from advisor.gap.document import gap_document
-from tests.gap.test_report_screen import diagnosis
+from tests.gap.test_report_screen import EVIDENCE, diagnosis
 from tests.schemas import breaches
 
 
@@ -15,3 +17,13 @@ def test_the_schema_holds_for_a_document_without_a_diagnosis():
 
 def test_a_document_without_a_diagnosis_has_the_same_keys():
     assert gap_document(None).keys() == gap_document(diagnosis()).keys()
+
+
+@pytest.mark.parametrize(("doubt", "decided"), [("", True), ("Not decided between A and B.", False)])
+def test_an_answer_in_doubt_is_not_decided(doubt: str, decided: bool):
+    found = diagnosis(answer=EVIDENCE[0].alternative, doubt=doubt)
+    assert gap_document(found)["decided"] is decided
+
+
+def test_a_single_manoeuvre_decides_nothing():
+    assert gap_document(diagnosis(answer=None))["decided"] is False

@@ -11,7 +11,7 @@ from advisor.exports.models.servo import ExportedServo
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import with_known
 from advisor.gap.effects import EFFECTS
-from advisor.gap.evidence.rows import stated_as
+from advisor.gap.inference.posterior import stated_as
 from advisor.gap.kit.effect import ANY, BLOCKS, Effect
 from advisor.gap.kit.variant import Variant
 from advisor.gap.records.prepare import prepare
@@ -40,7 +40,7 @@ def test_an_effect_lacks_no_part(effect):
     assert spelled <= effect.keys.keys()
     assert described_in_fits or effect.outside_fits is not None
     assert {v.block for v in described_in_fits} <= {effect.block}
-    assert {*effect.distinguished_by, effect.twin} <= {"", *EFFECTS}
+    assert set(effect.distinguished_by) <= set(EFFECTS)
     assert effect.need is None or effect.need.parameter in effect.keys
     assert effect.curve is None or effect.curve.powers.keys() <= effect.keys.keys()
     assert effect.servo.keys() <= effect.keys.keys()

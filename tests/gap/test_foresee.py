@@ -17,7 +17,6 @@ from advisor.gap.effects import EFFECTS
 from advisor.gap.foresight.needs import need_of
 from advisor.gap.foresight.plan import foresee_flights, foresee_plan
 from advisor.gap.records.prepare import prepare
-from advisor.gap.search.acceptance import LEAST_OFFSET_RAD
 from advisor.gap.search.baseline import prior_derivatives
 from advisor.report.gap_plan import ForesightScreen, size_of
 from advisor.words.problems import ConfigurationError
@@ -118,7 +117,7 @@ def test_changes_from_one_manoeuvre_to_the_next_need_three_of_them():
 
 def test_nothing_is_foreseen_below_what_the_diagnosis_would_name(foreseen):
     assert foreseen["transport_delay"].smallest > 0.004
-    assert foreseen["alpha_bias"].smallest >= LEAST_OFFSET_RAD
+    assert foreseen["alpha_bias"].smallest >= 0.003
     assert foreseen["airspeed_variation"].smallest >= 0.03
 
 

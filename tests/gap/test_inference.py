@@ -14,11 +14,11 @@ from advisor.gap.diagnose import diagnose
 from advisor.gap.inference import stage
 from advisor.gap.inference.explanation import Row
 from advisor.gap.inference.posterior import NONE, PARAMETERS, _with_residual, posterior_of, stated_as
-from advisor.gap.inference.reasons import decisions_of, doubt_of, none_means_no_gap, rival_of, why_of
+from advisor.gap.inference.prior import FieldPrior
 from advisor.gap.inference.residual import Residual
 from advisor.gap.inference.sizes import with_sizes
-from advisor.gap.judge.prior import FieldPrior
 from advisor.gap.records.prepare import prepare
+from advisor.gap.verdict.reasons import decisions_of, doubt_of, none_means_no_gap, rival_of, why_of
 from advisor.report.gap_decisions import decision_in_words
 from tests.gap.generator import Setup, fly
 
@@ -140,8 +140,7 @@ def test_every_number_of_every_effect_has_a_width_that_follows_the_aircraft():
 @pytest.mark.parametrize(
     ("switches", "answer"), [({"delay": 0.06}, "transport_delay"), ({}, "none")], ids=["delay", "nothing"]
 )
-def test_the_engine_of_evidence_names_what_was_withheld(monkeypatch, switches, answer):
-    monkeypatch.setenv("ADVISOR_GAP_ENGINE", "one")
+def test_the_engine_of_evidence_names_what_was_withheld(switches, answer):
     found = diagnose(fly(Setup(maneuvers=6, switches=switches, seed=23)), Aircraft())
     assert (found.causes[0].effect if found.verdict == "effect" else found.verdict) == answer
     assert found.probabilities is not None

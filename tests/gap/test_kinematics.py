@@ -6,15 +6,10 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.flight.instruments.alpha_offset import AlphaOffset
-from advisor.flight.instruments.kinematics import KinematicCheck, check_alpha, combine
+from advisor.flight.instruments.kinematics import check_alpha, combine
 from advisor.flight.signals.coloured import coloured_covariance
 from advisor.gap.diagnose import diagnose
-from advisor.gap.fitting.problem import EffectProblem
-from advisor.gap.records.prepare import prepare
-from advisor.gap.simulator.layout import ENTRIES
 from advisor.gap.uncatalogued.wind_shear import wind_shear
-from advisor.gap.verdict.outside_fit import alpha_bias_cause
 from tests.gap.generator import LIGHT_AIRCRAFT, Setup, fly
 
 
@@ -57,46 +52,6 @@ def test_a_turn_spoils_neither_the_lag_nor_the_offset_of_alpha(late_s):
     found = checked(banks_deg=(25.0, -18.0, 10.0), alpha_bias=0.01, skew={"alpha": late_s})
     assert found.offset.rad == pytest.approx(0.01, abs=0.001)
     assert abs(found.lag_s - late_s) < 0.002 + 3 * found.lag_std_s
-
-
-@pytest.mark.parametrize(
-    ("offset", "by_a_vane", "by_an_estimate"),
-    [(0.0085, False, False), (0.009, True, True)],
-)
-def test_beside_another_cause_an_offset_below_what_any_zero_is_set_to_gets_no_name(
-    offset, by_a_vane, by_an_estimate
-):
-    check = KinematicCheck("consistent", "", offset=AlphaOffset(offset, 1e-4))
-    vane = EffectProblem(prepare(flown(), Aircraft()), np.zeros(len(ENTRIES)))
-    named = [
-        alpha_bias_cause(check, [], problem, 0.0, alone=False) is not None
-        for problem in (vane, sparse_estimate())
-    ]
-    assert named == [by_a_vane, by_an_estimate]
-
-
-@pytest.mark.parametrize(
-    ("offset", "std", "named"),
-    [(0.0025, 1e-4, False), (0.0035, 1e-4, True), (0.0035, 8e-4, False), (0.0075, 1.3e-3, True)],
-)
-def test_where_nothing_else_is_a_vane_that_is_plainly_off_is_named_from_a_sixth_of_a_degree(
-    offset, std, named
-):
-    check = KinematicCheck("consistent", "", offset=AlphaOffset(offset, std))
-    vane, estimate = EffectProblem(prepare(flown(), Aircraft()), np.zeros(len(ENTRIES))), sparse_estimate()
-    assert (alpha_bias_cause(check, [], vane, 0.0, alone=True) is not None) == named
-    assert alpha_bias_cause(check, [], estimate, 0.0, alone=True) is None
-
-
-def sparse_estimate():
-    """Return a problem whose angle of attack comes ten times a second, from an estimator."""
-    seldom = []
-    for m in flown():
-        alpha = m.channels["alpha"]
-        alpha = replace(alpha, t=alpha.t[::5], y=alpha.y[::5], provenance="derived")
-        seldom.append(replace(m, channels={**m.channels, "alpha": alpha}))
-    flights = replace(prepare(seldom, Aircraft()), alpha_is_derived=True)
-    return EffectProblem(flights, np.zeros(len(ENTRIES)))
 
 
 def without_accelerometer(maneuvers):

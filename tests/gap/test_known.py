@@ -1,7 +1,6 @@
 """A simulator that has an effect already is judged with it: what is found is what is missing beyond it."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -16,11 +15,9 @@ from advisor.gap.diagnose import diagnose
 from advisor.gap.effects import EFFECTS
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.records.prepare import prepare
-from advisor.gap.result import Cause, Value
 from advisor.gap.search.baseline import fit_unfiltered, of_this_flight
 from advisor.gap.simulator.layout import ENTRIES, INDEX
-from advisor.gap.verdict import outside_fit
-from advisor.gap.verdict.causes import parameters_of
+from advisor.gap.verdict.sizes import parameters_of
 from advisor.report.improved import improved_file
 from sim.effects.terms import problems_with
 from tests.gap.generator import Setup, fly
@@ -292,27 +289,3 @@ def test_play_of_the_file_rests_on_a_side_of_its_own_in_every_manoeuvre():
     flights = prepare(fly(Setup(maneuvers=3, switches={"play": 0.012}, seed=7)), Aircraft())
     _, fitted = fit_unfiltered(resting(flights, file, [1.0, -1.0, 1.0]), file)
     assert list(fitted.point.sides) == [1.0, -1.0, 1.0]
-
-
-def moving(strength):
-    """Return turbulence of a strength in m/s as a cause, with 5 % of it as standard deviation."""
-    size = Value(strength, 0.05 * strength)
-    return Cause("turbulence", "air", 0.0, {"sigma_w_m_s": size}, (), "", 0.0, True)
-
-
-@pytest.mark.parametrize(
-    ("known", "found"),
-    [({}, True), ({"turbulence": {"sigma_w_m_s": 1.0}}, False), ({"turbulence": {"sigma_w_m_s": 0.5}}, True)],
-)
-def test_air_as_strong_as_the_files_is_no_cause(monkeypatch, known, found):
-    monkeypatch.setattr(outside_fit, "moving_air_of", lambda _: moving(1.05))
-    assert (outside_fit.air_cause(SimpleNamespace(known=known)) is not None) is found
-
-
-@pytest.mark.parametrize(("stated", "found"), [({"exponent": -0.5}, True), ({"change": 0.12}, False)])
-def test_a_speed_that_varies_as_the_file_states_is_no_cause(stated, found):
-    e = SimpleNamespace(known={"airspeed_variation": stated})
-    cause = Cause(
-        "airspeed_variation", "force_equation", 0.0, {"change": Value(0.125, 0.01)}, (), "", 0.0, True
-    )
-    assert (outside_fit.beyond_file(e, cause) is not None) is found

@@ -76,7 +76,7 @@ def test_why_sets_the_answer_against_its_rival_with_the_odds_of_the_sum():
         Contribution("fit_gain", 2.0, "gain in the fit: 9 against 4"),
         Contribution("rest", -0.5, "rest"),
     )
-    found = diagnosis(why=reasons, rival="actuator_lag", evidence=EVIDENCE)
+    found = diagnosis(why=reasons, answer=EVIDENCE[0].alternative, rival="actuator_lag", evidence=EVIDENCE)
     lines = printed(found, 100, why=True)
     assert any("why transport delay, and not actuator lag" in line for line in lines)
     assert any("+2.0  gain in the fit: 9 against 4" in line for line in lines)

@@ -10,7 +10,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS
 from advisor.aircraft.sensors import Alpha
 from advisor.gap.diagnose import diagnose
-from advisor.gap.fitting.prior import ERROR_IF_WRONG, log_prior, prior_precision
+from advisor.gap.fitting.prior import ERROR_IF_WRONG, prior_precision
 from advisor.gap.kit.between import shift_moments
 from advisor.gap.records.prepare import prepare
 from advisor.gap.records.smoothness import is_filtered, is_smoothed
@@ -99,16 +99,6 @@ def test_a_derivative_of_nothing_in_the_file_has_a_size_that_can_be_weighed(whic
     believed = BELIEVED.copy()
     believed[which] = 0.0
     assert np.all(np.isfinite(prior_precision(believed, ERROR_IF_WRONG)))
-
-
-def test_derivatives_near_the_files_are_believed_more_than_others_and_unknown_ones_neither_way():
-    sure, unsure = 1e-8 * np.diag(BELIEVED**2), np.diag(BELIEVED**2)
-    off = BELIEVED * 1.2
-    gained = log_prior(BELIEVED, sure, BELIEVED) - log_prior(off, sure, BELIEVED)
-    assert gained > 5.0
-    assert log_prior(BELIEVED, unsure, BELIEVED) - log_prior(off, unsure, BELIEVED) == pytest.approx(
-        0.0, abs=0.2
-    )
 
 
 def test_a_dead_band_off_the_trim_swallows_one_side_only():

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.reference import SIDE_PARAMETERS
-from advisor.gap.judge.prior import FIELD
+from advisor.gap.inference.prior import FIELD
 from advisor.side_gap import stage
 from advisor.side_gap.evidence import Gain
 from advisor.side_gap.fit import fitted

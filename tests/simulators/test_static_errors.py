@@ -17,7 +17,7 @@ def examined(scale: float | None = None, air: object = None):
     found = None if scale is None else AirspeedScale(scale, 0.002)
     problem = SimpleNamespace(prior_derivatives=GIVEN)
     return SimpleNamespace(
-        evidence=SimpleNamespace(airspeed_scale=found, weight=None, air=air, problem=problem)
+        findings=SimpleNamespace(airspeed_scale=found, weight=None, air=air, problem=problem)
     )
 
 

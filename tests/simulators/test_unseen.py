@@ -13,6 +13,7 @@ from advisor.gap.records.prepare import prepare
 from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, NUISANCES, SPEED
 from advisor.simulators import unseen
 from advisor.simulators.unseen import changes_something, kept_apart
+from tests.gap.test_report_screen import diagnosis
 from tests.simulators.nonlinear import flown
 
 MODEL = dict(zip(DERIVATIVES, (-2.7, 0.02, -0.15, -23.0, -3.4, -29.0), strict=True))
@@ -31,7 +32,7 @@ def test_the_search_never_meets_the_manoeuvres_kept_apart(monkeypatch):
     monkeypatch.setattr(unseen, "examine", lambda maneuvers, *_, **__: seen.extend(maneuvers))
     numbered = [SimpleNamespace(number=n) for n in range(1, 7)]
     problem = SimpleNamespace(flights=SimpleNamespace(flights=numbered))
-    whole = SimpleNamespace(evidence=SimpleNamespace(problem=problem))
+    whole = SimpleNamespace(findings=SimpleNamespace(problem=problem))
     unusable = SimpleNamespace(number=9)
     found = unseen.unseen_of(whole, [*numbered, unusable], Aircraft(), None)
     assert found.kept == (1, 4)
@@ -66,6 +67,12 @@ def test_another_finding_without_the_manoeuvres_kept_apart_is_said():
         "Without manoeuvre 2 the search finds actuator backlash instead"
     )
     assert "finds wrong numbers instead" in without(told("transport_delay", "parameters"))[0]
+
+
+def test_a_sentence_with_another_shrink_keeps_its_doubt():
+    doubt = "Not decided between no gap (50 %) and wrong numbers (45 %)."
+    resaid = unseen.resaid(diagnosis(verdict="none", causes=(), doubt=doubt), None, Aircraft())
+    assert resaid.sentence.startswith(f"{doubt} The simulator flies like the aircraft")
 
 
 def wrong_model() -> tuple[EffectProblem, SearchPoint]:

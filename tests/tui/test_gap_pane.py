@@ -28,6 +28,7 @@ DOCUMENT = {
             although_refused=(3,),
             evidence=EVIDENCE,
             why=REASONS,
+            answer=EVIDENCE[0].alternative,
             rival="actuator_lag",
         )
     ),

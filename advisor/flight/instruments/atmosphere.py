@@ -86,18 +86,6 @@ def air_flown(maneuvers: Sequence[Maneuver], temperature_c: float | None = None)
     return AirFlown(found, source, kind, said)  # type: ignore[arg-type]
 
 
-def thin_air(maneuvers: Sequence[Maneuver], temperature_c: float | None = None) -> float:
-    """Return by what share the true air speed may exceed the one in use, for thin air alone.
-
-    It is 0 where a density has been applied, or where the vehicle tells the true air speed. An air speed that
-    equals the ground speed counts as true, but may be indicated: some simulators send one speed twice.
-    """
-    speeds = [m.channels["airspeed"] for m in maneuvers if "airspeed" in m.channels]
-    if all(is_true(speed) and not speed.source.endswith(AS_GROUND_SPEED) for speed in speeds):
-        return 0.0
-    return sqrt(SEA_LEVEL_DENSITY_KG_M3 / air_flown(maneuvers, temperature_c).density_kg_m3) - 1.0
-
-
 def _speed_said(speeds: Sequence[Channel]) -> str:
     """Return the origin of the air speed in words, by its first channel."""
     if not speeds:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from importlib import import_module
 from pkgutil import iter_modules
 
-from advisor.gap.kit.effect import BLOCKS, Effect, not_fitted
+from advisor.gap.kit.effect import BLOCKS, Effect
 
 
 def _found() -> Iterator[Effect]:
@@ -19,11 +19,3 @@ EFFECTS: dict[str, Effect] = {
     effect.name: effect for effect in sorted(_found(), key=lambda e: (BLOCKS.index(e.block), e.name))
 }
 """Every effect by its name, in the order of the blocks and then of the alphabet."""
-
-
-_OUTSIDE = Effect(name="", block="", keys={}, variants=not_fitted, said="")
-
-
-def effect_named(name: str) -> Effect:
-    """Return the effect of a name; one without any property for a law outside the catalogue."""
-    return EFFECTS.get(name, _OUTSIDE)

@@ -40,5 +40,4 @@ EFFECT = Effect(
     need=Need("arm_m", "no vertical acceleration", "RAW_IMU at 50 Hz"),
     stated=("accelerometer", "arm_m"),
     # An accelerometer behind the centre of gravity is found less often than a vane ahead of it.
-    log_odds_backward=-2.5,
 )

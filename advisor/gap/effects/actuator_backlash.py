@@ -5,13 +5,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from advisor.gap.kit.effect import Effect
-from advisor.gap.kit.least import IF_BEYOND_DOUBT, SMALL_ANGLE_RAD
+from advisor.gap.kit.least import SMALL_ANGLE_RAD
 from advisor.gap.kit.variant import Variant
 from advisor.gap.records.flights import PreparedManeuvers
 
 BACKLASH = Variant(
     "actuator_backlash", "input", ("half_width_rad",), ((0.003,), (0.008,), (0.02,)), (2e-4,),
-    ((0.0, 0.1),), SMALL_ANGLE_RAD, IF_BEYOND_DOUBT, entries=("half_play_rad",),
+    ((0.0, 0.1),), SMALL_ANGLE_RAD, entries=("half_play_rad",),
     sides=("play_side", tuple(np.linspace(-1.0, 1.0, 8))),
 )  # fmt: skip
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.kit.effect import ANY, Effect
-from advisor.gap.kit.least import IF_BEYOND_DOUBT, SMALL_ANGLE_RAD
+from advisor.gap.kit.least import SMALL_ANGLE_RAD
 from advisor.gap.kit.variant import Values, Variant
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX
@@ -39,7 +39,7 @@ def _about_trim(p: FloatArray, values: Values, _: PreparedManeuvers) -> None:
 _DEADBAND = Variant(
     "actuator_deadband", "input", ("half_width_rad", "neutral_rad"),
     ((0.0012, 0.0), (0.004, 0.0), (0.015, 0.0), (0.035, 0.0), (0.01, 0.006), (0.01, -0.006)), (2e-4, 2e-4),
-    ((0.0, 0.1), (-0.1, 0.1)), SMALL_ANGLE_RAD, IF_BEYOND_DOUBT, apply_with=_about_neutral,
+    ((0.0, 0.1), (-0.1, 0.1)), SMALL_ANGLE_RAD, apply_with=_about_neutral,
     places=("neutral_rad",),
 )  # fmt: skip
 DEADBAND_ABOUT_TRIM = replace(

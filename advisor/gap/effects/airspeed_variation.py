@@ -48,7 +48,6 @@ EFFECT = Effect(
     keys={"change": ANY, "exponent": ANY, "exponent_M": ANY},
     variants=_variants,
     outside_fits=_moves,
-    by_nature=True,
     of_the_stick=False,
     said="The air speed moved by up to {change_percent:.0f} % and the derivatives with it",
     said_with={

@@ -15,7 +15,6 @@ EFFECT = Effect(
     variants=not_fitted,
     outside_fits=_shows_climb,
     channel="alpha",
-    kinematics="offset",
     said=(
         "The angle of attack channel reads {bias_rad_deg:.2f} deg too high",
         "The angle of attack channel reads {bias_rad_deg:.2f} deg too low",

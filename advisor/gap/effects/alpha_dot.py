@@ -43,7 +43,6 @@ EFFECT = Effect(
     block="moment_equation",
     keys={"M_alpha_dot": ANY},
     variants=_variants,
-    by_nature=True,
     of_the_stick=False,
     said="The rate of the angle of attack makes a pitching moment that the simulator lacks",
     need=Need("M_alpha_dot", "the derivatives mimic it", "pulses of a flap, which move α and not q"),

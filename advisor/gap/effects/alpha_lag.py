@@ -23,7 +23,6 @@ EFFECT = Effect(
     keys={"lag_s": ANY},
     variants=_variants,
     channel="alpha",
-    kinematics="lag",
     of_one_imu=True,
     said=(
         "The angle of attack channel lags by {lag_s_ms:.0f} ms",
@@ -34,5 +33,4 @@ EFFECT = Effect(
         "alpha_skew": "fly faster steps, or compare the channel's stamps with the vane's",
         "alpha_vane_offset": "fly at two air speeds: the arm's part goes with 1/V, the other does not",
     },
-    twin="alpha_skew",
 )

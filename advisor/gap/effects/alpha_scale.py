@@ -22,7 +22,6 @@ EFFECT = Effect(
     keys={"scale": ANY},
     variants=_variants,
     channel="alpha",
-    kinematics="scale",
     said=(
         "The angle of attack channel reads {scale_percent:.0f} % too much",
         "The angle of attack channel reads {scale_percent:.0f} % too little",

@@ -18,7 +18,6 @@ EFFECT = Effect(
     keys={"skew_s": ANY},
     variants=_variants,
     channel="alpha",
-    kinematics="lag",
     of_one_imu=True,
     said=(
         "The angle of attack is stamped {skew_s_ms:.0f} ms too late",

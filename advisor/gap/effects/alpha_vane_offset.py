@@ -41,8 +41,6 @@ EFFECT = Effect(
         "accelerometer.arm_m",
         "alpha_skew": "fly at two air speeds: the arm's part goes with 1/V, the other does not",
     },
-    twin="accelerometer_offset",
     stated=("alpha", "vane_arm_m"),
     # A vane behind the centre of gravity is rare.
-    log_odds_backward=-5.0,
 )

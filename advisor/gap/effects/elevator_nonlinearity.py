@@ -23,7 +23,6 @@ EFFECT = Effect(
     block="moment_equation",
     keys={"M_delta2": ANY, "M_delta3": ANY, "about_rad": ANY},
     variants=_variants,
-    by_nature=True,
     said="The real elevator's moment is not proportional to its deflection",
     said_beyond="The real elevator's moment bends with its deflection otherwise than the simulator's",
     distinguished_by={"nonlinear_pitching_moment": "fly slow and fast steps of equal size"},

@@ -37,7 +37,6 @@ EFFECT = Effect(
     block="force_equation",
     keys={"Z_h": ANY, "lift_h": ANY, "M_h": ANY, "scale_m": 0.0},
     variants=_variants,
-    by_nature=True,
     of_the_stick=False,
     said="The ground was near enough to be felt",
     need=Need("Z_h", "the height hardly varied", "fly low and high with a range finder"),

@@ -8,7 +8,6 @@ EFFECT = Effect(
     keys={"amplitude_m_s": ANY, "length_m": 0.0, "at_s": ANY},
     variants=not_fitted,
     outside_fits=lambda _: True,
-    comes_once=True,
     of_one_flight=True,
     said=(
         "An upward gust of {amplitude_m_s:.2g} m/s passed",

@@ -12,7 +12,7 @@ from advisor.gap.simulator.layout import INDEX
 _ICED = ("Z_alpha", "Z_delta_e", "M_alpha", "M_delta_e")
 _ICE = Variant(
     "icing", "force_equation", _ICED, ((0.0,) * 4,), (0.005,) * 4,
-    ((-0.9, 0.02), (-0.9, 0.3), (-0.9, 0.3), (-0.9, 0.02)), 0.02, one_sided=True,
+    ((-0.9, 0.02), (-0.9, 0.3), (-0.9, 0.3), (-0.9, 0.02)), 0.02,
 )  # fmt: skip
 
 
@@ -31,8 +31,6 @@ EFFECT = Effect(
     keys={**dict.fromkeys(_ICED, ANY), "at_s": ANY, "over_s": 0.0},
     variants=_variants,
     of_one_flight=True,
-    by_nature=True,
-    takes=True,
     said="Lift and control weakened during the flight, as ice does",
     need=Need("Z_alpha", "fewer than three manoeuvres", "repeat the same manoeuvre early and late"),
     distinguished_by={

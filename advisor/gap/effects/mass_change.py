@@ -25,7 +25,7 @@ def _variants(flights: PreparedManeuvers) -> Sequence[Variant]:
     """
     together = ramps_and_steps("mass_change", "force_equation", flights, divide(*DERIVATIVES))
     inertia = {
-        variant.fixed["at_s"]: replace(variant, starts=(), likewise=(), carried=lambda v: (v[0], v[0]))
+        variant.fixed["at_s"]: replace(variant, starts=(), likewise=())
         for variant in steps_in(flights, _MASS_AND_INERTIA, _divided_separately)
     }
     return [
@@ -53,5 +53,4 @@ EFFECT = Effect(
         "icing": "log fuel and weight; ice moves lift and control by different shares",
         "airspeed_variation": "repeat the same manoeuvre at the same air speed, early and late",
     },
-    twin="icing",
 )

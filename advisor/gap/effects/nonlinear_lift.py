@@ -35,8 +35,6 @@ def _stall(flights: PreparedManeuvers) -> Sequence[Variant]:
         ((0.0, 1.0), (2.0, 200.0)),
         0.0,
         entries=("stall_rad", "stall_sharpness"),
-        # A wing that is already stalled where the aircraft is trimmed.
-        start_at_prior=(0.65 * trim, 25.0) if trim > 0.0 else None,
     )
     return (separated,)
 
@@ -46,7 +44,6 @@ EFFECT = Effect(
     block="force_equation",
     keys={"Z_alpha2": ANY, "Z_alpha3": ANY, "about_rad": ANY, "stall_rad": ANY, "sharpness": 0.0},
     variants=_variants,
-    by_nature=True,
     said="The real lift is not linear in the angle of attack",
     said_beyond="The real lift bends with the angle of attack otherwise than the simulator's",
     curve=_CURVE,

@@ -23,7 +23,6 @@ EFFECT = Effect(
     block="moment_equation",
     keys={"M_alpha2": ANY, "M_alpha3": ANY, "about_rad": ANY},
     variants=_variants,
-    by_nature=True,
     said="The real pitching moment is not linear in the angle of attack",
     said_beyond="The real pitching moment bends with the angle of attack otherwise than the simulator's",
     curve=_CURVE,

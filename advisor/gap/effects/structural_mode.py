@@ -46,6 +46,5 @@ EFFECT = Effect(
         "frequency_hz": 0.0, "damping": 0.0, "gain": ANY, "displacement_gain": ANY, "with_attitude": 0.0,
     },
     variants=_variants,
-    by_nature=True,
     said="The structure swings at {frequency_hz:.1f} Hz in the pitch rate",
 )  # fmt: skip

@@ -33,7 +33,6 @@ EFFECT = Effect(
     # The last three are those of the propeller, a nuisance of every model.
     keys={"M_throttle": ANY, "lag_s": 0.0, "M_thrust": ANY, "washed_share": ANY, "blown_share": ANY},
     variants=_variants,
-    by_nature=True,
     of_the_stick=False,
     said="Thrust pitches the real aircraft: its line misses the centre of gravity",
     said_with={"lag_s": "Thrust pitches the real aircraft, {lag_s_ms:.0f} ms behind the throttle"},

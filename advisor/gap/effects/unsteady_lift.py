@@ -34,6 +34,5 @@ EFFECT = Effect(
     block="force_equation",
     keys={"share": ANY, "lag_s": 0.0, "with_moment": 0.0},
     variants=_variants,
-    by_nature=True,
     said="The real lift builds up with a lag of {lag_s_ms:.0f} ms",
 )

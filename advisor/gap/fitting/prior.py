@@ -11,7 +11,6 @@ from itertools import product
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.effects import effect_named
 from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.model.response import SHARED
 from advisor.oem.prior import precision_without_alpha
@@ -27,9 +26,6 @@ explanation."""
 _LEAST = 0.1
 """Prior: least size of a derivative for a relative error, 1/s or 1/s². A smaller derivative counts as
 zero."""
-_LOG_ODDS_OTHER_STATED = -4.0
-"""Prior: log prior odds of an arm that the aircraft file states, relative to an equivalent arm that it leaves
-open. They also hold for a vane's arm where α is an estimate."""
 
 
 def derivative_scale(prior: FloatArray) -> FloatArray:
@@ -64,25 +60,6 @@ def small_without_alpha(derivatives: FloatArray) -> FloatArray:
     return found[[SHARED.index(name) for name in DERIVATIVES]]
 
 
-def log_prior(derivatives: FloatArray, covariance: FloatArray, prior: FloatArray) -> float:
-    """Return the log probability density of fitted derivatives, given the aircraft file, up to a constant.
-
-    Parameters
-    ----------
-    derivatives, covariance
-        Shapes (6,) and (6, 6): fitted derivatives and their covariance.
-    prior
-        Shape (6,): derivatives of the aircraft file.
-    """
-    scale = derivative_scale(prior)
-    densities = []
-    for width in (ERROR_IF_RIGHT, ERROR_IF_WRONG):
-        covariance_of_error = covariance / np.outer(scale, scale) + width**2 * np.eye(6)
-        distance = _distance((derivatives - prior) / scale, covariance_of_error)
-        densities.append(-0.5 * (distance + float(np.linalg.slogdet(covariance_of_error)[1])))
-    return float(np.logaddexp(densities[0], densities[1]) - np.log(2.0))
-
-
 @dataclass(frozen=True, slots=True)
 class Distance:
     """Distance of fitted derivatives from the aircraft file's, relative to prior error and covariance."""
@@ -107,7 +84,15 @@ class Distance:
 
 
 def distance_of(derivatives: FloatArray, covariance: FloatArray, prior: FloatArray) -> Distance:
-    """Return the distance of fitted derivatives from the file's; ``log_prior`` has the arguments."""
+    """Return the distance of fitted derivatives from the file's.
+
+    Parameters
+    ----------
+    derivatives, covariance
+        Shapes (6,) and (6, 6): fitted derivatives and their covariance.
+    prior
+        Shape (6,): derivatives of the aircraft file.
+    """
     scale = derivative_scale(prior)
     off, known = (derivatives - prior) / scale, covariance / np.outer(scale, scale)
     wrong = np.array(list(product((False, True), repeat=len(off))))
@@ -119,22 +104,3 @@ def distance_of(derivatives: FloatArray, covariance: FloatArray, prior: FloatArr
     densities = log_share - 0.5 * (squares + np.linalg.slogdet(errors)[1])
     # The first set has no wrong derivative.
     return Distance(float(squares[0]), float(densities[0]), float(np.logaddexp.reduce(densities[1:])))
-
-
-def _distance(off: FloatArray, covariance_of_error: FloatArray) -> float:
-    return float(off @ np.linalg.solve(covariance_of_error, off))
-
-
-def log_odds_of_arm(name: str, arm_m: float, in_file: frozenset[str], alpha_is_derived: bool) -> float:
-    """Return the log prior odds between the two arms that are equivalent in the data; 0 for other effects.
-
-    ``in_file`` has the effects whose arm the aircraft file states.
-    """
-    effect = effect_named(name)
-    if not effect.is_arm:
-        return 0.0
-    only_one_stated = len(in_file) == 1 and name in in_file
-    no_vane = effect.channel == "alpha" and alpha_is_derived
-    return (effect.log_odds_backward if arm_m < 0.0 else 0.0) + (
-        _LOG_ODDS_OTHER_STATED if only_one_stated or no_vane else 0.0
-    )

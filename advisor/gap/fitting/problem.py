@@ -1,6 +1,6 @@
 """The estimation problem: data, simulation, and a point in the space of the parameters."""
 
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import accumulate, pairwise
 
@@ -89,10 +89,6 @@ class SearchPoint:
             sides=self.sides if sides is None else sides,
         )
 
-    def with_only(self, names: Collection[str]) -> "SearchPoint":
-        """Return the model with some of its effects and with all nuisance parameters."""
-        return self.keeping([k for k, v in enumerate(self.effects) if v.is_nuisance or v.effect in names])
-
     def keeping(self, which: Sequence[int]) -> "SearchPoint":
         """Return the model with the effects of these indices."""
         return replace(
@@ -119,8 +115,6 @@ class EffectProblem:
     """Shape (6,): derivatives of the aircraft file; None where the file lacks one."""
     derivatives_fixed: bool = False
     """Whether fitted derivatives are held at the aircraft file's."""
-    arms_in_file: frozenset[str] = frozenset()
-    """Effects whose arm the aircraft file states: of the vane and of the accelerometer."""
     jitter_s: float = 0.0
     """Standard deviation of all stamps, including the command's, s."""
     whitening: Whitening | None = None
@@ -179,13 +173,6 @@ class EffectProblem:
         """Return the prior's contribution to the cost."""
         inverse, departure = self.prior_of(point)
         return float(inverse @ departure**2)
-
-    def nuisance_cost(self, point: SearchPoint) -> float:
-        """Return the contribution of nuisance parameters to the cost of the prior."""
-        with_spread = (pair for pair in zip(point.effects, point.values, strict=True) if pair[0].prior_std)
-        return float(
-            sum(np.sum((values / np.array(effect.prior_std)) ** 2) for effect, values in with_spread)
-        )
 
     def driving(self, point: SearchPoint) -> FloatArray:
         """Return the driving numbers of each manoeuvre's simulation, shape (manoeuvres, entries)."""

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
+from advisor.gap.candidates.distinguish import way_to_distinguish
 from advisor.gap.decision import LEAST_GAIN, LEAST_SIGMA
 from advisor.gap.effects import EFFECTS
 from advisor.gap.fitting.fit import EffectFit
@@ -18,9 +19,7 @@ from advisor.gap.foresight.needs import ONE_IMU, OTHERWISE, hidden_from, need_of
 from advisor.gap.foresight.signatures import Signatures
 from advisor.gap.kit.variant import Variant
 from advisor.gap.records.floor import floor_margins
-from advisor.gap.result import Unseen, spelled
-from advisor.gap.search.indistinguishable import way_to_distinguish
-from advisor.gap.search.score import least_change
+from advisor.gap.result import VISIBLE, Unseen, spelled
 from advisor.gap.simulator.layout import INDEX
 from advisor.words.quantiles import NORMAL_95
 
@@ -30,6 +29,8 @@ _LISTED_AT = 0.8
 _MOST_CONFUSIONS = 3
 """Words: cosine above which a similar effect is listed, and the most effects listed."""
 _GROWTH = 3.0
+_OF_PEAK = 0.003
+"""Least change of the outputs by an effect, as a share of each channel's peak."""
 _CLOSE = 0.02
 """Numerical: factor on a size without a signature, and relative difference of two sizes in a row at which the
 refinement ends."""
@@ -211,7 +212,7 @@ def _needed(signatures: Signatures, numbers: int) -> float:
     change."""
     price = numbers * float(np.log(signatures.rows))
     # A filter of moving air leaves far less of a change than the outputs show.
-    least = least_change(signatures.problem) * float(np.mean(floor_margins(signatures.problem.flights) ** 2))
+    least = _least_change(signatures.problem) * float(np.mean(floor_margins(signatures.problem.flights) ** 2))
     change = 0.0 if signatures.filtered else least * signatures.rows
     return max(float(LEAST_SIGMA + NORMAL_95) ** 2, 2.0 * LEAST_GAIN + price, change)
 
@@ -275,3 +276,15 @@ def _shares(problem: EffectProblem, fitted: EffectFit) -> Mapping[str, float]:
 def _cosine(a: FloatArray, b: FloatArray) -> float:
     lengths = float(np.linalg.norm(a) * np.linalg.norm(b))
     return abs(float(a @ b)) / lengths if lengths > 0.0 else 0.0
+
+
+def _least_change(problem: EffectProblem) -> float:
+    """Return the least mean square change of the outputs for a named effect, relative to the instruments'
+    noise.
+
+    With very good instruments their noise does not limit. A low-order description is itself no better than a
+    share of each channel's peak.
+    """
+    if problem.instruments is None:
+        return VISIBLE
+    return max(VISIBLE, float(_OF_PEAK**2 / np.mean((problem.instruments / problem.flights.peaks) ** 2)))

@@ -15,6 +15,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
+from advisor.gap.candidates.alpha_offset import least_offset_rad
+from advisor.gap.candidates.distinguish import way_to_distinguish
 from advisor.gap.decision import CERTAIN
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.linear import pulse_response
@@ -24,9 +26,7 @@ from advisor.gap.foresight.needs import need_of
 from advisor.gap.foresight.signatures import Signatures
 from advisor.gap.noise.probes import disturbance_columns
 from advisor.gap.records.flights import SPEED_CHANGE, PreparedManeuver, PreparedManeuvers
-from advisor.gap.search.acceptance import least_offset_rad
 from advisor.gap.search.air import AIR_MANEUVERS, LEAST_GUST_ANGLE
-from advisor.gap.search.indistinguishable import way_to_distinguish
 from advisor.gap.simulator.layout import DISTURB_AIR, REFERENCE, SPEED
 
 CLIMB_RATE_STD_M_S = 0.1

@@ -11,14 +11,15 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import beyond_known, beyond_servo
 from advisor.gap.fitting.fit import EffectFit
+from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.inference.evidence import FlightProblem
 from advisor.gap.inference.explanation import Explanation, Row
 from advisor.gap.inference.laws import laws_of
 from advisor.gap.inference.posterior import NONE, Posterior, posterior_of, relabelled, rows_of, stated_as
+from advisor.gap.inference.prior import FieldPrior
 from advisor.gap.inference.sizes import with_sizes
 from advisor.gap.inference.stage import Stage, stage_of
-from advisor.gap.judge.prior import FieldPrior
 from advisor.gap.kit.variant import Variant
 from advisor.gap.noise.quiet import quiet_rms
 from advisor.gap.noise.stamps import stamp_power
@@ -83,7 +84,7 @@ def infer(
     progress("looking at the air", 0.7)
     sought = moving_air(problem, best.fitted)
     rows = _with_air(rows, stage, sought, _known_air(problem, aircraft))
-    floor = _floor(problem, best)
+    floor = floor_of(problem, best.fitted, best.held_out)
     posterior = posterior_of(rows)
     posteriors, chosen = [posterior], [stage.plain]
     answer = posterior.answer
@@ -162,9 +163,9 @@ def _with_air(rows: Sequence[Row], stage: Stage, sought: SoughtAir, known: float
     return [relabelled(row, name) if outweighed(row) else row for row in rows]
 
 
-def _floor(problem: EffectProblem, last: Explanation) -> FloatArray:
+def floor_of(problem: EffectProblem, last: EffectFit, held_out: HeldOut) -> FloatArray:
     """Return the noise of each channel where nothing was flown, shape (channels,)."""
     # Jitter of the stamps belongs to the instruments, but appears only where a channel moves.
-    measured = quiet_rms(problem, last.fitted) ** 2 + stamp_power(problem, last.fitted)
+    measured = quiet_rms(problem, last) ** 2 + stamp_power(problem, last)
     tolerance = tolerance_of(problem.flights)
-    return np.maximum(np.sqrt(np.minimum(measured, last.held_out.mean_square)), tolerance)
+    return np.maximum(np.sqrt(np.minimum(measured, held_out.mean_square)), tolerance)

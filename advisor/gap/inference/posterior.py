@@ -9,9 +9,9 @@ from advisor.gap.alternative import Alternative, Probabilities
 from advisor.gap.effects import EFFECTS
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.inference.explanation import Explanation, Row
+from advisor.gap.inference.prior import FieldPrior
 from advisor.gap.inference.residual import Residual, residual_of
 from advisor.gap.inference.stage import Stage
-from advisor.gap.judge.prior import FieldPrior
 
 _RIGHT, _LACKING = (0.0, 0.6), (np.log(5.0), 0.6)
 """Prior: mean and standard deviation of the log of the residual's size (``Residual.size``), of a right model

@@ -5,12 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.holdout import mean_squares
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.noise.probes import probe_blocks
 from advisor.gap.records.floor import tolerance_of
-from advisor.gap.uncatalogued.unexplained import innovation_noise
 
 _HARDLY = 1e-6
 """Numerical: share below which a block counts as excluded."""
@@ -49,3 +49,9 @@ def residual_of(problem: EffectProblem, fitted: EffectFit, heat: float) -> Resid
         float(np.max((share / natural)[problem.flights.telling])),
         {probe.block: float(p) for probe, p in zip(probes, parts, strict=True) if p > _HARDLY},
     )
+
+
+def innovation_noise(problem: EffectProblem) -> FloatArray:
+    """Return the noise of the innovations, shape (channels,): 1 where the filter knows the noise."""
+    assert problem.instruments is not None
+    return np.ones(len(problem.channels)) if problem.knows_the_noise else problem.instruments

@@ -82,7 +82,7 @@ def ramps_and_steps(effect: str, block: str, flights: PreparedManeuvers, change:
     steady = Variant(
         effect, block, ("rate_per_s",), ((0.0,),), (0.005 / span,), ((-0.9 / span, 3.0 / span),),
         0.01 / span, apply_with=drift,
-        likewise=_longer(flights, step, course, lambda rate: (rate[0] * span, began_s, span)),
+        likewise=_longer(flights, step, course),
     )  # fmt: skip
     return [steady, *steps_in(flights, step, course)]
 
@@ -93,22 +93,19 @@ def steps_in(flights: PreparedManeuvers, one: Variant, course: Course) -> list[V
     Every step has a gradual change as alternative, fitted from the step's result: fuel that is pumped, people
     who move, ice that grows.
     """
-    lasts_s = _span_of(flights) / 3.0
 
     def at(at_s: float) -> Variant:
         return replace(
             one,
             apply_with=lambda p, values, flown: course(p, values, (starts_of(flown) > at_s).astype(float)),
             fixed={"at_s": at_s},
-            likewise=_longer(flights, one, course, lambda v: (*map(float, v), at_s - 0.5 * lasts_s, lasts_s)),
+            likewise=_longer(flights, one, course),
         )
 
     return [at(at_s) for at_s in breaks(flights)]
 
 
-def _longer(
-    flights: PreparedManeuvers, one: Variant, course: Course, carried: Callable[[FloatArray], Values]
-) -> tuple[Variant, ...]:
+def _longer(flights: PreparedManeuvers, one: Variant, course: Course) -> tuple[Variant, ...]:
     """Return the change as a gradual one that begins in flight; none where manoeuvres are too few."""
     if len(flights) < _FOR_GRADUAL:
         return ()
@@ -122,10 +119,7 @@ def _longer(
         apply_with=lambda p, v, flown: course(
             p, v[:-2], np.clip((starts_of(flown) - v[-2]) / v[-1], 0.0, 1.0)
         ),
-        carried=carried,
         places=("at_s", "over_s"),
-        # A change that outlasts the flight is determined by its rate alone, whatever its size and duration.
-        one_sided=True,
     )
     return (gradual,)
 

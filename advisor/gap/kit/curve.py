@@ -72,11 +72,4 @@ def _about(angle_rad: float, variant: Variant, curve: Curve) -> Variant:
         p[:, square] += values[0] + 3.0 * values[1] * offset
         p[:, cube] += values[1]
 
-    # A cube about each trim may be far too large about one common angle; the square has the right size.
-    return replace(
-        variant, entries=(), apply_with=bend, carried=_square_alone, fixed={"about_rad": angle_rad}
-    )
-
-
-def _square_alone(values: FloatArray) -> Values:
-    return (float(values[0]), 0.0)
+    return replace(variant, entries=(), apply_with=bend, fixed={"about_rad": angle_rad})

@@ -62,25 +62,13 @@ class Effect:
     outside_fits: Callable[[PreparedManeuvers], bool] | None = None
     """Function that returns whether flights let the effect be judged outside the fits; None for other
     effects."""
-    kinematics: str = ""
-    """Finding of the kinematics that speaks of the effect: ``offset``, ``lag`` or ``scale`` of α; empty for
-    none."""
-    comes_once: bool = False
-    """Whether the effect is expected in a few manoeuvres instead of in all."""
     of_one_flight: bool = False
     """Whether the effect belongs to one flight and says nothing about another."""
-    by_nature: bool = False
-    """Whether every aircraft has some of the effect, or an effect of similar shape: a small amount is no
-    finding."""
     of_one_imu: bool = False
     """Whether an α that an autopilot computes from its own pitch rate and accelerations cannot show the
     effect."""
     of_the_stick: bool = True
     """Whether the elevator alone can show the effect; if not, another input must vary."""
-    takes: bool = False
-    """Whether the size states a loss: a gain of the same size is no such effect."""
-    log_odds_backward: float = 0.0
-    """Log prior odds of an arm that points backwards; 0 where the effect is no arm."""
     need: Need | None = None
     """Requirement for seeing the effect, where its channel or its cause may be missing."""
     unrecorded: tuple[str, str, str] | None = None
@@ -93,18 +81,11 @@ class Effect:
     """Output, cause that looks the same where that output is missing, and what distinguishes the two."""
     distinguished_by: Mapping[str, str] = field(default_factory=dict)
     """Effects that look alike, each with what distinguishes it; stated by one of the two."""
-    twin: str = ""
-    """The one of these effects that differs by a small rest only."""
     curve: Curve | None = None
     """Form in an export of force and moment; None where no format carries the effect there."""
     servo: Mapping[str, tuple[str, float]] = field(default_factory=dict)
     """Form in an export of the servo: parameter to the field of ``ExportedServo`` that it adds to, and a
     factor."""
-
-    @property
-    def is_arm(self) -> bool:
-        """Whether the effect is the arm of an instrument."""
-        return self.log_odds_backward != 0.0
 
 
 def without_sizes(said: Said, size: str) -> tuple[str, ...]:

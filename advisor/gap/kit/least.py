@@ -8,9 +8,6 @@ FILTERED_S = 0.02
 filters."""
 SMALL_ANGLE_RAD = 0.00175
 """Least angle that is named, rad (0.1 deg): no linkage has less play."""
-IF_BEYOND_DOUBT = 0.4
-"""Share of the least angle that is enough for an effect beyond doubt. In a quiet record such an angle shows,
-being that of a servo pulse 1 us longer."""
 ARM_M, _OF_A_DELAY = 0.02, 0.75
 """Least arm that is named, m; and the least arm over the air speed, as a share of the least delay."""
 

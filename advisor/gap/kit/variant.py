@@ -27,9 +27,7 @@ class Variant:
     """Finite-difference step of each parameter."""
     bounds: tuple[tuple[float, float], ...]
     smallest: float
-    """Least size of the first parameter for which the effect is named: 4 ms, 1 %, 0.1 deg."""
-    if_beyond_doubt: float = 1.0
-    """Share of the least size that is enough for an effect beyond doubt."""
+    """Least size of the first parameter that is foreseen: 4 ms, 1 %, 0.1 deg."""
     entries: tuple[str, ...] = ()
     """Entries of the simulation that equal the parameters one to one; empty where ``apply_with`` is given."""
     apply_with: Apply | None = None
@@ -39,8 +37,6 @@ class Variant:
     """Slow channels without which the effect cannot be tried."""
     fixed: Mapping[str, float] = field(default_factory=dict)
     """Parameters of the aircraft file that are not searched for, such as the time of a step."""
-    one_sided: bool = False
-    """Whether the bounds are physical limits, at which a parameter may well lie."""
     places: tuple[str, ...] = ()
     """Parameters of position, time or rate instead of size. Their zero does not mean that the effect is
     absent."""
@@ -52,13 +48,8 @@ class Variant:
     """For an effect that derivatives imitate exactly: the change of all shared parameters, shape (k,), per
     unit of size at equal motion. Arguments are derivatives, effects in the model and reference speed. Such an
     effect is fitted with the aircraft file's derivatives held within their tolerance."""
-    start_at_prior: Values | None = None
-    """Starting values at the aircraft file's derivatives, for an effect that fitted derivatives hide."""
     likewise: "tuple[Variant, ...]" = ()
     """Alternative descriptions, so similar that the full fit alone decides."""
-    carried: Callable[[FloatArray], Values] | None = None
-    """For an alternative: function from the parameters of the main description to its own; None: equal
-    parameters."""
     sets: bool = False
     """Whether the parameter replaces the value of the simulation instead of adding to it."""
     in_file: Mapping[str, tuple[str, float]] = field(default_factory=dict)

@@ -128,11 +128,6 @@ def moving_air(problem: EffectProblem, fitted: EffectFit) -> SoughtAir:
     return replace(nothing, found=air)
 
 
-def one_maneuver_stands_out(problem: EffectProblem, fitted: EffectFit) -> bool:
-    """Return whether the residual of one manoeuvre far exceeds that of most: a gust may have passed in it."""
-    return _stands_out(np.mean(mean_squares(problem, fitted.innovations) / fitted.noise**2, axis=1))
-
-
 def _stands_out(powers: FloatArray) -> bool:
     """Return whether the largest power, of shape (manoeuvres,), far exceeds the median."""
     return bool(np.max(powers) > _STANDS_OUT * np.median(powers))

@@ -7,9 +7,8 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.candidates.known import changes_in, lasting, stated_in, with_known
+from advisor.gap.candidates.known import changes_in, lasting, with_known
 from advisor.gap.candidates.nuisances import IMU, LOOP, OWN_ALPHA, PROPELLER, TRUE_AIR_SPEED, filters, latency
-from advisor.gap.effects import EFFECTS
 from advisor.gap.fitting.fit import EffectFit, fit, rms_of
 from advisor.gap.fitting.neighbourhood import Neighbourhood
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
@@ -96,13 +95,6 @@ def prior_derivatives(aircraft: Aircraft) -> FloatArray | None:
     return np.array([aircraft.model[name] for name in DERIVATIVES])
 
 
-def arms_in(aircraft: Aircraft) -> frozenset[str]:
-    """Return the effects whose arm the aircraft file states."""
-    return frozenset(
-        effect for effect in EFFECTS if EFFECTS[effect].is_arm and stated_in(aircraft, effect) is not None
-    )
-
-
 def first_fit(problem: EffectProblem, aircraft: Aircraft) -> EffectFit:
     """Return the baseline model fitted from the aircraft file's derivatives, or from a regression of the
     rates.
@@ -140,7 +132,6 @@ def fit_unfiltered(flights: PreparedManeuvers, aircraft: Aircraft) -> tuple[Effe
         with_known(base_entries(aircraft), aircraft.effects, flights, variants),
         changes=changes_in(aircraft.effects, variants),
         prior_derivatives=prior_derivatives(aircraft),
-        arms_in_file=arms_in(aircraft),
         instruments=instruments,
         smallest_noise=0.5 * instruments,
     )
@@ -204,7 +195,7 @@ def quietest(problem: EffectProblem, fitted: EffectFit) -> EffectFit:
         variants = [
             v for v in variants_for(problem.flights) if v.effect not in present and not v.comes_at_any_time
         ]
-        likeliest = next(iter(Screen(problem, best, steps=1).try_all(variants, lambda _: 0.0)), None)
+        likeliest = Screen(problem, best, steps=1).likeliest(variants)
         if likeliest is None:
             break
         more = fit(problem, likeliest.point, likeliest.noise, iterations=8)

@@ -1,8 +1,8 @@
 """Fast screening of all candidates: the baseline's sensitivities are kept, only the effect's own are
 computed."""
 
-from collections.abc import Callable, Generator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Generator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -21,8 +21,7 @@ _HARDLY = 6.0
 """Numerical: decrease of the cost (twice the log likelihood) below which a description is not followed
 further."""
 _HOPELESS = 0.05
-"""Numerical: share of the best decrease so far below which a description is not followed further, being no
-rival (``ranking``)."""
+"""Numerical: share of the best decrease so far below which a description is not followed further."""
 
 
 @dataclass(frozen=True)
@@ -32,10 +31,8 @@ class Screened:
     variant: Variant
     point: SearchPoint
     cost: float
-    """Cost of the quick fit, comparable with ``Fitted.cost``."""
+    """Cost of the quick fit, comparable with ``EffectFit.cost``."""
     noise: FloatArray
-    prior_gain: float = 0.0
-    """Gain in log prior probability, because the derivatives agree better with the aircraft file's."""
 
 
 _Descent = Generator[SearchPoint, tuple[SimulatedPoint | None, float], Screened | None]
@@ -50,13 +47,15 @@ class Screen:
         self.problem, self.fitted, self.steps = problem, fitted, steps
         self.around = Neighbourhood(problem, fitted)
 
-    def try_all(self, variants: Sequence[Variant], prior: Callable[[SearchPoint], float]) -> list[Screened]:
-        """Return quick fits of all variants, the likeliest description of the data first.
+    def likeliest(self, variants: Sequence[Variant]) -> Screened | None:
+        """Return the quick fit that leaves least at the price of its numbers; None where none leads anywhere.
 
-        ``prior`` returns the gain in log prior probability at a point.
+        A number costs ln N (Schwarz 1978).
         """
-        found = [replace(s, prior_gain=prior(s.point)) for s in self.quick_fits(variants)]
-        return likeliest_first(found, float(np.sum(self.around.count)))
+        price = float(np.log(max(np.sum(self.around.count), 2.0)))
+        return min(
+            self.quick_fits(variants), key=lambda s: s.cost + price * len(s.variant.names), default=None
+        )
 
     def quick_fits(self, variants: Sequence[Variant], most: float = 0.0) -> list[Screened]:
         """Return the best quick fit of each variant over its starts, where one of them leads anywhere.
@@ -131,22 +130,3 @@ class Screen:
         change, missed = per_unit[: len(prior)] / scale, (prior - plain.derivatives) / scale
         value = float(np.clip(change @ missed / (change @ change), *variant.bounds[0]))
         return plain.moved(plain.shared + value * per_unit, plain.own).with_effect(variant, (value,))
-
-
-def likeliest_first(found: Sequence[Screened], samples: float) -> list[Screened]:
-    """Return the candidates in the order of likelihood, prior gain and number of parameters."""
-    return sorted(found, key=lambda s: s.cost - 2.0 * s.prior_gain + penalty(s.variant, samples))
-
-
-def one_each(found: Sequence[Screened]) -> tuple[Screened, ...]:
-    """Return the first quick fit of each effect; ``found`` comes likeliest first."""
-    first: dict[str, Screened] = {}
-    for screened in found:
-        first.setdefault(screened.variant.effect, screened)
-    return tuple(first.values())
-
-
-def penalty(variant: Variant, samples: float) -> float:
-    """Return k ln N, the decrease of the cost that a description with k parameters must bring (Schwarz)."""
-    steps = 1 if variant.fixed else 0
-    return (len(variant.names) + steps) * float(np.log(max(samples, 2.0)))

@@ -1,1 +1,1 @@
-"""Residuals that no effect of the catalogue explains, and the blocks in which they arise."""
+"""Laws and checks outside the catalogue of effects."""

@@ -15,9 +15,8 @@ from advisor.gap.fitting.uncertainty import effective_samples, shared_std
 from advisor.gap.uncatalogued.weight_check import WeightReading
 from advisor.words.quantiles import NORMAL_95
 
-_REPORTED, _WRONG = 0.03, 0.06
-"""Least relative difference that is reported, and may be that of an indicated air speed; and least difference
-that shows an error."""
+_REPORTED = 0.03
+"""Least relative difference that is reported, and may be that of an indicated air speed."""
 _ITS_OWN = 0.5
 """Largest error of the weight that the accelerometer reads, as a share of the difference, for an indicated
 air speed."""
@@ -30,14 +29,6 @@ class AirspeedScale:
 
     scale: float
     std: float
-
-    def is_wrong(self, weight: WeightReading | None, thin_air: float) -> bool:
-        """Return whether the difference exceeds the error of any air speed indicator.
-
-        ``weight`` is the accelerometer's reading of the weight, where that is known. ``thin_air`` is the
-        excess of the true air speed that the height explains, for an indicated one.
-        """
-        return abs(self.scale) > _WRONG + (thin_air if self.is_indicated(weight) else 0.0)
 
     def is_indicated(self, weight: WeightReading | None) -> bool:
         """Return whether the air speed may be an indicated one in thin air: the accelerometer reads the

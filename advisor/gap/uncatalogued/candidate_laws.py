@@ -50,8 +50,6 @@ def _filter(block: str, channel: str) -> Variant:
 _PULLED, _RINGS, _RUBS, _FILTERED = "gyro_pulled", "servo_rings", "vane_friction", "_filtered"
 _STICKS = "servo_sticks"
 _WEAKER = "elevator_loss"
-MUST_LEAVE_LITTLE = frozenset({_PULLED, SURFACE_STOP, _RINGS})
-"""Laws that leave a small residual where they are true. Faults that resemble them leave more."""
 _READINGS = {
     "a_z": (
         _curve("accelerometer_curve", "accelerometer", "a_z", 5.0),

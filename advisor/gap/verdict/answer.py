@@ -1,5 +1,6 @@
-"""From the evidence to the diagnosis: verdict, causes, numbers and sentence."""
+"""The answer: a reader of the posterior. Sizes, numbers and sentences are those of the answer's own model."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -7,28 +8,36 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.instruments.kinematics import KinematicCheck
 from advisor.flight.signals.messages import FloatArray
+from advisor.gap.alternative import Alternative
 from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.candidates.known import AIR
 from advisor.gap.candidates.nuisances import PROPELLER
 from advisor.gap.decision import LEAST_SIGMA
-from advisor.gap.evidence.found import Evidence
-from advisor.gap.evidence.measured import measured
-from advisor.gap.evidence.rows import rows_of, stated_as
+from advisor.gap.effects import EFFECTS
 from advisor.gap.fitting.fit import EffectFit
-from advisor.gap.fitting.measure import whole_gap
+from advisor.gap.fitting.holdout import sole_informative_maneuver
+from advisor.gap.fitting.measure import file_model_of, whole_gap
 from advisor.gap.fitting.problem import EffectProblem
-from advisor.gap.fitting.uncertainty import covariance, effective_samples
 from advisor.gap.foresight.foresee import unseen_effects
-from advisor.gap.judge.posterior import posterior
-from advisor.gap.judge.prior import FIELD, FieldPrior
+from advisor.gap.inference.diagnose import Inference
+from advisor.gap.inference.evidence import covariance_of
+from advisor.gap.inference.explanation import Explanation
+from advisor.gap.inference.findings import Added, Circumstances, Findings, Model, Unexplained
+from advisor.gap.inference.laws import sentence_of_law
+from advisor.gap.inference.posterior import NONE, PARAMETERS, Posterior, stated_as
 from advisor.gap.records.floor import tolerance_of
 from advisor.gap.result import Cause, Diagnosis, Gap, GapVerdict, Where
-from advisor.gap.search.air import SoughtAir
+from advisor.gap.search.speed import at_constant_speed
 from advisor.gap.simulator.layout import DERIVATIVES
-from advisor.gap.verdict.as_judged import answered, as_judged
-from advisor.gap.verdict.causes import block_ranking
-from advisor.gap.verdict.holdout_numbers import as_read, on_holdout, over_maneuvers, with_offset, without_air
-from advisor.gap.verdict.judgement import judgement
+from advisor.gap.uncatalogued.airspeed_scale import airspeed_scale_of
+from advisor.gap.verdict.causes import causes_of
+from advisor.gap.verdict.holdout_numbers import (
+    as_measured,
+    as_read,
+    on_holdout,
+    over_maneuvers,
+    with_offset,
+    without_air,
+)
 from advisor.gap.verdict.notes import notes_of
 from advisor.gap.verdict.numbers import (
     compared_derivatives,
@@ -40,29 +49,97 @@ from advisor.gap.verdict.numbers import (
     traces_of,
     waterfall_of,
 )
-from advisor.gap.verdict.outside_fit import air_cause
+from advisor.gap.verdict.reasons import (
+    decisions_of,
+    doubt_of,
+    evidence_in,
+    none_means_no_gap,
+    rival_of,
+    why_of,
+)
 from advisor.gap.verdict.statements import in_simulator
-from advisor.gap.verdict.text import sentence_of, sentence_of_one_maneuver
+from advisor.gap.verdict.text import sentence_of
 
 
-def answer(
-    e: Evidence,
+def answer_of(
+    found: Inference,
     aircraft: Aircraft,
     kinematics: KinematicCheck,
     holdout: int | None,
-    prior: FieldPrior = FIELD,
+    circumstances: Circumstances,
+) -> tuple[Diagnosis, Findings]:
+    """Return the diagnosis that follows from the posterior, and the findings that it is made from."""
+    problem, floor = found.problem, found.floor
+    plain = found.chosen[0]
+    file_model = file_model_of(problem, plain.fitted)
+    posterior = none_means_no_gap(found.posteriors[0], file_model, floor, plain.held_out)
+    answer = posterior.answer
+    named = _named(found, answer)
+    law = posterior.explanation_of(answer) if answer.kind == "unknown" else None
+    last = named[-1].fitted if named else plain.fitted
+    e = Findings(
+        problem, _models(found, named), _unexplained(posterior, answer, law),
+        found.sought_air.found if answer.kind == "air" else None,
+        floor, file_model, at_constant_speed(problem, last), airspeed_scale_of(problem, last),
+        circumstances,
+    )  # fmt: skip
+    return _diagnosed(found, posterior, e, aircraft, kinematics, holdout, named), e
+
+
+def _named(found: Inference, answer: Alternative) -> tuple[Explanation, ...]:
+    """Return the models of the effects that the answer names, one after another."""
+    if answer.kind != "effect" or len(found.chosen) < 2 or found.chosen[1].name != answer.name:
+        return ()
+    return found.chosen[1:]
+
+
+def _models(found: Inference, named: Sequence[Explanation]) -> tuple[Model, ...]:
+    """Return the plain model and the model of each named effect, each with the effect that comes next."""
+    explanations = [found.chosen[0], *named]
+    models = [
+        Model(one.fitted, one.held_out, None if following is None else _added(following))
+        for one, following in zip(explanations, [*explanations[1:], None], strict=True)
+    ]
+    return as_measured(found.problem, models)
+
+
+def _added(one: Explanation) -> Added:
+    """Return the effect of an explanation; throttle or height may have moved in one manoeuvre only."""
+    assert one.variant is not None
+    place = one.fitted.point.place(one.fitted.point.index_of(one.name)).start
+    return Added(one.name, sole_informative_maneuver(one.fitted, place) if one.variant.needs else None)
+
+
+def _unexplained(posterior: Posterior, answer: Alternative, law: Explanation | None) -> Unexplained | None:
+    """Return the residual without a name, where that is the answer."""
+    if answer.kind != "unknown":
+        return None
+    blocks = {a.block: p for a, p in posterior.by_alternative.items() if a.kind == "unknown"}
+    total = sum(blocks.values())
+    ranking = tuple((block, round(p / max(blocks.values()), 4)) for block, p in blocks.items())
+    note = ""
+    if law is not None and law.variant is not None and law.name not in EFFECTS:
+        note = sentence_of_law(law.name, law.values)
+    return Unexplained(answer.block, blocks[answer.block] / total, ranking, note=note)
+
+
+def _diagnosed(
+    found: Inference,
+    posterior: Posterior,
+    e: Findings,
+    aircraft: Aircraft,
+    kinematics: KinematicCheck,
+    holdout: int | None,
+    named: Sequence[Explanation],
 ) -> Diagnosis:
-    """Return the diagnosis that follows from the evidence, at a field prior of the answers."""
-    examined = e
     e, kept = on_holdout(e, holdout)
-    problem, stages = e.problem, e.stages
-    judged = judgement(e, kinematics)
-    verdict, causes = judged.verdict, judged.causes
-    before, last = judged.before, stages[-1].held_out
-    if judged.bias is not None:
-        offset_rad = judged.bias.parameters["bias_rad"].value
-        before = with_offset(problem, before, offset_rad)
-        problem = as_read(problem, offset_rad)
+    problem, answer = e.problem, posterior.answer
+    verdict: GapVerdict = "effect" if answer.is_effect else answer.kind  # type: ignore[assignment]
+    before, last = e.file_model or e.models[0].held_out, e.last.held_out
+    bias = stated_as("alpha_bias") == answer
+    if bias:
+        before = with_offset(problem, before, kinematics.offset.rad)
+        problem = as_read(problem, kinematics.offset.rad)
     before = over_maneuvers(problem, before, kept)
     with_air = last.mean_square
     if e.air is not None:
@@ -71,44 +148,60 @@ def answer(
         last, e = without_air(last, e.air), replace(e, floor=np.minimum(e.floor, least))
     gap = gap_numbers(problem, e.floor, before, last)
     gap = replace(gap, by_air=whole_gap(with_air, e.floor) - gap.after)
-    shrink = None
-    if verdict in ("effect", "parameters"):
-        shrink = shrink_of(e, kept, gap, before, last, judged.wrong_derivatives)
-    fitted = stages[-1].fitted
-    known = covariance(problem, fitted, effective_samples(problem, fitted.innovations))
-    where = (
-        of_the_derivatives(problem, fitted, known, gap)
-        if verdict == "parameters"
-        else _where(e, verdict, causes)
-    )
-    waterfall = waterfall_of(stages, e.floor, judged.outside_fit, judged.speed, gap.before)
-    present = {c.effect for c in causes if c.present}
-    effects = improvements(fitted, np.sqrt(np.maximum(np.diag(known), 0.0)), causes)
-    nuisances = effects.keys() - present if shrink is not None else ()
-    is_single = len(problem.flights) == 1 and verdict == "unknown"
+    causes = causes_of(found, posterior, e, kinematics, gap, named)
+    wrong = posterior.of(PARAMETERS) > posterior.of(NONE)
+    shrink = shrink_of(e, kept, gap, before, last, wrong) if verdict in ("effect", "parameters") else None
+    fitted = e.last.fitted
+    own = (named[-1] if named else found.chosen[0]).problem
+    known = covariance_of(own, fitted, found.heat)
+    present = [c for c in causes if c.present]
+    effects = _improvements(fitted, np.sqrt(np.maximum(np.diag(known), 0.0)), causes)
+    nuisances = effects.keys() - {c.effect for c in present} if shrink is not None else ()
+    where = _where(posterior, e, gap, known, present)
+    outside = [c for c in present if c.block == "air" or c.effect == "alpha_bias"]
+    doubt = doubt_of(posterior)
     sentence = sentence_of(verdict, gap, where, causes, shrink, in_simulator(aircraft))
-    diagnosis = Diagnosis(
+    rival = rival_of(posterior)
+    return Diagnosis(
         verdict=verdict,
-        sentence=sentence_of_one_maneuver(where) if is_single else sentence,
-        gap=gap, where=where,
-        causes=causes, shrink=shrink, waterfall=waterfall,
-        cannot_see=unseen_effects(problem, fitted, variants_for(problem.flights), e.floor, present),
+        sentence=" ".join(filter(None, [doubt, sentence])),
+        gap=gap, where=where, causes=causes, shrink=shrink,
+        waterfall=waterfall_of(e.models, e.floor, outside, gap.before),
+        cannot_see=unseen_effects(
+            problem, fitted, variants_for(problem.flights), e.floor, {c.effect for c in present}
+        ),
         kinematics=kinematics, model=model_of(problem, fitted, known),
         reference_airspeed_m_s=problem.flights.reference_m_s if speed_is_known(problem, aircraft) else None,
-        effects=effects, share_irreducible=irreducible(with_air, e.floor, gap), decisions=judged.decisions,
+        effects=effects, share_irreducible=irreducible(with_air, e.floor, gap),
+        decisions=tuple(decisions_of(found, posterior, rival)),
         yardsticks=fidelity_of(problem, before, last), traces=traces_of(problem, before, last),
         derivatives=compared_derivatives(problem, fitted, known),
         notes=notes_of(e, aircraft, holdout, verdict, nuisances),
         maneuvers=tuple(f.number for f in problem.flights.flights),
+        probabilities=posterior.probabilities,
+        evidence=tuple(evidence_in(posterior)),
+        why=tuple(why_of(posterior, rival)),
+        rival=rival.label,
+        answer=answer,
+        doubt=doubt,
     )  # fmt: skip
-    if len(problem.flights) == 1:
-        # A single manoeuvre proves no cause, and the judge was fitted on none.
-        return diagnosis
-    if not examined.known.keys().isdisjoint(AIR) and air_cause(examined) is None:
-        examined = replace(examined, sought_air=SoughtAir())
-    found = measured(examined, kinematics)
-    sets = [stated_as(*names) for names in found.sets]
-    return as_judged(diagnosis, posterior(rows_of(found, answered(diagnosis, sets)), prior))
+
+
+def _where(posterior: Posterior, e: Findings, gap: Gap, known: FloatArray, present: Sequence[Cause]) -> Where:
+    """Return the block of the answer; blocks score by the probability of all that is in them."""
+    if posterior.answer == PARAMETERS:
+        return _of_the_derivatives(e.problem, e.last.fitted, known, gap)
+    if e.unexplained is not None:
+        return Where(e.unexplained.block, e.unexplained.share, e.unexplained.ranking)
+    scores: dict[str, float] = {}
+    for a, p in posterior.by_alternative.items():
+        if a.block:
+            scores[a.block] = scores.get(a.block, 0.0) + p
+    best = max([*scores.values(), 1e-12])
+    ranking = tuple((b, round(s / best, 4)) for b, s in sorted(scores.items(), key=lambda i: -i[1]))
+    block = present[0].block if present else (ranking[0][0] if ranking else "force_equation")
+    removed = 1.0 - gap.after / max(gap.before, 1e-12)
+    return Where(block, float(np.clip(removed, 0.0, 1.0)) if present else 0.0, ranking)
 
 
 def speed_is_known(problem: EffectProblem, aircraft: Aircraft) -> bool:
@@ -117,7 +210,7 @@ def speed_is_known(problem: EffectProblem, aircraft: Aircraft) -> bool:
     return problem.flights.speed_measured or aircraft.stated_airspeed_m_s is not None
 
 
-def improvements(
+def _improvements(
     fitted: EffectFit, std: FloatArray, causes: tuple[Cause, ...]
 ) -> dict[str, dict[str, float]]:
     """Return the effects of the improved simulator: the named ones, and the propeller's terms where
@@ -132,17 +225,7 @@ def improvements(
     return effects
 
 
-def _where(e: Evidence, verdict: GapVerdict, causes: tuple[Cause, ...]) -> Where:
-    if verdict == "unknown" and e.unexplained is not None:
-        return Where(e.unexplained.block, e.unexplained.share, e.unexplained.ranking)
-    ranking = block_ranking(e.stages[0], causes)
-    total = max(whole_gap(e.stages[0].held_out.mean_square, e.floor), 1e-12)
-    remaining = whole_gap(e.stages[-1].held_out.mean_square, e.floor)
-    block = next((c.block for c in causes if c.present), ranking[0][0] if ranking else "force_equation")
-    return Where(block, float(np.clip(1.0 - remaining / total, 0.0, 1.0)) if causes else 0.0, ranking)
-
-
-def of_the_derivatives(problem: EffectProblem, fitted: EffectFit, known: FloatArray, gap: Gap) -> Where:
+def _of_the_derivatives(problem: EffectProblem, fitted: EffectFit, known: FloatArray, gap: Gap) -> Where:
     """Return the equation whose derivatives in the aircraft file are further off, relative to their
     uncertainty."""
     assert problem.prior_derivatives is not None

@@ -1,110 +1,107 @@
-"""From judged candidates to readable causes: parameters, and indistinguishable effects."""
+"""The causes of an answer, with the sizes of the answer's own model."""
 
 from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
+from advisor.flight.instruments.kinematics import KinematicCheck
+from advisor.gap.candidates.distinguish import imitations, way_to_distinguish
 from advisor.gap.effects import EFFECTS
 from advisor.gap.fitting.measure import whole_gap
-from advisor.gap.fitting.problem import EffectProblem
-from advisor.gap.kit.variant import Variant
-from advisor.gap.result import Cause, Value
-from advisor.gap.search.acceptance import JudgedAddition
-from advisor.gap.search.indistinguishable import indistinguishable_from
-from advisor.gap.search.score import TIME_ERROR_S, TIMES
-from advisor.gap.search.stage import Stage
+from advisor.gap.inference.diagnose import Inference
+from advisor.gap.inference.evidence import covariance_of
+from advisor.gap.inference.explanation import Explanation
+from advisor.gap.inference.findings import Findings
+from advisor.gap.inference.posterior import Posterior, stated_as
+from advisor.gap.result import Cause, Gap, Value
+from advisor.gap.verdict.air_cause import moving_air_of
+from advisor.gap.verdict.sizes import parameters_of, with_model_errors
 
-_SHAPE_ERROR = 0.03
-"""Prior: relative error of a size for the low-order description of its effect."""
-
-
-def causes_of(stages: Sequence[Stage], floor: FloatArray, channels: Sequence[str]) -> tuple[Cause, ...]:
-    """Return the added effects in their order, then the alternatives to the first one.
-
-    The probabilities are set later.
-    """
-    first = stages[0].considered
-    named = [
-        _cause(stage.added, stage.considered, floor, channels, True)
-        for stage in stages
-        if stage.added is not None
-    ]
-    taken = {c.effect for c in named}
-    others = [
-        _cause(j, first, floor, channels, False) for j in first if j.effect not in taken and j.gain > 0.0
-    ]
-    return (*named, *others)
+MOST_CAUSES = 5
+"""Words: most causes that are stated."""
+_CREDIBLE = 0.05
+"""Words: least probability of an effect that is listed as not told from the answer."""
 
 
-def parameters_of(v: Variant, values: FloatArray, std: FloatArray) -> dict[str, Value]:
-    """Return the parameters and their errors as the aircraft file spells them; both arrays have shape
-    (names,)."""
-    found = {n: Value(float(x), float(s)) for n, x, s in zip(v.names, values, std, strict=True)}
-    if v.inverted:
-        x = max(float(values[0]), 1e-9)
-        found[v.names[0]] = Value(1.0 / x, float(std[0]) / x**2)
-    if v.in_file:
-        found = {
-            key: Value(found[name].value * (1.0 / factor), found[name].std * (1.0 / factor))
-            for key, (name, factor) in v.in_file.items()
-        }
-    for name, value in v.fixed.items():
-        found[name] = Value(value, 0.0)
-    return found
-
-
-def with_model_errors(cause: Cause, problem: EffectProblem) -> Cause:
-    """Return the cause with errors that no fit shows: of the low-order description and of the time grid."""
-    widened = {
-        name: Value(v.value, float(np.hypot(v.std, _model_error(name, v.value))))
-        for name, v in cause.parameters.items()
-        if v.std > 0.0
-    }
-    return _with_edge_error(replace(cause, parameters={**cause.parameters, **widened}), problem)
-
-
-def _model_error(name: str, value: float) -> float:
-    """Return the standard deviation of a size for model errors: a share of it, and for times part of a
-    step."""
-    return float(np.hypot(_SHAPE_ERROR * value, TIME_ERROR_S if name in TIMES else 0.0))
-
-
-def _with_edge_error(cause: Cause, problem: EffectProblem) -> Cause:
-    """Return a delay or lag with the error of steps that may lie anywhere between two stamps of the
-    command."""
-    intervals = [flight.edges[:, 2] for flight in problem.flights.flights if len(flight.edges)]
-    section, name = EFFECTS[cause.effect].stated or ("", "")
-    if problem.held or not intervals or section != "elevator":
-        return cause
-    edge_std = float(np.median(np.concatenate(intervals))) / np.sqrt(12.0)
-    value = cause.parameters[name]
-    parameters = {**cause.parameters, name: Value(value.value, float(np.hypot(value.std, edge_std)))}
-    return replace(cause, parameters=parameters)
+def causes_of(
+    found: Inference,
+    posterior: Posterior,
+    e: Findings,
+    kinematics: KinematicCheck,
+    gap: Gap,
+    named: Sequence[Explanation],
+) -> tuple[Cause, ...]:
+    """Return the named causes in the order of the model, then the alternatives to the first, likeliest
+    first."""
+    answer = posterior.answer
+    present: list[Cause] = []
+    together = 1.0
+    for stage, one in zip(found.posteriors, named, strict=False):
+        told = posterior if stage is found.posteriors[0] else stage
+        together *= told.of(stated_as(one.name))
+        present.append(_cause(found, e, one, named[-1], told, together, True))
+    if answer.kind == "air" and (air := moving_air_of(e)) is not None:
+        present.append(replace(air, probability=posterior.of(answer)))
+    if answer.name == "alpha_bias":
+        present.append(_offset(kinematics, posterior, gap, True))
+    taken = {c.effect for c in present}
+    left = 1.0 - sum(c.probability for c in present)
+    others: list[Cause] = []
+    for alternative, p in posterior.by_alternative.items():
+        if not alternative.is_effect or alternative.name in taken or len(others) + len(taken) >= MOST_CAUSES:
+            continue
+        one = posterior.explanation_of(alternative)
+        p, left = min(p, left), left - min(p, left)
+        if one.name == alternative.name:
+            others.append(_cause(found, e, one, one, posterior, p, False))
+        elif alternative.name == "alpha_bias":
+            others.append(_offset(kinematics, posterior, gap, False))
+    return (*present, *others)
 
 
 def _cause(
-    judged: JudgedAddition,
-    considered: Sequence[JudgedAddition],
-    floor: FloatArray,
-    channels: Sequence[str],
+    found: Inference,
+    e: Findings,
+    one: Explanation,
+    model: Explanation,
+    posterior: Posterior,
+    probability: float,
     present: bool,
 ) -> Cause:
-    alike, way = indistinguishable_from(judged, considered, channels)
-    gap_after = whole_gap(judged.held_out.mean_square, floor)
-    sizes = parameters_of(judged.variant, judged.value, judged.std)
-    return Cause(judged.effect, judged.block, 0.0, sizes, alike, way, gap_after, present)
+    """Return an effect with its sizes in a model, whose posterior gives their errors."""
+    point = model.fitted.point
+    k = point.index_of(one.name)
+    std = np.sqrt(np.maximum(np.diag(covariance_of(model.problem, model.fitted, found.heat)), 0.0))
+    sizes = parameters_of(point.effects[k], np.asarray(point.values[k]), std[point.place(k)])
+    alike, way = _not_told_from(one.name, posterior, e.problem.channels)
+    gap_after = whole_gap(one.held_out.mean_square, e.floor)
+    block = EFFECTS[one.name].block
+    cause = Cause(one.name, block, probability, sizes, alike, way, gap_after, present)
+    return with_model_errors(cause, found.problem)
 
 
-def block_ranking(first: Stage, causes: Sequence[Cause]) -> tuple[tuple[str, float], ...]:
-    """Return the blocks with the score of their best effect; the best block scores 1."""
-    scores: dict[str, float] = {}
-    for cause in causes:
-        if cause.present:
-            scores.setdefault(cause.block, 1.0)
-    best = max((j.gain for j in first.considered), default=0.0)
-    for j in first.considered:
-        if best > 0.0 and j.gain > 0.0:
-            scores[j.block] = max(scores.get(j.block, 0.0), round(j.gain / best, 4))
-    return tuple(sorted(scores.items(), key=lambda item: -item[1]))
+def _offset(kinematics: KinematicCheck, posterior: Posterior, gap: Gap, present: bool) -> Cause:
+    offset = kinematics.offset
+    return Cause(
+        "alpha_bias", "alpha_sensor", posterior.of(stated_as("alpha_bias")),
+        {"bias_rad": Value(offset.rad, offset.std_rad)},
+        ("an offset of the attitude's zero", "steady up- or downwash"),
+        "level the attitude reference on the ground; fly in still air", gap.after, present,
+    )  # fmt: skip
+
+
+def _not_told_from(name: str, posterior: Posterior, channels: Sequence[str]) -> tuple[tuple[str, ...], str]:
+    """Return the effects that the evidence does not exclude, and what would distinguish them."""
+    names = [
+        a.name
+        for a, p in posterior.by_alternative.items()
+        if a.is_effect and a.name != name and p >= _CREDIBLE
+    ]
+    ways = [way for other in names if (way := way_to_distinguish(name, other))]
+    for looks, way in imitations(name, channels):
+        names.append(looks)
+        ways.append(way)
+    if names and not ways:
+        ways.append("fly more manoeuvres, with another time unit and another amplitude")
+    return tuple(names), "; ".join(dict.fromkeys(ways))

@@ -6,49 +6,47 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.gap.evidence.found import Evidence
-from advisor.gap.fitting.holdout import HeldOut, folds_for, held_out, hold_out, mean_squares
+from advisor.gap.fitting.holdout import HeldOut, folds_for, held_out, hold_out, mean_squares, measured_in
 from advisor.gap.fitting.problem import EffectProblem
-from advisor.gap.search.acceptance import JudgedAddition
+from advisor.gap.inference.findings import Findings, Model
 from advisor.gap.search.air import MovingAir
 from advisor.gap.search.speed import at_constant_speed
-from advisor.gap.search.stage import Stage
-from advisor.gap.search.waterfall import as_measured
 from advisor.oem.rows import Signal
 
 
-def on_holdout(e: Evidence, holdout: int | None) -> tuple[Evidence, list[int]]:
-    """Return the evidence on the last ``holdout`` manoeuvres, from fits without them, and their indices.
+def on_holdout(e: Findings, holdout: int | None) -> tuple[Findings, list[int]]:
+    """Return the findings on the last ``holdout`` manoeuvres, from fits without them, and their indices.
 
     With None, or with as many as there are, every manoeuvre is held out in turn.
     """
     kept, folds = kept_and_folds(e.problem, holdout)
     if len(kept) == len(e.problem.flights):
         return e, kept
-
-    def judged(one: JudgedAddition) -> JudgedAddition:
-        held = hold_out(e.problem, one.fitted, folds)
-        return replace(one, held_out=over_maneuvers(e.problem, held, kept))
-
-    predicted = as_measured(
-        e.problem, [replace(s, held_out=hold_out(e.problem, s.fitted, folds)) for s in e.stages]
+    models = as_measured(
+        e.problem, [replace(m, held_out=hold_out(e.problem, m.fitted, folds)) for m in e.models]
     )
-    stages = [
-        Stage(
-            s.fitted, over_maneuvers(e.problem, s.held_out, kept),
-            tuple(map(judged, s.considered)), s.added and judged(s.added), s.screened,
-        )
-        for s in predicted
-    ]  # fmt: skip
-    speed = at_constant_speed(e.problem, e.stages[-1].fitted, folds)
+    speed = at_constant_speed(e.problem, e.last.fitted, folds)
     return replace(
         e,
-        stages=stages,
+        models=tuple(replace(m, held_out=over_maneuvers(e.problem, m.held_out, kept)) for m in models),
         constant_speed=speed and over_maneuvers(e.problem, speed, kept),
         file_model=e.file_model and over_maneuvers(e.problem, e.file_model, kept),
-        file_model_with_effects=e.file_model_with_effects
-        and over_maneuvers(e.problem, e.file_model_with_effects, kept),
     ), kept
+
+
+def as_measured(problem: EffectProblem, models: Sequence[Model]) -> tuple[Model, ...]:
+    """Return the models with the residuals of the fit in manoeuvres that alone determine an effect.
+
+    No other manoeuvre predicts these.
+    """
+    sole: set[int] = set()
+    found = []
+    for model in models:
+        held = measured_in(problem, model.held_out, model.fitted, sole) if sole else model.held_out
+        found.append(replace(model, held_out=held))
+        if model.added is not None and model.added.sole_maneuver is not None:
+            sole.add(model.added.sole_maneuver)
+    return tuple(found)
 
 
 def kept_and_folds(problem: EffectProblem, holdout: int | None) -> tuple[list[int], list[list[int]]]:

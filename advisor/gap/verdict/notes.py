@@ -6,13 +6,12 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.gap.evidence.found import Evidence
 from advisor.gap.fitting.measure import whole_gap
+from advisor.gap.inference.findings import Findings
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.records.usable import why_left_out
 from advisor.gap.result import GapVerdict, spelled
-from advisor.gap.search.path_energy import mean_speed
-from advisor.gap.search.stage import added_in
+from advisor.gap.simulator.layout import SPEED
 from advisor.gap.verdict.text import place
 from advisor.words.quantiles import NORMAL_95
 
@@ -25,7 +24,7 @@ _FEW = 6
 
 
 def notes_of(
-    e: Evidence, aircraft: Aircraft, holdout: int | None, verdict: GapVerdict, nuisances: Collection[str]
+    e: Findings, aircraft: Aircraft, holdout: int | None, verdict: GapVerdict, nuisances: Collection[str]
 ) -> tuple[str, ...]:
     """Return all notes that these flights and their aircraft file require, a sentence each.
 
@@ -52,10 +51,10 @@ def _of_the_hold_out(holdout: int | None, flown: int) -> Iterator[str]:
         )
 
 
-def _of_the_speed(e: Evidence, aircraft: Aircraft) -> Iterator[str]:
+def _of_the_speed(e: Findings, aircraft: Aircraft) -> Iterator[str]:
     """Yield the source of the air speed, and its errors."""
     flights = e.problem.flights
-    flown, reference = mean_speed(flights), flights.reference_m_s
+    flown, reference = _mean_speed(flights), flights.reference_m_s
     is_stated = aircraft.reference_airspeed_m_s is not None
     if not flights.speed_measured:
         yield _without_air_speed(flights, bool(aircraft.stated_airspeed_m_s))
@@ -64,23 +63,24 @@ def _of_the_speed(e: Evidence, aircraft: Aircraft) -> Iterator[str]:
             f"The aircraft file's derivatives are right at {reference:.1f} m/s. The mean of the manoeuvres "
             f"is {flown:.1f} m/s: state reference_airspeed_m_s."
         )
-    if e.shear is not None:
-        per_metre = f"{abs(e.shear.gradient_per_s):.2f} ± {NORMAL_95 * e.shear.std:.2f} m/s"
-        if e.shear.is_implausible:
+    shear = e.circumstances.shear
+    if shear is not None:
+        per_metre = f"{abs(shear.gradient_per_s):.2f} ± {NORMAL_95 * shear.std:.2f} m/s"
+        if shear.is_implausible:
             yield f"The air speed's error grows by {per_metre} per metre climbed, which no wind explains."
         else:
             yield f"The wind changed with height, by {per_metre} per metre."
     if e.airspeed_scale is not None:
         yield e.airspeed_scale.sentence
-    if e.weight is not None and e.weight.is_off:
-        yield e.weight.sentence
+    if e.circumstances.weight is not None and e.circumstances.weight.is_off:
+        yield e.circumstances.weight.sentence
 
 
-def _of_a_constant_speed(e: Evidence, verdict: GapVerdict) -> Iterator[str]:
+def _of_a_constant_speed(e: Findings, verdict: GapVerdict) -> Iterator[str]:
     """Yield the gap of a simulator at constant speed, where the verdict is none and the air speed varied."""
     if verdict != "none" or e.constant_speed is None or not e.problem.flights.speed_measured:
         return
-    constant, given = (whole_gap(h.mean_square, e.floor) for h in (e.constant_speed, e.stages[-1].held_out))
+    constant, given = (whole_gap(h.mean_square, e.floor) for h in (e.constant_speed, e.last.held_out))
     if constant - given > _MATTERS:
         percent = 100.0 * e.problem.flights.speed_moves
         yield (
@@ -99,22 +99,22 @@ def _without_air_speed(flights: PreparedManeuvers, is_known: bool) -> str:
     return f"No air speed in the log: {flights.reference_m_s:.1f} m/s {level}, {whence}{differs}; {later}."
 
 
-def _of_the_unexplained(e: Evidence) -> Iterator[str]:
+def _of_the_unexplained(e: Findings) -> Iterator[str]:
     if e.unexplained is not None and e.unexplained.note:
         yield f"Unexplained {place(e.unexplained.block)}: {e.unexplained.note}"
 
 
-def _of_single_witnesses(e: Evidence) -> Iterator[str]:
-    for judged in added_in(e.stages):
-        if judged.sole_maneuver is not None:
-            number = e.problem.flights.flights[judged.sole_maneuver].number
+def _of_single_witnesses(e: Findings) -> Iterator[str]:
+    for added in e.added:
+        if added.sole_maneuver is not None:
+            number = e.problem.flights.flights[added.sole_maneuver].number
             yield (
-                f"Manoeuvre {number} alone shows the {spelled(judged.effect)}: "
+                f"Manoeuvre {number} alone shows the {spelled(added.effect)}: "
                 "it is measured there, and no other manoeuvre could confirm it."
             )
 
 
-def _of_the_air(e: Evidence) -> Iterator[str]:
+def _of_the_air(e: Findings) -> Iterator[str]:
     if e.air is None:
         return
     if e.air.gust:
@@ -126,21 +126,21 @@ def _of_the_air(e: Evidence) -> Iterator[str]:
         )
 
 
-def _of_the_file(e: Evidence, aircraft: Aircraft, nuisances: Collection[str]) -> Iterator[str]:
+def _of_the_file(e: Findings, aircraft: Aircraft, nuisances: Collection[str]) -> Iterator[str]:
     """Yield the additional terms of the improved simulator, and the treatment of the file's effects."""
     if nuisances:
         yield (
             f"The improved simulator also has a propeller's terms ({_listed(sorted(nuisances))}). Every "
             "aircraft with a propeller has them, so they do not count as a cause."
         )
-    aside = e.left_aside
+    aside = e.circumstances.left_aside
     if had := [effect for effect in aircraft.effects if effect not in aside]:
         yield f"The simulator already has {_listed(had)} from the file; sizes found here add to that."
     if aside:
         yield f"The file's {_listed(aside)} belongs to another flight and is left aside."
 
 
-def _of_what_is_missing(e: Evidence, aircraft: Aircraft) -> Iterator[str]:
+def _of_what_is_missing(e: Findings, aircraft: Aircraft) -> Iterator[str]:
     flights = e.problem.flights
     if "alpha" not in flights.channels:
         yield (
@@ -159,7 +159,7 @@ def _of_what_is_missing(e: Evidence, aircraft: Aircraft) -> Iterator[str]:
         yield "The aircraft file does not state the servo's lag: a lag found here may be the servo's."
 
 
-def _command(e: Evidence) -> str:
+def _command(e: Findings) -> str:
     """Return how the command moved between its stamps, and what looks the same."""
     if not e.problem.held:
         return "The command was taken as linear between its stamps, with edges anywhere between two."
@@ -187,3 +187,8 @@ def unusual_signs(model: Mapping[str, float]) -> tuple[str, ...]:
         f"The aircraft file's M_delta_e is {model['M_delta_e']:g}, above zero. That is right for a canard "
         "only: an elevator trailing edge down is positive and pitches the nose down.",
     )
+
+
+def _mean_speed(flights: PreparedManeuvers) -> float:
+    """Return the mean air speed over all manoeuvres, m/s."""
+    return float(np.mean([np.mean(flight.slow[SPEED]) for flight in flights.flights]))

@@ -8,17 +8,15 @@ import numpy as np
 from advisor.aircraft.reference import PARAMETERS
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.evidence.found import Evidence
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.measure import by_band, by_phase, gap_of, shrink_interval, whole_gap
 from advisor.gap.fitting.prior import derivative_scale
 from advisor.gap.fitting.problem import EffectProblem
+from advisor.gap.inference.findings import Findings, Model
 from advisor.gap.records.floor import prefiltered
 from advisor.gap.result import Cause, ComparedDerivative, Gap, Shrink, Trace, Value, Yardsticks
-from advisor.gap.search.stage import Stage
 from advisor.gap.simulator.layout import DERIVATIVES
-from advisor.gap.uncatalogued.beyond_air import removed_beyond_air
 from advisor.gap.verdict.yardsticks import yardsticks
 
 _UNCHANGED = 0.1
@@ -55,17 +53,17 @@ def irreducible(mean_square: FloatArray, floor: FloatArray, gap: Gap) -> float:
 
 
 def shrink_of(
-    e: Evidence, kept: Sequence[int], gap: Gap, before: HeldOut, last: HeldOut, wrong_derivatives: bool
+    e: Findings, kept: Sequence[int], gap: Gap, before: HeldOut, last: HeldOut, wrong_derivatives: bool
 ) -> Shrink:
     """Return the shrink of the gap on held-out manoeuvres, with an interval from resampling.
 
     ``wrong_derivatives``: the file's derivatives were found wrong.
     """
     beyond_air = by_numbers = None
-    if wrong_derivatives and e.air is None and len(e.stages) > 1:
+    if wrong_derivatives and e.air is None and len(e.models) > 1:
         by_numbers = _by_numbers(e)
-    elif e.air is not None and (len(e.stages) > 1 or wrong_derivatives):
-        beyond_air = _by_effects(e) if len(e.stages) > 1 else _by_numbers(e)
+    elif e.air is not None and (len(e.models) > 1 or wrong_derivatives):
+        beyond_air = _by_effects(e) if len(e.models) > 1 else _by_numbers(e)
     which = list(kept)
     percent = 100.0 * (1.0 - gap.after / gap.before) if gap.before > 1e-9 else 0.0
     low, high = shrink_interval(before.by_maneuver[which], last.by_maneuver[which], e.floor)
@@ -75,43 +73,49 @@ def shrink_of(
     return Shrink(numbers, gap.before, gap.after, percent, interval, beyond_air, by_numbers)
 
 
-def _by_numbers(e: Evidence) -> float | None:
+def _by_numbers(e: Findings) -> float | None:
     """Return the share of the gap that fitted derivatives remove, per cent, with moving air; None without a
     file's."""
     if e.file_model is None:
         return None
-    was, now = (whole_gap(held.mean_square, e.floor) for held in (e.file_model, e.stages[0].held_out))
+    was, now = (whole_gap(held.mean_square, e.floor) for held in (e.file_model, e.models[0].held_out))
     return float(np.clip(100.0 * (1.0 - now / was), 0.0, 100.0)) if was > 1e-9 else None
 
 
-def _by_effects(e: Evidence) -> float | None:
+def _by_effects(e: Findings) -> float | None:
     """Return the shrink of the innovations, per cent, as defined in ``Shrink``."""
-    removed = removed_beyond_air(e.stages)
+    removed = _removed_beyond_air(e.models)
     return None if removed is None else float(np.clip(100.0 * removed, 0.0, 100.0))
 
 
+def _removed_beyond_air(models: Sequence[Model]) -> float | None:
+    """Return the share of the residual beyond moving air that the effects remove, on held-out manoeuvres.
+
+    The innovations contain no moving air. A right model's k parameters come from two of three folds, so its
+    squared innovations exceed 1 by 1.5 k over the samples. That is subtracted. None where nothing exceeds it.
+    """
+    last = models[-1]
+    noise, samples = last.fitted.noise**2, sum(map(len, last.fitted.innovations))
+    was, now = (float(np.mean(s.held_out.innovation_square / noise)) - 1.0 for s in (models[0], last))
+    right = 1.5 * len(last.fitted.point.shared) / samples
+    return 1.0 - max(now - right, 0.0) / (was - right) if was > right else None
+
+
 def waterfall_of(
-    stages: list[Stage],
+    models: Sequence[Model],
     floor: FloatArray,
     extra: Sequence[Cause],
-    speed: Cause | None,
     start: float,
 ) -> tuple[tuple[str, float], ...]:
     """Return the effects with the gap after their addition, in order.
 
-    Every stage has the measured air speed. Where its variation is no cause, so does the simulator, and
-    ``start`` is the simulator's gap.
+    ``extra`` are causes that are judged outside the fits, and ``start`` is the simulator's gap.
     """
     steps: list[tuple[str, float]] = []
-    if speed is not None:
-        given = whole_gap(stages[0].held_out.mean_square, floor) if speed in extra else start
-        steps.append((speed.effect, given))
-    for stage, following in pairwise(stages):
-        assert stage.added is not None
-        steps.append((stage.added.effect, whole_gap(following.held_out.mean_square, floor)))
+    for model, following in pairwise(models):
+        assert model.added is not None
+        steps.append((model.added.effect, whole_gap(following.held_out.mean_square, floor)))
     for cause in extra:
-        if cause is speed:
-            continue
         steps.append((cause.effect, min(cause.gap_after, steps[-1][1] if steps else start)))
     return tuple(steps)
 

@@ -27,12 +27,11 @@ def place(block: str) -> str:
 
 
 def in_words(alternative: Alternative) -> str:
-    """Return an alternative in words: ``something without a name in the lift``, ``ground effect + gust``."""
+    """Return an alternative in words: ``something without a name in the lift``, ``ground effect``."""
     words = {"none": "no gap", "parameters": "wrong numbers"}
     if alternative.kind == "unknown":
         return f"something without a name {place(alternative.block)}"
-    names = " + ".join(spelled(name) for name in (alternative.name, alternative.second) if name)
-    return words.get(alternative.kind, names)
+    return words.get(alternative.kind, spelled(alternative.name))
 
 
 def sentence_of_one_maneuver(where: Where) -> str:

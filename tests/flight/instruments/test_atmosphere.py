@@ -5,12 +5,11 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 
-from advisor.flight.instruments.atmosphere import AirFlown, air_flown, thin_air
+from advisor.flight.instruments.atmosphere import AirFlown, air_flown
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.channels import GIVEN_AIRSPEED
 from advisor.flight.signals.record import Channel
 from advisor.flight.signals.standard_atmosphere import standard_density, standard_pressure
-from advisor.flight.signals.true_airspeed import AS_GROUND_SPEED, AS_REPORTED, BY_HEIGHT
 
 SPAN = Span(0.0, 1.0, 2.0, 3.0, "3-2-1-1", (), "quiet")
 
@@ -64,12 +63,3 @@ def test_an_indicated_air_speed_is_raised_to_the_true_one_and_a_given_one_is_not
     assert AirFlown(1.225 / 4.0, "height", "indicated").true_speed(25.0) == pytest.approx(50.0)
     given = air_flown([flown({"altitude": 3000.0}, GIVEN_AIRSPEED)])
     assert given.true_speed(25.0) == 25.0
-
-
-@pytest.mark.parametrize(
-    ("told", "excess"), [("", 0.2229), (AS_GROUND_SPEED, 0.2229), (BY_HEIGHT, 0.0), (AS_REPORTED, 0.0)]
-)
-def test_thin_air_explains_a_slow_reading_that_no_density_has_made_true(told: str, excess: float) -> None:
-    """At 4,000 m the standard density is 0.8191 kg/m³."""
-    at = flown({"altitude": 4000.0}, f"VFR_HUD.airspeed{told}")
-    assert thin_air([at]) == pytest.approx(excess, abs=5e-4)
