@@ -78,8 +78,12 @@ def infer(
     stage = stage_of(flight, baseline, table, laws)
     best = stage.best
     progress("looking for what has no name", 0.6)
-    names = sorted({v.effect for v in table})
-    rows = rows_of(problem, stage, names, sorted({v.effect for v in laws}), prior)
+    names, names_of_laws = (sorted({v.effect for v in some}) for some in (table, laws))
+    second = None
+    if any(one is best for one in stage.effects):
+        others = [v for v in table if v.effect != best.name]
+        second = stage_of(best.problem, best.fitted, others, laws, _SECOND, best.form_error)
+    rows = rows_of(problem, stage, names, names_of_laws, prior, second)
     rows = _with_offset(rows, kinematics, problem, prior, len(names))
     progress("looking at the air", 0.7)
     sought = moving_air(problem, best.fitted)
@@ -91,11 +95,11 @@ def infer(
     if answer.kind == "effect" and answer.name in {one.name for one in stage.effects}:
         first = posterior.explanation_of(answer)
         chosen.append(first)
-        others = [v for v in table if v.effect != answer.name]
-        progress("looking for a second cause", 0.8)
-        second = stage_of(first.problem, first.fitted, others, laws, _SECOND)
-        names = sorted({v.effect for v in others})
-        rows = rows_of(problem, second, names, sorted({v.effect for v in laws}), prior)
+        if second is None or first is not best:
+            others = [v for v in table if v.effect != answer.name]
+            progress("looking for a second cause", 0.8)
+            second = stage_of(first.problem, first.fitted, others, laws, _SECOND, first.form_error)
+        rows = rows_of(problem, second, names, names_of_laws, prior)
         posteriors.append(posterior_of(rows))
         also = posteriors[-1].answer
         if also.kind == "effect":

@@ -11,11 +11,12 @@ from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.holdout import HeldOut, hold_out, mean_squares
 from advisor.gap.fitting.problem import EffectProblem, counts
 from advisor.gap.inference.evidence import Evidence, FlightProblem, evidence_of, log_likelihood
+from advisor.gap.inference.sizes import natural_share
 from advisor.gap.kit.variant import Variant
 
-_NATURAL = 0.2
-"""Prior: size of an effect that every aircraft has, as a share of its size on an aircraft with the effect.
-Every servo has 10 ms of 50, every curve 10 % of the linear term, every scale 2 %."""
+_FORM_ERROR, _PLAY_ERROR = 0.03, 0.1
+"""Prior: error of an effect's form, as a share of its change; of play, dead bands and friction, which
+differ from servo to servo."""
 _SYMMETRIC = float(np.log(2.0))
 """Log prior gain, nats, of a number that cannot be negative: its Gaussian prior has half the range."""
 
@@ -53,6 +54,12 @@ class Explanation:
         """Numbers of the added effect, shape (numbers,); empty for derivatives alone."""
         return np.zeros(0) if self.variant is None else np.asarray(self.fitted.point.values[-1])
 
+    @property
+    def form_error(self) -> float:
+        """Error of the outputs by the form of the effect, as a share of the peaks."""
+        plays = self.variant is not None and "half_width_rad" in self.variant.names
+        return self.change * (_PLAY_ERROR if plays else _FORM_ERROR)
+
     def lifted(self, nats: float) -> "Explanation":
         """Return the explanation with evidence for the error of every simulator."""
         more = self.evidence.more(nats), self.natural.more(nats)
@@ -67,6 +74,13 @@ class Row:
     explanation: Explanation
     terms: Mapping[str, float]
     """Parts of the log weight by name, nats."""
+    pair: Explanation | None = None
+    """Model with a second effect in addition."""
+
+    @property
+    def model(self) -> Explanation:
+        """Whole model of the way."""
+        return self.pair or self.explanation
 
     @property
     def weight(self) -> float:
@@ -98,7 +112,11 @@ def explained(
         if not variant.needs:
             unseen = _lost_unseen(problem, plain, made, held) / heat
     told = evidence_of(problem, made, heat).more(extra + unseen)
-    natural = told if variant is None else evidence_of(problem, made, heat, _NATURAL).more(extra + unseen)
+    natural = (
+        told
+        if variant is None
+        else evidence_of(problem, made, heat, natural_share(variant)).more(extra + unseen)
+    )
     return Explanation(
         variant, problem, made, held, told, natural,
         log_likelihood(problem, made) / heat, unseen, change_of(problem, plain, made),

@@ -13,7 +13,7 @@ from advisor.gap.inference.prior import FieldPrior
 from advisor.gap.inference.residual import Residual, residual_of
 from advisor.gap.inference.stage import Stage
 
-_RIGHT, _LACKING = (0.0, 0.6), (np.log(5.0), 0.6)
+_RIGHT, _LACKING = (0.0, 0.6), (np.log(3.0), 0.9)
 """Prior: mean and standard deviation of the log of the residual's size (``Residual.size``), of a right model
 and of one that lacks a law."""
 _LEAST_MISFIT = 0.25
@@ -76,11 +76,21 @@ def stated_as(name: str) -> Alternative:
     return Alternative("air" if block == "air" else "effect", name, block)
 
 
+def _unknown_in(law: Explanation) -> Alternative:
+    assert law.variant is not None
+    return Alternative("unknown", "unknown", law.variant.block)
+
+
 NONE, PARAMETERS = Alternative("none", "none"), Alternative("parameters", "parameters")
 
 
 def rows_of(
-    problem: EffectProblem, stage: Stage, names: Sequence[str], laws: Sequence[str], prior: FieldPrior
+    problem: EffectProblem,
+    stage: Stage,
+    names: Sequence[str],
+    laws: Sequence[str],
+    prior: FieldPrior,
+    second: Stage | None = None,
 ) -> list[Row]:
     """Return the rows of one stage.
 
@@ -90,16 +100,19 @@ def rows_of(
         Effects of the catalogue, and laws outside of it, that were tried.
     prior
         How often each kind of answer is right before a flight is looked at.
+    second
+        Stage after the likeliest effect: with a second cause, the first one leaves another residual.
     """
-    ways = sorted(_ways(stage, names, laws, prior), key=lambda way: -way.weight)
-    models = {id(way.explanation): way.explanation for way in ways}
+    ways = [*_ways(stage, names, laws, prior)]
+    if second is not None:
+        ways += _pairs(ways, stage, second, len(names), len(laws), prior)
+    ways.sort(key=lambda way: -way.weight)
+    models = {id(way.model): way.model for way in ways}
     near = list(models.items())[:_SEARCHED]
     residuals = {key: residual_of(problem, one.fitted, stage.heat) for key, one in near}
     of_others = residuals[near[0][0]]
     return [
-        row
-        for way in ways
-        for row in _with_residual(way, residuals.get(id(way.explanation), of_others), prior)
+        row for way in ways for row in _with_residual(way, residuals.get(id(way.model), of_others), prior)
     ]
 
 
@@ -108,10 +121,11 @@ def _ways(stage: Stage, names: Sequence[str], laws: Sequence[str], prior: FieldP
     plain, each = stage.plain, prior.effect / max(len(names), 1)
     stated = plain.problem.is_stated
     none = prior.none + (0.0 if stated else prior.parameters)
-    natural = 0.5 / max(len(stage.effects), 1)
-    yield _row(NONE, plain, plain.evidence.right, 0.5 * none)
+    natural = 0.5 / max(len(names), len(stage.effects), 1)
+    without = 1.0 - natural * len(stage.effects)
+    yield _row(NONE, plain, plain.evidence.right, without * none)
     if stated:
-        yield _row(PARAMETERS, plain, plain.evidence.wrong, 0.5 * prior.parameters)
+        yield _row(PARAMETERS, plain, plain.evidence.wrong, without * prior.parameters)
     for one in stage.effects:
         # As little of an effect as every aircraft has is no finding.
         yield _row(NONE, one, one.natural.right, natural * none)
@@ -120,9 +134,33 @@ def _ways(stage: Stage, names: Sequence[str], laws: Sequence[str], prior: FieldP
         forms = sum(other.name == one.name for other in stage.effects)
         yield _row(stated_as(one.name), one, one.evidence.either, each / forms)
     for one in stage.laws:
-        assert one.variant is not None
-        alternative = Alternative("unknown", "unknown", one.variant.block)
-        yield _row(alternative, one, one.evidence.either, 0.5 * prior.unknown / len(laws))
+        yield _row(_unknown_in(one), one, one.evidence.either, 0.5 * prior.unknown / len(laws))
+
+
+def _pairs(
+    ways: Sequence[Row], stage: Stage, second: Stage, names: int, laws: int, prior: FieldPrior
+) -> Iterator[Row]:
+    """Yield the ways in which the likeliest effect is true together with a second one.
+
+    Where a law outside the table is the second, both may be one law that the effect resembles. The more the
+    effect leaves to the law, the likelier that is.
+    """
+    first = next((way for way in ways if way.explanation is stage.best and way.alternative.is_effect), None)
+    if first is None:
+        return
+    of_first = max(stage.best.evidence.either - stage.plain.evidence.either, 0.0)
+    for one in (*second.effects, *second.laws):
+        outside = any(one is law for law in second.laws)
+        share = 0.5 * prior.unknown / laws if outside else prior.effect / max(names - 1, 1)
+        gained = one.evidence.either - second.plain.evidence.either
+        more = gained + float(np.log(share / (prior.none + prior.parameters)))
+        way = replace(first, terms={**first.terms, "second": more}, pair=one)
+        left = max(gained, 0.0) / max(of_first + max(gained, 0.0), 1e-12) if outside else 0.0
+        if left > 0.0:
+            yield replace(
+                way, alternative=_unknown_in(one), terms={**way.terms, "second": more + float(np.log(left))}
+            )
+        yield replace(way, terms={**way.terms, "second": more + float(np.log1p(-left))})
 
 
 def _row(alternative: Alternative, one: Explanation, evidence: float, share: float) -> Row:
@@ -142,6 +180,14 @@ def _with_residual(way: Row, residual: Residual, prior: FieldPrior) -> Iterator[
     yield replace(way, terms={**way.terms, "residual": _log_normal(residual.size, _RIGHT)})
     lacking = float(np.log(0.5 * prior.unknown / (prior.none + prior.parameters + prior.effect)))
     for block, share in residual.blocks.items():
+        if block == "air":
+            # The air moves in most flights: such a residual is no law that the simulator lacks.
+            terms = {
+                **way.terms,
+                "residual": _log_normal(residual.size, _LACKING) + float(np.log(0.5 * share)),
+            }
+            yield replace(way, terms=terms)
+            continue
         terms = {
             **way.terms,
             "prior": way.terms["prior"] + lacking + float(np.log(share)),

@@ -42,6 +42,10 @@ _ARM = {"alpha_vane_offset": 0.2, "accelerometer_offset": 0.1}
 """Prior: standard deviation of an arm, as a share of the way flown in one radian of the short period.
 
 A small UAV flies 2.5 m in that time. A jet with a nose boom of 13 m flies 50 m."""
+_NATURAL, _OF_A_SERVO = 0.02, 0.2
+"""Prior: size of an effect that every aircraft has, as a share of its size on an aircraft with the effect.
+The lag and the delay of a servo are known to 10 ms, play to 0.2 mrad, scales to 0.2 %."""
+_SERVO = ("actuator_lag", "transport_delay")
 _OF_RANGE = 0.5
 """Prior: standard deviation of any other number, as a share of the largest value that is searched."""
 
@@ -64,7 +68,7 @@ def with_sizes(variant: Variant, derivatives: FloatArray, flights: PreparedManeu
         "M_delta2": _BENT * m_delta / delta, "M_delta3": _BENT * m_delta / delta**2,
         "M_alpha2": _BENT * m_alpha / alpha, "M_alpha3": _BENT * m_alpha / alpha**2,
         "Z_alpha2": _BENT * z_alpha / alpha, "Z_alpha3": _BENT * z_alpha / alpha**2,
-        "M_throttle": 2.0 * m_delta * delta, "M_h": m_delta * delta, "Z_h": z_alpha * alpha,
+        "M_throttle": 0.5 * m_delta * delta, "M_h": m_delta * delta, "Z_h": z_alpha * alpha,
         "at_s": span, "over_s": span, "rate_per_s": 0.2 / span, "skew_s": _TIME_S, "scale": _SHARE,
         "step": _SHARE, "arm_m": _ARM.get(variant.effect, 0.0) * way_m,
     }  # fmt: skip
@@ -73,6 +77,11 @@ def with_sizes(variant: Variant, derivatives: FloatArray, flights: PreparedManeu
         for name, bounds in zip(variant.names, variant.bounds, strict=True)
     ]
     return replace(variant, prior_std=tuple(stds))
+
+
+def natural_share(variant: Variant) -> float:
+    """Return the size that every aircraft has of an effect, as a share of the effect's prior width."""
+    return _OF_A_SERVO if variant.effect in _SERVO else _NATURAL
 
 
 def _departures(flights: PreparedManeuvers) -> tuple[float, float]:

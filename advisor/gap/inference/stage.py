@@ -15,13 +15,15 @@ from advisor.gap.search.screen import Screen, Screened
 
 _EFFECTS, _LAWS = 6, 2
 """Numerical: number of effects, and of laws outside the catalogue, that are fitted in full."""
+_AT_THE_FILE = 3
+"""Numerical: number of effects that are fitted in full because they are the likeliest with the file's
+derivatives. A wrong derivative hides such an effect from the fit in which all are free."""
 _FORMS = 2
 """Numerical: number of descriptions of one effect that are fitted in full."""
 _REFINED = 120.0
 """Numerical: nats behind the best explanation beyond which none is fitted at the file's derivatives."""
-_MODEL_ERROR, _FORM_ERROR = 0.005, 0.03
-"""Prior: error of every simulator, as a share of the peak; error of an effect's form, as a share of
-its change."""
+_MODEL_ERROR = 0.005
+"""Prior: error of every simulator, as a share of the peak."""
 _INDEPENDENT = 40.0
 """Prior: number of independent numbers that such an error has."""
 
@@ -49,6 +51,7 @@ def stage_of(
     table: Sequence[Variant],
     laws: Sequence[Variant],
     most: int = _EFFECTS,
+    error: float = 0.0,
 ) -> Stage:
     """Fit all that may be added to the model of ``plain``, and return it with its evidence.
 
@@ -58,11 +61,19 @@ def stage_of(
         Effects of the catalogue, and laws outside of it, with a prior on each number.
     most
         Number of effects that are fitted in full.
+    error
+        Error of the form of the effects in ``plain``, as a share of the peaks.
     """
     loose = problem.within(ERROR_IF_WRONG)
     plain = fit(loose, plain.point, plain.noise, iterations=4)
     screen = Screen(loose, plain)
     chosen = [*_likeliest(screen.quick_fits(table), most), *_likeliest(screen.quick_fits(laws), _LAWS)]
+    if problem.is_stated:
+        seen = {one.variant.effect for one in chosen}
+        near = problem.within(ERROR_IF_RIGHT)
+        tight = Screen(near, fit(near, plain.point, plain.noise, iterations=4))
+        others = [variant for variant in table if variant.effect not in seen]
+        chosen += _likeliest(tight.quick_fits(others), _AT_THE_FILE)
     fits = [(one.variant, fit(loose, one.point, one.noise, iterations=8)) for one in chosen]
     fits = [(variant, made) for variant, made in fits if np.isfinite(made.cost)]
     heat = temperature(problem, min((plain, *(made for _, made in fits)), key=lambda made: made.cost))
@@ -70,7 +81,7 @@ def stage_of(
     everyone += [explained(loose, variant, made, plain, heat) for variant, made in fits]
     best = max(one.evidence.either for one in everyone)
     everyone = [_at_the_files(one, plain, heat, best) for one in everyone]
-    base, *added = _within_model_error(problem, everyone)
+    base, *added = _within_model_error(problem, everyone, error)
     outside = {law.effect for law in laws}
     return Stage(
         base,
@@ -112,14 +123,16 @@ def _at_the_files(one: Explanation, plain: EffectFit, heat: float, best: float) 
     )
 
 
-def _within_model_error(problem: EffectProblem, everyone: Sequence[Explanation]) -> list[Explanation]:
+def _within_model_error(
+    problem: EffectProblem, everyone: Sequence[Explanation], error: float
+) -> list[Explanation]:
     """Return all explanations, none of which is less likely than the error of a simulator allows.
 
     Residuals cannot distinguish two models whose outputs differ by less than such an error. More samples do
     not help.
     """
     best = max(everyone, key=lambda one: one.evidence.either)
-    error = float(np.hypot(_MODEL_ERROR, _FORM_ERROR * best.change))
+    error = float(np.linalg.norm((_MODEL_ERROR, error, best.form_error)))
 
     def lifted(one: Explanation) -> Explanation:
         apart = change_of(problem, one.fitted, best.fitted) / error

@@ -26,6 +26,7 @@ _WORDS = {
     "unseen": "loss on manoeuvres kept out of the fit",
     "model_error": "allowance for the error of every simulator",
     "residual": "residual that is left",
+    "second": "second cause in addition",
     "offset": "offset of the angle of attack by the flight path",
     "gap": "visible gap of the simulator as given",
     "rest": "other ways in which each may be true",
