@@ -12,11 +12,11 @@ from advisor.gap.alternative import Alternative
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.diagnose import diagnose
 from advisor.gap.inference import stage
-from advisor.gap.inference.explanation import Row
-from advisor.gap.inference.posterior import NONE, PARAMETERS, _with_residual, posterior_of, stated_as
+from advisor.gap.inference.explanation import Explanation, Row
+from advisor.gap.inference.posterior import NONE, PARAMETERS, _pairs, _with_residual, posterior_of, stated_as
 from advisor.gap.inference.prior import FieldPrior
 from advisor.gap.inference.residual import Residual
-from advisor.gap.inference.sizes import with_sizes
+from advisor.gap.inference.sizes import natural_share, with_sizes
 from advisor.gap.records.prepare import prepare
 from advisor.gap.verdict.reasons import decisions_of, doubt_of, none_means_no_gap, rival_of, why_of
 from advisor.report.gap_decisions import decision_in_words
@@ -89,9 +89,10 @@ def test_a_difference_below_a_simulators_own_error_decides_by_few_nats(monkeypat
     """The error is half a per cent of the peak, with forty independent numbers: 20 nats at its size."""
     monkeypatch.setattr(stage, "change_of", lambda problem, one, other: apart)
     best, other = (
-        Model(evidence=SimpleNamespace(either=either), fitted=None, change=0.0) for either in (1000.0, 0.0)
+        Model(evidence=SimpleNamespace(either=either), fitted=None, form_error=0.0)
+        for either in (1000.0, 0.0)
     )
-    told = stage._within_model_error(None, [best, other])
+    told = stage._within_model_error(None, [best, other], 0.0)
     assert told[0].evidence.either - told[1].evidence.either == pytest.approx(nats)
 
 
@@ -101,6 +102,62 @@ def test_a_residual_far_beyond_a_simulators_own_is_likelier_of_a_law_without_a_n
     rows = list(_with_residual(row(DELAY), Residual(size, {"moment_equation": 1.0}), prior))
     assert [r.alternative for r in rows] == [DELAY, MOMENT]
     assert (rows[0].weight > rows[1].weight) is likelier
+
+
+@given(st.floats(0.25, 50.0))
+def test_a_residual_that_moving_air_explains_is_no_law_without_a_name(size):
+    prior = FieldPrior(none=0.25, parameters=0.25, effect=0.25, unknown=0.25)
+    rows = list(_with_residual(row(DELAY), Residual(size, {"air": 1.0}), prior))
+    assert {r.alternative for r in rows} == {DELAY}
+
+
+def staged(plain, effects=(), laws=(), best=None):
+    """Return a stage of explanations with their log evidence by name."""
+
+    def made(name, nats):
+        variant = SimpleNamespace(block="moment_equation", effect=name)
+        return SimpleNamespace(name=name, variant=variant, evidence=SimpleNamespace(either=nats))
+
+    nothing, some, others = made("", plain), [made(*e) for e in effects], [made(*e) for e in laws]
+    return SimpleNamespace(plain=nothing, effects=some, laws=others, best=some[0] if some else nothing)
+
+
+def pairs(first_nats, second):
+    """Return the ways with a delay of so many nats and a second cause."""
+    stage_1 = staged(0.0, [("transport_delay", first_nats)])
+    way = Row(DELAY, stage_1.best, {"fit": first_nats})
+    prior = FieldPrior(none=0.4, parameters=0.2, effect=0.3, unknown=0.1)
+    return list(_pairs([way], stage_1, second, 26, 18, prior))
+
+
+def test_a_second_cause_keeps_the_first_one_as_the_answer():
+    (way,) = pairs(50.0, staged(0.0, [("actuator_lag", 20.0)]))
+    assert way.alternative == DELAY
+    assert way.model.name == "actuator_lag"
+    assert way.terms["second"] == pytest.approx(20.0 + np.log(0.3 / 25 / 0.6))
+
+
+@pytest.mark.parametrize(("first", "unknown"), [(990.0, 0.01), (30.0, 0.25)])
+def test_an_effect_that_leaves_much_to_a_law_is_rather_one_law_without_a_name(first, unknown):
+    told = posterior_of(pairs(first, staged(0.0, laws=[("damping_curve", 10.0)])))
+    assert told.of(MOMENT) == pytest.approx(unknown)
+    assert told.of(DELAY) == pytest.approx(1.0 - unknown)
+
+
+def test_play_differs_from_servo_to_servo_three_times_as_much_as_other_effects():
+    def error(*names):
+        variant = SimpleNamespace(names=names)
+        return Explanation(variant, None, None, None, None, None, 0.0, 0.0, change=0.2).form_error
+
+    assert error("half_width_rad") == pytest.approx(0.02)
+    assert error("lag_s") == pytest.approx(0.006)
+
+
+@pytest.mark.parametrize(
+    ("effect", "share"), [("actuator_lag", 0.2), ("transport_delay", 0.2), ("alpha_vane_offset", 0.02)]
+)
+def test_a_servos_time_is_known_to_a_fifth_of_an_effects_size_and_all_else_to_a_fiftieth(effect, share):
+    assert natural_share(SimpleNamespace(effect=effect)) == share
 
 
 def held(gap):
