@@ -12,6 +12,7 @@ from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import beyond_known, beyond_servo
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.holdout import HeldOut
+from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.inference.evidence import FlightProblem
 from advisor.gap.inference.explanation import Explanation, Row
@@ -87,8 +88,8 @@ def infer(
     rows = _with_offset(rows, kinematics, problem, prior, len(names))
     progress("looking at the air", 0.7)
     sought = moving_air(problem, best.fitted)
-    rows = _with_air(rows, stage, sought, _known_air(problem, aircraft))
     floor = floor_of(problem, best.fitted, best.held_out)
+    rows = _with_air(rows, stage.plain, sought, _known_air(problem, aircraft), floor)
     posterior = posterior_of(rows)
     posteriors, chosen = [posterior], [stage.plain]
     answer = posterior.answer
@@ -151,18 +152,22 @@ def _known_air(problem: EffectProblem, aircraft: Aircraft) -> float:
     return float(sigma) / problem.flights.reference_m_s
 
 
-def _with_air(rows: Sequence[Row], stage: Stage, sought: SoughtAir, known: float) -> list[Row]:
-    """Return the rows with moving air as the main cause where another explanation gains less than the air."""
+def _with_air(
+    rows: Sequence[Row], plain: Explanation, sought: SoughtAir, known: float, floor: FloatArray
+) -> list[Row]:
+    """Return the rows with moving air as the main cause where an effect removes less of the gap than air."""
     air = sought.found
     if air is None or air.is_natural or (not air.gust and air.angle_std <= known):
         return list(rows)
     name = stated_as("gust" if air.gust else "turbulence")
-    plain = stage.plain.fitted.cost
+    beyond = air.mean_square_beyond_air
 
     def outweighed(row: Row) -> bool:
         if row.alternative.kind == "unknown":
             return False
-        return 0.5 * (plain - row.explanation.fitted.cost) < sought.gain
+        left = row.model.held_out.mean_square
+        by_air = whole_gap(left, floor) - whole_gap(np.minimum(beyond, left), floor)
+        return whole_gap(plain.held_out.mean_square, floor) - whole_gap(left, floor) < by_air
 
     return [relabelled(row, name) if outweighed(row) else row for row in rows]
 
