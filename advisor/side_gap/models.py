@@ -20,12 +20,15 @@ from advisor.oem.lateral_start import lateral_start
 from advisor.oem.prepare import signal_of
 from advisor.side_gap.effects import SideEffect
 from advisor.side_gap.fit import Fit, Free, Known, N, Point, fitted, outputs
-from advisor.side_gap.setting import COMMAND, Flown, Place
+from advisor.side_gap.setting import AIR_SPEED, COMMAND, Flown, Place
 
 SMALL_SHARE = 0.1
 """Least size of a derivative for a relative error, over its natural size (``natural_size``)."""
 NATURAL_STEP = 1e-3
 """Step of the differences of a natural number, s or m."""
+_AIR_SPEED_STD = 0.02
+"""Prior: standard deviation of the relative excess of the true over the read air speed. The read speed may be
+an indicated one, and a static port reads a pressure that the wing changes."""
 
 _ENTRIES = {"delay": "skew_s", "arm": "arm_m", "lag": "lag_s"}
 """Kind of a nuisance parameter to its entry in a setting."""
@@ -87,6 +90,7 @@ def case_of(maneuvers: Sequence[Maneuver], aircraft: Aircraft, theta: FloatArray
     forces = [record.outputs["a_y"].t for record in problem.records if "a_y" in record.outputs]
     if forces:
         natural.append(Free(("a_y", "skew_s"), lateness_std(forces), NATURAL_STEP))
+    natural.append(Free(AIR_SPEED, _AIR_SPEED_STD, NATURAL_STEP))
     stated = tuple(name for name in SIDE_PARAMETERS if name in aircraft.model)
     given = np.array([aircraft.model.get(n, v) for n, v in zip(SIDE_PARAMETERS, theta, strict=True)])
     begin = Point(theta, lateral_start(problem)[1], setting)

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG
+from advisor.gap.inference.model_error import form_error, most_nats
 from advisor.gap.inference.prior import FieldPrior
 from advisor.gap.search.air import NATURAL_GUST_ANGLE
 from advisor.side_gap.effects import SideEffect
@@ -116,6 +117,8 @@ def stage_of(case: Case, plain: Fit, share: float, table: Sequence[SideEffect], 
     each = prior.effect / max(len(table), 1)
     shares = [prior.none, prior.parameters, *(each for _ in tried)]
     evidence = [none, parameters, *(one.evidence for one in tried)]
+    names = [(), (), *(one.effect.variant.names for one in tried)]
+    evidence = within_model_error([plain, plain, *(one.fit for one in tried)], names, evidence)
     still = probabilities(evidence, shares)
     courses = gust_courses(plain, case.flown)
     gusts, gain = _in_gusts(plain, courses)
@@ -135,6 +138,36 @@ def stage_of(case: Case, plain: Fit, share: float, table: Sequence[SideEffect], 
         plain, share, float(found[0]) - air, float(found[1]), air, gusts, gain, tuple(tried),
         {one.effect.name: float(p) for one, p in zip(tried, found[2:], strict=True)},
     )  # fmt: skip
+
+
+def within_model_error(
+    fits: Sequence[Fit], names: Sequence[Sequence[str]], evidence: Sequence[float]
+) -> list[float]:
+    """Return the log evidence of fits, none of which is less likely than the error of a simulator allows.
+
+    Parameters
+    ----------
+    fits
+        The first one has no effect.
+    names
+        Numbers of the effect of each fit.
+    """
+    best = int(np.argmax(evidence))
+    form = form_error(names[best], change_of(fits[0], fits[best]))
+    return [
+        max(one, evidence[best] - most_nats(change_of(fit, fits[best]), form))
+        for fit, one in zip(fits, evidence, strict=True)
+    ]
+
+
+def change_of(one: Fit, other: Fit) -> float:
+    """Return the largest difference between the outputs of two fits, as a share of each output's peak."""
+    shares = []
+    for channel in np.unique(one.assembly.channel):
+        rows = one.assembly.channel == channel
+        apart = one.fitted[rows] - other.fitted[rows]
+        shares.append(np.sqrt(np.mean(apart**2)) / max(float(np.ptp(one.assembly.z[rows])) / 2.0, 1e-12))
+    return float(max(shares))
 
 
 def _in_gusts(fit: Fit, courses: Sequence[Course]) -> tuple[Gusts, float]:

@@ -20,7 +20,7 @@ from advisor.gap.inference.laws import laws_of
 from advisor.gap.inference.posterior import NONE, Posterior, posterior_of, relabelled, rows_of, stated_as
 from advisor.gap.inference.prior import FieldPrior
 from advisor.gap.inference.sizes import with_sizes
-from advisor.gap.inference.stage import Stage, stage_of
+from advisor.gap.inference.stage import stage_of
 from advisor.gap.kit.variant import Variant
 from advisor.gap.noise.quiet import quiet_rms
 from advisor.gap.noise.stamps import stamp_power

@@ -11,12 +11,10 @@ from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.holdout import HeldOut, hold_out, mean_squares
 from advisor.gap.fitting.problem import EffectProblem, counts
 from advisor.gap.inference.evidence import Evidence, FlightProblem, evidence_of, log_likelihood
+from advisor.gap.inference.model_error import form_error
 from advisor.gap.inference.sizes import natural_share
 from advisor.gap.kit.variant import Variant
 
-_FORM_ERROR, _PLAY_ERROR = 0.03, 0.1
-"""Prior: error of an effect's form, as a share of its change; of play, dead bands and friction, which
-differ from servo to servo."""
 _SYMMETRIC = float(np.log(2.0))
 """Log prior gain, nats, of a number that cannot be negative: its Gaussian prior has half the range."""
 
@@ -57,8 +55,7 @@ class Explanation:
     @property
     def form_error(self) -> float:
         """Error of the outputs by the form of the effect, as a share of the peaks."""
-        plays = self.variant is not None and "half_width_rad" in self.variant.names
-        return self.change * (_PLAY_ERROR if plays else _FORM_ERROR)
+        return form_error(() if self.variant is None else self.variant.names, self.change)
 
     def lifted(self, nats: float) -> "Explanation":
         """Return the explanation with evidence for the error of every simulator."""

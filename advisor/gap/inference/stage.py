@@ -10,6 +10,7 @@ from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.inference.evidence import FlightProblem, temperature
 from advisor.gap.inference.explanation import Explanation, change_of, explained
+from advisor.gap.inference.model_error import most_nats
 from advisor.gap.kit.variant import Variant
 from advisor.gap.search.screen import Screen, Screened
 
@@ -22,10 +23,6 @@ _FORMS = 2
 """Numerical: number of descriptions of one effect that are fitted in full."""
 _REFINED = 120.0
 """Numerical: nats behind the best explanation beyond which none is fitted at the file's derivatives."""
-_MODEL_ERROR = 0.005
-"""Prior: error of every simulator, as a share of the peak."""
-_INDEPENDENT = 40.0
-"""Prior: number of independent numbers that such an error has."""
 
 
 @dataclass(frozen=True)
@@ -132,11 +129,10 @@ def _within_model_error(
     not help.
     """
     best = max(everyone, key=lambda one: one.evidence.either)
-    error = float(np.linalg.norm((_MODEL_ERROR, error, best.form_error)))
 
     def lifted(one: Explanation) -> Explanation:
-        apart = change_of(problem, one.fitted, best.fitted) / error
-        least = best.evidence.either - 0.5 * _INDEPENDENT * apart**2
+        apart = change_of(problem, one.fitted, best.fitted)
+        least = best.evidence.either - most_nats(apart, error, best.form_error)
         return one.lifted(max(0.0, least - one.evidence.either))
 
     return [one if one is best else lifted(one) for one in everyone]
