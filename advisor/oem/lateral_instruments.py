@@ -4,10 +4,11 @@ The command acts up to half an interval and a filter's delay earlier or later th
 may be late relative to the rates, and every time is relative to the rates. A servo that the aircraft file
 leaves open lags by an unknown time. An ignored lag of 0.08 s costs a quarter of L_p and L_δa. A sideslip vane
 ahead of the centre of gravity reads β + (x/V)·r. A vane taken as at the centre of gravity shifts N_r by
--N_β·x/V. Each is one more parameter, and its error is part of every interval.
+-N_β·x/V. The true air speed differs from the read one. Each is one more parameter, and its error is part of
+every interval.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -28,6 +29,9 @@ KNOWN_TO = 0.1
 FARTHEST_S = 0.1
 """Standard deviation of an unknown arm of the sideslip vane, over the air speed, s. A boom on record has
 0.1 s (13 m at 130 m/s)."""
+AIR_SPEED = Prior(0.0, 0.02)
+"""Relative excess of the true over the read air speed. The read speed may be an indicated one, and a static
+port reads a pressure that the wing changes."""
 LONGEST_LAG_S = 0.4
 FIRST_LAG_S = 0.01
 """Unknown lag with which the search begins, s."""
@@ -39,9 +43,9 @@ LARGEST_MOVE_S = 0.03
 class Nuisance:
     """One nuisance parameter, in s, or in m for an arm."""
 
-    kind: Literal["lag", "delay", "command", "arm"]
-    """Lag of a control's servo, delay of an output relative to the rates, delay of all commands, or place of
-    the sideslip vane."""
+    kind: Literal["lag", "delay", "command", "arm", "air"]
+    """Lag of a control's servo, delay of an output relative to the rates, delay of all commands, place of the
+    sideslip vane, or relative excess of the true air speed."""
     of: str
     """Control or output; empty for the commands."""
     prior: Prior
@@ -51,6 +55,8 @@ class Nuisance:
     @property
     def name(self) -> str:
         """Name of the parameter with its unit."""
+        if self.kind == "air":
+            return "airspeed_excess"
         what = {"lag": "lag_s", "arm": "arm_m"}.get(self.kind, "delay_s")
         return f"{self.of or 'command'}_{what}"
 
@@ -60,6 +66,8 @@ class Nuisance:
             return problem.servos[self.of].lag_s
         if self.kind == "arm":
             return problem.beta_arm_m
+        if self.kind == "air":
+            return problem.airspeed_excess
         return problem.delays_s.get(self.of, 0.0) if self.kind == "delay" else problem.command_delay_s
 
     def write(self, problem: LateralProblem, value: float) -> LateralProblem:
@@ -68,6 +76,8 @@ class Nuisance:
             return replace(problem, command_delay_s=value)
         if self.kind == "arm":
             return replace(problem, beta_arm_m=value)
+        if self.kind == "air":
+            return replace(problem, airspeed_excess=value)
         if self.kind == "delay":
             return replace(problem, delays_s={**problem.delays_s, self.of: value})
         servo = replace(problem.servos[self.of], lag_s=float(np.clip(value, 0.0, LONGEST_LAG_S)))
@@ -92,6 +102,8 @@ def nuisances_of(problem: LateralProblem, aircraft: Aircraft) -> tuple[Nuisance,
             found.append(Nuisance("lag", name, USUAL_LAG))
         elif stated > 0.0:
             found.append(Nuisance("lag", name, Prior(stated, KNOWN_TO * stated)))
+    if moving and problem.tells_force:
+        found.append(Nuisance("air", "", AIR_SPEED))
     return tuple(found)
 
 
@@ -116,12 +128,18 @@ def begun(problem: LateralProblem, nuisances: Sequence[Nuisance]) -> LateralProb
 
 
 def columns_of(
-    assembly: LateralAssembly, by_cause: FloatArray, motion: FloatArray, nuisances: Sequence[Nuisance]
+    assembly: LateralAssembly,
+    by_cause: FloatArray,
+    motion: FloatArray,
+    nuisances: Sequence[Nuisance],
+    by_speed: Callable[[], FloatArray],
 ) -> FloatArray:
     """Return the derivatives of the outputs by nuisance parameters, shape (N, k).
 
     Parameters
     ----------
+    by_speed
+        Returns the derivative (N,) by the relative excess of the air speed.
     by_cause
         (N, 3) derivatives by ``CAUSES``, which change the motion.
     motion
@@ -131,6 +149,9 @@ def columns_of(
     for k, x in enumerate(nuisances):
         if x.kind in ("command", "lag"):
             columns[:, k] = by_cause[:, CAUSES.index(x.of or "command")]
+            continue
+        if x.kind == "air":
+            columns[:, k] = by_speed()
             continue
         output = LATERAL.outputs.index(x.of)
         row = assembly.grid.row[output]

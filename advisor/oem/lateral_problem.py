@@ -58,6 +58,8 @@ class LateralProblem:
     """Distance of the sideslip vane ahead of the centre of gravity, m."""
     accelerometer_arm_m: float = 0.0
     """Distance of the accelerometer ahead of the centre of gravity, m."""
+    airspeed_excess: float = 0.0
+    """Relative excess of the true over the read air speed."""
 
     @property
     def tells_force(self) -> bool:
@@ -148,14 +150,14 @@ def _piece(record: LateralRecord, problem: LateralProblem) -> Piece:
     t = events_of(outputs, [problem.servo(name).grid(command.t) for name, command in record.inputs.items()])
     step = np.diff(t)
     middle = t[:-1] + step / 2.0
-    speed = padded(record.airspeed.at(middle))
+    read, true = padded(record.airspeed.at(middle)), 1.0 + problem.airspeed_excess
     reference = problem.reference_airspeed_m_s
     columns = {
         "step_s": padded(step),
-        "ratio": np.ones(len(t)) if reference is None else speed / reference,
+        "ratio": np.ones(len(t)) if reference is None else read / reference,
         **_moved(record, problem, t),
-        **_known(record, middle, speed),
-        **_outputs(record.airspeed.at(t), problem),
+        **_known(record, middle, true * read),
+        **_outputs(true * record.airspeed.at(t), problem),
     }
     return Piece(t, outputs, columns)
 

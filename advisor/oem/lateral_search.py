@@ -5,6 +5,7 @@ pass over the motion that gives the outputs. The steps and the damping are those
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import NamedTuple, Self
 
 import numpy as np
@@ -38,6 +39,8 @@ model itself is no truer: α, θ and V are constant between stamps."""
 SETTLED = 1e-3
 """Promised change of -2 log of the posterior at which a search ends. It moves no parameter by more than 0.03
 of its standard deviation."""
+_SPEED_STEP = 1e-3
+"""Numerical: step of the difference by which the outputs' derivative by the air speed is taken."""
 _SHARED, _OWN = len(LATERAL.names.shared), len(LATERAL.names.local)
 _INITIAL = [LATERAL.names.local.index(f"{state}_initial") for state in LATERAL.states]
 
@@ -58,6 +61,15 @@ class LateralFit(NamedTuple):
     def cost(self) -> float:
         """-2 log of the posterior, up to a constant."""
         return self.optimum.log_likelihood_cost
+
+
+def outputs_at(problem: LateralProblem, shared: FloatArray, local: FloatArray) -> FloatArray:
+    """Return the outputs (N,) of a problem, without their derivatives."""
+    assembly = assemble_lateral(problem)
+    y = np.empty(len(assembly.z))
+    nothing = np.empty((0, _SHARED + _OWN + len(CAUSES)))
+    respond_axis(assembly.grid, shared, local, y, nothing, np.empty((0, 2, len(LATERAL.states))))
+    return y
 
 
 class _Setting(NamedTuple):
@@ -81,7 +93,12 @@ class _Setting(NamedTuple):
         cost += float(self.prior.precision @ (shared - self.prior.mean) ** 2) + penalty(
             problem, self.nuisances
         )
-        columns = columns_of(assembly, g[:, _SHARED + _OWN :], motion, self.nuisances)
+
+        def by_speed() -> FloatArray:
+            faster = replace(problem, airspeed_excess=problem.airspeed_excess + _SPEED_STEP)
+            return (outputs_at(faster, shared, local) - y) / _SPEED_STEP
+
+        columns = columns_of(assembly, g[:, _SHARED + _OWN :], motion, self.nuisances, by_speed)
         optimum = Optimum(EXHAUSTED, shared, local, noise, cost, 0, y, g[:, : _SHARED + _OWN])
         extra = Extra.of(columns, problem, self.nuisances)
         return LateralFit(problem, assembly, optimum, extra, motion[assembly.grid.first[:-1], 1])

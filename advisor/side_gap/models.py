@@ -26,10 +26,8 @@ SMALL_SHARE = 0.1
 """Least size of a derivative for a relative error, over its natural size (``natural_size``)."""
 NATURAL_STEP = 1e-3
 """Step of the differences of a natural number, s or m."""
-_AIR_SPEED_STD = 0.02
-"""Prior: standard deviation of the relative excess of the true over the read air speed. The read speed may be
-an indicated one, and a static port reads a pressure that the wing changes."""
-
+_PLACES = {"command": COMMAND, "air": AIR_SPEED}
+"""Kind of a nuisance parameter to its place in a setting, where it is of no control and no output."""
 _ENTRIES = {"delay": "skew_s", "arm": "arm_m", "lag": "lag_s"}
 """Kind of a nuisance parameter to its entry in a setting."""
 
@@ -83,14 +81,13 @@ def case_of(maneuvers: Sequence[Maneuver], aircraft: Aircraft, theta: FloatArray
         stated_s = getattr(aircraft, name).delay_s or 0.0
         natural.append(Free((name, "delay_s"), 0.5 * float(np.median(stamps)), NATURAL_STEP, mean=stated_s))
     for one in nuisances_of(problem, aircraft):
-        place = COMMAND if one.kind == "command" else (one.of, _ENTRIES[one.kind])
+        place = _PLACES.get(one.kind) or (one.of, _ENTRIES[one.kind])
         # A lag that the file leaves open is absent from the simulator: such a lag is an effect.
         if one.kind != "lag" or place in setting:
             natural.append(Free(place, one.prior.std, NATURAL_STEP * one.per_second, mean=one.prior.mean))
     forces = [record.outputs["a_y"].t for record in problem.records if "a_y" in record.outputs]
     if forces:
         natural.append(Free(("a_y", "skew_s"), lateness_std(forces), NATURAL_STEP))
-    natural.append(Free(AIR_SPEED, _AIR_SPEED_STD, NATURAL_STEP))
     stated = tuple(name for name in SIDE_PARAMETERS if name in aircraft.model)
     given = np.array([aircraft.model.get(n, v) for n, v in zip(SIDE_PARAMETERS, theta, strict=True)])
     begin = Point(theta, lateral_start(problem)[1], setting)

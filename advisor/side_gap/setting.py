@@ -58,10 +58,9 @@ def laid_out(flown: Flown, setting: Setting) -> LateralAssembly:
 
     base = flown.problem
     outputs = LATERAL.outputs
-    faster, reference = 1.0 + whole(AIR_SPEED), base.reference_airspeed_m_s
     problem = replace(
         base,
-        reference_airspeed_m_s=None if reference is None else faster * reference,
+        airspeed_excess=whole(AIR_SPEED),
         records=tuple(_driven(flown, m, setting) for m in range(len(flown))),
         servos={name: Servo() for name in LATERAL.inputs},
         command_delay_s=whole(COMMAND),
@@ -92,10 +91,7 @@ def _driven(flown: Flown, m: int, setting: Setting) -> LateralRecord:
         moved = inputs["aileron"]
         t = np.union1d(moved.t, throttle.t)
         inputs["aileron"] = Signal(t, moved.at(t) + share[m] * (throttle.at(t) - throttle.y[0]))
-    excess = setting.get(AIR_SPEED)
-    read = record.airspeed
-    airspeed = read if excess is None else Signal(read.t, (1.0 + excess[m]) * read.y)
-    return replace(record, inputs=inputs, airspeed=airspeed)
+    return replace(record, inputs=inputs)
 
 
 def _deflected(command: Signal, p: FloatArray) -> Signal:

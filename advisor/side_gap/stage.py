@@ -117,8 +117,9 @@ def stage_of(case: Case, plain: Fit, share: float, table: Sequence[SideEffect], 
     each = prior.effect / max(len(table), 1)
     shares = [prior.none, prior.parameters, *(each for _ in tried)]
     evidence = [none, parameters, *(one.evidence for one in tried)]
-    names = [(), (), *(one.effect.variant.names for one in tried)]
-    evidence = within_model_error([plain, plain, *(one.fit for one in tried)], names, evidence)
+    names = [(), *(one.effect.variant.names for one in tried)]
+    made_up = for_model_error([plain, *(one.fit for one in tried)], names, share)
+    evidence = list(np.add(evidence, [made_up[0], *made_up]))
     still = probabilities(evidence, shares)
     courses = gust_courses(plain, case.flown)
     gusts, gain = _in_gusts(plain, courses)
@@ -140,10 +141,8 @@ def stage_of(case: Case, plain: Fit, share: float, table: Sequence[SideEffect], 
     )  # fmt: skip
 
 
-def within_model_error(
-    fits: Sequence[Fit], names: Sequence[Sequence[str]], evidence: Sequence[float]
-) -> list[float]:
-    """Return the log evidence of fits, none of which is less likely than the error of a simulator allows.
+def for_model_error(fits: Sequence[Fit], names: Sequence[Sequence[str]], share: float) -> list[float]:
+    """Return the nats of the likelihood that the error of every simulator makes up for, by fit.
 
     Parameters
     ----------
@@ -151,13 +150,14 @@ def within_model_error(
         The first one has no effect.
     names
         Numbers of the effect of each fit.
+    share
+        Share of white noise in the residuals.
     """
-    best = int(np.argmax(evidence))
+    likelihood = [share**2 * fit.likelihood for fit in fits]
+    best = int(np.argmax(likelihood))
     form = form_error(names[best], change_of(fits[0], fits[best]))
-    return [
-        max(one, evidence[best] - most_nats(change_of(fit, fits[best]), form))
-        for fit, one in zip(fits, evidence, strict=True)
-    ]
+    least = [likelihood[best] - most_nats(change_of(fit, fits[best]), form) for fit in fits]
+    return [max(0.0, enough - one) for enough, one in zip(least, likelihood, strict=True)]
 
 
 def change_of(one: Fit, other: Fit) -> float:

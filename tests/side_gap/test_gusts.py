@@ -79,7 +79,11 @@ def test_still_air_has_no_gusts(flight):
 
 def staged(case, fit, monkeypatch, gains, evidence=(-5.0, -5.0)):
     """Return a stage with one effect of known evidence, and with known gains of gusts."""
-    effect = SimpleNamespace(name="rudder_transport_delay", places=(("rudder", "delay_s"),))
+    effect = SimpleNamespace(
+        name="rudder_transport_delay",
+        places=(("rudder", "delay_s"),),
+        variant=SimpleNamespace(names=("delay_s",)),
+    )
     other = replace(fit)
     tried = Tried(effect, other, *evidence, Gain(1.0, 1.0))
     monkeypatch.setattr(stage, "log_evidence", lambda *_: -10.0)
