@@ -211,7 +211,6 @@ def test_a_faint_error_of_an_instrument_is_named_when_it_is_certain_in_still_air
     assert found.causes[0].parameters["scale"].value == pytest.approx(0.03, abs=0.01)
 
 
-@pytest.mark.xfail(strict=True, reason="the first effect alone leaves too much, so it is not named")
 def test_of_two_effects_each_has_the_size_it_has_beside_the_other():
     setup = Setup(maneuvers=6, alpha_scale=0.19, skew={"a_z": 0.047}, seed=5)
     found = {c.effect: c.parameters for c in diagnose(fly(setup), Aircraft()).causes if c.present}

@@ -127,7 +127,7 @@ def pairs(first_nats, second):
     stage_1 = staged(0.0, [("transport_delay", first_nats)])
     way = Row(DELAY, stage_1.best, {"fit": first_nats})
     prior = FieldPrior(none=0.4, parameters=0.2, effect=0.3, unknown=0.1)
-    return list(_pairs([way], stage_1, second, 26, 18, prior))
+    return list(_pairs([way], stage_1.plain, stage_1.best, second, 26, 18, prior))
 
 
 def test_a_second_cause_keeps_the_first_one_as_the_answer():

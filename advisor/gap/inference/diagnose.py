@@ -20,17 +20,19 @@ from advisor.gap.inference.laws import laws_of
 from advisor.gap.inference.posterior import NONE, Posterior, posterior_of, relabelled, rows_of, stated_as
 from advisor.gap.inference.prior import FieldPrior
 from advisor.gap.inference.sizes import with_sizes
-from advisor.gap.inference.stage import stage_of
+from advisor.gap.inference.stage import Stage, stage_of
 from advisor.gap.kit.variant import Variant
 from advisor.gap.noise.quiet import quiet_rms
 from advisor.gap.noise.stamps import stamp_power
 from advisor.gap.records.floor import tolerance_of
 from advisor.gap.search.air import SoughtAir, moving_air
+from advisor.gap.search.screen import Screen
 
 Progress = Callable[[str, float], None]
 """Function that receives a sentence about the work and the share done, 0 to 1."""
-_SECOND = 3
-"""Numerical: number of effects that are fitted in full as a second cause."""
+_LEADS, _SECOND = 4, 3
+"""Numerical: number of effects beside each of which all others are tried, and that are fitted in full as a
+second cause."""
 _SET_WITHIN_RAD = {True: 0.009, False: 0.0035}
 """Prior: standard deviation of an offset of α without a fault, rad, of an autopilot's estimate and of a vane.
 ArduPlane's estimate is off by 0.2 to 0.5 degrees; a vane's zero is set to 0.2 degrees."""
@@ -80,11 +82,11 @@ def infer(
     best = stage.best
     progress("looking for what has no name", 0.6)
     names, names_of_laws = (sorted({v.effect for v in some}) for some in (table, laws))
-    second = None
-    if any(one is best for one in stage.effects):
-        others = [v for v in table if v.effect != best.name]
-        second = stage_of(best.problem, best.fitted, others, laws, _SECOND, best.form_error)
-    rows = rows_of(problem, stage, names, names_of_laws, prior, second)
+    lead, second = _lead(stage, table), None
+    if lead is not None:
+        others = [v for v in table if v.effect != lead.name]
+        second = stage_of(lead.problem, lead.fitted, others, laws, _SECOND, lead.form_error)
+    rows = rows_of(problem, stage, names, names_of_laws, prior, lead, second)
     rows = _with_offset(rows, kinematics, problem, prior, len(names))
     progress("looking at the air", 0.7)
     sought = moving_air(problem, best.fitted)
@@ -96,7 +98,7 @@ def infer(
     if answer.kind == "effect" and answer.name in {one.name for one in stage.effects}:
         first = posterior.explanation_of(answer)
         chosen.append(first)
-        if second is None or first is not best:
+        if second is None or first is not lead:
             others = [v for v in table if v.effect != answer.name]
             progress("looking for a second cause", 0.8)
             second = stage_of(first.problem, first.fitted, others, laws, _SECOND, first.form_error)
@@ -106,6 +108,24 @@ def infer(
         if also.kind == "effect":
             chosen.append(posteriors[-1].explanation_of(also))
     return Inference(problem, tuple(posteriors), tuple(chosen), stage.heat, sought, floor)
+
+
+def _lead(stage: Stage, table: Sequence[Variant]) -> Explanation | None:
+    """Return the likely effect that explains most together with a second one, by a quick look at every pair.
+
+    Two effects may hide each other: neither alone explains anything.
+    """
+    likely: dict[str, Explanation] = {}
+    for one in sorted(stage.effects, key=lambda one: -one.evidence.either):
+        likely.setdefault(one.name, one)
+    leads = list(likely.values())[:_LEADS]
+
+    def together(lead: Explanation) -> float:
+        others = [v for v in table if v.effect != lead.name]
+        quick = Screen(lead.problem, lead.fitted).quick_fits(others)
+        return min((one.cost for one in quick), default=np.inf)
+
+    return min(leads, key=together, default=None)
 
 
 def _table(

@@ -90,6 +90,7 @@ def rows_of(
     names: Sequence[str],
     laws: Sequence[str],
     prior: FieldPrior,
+    lead: Explanation | None = None,
     second: Stage | None = None,
 ) -> list[Row]:
     """Return the rows of one stage.
@@ -100,12 +101,12 @@ def rows_of(
         Effects of the catalogue, and laws outside of it, that were tried.
     prior
         How often each kind of answer is right before a flight is looked at.
-    second
-        Stage after the likeliest effect: with a second cause, the first one leaves another residual.
+    lead, second
+        An effect and the stage after it: with a second cause, the first one leaves another residual.
     """
     ways = [*_ways(stage, names, laws, prior)]
-    if second is not None:
-        ways += _pairs(ways, stage, second, len(names), len(laws), prior)
+    if lead is not None and second is not None:
+        ways += _pairs(ways, stage.plain, lead, second, len(names), len(laws), prior)
     ways.sort(key=lambda way: -way.weight)
     models = {id(way.model): way.model for way in ways}
     near = list(models.items())[:_SEARCHED]
@@ -138,17 +139,21 @@ def _ways(stage: Stage, names: Sequence[str], laws: Sequence[str], prior: FieldP
 
 
 def _pairs(
-    ways: Sequence[Row], stage: Stage, second: Stage, names: int, laws: int, prior: FieldPrior
+    ways: Sequence[Row],
+    plain: Explanation,
+    lead: Explanation,
+    second: Stage,
+    names: int,
+    laws: int,
+    prior: FieldPrior,
 ) -> Iterator[Row]:
-    """Yield the ways in which the likeliest effect is true together with a second one.
+    """Yield the ways in which an effect is true together with a second one.
 
     Where a law outside the table is the second, both may be one law that the effect resembles. The more the
     effect leaves to the law, the likelier that is.
     """
-    first = next((way for way in ways if way.explanation is stage.best and way.alternative.is_effect), None)
-    if first is None:
-        return
-    of_first = max(stage.best.evidence.either - stage.plain.evidence.either, 0.0)
+    first = next(way for way in ways if way.explanation is lead and way.alternative.is_effect)
+    of_first = max(lead.evidence.either - plain.evidence.either, 0.0)
     for one in (*second.effects, *second.laws):
         outside = any(one is law for law in second.laws)
         share = 0.5 * prior.unknown / laws if outside else prior.effect / max(names - 1, 1)
