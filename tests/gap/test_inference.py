@@ -78,22 +78,19 @@ def test_every_decision_on_an_answer_has_a_sentence(answer):
 
 
 class Model(SimpleNamespace):
-    """An explanation with a log evidence, whose change of the outputs by its effect is nothing."""
+    """An explanation with a log likelihood, whose change of the outputs by its effect is nothing."""
 
     def lifted(self, nats):
-        return Model(evidence=SimpleNamespace(either=self.evidence.either + nats), fitted=self.fitted)
+        return Model(likelihood=self.likelihood + nats)
 
 
 @pytest.mark.parametrize(("apart", "nats"), [(0.0, 0.0), (0.0025, 5.0), (0.005, 20.0), (0.05, 1000.0)])
 def test_a_difference_below_a_simulators_own_error_decides_by_few_nats(monkeypatch, apart, nats):
     """The error is half a per cent of the peak, with forty independent numbers: 20 nats at its size."""
     monkeypatch.setattr(stage, "change_of", lambda problem, one, other: apart)
-    best, other = (
-        Model(evidence=SimpleNamespace(either=either), fitted=None, form_error=0.0)
-        for either in (1000.0, 0.0)
-    )
+    best, other = (Model(likelihood=likelihood, fitted=None, form_error=0.0) for likelihood in (1000.0, 0.0))
     told = stage._within_model_error(None, [best, other], 0.0)
-    assert told[0].evidence.either - told[1].evidence.either == pytest.approx(nats)
+    assert told[0].likelihood - told[1].likelihood == pytest.approx(nats)
 
 
 @pytest.mark.parametrize(("size", "likelier"), [(1.0, True), (10.0, False)])

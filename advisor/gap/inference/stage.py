@@ -123,16 +123,16 @@ def _at_the_files(one: Explanation, plain: EffectFit, heat: float, best: float) 
 def _within_model_error(
     problem: EffectProblem, everyone: Sequence[Explanation], error: float
 ) -> list[Explanation]:
-    """Return all explanations, none of which is less likely than the error of a simulator allows.
+    """Return all explanations, none of whose likelihoods is less than the error of a simulator allows.
 
     Residuals cannot distinguish two models whose outputs differ by less than such an error. More samples do
-    not help.
+    not help. The prior still does.
     """
-    best = max(everyone, key=lambda one: one.evidence.either)
+    best = max(everyone, key=lambda one: one.likelihood)
 
     def lifted(one: Explanation) -> Explanation:
         apart = change_of(problem, one.fitted, best.fitted)
-        least = best.evidence.either - most_nats(apart, error, best.form_error)
-        return one.lifted(max(0.0, least - one.evidence.either))
+        least = best.likelihood - most_nats(apart, error, best.form_error)
+        return one.lifted(max(0.0, least - one.likelihood))
 
     return [one if one is best else lifted(one) for one in everyone]
