@@ -45,7 +45,7 @@ class Nuisance:
 
     kind: Literal["lag", "delay", "command", "arm", "air"]
     """Lag of a control's servo, delay of an output relative to the rates, delay of all commands, place of the
-    sideslip vane, or relative excess of the true air speed."""
+    sideslip vane. Last, the relative excess of the true air speed."""
     of: str
     """Control or output; empty for the commands."""
     prior: Prior

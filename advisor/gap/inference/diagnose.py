@@ -31,8 +31,8 @@ from advisor.gap.search.screen import Screen
 Progress = Callable[[str, float], None]
 """Function that receives a sentence about the work and the share done, 0 to 1."""
 _LEADS, _SECOND = 4, 3
-"""Numerical: number of effects beside each of which all others are tried, and that are fitted in full as a
-second cause."""
+"""Numerical: number of effects that are paired with all others, and that are fitted in full as a second
+cause."""
 _SET_WITHIN_RAD = {True: 0.009, False: 0.0035}
 """Prior: standard deviation of an offset of α without a fault, rad, of an autopilot's estimate and of a vane.
 ArduPlane's estimate is off by 0.2 to 0.5 degrees; a vane's zero is set to 0.2 degrees."""

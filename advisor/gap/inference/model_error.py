@@ -15,8 +15,15 @@ _INDEPENDENT = 40.0
 
 
 def form_error(names: Sequence[str], change: float) -> float:
-    """Return the error of the outputs by the form of an effect with numbers ``names``, as a share of the
-    peaks, for a ``change`` of the outputs by the effect."""
+    """Return the error of the outputs by the form of an effect, as a share of the peaks.
+
+    Parameters
+    ----------
+    names
+        Numbers of the effect.
+    change
+        Change of the outputs by the effect, as a share of the peaks.
+    """
     return change * (_PLAY if "half_width_rad" in names else _FORM)
 
 

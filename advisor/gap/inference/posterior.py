@@ -16,6 +16,8 @@ from advisor.gap.inference.stage import Stage
 _RIGHT, _LACKING = (0.0, 0.6), (np.log(3.0), 0.9)
 """Prior: mean and standard deviation of the log of the residual's size (``Residual.size``), of a right model
 and of one that lacks a law."""
+_ALWAYS = frozenset({"air"})
+"""Blocks with a disturbance in most flights: such a residual is no law that the simulator lacks."""
 _LEAST_MISFIT = 0.25
 """Numerical: size of a residual below which it is not told from none."""
 _SEARCHED = 2
@@ -185,8 +187,7 @@ def _with_residual(way: Row, residual: Residual, prior: FieldPrior) -> Iterator[
     yield replace(way, terms={**way.terms, "residual": _log_normal(residual.size, _RIGHT)})
     lacking = float(np.log(0.5 * prior.unknown / (prior.none + prior.parameters + prior.effect)))
     for block, share in residual.blocks.items():
-        if block == "air":
-            # The air moves in most flights: such a residual is no law that the simulator lacks.
+        if block in _ALWAYS:
             terms = {
                 **way.terms,
                 "residual": _log_normal(residual.size, _LACKING) + float(np.log(0.5 * share)),
