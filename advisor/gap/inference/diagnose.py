@@ -120,12 +120,13 @@ def _lead(stage: Stage, table: Sequence[Variant]) -> Explanation | None:
         likely.setdefault(one.name, one)
     leads = list(likely.values())[:_LEADS]
 
-    def together(lead: Explanation) -> float:
+    best, named = np.inf, set[str]()
+    for lead in leads:
         others = [v for v in table if v.effect != lead.name]
-        quick = Screen(lead.problem, lead.fitted).quick_fits(others)
-        return min((one.cost for one in quick), default=np.inf)
-
-    return min(leads, key=together, default=None)
+        for one in Screen(lead.problem, lead.fitted).quick_fits(others):
+            if one.cost < best:
+                best, named = one.cost, {lead.name, one.variant.effect}
+    return next((lead for lead in leads if lead.name in named), None)
 
 
 def _table(
