@@ -123,9 +123,9 @@ def _lead(stage: Stage, table: Sequence[Variant]) -> Explanation | None:
     best, named = np.inf, set[str]()
     for lead in leads:
         others = [v for v in table if v.effect != lead.name]
-        for one in Screen(lead.problem, lead.fitted).quick_fits(others):
-            if one.cost < best:
-                best, named = one.cost, {lead.name, one.variant.effect}
+        for quick in Screen(lead.problem, lead.fitted).quick_fits(others):
+            if quick.cost < best:
+                best, named = quick.cost, {lead.name, quick.variant.effect}
     return next((lead for lead in leads if lead.name in named), None)
 
 
