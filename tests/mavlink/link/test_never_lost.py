@@ -235,8 +235,8 @@ def test_a_full_disk_is_said_and_nothing_is_lost_when_there_is_room_again(advisi
 
 def test_a_resumed_flight_test_keeps_its_connection_rule_and_decisions(advising: Advising):
     advising.start()
-    fly(until(FLIGHT, 40.0), advising.port, 20.0, lambda now_s: None)
-    wait_until(lambda: len(verdicts(advising.said)) == 1, 30.0)
+    fly(until(FLIGHT, 55.0), advising.port, 20.0, lambda now_s: None)
+    wait_until(lambda: len(verdicts(advising.said)) == 2, 30.0)
     assert advising.end() == 130
     minutes, seconds = verdicts(advising.said)[0].split()[1].split(":")
     start_s = 60.0 * float(minutes) + float(seconds)
@@ -244,7 +244,7 @@ def test_a_resumed_flight_test_keeps_its_connection_rule_and_decisions(advising:
     decided.write_text(f"excluded:\n- {{at_s: {start_s}, because: a gust}}\n")
     advising.resume()
     wait_until(lambda: any("a gust" in line for line in advising.said), 30.0)
-    wait_until(lambda: any("0 of 3 accepted manoeuvres" in line for line in advising.said), 30.0)
+    wait_until(lambda: any("1 of 3 accepted manoeuvres" in line for line in advising.said), 30.0)
     fly(FLIGHT[len(until(FLIGHT, 40.0)) :], advising.port, 20.0, lambda now_s: None)
     wait_until(lambda: len(verdicts(advising.said)) == 6, 30.0)
     assert advising.end() == 130
