@@ -12,6 +12,7 @@ from advisor.gap.alternative import Alternative
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.diagnose import diagnose
 from advisor.gap.inference import stage
+from advisor.gap.inference.diagnose import _with_air
 from advisor.gap.inference.explanation import Explanation, Row
 from advisor.gap.inference.posterior import NONE, PARAMETERS, _pairs, _with_residual, posterior_of, stated_as
 from advisor.gap.inference.prior import FieldPrior
@@ -93,7 +94,7 @@ def test_a_difference_below_a_simulators_own_error_decides_by_few_nats(monkeypat
     assert told[0].likelihood - told[1].likelihood == pytest.approx(nats)
 
 
-@pytest.mark.parametrize(("size", "likelier"), [(1.0, True), (10.0, False)])
+@pytest.mark.parametrize(("size", "likelier"), [(1.0, True), (3.2, True), (3.7, False), (10.0, False)])
 def test_a_residual_far_beyond_a_simulators_own_is_likelier_of_a_law_without_a_name(size, likelier):
     prior = FieldPrior(none=0.25, parameters=0.25, effect=0.25, unknown=0.25)
     rows = list(_with_residual(row(DELAY), Residual(size, {"moment_equation": 1.0}), prior))
@@ -106,6 +107,23 @@ def test_a_residual_that_moving_air_explains_is_no_law_without_a_name(size):
     prior = FieldPrior(none=0.25, parameters=0.25, effect=0.25, unknown=0.25)
     rows = list(_with_residual(row(DELAY), Residual(size, {"air": 1.0}), prior))
     assert {r.alternative for r in rows} == {DELAY}
+
+
+@pytest.mark.parametrize(("left", "named"), [(2.0, DELAY), (8.0, stated_as("turbulence"))])
+def test_moving_air_is_the_answer_where_it_removes_more_of_the_gap_than_the_effect(left, named):
+    """Without the effect the gap is 10. The air leaves 1 of what the effect leaves."""
+
+    def mean_square(gap):
+        return SimpleNamespace(mean_square=np.array([1.0 + gap]))
+
+    air = SimpleNamespace(
+        is_natural=False, gust=False, angle_std=0.02, mean_square_beyond_air=np.array([2.0])
+    )
+    late = SimpleNamespace(name="transport_delay", held_out=mean_square(left))
+    rows = [Row(DELAY, late, {"fit": 0.0}), Row(MOMENT, late, {"fit": 0.0})]
+    plain = SimpleNamespace(held_out=mean_square(10.0))
+    told = _with_air(rows, plain, SimpleNamespace(found=air), 0.0, np.ones(1))
+    assert [row.alternative for row in told] == [named, MOMENT]
 
 
 def staged(plain, effects=(), laws=(), best=None):

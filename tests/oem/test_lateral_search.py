@@ -28,6 +28,7 @@ CLOCKS = (
     Nuisance("delay", "bank", WIDE),
     Nuisance("delay", "beta", WIDE),
     Nuisance("arm", "beta", WIDE, SPEED_M_S),
+    Nuisance("air", "", WIDE),
 )
 
 
@@ -93,6 +94,18 @@ def test_one_search_finds_derivatives_lag_and_delay_within_a_few_trials(doublets
     assert lag.read(fit.problem) == pytest.approx(0.06, abs=0.01)
     assert late.read(fit.problem) == pytest.approx(0.02, abs=0.002)
     assert fit.optimum.shared[LATERAL.names.reported.index("L_p")] == pytest.approx(JET["L_p"], rel=0.03)
+
+
+def test_without_noise_an_air_speed_that_reads_too_little_is_found_and_moves_no_derivative():
+    records = []
+    for record in both_inputs(JET, measured=("p", "r", "bank", "a_y")).records:
+        true = record.airspeed
+        records.append(replace(record, airspeed=Signal(true.t, true.y / 1.04)))
+    excess = Nuisance("air", "", WIDE)
+    problem = LateralProblem(tuple(records))
+    fit = fit_lateral(problem, (excess,), KNOWN_NOTHING, lateral_start(problem))
+    assert excess.read(fit.problem) == pytest.approx(0.04, abs=0.004)
+    assert fit.optimum.shared[LATERAL.names.reported.index("Y_beta")] == pytest.approx(-0.2, abs=0.002)
 
 
 def test_a_lag_stays_within_its_range_and_everything_else_follows(doublets):

@@ -118,3 +118,14 @@ def test_gusts_as_small_as_in_any_flight_are_no_cause(case, flight, monkeypatch)
     told = staged(case, flight[0], monkeypatch, (60.0, 20.0))
     assert told.air == 0.0
     assert told.none > 0.5
+
+
+@pytest.mark.parametrize(("apart", "stays_behind"), [(0.0, 0.0), (0.0025, 5.0), (0.05, 100.0)])
+def test_models_closer_than_a_simulators_own_error_differ_by_few_nats(monkeypatch, apart, stays_behind):
+    """The error is half a per cent of the peak: 20 nats at its size, and what the data say beyond."""
+    monkeypatch.setattr(stage, "change_of", lambda one, other: 0.0 if one is other else apart)
+    plain, late = SimpleNamespace(likelihood=-100.0), SimpleNamespace(likelihood=0.0)
+    monkeypatch.setattr(stage, "form_error", lambda names, change: 0.0)
+    made_up, nothing = stage.for_model_error([plain, late], [(), ("skew_s",)], 1.0)
+    assert nothing == 0.0
+    assert 100.0 - made_up == pytest.approx(stays_behind)
