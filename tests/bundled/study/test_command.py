@@ -63,6 +63,7 @@ def test_a_disk_that_fills_up_leaves_the_old_figure_and_no_half_one(tmp_path: Pa
     assert [path.read_text() for path in tmp_path.iterdir()] == ["the figure of yesterday"]
 
 
+@pytest.mark.usefixtures("pictured")  # which compiles what a study needs
 def test_without_json_it_is_told_in_lines() -> None:
     result = CliRunner().invoke(command, ["--campaigns", "10", *ALONE])
     assert "continuous" in result.stdout
