@@ -13,14 +13,18 @@ from advisor.analysis.side_gap import side_gap_of
 from advisor.cli.log_options import LogsAsked
 from advisor.cli.options import UNUSABLE
 from advisor.cli.stages import Stages
+from advisor.gap.candidates.distinguish import way_to_distinguish
 from advisor.gap.document import changed_document, gap_document
 from advisor.gap.inference.prior import FIELD, field_prior
+from advisor.gap.verdict.titles import title_of_verdict
 from advisor.process.parts import FailedPart, attempt
-from advisor.report.gap_reasons import in_percent
+from advisor.report.gap_reasons import how_sure, in_percent
 from advisor.report.gap_sizes import sizes_of
+from advisor.report.gap_steps import GapStep, to_decide
 from advisor.side_gap.comparison import SideGap
 from advisor.side_gap.diagnosis import SideDiagnosis
 from advisor.side_gap.stage import LIKELY
+from advisor.words.certainty import is_decided
 from advisor.words.plain import picked, plain
 from advisor.words.problems import UnusableInputError
 from advisor.words.quantiles import NORMAL_95
@@ -66,7 +70,7 @@ def compare_lateral(asked: LogsAsked, aircraft: Aircraft, as_json: bool, prior: 
 def side_gap_lines(found: SideGap) -> Iterator[str]:
     """Yield the sentence, the causes, each stated derivative with that of the flight, instruments, and the
     gap."""
-    yield found.sentence
+    yield f"{_title(found)}: {found.sentence}"
     if found.diagnosis is not None:
         yield from _diagnosis_lines(found.diagnosis)
     for one in found.derivatives:
@@ -84,13 +88,25 @@ def side_gap_lines(found: SideGap) -> Iterator[str]:
             yield f"  {name:<5} {before:8.2f} before, {found.after[name]:.2f} after"
 
 
+def _title(found: SideGap) -> str:
+    """Return the title over the answer."""
+    return title_of_verdict(
+        found.verdict or "untested", found.diagnosis.answers if found.diagnosis is not None else ()
+    )
+
+
+def _to_decide(found: SideDiagnosis | None) -> GapStep | None:
+    """Return the flight that separates the two likeliest answers; None where one is decided."""
+    if found is None or is_decided(found.answers):
+        return None
+    named = {one.named: one.cause.effect for one in found.causes}
+    ours, other = (named.get(words) for words, _ in found.answers[:2])
+    return to_decide(found.answers, way_to_distinguish(ours, other) if ours and other else "")
+
+
 def _diagnosis_lines(found: SideDiagnosis) -> Iterator[str]:
     """Yield the probabilities, and each likely effect with its size and the errors that it removes."""
-    effects = sum(found.effects.values())
-    yield (
-        f"  probability: no gap {in_percent(found.none)}, wrong numbers {in_percent(found.parameters)}, "
-        f"an effect {in_percent(effects)}"
-    )
+    yield f"  {how_sure(found.answers)}"
     for one in found.causes:
         if one.cause.probability >= LIKELY:
             sizes = "; ".join(sizes_of(one.cause.parameters))
@@ -103,6 +119,8 @@ def _diagnosis_lines(found: SideDiagnosis) -> Iterator[str]:
                 )
     for what, why in found.cannot_see.items():
         yield f"  cannot be seen: {what}, for {why}"
+    if step := _to_decide(found):
+        yield step.text
 
 
 def side_gap_document(found: SideGap) -> dict[str, Any]:
@@ -114,6 +132,9 @@ def side_gap_document(found: SideGap) -> dict[str, Any]:
         shrink = {"holdout": list(found.holdout), "before": before, "after": after, "percent": percent}
     told: dict[str, Any] = plain({
         **picked(found, "verdict sentence maneuvers not_identifiable"),
+        "title": _title(found),
+        "decided": found.diagnosis is not None and is_decided(found.diagnosis.answers),
+        "next": [] if (step := _to_decide(found.diagnosis)) is None else [step],
         "gap": {"before": before, "by_channel": found.before, "by_channel_after": found.after},
         "parameters_changed": [changed_document(one) for one in found.derivatives if one.differs],
         "parameters_compared": [changed_document(one) for one in found.derivatives],

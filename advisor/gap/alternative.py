@@ -1,6 +1,6 @@
 """Alternatives: what may explain a flight, each with its evidence and its probability."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -29,6 +29,15 @@ class Alternative:
     def label(self) -> str:
         """The name, with the block where the name alone does not say it: ``unknown@input``."""
         return f"{self.name}@{self.block}" if self.kind == "unknown" else self.name
+
+
+def together(shares: Iterable[tuple[Alternative, float]]) -> list[tuple[Alternative, float]]:
+    """Return alternatives with their probabilities, the likeliest first. Blocks of the unknown are one."""
+    added: dict[str, tuple[Alternative, float]] = {}
+    for alternative, share in shares:
+        first, p = added.get(alternative.name, (alternative, 0.0))
+        added[alternative.name] = first, p + share
+    return sorted(added.values(), key=lambda answer: -answer[1])
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,14 +10,16 @@ from advisor.gap.alternative import AlternativeEvidence
 from advisor.gap.result import Cause, ComparedDerivative, Diagnosis, InSimulator, Qualification
 from advisor.gap.verdict.limits import limits_of
 from advisor.gap.verdict.text import in_words
+from advisor.gap.verdict.titles import answers_of, title_of
 from advisor.process.parts import FailedPart
+from advisor.words.certainty import is_decided
 from advisor.words.plain import picked, plain
 from advisor.words.problems import Problem
 
 SCHEMA = "advisor.gap/1"
 _NOTHING: Mapping[str, Any] = {
-    "verdict": None, "sentence": None, "limits": [], "maneuvers": [], "gap": None, "where": None,
-    "causes": [], "shrink": None, "waterfall": [], "cannot_see": [], "model": None,
+    "verdict": None, "title": None, "sentence": None, "limits": [], "maneuvers": [], "gap": None,
+    "where": None, "causes": [], "shrink": None, "waterfall": [], "cannot_see": [], "model": None,
     "reference_airspeed_m_s": None, "alpha_check": None, "yardsticks": None, "notes": [],
     "improved_model": None, "parameters_changed": [], "traces": [], "share_irreducible": None,
     "decisions": [], "simulator": None, "qualification": None, "static": [], "trims": [],
@@ -50,6 +52,7 @@ def gap_document(
     tested = d.verdict != "untested"
     document |= plain({
         "verdict": d.verdict if tested else None,
+        "title": title_of(d),
         **picked(d, "sentence maneuvers model reference_airspeed_m_s cannot_see notes share_irreducible"),
         "limits": list(limits_of(d)),
         "gap": {
@@ -95,7 +98,7 @@ def _judged(d: Diagnosis) -> dict[str, Any]:
         "evidence": [_evidence(one) for one in d.evidence],
         "why": [{"name": c.name, "nats": c.nats, "text": c.sentence} for c in d.why],
         "answer": d.answer and d.answer.label,
-        "decided": d.answer is not None and not d.doubt,
+        "decided": is_decided(answers_of(d.evidence)),
         "rival": d.rival or None,
     }
 

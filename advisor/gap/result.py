@@ -269,22 +269,32 @@ class Diagnosis:
     height_m: float | None = None
     """Mean height in the standard atmosphere at which the air has the density flown in, m; None for an
     unknown density."""
-    probabilities: Probabilities | None = None
-    """Probabilities of all alternatives; None for a single manoeuvre, which proves no cause."""
     evidence: tuple[AlternativeEvidence, ...] = ()
-    """The evidence on every alternative, likeliest first."""
+    """The evidence on every alternative, likeliest first; empty for a single manoeuvre, which proves no
+    cause."""
     why: tuple[Contribution, ...] = ()
     """The answer against its strongest rival, in nats that add up to the log odds."""
     answer: Alternative | None = None
     """The likeliest alternative; None for a single manoeuvre."""
     rival: str = ""
     """Label of that rival; empty without ``why``."""
-    doubt: str = ""
-    """Sentence on alternatives that the evidence cannot exclude; empty where the answer is sure."""
     although_refused: tuple[int, ...] = ()
     """Numbers of the manoeuvres in use that ``advisor analyze`` refuses by their data alone."""
     true_over_read: float = 1.0
     """Factor from the air speed as the aircraft reads it to the true one."""
+
+    @property
+    def probabilities(self) -> Probabilities | None:
+        """Probabilities of all alternatives by kind and name; None without evidence."""
+        if not self.evidence:
+            return None
+        each = [(one.alternative, one.probability) for one in self.evidence]
+        return Probabilities(
+            none=sum(p for a, p in each if a.kind == "none"),
+            parameters=sum(p for a, p in each if a.kind == "parameters"),
+            unknown={a.block: p for a, p in each if a.kind == "unknown"},
+            effects={a.name: p for a, p in each if a.is_effect},
+        )
 
 
 def spelled(effect: str) -> str:

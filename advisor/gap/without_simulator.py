@@ -4,10 +4,9 @@ from dataclasses import replace
 
 from advisor.gap.result import Diagnosis
 
-_NOT_GIVEN = "No simulator was given: the aircraft file holds no complete model."
-_INSTEAD = (
-    "The flight was compared with a model fitted to it. That shows effects beyond eight parameters, and "
-    "nothing about a simulator's parameters."
+_NOT_GIVEN = (
+    "No simulator was given: the aircraft file holds no complete model. The flight was compared with a model "
+    "fitted to it. That shows effects beyond eight parameters, and nothing about a simulator's parameters."
 )
 _STATEMENT = (
     "No simulator was given, so no gap can be stated. A model fitted to this flight leaves no effect to name."
@@ -16,7 +15,7 @@ _STATEMENT = (
 
 def without_simulator(diagnosis: Diagnosis) -> Diagnosis:
     """Return the diagnosis as a statement about the flight alone, which never claims that there is no gap."""
-    notes = (f"{_NOT_GIVEN} {_INSTEAD}", *diagnosis.notes)
+    notes = (_NOT_GIVEN, *diagnosis.notes)
     if diagnosis.verdict != "none":
         return replace(diagnosis, notes=notes)
     return replace(diagnosis, verdict="untested", sentence=_STATEMENT, notes=notes)

@@ -2,9 +2,9 @@
 
 from collections.abc import Mapping
 
+from advisor.gap.alternative import Alternative, Kind
 from advisor.gap.decision import Decision
-from advisor.gap.result import spelled
-from advisor.gap.verdict.text import BLOCKS, place
+from advisor.gap.verdict.text import BLOCKS, in_words
 
 _SAID: Mapping[str, str] = {
     "against its rival": "its log odds against the next answer are {value} nats (at least {limit})",
@@ -22,8 +22,7 @@ def decision_in_words(decision: Decision) -> str:
 
 
 def _about(name: str) -> str:
-    if name == "parameters":
-        return "wrong numbers"
-    if name == "none":
-        return "no gap"
-    return f"something without a name {place(name)}" if name in BLOCKS else spelled(name)
+    if name in BLOCKS:
+        return in_words(Alternative("unknown", "unknown", name))
+    kinds: dict[str, Kind] = {"none": "none", "parameters": "parameters"}
+    return in_words(Alternative(kinds.get(name, "effect"), name))

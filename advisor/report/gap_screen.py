@@ -11,7 +11,8 @@ from rich.text import Text
 
 from advisor.gap.result import Diagnosis, spelled
 from advisor.gap.verdict.limits import limits_of
-from advisor.gap.verdict.text import in_words, place
+from advisor.gap.verdict.text import place
+from advisor.gap.verdict.titles import answers_of, title_of
 from advisor.process.installed import SIMULATOR
 from advisor.report.gap_causes import PRESENT, ranking, unseen
 from advisor.report.gap_fidelity import errors, peaks, worst_maneuver, yardsticks
@@ -25,13 +26,6 @@ from advisor.report.gap_why import why_of
 
 WIDEST = 120
 """Columns beyond which lines become harder to read."""
-_VERDICTS = {
-    "none": "NO GAP",
-    "parameters": "WRONG NUMBERS",
-    "effect": "CAUSE FOUND",
-    "unknown": "UNKNOWN CAUSE",
-    "untested": "NO SIMULATOR GIVEN",
-}
 _PICTURE = (
     (
         ("input", "command → surface"),
@@ -70,7 +64,7 @@ class GapScreen:
 
     def _parts(self, width: int) -> Iterator[RenderableType]:
         d = self.diagnosis
-        yield Panel(Group(*_answer(d)), title=_VERDICTS[d.verdict], title_align="left")
+        yield Panel(Group(*_answer(d)), title=title_of(d), title_align="left")
         yield _numbers(d)
         if d.verdict not in ("none", "untested"):
             yield Panel(Group(*_picture(d)), title=_where(d), title_align="left")
@@ -115,7 +109,7 @@ class GapScreen:
 def _answer(d: Diagnosis) -> Iterator[Text]:
     """Yield the sentence, the numbers that differ, the errors in an engineer's units, and the limits."""
     yield Text(d.sentence)
-    if sure := how_sure((in_words(one.alternative), one.probability) for one in d.evidence):
+    if sure := how_sure(answers_of(d.evidence)):
         yield Text(sure)
     if d.verdict == "parameters":
         yield from (Text(f"  {line}") for line in changes(d.derivatives))

@@ -4,10 +4,21 @@ import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from scipy.special import expit
+
+from advisor.gap.alternative import Contribution, together
+from advisor.gap.candidates.distinguish import way_to_distinguish
 from advisor.gap.result import Cause, Diagnosis, spelled
+from advisor.gap.verdict.titles import answers_of
 from advisor.report.gap_parameters import changed
+from advisor.report.gap_reasons import in_percent
 from advisor.report.gap_sizes import sizes_of
 from advisor.report.improved import improved_name
+from advisor.words.certainty import Answers, doubt_of
+
+_FLY = "fly as many manoeuvres again, with another time unit and another amplitude"
+_TELLS = 0.1
+"""Words: part of the log odds, nats, below which the fit of as many manoeuvres again says nothing."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,6 +48,9 @@ def next_steps(
     own = ["--simulator", simulator] if simulator else []
     better = improved_name(d, aircraft_file)
     found = []
+    answers = answers_of(d.evidence)
+    if doubt_of(answers):
+        return [to_decide(answers, _way_of(d), d.why)]
     if what := _to_put(d):
         write = shlex.join(["advisor", "gap", *logs, *aircraft, *own, "--out", better])
         prove = shlex.join(["advisor", "gap", *logs, *(own or ["--aircraft", better])])
@@ -45,6 +59,31 @@ def next_steps(
     if rival := _against_the_rival(d):
         found.append(GapStep(rival))
     return found
+
+
+def to_decide(answers: Answers, way: str = "", why: Sequence[Contribution] = ()) -> GapStep:
+    """Return the flight that separates the two likeliest answers, with the probability that it would reach.
+
+    Evidence adds up over manoeuvres: as many manoeuvres again as were flown bring the fit's part of the log
+    odds once more.
+    """
+    (ours, _), (other, _) = answers[:2]
+    step = f"To separate {ours} from {other}: {way or _FLY}."
+    fit = sum(part.nats for part in why if part.name == "fit")
+    odds = sum(part.nats for part in why) + fit
+    if abs(fit) < _TELLS:
+        return GapStep(step)
+    likelier, p = (ours, expit(odds)) if odds >= 0.0 else (other, expit(-odds))
+    return GapStep(
+        f"{step} Of the two, as many manoeuvres again are expected to make {likelier} {in_percent(p)} likely."
+    )
+
+
+def _way_of(d: Diagnosis) -> str:
+    """Return what distinguishes the two likeliest effects; empty where one is none, or no way is known."""
+    shares = ((one.alternative, one.probability) for one in d.evidence)
+    answer, rival = (alternative for alternative, _ in together(shares)[:2])
+    return way_to_distinguish(answer.name, rival.name) if answer.is_effect and rival.is_effect else ""
 
 
 def _to_put(d: Diagnosis) -> str:

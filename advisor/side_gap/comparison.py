@@ -24,6 +24,7 @@ from advisor.oem.lateral_estimator import estimate_lateral
 from advisor.oem.lateral_prediction import predicted_lateral
 from advisor.side_gap.diagnosis import SideDiagnosis, diagnose_side
 from advisor.side_gap.models import case_of
+from advisor.words.certainty import as_sure
 
 LEVEL = 0.95
 """Level of the joint test that the simulator's numbers are those of the flight: that of every interval."""
@@ -89,10 +90,11 @@ def compare_side(
     case = case_of(maneuvers, aircraft, estimate.theta)
     diagnosis = None if isinstance(case, NoEstimate) else diagnose_side(case, prior)
     verdict = _verdict(diagnosis, bool(stated), statistic > limit)
+    sentence = diagnosis.sentence if verdict == "effect" and diagnosis else _sentence(verdict, derivatives)
     holdout, before, after = _held_out(maneuvers, aircraft, model)
     return SideGap(
         verdict,
-        diagnosis.sentence if verdict == "effect" and diagnosis else _sentence(verdict, derivatives),
+        as_sure(sentence, diagnosis.answers) if verdict and diagnosis else sentence,
         derivatives,
         statistic,
         limit,

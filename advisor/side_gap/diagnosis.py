@@ -7,14 +7,17 @@ from typing import Literal
 import numpy as np
 
 from advisor.gap.fitting.prior import ERROR_IF_WRONG
+from advisor.gap.inference.posterior import NONE, PARAMETERS
 from advisor.gap.inference.prior import FIELD, FieldPrior
 from advisor.gap.result import Cause, Value
 from advisor.gap.verdict.statements import what
+from advisor.gap.verdict.text import in_words
 from advisor.side_gap.effects import SideEffect, side_effects, unseen
 from advisor.side_gap.evidence import Gain, information_of, posterior_of, share_of
 from advisor.side_gap.fit import Fit, N
 from advisor.side_gap.models import Case, base_of, plain_fit, refitted, simulated
 from advisor.side_gap.stage import LIKELY, Stage, Tried, stage_of
+from advisor.words.certainty import Answers
 
 PEAKS = ("p", "r")
 """Outputs whose largest errors are reported."""
@@ -70,6 +73,13 @@ class SideDiagnosis:
         likeliest = max(self.effects.values(), default=0.0)
         kinds = {"none": self.none, "parameters": self.parameters, "effect": likeliest}
         return max(kinds, key=lambda kind: kinds[kind])
+
+    @property
+    def answers(self) -> Answers:
+        """Every answer in words with its probability, the likeliest first."""
+        found = [(in_words(NONE), self.none), (in_words(PARAMETERS), self.parameters)]
+        found += [(name.replace("_", " "), p) for name, p in self.effects.items()]
+        return sorted(found, key=lambda answer: -answer[1])
 
     @property
     def sentence(self) -> str:

@@ -13,7 +13,7 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.record import Channel
-from advisor.gap.alternative import Probabilities
+from advisor.gap.alternative import Alternative, AlternativeEvidence
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import with_known
 from advisor.gap.diagnose import Examined, examine
@@ -22,12 +22,14 @@ from advisor.gap.result import VISIBLE, Cause, Diagnosis, Value
 from advisor.gap.search.baseline import base_entries
 from advisor.gap.simulator.layout import DERIVATIVES, NUISANCES
 from advisor.gap.verdict.statements import what
+from advisor.gap.verdict.titles import answers_of
 from advisor.simulators.around import skewed
 from advisor.simulators.flying import AsGiven, Flying, without_difference
 from advisor.simulators.inputs import on_grid
 from advisor.simulators.protocol import Replay
 from advisor.simulators.rate_filter import cause_of, lateness, unfiltered
 from advisor.simulators.surrogate import trimmed_at
+from advisor.words.certainty import as_sure
 from advisor.words.problems import UnusableInputError
 
 _BLOCKS = frozenset({"input", "alpha_sensor", "pitch_rate_sensor", "accelerometer", "timing"})
@@ -58,10 +60,13 @@ class Mirrored:
         if simulated is not None:
             names = tuple(cause.effect for cause in self.causes)
             simulated = replace(simulated, after=simulated.before, percent=0.0, on_paper=names)
+        evidence = _with(diagnosis.evidence, first)
         return replace(
-            diagnosis, verdict="effect", sentence=sentence, where=where, causes=self.causes, effects={},
-            waterfall=((first.effect, self.after),), shrink=None, in_simulator=simulated,
-            probabilities=_with(diagnosis.probabilities, first), why=(), rival="", doubt="",
+            diagnosis, verdict="effect", sentence=as_sure(sentence, answers_of(evidence)), where=where,
+            causes=self.causes, effects={}, waterfall=((first.effect, self.after),), shrink=None,
+            in_simulator=simulated, evidence=evidence,
+            answer=evidence[0].alternative if evidence else None,
+            why=(), rival="",
         )  # fmt: skip
 
 
@@ -167,15 +172,17 @@ def _beyond(
     return found
 
 
-def _with(known: Probabilities | None, first: Cause) -> Probabilities | None:
-    """Return the probabilities of all alternatives, with the rest of one effect's shared as it was."""
-    if known is None:
-        return None
+def _with(known: Sequence[AlternativeEvidence], first: Cause) -> tuple[AlternativeEvidence, ...]:
+    """Return the evidence with one effect more; the probabilities of the others share what is left."""
+    if not known:
+        return ()
     rest = 1.0 - first.probability
-    effects = {name: rest * p for name, p in known.effects.items()}
-    effects[first.effect] = effects.get(first.effect, 0.0) + first.probability
-    unknown = {block: rest * p for block, p in known.unknown.items()}
-    return Probabilities(rest * known.none, rest * known.parameters, unknown, effects)
+    others = [replace(one, probability=rest * one.probability) for one in known]
+    mine = Alternative("effect", first.effect, first.block)
+    already = sum(one.probability for one in others if one.alternative == mine)
+    others = [one for one in others if one.alternative != mine]
+    others.append(AlternativeEvidence(mine, (), first.probability + already))
+    return tuple(sorted(others, key=lambda one: -one.probability))
 
 
 def _said(cause: Cause) -> str:

@@ -23,6 +23,8 @@ from advisor.gap.result import Diagnosis, Shrink, spelled
 from advisor.gap.verdict.holdout_numbers import over_maneuvers, with_offset
 from advisor.gap.verdict.statements import in_simulator
 from advisor.gap.verdict.text import sentence_of
+from advisor.gap.verdict.titles import answers_of
+from advisor.words.certainty import as_sure
 
 LEAST_TRAINED = 2
 """Least number of manoeuvres for a search, which holds one of them out to confirm an effect."""
@@ -199,16 +201,16 @@ def other_finding(whole: Diagnosis, unseen: UnseenManeuvers | None) -> tuple[str
 
 def _finding(diagnosis: Diagnosis) -> str:
     """Return what a diagnosis found first, in words."""
-    words = {"none": "no gap", "parameters": "wrong numbers", "unknown": "nothing with a name"}
+    words = {"none": "nothing to correct", "parameters": "wrong numbers", "unknown": "nothing with a name"}
     named = next((c.effect for c in diagnosis.causes if c.present), "")
     return words.get(diagnosis.verdict, spelled(named))
 
 
 def resaid(diagnosis: Diagnosis, shrink: Shrink | None, aircraft: Aircraft) -> Diagnosis:
-    """Return the diagnosis with another shrink, also in its sentence, which keeps its doubt."""
+    """Return the diagnosis with another shrink, also in its sentence, which stays as sure as it was."""
     d = diagnosis
     sentence = sentence_of(d.verdict, d.gap, d.where, d.causes, shrink, in_simulator(aircraft))
-    return replace(d, shrink=shrink, sentence=" ".join(filter(None, [d.doubt, sentence])))
+    return replace(d, shrink=shrink, sentence=as_sure(sentence, answers_of(d.evidence)))
 
 
 def percent_of(was: float, now: float) -> float:

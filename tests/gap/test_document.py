@@ -1,5 +1,7 @@
 """The JSON document of a diagnosis is what its schema says."""
 
+from dataclasses import replace
+
 import pytest
 
 from advisor.gap.document import gap_document
@@ -19,11 +21,12 @@ def test_a_document_without_a_diagnosis_has_the_same_keys():
     assert gap_document(None).keys() == gap_document(diagnosis()).keys()
 
 
-@pytest.mark.parametrize(("doubt", "decided"), [("", True), ("Not decided between A and B.", False)])
-def test_an_answer_in_doubt_is_not_decided(doubt: str, decided: bool):
-    found = diagnosis(answer=EVIDENCE[0].alternative, doubt=doubt)
-    assert gap_document(found)["decided"] is decided
+@pytest.mark.parametrize(("probability", "decided"), [(0.6, True), (0.59, False)])
+def test_an_answer_is_decided_from_a_probability_of_six_tenths(probability: float, decided: bool):
+    first, second, _ = EVIDENCE
+    evidence = (replace(first, probability=probability), replace(second, probability=1.0 - probability))
+    assert gap_document(diagnosis(evidence=evidence))["decided"] is decided
 
 
 def test_a_single_manoeuvre_decides_nothing():
-    assert gap_document(diagnosis(answer=None))["decided"] is False
+    assert gap_document(diagnosis(evidence=()))["decided"] is False

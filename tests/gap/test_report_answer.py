@@ -146,7 +146,7 @@ def test_an_effect_of_no_probability_has_no_row_on_the_page():
         ),
         (
             Decision("none", "against its rival", 1.25, 0.0, "nats"),
-            "no gap: passed, its log odds against the next answer are 1.25 nats (at least 0)",
+            "nothing to correct: passed, its log odds against the next answer are 1.25 nats (at least 0)",
         ),
     ],
 )

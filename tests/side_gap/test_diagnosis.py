@@ -57,7 +57,7 @@ def test_the_text_says_the_cause_with_its_size_and_the_errors_that_it_removes():
     assert "The real aileron has play of 0.57 deg to either side" in text
     assert "aileron actuator backlash: 0.57 ± 0.11 deg (70 %)" in text
     assert "largest error of p: 11.46 → 2.86 deg/s" in text
-    assert "no gap 20 %" in text
+    assert "nothing to correct 20 %" in text
 
 
 def test_the_document_has_probabilities_that_sum_to_one_and_the_gain_on_unseen_manoeuvres():

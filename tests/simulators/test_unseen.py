@@ -13,7 +13,7 @@ from advisor.gap.records.prepare import prepare
 from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, NUISANCES, SPEED
 from advisor.simulators import unseen
 from advisor.simulators.unseen import changes_something, kept_apart
-from tests.gap.test_report_screen import diagnosis
+from tests.gap.test_report_screen import EVIDENCE, diagnosis
 from tests.simulators.nonlinear import flown
 
 MODEL = dict(zip(DERIVATIVES, (-2.7, 0.02, -0.15, -23.0, -3.4, -29.0), strict=True))
@@ -70,9 +70,9 @@ def test_another_finding_without_the_manoeuvres_kept_apart_is_said():
 
 
 def test_a_sentence_with_another_shrink_keeps_its_doubt():
-    doubt = "Not decided between no gap (50 %) and wrong numbers (45 %)."
-    resaid = unseen.resaid(diagnosis(verdict="none", causes=(), doubt=doubt), None, Aircraft())
-    assert resaid.sentence.startswith(f"{doubt} The simulator flies like the aircraft")
+    found = diagnosis(verdict="effect", evidence=EVIDENCE)
+    resaid = unseen.resaid(found, None, Aircraft())
+    assert resaid.sentence.startswith("Likely: the simulator responds 30 ms too early")
 
 
 def wrong_model() -> tuple[EffectProblem, SearchPoint]:

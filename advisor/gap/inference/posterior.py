@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from advisor.gap.alternative import Alternative, Probabilities
+from advisor.gap.alternative import Alternative, together
 from advisor.gap.effects import EFFECTS
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.inference.explanation import Explanation, Row
@@ -47,24 +47,9 @@ class Posterior:
         return dict(sorted(each.items(), key=lambda item: -item[1]))
 
     @property
-    def probabilities(self) -> Probabilities:
-        """Probabilities by kind and name."""
-        each = self.by_alternative
-        return Probabilities(
-            none=sum(p for a, p in each.items() if a.kind == "none"),
-            parameters=sum(p for a, p in each.items() if a.kind == "parameters"),
-            unknown={a.block: p for a, p in each.items() if a.kind == "unknown"},
-            effects={a.name: p for a, p in each.items() if a.is_effect},
-        )
-
-    @property
     def answer(self) -> Alternative:
         """The likeliest of nothing, wrong numbers, each effect, and all blocks of the unknown together."""
-        together: dict[str, float] = {}
-        for a, p in self.by_alternative.items():
-            together[a.name] = together.get(a.name, 0.0) + p
-        name = max(together, key=lambda n: together[n])
-        return next(a for a in self.by_alternative if a.name == name)
+        return together(self.by_alternative.items())[0][0]
 
     def explanation_of(self, alternative: Alternative) -> Explanation:
         """Return the likeliest explanation of an alternative."""

@@ -51,7 +51,6 @@ from advisor.gap.verdict.numbers import (
 )
 from advisor.gap.verdict.reasons import (
     decisions_of,
-    doubt_of,
     evidence_in,
     none_means_no_gap,
     rival_of,
@@ -59,6 +58,8 @@ from advisor.gap.verdict.reasons import (
 )
 from advisor.gap.verdict.statements import in_simulator
 from advisor.gap.verdict.text import sentence_of
+from advisor.gap.verdict.titles import answers_of
+from advisor.words.certainty import as_sure
 
 
 def answer_of(
@@ -159,12 +160,12 @@ def _diagnosed(
     nuisances = effects.keys() - {c.effect for c in present} if shrink is not None else ()
     where = _where(posterior, e, gap, known, present)
     outside = [c for c in present if c.block == "air" or c.effect == "alpha_bias"]
-    doubt = doubt_of(posterior)
+    evidence = tuple(evidence_in(posterior))
     sentence = sentence_of(verdict, gap, where, causes, shrink, in_simulator(aircraft))
     rival = rival_of(posterior)
     return Diagnosis(
         verdict=verdict,
-        sentence=" ".join(filter(None, [doubt, sentence])),
+        sentence=as_sure(sentence, answers_of(evidence)),
         gap=gap, where=where, causes=causes, shrink=shrink,
         waterfall=waterfall_of(e.models, e.floor, outside, gap.before),
         cannot_see=unseen_effects(
@@ -178,12 +179,10 @@ def _diagnosed(
         derivatives=compared_derivatives(problem, fitted, known),
         notes=notes_of(e, aircraft, holdout, verdict, nuisances),
         maneuvers=tuple(f.number for f in problem.flights.flights),
-        probabilities=posterior.probabilities,
-        evidence=tuple(evidence_in(posterior)),
+        evidence=evidence,
         why=tuple(why_of(posterior, rival)),
         rival=rival.label,
         answer=answer,
-        doubt=doubt,
     )  # fmt: skip
 
 

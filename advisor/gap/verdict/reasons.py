@@ -1,4 +1,4 @@
-"""The reasons of an answer: its rival, its doubt, and the parts of its log odds, which add up."""
+"""The reasons of an answer: its rival, and the parts of its log odds, which add up."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -6,17 +6,15 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.alternative import Alternative, AlternativeEvidence, Column, Contribution
+from advisor.gap.alternative import Alternative, AlternativeEvidence, Column, Contribution, together
 from advisor.gap.decision import CERTAIN, Decision
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.inference.diagnose import Inference
 from advisor.gap.inference.explanation import Row
 from advisor.gap.inference.posterior import NONE, PARAMETERS, Posterior, posterior_of, relabelled
-from advisor.gap.verdict.text import in_words
+from advisor.words.certainty import DECIDED
 
-DECIDED = 0.6
-"""Contract: least probability of an answer that is decided."""
 _GAP_AT_5_PERCENT = 2.0
 """Contract: gap on held-out manoeuvres at which "no gap" has a probability of 5 % at most."""
 _WORDS = {
@@ -36,22 +34,7 @@ _WORDS = {
 
 def rival_of(posterior: Posterior) -> Alternative:
     """Return the likeliest alternative with another name than the answer."""
-    name = posterior.answer.name
-    return next(a for a in posterior.by_alternative if a.name != name)
-
-
-def together(posterior: Posterior, alternative: Alternative) -> float:
-    """Return the probability of an alternative; all blocks of the unknown count together."""
-    return sum(p for a, p in posterior.by_alternative.items() if a.name == alternative.name)
-
-
-def doubt_of(posterior: Posterior) -> str:
-    """Return the sentence on the two likeliest answers; empty where one is decided."""
-    answer, rival = posterior.answer, rival_of(posterior)
-    p, q = (100.0 * together(posterior, one) for one in (answer, rival))
-    if p >= 100.0 * DECIDED:
-        return ""
-    return f"Not decided between {in_words(answer)} ({p:.0f} %) and {in_words(rival)} ({q:.0f} %)."
+    return together(posterior.by_alternative.items())[1][0]
 
 
 def evidence_in(posterior: Posterior) -> Iterator[AlternativeEvidence]:
@@ -90,7 +73,8 @@ def decisions_of(found: Inference, posterior: Posterior, rival: Alternative) -> 
     answer, odds = posterior.answer, _log_odds(posterior, rival)
     label = answer.block if answer.kind == "unknown" else answer.name
     yield Decision(label, "against its rival", odds, 0.0, "nats")
-    yield Decision(label, "decided", together(posterior, posterior.answer), DECIDED, "probability")
+    (_, probability), *_ = together(posterior.by_alternative.items())
+    yield Decision(label, "decided", probability, DECIDED, "probability")
     if found.sought_air.found is not None:
         air = found.sought_air.found
         yield Decision("gust" if air.gust else "turbulence", "likelihood", air.gain, CERTAIN, "nats")

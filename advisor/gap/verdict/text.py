@@ -28,7 +28,7 @@ def place(block: str) -> str:
 
 def in_words(alternative: Alternative) -> str:
     """Return an alternative in words: ``something without a name in the lift``, ``ground effect``."""
-    words = {"none": "no gap", "parameters": "wrong numbers"}
+    words = {"none": "nothing to correct", "parameters": "wrong numbers"}
     if alternative.kind == "unknown":
         return f"something without a name {place(alternative.block)}"
     return words.get(alternative.kind, spelled(alternative.name))

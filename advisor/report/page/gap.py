@@ -92,7 +92,7 @@ def _blocks(found: Document) -> Iterator[Block]:
 
 def answer(found: Document) -> Iterator[Block]:
     """Yield the sentence, how sure it is, and what limits it."""
-    yield Paragraph(found["sentence"], "verdict")
+    yield Paragraph(f"{found['title']}: {found['sentence']}", "verdict")
     if sure := how_sure(alternatives_of(found)):
         yield Paragraph(sure)
     yield from listing(list(found["limits"]))

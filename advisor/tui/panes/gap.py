@@ -106,7 +106,7 @@ def answer_rows(document: Document) -> Iterator[Labelled]:
     if document["gap"] is None:
         yield from (("✗ ", f"{problem['text']} {problem['fix']}") for problem in document["problems"])
         return
-    yield "", document["sentence"]
+    yield "", f"{document['title']}: {document['sentence']}"
     if sure := how_sure(alternatives_of(document)):
         yield "", sure
     yield from (("! ", limit) for limit in document["limits"])

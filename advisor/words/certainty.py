@@ -1,0 +1,44 @@
+"""How sure an answer is: the title over it, and the sentence that carries its doubt."""
+
+from collections.abc import Sequence
+
+DECIDED = 0.6
+"""Contract: least probability of an answer that is decided."""
+_SURE = 0.9
+"""Contract: least probability of an answer that is stated without the word "likely"."""
+
+Answers = Sequence[tuple[str, float]]
+"""Answers in words with their probabilities, the likeliest first."""
+
+
+def is_decided(answers: Answers) -> bool:
+    """Return whether the likeliest answer is decided; False without probabilities."""
+    return bool(answers) and answers[0][1] >= DECIDED
+
+
+def title(stated: str, likely: str, answers: Answers) -> str:
+    """Return the title over an answer.
+
+    Parameters
+    ----------
+    stated, likely
+        Titles of the likeliest answer where it is sure, and where it is only likely.
+    """
+    if len(answers) > 1 and not is_decided(answers):
+        return f"NOT DECIDED BETWEEN {answers[0][0]} AND {answers[1][0]}".upper()
+    return stated if not answers or answers[0][1] >= _SURE else likely
+
+
+def doubt_of(answers: Answers) -> str:
+    """Return the sentence on the two likeliest answers; empty where one is decided."""
+    if len(answers) < 2 or is_decided(answers):
+        return ""
+    (one, p), (other, q) = answers[:2]
+    return f"Not decided between {one} ({100.0 * p:.0f} %) and {other} ({100.0 * q:.0f} %)."
+
+
+def as_sure(sentence: str, answers: Answers) -> str:
+    """Return the sentence of an answer as sure as the answer is: alone, after "likely", or its doubt."""
+    if not answers or answers[0][1] >= _SURE:
+        return sentence
+    return doubt_of(answers) or f"Likely: {sentence[:1].lower()}{sentence[1:]}"
