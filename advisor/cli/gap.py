@@ -26,10 +26,12 @@ from advisor.words.problems import ConfigurationError, UnusableInputError
 
 _OF_A_FLIGHT = {
     "holdout": "--holdout", "out": "--out", "target_system": "--target-system", "marks": "--maneuver",
-    "no_marks": "--no-marks", "why": "--why", "prior": "--prior", "exports": "--export",
-    "specification": "--simulator", "figure": "--figure", "axis": "--axis",
+    "no_marks": "--no-marks", "why": "--why", "everything": "--all", "prior": "--prior",
+    "exports": "--export", "specification": "--simulator", "figure": "--figure", "axis": "--axis",
 }  # fmt: skip
-_OF_THE_PITCH = {name: _OF_A_FLIGHT[name] for name in ("holdout", "out", "why", "exports", "figure")}
+_OF_THE_PITCH = {
+    name: _OF_A_FLIGHT[name] for name in ("holdout", "out", "why", "everything", "exports", "figure")
+}
 _OF_A_PLAN = {
     "plan": "--plan", "rate_hz": "--rate", "amplitude_deg": "--amplitude-deg", "without": "--without"
 }  # fmt: skip
@@ -66,6 +68,12 @@ _OF_A_PLAN = {
     show_default=True,
     help="Axis that is diagnosed. On the lateral one, of roll and yaw, nothing is exported.",
 )
+@click.option(
+    "--all",
+    "everything",
+    is_flag=True,
+    help="Print also the gap in time and by channel, the notes, and what the flight could not show.",
+)
 @click.option("--why", is_flag=True, help="Print what speaks for the answer, and every decision on the way.")
 @click.option(
     "--prior",
@@ -97,6 +105,7 @@ def command(
     figure: Path | None,
     exports: tuple[str, ...],
     axis: str,
+    everything: bool,
     why: bool,
     prior: str | None,
     foresee: bool,
@@ -197,7 +206,7 @@ def command(
         from advisor.report.gap_screen import GapScreen
 
         written = printable(str(out)) if out and improvable else None
-        PlainConsole().print(GapScreen(found, written, why, steps))
+        PlainConsole().print(GapScreen(found, written, why, steps, everything))
     return USAGE if any(one.problem for one in outcomes) else 0
 
 

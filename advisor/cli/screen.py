@@ -149,7 +149,7 @@ def _show(
 def so_far(state: "CampaignState", aircraft: Aircraft) -> Iterator[str]:
     """Yield each verdict of a flight test that was left, and stop or continue; nothing before the first
     verdict of an axis."""
-    from advisor.report.lateral import lateral_lines
+    from advisor.report.lateral import lateral_decision, lateral_lines
     from advisor.report.text import maneuver_line, next_line, stop_line
 
     if state.maneuvers:
@@ -159,3 +159,4 @@ def so_far(state: "CampaignState", aircraft: Aircraft) -> Iterator[str]:
     if state.lateral is not None and state.lateral.maneuvers:
         yield "Roll and yaw"
         yield from lateral_lines(state.lateral, aircraft)
+        yield from lateral_decision(state.lateral)

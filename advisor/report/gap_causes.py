@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 
 from rich import box
 from rich.console import RenderableType
+from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
@@ -47,14 +48,23 @@ def confusion_sentence(c: Cause) -> str:
 
 
 def unseen(effects: Sequence[Unseen]) -> Table:
-    """Return the effects that the flight cannot show, one on each line, with the data that would show
-    them."""
+    """Return the effects that the flight cannot show, with the data that would show them; one row for each
+    reason."""
     table = Table.grid(padding=(0, 2))
-    table.add_column(no_wrap=True)
+    table.add_column(max_width=26)
     table.add_column()
-    for u in effects:
-        table.add_row(Text(f"  {spelled(u.effect)}"), Text(f"{u.because} → {u.would_need}"))
+    for (because, needed), names in by_reason(effects).items():
+        listed = Padding(Text(", ".join(names)), (0, 0, 0, 2))
+        table.add_row(listed, Text(f"{because} → {needed}"))
     return table
+
+
+def by_reason(effects: Sequence[Unseen]) -> dict[tuple[str, str], list[str]]:
+    """Return the names of the effects that share a reason and a remedy."""
+    groups: dict[tuple[str, str], list[str]] = {}
+    for u in effects:
+        groups.setdefault((u.because, u.would_need), []).append(spelled(u.effect))
+    return groups
 
 
 def _table(causes: Sequence[Cause], before: float) -> Table:

@@ -1,5 +1,6 @@
-"""The diagnosis on a terminal: verdict, place and time, waterfall, ranking, error before and after."""
+"""The diagnosis on a terminal: answer, place, causes and steps; on request also its course and its limits."""
 
+import shlex
 from collections.abc import Iterator, Sequence
 
 import numpy as np
@@ -54,11 +55,13 @@ class GapScreen:
         improved: str | None = None,
         why: bool = False,
         steps: Sequence[GapStep] = (),
+        everything: bool = False,
     ) -> None:
         self.diagnosis, self.improved, self.why, self.steps = diagnosis, improved, why, steps
+        self.everything = everything
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
-        """Yield the parts from the verdict to the notes."""
+        """Yield the parts from the verdict to the next steps."""
         width = min(options.max_width, WIDEST)
         yield Constrain(Group(*self._parts(width)), width)
 
@@ -68,42 +71,65 @@ class GapScreen:
         yield _numbers(d)
         if d.verdict not in ("none", "untested"):
             yield Panel(Group(*_picture(d)), title=_where(d), title_align="left")
-        yield Panel(whereabouts(d.gap), title="where in the flight", title_align="left")
-        added = [step for step in d.waterfall if step != (_SPEED, d.gap.before)]
-        if added:
-            title = "gap as effects are added, one after another"
-            yield Panel(_waterfall(d.gap.before, added), title=title, title_align="left")
+        if self.everything:
+            yield from self._course()
         if d.causes:
             yield ""
             yield from ranking(d.causes, d.gap.before)
         if self.why:
             yield from why_of(d)
+        if d.in_simulator is not None:
+            yield ""
+            yield from simulated(d.in_simulator, self.everything)
+        if self.everything:
+            yield from self._errors(width)
+            yield from self._limits()
+        if self.improved is not None:
+            yield ""
+            yield Text(
+                f"The improved simulator is {self.improved}; python -m {SIMULATOR} flies it with --aircraft."
+            )
+        if self.steps:
+            yield ""
+            yield Text("Next:", style="bold")
+            yield from _numbered(self.steps, width)
+        if not self.everything:
+            yield Text(self._more(), style="dim")
+
+    def _course(self) -> Iterator[RenderableType]:
+        """Yield the gap by phase, band and manoeuvre, and as effects are added."""
+        d = self.diagnosis
+        yield Panel(whereabouts(d.gap), title="where in the flight", title_align="left")
+        added = [step for step in d.waterfall if step != (_SPEED, d.gap.before)]
+        if added:
+            title = "gap as effects are added, one after another"
+            yield Panel(_waterfall(d.gap.before, added), title=title, title_align="left")
+
+    def _errors(self, width: int) -> Iterator[RenderableType]:
+        """Yield the error in the worst manoeuvre, and the fidelity by channel."""
+        d = self.diagnosis
         title = f"error in manoeuvre {worst_maneuver(d)}, the one with the largest gap (its size, no sign)"
         yield ""
         yield Panel(errors(d, width), title=title, title_align="left")
         yield ""
         yield from yardsticks(d)
+
+    def _limits(self) -> Iterator[RenderableType]:
+        """Yield the notes, and the effects that the flight cannot show."""
         yield ""
-        if d.in_simulator is not None:
-            yield from simulated(d.in_simulator)
-            yield ""
-        floor = d.gap.floor_note and f"Noise floor {d.gap.floor_note}."
-        for note in (d.kinematics.sentence, floor, *d.notes, self._written()):
-            if note:
-                yield _note(note)
-        if d.cannot_see:
+        yield from map(_note, _notes(self.diagnosis))
+        if self.diagnosis.cannot_see:
             yield ""
             yield Text("This flight could not show (→ what would):", style="bold")
-            yield unseen(d.cannot_see)
-        if self.steps:
-            yield ""
-            yield Text("Next:", style="bold")
-            yield from _numbered(self.steps)
+            yield unseen(self.diagnosis.cannot_see)
 
-    def _written(self) -> str:
-        if self.improved is None:
-            return ""
-        return f"The improved simulator is {self.improved}; python -m {SIMULATOR} flies it with --aircraft."
+    def _more(self) -> str:
+        """Return the line on what is not shown."""
+        notes, hidden = _notes(self.diagnosis), self.diagnosis.cannot_see
+        return (
+            f"--all adds the gap in time and by manoeuvre, the fidelity by channel, {len(notes)} notes and "
+            f"{len(hidden)} effects that this flight could not show."
+        )
 
 
 def _answer(d: Diagnosis) -> Iterator[Text]:
@@ -118,13 +144,33 @@ def _answer(d: Diagnosis) -> Iterator[Text]:
     yield from (Text(f"! {limit}") for limit in limits_of(d))
 
 
-def _numbered(steps: Sequence[GapStep]) -> Iterator[RenderableType]:
+def _notes(d: Diagnosis) -> list[str]:
+    """Return the notes on instruments, noise floor and method."""
+    floor = d.gap.floor_note and f"Noise floor {d.gap.floor_note}."
+    return [note for note in (d.kinematics.sentence, floor, *d.notes) if note]
+
+
+def _numbered(steps: Sequence[GapStep], width: int) -> Iterator[RenderableType]:
     for number, step in enumerate(steps, start=1):
         table = Table.grid(padding=(0, 1))
         table.add_row(f"{number}.", Text(step.text))
         if step.command:
-            table.add_row("", Text(step.command, style="bold"))
+            lines = "\n".join(command_lines(step.command, width - len(f"{number}. ")))
+            table.add_row("", Text(lines, style="bold", no_wrap=True, overflow="ignore"))
         yield table
+
+
+def command_lines(command: str, width: int) -> list[str]:
+    """Return a command line in lines that a shell takes as one, as wide as the terminal where words allow."""
+    lines, words = [""], list(map(shlex.quote, shlex.split(command)))
+    for word, value in zip(words, [*words[1:], ""], strict=True):
+        # An option stays with its value.
+        ahead = f" {value}" if word.startswith("--") else ""
+        if lines[-1] and len(f"{lines[-1]} {word}{ahead} \\") > width:
+            lines[-1] += " \\"
+            lines.append("")
+        lines[-1] += f" {word}" if lines[-1] else word
+    return lines
 
 
 def _note(text: str) -> Table:

@@ -19,12 +19,13 @@ _LEGEND = (
 )
 
 
-def simulated(found: InSimulator) -> Iterator[RenderableType]:
-    """Yield the simulator's gap as given and with the effects, and the table of qualification."""
+def simulated(found: InSimulator, with_table: bool) -> Iterator[RenderableType]:
+    """Yield the simulator's gap as given and with the effects; on request the table of qualification."""
     yield Text(f"in your simulator, {found.simulator}", style="bold")
     yield Text("\n".join(_shrunk(found)))
-    yield _table(found)
-    yield Text(_LEGEND, style="dim")
+    if with_table:
+        yield _table(found)
+        yield Text(_LEGEND, style="dim")
 
 
 def _shrunk(found: InSimulator) -> Iterator[str]:

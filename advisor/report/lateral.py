@@ -125,12 +125,15 @@ def lateral_maneuver_line(judged: JudgedLateral) -> str:
 
 
 def lateral_lines(state: LateralState, aircraft: Aircraft) -> Iterator[str]:
-    """Yield the lines of the lateral half: verdicts, derivatives, modes, levels, stop or continue."""
+    """Yield the lines of the lateral half: verdicts, derivatives, modes, levels; none without manoeuvres."""
     if state.maneuvers:
         yield from map(lateral_maneuver_line, state.maneuvers)
         yield ""
         yield from lateral_results(state, aircraft)
-        yield ""
+
+
+def lateral_decision(state: LateralState) -> Iterator[str]:
+    """Yield stop or continue, and the next input."""
     yield state.flight_test.sentence
     if state.maneuvers and state.flight_test.next is not None:
         yield f"  {state.flight_test.next.advice}"

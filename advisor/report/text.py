@@ -1,5 +1,4 @@
-"""The analysis as text for people: angles in degrees, one sentence for each verdict, stop or continue at the
-end."""
+"""The analysis as text for people: stop or continue first, angles in degrees, a sentence for each verdict."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import groupby
@@ -16,7 +15,7 @@ from advisor.flight.maneuvers.events import Activity
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.oem.estimate import Estimate
 from advisor.report import table as report_table
-from advisor.report.lateral import lateral_lines
+from advisor.report.lateral import lateral_decision, lateral_lines
 from advisor.report.qualities import coefficients_of, qualities_of, quality_lines, reference_speed
 from advisor.report.result_rows import ParameterRow, channel_table, parameter_row
 from advisor.words.digits import decimals_for, signed
@@ -97,6 +96,9 @@ class AnalysisText:
         self.every_movement, self.pitch = every_movement, pitch
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
+        """Yield the decisions on both axes first, then what they rest on."""
+        yield from self._decisions()
+        yield Text()
         for flight in self.state.flights:
             vehicle = flight.vehicle if flight.vehicle else "no vehicle"
             yield Text(f"{self.files[flight.flight]}: {vehicle}", style="bold")
@@ -125,14 +127,14 @@ class AnalysisText:
             yield Text()
             yield from self._qualities()
             yield Text()
-        yield from self._decision()
+        yield from self._rules()
 
     def _lateral(self) -> Iterator[Text]:
         """Yield the lateral half, where it was asked for."""
         if self.state.lateral is not None:
-            yield Text()
-            yield Text("Roll and yaw", style="bold")
-            yield from (Text(line) for line in lateral_lines(self.state.lateral, self.aircraft))
+            lines = [Text(line) for line in lateral_lines(self.state.lateral, self.aircraft)]
+            if lines:
+                yield from (Text(), Text("Roll and yaw", style="bold"), *lines)
 
     def _movements(self) -> Iterator[Text]:
         """Yield the manoeuvres and, on request, all other elevator movements, in the order of time."""
@@ -173,7 +175,18 @@ class AnalysisText:
             lines = quality_lines(found, coefficients_of(self.state, reference))
             yield from (Text(line, style="bold" if line[0] in "FC" else "") for line in lines)
 
-    def _decision(self) -> Iterator[Text]:
+    def _decisions(self) -> Iterator[Text]:
+        """Yield stop or continue of each axis, with the next input."""
+        if self.pitch:
+            yield Text(stop_line(self.state.flight_test), style="bold")
+            yield Text(f"  {next_line(self.state.flight_test)}")
+        if self.state.lateral is not None:
+            lead, *advice = lateral_decision(self.state.lateral)
+            yield Text(f"Roll and yaw: {lead}", style="bold")
+            yield from map(Text, advice)
+
+    def _rules(self) -> Iterator[Text]:
+        """Yield the history of every rule, the information, and the warnings."""
         verdict = self.state.flight_test
         for name, progress in verdict.by_rule.items() if self.state.maneuvers else ():
             history = " ".join("–" if v is None else f"{v:.1f}" for v in progress.history_percent)
@@ -183,5 +196,3 @@ class AnalysisText:
                 yield Text(f"{'':<18}{progress.hindsight}", style="dim")
         yield from (Text(f"information: {line}", style="dim") for line in verdict.evidence)
         yield from (Text(f"warning: {warning}", style="yellow") for warning in verdict.warnings)
-        yield Text(stop_line(verdict), style="bold")
-        yield Text(next_line(verdict))

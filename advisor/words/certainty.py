@@ -41,4 +41,4 @@ def as_sure(sentence: str, answers: Answers) -> str:
     """Return the sentence of an answer as sure as the answer is: alone, after "likely", or its doubt."""
     if not answers or answers[0][1] >= _SURE:
         return sentence
-    return doubt_of(answers) or f"Likely: {sentence[:1].lower()}{sentence[1:]}"
+    return doubt_of(answers) or f"Likely, {sentence[:1].lower()}{sentence[1:]}"

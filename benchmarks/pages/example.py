@@ -64,30 +64,39 @@ EXAMPLES: Sequence[Example] = (
     Example(
         "analyze logs/arduplane-calm.tlog --aircraft logs/arduplane-calm.yaml",
         {
-            "analyze-maneuvers": [Part(" 1 ", "[1-7] angle of attack")],
+            "analyze-maneuvers": [Part(until="arduplane-calm.tlog"), Part(" 1 ", "[1-7] angle of attack")],
             "analyze-estimate": [Part("Joint estimate", "note:")],
             "analyze-qualities": [Part("Flying qualities", "  static margin")],
             "analyze-rules": [Part("rule continuous")],
-            "analyze-short": [Part(" 1 ", " 3 "), Part("Joint estimate", "note:"), Part("■", "Roll and yaw")],
+            "analyze-short": [
+                Part(until="Roll and yaw"),
+                Part(" 1 ", " 3 "),
+                Part("Joint estimate", "note:"),
+            ],
         },
     ),
     Example(
         "gap logs/arduplane-calm.tlog --aircraft logs/arduplane-calm.yaml",
         {
-            "gap": [Part(until="╭─ where in the flight"), Part("cause ", "● part of")],
+            "gap": [Part(until="● part of")],
+            "gap-next": [Part("Next:")],
+        },
+    ),
+    Example(
+        "gap logs/arduplane-calm.tlog --aircraft logs/arduplane-calm.yaml --all",
+        {
             "gap-course": [Part("╭─ where in the flight", "cause ")],
             "gap-unseen": [Part("This flight could not show", "Next:")],
-            "gap-next": [Part("Next:")],
         },
     ),
     Example(
         "gap logs/arduplane-calm.tlog --aircraft logs/arduplane-calm.yaml --why"
         " --out arduplane-calm-with-actuator-lag.yaml",
-        {"gap-why": [Part("╭─ why", "╭─ error in")]},
+        {"gap-why": [Part("╭─ why", "The improved simulator")]},
     ),
     Example(
         "gap logs/arduplane-calm.tlog --aircraft arduplane-calm-with-actuator-lag.yaml",
-        {"gap-again": [Part(until="╭─ where in the flight")]},
+        {"gap-again": [Part(until="Below 1 %")]},
     ),
     Example("gap --foresee --aircraft uav.yaml", {"foresee": [Part()]}),
 )

@@ -63,7 +63,7 @@ def test_an_undecided_answer_is_a_sentence_with_both_and_claims_neither():
 
 
 def test_a_likely_answer_says_so_in_its_sentence():
-    assert as_sure("The servo lags.", [("actuator lag", 0.7)]) == "Likely: the servo lags."
+    assert as_sure("The servo lags.", [("actuator lag", 0.7)]) == "Likely, the servo lags."
     assert as_sure("The servo lags.", [("actuator lag", 0.97)]) == "The servo lags."
 
 

@@ -1,6 +1,8 @@
 """The diagnosis on a terminal: everything fits, sizes have units, nothing rests on colour."""
 
 import io
+import shlex
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,8 +13,9 @@ from advisor.flight.instruments.kinematics import KinematicCheck
 from advisor.gap.alternative import Alternative, AlternativeEvidence, Contribution
 from advisor.gap.result import Cause, Diagnosis, Gap, Shrink, Trace, Unseen, Value, Where, Yardsticks
 from advisor.report.gap_causes import confusion_sentence
-from advisor.report.gap_screen import GapScreen
+from advisor.report.gap_screen import GapScreen, command_lines
 from advisor.report.gap_sizes import in_units, short, sizes_of, with_error
+from advisor.report.gap_steps import GapStep, next_steps
 
 CHANNELS = ("alpha", "q", "a_z", "theta")
 DELAY = Cause(
@@ -62,11 +65,13 @@ def diagnosis(**changes: object) -> Diagnosis:
     return Diagnosis(**{**content, **changes})  # type: ignore[arg-type]
 
 
-def printed(found: Diagnosis, columns: int, why: bool = False) -> list[str]:
+def printed(
+    found: Diagnosis, columns: int, why: bool = False, steps: Sequence[GapStep] = (), everything: bool = True
+) -> list[str]:
     """Return the screen as plain text, line by line."""
     out = io.StringIO()
     Console(file=out, width=columns, color_system=None, highlight=False).print(
-        GapScreen(found, "better.yaml", why)
+        GapScreen(found, "better.yaml", why, steps, everything)
     )
     return out.getvalue().splitlines()
 
@@ -199,6 +204,32 @@ def test_another_block_with_a_cause_is_marked_and_has_no_per_cent():
 def test_no_block_is_guilty_when_there_is_no_gap():
     lines = printed(diagnosis(verdict="none", causes=(), waterfall=(), shrink=None), 80)
     assert not any("▶" in line for line in lines)
+
+
+def test_without_all_the_largest_answer_takes_at_most_40_lines():
+    decided = (replace(EVIDENCE[0], probability=0.99),)
+    found = diagnosis(evidence=decided, causes=(DELAY, CURVED, UNLIKELY))
+    steps = next_steps(found, ["flight-of-the-long-wing.tlog"], "long-wing-with-a-name.yaml")
+    lines = printed(found, 80, steps=steps, everything=False)
+    assert len(lines) <= 40
+    text = " ".join(" ".join(lines).split())
+    for part in ("CAUSE FOUND", "where: between the command", "● transport delay", "Put into the simulator"):
+        assert part in text
+    assert "--all adds the gap in time and by manoeuvre, the fidelity by channel, 2 notes and 2 eff" in text
+
+
+def test_a_command_over_several_lines_is_one_to_a_shell():
+    command = "advisor gap 'my flight.tlog' --aircraft mine.yaml --out mine-with-transport-delay.yaml"
+    lines = command_lines(command, 40)
+    assert len(lines) > 1
+    assert max(map(len, lines)) <= 40
+    assert shlex.split("\n".join(lines).replace("\\\n", "")) == shlex.split(command)
+
+
+def test_effects_that_share_a_reason_share_a_row():
+    first, second = (Unseen(name, "no vane", "a vane") for name in ("alpha_lag", "alpha_scale"))
+    lines = printed(diagnosis(cannot_see=(first, diagnosis().cannot_see[0], second)), 120)
+    assert "  alpha lag, alpha scale  no vane → a vane" in [line.rstrip() for line in lines]
 
 
 def test_what_the_flight_could_not_show_takes_a_line_an_effect():

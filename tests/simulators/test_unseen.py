@@ -72,7 +72,7 @@ def test_another_finding_without_the_manoeuvres_kept_apart_is_said():
 def test_a_sentence_with_another_shrink_keeps_its_doubt():
     found = diagnosis(verdict="effect", evidence=EVIDENCE)
     resaid = unseen.resaid(found, None, Aircraft())
-    assert resaid.sentence.startswith("Likely: the simulator responds 30 ms too early")
+    assert resaid.sentence.startswith("Likely, the simulator responds 30 ms too early")
 
 
 def wrong_model() -> tuple[EffectProblem, SearchPoint]:

@@ -7,7 +7,7 @@ from advisor.gap.result import VISIBLE, Diagnosis
 
 def limits_of(d: Diagnosis) -> Iterator[str]:
     """Yield the limits of the answer, which stand next to the answer."""
-    if d.verdict == "untested" or not d.derivatives:
+    if d.verdict != "untested" and not d.derivatives:
         yield "No simulator was given: the answer is about the flight alone."
     air = "The air moved, and its course was fitted to the same samples."
     beyond_air = None if d.shrink is None else d.shrink.beyond_air_percent
