@@ -19,8 +19,8 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.gap import maneuvers_of, with_true_reference
 from advisor.analysis.refused import without_refused
 from advisor.cli.options import read_aircraft
+from advisor.flight.instruments.atmosphere import air_flown
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.true_airspeed import true_over_read
 from advisor.gap.diagnose import diagnose
 from advisor.gap.result import Diagnosis
 from advisor.report.improved import write_improved
@@ -56,8 +56,8 @@ def fed_back(flown: Sequence[Maneuver], fresh: Sequence[Maneuver], aircraft: Air
 
 
 def _diagnosed(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Diagnosis:
-    gain = true_over_read(m.channels for m in maneuvers)
-    return replace(diagnose(maneuvers, with_true_reference(aircraft, gain)), true_over_read=gain)
+    air = air_flown(maneuvers, aircraft.reference.air_temperature_c)
+    return replace(diagnose(maneuvers, with_true_reference(aircraft, air.true_over_read)), air=air)
 
 
 def _said(d: Diagnosis) -> str:

@@ -8,10 +8,10 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.refused import without_refused
 from advisor.analysis.table_log import SUFFIXES, table_maneuvers
 from advisor.campaign.hand_decisions import ByHand
+from advisor.flight.instruments.atmosphere import air_flown
 from advisor.flight.maneuvers.events import READER_NOTICE, ManeuverFlown, Notice
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.repeated_maneuver import are_one, is_fuller
-from advisor.flight.signals.true_airspeed import true_over_read
 from advisor.flight.stream.stream import FlightStream
 from advisor.flight.vehicle.one_aircraft import OneAircraft
 from advisor.flight.vehicle.surfaces import Surface
@@ -21,7 +21,6 @@ from advisor.gap.result import Diagnosis
 from advisor.gap.search.baseline import prior_derivatives
 from advisor.gap.without_simulator import without_simulator
 from advisor.mavlink.logs.whole import read_whole_log
-from advisor.simulators.air import standard_heights
 from advisor.simulators.by_log import IdentifiedSimulator
 from advisor.simulators.compare import Compared, compare
 from advisor.simulators.linear import LinearSimulator
@@ -175,10 +174,10 @@ def compare_logs(
     if simulator is not None and not isinstance(simulator, LinearSimulator):
         progress("comparing the air speed with the motion", 0.02)
         chosen = chosen.with_speed(by_the_motion(chosen.maneuvers, aircraft))
-    gain = true_over_read(m.channels for m in chosen.maneuvers)
-    at_true_speed = with_true_reference(aircraft, gain)
+    air = air_flown(chosen.maneuvers, aircraft.reference.air_temperature_c)
+    at_true_speed = with_true_reference(aircraft, air.true_over_read)
     if simulator is not None:
-        as_true = _simulator_at_true_speed(simulator, gain)
+        as_true = _simulator_at_true_speed(simulator, air.true_over_read)
         compared = compare(chosen.maneuvers, as_true, at_true_speed, holdout, progress, prior)
     else:
         whole = examine(chosen.maneuvers, at_true_speed, holdout, progress, prior)
@@ -199,11 +198,8 @@ def compare_logs(
         twice = f"{flown.again} of {every} manoeuvres came twice, as from the same log or a copy"
         notes.insert(0, f"{twice}: they count once.")
     every_note = (*notes, *compared.diagnosis.notes)
-    height_m = _height_of(chosen.maneuvers, aircraft)
-    found = replace(
-        compared.diagnosis, notes=every_note, height_m=height_m, true_over_read=gain,
-        although_refused=chosen.although_refused,
-    )  # fmt: skip
+    air = replace(air, excess=compared.diagnosis.airspeed_excess)
+    found = replace(compared.diagnosis, notes=every_note, air=air, although_refused=chosen.although_refused)
     return replace(compared, diagnosis=found)
 
 
@@ -241,9 +237,3 @@ def _simulator_at_true_speed(simulator: Simulator, true_over_read: float) -> Sim
         return simulator
     read = simulator.reference_m_s
     return simulator if read is None else replace(simulator, reference_m_s=read * true_over_read)
-
-
-def _height_of(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> float | None:
-    """Return the mean height in the standard atmosphere, m, of all manoeuvres in air of known density."""
-    heights = [h for h in standard_heights(maneuvers, aircraft).values() if h is not None]
-    return sum(heights) / len(heights) if heights else None

@@ -1,13 +1,14 @@
 """From logs to the gap of the lateral axis, over the accepted manoeuvres of aileron and rudder."""
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeVar
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.analysis.whole_flights import read_whole
+from advisor.campaign.state import CampaignState
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.marks import Mark
 from advisor.gap.inference.prior import FIELD, FieldPrior
@@ -20,7 +21,18 @@ from advisor.simulators.specification import simulator_of
 from advisor.words.problems import ConfigurationError, Problem, UnusableInputError
 
 
-def side_gap_of(
+@dataclass(frozen=True)
+class SideCompared:
+    """Gap of roll and yaw, and the flight that it is of."""
+
+    gap: SideGap
+    state: CampaignState
+    """Campaign at the end of the logs, both axes."""
+    aircraft: Aircraft
+    """The aircraft file."""
+
+
+def compare_side_logs(
     logs: Sequence[Path],
     aircraft: Aircraft,
     target_system: int | None = None,
@@ -28,7 +40,7 @@ def side_gap_of(
     no_marks: bool = False,
     prior: FieldPrior = FIELD,
     progress: Progress = lambda *_: None,
-) -> SideGap:
+) -> SideCompared:
     """Read logs and compare the flight with roll and yaw of the aircraft file, or of its simulator.
 
     Raises
@@ -38,7 +50,9 @@ def side_gap_of(
     UnusableInputError
         No log can be used, no manoeuvre of aileron or rudder is accepted, or the simulator does not fly them.
     """
-    accepted = _accepted(logs, aircraft, target_system, marks, no_marks)
+    given = aircraft
+    state = read_whole(logs, aircraft, target_system, marks, no_marks=no_marks, axis="lateral").state
+    accepted = accepted_of(state)
     kind, _, rest = (aircraft.simulator or "linear").partition(":")
     if kind == "log":
         aircraft = _identified(Path(rest), aircraft)
@@ -49,21 +63,14 @@ def side_gap_of(
         finally:
             simulator.close()
     progress("comparing", 1.0)
-    return _answered(compare_side(accepted, aircraft, prior))
+    return SideCompared(_answered(compare_side(accepted, aircraft, prior)), state, given)
 
 
-def _accepted(
-    logs: Sequence[Path],
-    aircraft: Aircraft,
-    target_system: int | None = None,
-    marks: Sequence[Mark] = (),
-    no_marks: bool = False,
-) -> list[Maneuver]:
+def accepted_of(state: CampaignState) -> list[Maneuver]:
     """Return the accepted manoeuvres of aileron and rudder."""
-    flights = read_whole(logs, aircraft, target_system, marks, no_marks=no_marks, axis="lateral")
-    state = flights.state.lateral
-    assert state is not None
-    accepted = [one.maneuver for one in state.maneuvers if one.verdict.accepted]
+    lateral = state.lateral
+    assert lateral is not None
+    accepted = [one.maneuver for one in lateral.maneuvers if one.verdict.accepted]
     if not accepted:
         raise UnusableInputError.of(
             [
@@ -81,7 +88,8 @@ def _identified(log: Path, aircraft: Aircraft) -> Aircraft:
     """Return the aircraft file with the derivatives that a simulator's log shows."""
     if not log.is_file():
         raise ConfigurationError(f"--simulator log:{log}: there is no such file; name the simulator's log.")
-    found = _answered(estimate_lateral(_accepted([log], aircraft, no_marks=True), aircraft)).estimate
+    flown = accepted_of(read_whole([log], aircraft, no_marks=True, axis="lateral").state)
+    found = _answered(estimate_lateral(flown, aircraft)).estimate
     told = zip(SIDE_PARAMETERS, map(float, found.theta), strict=True)
     model = {name: value for name, value in told if name not in found.not_identifiable}
     return replace(aircraft, model=model, reference_airspeed_m_s=found.airspeed_m_s)

@@ -8,19 +8,21 @@ from typing import TYPE_CHECKING, Literal
 import click
 
 from advisor.campaign.hand_decisions import NOTHING
-from advisor.cli.improvement_export import export_option, orders_of, write_flown_model
+from advisor.cli.improvement_export import export_option, orders_of, write_exports
 from advisor.cli.log_options import LogsAsked, log_options
-from advisor.cli.options import UNUSABLE, json_option
+from advisor.cli.options import UNUSABLE, USAGE, json_option
 from advisor.cli.stages import Stages
 from advisor.cli.untested import print_untested
 from advisor.words.printable import printable
 from advisor.words.problems import Problem
 
 if TYPE_CHECKING:
+    from advisor.aircraft.aircraft import Aircraft
     from advisor.analysis.axes import Axis
     from advisor.analysis.log_series import LogSeries
     from advisor.campaign.campaign import Campaign
     from advisor.campaign.state import CampaignState
+    from advisor.exports.models.flown import FlownModel
 
 
 @click.command
@@ -43,7 +45,7 @@ if TYPE_CHECKING:
     help="Axis that is analyzed: the elevator's, that of aileron and rudder, or both.",
 )
 @export_option(
-    "Write the model of the flight as matlab (both axes), jsbsim or ardupilot (roll and yaw); repeatable."
+    "Write the model of the flight, both axes, as jsbsim, ardupilot, sdf, matlab or aircraft; repeatable."
 )
 @json_option
 def command(
@@ -68,7 +70,7 @@ def command(
       advisor analyze flight.tlog --axis lateral --export matlab:roll-and-yaw.m
     """
     aircraft = asked.read_aircraft()
-    orders = orders_of(exports, aircraft, asked.inputs, of_flight=True)
+    orders = orders_of(exports, aircraft, asked.inputs, "both")
     from advisor.analysis.axes import holds_no_test
     from advisor.analysis.log_series import LogSeries
 
@@ -117,9 +119,16 @@ def command(
             click.echo(activity_line(activity))
     for sentence in said:
         click.echo(sentence, err=True)
-    if state is not None and usable:
-        write_flown_model(orders, state, aircraft)
-    return 0 if usable else UNUSABLE
+    if state is None or not usable:
+        return UNUSABLE
+    outcomes = write_exports(orders, partial(_flown_model, state, aircraft))
+    return USAGE if any(one.problem for one in outcomes) else 0
+
+
+def _flown_model(state: "CampaignState", aircraft: "Aircraft") -> "FlownModel":
+    from advisor.exports.models.flown import flown_model
+
+    return flown_model(state, aircraft)
 
 
 def _analyze(

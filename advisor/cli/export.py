@@ -13,6 +13,7 @@ from advisor.cli.options import (
 from advisor.cli.stages import Stages
 from advisor.exports.flights.formats import WRITERS, parse_formats, write_formats
 from advisor.exports.flights.staging import refuse_inputs, staged
+from advisor.exports.models.names import NAMES
 from advisor.words.printable import printable
 from advisor.words.problems import ConfigurationError
 
@@ -32,7 +33,8 @@ from advisor.words.problems import ConfigurationError
     "--format",
     "formats",
     metavar="NAMES",
-    help=f"Formats, separated by commas: {', '.join(WRITERS)}. Default: csv.",
+    help=f"Formats, separated by commas: {', '.join(WRITERS)}; of the model as flown: {', '.join(NAMES)}. "
+    "Default: csv.",
 )
 @click.option(
     "--cut",
@@ -53,6 +55,7 @@ def command(
     \b
     Example:
       advisor export flight.tlog -o flight --format csv,parquet,mat,mcap
+      advisor export flight.tlog -o flight --format ardupilot,matlab --aircraft my-aircraft.yaml
       advisor export flight.tlog -o maneuver-3.tlog --cut 3
     """
     inputs = asked.inputs
@@ -62,12 +65,20 @@ def command(
         refuse_unwritable_folder("-o", out)
     chosen = () if cut is not None else parse_formats(formats or "csv")
     aircraft = asked.read_aircraft()
+    models = tuple(name for name in chosen if name in NAMES)
+    if models:
+        from advisor.exports.models.in_folder import refuse_models
+
+        refuse_models(models, out, aircraft)
     from advisor.analysis.whole_flights import read_whole
     from advisor.exports.flights.reading import dataset
 
     with Stages() as tell:
         tell("reading and judging", 0.0)
-        flights = read_whole(asked.logs, aircraft, asked.target_system, asked.marks, no_marks=asked.no_marks)
+        flights = read_whole(
+            asked.logs, aircraft, asked.target_system, asked.marks, no_marks=asked.no_marks,
+            axis="both" if models else "pitch",
+        )  # fmt: skip
     for note in flights.notes:
         click.echo(printable(note), err=True)
     if cut is not None:
@@ -79,9 +90,14 @@ def command(
         click.echo(f"Wrote {printable(str(out))}: manoeuvre {cut}, {len(data)} bytes.")
         return 0
     with staged(out, inputs) as stage:
-        failed = write_formats(dataset(flights), stage, chosen)
-    for part in failed:
-        click.echo(part.told, err=True)
+        tables = tuple(name for name in chosen if name not in models)
+        said = [part.told for part in (write_formats(dataset(flights), stage, tables) if tables else ())]
+        if models:
+            from advisor.exports.models.in_folder import write_models
+
+            said += write_models(models, stage, flights.state, aircraft)
+    for sentence in said:
+        click.echo(sentence, err=True)
     click.echo(
         f"Wrote {printable(str(out))}; manoeuvres: {len(flights.state.maneuvers)}; "
         f"formats: {', '.join(chosen)}."

@@ -1,9 +1,11 @@
 """``advisor gap``: why the real aircraft does not fly like the simulator."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import cache, partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 from click.core import ParameterSource
@@ -24,14 +26,19 @@ from advisor.process.parts import FailedPart, attempt
 from advisor.words.printable import printable
 from advisor.words.problems import ConfigurationError, UnusableInputError
 
+if TYPE_CHECKING:
+    from advisor.aircraft.aircraft import Aircraft
+    from advisor.exports.models.flown import FlownModel, SideModel
+    from advisor.gap.result import Diagnosis
+
+IMPROVABLE = ("effect", "parameters")
+"""Verdicts after which there is something to improve."""
 _OF_A_FLIGHT = {
     "holdout": "--holdout", "out": "--out", "target_system": "--target-system", "marks": "--maneuver",
     "no_marks": "--no-marks", "why": "--why", "everything": "--all", "prior": "--prior",
     "exports": "--export", "specification": "--simulator", "figure": "--figure", "axis": "--axis",
 }  # fmt: skip
-_OF_THE_PITCH = {
-    name: _OF_A_FLIGHT[name] for name in ("holdout", "out", "why", "everything", "exports", "figure")
-}
+_OF_THE_PITCH = {name: _OF_A_FLIGHT[name] for name in ("holdout", "why", "everything", "figure")}
 _OF_A_PLAN = {
     "plan": "--plan", "rate_hz": "--rate", "amplitude_deg": "--amplitude-deg", "without": "--without"
 }  # fmt: skip
@@ -66,7 +73,7 @@ _OF_A_PLAN = {
     type=click.Choice(["pitch", "lateral"]),
     default="pitch",
     show_default=True,
-    help="Axis that is diagnosed. On the lateral one, of roll and yaw, nothing is exported.",
+    help="Axis that is diagnosed: the elevator's, or that of roll and yaw.",
 )
 @click.option(
     "--all",
@@ -148,18 +155,20 @@ def command(
     if axis == "lateral":
         from advisor.cli.side_gap import compare_lateral
 
-        return compare_lateral(asked, aircraft, as_json, prior)
+        if out is not None:
+            _refuse_out(out, asked.aircraft_file)
+        orders = orders_of(exports, aircraft, [*asked.inputs, out], "lateral")
+        return compare_lateral(asked, aircraft, as_json, prior, out, orders)
     decided = [decided_on(log, asked.no_marks) for log in asked.logs]
     by_hand = [replace(before, marks=(*asked.marks, *before.marks)) for before in decided]
     if out is not None:
         _refuse_out(out, asked.aircraft_file)
     refuse_figure(figure, [*asked.inputs, out])
-    orders = orders_of(exports, aircraft, [*asked.inputs, out])
+    orders = orders_of(exports, aircraft, [*asked.inputs, out], "pitch")
     from advisor.analysis.gap import compare_logs, named_simulator
     from advisor.gap.document import gap_document
     from advisor.gap.inference.prior import FIELD, field_prior
     from advisor.report.gap_steps import next_steps
-    from advisor.report.improved import write_improved
     from advisor.words.plain import plain
 
     simulator = None
@@ -184,17 +193,13 @@ def command(
     if isinstance(compared, FailedPart):
         return _say_without(compared, as_json)
     found = compared.diagnosis
-    improvable = found.verdict in ("effect", "parameters")
-    if out is not None and improvable:
-        with writing("--out", out):
-            write_improved(found, compared.aircraft, out)
-    elif out is not None:
-        click.echo(
-            f"{printable(str(out))} was not written: no cause was named and no number found wrong.", err=True
-        )
+    improvable = found.verdict in IMPROVABLE
+    side = cache(partial(_side_of, asked, aircraft))
+    if out is not None:
+        _write_improved(out, found, compared.aircraft, side)
     # The simulator's own servo is no part of the improvement.
     as_given = replace(compared.aircraft, simulator=aircraft.simulator, elevator=aircraft.elevator)
-    outcomes = write_exports(orders, found, as_given)
+    outcomes = write_exports(orders, partial(_improved, found, as_given, side))
     write_figure(figure, found)
     steps = next_steps(found, list(map(str, asked.logs)), asked.aircraft_text, specification)
     if as_json:
@@ -208,6 +213,39 @@ def command(
         written = printable(str(out)) if out and improvable else None
         PlainConsole().print(GapScreen(found, written, why, steps, everything))
     return USAGE if any(one.problem for one in outcomes) else 0
+
+
+def _write_improved(
+    out: Path, found: "Diagnosis", aircraft: "Aircraft", side: "Callable[[], SideModel | None]"
+) -> None:
+    """Write the improved aircraft file, or say why not."""
+    if found.verdict not in IMPROVABLE:
+        click.echo(
+            f"{printable(str(out))} was not written: no cause was named and no number found wrong.", err=True
+        )
+        return
+    from advisor.exports.models.file_text import write_file
+    from advisor.exports.models.flown import FlownModel
+
+    with writing("--out", out):
+        write_file(FlownModel(aircraft, None, side(), found), out)
+
+
+def _side_of(asked: LogsAsked, aircraft: "Aircraft") -> "SideModel | None":
+    """Return roll and yaw as the logs tell them; None where they tell none."""
+    from advisor.exports.models.from_logs import side_of_logs
+
+    with Stages() as tell:
+        tell("reading roll and yaw for the files", 0.0)
+        return side_of_logs(asked.logs, aircraft, asked.target_system, asked.marks, no_marks=asked.no_marks)
+
+
+def _improved(
+    found: "Diagnosis", aircraft: "Aircraft", side: "Callable[[], SideModel | None]"
+) -> "FlownModel":
+    from advisor.exports.models.flown import improved_model
+
+    return improved_model(found, aircraft, side())
 
 
 def _refuse_out(out: Path, aircraft_file: Path | None) -> None:

@@ -3,15 +3,19 @@
 import json
 import math
 from collections.abc import Iterator
-from typing import Any
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.analysis.side_gap import side_gap_of
+from advisor.analysis.side_gap import SideCompared, compare_side_logs
+from advisor.cli.improvement_export import listed, write_exports
 from advisor.cli.log_options import LogsAsked
-from advisor.cli.options import UNUSABLE
+from advisor.cli.options import UNUSABLE, USAGE, writing
 from advisor.cli.stages import Stages
 from advisor.gap.candidates.distinguish import way_to_distinguish
 from advisor.gap.document import changed_document, gap_document
@@ -26,20 +30,32 @@ from advisor.side_gap.diagnosis import SideDiagnosis
 from advisor.side_gap.stage import LIKELY
 from advisor.words.certainty import is_decided
 from advisor.words.plain import picked, plain
+from advisor.words.printable import printable
 from advisor.words.problems import UnusableInputError
 from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import symbol
 
+if TYPE_CHECKING:
+    from advisor.exports.models.flown import FlownModel
+    from advisor.exports.models.write import ExportOrder
 
-def compare_lateral(asked: LogsAsked, aircraft: Aircraft, as_json: bool, prior: str | None = None) -> int:
-    """Compare roll and yaw of the aircraft file with the flight, and print the result."""
+
+def compare_lateral(
+    asked: LogsAsked,
+    aircraft: Aircraft,
+    as_json: bool,
+    prior: str | None,
+    out: Path | None,
+    orders: "list[ExportOrder]",
+) -> int:
+    """Compare roll and yaw of the aircraft file with the flight, print the result and write the files."""
     try:
         with Stages() as tell:
             tell("reading", 0.0)
             shares = FIELD if prior is None else field_prior(prior)
-            found = attempt(
+            compared = attempt(
                 "lateral, diagnosis",
-                lambda: side_gap_of(
+                lambda: compare_side_logs(
                     asked.logs,
                     aircraft,
                     asked.target_system,
@@ -54,17 +70,43 @@ def compare_lateral(asked: LogsAsked, aircraft: Aircraft, as_json: bool, prior: 
             click.echo(json.dumps(gap_document(None, error.problems), indent=1))
         click.echo(str(error), err=True)
         return UNUSABLE
-    if isinstance(found, FailedPart):
+    if isinstance(compared, FailedPart):
         if as_json:
-            click.echo(json.dumps(gap_document(None, failed=(found,)), indent=1))
-        click.echo(found.told, err=True)
+            click.echo(json.dumps(gap_document(None, failed=(compared,)), indent=1))
+        click.echo(compared.told, err=True)
         return 0
+    found = compared.gap
+    written = out is not None and _write_improved(compared, out)
+    outcomes = write_exports(orders, partial(_improved, compared))
     if as_json:
-        document = gap_document(None) | {"usable": True, "lateral": side_gap_document(found)}
+        lateral = side_gap_document(found) | {"improved_model": str(out) if written else None}
+        document = gap_document(None) | {"usable": True, "lateral": lateral, "exports": listed(outcomes)}
         click.echo(json.dumps(document, allow_nan=False, indent=1))
     else:
         click.echo("\n".join(side_gap_lines(found)))
-    return 0
+        if written:
+            click.echo(f"The improved simulator is in {printable(str(out))}.")
+    return USAGE if any(one.problem for one in outcomes) else 0
+
+
+def _improved(compared: SideCompared) -> "FlownModel":
+    from advisor.exports.models.from_logs import improved_side
+
+    return improved_side(compared)
+
+
+def _write_improved(compared: SideCompared, out: Path) -> bool:
+    """Write the improved aircraft file; return whether there was anything to improve."""
+    from advisor.exports.models.file_text import write_file
+
+    if compared.gap.verdict not in ("effect", "parameters"):
+        click.echo(
+            f"{printable(str(out))} was not written: no cause was named and no number found wrong.", err=True
+        )
+        return False
+    with writing("--out", out):
+        write_file(replace(_improved(compared), pitch=None), out)
+    return True
 
 
 def side_gap_lines(found: SideGap) -> Iterator[str]:

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
+from advisor.flight.instruments.atmosphere import AirData
 from advisor.flight.instruments.kinematics import KinematicCheck
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.alternative import Alternative, AlternativeEvidence, Contribution, Probabilities
@@ -266,9 +267,10 @@ class Diagnosis:
     in_simulator: InSimulator | None = None
     """The gap of the user's own simulator; None where no simulator was named."""
     maneuvers: tuple[int, ...] = field(default=())
-    height_m: float | None = None
-    """Mean height in the standard atmosphere at which the air has the density flown in, m; None for an
-    unknown density."""
+    air: AirData | None = None
+    """Air of the manoeuvres: the kind of their air speed, and the density; None where nobody asked."""
+    airspeed_excess: float = 0.0
+    """Relative excess of the true air speed over the one in use, as the final model has it."""
     evidence: tuple[AlternativeEvidence, ...] = ()
     """The evidence on every alternative, likeliest first; empty for a single manoeuvre, which proves no
     cause."""
@@ -280,8 +282,6 @@ class Diagnosis:
     """Label of that rival; empty without ``why``."""
     although_refused: tuple[int, ...] = ()
     """Numbers of the manoeuvres in use that ``advisor analyze`` refuses by their data alone."""
-    true_over_read: float = 1.0
-    """Factor from the air speed as the aircraft reads it to the true one."""
 
     @property
     def probabilities(self) -> Probabilities | None:

@@ -14,8 +14,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from advisor.aircraft.reference import PARAMETERS, Reference
-from advisor.flight.instruments.atmosphere import AirFlown
-from advisor.flight.signals.standard_atmosphere import SEA_LEVEL_DENSITY_KG_M3
+from advisor.flight.instruments.atmosphere import AirData
 from advisor.oem.estimate import Estimate
 
 CONVENTION = "per radian; rates as q·c/(2·V) with the true air speed V"
@@ -29,7 +28,7 @@ class Coefficient:
     std: float
 
 
-def coefficients(estimate: Estimate, reference: Reference, air: AirFlown) -> Mapping[str, Coefficient]:
+def coefficients(estimate: Estimate, reference: Reference, air: AirData) -> Mapping[str, Coefficient]:
     """Return the coefficients by name, as far as the reference data allow; empty without an air speed.
 
     Parameters
@@ -43,22 +42,19 @@ def coefficients(estimate: Estimate, reference: Reference, air: AirFlown) -> Map
     """
     if estimate.airspeed_m_s is None:
         return {}
-    speed = air.true_speed(estimate.airspeed_m_s)
     return {
         name: Coefficient(
             factor * estimate.value(parameter), abs(factor) * float(estimate.std[PARAMETERS.index(parameter)])
         )
-        for name, (parameter, factor) in scales(speed, reference, air.density_kg_m3).items()
+        for name, (parameter, factor) in scales(estimate.airspeed_m_s, reference, air).items()
         if parameter not in estimate.not_identifiable
     }
 
 
-def scales(
-    airspeed_m_s: float, reference: Reference, density_kg_m3: float = SEA_LEVEL_DENSITY_KG_M3
-) -> Mapping[str, tuple[str, float]]:
+def scales(airspeed_m_s: float, reference: Reference, air: AirData) -> Mapping[str, tuple[str, float]]:
     """Return by coefficient name the derivative and the factor between the two, from Table 4.4.
 
-    Coefficients without reference data are left out.
+    Coefficients without reference data are left out. ``airspeed_m_s`` is of the kind that ``air`` knows.
     """
     area, chord, mass, inertia = (
         reference.wing_area_m2,
@@ -68,15 +64,15 @@ def scales(
     )
     if area is None:
         return {}
-    pressure = 0.5 * density_kg_m3 * airspeed_m_s**2
+    speed, pressure = air.true_speed(airspeed_m_s), air.dynamic_pressure(airspeed_m_s)
     scale: dict[str, tuple[str, float]] = {}
     if mass is not None:
-        force = -mass * airspeed_m_s / (pressure * area)
+        force = -mass * speed / (pressure * area)
         scale |= {"C_L_alpha": ("Z_alpha", force), "C_L_delta_e": ("Z_delta_e", force)}
         if chord is not None:
-            scale["C_L_q"] = ("Z_q", force * 2.0 * airspeed_m_s / chord)
+            scale["C_L_q"] = ("Z_q", force * 2.0 * speed / chord)
     if inertia is not None and chord is not None:
         moment = inertia / (pressure * area * chord)
         scale |= {"C_m_alpha": ("M_alpha", moment), "C_m_delta_e": ("M_delta_e", moment)}
-        scale["C_m_q"] = ("M_q", moment * 2.0 * airspeed_m_s / chord)
+        scale["C_m_q"] = ("M_q", moment * 2.0 * speed / chord)
     return scale

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from advisor.aircraft.reference import PARAMETERS, Reference
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
-from advisor.flight.instruments.atmosphere import AirFlown
+from advisor.flight.instruments.atmosphere import AirData
 from advisor.model.mil_f_8785c import CATEGORIES, LevelFound, ShortPeriodFound, ShortPeriodLimits, assess
 from advisor.oem.estimate import Estimate
 from advisor.words.quantiles import NORMAL_95
@@ -64,7 +64,7 @@ class FlyingQualities:
     """Qualities by the names of ``UNITS``, as far as estimate and reference data allow."""
     levels: tuple[LevelFound, ...]
     """Levels of MIL-F-8785C by category; empty where a required parameter is missing."""
-    air: AirFlown
+    air: AirData
     airspeed_m_s: float | None
     """Logged air speed at which the derivatives are given, m/s."""
     true_airspeed_m_s: float | None
@@ -75,7 +75,7 @@ class FlyingQualities:
     """Correlation of the errors of natural frequency and n/α; None where one of them is missing."""
 
 
-def flying_qualities(estimate: Estimate, air: AirFlown, reference: Reference) -> FlyingQualities:
+def flying_qualities(estimate: Estimate, air: AirData, reference: Reference) -> FlyingQualities:
     """Return the flying qualities of an estimate.
 
     Parameters

@@ -17,15 +17,31 @@ from advisor.words.plain import plain
 
 def improved_file(diagnosis: Diagnosis, aircraft: Aircraft) -> Mapping[str, Any]:
     """Return the aircraft file with the fitted model and the effects found in it."""
-    content: dict[str, Any] = {"name": f"{aircraft.name}, improved"}
     flown, effects = less_of_the_servo(aircraft, together(aircraft.effects, diagnosis.effects))
-    kept = replace(flown, name=Aircraft().name, model={}, effects={}, simulator=None)
+    speed = diagnosis.reference_airspeed_m_s
+    if speed is not None and diagnosis.air is not None:
+        speed = diagnosis.air.read_speed(speed)
+    model = {name: v.value for name, v in diagnosis.model.items()}
+    return file_content(flown, speed, model, effects)
+
+
+def file_content(
+    aircraft: Aircraft,
+    read_airspeed_m_s: float | None,
+    model: Mapping[str, float],
+    effects: Mapping[str, Mapping[str, float]],
+) -> dict[str, Any]:
+    """Return an aircraft file with other derivatives, at an air speed as read, and with other effects.
+
+    Derivatives of roll and yaw that ``model`` lacks stay as they are.
+    """
+    content: dict[str, Any] = {"name": f"{aircraft.name}, improved"}
+    kept = replace(aircraft, name=Aircraft().name, model={}, effects={}, simulator=None)
     content.update(_beyond(asdict(kept), asdict(Aircraft())))
-    if diagnosis.reference_airspeed_m_s is not None:
-        as_read = diagnosis.reference_airspeed_m_s / diagnosis.true_over_read
-        content["reference_airspeed_m_s"] = round(as_read, 4)
+    if read_airspeed_m_s is not None:
+        content["reference_airspeed_m_s"] = round(read_airspeed_m_s, 4)
     side = {name: value for name, value in aircraft.model.items() if name in SIDE_PARAMETERS}
-    content["model"] = side | {name: _digits(v.value) for name, v in diagnosis.model.items()}
+    content["model"] = side | {name: _digits(value) for name, value in model.items()}
     content["effects"] = {
         effect: {name: _digits(value) for name, value in values.items()} for effect, values in effects.items()
     }
@@ -45,10 +61,14 @@ def _beyond(content: Mapping[str, Any], usual: Mapping[str, Any]) -> dict[str, A
 
 def write_improved(diagnosis: Diagnosis, aircraft: Aircraft, path: Path) -> Path:
     """Write the improved simulator as a file that ``advisor`` and ``python -m sim`` load."""
-    text = yaml.safe_dump(plain(improved_file(diagnosis, aircraft)), sort_keys=False, allow_unicode=True)
-    head = "# Written by `advisor gap`: the simulator with the findings of the flight.\n"
-    write_atomically(path, head + text)
+    write_atomically(path, text_of(improved_file(diagnosis, aircraft)))
     return path
+
+
+def text_of(content: Mapping[str, Any]) -> str:
+    """Return the text of an improved file."""
+    text = yaml.safe_dump(plain(content), sort_keys=False, allow_unicode=True)
+    return "# Written by `advisor gap`: the simulator with the findings of the flight.\n" + text
 
 
 def improved_name(diagnosis: Diagnosis, aircraft_file: str | None) -> str:

@@ -5,7 +5,7 @@ from typing import Any
 
 from advisor.aircraft.reference import Reference
 from advisor.campaign.state import CampaignState
-from advisor.flight.instruments.atmosphere import AirFlown, air_flown
+from advisor.flight.instruments.atmosphere import AirData, air_flown
 from advisor.model.mil_f_8785c import CATEGORIES, MANNED, SOURCE
 from advisor.oem.coefficients import CONVENTION, Coefficient, coefficients
 from advisor.oem.flying_qualities import UNITS, FlyingQualities, flying_qualities
@@ -35,7 +35,7 @@ def coefficients_of(state: CampaignState, reference: Reference) -> Mapping[str, 
     return {} if state.model is None else coefficients(state.model, reference, _air(state, reference))
 
 
-def _air(state: CampaignState, reference: Reference) -> AirFlown:
+def _air(state: CampaignState, reference: Reference) -> AirData:
     joined = set(state.estimate_from)
     flown = [j.maneuver for j in state.maneuvers if j.maneuver.number in joined]
     return air_flown(flown, reference.air_temperature_c)

@@ -12,7 +12,6 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.instruments.atmosphere import air_flown
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.standard_atmosphere import standard_height
 from advisor.simulators.protocol import Simulator
 from advisor.words.problems import UnusableInputError
 
@@ -22,12 +21,8 @@ def standard_heights(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Mappi
 
     None stands for a manoeuvre with neither static pressure nor height above mean sea level.
     """
-    found: dict[int, float | None] = {}
-    for maneuver in maneuvers:
-        air = air_flown([maneuver], aircraft.reference.air_temperature_c)
-        known = air.source != "sea level"
-        found[maneuver.number] = float(standard_height(air.density_kg_m3)) if known else None
-    return found
+    temperature_c = aircraft.reference.air_temperature_c
+    return {m.number: air_flown([m], temperature_c).height_m for m in maneuvers}
 
 
 def winds(maneuvers: Sequence[Maneuver]) -> Mapping[int, tuple[float, float]]:

@@ -26,7 +26,8 @@ def compared(monkeypatch):
         seen.maneuvers, seen.aircraft = maneuvers, aircraft
         return seen
 
-    monkeypatch.setattr(side_gap, "_accepted", lambda *_, **__: ["as flown"])
+    monkeypatch.setattr(side_gap, "read_whole", lambda *_, **__: SimpleNamespace(state=None))
+    monkeypatch.setattr(side_gap, "accepted_of", lambda _: ["as flown"])
     monkeypatch.setattr(side_gap, "compare_side", compare)
     monkeypatch.setattr(side_gap, "simulator_of", named)
     monkeypatch.setattr(
@@ -37,13 +38,13 @@ def compared(monkeypatch):
 
 @pytest.mark.parametrize("specification", [None, "linear"])
 def test_the_aircraft_files_own_numbers_are_compared_without_a_replay(compared, specification):
-    side_gap.side_gap_of([Path("a.tlog")], Aircraft(simulator=specification))
+    side_gap.compare_side_logs([Path("a.tlog")], Aircraft(simulator=specification))
     assert compared.maneuvers == ["as flown"]
     assert compared.specification is None
 
 
 def test_a_simulator_flies_the_manoeuvres_and_is_closed(compared):
-    side_gap.side_gap_of([Path("a.tlog")], Aircraft(simulator="jsbsim:c172p"))
+    side_gap.compare_side_logs([Path("a.tlog")], Aircraft(simulator="jsbsim:c172p"))
     assert compared.specification == "jsbsim:c172p"
     assert compared.maneuvers == ["beside"]
     assert compared.aircraft.model == {"L_p": -1.0}
@@ -56,7 +57,7 @@ def test_a_simulator_that_refuses_is_closed_too(compared, monkeypatch):
 
     monkeypatch.setattr(side_gap, "side_without_difference", refuse)
     with pytest.raises(ConfigurationError):
-        side_gap.side_gap_of([Path("a.tlog")], Aircraft(simulator="jsbsim:c172p"))
+        side_gap.compare_side_logs([Path("a.tlog")], Aircraft(simulator="jsbsim:c172p"))
     assert compared.closed == 1
 
 
@@ -65,7 +66,7 @@ def test_the_derivatives_of_a_simulators_log_are_its_numbers(compared, monkeypat
     monkeypatch.setattr(side_gap, "estimate_lateral", lambda *_: SimpleNamespace(estimate=found))
     log = tmp_path / "simulated.tlog"
     log.touch()
-    side_gap.side_gap_of([Path("a.tlog")], Aircraft(simulator=f"log:{log}"))
+    side_gap.compare_side_logs([Path("a.tlog")], Aircraft(simulator=f"log:{log}"))
     assert "Y_beta" not in compared.aircraft.model
     assert compared.aircraft.model["Y_p"] == 1.0
     assert compared.aircraft.reference_airspeed_m_s == 30.0
@@ -73,4 +74,4 @@ def test_the_derivatives_of_a_simulators_log_are_its_numbers(compared, monkeypat
 
 def test_a_log_that_is_not_there_is_one_sentence(compared):
     with pytest.raises(ConfigurationError, match="there is no such file"):
-        side_gap.side_gap_of([Path("a.tlog")], Aircraft(simulator="log:nowhere.tlog"))
+        side_gap.compare_side_logs([Path("a.tlog")], Aircraft(simulator="log:nowhere.tlog"))

@@ -9,8 +9,9 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.exports.flights import mat_file, mcap_files
 from advisor.exports.flights.formats import write_formats
-from advisor.exports.models import write
 from advisor.exports.models.exported import Exported
+from advisor.exports.models.flown import FlownModel
+from advisor.exports.models.formats import ardupilot_format, matlab_format
 from advisor.exports.models.write import carry_out, order_of
 
 NO_DATA: Any = None
@@ -45,11 +46,10 @@ def test_a_fault_that_is_none_of_numbers_ends_the_export(
 def test_a_model_that_cannot_be_written_is_named_and_the_next_one_is_written(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    monkeypatch.setattr(write, "improvement_of", lambda *_: None)
-    monkeypatch.setattr(write.matlab, "script_text", fails)
-    monkeypatch.setattr(write.ardupilot, "servo_text", lambda _: Exported("SERVO2_RATE 50\n"))
+    monkeypatch.setattr(matlab_format, "both_axes_text", fails)
+    monkeypatch.setattr(ardupilot_format, "parameters_text", lambda _: Exported("SERVO2_RATE 50\n"))
     orders = [order_of(f"matlab:{tmp_path}/model.m"), order_of(f"ardupilot:{tmp_path}/servo.parm")]
-    failed, written = carry_out(orders, NO_DATA, Aircraft())
+    failed, written = carry_out(orders, FlownModel(Aircraft(), None, None))
     assert "A fault of the advisor, not yours, ended this part: export matlab" in failed.problem
     assert "LinAlgError: Singular matrix" in failed.problem
     assert not (tmp_path / "model.m").exists()

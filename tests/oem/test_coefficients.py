@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.reference import Reference
-from advisor.flight.instruments.atmosphere import AirFlown
+from advisor.flight.instruments.atmosphere import AirData
 from advisor.oem.coefficients import coefficients
 from advisor.oem.estimate import Estimate
 
 SPEED, DENSITY = 25.0, 1.1
-AIR = AirFlown(DENSITY, "pressure", "true")
+AIR = AirData(DENSITY, "pressure", "true")
 WHOLE = Reference(mass_kg=10.0, wing_area_m2=0.8, chord_m=0.3, iyy_kg_m2=0.9)
 LIFT = {"C_L_alpha": 5.1, "C_L_q": 6.0, "C_L_delta_e": 0.45}
 MOMENT = {"C_m_alpha": -0.6, "C_m_q": -11.0, "C_m_delta_e": -1.1}
@@ -61,6 +61,6 @@ def test_missing_geometry_leaves_out_what_needs_it() -> None:
 def test_an_indicated_air_speed_gives_the_coefficients_that_the_true_air_speed_gives() -> None:
     indicated = replace(flown(), airspeed_m_s=SPEED * (DENSITY / 1.225) ** 0.5)
     by_true = coefficients(flown(), WHOLE, AIR)
-    by_indicated = coefficients(indicated, WHOLE, AirFlown(DENSITY, "height", "indicated"))
+    by_indicated = coefficients(indicated, WHOLE, AirData(DENSITY, "height", "indicated"))
     for name, one in by_indicated.items():
         assert one.value == pytest.approx(by_true[name].value)

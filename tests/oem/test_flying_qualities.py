@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.reference import Reference
-from advisor.flight.instruments.atmosphere import AirFlown
+from advisor.flight.instruments.atmosphere import AirData
 from advisor.oem.estimate import Estimate
 from advisor.oem.flying_qualities import FlyingQualities, flying_qualities
 
 THETA = np.array([-0.009, -0.483, 0.104, 0.676, 0.475, -4.93, -2.01, -7.21])
 SPEED = 120.0
-TRUE = AirFlown(1.0, "pressure", "true")
+TRUE = AirData(1.0, "pressure", "true")
 HEAVY = Reference(mass_kg=9000.0, chord_m=2.9, iyy_kg_m2=50_000.0, cg_percent_chord=24.0)
 
 

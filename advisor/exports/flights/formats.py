@@ -7,6 +7,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from advisor.exports.models.names import NAMES
 from advisor.process.parts import FailedPart, attempt
 from advisor.words.problems import ConfigurationError
 
@@ -20,6 +21,8 @@ WRITERS = {
     "mcap": ("mcap_files", "write_mcap"),
 }
 """Format to the module of its writer and the writer's name."""
+FORMATS = (*WRITERS, *NAMES)
+"""Formats of a flight's data, then those of its model."""
 _NEEDS = {"parquet": "pyarrow", "mcap": "mcap"}
 
 
@@ -32,10 +35,10 @@ def parse_formats(text: str) -> tuple[str, ...]:
         A format is unknown, or its library is not installed.
     """
     formats = tuple(dict.fromkeys(part.strip() for part in text.split(",") if part.strip()))
-    unknown = [name for name in formats if name not in WRITERS]
+    unknown = [name for name in formats if name not in FORMATS]
     if unknown or not formats:
         given = f"{unknown[0]} is no format" if unknown else "no format is given"
-        raise ConfigurationError(f"--format: {given}; the formats are {', '.join(WRITERS)}.")
+        raise ConfigurationError(f"--format: {given}; the formats are {', '.join(FORMATS)}.")
     for name in formats:
         if name in _NEEDS and find_spec(_NEEDS[name]) is None:
             raise ConfigurationError(

@@ -14,6 +14,8 @@ class Exported:
     text: str
     left_out: tuple[str, ...] = ()
     """Names of effects, as people write them, that the text does not carry."""
+    beside: tuple[str, ...] = ()
+    """Texts of the further files that the format writes next to this one."""
 
 
 def effects_beside(improvement: Improvement, *carried: str) -> tuple[str, ...]:

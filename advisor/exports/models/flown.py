@@ -1,39 +1,97 @@
-"""The model of a flight for other programs: short period, roll and yaw, as estimated."""
+"""The model for other programs: both axes, as flown or as a diagnosis improved them."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.reference import SIDE_PARAMETERS
+from advisor.campaign.lateral_state import LateralState
 from advisor.campaign.state import CampaignState
-from advisor.exports.models.improvement import Improvement
-from advisor.exports.models.servo import servo_of
-from advisor.flight.instruments.atmosphere import air_flown
-from advisor.flight.signals.standard_atmosphere import standard_height
-from advisor.gap.result import Value
-from advisor.model.lateral import Trim
+from advisor.exports.models.improvement import (
+    STILL_AIR,
+    Improvement,
+    improvement_of,
+    is_told,
+    zero_said,
+)
+from advisor.exports.models.servo import ExportedServo, servo_of
+from advisor.flight.instruments.atmosphere import AirData, air_flown
+from advisor.flight.signals.messages import FloatArray
+from advisor.gap.result import Diagnosis, Value
+from advisor.model.lateral import LATERAL, Trim
 from advisor.oem.estimate import Estimate
 from advisor.oem.lateral_estimate import LateralEstimate
 from advisor.oem.lateral_solution import WITHOUT_FORCE
 from advisor.report.lateral_qualities import trim_of
 from advisor.words.problems import ConfigurationError
+from advisor.words.quantiles import NORMAL_95
 
 
 @dataclass(frozen=True)
 class SideModel:
-    """Roll and yaw as estimated."""
+    """Roll and yaw for other programs."""
 
-    found: LateralEstimate
+    values: Mapping[str, Value]
+    """Derivatives that are known, by the names of ``SIDE_PARAMETERS``."""
+    untold: Mapping[str, str]
+    """Each other derivative with the reason for which it is not known."""
     trim: Trim
-    height_m: float = 0.0
-    """Height in the standard atmosphere with the density of the air flown in, m; 0 where unknown."""
+    """Trimmed flight. Its air speed is of the kind that ``air`` knows."""
+    air: AirData = STILL_AIR
+    servos: Mapping[str, ExportedServo] = field(default_factory=dict)
+    """Servo of the aileron and of the rudder."""
+    flown: bool = True
+    """Whether a flight tells the derivatives; otherwise they are the aircraft file's."""
+
+    @property
+    def true_airspeed_m_s(self) -> float:
+        """True air speed of the derivatives, m/s."""
+        return self.air.true_speed(self.trim.airspeed_m_s)
+
+    @property
+    def zeros(self) -> tuple[str, ...]:
+        """Known derivatives that are not told from zero."""
+        return tuple(name for name, value in self.values.items() if not is_told(value))
+
+    @property
+    def left_out(self) -> tuple[str, ...]:
+        """Derivatives that other programs do not get, as sentences."""
+        return (*(f"{p}: {reason}" for p, reason in self.untold.items()), *map(zero_said, self.zeros))
+
+    def number(self, parameter: str) -> float:
+        """Return a derivative for other programs; 0 where not told from zero, or not known."""
+        found = self.values.get(parameter)
+        return found.value if found is not None and is_told(found) else 0.0
+
+    @property
+    def numbers(self) -> FloatArray:
+        """Shape (15,), the derivatives in the order of ``SIDE_PARAMETERS``."""
+        return np.array([self.number(name) for name in SIDE_PARAMETERS])
+
+    def half(self, parameter: str) -> float:
+        """Return half of the 95 % interval of a known derivative."""
+        return NORMAL_95 * self.values[parameter].std
 
 
 @dataclass(frozen=True)
 class FlownModel:
     """Both axes of a flight. None for an axis without an estimate."""
 
-    name: str
+    aircraft: Aircraft
+    """The aircraft file with its own servos and with the user's simulator."""
     pitch: Improvement | None
     side: SideModel | None
+    diagnosis: Diagnosis | None = None
+    """Diagnosis that improved the pitch axis."""
+    unchanged: bool = False
+    """Whether a diagnosis found no cause and no wrong number."""
+
+    @property
+    def name(self) -> str:
+        """Name of the aircraft."""
+        return self.aircraft.name
 
 
 def flown_model(state: CampaignState, aircraft: Aircraft) -> FlownModel:
@@ -44,10 +102,7 @@ def flown_model(state: CampaignState, aircraft: Aircraft) -> FlownModel:
     ConfigurationError
         No manoeuvre of either axis is accepted, or their derivatives are not told.
     """
-    pitch = None
-    if state.model is not None and state.model.airspeed_m_s is not None and not state.model.not_identifiable:
-        pitch = _pitch(state.model, state.model.airspeed_m_s, aircraft)
-    found = FlownModel(aircraft.name, pitch, _side(state, aircraft))
+    found = _in_one_air(FlownModel(aircraft, _pitch(state, aircraft), side_flown(state.lateral, aircraft)))
     if found.pitch is None and found.side is None:
         raise ConfigurationError(
             "--export: the accepted manoeuvres tell the derivatives of neither axis; fly the input that the "
@@ -56,27 +111,91 @@ def flown_model(state: CampaignState, aircraft: Aircraft) -> FlownModel:
     return found
 
 
-def _pitch(estimate: Estimate, airspeed_m_s: float, aircraft: Aircraft) -> Improvement:
+def improved_model(diagnosis: Diagnosis, aircraft: Aircraft, side: SideModel | None) -> FlownModel:
+    """Return the model that a diagnosis of pitch improved, next to that of roll and yaw.
+
+    Raises
+    ------
+    ConfigurationError
+        The diagnosis has no air speed.
+    """
+    unchanged = diagnosis.verdict not in ("effect", "parameters")
+    pitch = improvement_of(diagnosis, aircraft)
+    return _in_one_air(FlownModel(aircraft, pitch, side or _side_of_file(pitch), diagnosis, unchanged))
+
+
+def _in_one_air(model: FlownModel) -> FlownModel:
+    """Return the model with one ratio of true to read air speed: the elevator's fit tells it best."""
+    pitch, side = model.pitch, model.side
+    if pitch is None or side is None:
+        return model
+    excess = pitch.air.excess or side.air.excess
+    return replace(
+        model,
+        pitch=replace(pitch, air=replace(pitch.air, excess=excess)),
+        side=replace(side, air=replace(side.air, excess=excess)),
+    )
+
+
+def _pitch(state: CampaignState, aircraft: Aircraft) -> Improvement | None:
+    estimate = state.model
+    if estimate is None or estimate.airspeed_m_s is None or estimate.not_identifiable:
+        return None
     values = zip(estimate.names, estimate.theta.tolist(), estimate.std.tolist(), strict=True)
+    joined = [one.maneuver for one in state.maneuvers if one.maneuver.number in state.estimate_from]
     return Improvement(
         name=aircraft.name,
         model={name: Value(value, std) for name, value, std in values},
         prior=aircraft.model,
-        airspeed_m_s=airspeed_m_s,
-        servo=servo_of(aircraft.elevator, {}),
+        airspeed_m_s=estimate.airspeed_m_s,
+        servo=replace(servo_of(aircraft.elevator, {}), lag_s=_lag_of(estimate, aircraft)),
         effects={},
         reference=aircraft.reference,
         elevator=aircraft.elevator,
+        air=air_flown(joined, aircraft.reference.air_temperature_c),
     )
 
 
-def _side(state: CampaignState, aircraft: Aircraft) -> SideModel | None:
-    lateral = state.lateral
+def _lag_of(estimate: Estimate, aircraft: Aircraft) -> float:
+    return estimate.servo_lag_s or aircraft.elevator.lag_s or 0.0
+
+
+def side_flown(lateral: LateralState | None, aircraft: Aircraft) -> SideModel | None:
+    """Return roll and yaw as the accepted manoeuvres tell them; None where they tell no force."""
     model = lateral.model if lateral is not None else None
     if lateral is None or model is None or model.estimate.airspeed_m_s is None:
         return None
     if WITHOUT_FORCE in model.estimate.not_identifiable.values():
         return None
     joined = [one.maneuver for one in lateral.maneuvers if one.maneuver.number in lateral.estimate_from]
-    density = air_flown(joined, aircraft.reference.air_temperature_c).density_kg_m3
-    return SideModel(model, trim_of(joined, model.estimate.airspeed_m_s), float(standard_height(density)))
+    air = air_flown(joined, aircraft.reference.air_temperature_c)
+    return side_of(model, trim_of(joined, model.estimate.airspeed_m_s), air, aircraft)
+
+
+def side_of(found: LateralEstimate, trim: Trim, air: AirData, aircraft: Aircraft) -> SideModel:
+    """Return roll and yaw of an estimate, with the air speed and the servos that its fit found."""
+    estimate = found.estimate
+    told = zip(SIDE_PARAMETERS, estimate.theta.tolist(), estimate.std.tolist(), strict=True)
+    excess, _ = found.nuisances.get("airspeed_excess", (0.0, 0.0))
+    return SideModel(
+        {name: Value(value, std) for name, value, std in told if name not in estimate.not_identifiable},
+        estimate.not_identifiable,
+        trim,
+        replace(air, excess=excess),
+        {name: _servo(found, name, aircraft) for name in LATERAL.inputs},
+    )
+
+
+def _servo(found: LateralEstimate, control: str, aircraft: Aircraft) -> ExportedServo:
+    stated = getattr(aircraft, control)
+    lag_s, _ = found.nuisances.get(f"{control}_lag_s", (stated.lag_s or 0.0, 0.0))
+    return ExportedServo(delay_s=stated.delay_s or 0.0, lag_s=lag_s)
+
+
+def _side_of_file(pitch: Improvement) -> SideModel | None:
+    """Return roll and yaw of the aircraft file, at the air speed of the pitch model; None without any."""
+    values = {name: Value(pitch.prior[name], 0.0) for name in SIDE_PARAMETERS if name in pitch.prior}
+    if not values:
+        return None
+    untold = {n: "neither flown nor in the file" for n in SIDE_PARAMETERS if n not in values}
+    return SideModel(values, untold, Trim(pitch.airspeed_m_s), pitch.air, flown=False)

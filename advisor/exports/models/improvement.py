@@ -1,4 +1,4 @@
-"""Basis of every format: the model found, the prior model, the servo, and other effects."""
+"""Pitch for every format: the model found, the prior model, the servo, and other effects."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -8,7 +8,8 @@ from advisor.aircraft.controls import Elevator
 from advisor.aircraft.reference import Reference
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.exports.models.servo import ExportedServo, servo_of
-from advisor.flight.signals.standard_atmosphere import standard_density, standard_pressure
+from advisor.flight.instruments.atmosphere import AirData
+from advisor.flight.signals.standard_atmosphere import SEA_LEVEL_DENSITY_KG_M3
 from advisor.gap.candidates.known import less_of_the_servo, together
 from advisor.gap.effects import EFFECTS
 from advisor.gap.result import Diagnosis, Value
@@ -19,6 +20,13 @@ from advisor.words.quantiles import NORMAL_95
 SLOPES = ("Z_alpha", "Z_q", "Z_delta_e", "M_alpha", "M_q", "M_delta_e")
 """The derivatives among the eight parameters."""
 REFERENCE_KEYS = ("mass_kg", "wing_area_m2", "chord_m", "iyy_kg_m2")
+STILL_AIR = AirData(SEA_LEVEL_DENSITY_KG_M3, "sea level", "true")
+"""Air of a model without a flight."""
+
+
+def is_told(value: Value) -> bool:
+    """Return whether the 95 % interval of a derivative excludes zero."""
+    return abs(value.value) > NORMAL_95 * value.std
 
 
 @dataclass(frozen=True)
@@ -31,26 +39,34 @@ class Improvement:
     prior: Mapping[str, float]
     """Prior model of the simulator: any of the eight parameters, none where unknown."""
     airspeed_m_s: float
+    """Air speed of the derivatives, of the kind that ``air`` knows, m/s."""
     servo: ExportedServo
     """Delay, lag and limits between command and surface."""
     effects: Mapping[str, Mapping[str, float]]
     """Effects other than those of the servo, by the keys of the aircraft file."""
     reference: Reference = field(default_factory=Reference)
     elevator: Elevator = field(default_factory=Elevator)
-    height_m: float | None = None
-    """Height in the standard atmosphere with the density of the air flown in, m. None: unknown."""
+    air: AirData = STILL_AIR
 
     @property
-    def density_note(self) -> str:
-        """Sentence on the air density of the coefficients."""
-        unknown = "sea level, as the log has no height"
-        where = unknown if self.height_m is None else f"{self.height_m:.0f} m, by the air flown in"
-        return f"Air density {self.density_kg_m3:.4f} kg/m3, of the standard atmosphere at {where}."
+    def true_airspeed_m_s(self) -> float:
+        """True air speed of the derivatives, m/s."""
+        return self.air.true_speed(self.airspeed_m_s)
 
     @property
-    def density_kg_m3(self) -> float:
-        """Air density of the International Standard Atmosphere's troposphere, kg/m³."""
-        return float(standard_density(standard_pressure(self.height_m or 0.0)))
+    def air_note(self) -> str:
+        """Sentences on the density and the air speed of the coefficients."""
+        return air_note(self.air)
+
+    @property
+    def untold(self) -> tuple[str, ...]:
+        """Derivatives that are not told from zero, as sentences."""
+        return tuple(zero_said(name) for name in SLOPES if not is_told(self.model[name]))
+
+    def number(self, parameter: str) -> float:
+        """Return a parameter for other programs: a derivative that is not told from zero is zero."""
+        found = self.model[parameter]
+        return found.value if parameter not in SLOPES or is_told(found) else 0.0
 
     def interval95(self, parameter: str) -> tuple[float, float]:
         """Return the 95 % interval of one of the eight parameters."""
@@ -73,8 +89,8 @@ class Improvement:
             A quantity of ``reference`` is missing. The message names the quantity.
         """
         require_reference(self.reference, REFERENCE_KEYS)
-        scale = scales(self.airspeed_m_s, self.reference, self.density_kg_m3)
-        weight = GRAVITY_M_S2 / self.airspeed_m_s
+        scale = scales(self.airspeed_m_s, self.reference, self.air)
+        weight = GRAVITY_M_S2 / self.true_airspeed_m_s
         force, moment = scale["C_L_alpha"][1], scale["C_m_alpha"][1]
         lift, pitch = self.model["Z_0"], self.model["M_0"]
         found = {
@@ -82,8 +98,8 @@ class Improvement:
             "C_m_0": Coefficient(moment * pitch.value, abs(moment) * pitch.std),
         }
         for name, (parameter, factor) in scale.items():
-            value = self.model[parameter]
-            found[name] = Coefficient(factor * value.value, abs(factor) * value.std)
+            std = self.model[parameter].std
+            found[name] = Coefficient(factor * self.number(parameter), abs(factor) * std)
         return found
 
 
@@ -109,8 +125,22 @@ def improvement_of(diagnosis: Diagnosis, aircraft: Aircraft) -> Improvement:
         effects={name: values for name, values in effects.items() if not EFFECTS[name].servo},
         reference=aircraft.reference,
         elevator=aircraft.elevator,
-        height_m=diagnosis.height_m,
+        air=diagnosis.air or STILL_AIR,
     )
+
+
+def air_note(air: AirData) -> str:
+    """Return the sentences on a density and on the kind of an air speed."""
+    height = air.height_m
+    unknown = "sea level, as the log has no height"
+    where = unknown if height is None else f"{height:.0f} m, by the air flown in"
+    density = f"Air density {air.density_kg_m3:.4f} kg/m3, of the standard atmosphere at {where}."
+    return f"{density} {air.speed_note}"
+
+
+def zero_said(parameter: str) -> str:
+    """Return the statement that a derivative is exported as zero."""
+    return f"{parameter}, which is not told from zero and is 0"
 
 
 def require_reference(reference: Reference, keys: tuple[str, ...]) -> None:
@@ -121,9 +151,14 @@ def require_reference(reference: Reference, keys: tuple[str, ...]) -> None:
     ConfigurationError
         Keys of ``reference`` are missing. The message names them.
     """
-    missing = [key for key in keys if getattr(reference, key) is None]
+    missing = missing_reference(reference, keys)
     if missing:
         raise ConfigurationError(
             f"--export: non-dimensional coefficients need {', '.join(missing)}; "
             f"give {'them' if len(missing) > 1 else 'it'} under reference: in the aircraft file."
         )
+
+
+def missing_reference(reference: Reference, keys: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the keys that an aircraft file leaves open."""
+    return tuple(key for key in keys if getattr(reference, key) is None)

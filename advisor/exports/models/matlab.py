@@ -18,14 +18,15 @@ UNITS = {
 
 def script_text(improvement: Improvement) -> Exported:
     """Return the script. The script needs no toolbox, and leaves its variables in the workspace."""
-    m = {name: improvement.model[name].value for name in PARAMETERS}
-    speed, servo = improvement.airspeed_m_s, improvement.servo
+    m = {name: improvement.number(name) for name in PARAMETERS}
+    speed, servo = improvement.true_airspeed_m_s, improvement.servo
     head = commented(
         [
             f"{improvement.name}: short period found by the inflight advisor.",
             "State x = [alpha; q] (rad, rad/s), input u = delta_e (rad, trailing edge down positive),",
             "output y = [alpha; q; a_z] (rad, rad/s, m/s^2; body z is down): departures from trim.",
             "xdot = A*x + B*u, y = C*x + D*u, where u has passed the servo below.",
+            improvement.air_note,
         ],
         "%",
     )
@@ -40,7 +41,7 @@ def script_text(improvement: Improvement) -> Exported:
     for name in PARAMETERS:
         low, high = improvement.interval95(name)
         matrices += [
-            f"parameters.{name}.value = {m[name]:.8g};  % {UNITS[name]}",
+            f"parameters.{name}.value = {improvement.model[name].value:.8g};  % {UNITS[name]}",
             f"parameters.{name}.ci95 = [{low:.8g}, {high:.8g}];",
         ]
     rate = f"{servo.rate_rad_s:.6g}" if servo.rate_rad_s else "Inf"
@@ -54,4 +55,5 @@ def script_text(improvement: Improvement) -> Exported:
         f"servo.deadband_rad = {servo.deadband_rad:.6g};  % rad, whole width",
         f"servo.deadband_neutral_rad = {servo.neutral_rad:.6g};  % rad, its middle",
     ]
-    return Exported(head + "\n".join([*matrices, *between]) + "\n", effects_beside(improvement))
+    left = (*effects_beside(improvement), *improvement.untold)
+    return Exported(head + "\n".join([*matrices, *between]) + "\n", left)

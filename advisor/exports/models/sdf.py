@@ -1,4 +1,4 @@
-"""Gazebo: two ``gz::sim::systems::LiftDrag`` plugins, a wing and a tail, with the derivatives found.
+"""Gazebo's pitch: two ``gz::sim::systems::LiftDrag`` plugins, a wing and a tail, with the derivatives found.
 
 A LiftDrag surface has lift C = cla·(a0 + α) + control_joint_rad_to_cl·δ at its centre of pressure. There the
 surface meets the air that the rotation moves. A surface has no damping of its own, and Gazebo's source resets
@@ -12,13 +12,57 @@ C_L0 = a_w·a0_w + a_t·a0_t and C_m0 = a_t·a0_t·x/c. The resulting C_Lδe = e
 the estimates.
 """
 
+from collections.abc import Mapping, Sequence
+
+from advisor.aircraft.reference import Reference
 from advisor.exports.models.exported import Exported, effects_beside, xml_comment
-from advisor.exports.models.improvement import Improvement
+from advisor.exports.models.flown import FlownModel
+from advisor.exports.models.improvement import REFERENCE_KEYS, Improvement, missing_reference
+from advisor.exports.models.sdf_side import SIDE_KEYS, side_block_text
 from advisor.words.problems import ConfigurationError
 
 
+def plugins_text(model: FlownModel) -> Exported:
+    """Return the plugins of all known axes, to be put into a ``<model>``.
+
+    Raises
+    ------
+    ConfigurationError
+        Reference data are missing for every known axis, or no tail has such derivatives.
+    """
+    reference = model.aircraft.reference
+    missing = lacking(reference)
+    made, left = [], []
+    if model.pitch is not None and not missing["pitch"]:
+        made.append(block_text(model.pitch))
+    else:
+        left.append(_why_not("pitch", model.pitch is not None, missing["pitch"]))
+    if model.side is not None and not missing["lateral"]:
+        made.append(side_block_text(model.name, reference, model.side))
+    else:
+        left.append(_why_not("roll and yaw", model.side is not None, missing["lateral"]))
+    if not made:
+        raise ConfigurationError(f"--export sdf: nothing can be written: {'; '.join(left)}.")
+    left += [x for one in made for x in one.left_out]
+    return Exported("".join(one.text for one in made), tuple(left))
+
+
+def _why_not(axis: str, known: bool, missing: Sequence[str]) -> str:
+    return f"{axis}, " + (
+        f"for want of reference {', '.join(missing)}" if known else "of which nothing is known"
+    )
+
+
+def lacking(reference: Reference) -> Mapping[str, tuple[str, ...]]:
+    """Return for each axis the keys of ``reference`` that its plugins lack."""
+    return {
+        "pitch": missing_reference(reference, REFERENCE_KEYS),
+        "lateral": missing_reference(reference, SIDE_KEYS),
+    }
+
+
 def block_text(improvement: Improvement) -> Exported:
-    """Return the two plugins, to be put into a ``<model>``.
+    """Return the two plugins of pitch.
 
     Raises
     ------
@@ -50,18 +94,18 @@ def block_text(improvement: Improvement) -> Exported:
         "Link frame: x ahead, y left, z up; cp is relative to the centre of mass. Rename link and joint.",
         f"The link needs {reference.mass_kg:.6g} kg and iyy {reference.iyy_kg_m2:.6g} kg m2.",
         "The joint is positive where the trailing edge is down.",
-        f"{improvement.density_note} Drag is not found by the diagnosis: add your drag coefficient as cda.",
+        f"{improvement.air_note} Drag is not found by the diagnosis: add your drag coefficient as cda.",
         "C_L and C_m per radian: " + ", ".join(f"{name} {value:.6g}" for name, value in c.items()) + ".",
         f"Kept: C_L_alpha, C_m_alpha, C_m_q, C_m_delta_e. Implied: C_L_delta_e {control:.6g}, "
         f"C_L_q {-2.0 * c['C_m_alpha']:.6g}.",
         f"Before the joint's command, and no part of LiftDrag: {servo}.",
     ]
     text = "".join(xml_comment(note) + "\n" for note in notes)
-    common = {"area": area, "air_density": improvement.density_kg_m3}
+    common = {"area": area, "air_density": improvement.air.density_kg_m3}
     joint = {"control_joint_name": "elevator_joint", "control_joint_rad_to_cl": f"{control:.8g}"}
     text += _plugin({"a0": wing_zero, "cla": wing, **common}, 0.0, {})
     text += _plugin({"a0": tail_zero, "cla": tail, **common}, behind, joint)
-    return Exported(text, (*improvement.servo.lines(), *effects_beside(improvement)))
+    return Exported(text, (*improvement.servo.lines(), *effects_beside(improvement), *improvement.untold))
 
 
 def _plugin(numbers: dict[str, float], ahead_m: float, joint: dict[str, str]) -> str:

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from advisor.aircraft.controls import Elevator
+from advisor.aircraft.controls import Elevator, SideControl
 from advisor.gap.effects import EFFECTS
 
 
@@ -43,9 +43,9 @@ class ExportedServo:
         return [text for text, size in said.items() if size]
 
 
-def servo_of(elevator: Elevator, effects: Mapping[str, Mapping[str, float]]) -> ExportedServo:
+def servo_of(control: Elevator | SideControl, effects: Mapping[str, Mapping[str, float]]) -> ExportedServo:
     """Return the servo of the aircraft file, with the further effects found."""
-    found = {"delay_s": elevator.delay_s or 0.0, "lag_s": elevator.lag_s or 0.0}
+    found = {"delay_s": control.delay_s or 0.0, "lag_s": control.lag_s or 0.0}
     for effect, sizes in effects.items():
         for key, (part, factor) in EFFECTS[effect].servo.items():
             if key in sizes:

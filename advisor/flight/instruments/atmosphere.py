@@ -1,8 +1,8 @@
-"""Air of a manoeuvre: density, and the true air speed from the logged one.
+"""Air of manoeuvres: density, true air speed and dynamic pressure from the air speed in use.
 
 An autopilot reports the air speed that its pressure sensor would have at sea level (MAVLink, VFR_HUD:
 calibrated or indicated). With the density ρ of the air flown in and ρ_0 = 1.225 kg/m³, the true air speed is
-V·√(ρ_0/ρ). The dynamic pressure is ½·ρ_0·V² at any height.
+V·√(ρ_0/ρ). The dynamic pressure of an indicated speed is ½·ρ_0·V² at any height, that of a true one ½·ρ·V².
 """
 
 from collections.abc import Sequence
@@ -19,9 +19,17 @@ from advisor.flight.signals.standard_atmosphere import (
     PLAUSIBLE,
     SEA_LEVEL_DENSITY_KG_M3,
     density,
+    standard_height,
     standard_pressure,
 )
-from advisor.flight.signals.true_airspeed import AS_GROUND_SPEED, AS_REPORTED, BY_HEIGHT, BY_PRESSURE, is_true
+from advisor.flight.signals.true_airspeed import (
+    AS_GROUND_SPEED,
+    AS_REPORTED,
+    BY_HEIGHT,
+    BY_PRESSURE,
+    is_true,
+    true_over_read,
+)
 
 DensitySource = Literal[
     "pressure and temperature", "height and temperature", "pressure", "height", "sea level"
@@ -29,8 +37,8 @@ DensitySource = Literal[
 
 
 @dataclass(frozen=True, slots=True)
-class AirFlown:
-    """Mean density and air speed of the air of several manoeuvres."""
+class AirData:
+    """Mean density of the air of several manoeuvres, and the kind of their air speed."""
 
     density_kg_m3: float
     source: DensitySource
@@ -39,12 +47,37 @@ class AirFlown:
     """Kind of the manoeuvres' air speed. Every air speed is made true as far as the log allows."""
     speed_said: str = "the air speed is as logged"
     """Origin of the air speed, in words."""
+    true_over_read: float = 1.0
+    """Factor from the air speed as the aircraft reads it to that of the manoeuvres."""
+    excess: float = 0.0
+    """Relative excess of the true air speed over that of the manoeuvres, as a fit of the motion found it."""
 
     def true_speed(self, airspeed_m_s: float) -> float:
         """Return the true air speed in m/s for an air speed of the manoeuvres."""
+        found = airspeed_m_s * (1.0 + self.excess)
         if self.speed_kind == "true":
-            return airspeed_m_s
-        return airspeed_m_s * sqrt(SEA_LEVEL_DENSITY_KG_M3 / self.density_kg_m3)
+            return found
+        return found * sqrt(SEA_LEVEL_DENSITY_KG_M3 / self.density_kg_m3)
+
+    def dynamic_pressure(self, airspeed_m_s: float) -> float:
+        """Return the dynamic pressure in Pa for an air speed of the manoeuvres."""
+        return 0.5 * self.density_kg_m3 * self.true_speed(airspeed_m_s) ** 2
+
+    def read_speed(self, airspeed_m_s: float) -> float:
+        """Return the air speed as the aircraft reads it, m/s, for one of the manoeuvres."""
+        return airspeed_m_s / self.true_over_read
+
+    @property
+    def height_m(self) -> float | None:
+        """Height at which the standard atmosphere has the density, m; None for an unknown density."""
+        return None if self.source == "sea level" else float(standard_height(self.density_kg_m3))
+
+    @property
+    def speed_note(self) -> str:
+        """Sentence on the ratio of the true air speed to the one that the aircraft reads."""
+        ratio = self.true_over_read * self.true_speed(1.0)
+        shown = f", {100.0 * self.excess:+.1f} % of it by the motion" if self.excess else ""
+        return f"True air speed is {ratio:.4f} times the one that the aircraft reads{shown}."
 
     @property
     def sentence(self) -> str:
@@ -59,7 +92,7 @@ class AirFlown:
         return f"air density {self.density_kg_m3:.3f} kg/m³ {told}; {self.speed_said}"
 
 
-def air_flown(maneuvers: Sequence[Maneuver], temperature_c: float | None = None) -> AirFlown:
+def air_flown(maneuvers: Sequence[Maneuver], temperature_c: float | None = None) -> AirData:
     """Return the mean air of manoeuvres: from static pressure, else from height, else at sea level.
 
     Parameters
@@ -73,17 +106,17 @@ def air_flown(maneuvers: Sequence[Maneuver], temperature_c: float | None = None)
     measured, altitude = _mean(maneuvers, "static_pressure"), _mean(maneuvers, "altitude")
     speeds = [m.channels["airspeed"] for m in maneuvers if "airspeed" in m.channels]
     kind: Literal["indicated", "true"] = "true" if speeds and all(map(is_true, speeds)) else "indicated"
-    said = _speed_said(speeds)
+    said, gain = _speed_said(speeds), true_over_read(m.channels for m in maneuvers)
     if measured is not None:
         pressure, source = measured, "pressure"
     elif altitude is not None and altitude != 0.0:
         pressure, source = float(standard_pressure(altitude)), "height"
     else:
-        return AirFlown(SEA_LEVEL_DENSITY_KG_M3, "sea level", kind, said)
+        return AirData(SEA_LEVEL_DENSITY_KG_M3, "sea level", kind, said, gain)
     if temperature_c is not None:
         source = f"{source} and temperature"
     found = float(density(pressure, temperature_c))
-    return AirFlown(found, source, kind, said)  # type: ignore[arg-type]
+    return AirData(found, source, kind, said, gain)  # type: ignore[arg-type]
 
 
 def _speed_said(speeds: Sequence[Channel]) -> str:

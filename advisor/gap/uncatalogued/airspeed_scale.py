@@ -51,14 +51,21 @@ def true_over_read(found: AirspeedScale | None, weight: WeightReading | None) ->
     return 1.0 + found.scale if found is not None and found.is_indicated(weight) else 1.0
 
 
-def airspeed_scale_of(problem: EffectProblem, fitted: EffectFit) -> AirspeedScale | None:
-    """Return the difference that the fitted model shows; None where it is insignificant, or not measured."""
+def airspeed_excess(fitted: EffectFit) -> float:
+    """Return the relative excess of the true air speed that a fitted model has; 0 where not measured."""
     point = fitted.point
     if TRUE_AIR_SPEED not in point.effects:
+        return 0.0
+    return float(point.values[point.effects.index(TRUE_AIR_SPEED)][0])
+
+
+def airspeed_scale_of(problem: EffectProblem, fitted: EffectFit) -> AirspeedScale | None:
+    """Return the difference that the fitted model shows; None where it is insignificant, or not measured."""
+    point, scale = fitted.point, airspeed_excess(fitted)
+    if not scale:
         return None
     k = point.effects.index(TRUE_AIR_SPEED)
     std = float(
         shared_std(problem, fitted, effective_samples(problem, fitted.innovations))[point.place(k)][0]
     )
-    scale = float(point.values[k][0])
     return AirspeedScale(scale, std) if abs(scale) > max(_REPORTED, SIGMAS * std) else None

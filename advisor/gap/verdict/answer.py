@@ -28,7 +28,7 @@ from advisor.gap.records.floor import tolerance_of
 from advisor.gap.result import Cause, Diagnosis, Gap, GapVerdict, Where
 from advisor.gap.search.speed import at_constant_speed
 from advisor.gap.simulator.layout import DERIVATIVES
-from advisor.gap.uncatalogued.airspeed_scale import airspeed_scale_of
+from advisor.gap.uncatalogued.airspeed_scale import airspeed_excess, airspeed_scale_of
 from advisor.gap.verdict.causes import causes_of
 from advisor.gap.verdict.holdout_numbers import (
     as_measured,
@@ -173,7 +173,8 @@ def _diagnosed(
         ),
         kinematics=kinematics, model=model_of(problem, fitted, known),
         reference_airspeed_m_s=problem.flights.reference_m_s if speed_is_known(problem, aircraft) else None,
-        effects=effects, share_irreducible=irreducible(with_air, e.floor, gap),
+        airspeed_excess=airspeed_excess(fitted), effects=effects,
+        share_irreducible=irreducible(with_air, e.floor, gap),
         decisions=tuple(decisions_of(found, posterior, rival)),
         yardsticks=fidelity_of(problem, before, last), traces=traces_of(problem, before, last),
         derivatives=compared_derivatives(problem, fitted, known),

@@ -34,10 +34,25 @@ def test_two_logs_are_two_records_of_one_campaign(advisor: Advisor, tmp_path: Pa
 
 def test_an_unknown_format_is_refused_with_those_that_are(advisor: Advisor, tmp_path: Path) -> None:
     run = advisor("export", "none.tlog", "-o", tmp_path, "--format", "csv,xlsx")
-    assert (run.returncode, run.stderr) == (
-        2,
-        "--format: xlsx is no format; the formats are csv, parquet, mat, mcap.\n",
+    assert run.returncode == 2
+    assert run.stderr == (
+        "--format: xlsx is no format; the formats are csv, parquet, mat, mcap, jsbsim, ardupilot, sdf, "
+        "matlab, aircraft.\n"
     )
+
+
+def test_a_model_for_another_program_lies_next_to_the_tables(advisor: Advisor, tmp_path: Path) -> None:
+    log = recorded("linear", 1.0, maneuvers=TWO)
+    run = advisor("export", log, "-o", tmp_path / "out", "--format", "csv,matlab")
+    assert run.returncode == 0
+    assert "A = [" in (tmp_path / "out" / "matlab.m").read_text(encoding="utf-8")
+    assert (tmp_path / "out" / "maneuvers.csv").exists()
+
+
+def test_what_a_model_lacks_is_named_before_the_log_is_read(advisor: Advisor, tmp_path: Path) -> None:
+    run = advisor("export", "none.tlog", "-o", tmp_path, "--format", "ardupilot")
+    assert run.returncode == 2
+    assert "give them under reference: in the aircraft file" in run.stderr
 
 
 @pytest.mark.parametrize(("name", "library"), [("parquet", "pyarrow"), ("mcap", "mcap")])

@@ -2,10 +2,14 @@
 
 from dataclasses import replace
 
+from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
 from advisor.aircraft.reference import Reference
-from advisor.exports.models.improvement import Improvement
+from advisor.exports.models.flown import FlownModel, SideModel
+from advisor.exports.models.improvement import STILL_AIR, Improvement
 from advisor.exports.models.servo import ExportedServo
+from advisor.flight.instruments.atmosphere import AirData
+from advisor.flight.signals.standard_atmosphere import standard_density, standard_pressure
 from advisor.gap.result import Value
 
 MODEL = {
@@ -14,6 +18,19 @@ MODEL = {
 }  # fmt: skip
 REFERENCE = Reference(mass_kg=10.0, wing_area_m2=0.8, chord_m=0.3, iyy_kg_m2=0.9)
 CALIBRATION = ((1100.0, -24.0), (1500.0, 2.0), (1900.0, 24.0))
+
+
+def air_at(height_m: float | None, excess: float = 0.0) -> AirData:
+    """Air of the standard atmosphere, in which the true air speed is known."""
+    if height_m is None:
+        return STILL_AIR
+    return AirData(float(standard_density(standard_pressure(height_m))), "height", "true", excess=excess)
+
+
+def flown(pitch: Improvement | None = None, side: SideModel | None = None, **changes: object) -> FlownModel:
+    """The model of both axes, with the reference and the calibrations of the pitch axis."""
+    aircraft = Aircraft("glider", elevator=pitch.elevator, reference=pitch.reference) if pitch else Aircraft()
+    return replace(FlownModel(aircraft, pitch, side), **changes)  # type: ignore[arg-type]
 
 
 def improvement(**changes: object) -> Improvement:
@@ -27,6 +44,6 @@ def improvement(**changes: object) -> Improvement:
         effects={},
         reference=REFERENCE,
         elevator=Elevator(calibration=CALIBRATION),
-        height_m=1100.0,
+        air=air_at(1100.0),
     )
     return replace(plain, **changes)  # type: ignore[arg-type]

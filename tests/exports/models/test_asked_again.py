@@ -10,6 +10,7 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.gap import compare_logs, named_simulator
+from advisor.exports.models.flown import improved_model
 from advisor.exports.models.matlab import script_text
 from advisor.exports.models.write import carry_out, order_of
 from advisor.gap.simulator.layout import DERIVATIVES
@@ -67,7 +68,7 @@ def test_a_corrected_jsbsim_aircraft_flown_by_jsbsim_shows_no_gap(tmp_path: Path
     first = asked("c172p")
     assert first.diagnosis.causes[0].effect == "transport_delay"
     given = replace(first.aircraft, simulator="jsbsim:c172p", elevator=Aircraft().elevator)
-    (outcome,) = carry_out([order_of(f"jsbsim:{file}")], first.diagnosis, given)
+    (outcome,) = carry_out([order_of(f"jsbsim:{file}")], improved_model(first.diagnosis, given, None))
     assert outcome.problem == ""
     again = asked(str(file)).diagnosis
     assert again.verdict == "none"

@@ -2,7 +2,9 @@
 
 import pytest
 
-from tests.exports.models.cases import MODEL, improvement
+from advisor.flight.instruments.atmosphere import AirData
+from advisor.gap.result import Value
+from tests.exports.models.cases import MODEL, air_at, improvement
 
 
 @pytest.mark.parametrize(
@@ -10,9 +12,33 @@ from tests.exports.models.cases import MODEL, improvement
 )
 def test_the_density_is_that_of_the_standard_atmosphere_and_at_sea_level_without_a_height(height_m, density):
     """ICAO's standard atmosphere: 1.225 kg/m³ at sea level, 0.7361 kg/m³ at 5,000 m."""
-    one = improvement(height_m=height_m)
-    assert one.density_kg_m3 == pytest.approx(density, abs=1e-4)
-    assert ("sea level" in one.density_note) is (height_m is None)
+    one = improvement(air=air_at(height_m))
+    assert f"Air density {density:.4f} kg/m3" in one.air_note
+    assert ("sea level" in one.air_note) is (height_m is None)
+
+
+def test_an_indicated_speed_has_the_coefficients_of_sea_level_at_any_height():
+    """q̄ is ½·1.225·V² for an indicated speed, so that a height without a true speed changes no C_mα."""
+    low, high = (
+        improvement(air=AirData(density, "height", "indicated")).coefficients()["C_m_alpha"].value
+        for density in (1.225, 0.9)
+    )
+    assert low == pytest.approx(high)
+    assert low == pytest.approx(-41.0 * 0.9 / (0.5 * 1.225 * 25.0**2 * 0.8 * 0.3))
+
+
+def test_the_true_air_speed_that_the_motion_shows_is_that_of_the_coefficients():
+    plain, faster = (improvement(air=air_at(1100.0, excess)).coefficients() for excess in (0.0, 0.02))
+    assert faster["C_m_alpha"].value == pytest.approx(plain["C_m_alpha"].value / 1.02**2)
+    assert faster["C_m_q"].value == pytest.approx(plain["C_m_q"].value / 1.02)
+    assert "1.0200 times" in improvement(air=air_at(1100.0, 0.02)).air_note
+
+
+def test_a_derivative_that_is_not_told_from_zero_is_exported_as_zero_and_said():
+    model = improvement().model | {"Z_q": Value(-0.03, 0.02), "M_q": Value(-5.2, 0.1)}
+    one = improvement(model=model)
+    assert one.coefficients()["C_L_q"].value == 0.0
+    assert one.untold == ("Z_q, which is not told from zero and is 0",)
 
 
 def test_a_prior_value_differs_outside_two_standard_deviations():

@@ -14,7 +14,7 @@ from advisor.exports.models.jsbsim.source import parse, surface_of, terms_of
 from advisor.exports.models.servo import ExportedServo
 from advisor.gap.result import Value
 from advisor.words.problems import ConfigurationError
-from tests.exports.models.cases import improvement
+from tests.exports.models.cases import air_at, improvement
 
 FOOT_M = 0.3048
 STEP_S = 1.0 / 240.0
@@ -83,7 +83,7 @@ def wanted(before: dict[str, float], factors: dict[str, float], airspeed_m_s: fl
         p: Value(factors[p] * value, 0.004 * abs(factors[p] * value) + 1e-6) for p, value in before.items()
     }
     return improvement(
-        model=model, prior=before, airspeed_m_s=airspeed_m_s, height_m=1000.0,
+        model=model, prior=before, airspeed_m_s=airspeed_m_s, air=air_at(1000.0),
         servo=changes.pop("servo", ExportedServo()), **changes,
     )  # fmt: skip
 
@@ -120,7 +120,7 @@ def test_a_derivative_without_a_term_of_its_own_gets_a_function(tmp_path):
     found = {p: Value(value, 1e-3 * abs(value) + 1e-6) for p, value in before.items()}
     found["Z_q"] = Value(before["Z_q"] - 0.05, 1e-3)
     improved = improvement(
-        model=found, prior=before, airspeed_m_s=150.0, height_m=1000.0, servo=ExportedServo()
+        model=found, prior=before, airspeed_m_s=150.0, air=air_at(1000.0), servo=ExportedServo()
     )
     made = aircraft_text(improved, model)
     assert 'name="aero/advisor/Z_q"' in made.text

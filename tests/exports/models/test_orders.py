@@ -15,10 +15,12 @@ from advisor.aircraft.reference import PARAMETERS
 from advisor.aircraft_file.read import load_aircraft
 from advisor.analysis import gap as reading
 from advisor.cli import group as cli
+from advisor.exports.models.flown import improved_model
 from advisor.exports.models.write import ExportOrder, carry_out, order_of
 from advisor.gap.result import Diagnosis, Value
 from advisor.simulators.compare import Compared
-from tests.exports.models.cases import CALIBRATION, MODEL, REFERENCE
+from advisor.words.problems import ConfigurationError
+from tests.exports.models.cases import CALIBRATION, MODEL, REFERENCE, air_at
 from tests.gap.test_report_screen import diagnosis
 
 AIRCRAFT = Aircraft(name="glider", reference=REFERENCE, elevator=Elevator(calibration=CALIBRATION))
@@ -27,6 +29,7 @@ FILE = {
     "elevator": {"calibration": [list(pair) for pair in CALIBRATION]},
     "reference": {"mass_kg": 10.0, "wing_area_m2": 0.8, "chord_m": 0.3, "iyy_kg_m2": 0.9},
 }
+NO_SIDE = "roll and yaw, of which nothing is known"
 
 
 def found(**changes: object) -> Diagnosis:
@@ -58,7 +61,10 @@ def gap(folder: Path, monkeypatch, *arguments: str, content: object = FILE, answ
         ("matlab:.", "is a folder; name a file in it"),
         ("aircraft:mine.yaml", "is read or written by this call already"),
         ("matlab:flight.tlog", "is read or written by this call already"),
-        ("ardupilot:plane.txt", r"must end in \.json \(coefficients\) or \.parm \(servo\)"),
+        (
+            "ardupilot:plane.txt",
+            r"must end in \.json \(coefficients, with the servos in plane\.parm\) or \.parm",
+        ),
         ("jsbsim:out.xml", "give yours with simulator: jsbsim:MODEL"),
     ],
 )
@@ -107,11 +113,11 @@ def test_the_document_lists_the_files_written_and_what_they_do_not_carry(tmp_pat
     assert result.return_value == 0
     assert json.loads(result.stdout)["exports"] == [
         {"format": "matlab", "file": "x.m", "left_out": []},
-        {"format": "sdf", "file": "x.sdf", "left_out": ["delay 0.03 s", "lag 0.08 s"]},
+        {"format": "sdf", "file": "x.sdf", "left_out": [NO_SIDE, "delay 0.03 s", "lag 0.08 s"]},
         {"format": "ardupilot", "file": "x.parm", "left_out": []},
     ]
     assert all((tmp_path / name).is_file() for name in ("x.m", "x.sdf", "x.parm"))
-    assert "x.sdf: written (sdf); it does not carry: delay 0.03 s, lag 0.08 s." in result.stderr
+    assert f"x.sdf: written (sdf); it does not carry: {NO_SIDE}, delay 0.03 s, lag 0.08 s." in result.stderr
 
 
 def test_a_format_that_fails_after_the_diagnosis_leaves_the_diagnosis_and_the_other_files(
@@ -143,32 +149,31 @@ def test_the_aircraft_file_is_the_one_that_out_writes(tmp_path, monkeypatch):
 def test_where_nothing_was_found_the_model_can_still_be_exported(tmp_path):
     plain = found(verdict="none", effects={})
     orders = [ExportOrder("matlab", tmp_path / "x.m"), ExportOrder("aircraft", tmp_path / "x.yaml")]
-    script, aircraft = carry_out(orders, plain, AIRCRAFT)
+    script, aircraft = carry_out(orders, improved_model(plain, AIRCRAFT, None))
     assert script.problem == ""
     assert "no cause was named and no number found wrong" in aircraft.problem
 
 
 def test_without_an_air_speed_no_derivative_is_given_to_another_program(tmp_path):
-    (one,) = carry_out(
-        [ExportOrder("matlab", tmp_path / "x.m")], found(reference_airspeed_m_s=None), AIRCRAFT
-    )
-    assert "needs the air speed flown" in one.problem
+    with pytest.raises(ConfigurationError, match="needs the air speed flown"):
+        improved_model(found(reference_airspeed_m_s=None), AIRCRAFT, None)
 
 
 def test_a_disk_that_refuses_is_told_in_one_sentence(tmp_path, monkeypatch):
     order = ExportOrder("matlab", tmp_path / "gone" / "x.m")
-    (one,) = carry_out([order], found(), AIRCRAFT)
+    (one,) = carry_out([order], improved_model(found(), AIRCRAFT, None))
     assert one.problem.endswith("was not written: No such file or directory.")
 
 
 def test_the_servo_that_the_file_states_is_part_of_what_is_exported(tmp_path):
     stated = replace(AIRCRAFT, elevator=replace(AIRCRAFT.elevator, lag_s=0.05))
-    carry_out([ExportOrder("matlab", tmp_path / "x.m")], found(), stated)
+    carry_out([ExportOrder("matlab", tmp_path / "x.m")], improved_model(found(), stated, None))
     assert "servo.lag_s = 0.13;" in (tmp_path / "x.m").read_text()
 
 
 def test_the_height_recorded_gives_the_density(tmp_path):
-    carry_out([ExportOrder("sdf", tmp_path / "x.sdf")], found(height_m=1100.0), AIRCRAFT)
+    high = improved_model(found(air=air_at(1100.0)), AIRCRAFT, None)
+    carry_out([ExportOrder("sdf", tmp_path / "x.sdf")], high)
     (found_here,) = re.findall("<air_density>(.*)</air_density>", (tmp_path / "x.sdf").read_text())[:1]
     assert float(found_here) == pytest.approx(1.1008, abs=1e-4)
 
@@ -187,6 +192,6 @@ def test_the_simulators_aircraft_is_corrected_where_the_aircraft_file_names_one(
         model={n: Value(v, 0.01 * abs(v)) for n, v in changed.items()},
     )  # fmt: skip
     mine = replace(AIRCRAFT, simulator="jsbsim:c172p", model=model)
-    (one,) = carry_out([ExportOrder("jsbsim", tmp_path / "x.xml")], flown, mine)
+    (one,) = carry_out([ExportOrder("jsbsim", tmp_path / "x.xml")], improved_model(flown, mine, None))
     assert one.problem == ""
     assert "M_alpha as flown" in (tmp_path / "x.xml").read_text()

@@ -7,9 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.decision.lateral_qualification import peak_roll_rate
-from advisor.exports.models.flown import FlownModel, SideModel
+from advisor.exports.models.flown import FlownModel, side_of
+from advisor.exports.models.improvement import STILL_AIR
 from advisor.exports.models.jsbsim.run import measure_side, model_of
 from advisor.exports.models.jsbsim.side import side_text
 from advisor.exports.models.jsbsim.side_slopes import SideRequest
@@ -17,20 +19,21 @@ from advisor.exports.models.matlab_side import both_axes_text, matrices
 from advisor.model.lateral import Trim, state_matrix
 from advisor.words.problems import ConfigurationError
 from tests.campaign.side_builders import estimate
-from tests.exports.models.cases import improvement
+from tests.exports.models.cases import air_at, improvement
 from tests.exports.models.test_jsbsim import placed, trimmed
 from tests.exports.models.test_matlab import OCTAVE, needs_octave
 from tests.oem.lateral_builders import JET
 
-JET_SIDE = SideModel(estimate("aileron", "rudder"), Trim(130.0, 0.07, 0.105), 0.0)
+JET_SIDE = side_of(estimate("aileron", "rudder"), Trim(130.0, 0.07, 0.105), STILL_AIR, Aircraft())
 ASKED = SideRequest(53.0, 1000.0)
 CESSNA = model_of("c172p")
+OWN = CESSNA.file.read_bytes()
 
 
 @needs_octave
 def test_octave_has_both_axes_and_the_modes_of_the_estimate(tmp_path):
     script = tmp_path / "model.m"
-    script.write_text(both_axes_text(FlownModel("jet", improvement(), JET_SIDE)).text)
+    script.write_text(both_axes_text(FlownModel(Aircraft("jet"), improvement(), JET_SIDE)).text)
     shown = "size(A), lateral.B(:), sort(abs(eig(lateral.A))), lateral.D(4, 2)"
     code = f"run('{script}'); printf('%.12g\\n', {shown});"
     assert OCTAVE is not None
@@ -44,8 +47,9 @@ def test_octave_has_both_axes_and_the_modes_of_the_estimate(tmp_path):
 
 
 def test_a_derivative_that_is_not_identifiable_has_its_reason_in_the_place_of_a_number():
-    untold = replace(JET_SIDE, found=estimate("aileron", untold={"Y_p": "fly a rudder doublet"}))
-    text = both_axes_text(FlownModel("jet", None, untold)).text
+    found = estimate("aileron", untold={"Y_p": "fly a rudder doublet"})
+    untold = side_of(found, JET_SIDE.trim, STILL_AIR, Aircraft())
+    text = both_axes_text(FlownModel(Aircraft("jet"), None, untold)).text
     assert "% Y_p is not identifiable: fly a rudder doublet" in text
     assert "parameters.Y_p" not in text
     assert "lateral.parameters.L_p.value = -2.1;  % 1/s" in text
@@ -68,7 +72,8 @@ def believed(own, **factors):
     found = estimate("aileron", "rudder")
     covariance = np.diag((1e-3 * np.maximum(np.abs(theta), 1e-3)) ** 2)
     told = replace(found.estimate, theta=theta, covariance=covariance, airspeed_m_s=ASKED.airspeed_m_s)
-    return SideModel(replace(found, estimate=told), Trim(ASKED.airspeed_m_s, 0.03, 0.03), ASKED.height_m)
+    trim = Trim(ASKED.airspeed_m_s, 0.03, 0.03)
+    return side_of(replace(found, estimate=told), trim, air_at(ASKED.height_m), Aircraft())
 
 
 CHANGED = {
@@ -84,7 +89,7 @@ CHANGED = {
 
 @pytest.fixture(scope="module")
 def corrected(cessna):
-    return side_text("Cessna", believed(cessna, **CHANGED), CESSNA)
+    return side_text("Cessna", believed(cessna, **CHANGED), CESSNA, OWN)
 
 
 def test_measured_again_each_derivative_is_that_of_the_estimate(cessna, corrected):
@@ -98,7 +103,7 @@ def test_measured_again_each_derivative_is_that_of_the_estimate(cessna, correcte
 def test_the_exported_aircraft_rolls_as_the_estimate_does(cessna, corrected, tmp_path):
     side = believed(cessna, **CHANGED)
     rate, aileron = _rolled(placed(corrected.text, tmp_path, "c172p"))
-    theta = side.found.estimate.theta
+    theta = side.numbers
     expected = peak_roll_rate(theta, state_matrix(theta, side.trim), cessna.signs["delta_a"] * aileron, 1.0)
     unchanged, _ = _rolled(CESSNA.file)
     assert rate == pytest.approx(expected, rel=0.03)
@@ -118,11 +123,11 @@ def _rolled(file: Path) -> tuple[float, float]:
 
 
 def test_what_the_interval_holds_is_left_as_the_aircraft_has_it(cessna):
-    assert "aero/advisor" not in side_text("Cessna", believed(cessna), CESSNA).text
+    assert "aero/advisor" not in side_text("Cessna", believed(cessna), CESSNA, OWN).text
 
 
 def test_an_aircraft_without_an_axis_of_roll_is_refused(tmp_path):
     plain = CESSNA.file.read_text().replace('name="ROLL"', 'name="SWAY"')
     own = replace(CESSNA, file=placed(plain, tmp_path, "c172p"))
     with pytest.raises(ConfigurationError, match="no axis ROLL"):
-        side_text("Cessna", JET_SIDE, own)
+        side_text("Cessna", JET_SIDE, own, own.file.read_bytes())

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 
-from advisor.flight.instruments.atmosphere import AirFlown, air_flown
+from advisor.flight.instruments.atmosphere import AirData, air_flown
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.channels import GIVEN_AIRSPEED
 from advisor.flight.signals.record import Channel
@@ -60,6 +60,6 @@ def test_sea_level_is_said_where_nothing_is_logged() -> None:
 
 
 def test_an_indicated_air_speed_is_raised_to_the_true_one_and_a_given_one_is_not() -> None:
-    assert AirFlown(1.225 / 4.0, "height", "indicated").true_speed(25.0) == pytest.approx(50.0)
+    assert AirData(1.225 / 4.0, "height", "indicated").true_speed(25.0) == pytest.approx(50.0)
     given = air_flown([flown({"altitude": 3000.0}, GIVEN_AIRSPEED)])
     assert given.true_speed(25.0) == 25.0

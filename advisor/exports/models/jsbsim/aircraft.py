@@ -34,7 +34,7 @@ def aircraft_text(improvement: Improvement, model: Model) -> Exported:
     root = parse(content, name)
     terms, surface = terms_of(root), surface_of(root)
     names = [n for parameter in SLOPES for n in terms.get(parameter, ())]
-    asked = Request(names, surface, improvement.airspeed_m_s, improvement.height_m or 0.0)
+    asked = Request(names, surface, improvement.true_airspeed_m_s, improvement.air.height_m or 0.0)
 
     def measured(knobs: Sequence[Knob]) -> Slopes:
         # Measured without the servo, because backlash and dead band would hide a small deflection.
@@ -106,6 +106,6 @@ def _note(improvement: Improvement, first: Slopes, targets: Mapping[str, float])
     changed = [f"{p} {first.derivatives[p]:.4g} becomes {target:.4g}" for p, target in targets.items()]
     servo = improvement.servo.lines() or ["as it was"]
     return (
-        f"Corrected by advisor gap for {improvement.name} at {improvement.airspeed_m_s:.4g} m/s. "
+        f"Corrected by advisor gap for {improvement.name} at {improvement.true_airspeed_m_s:.4g} m/s. "
         f"Derivatives (SI): {', '.join(changed) or 'as they were'}. Servo: {', '.join(servo)}."
     )

@@ -21,14 +21,18 @@ from advisor.exports.models.jsbsim.side_slopes import VARIABLES, SideRequest, Si
 from advisor.exports.models.jsbsim.source import AddedFunction, corrected, parse
 from advisor.exports.models.servo import ExportedServo
 from advisor.words.problems import ConfigurationError
-from advisor.words.quantiles import NORMAL_95
 
 RATES = ("p", "r")
 AXES = {"Y": "SIDE", "L": "ROLL", "N": "YAW"}
 
 
-def side_text(name: str, side: SideModel, model: Model) -> Exported:
+def side_text(name: str, side: SideModel, model: Model, content: bytes) -> Exported:
     """Return the corrected aircraft, measured at the speed and height flown.
+
+    Parameters
+    ----------
+    content
+        Text of the aircraft, whose pitch may be corrected already.
 
     Raises
     ------
@@ -36,13 +40,13 @@ def side_text(name: str, side: SideModel, model: Model) -> Exported:
         The aircraft does not load or trim, has no axes of side force, roll and yaw, or its aileron or rudder
         moves nothing.
     """
-    content = model.file.read_bytes()
     _require_axes(parse(content, model.file.name), model.file.name)
-    asked = SideRequest(side.trim.airspeed_m_s, side.height_m)
+    speed = side.true_airspeed_m_s
+    asked = SideRequest(speed, side.air.height_m or 0.0)
     first = measure_side(content, model, asked)
     wanted = _targets(side, first)
     sizes = dict.fromkeys(wanted, 0.0)
-    now, estimate = first, side.found.estimate
+    now = first
     for _ in range(ROUNDS):
         missing = {name: target - now.derivatives[name] for name, target in wanted.items()}
         if all(abs(size) <= WITHIN * max(abs(wanted[name]), 1.0) for name, size in missing.items()):
@@ -54,10 +58,10 @@ def side_text(name: str, side: SideModel, model: Model) -> Exported:
     changes = _functions(sizes)
     changed = [name for name in SIDE_PARAMETERS if wanted[name] != first.derivatives[name]]
     note = (
-        f"Corrected by the inflight advisor for {name} at {side.trim.airspeed_m_s:.4g} m/s: "
-        f"{', '.join(changed) or 'nothing'}."
+        f"Corrected by the inflight advisor for {name} at {speed:.4g} m/s: {', '.join(changed) or 'nothing'}."
     )
-    left = [f"{p}: {reason}" for p, reason in estimate.not_identifiable.items()]
+    left = [f"{p}: {reason}" for p, reason in side.untold.items()]
+    left += [f"the {n}'s servo ({', '.join(s.lines())})" for n, s in side.servos.items() if s.lines()]
     return Exported(corrected(content, model.file.name, changes, ExportedServo(), note), tuple(left))
 
 
@@ -71,12 +75,10 @@ def _require_axes(root: ET.Element, name: str) -> None:
 
 def _targets(side: SideModel, own: SideSlopes) -> dict[str, float]:
     """Return each derivative as the aircraft must have it, per unit of its properties."""
-    estimate = side.found.estimate
     wanted = dict(own.derivatives)
-    for k, name in enumerate(SIDE_PARAMETERS):
-        flown = own.signs.get(name[2:], 1.0) * float(estimate.theta[k])
-        half = NORMAL_95 * float(estimate.std[k])
-        if name not in estimate.not_identifiable and isfinite(half) and abs(flown - wanted[name]) > half:
+    for name, value in side.values.items():
+        flown = own.signs.get(name[2:], 1.0) * value.value
+        if isfinite(side.half(name)) and abs(flown - wanted[name]) > side.half(name):
             wanted[name] = flown
     return wanted
 

@@ -1,0 +1,1 @@
+"""ArduPilot's built-in plane: a file of coefficients, and parameters of its servos."""

@@ -1,0 +1,22 @@
+"""``aircraft``: the aircraft file with the findings of the flight."""
+
+from pathlib import Path
+
+from advisor.exports.models.exported import Exported
+from advisor.exports.models.file_text import file_text
+from advisor.exports.models.flown import FlownModel
+from advisor.exports.models.formats import ModelFormat
+
+
+class AircraftFormat(ModelFormat):
+    """A file that ``advisor`` and ``python -m sim`` load."""
+
+    suffix = ".yaml"
+    needs_a_finding = True
+
+    def made(self, model: FlownModel, file: Path) -> Exported:
+        """Return the file."""
+        return Exported(file_text(model))
+
+
+FORMAT = AircraftFormat()

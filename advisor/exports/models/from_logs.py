@@ -1,0 +1,67 @@
+"""Roll and yaw for other programs, from logs and from a diagnosis of them."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.analysis.side_gap import SideCompared, accepted_of
+from advisor.analysis.whole_flights import read_whole
+from advisor.exports.models.flown import FlownModel, SideModel, flown_model, side_flown, side_of
+from advisor.exports.models.servo import ExportedServo, servo_of
+from advisor.flight.maneuvers.marks import Mark
+from advisor.gap.effects import EFFECTS
+from advisor.model.lateral import LATERAL
+from advisor.oem.estimate import NoEstimate
+from advisor.oem.lateral_estimator import estimate_lateral
+from advisor.side_gap.diagnosis import SideDiagnosis
+from advisor.words.problems import UnusableInputError
+
+
+def side_of_logs(
+    logs: Sequence[Path],
+    aircraft: Aircraft,
+    target_system: int | None = None,
+    marks: Sequence[Mark] = (),
+    no_marks: bool = False,
+) -> SideModel | None:
+    """Return roll and yaw as the accepted manoeuvres of logs tell them; None where they tell none."""
+    try:
+        flights = read_whole(logs, aircraft, target_system, marks, no_marks=no_marks, axis="lateral")
+    except UnusableInputError:
+        return None
+    return side_flown(flights.state.lateral, aircraft)
+
+
+def improved_side(compared: SideCompared) -> FlownModel:
+    """Return both axes of a flight whose roll and yaw were diagnosed, with the servos that were found.
+
+    Derivatives are estimated anew behind a servo that the diagnosis changed.
+    """
+    aircraft, state = compared.aircraft, compared.state
+    model = flown_model(state, aircraft)
+    unchanged = compared.gap.verdict not in ("effect", "parameters")
+    found = _servos_found(compared.gap.diagnosis, aircraft)
+    if model.side is None or not found:
+        return replace(model, unchanged=unchanged)
+    changed: dict[str, Any] = {
+        name: replace(getattr(aircraft, name), lag_s=servo.lag_s, delay_s=servo.delay_s)
+        for name, servo in found.items()
+    }
+    behind = replace(aircraft, **changed)
+    again = estimate_lateral(accepted_of(state), behind)
+    side = model.side
+    if not isinstance(again, NoEstimate):
+        side = side_of(again, side.trim, side.air, behind)
+    return replace(model, side=replace(side, servos={**side.servos, **found}), unchanged=unchanged)
+
+
+def _servos_found(diagnosis: SideDiagnosis | None, aircraft: Aircraft) -> Mapping[str, ExportedServo]:
+    """Return the servo of each control at which the diagnosis found an effect."""
+    effects: dict[str, dict[str, Mapping[str, float]]] = {}
+    for one in diagnosis.causes if diagnosis is not None else ():
+        if one.cause.present and one.of in LATERAL.inputs and EFFECTS[one.cause.effect].servo:
+            sizes = {name: value.value for name, value in one.cause.parameters.items()}
+            effects.setdefault(one.of, {})[one.cause.effect] = sizes
+    return {name: servo_of(getattr(aircraft, name), by_effect) for name, by_effect in effects.items()}
