@@ -26,6 +26,8 @@ from advisor.words.problems import ConfigurationError, UnusableInputError
 SUFFIXES = (".csv", ".txt", ".tsv", ".mat")
 _SEPARATORS = ",;\t|"
 _ANGLES = frozenset({"elevator", "alpha", "q", "theta", "bank", "p", "r"})
+_HALF_TURN = ("elevator", "alpha", "theta")
+"""Angles that never exceed a quarter of a turn."""
 _CENTRE_US, _US_PER_DEG = 1500.0, 10.0
 """Pulse width at zero deflection, and its change per degree: any line serves, because it is undone again."""
 _SYSTEM, _ARDUPILOT, _ARMED_MANUAL = 1, 3, 128
@@ -49,6 +51,7 @@ def table_maneuvers(path: Path, aircraft: Aircraft) -> list[Maneuver]:
             " elevator and q, better also alpha, theta, a_z and airspeed."
         )
     quantities = _quantities(_read(path), aircraft.columns, path.name)
+    _refuse_degrees(quantities, aircraft.columns, path.name)
     calibration = tuple((_CENTRE_US + _US_PER_DEG * deg, deg) for deg in (-90.0, 90.0))
     mapped = replace(
         aircraft,
@@ -83,6 +86,18 @@ def _quantities(
             "table_time", f"The time of {file} does not rise from row to row.", "Correct columns.time."
         )
     return found
+
+
+def _refuse_degrees(given: Mapping[str, FloatArray], columns: TableColumns, file: str) -> None:
+    """Refuse angles that are none in rad."""
+    for name in (n for n in _HALF_TURN if n in given):
+        largest = float(np.nanmax(np.abs(given[name]), initial=0.0))
+        if largest > np.pi / 2.0:
+            raise UnusableInputError(
+                "table_units",
+                f"{file}: {getattr(columns, name)} reaches {largest:.3g}; {name} in rad is below 1.57.",
+                "Write columns: {units: deg} in the aircraft file where the table is in degrees.",
+            )
 
 
 def _messages(given: Mapping[str, FloatArray]) -> Iterator[Columns]:

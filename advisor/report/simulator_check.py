@@ -25,7 +25,7 @@ def document(found: CheckedSimulator) -> dict[str, Any]:
         "schema": SCHEMA,
         "usable": fault is None,
         **picked(found, "simulator airspeed_m_s height_m alpha_rad trim a_z_m_s2 rest_q_rad_s takes lacks"),
-        **picked(found, "derivatives lag_s dead_time_s omega_rad_s damping notes"),
+        **picked(found, "derivatives side lag_s dead_time_s omega_rad_s damping notes"),
         "problems": [] if fault is None else [picked(fault.refuse(found.simulator).problem, "code text fix")],
     }
 
@@ -48,6 +48,8 @@ def lines(found: CheckedSimulator) -> Iterator[str]:
     else:
         yield "short period none: it is statically unstable here"
     yield "numbers     " + ", ".join(f"{name} {value:.4g}" for name, value in found.derivatives.items())
+    if found.side:
+        yield "roll, yaw   " + ", ".join(f"{name} {value:.4g}" for name, value in found.side.items())
     yield f"takes       elevator{''.join(f', {name}' for name in found.takes)}"
     for name in found.lacks:
         yield f"does not take {name}: {_LACKS[name]}"

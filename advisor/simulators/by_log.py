@@ -4,18 +4,23 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+import numpy as np
+
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.diagnose import diagnose
 from advisor.gap.result import Diagnosis, spelled
 from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.mavlink.logs.formats import ENDINGS
+from advisor.simulators.interface import interface_fault
 from advisor.simulators.linear import LinearSimulator
+from advisor.simulators.protocol import Replay
 from advisor.words.problems import ConfigurationError, UnusableInputError
 from advisor.words.quantiles import NORMAL_95
 
 _LEAST = 2
 """Least number of manoeuvres in a simulator's log. A single one names no effect, for lack of a hold-out."""
+_MOTION = ("alpha", "theta", "a_z", "airspeed")
 _SUFFIXES = (*ENDINGS, ".csv", ".txt", ".tsv", ".mat")
 
 
@@ -58,6 +63,12 @@ def from_log(
             f"The simulator's log {path.name} holds {len(maneuvers)} elevator manoeuvres; two are needed.",
             "Fly the inputs of the flight in the simulator, too, and log them.",
         )
+    said = f"the simulator that wrote {path.name}"
+    for maneuver in maneuvers:
+        replay = _as_replay(maneuver)
+        fault = interface_fault(replay) if replay is not None else None
+        if fault is not None:
+            raise fault.refuse(said)
     found = diagnose(maneuvers, unknown)
     effects = {effect: dict(sizes) for effect, sizes in found.effects.items()}
     lag = effects.pop("actuator_lag", None) if set(effects.get("actuator_lag", ())) == {"lag_s"} else None
@@ -69,9 +80,19 @@ def from_log(
         reference_airspeed_m_s=found.reference_airspeed_m_s or aircraft.reference_airspeed_m_s,
     )  # fmt: skip
     return IdentifiedSimulator(
-        derivatives, as_file.reference_airspeed_m_s, f"the simulator that wrote {path.name}",
+        derivatives, as_file.reference_airspeed_m_s, said,
         as_file=as_file, notes=_identified(path.name, found, maneuvers),
     )  # fmt: skip
+
+
+def _as_replay(maneuver: Maneuver) -> Replay | None:
+    """Return the logged motion at the stamps of the pitch rate; None where a quantity is missing."""
+    channels = maneuver.channels
+    if not {"q", *_MOTION} <= channels.keys():
+        return None
+    t = channels["q"].t
+    alpha, theta, a_z, airspeed = (np.interp(t, channels[n].t, channels[n].y) for n in _MOTION)
+    return Replay(t - t[0], alpha, channels["q"].y, theta, a_z, airspeed, np.zeros(t.size))
 
 
 def _identified(name: str, found: Diagnosis, maneuvers: Sequence[Maneuver]) -> tuple[str, ...]:

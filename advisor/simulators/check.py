@@ -12,10 +12,12 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.record import Channel
 from advisor.gap.records.prepare import prepare
 from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, natural_frequency
-from advisor.simulators.flying import Flying, refuse_unmoved
-from advisor.simulators.interface import InterfaceFault, interface_fault
+from advisor.simulators.check_side import check_side
+from advisor.simulators.flying import Flying
+from advisor.simulators.interface import InterfaceFault, control_fault, interface_fault
 from advisor.simulators.protocol import CONDITIONS, CONTROLS, Condition, Inputs, Replay, Simulator
 from advisor.simulators.surrogate import surrogate_of
+from advisor.words.problems import UnusableInputError
 
 _STEP_S, _LEAD_S, _UNIT_S, _LASTS_S = 0.005, 1.0, 0.4, 9.0
 """Step, time before the input, unit of the 3-2-1-1, and length of the record, s."""
@@ -23,6 +25,8 @@ _SIZE_RAD = float(np.radians(1.0))
 """Elevator step, rad: small enough for a linear answer, far above rounding."""
 _REST_S = 5.0
 """Length of the flight with resting controls, s."""
+_MOVES_RAD_S = 1e-6
+"""Least change of the pitch rate, rad/s, of a simulator that answers its elevator: rounding makes less."""
 _RESTS_RAD_S = 1e-3
 """Largest pitch rate of a trimmed simulator at rest, rad/s: 0.06 deg/s, half of a gyro's bias."""
 
@@ -52,6 +56,8 @@ class CheckedSimulator:
     omega_rad_s: float = nan
     """Undamped natural frequency of the short period; 0 where it is aperiodic by stiffness."""
     damping: float = nan
+    side: Mapping[str, float] = field(default_factory=dict)
+    """Derivatives of roll and yaw by the controls that the simulator takes."""
     fault: InterfaceFault | None = None
     notes: tuple[str, ...] = ()
 
@@ -75,10 +81,32 @@ def check(simulator: Simulator, condition: Condition) -> CheckedSimulator:
         float(still.a_z[0]), float(np.max(np.abs(still.q))), tuple(sorted(takes)),
         tuple(sorted({*offered, "increments"} - takes)), notes=tuple(getattr(simulator, "notes", ())),
     )  # fmt: skip
-    fault = interface_fault(flown)
+    _refuse_unmoved(flown, simulator.description)
+    fault = interface_fault(flown) or control_fault("elevator", -1.0, _answer(flown))
     if fault is not None:
         return replace(found, fault=fault)
-    return _identified(found, simulator, condition, flown, t)
+    found = _identified(found, simulator, condition, flown, t)
+    fault = control_fault("elevator", found.derivatives["M_delta_e"], _answer(flown))
+    if fault is not None:
+        return replace(found, fault=fault)
+    side = check_side(simulator, condition)
+    return replace(found, side=side.derivatives, fault=side.fault, notes=(*found.notes, *side.notes))
+
+
+def _refuse_unmoved(flown: Replay, said: str) -> None:
+    """Refuse a simulator that stands still through a 3-2-1-1."""
+    if float(np.ptp(flown.q)) < _MOVES_RAD_S:
+        raise UnusableInputError(
+            "simulator_elevator",
+            f"{said} does not move: through a 3-2-1-1 of ±1 deg its pitch rate changes by "
+            f"{np.degrees(np.ptp(flown.q)):.2g} deg/s.",
+            "Check that step() advances the motion, and which input the elevator is.",
+        )
+
+
+def _answer(flown: Replay) -> float:
+    """Return the change of the angle of attack over that of the elevator."""
+    return float(np.ptp(flown.alpha)) / (2.0 * _SIZE_RAD)
 
 
 def _identified(
@@ -89,7 +117,6 @@ def _identified(
     flying = Flying(simulator, flights, {1: condition.height_m}, {1: {}}, condition.mass_kg, lambda *_: None)
     command = np.zeros((1, len(ENTRIES)))
     replays = flying.replays(command, held=False)
-    refuse_unmoved(simulator.description, replays, flights)
     surrogate = surrogate_of(
         flights, flying.as_flown(replays), replays, command, simulator.linearise(condition)
     )
@@ -101,11 +128,6 @@ def _identified(
         notes.append(
             f"With resting controls it turns by {np.degrees(found.rest_q_rad_s):.2f} deg/s: its trim is not "
             "steady, and every replay starts with that motion."
-        )
-    if surrogate.derivatives["M_delta_e"] > 0.0:
-        notes.append(
-            "The nose goes up where the trailing edge goes down: the elevator is reversed, unless it is a "
-            "canard."
         )
     return replace(
         found, derivatives=surrogate.derivatives, lag_s=surrogate.lag_s, dead_time_s=surrogate.delay_s,

@@ -33,8 +33,8 @@ from advisor.simulators.flying import (
     Progress,
     added,
     beyond,
-    refuse_another_elevator,
     refuse_unmoved,
+    refuse_wrong_elevator,
     without_difference,
 )
 from advisor.simulators.improved import EQUATIONS, Flown, in_simulator
@@ -207,7 +207,7 @@ def _surrogate_and_rest(
     refuse_unmoved(flying.simulator.description, replays, flights)
     flown = flying.as_flown(replays)
     surrogate = surrogate_of(flights, flown, replays, command, flying.simulator.linearise(_usual(flying)))
-    refuse_another_elevator(flying.simulator.description, surrogate.derivatives["M_delta_e"], flights)
+    refuse_wrong_elevator(flying.simulator.description, surrogate.derivatives["M_delta_e"], replays, flights)
     base = with_known(base_entries(surrogate.aircraft(aircraft)), aircraft.effects, flights, variants)
     derivatives = np.array([surrogate.derivatives[name] for name in DERIVATIVES])
     own = np.zeros((len(flights), len(NUISANCES)))

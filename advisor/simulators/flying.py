@@ -9,10 +9,9 @@ from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.record import Channel
 from advisor.gap.fitting.problem import EffectProblem
-from advisor.gap.fitting.regression import regressions
 from advisor.gap.records.flights import PreparedManeuver, PreparedManeuvers
 from advisor.gap.records.usable import DEPARTED_RAD
-from advisor.gap.simulator.layout import BANK, DERIVATIVES, HEIGHT, INDEX, OUTPUTS
+from advisor.gap.simulator.layout import BANK, HEIGHT, INDEX, OUTPUTS
 from advisor.oem.rows import Signal
 from advisor.simulators.around import instruments, skewed
 from advisor.simulators.increments import SimulatorIncrements, carried
@@ -204,20 +203,21 @@ def _refuse_broken(replay: Replay, description: str, flight: PreparedManeuver) -
         )
 
 
-def refuse_another_elevator(description: str, m_delta_e: float, flights: PreparedManeuvers) -> None:
-    """Refuse a simulator whose elevator has another sense or unit than the flight's.
+def refuse_wrong_elevator(
+    description: str, m_delta_e: float, replays: Sequence[Replay], flights: PreparedManeuvers
+) -> None:
+    """Refuse a simulator whose elevator has another sense or unit than that of an aircraft.
 
-    ``m_delta_e`` is M_δe of the simulator at the flights' reference speed, 1/s².
+    ``m_delta_e`` is M_δe of the simulator, 1/s².
 
     Raises
     ------
     UnusableInputError
-        The simulator answers the elevator with another sign, or with a factor of a unit.
+        The simulator pitches up by a positive elevator, or answers it 57 times less than an aircraft.
     """
-    k = DERIVATIVES.index("M_delta_e")
-    flown = [float(guess[k]) for guess in regressions(flights)]
-    # Where a late channel turns the sign of a regression, the flight says nothing.
-    fault = control_fault("elevator", m_delta_e, flown[0]) if min(flown) * max(flown) > 0.0 else None
+    pairs = zip(replays, flights.flights, strict=True)
+    answer = max(float(np.ptp(replay.alpha) / np.ptp(flight.u)) for replay, flight in pairs)
+    fault = control_fault("elevator", m_delta_e, answer)
     if fault is not None:
         raise fault.refuse(description)
 

@@ -5,7 +5,9 @@ In still air and in the vertical plane
     θ̇ = q        α̇ = q + (a_z·cos α − a_x·sin α + g·cos γ)/V        a_z = −g·cos θ in steady level flight
 
 (Klein and Morelli, *Aircraft System Identification*, chapter 10). A factor of −1 or 180/π between the sides
-is a sign or a unit. Only the sense and the unit of the elevator need a second source, the flight itself.
+is a sign or a unit, if the motion agrees with itself without that factor. Neither a flight nor a model of the
+simulator is a part of these tests. A control's sense is that of the convention, and a control in degrees has
+57 times less effect than any aircraft's.
 """
 
 from collections.abc import Sequence
@@ -27,6 +29,9 @@ by a factor of 3 or more."""
 _MOVES_RAD = 1e-4
 """Least range of ∫q dt, rad, by which a unit can be told. A real test input moves the nose by a hundred
 times as much."""
+_MENDS = 0.5
+"""Largest share of the motion's disagreement with itself that may remain without a wrong sign or unit. Half:
+without a fault, a change of sign or unit makes more disagreement instead of less."""
 _SMALL_RAD = 0.7
 """Largest angle of attack or pitch angle, rad, of a test manoeuvre: 40 deg."""
 
@@ -71,7 +76,35 @@ def interface_fault(replay: Replay) -> InterfaceFault | None:
     turned = _integrated(replay.q, replay.t)
     if np.ptp(turned) < _MOVES_RAD:
         return None
-    return _of_the_angles(replay, turned)
+    fault = _of_the_angles(replay, turned)
+    # Parallel motions of θ and α leave the slopes open: a fault must also mend the motion.
+    mended = fault is not None and _misfit(_mended(replay, fault)) < _MENDS * _misfit(replay)
+    return fault if mended else None
+
+
+def _mended(replay: Replay, fault: InterfaceFault) -> Replay:
+    """Return the replay without a wrong sign or unit of α, q or θ."""
+    factor = -1.0 if "reversed" in fault.found else 1.0 / _PER_RAD
+    changed: dict[str, Any] = {
+        name: factor * getattr(replay, name)
+        for name in ("alpha", "q", "theta")
+        if _NAMES.get(name, name) in fault.quantity
+    }
+    return replace(replay, **changed)
+
+
+def _misfit(replay: Replay) -> float:
+    """Return the disagreement of θ with ∫q dt, and of α with the path, as shares of these motions."""
+    turned = _integrated(replay.q, replay.t)
+    pairs = (
+        (replay.theta - replay.theta[0], turned),
+        (replay.alpha - replay.alpha[0], turned + _path_turning(replay)),
+    )
+    return sum(_rms(a - b) / max(_rms(a) + _rms(b), 1e-300) for a, b in pairs)
+
+
+def _rms(x: FloatArray) -> float:
+    return float(np.sqrt(np.mean(x**2)))
 
 
 def _of_the_angles(replay: Replay, turned: FloatArray) -> InterfaceFault | None:
@@ -114,7 +147,7 @@ def _in_radians(replay: Replay, names: Sequence[str]) -> Replay:
 _POSITIVE = {
     "elevator": (
         "it pitches up where the aircraft pitches down",
-        "trailing edge down is positive and pitches down",
+        "trailing edge down is positive and pitches down (on a canard, trailing edge up)",
     ),
     "aileron": ("it rolls to the other side", "a positive aileron rolls to the left"),
     "rudder": ("it yaws to the other side", "a positive rudder yaws to the left"),
@@ -122,29 +155,34 @@ _POSITIVE = {
 """Control to the fault of its sense, and to the convention."""
 
 
-def control_fault(control: str, simulated: float, flown: float) -> InterfaceFault | None:
-    """Return the wrong sign or unit of a control; None where the simulator answers as the aircraft.
+_LEAST = {"elevator": 0.1, "aileron": 0.6, "rudder": 0.1}
+"""Least answer to a control in rad: change of α by the elevator, steady roll rate by the aileron (1/s),
+sideslip by the rudder. Aircraft on record have 0.3 to 3, 3 to 11 and 0.4 to 2; a control that is taken in
+degrees answers 57 times less."""
+
+
+def control_fault(control: str, turns: float, answer: float) -> InterfaceFault | None:
+    """Return the wrong sign or unit of a control; None where it turns the simulator as it turns an aircraft.
 
     Parameters
     ----------
     control
         ``elevator``, ``aileron`` or ``rudder``.
-    simulated, flown
-        M_δe, L_δa or N_δr of the simulator and of the flight, 1/s².
+    turns
+        M_δe, L_δa or N_δr, 1/s².
+    answer
+        Size of the answer by the table of ``_LEAST``.
     """
-    ratio = simulated / flown if flown else 1.0
-    if _is(ratio, -1.0):
-        wrong, convention = _POSITIVE[control]
-        return InterfaceFault(
-            f"the {control}", f"the wrong direction: {wrong}", f"Reverse the {control}'s input; {convention}."
-        )
-    if _is(abs(ratio), 1.0 / _PER_RAD):
-        told = f"{1.0 / abs(ratio):.0f} times less effect than the flight: it takes degrees"
-        return InterfaceFault(f"the {control}", told, "Turn the deflection, sent in rad, into degrees.")
-    if _is(abs(ratio), _PER_RAD):
-        told = f"{abs(ratio):.0f} times more effect than the flight: it takes another unit"
-        return InterfaceFault(f"the {control}", told, "The deflection is sent in rad; check its scale.")
-    return None
+    if answer < _LEAST[control]:
+        told = f"{_LEAST[control] / max(answer, 1e-6):.0f} times less effect than the weakest of an aircraft"
+        mend = "It takes degrees: turn the deflection, sent in rad, into degrees."
+        return InterfaceFault(f"the {control}", told, mend)
+    if turns <= 0.0:
+        return None
+    wrong, convention = _POSITIVE[control]
+    return InterfaceFault(
+        f"the {control}", f"the wrong direction: {wrong}", f"Reverse the {control}'s input; {convention}."
+    )
 
 
 def side_fault(replay: Replay) -> InterfaceFault | None:

@@ -41,7 +41,9 @@ STEP_S = 0.02
 OWN_DELAY, OWN_LAG = Prior(0.0, 0.1), Prior(FIRST_LAG_S, 0.1)
 """Delay and lag between the simulator's input and its surfaces, s. Replays have no noise and tell them
 alone."""
-_TURNS = {"aileron": "L_delta_a", "rudder": "N_delta_r"}
+TURNS = {"aileron": ("L_delta_a", "L_p"), "rudder": ("N_delta_r", "N_beta")}
+"""Control to the derivative by which it turns, and to that which it turns against: their ratio is the answer
+of ``interface.control_fault``."""
 
 
 def side_without_difference(
@@ -85,7 +87,7 @@ def side_without_difference(
         records.append(_as_record(replay, inputs, t))
     progress(f"fitting roll and yaw of {said}", 1.0)
     surrogate = _surrogate(tuple(records), flown, said)
-    _refuse_another_control(surrogate, flown, said)
+    _refuse_wrong_control(surrogate, flown, said)
     left = surrogate.assembly.z - surrogate.fitted
     beyond = [
         {name: Signal(record.outputs[name].t, left[rows]) for name, rows in named.items()}
@@ -237,14 +239,11 @@ def _refuse_broken(replay: Replay, said: str, maneuver: Maneuver, duration_s: fl
         )
 
 
-def _refuse_another_control(surrogate: LateralSolution, flown: LateralProblem, said: str) -> None:
-    """Refuse a simulator whose aileron or rudder has another sense or unit than the flight's."""
-    real = solve_lateral(flown)
-    if isinstance(real, NoEstimate):
-        return
-    for name, derivative in _TURNS.items():
-        k = LATERAL.names.reported.index(derivative)
+def _refuse_wrong_control(surrogate: LateralSolution, flown: LateralProblem, said: str) -> None:
+    """Refuse a simulator whose aileron or rudder has another sense or unit than that of an aircraft."""
+    found = dict(zip(LATERAL.names.reported, map(float, surrogate.theta), strict=True))
+    for name, (turns, against) in TURNS.items():
         if flown.flies(name):
-            fault = control_fault(name, float(surrogate.theta[k]), float(real.theta[k]))
+            fault = control_fault(name, found[turns], abs(found[turns] / found[against]))
             if fault is not None:
                 raise fault.refuse(said)

@@ -15,6 +15,7 @@ environment takes them.
 """
 
 from collections.abc import Mapping
+from inspect import signature
 from math import ceil
 from typing import Any, Protocol
 
@@ -92,10 +93,13 @@ class Stepped:
         self.takes = frozenset(controls) & {*CONTROLS} | frozenset(conditions) & {*CONDITIONS}
         self._environment, self._dt = environment, dt
         self._side: list[str] = []
+        self._flew = False
+        self._controls = tuple(n for n in CONTROLS if n in self.takes or (n == "throttle" and trims_throttle))
         self._unknowns = ("alpha", "elevator", *(("throttle",) if trims_throttle else ()))
 
     def replay(self, condition: Condition, inputs: Inputs, increments: Increments | None = None) -> Replay:
         """Search the steady flight, and fly the inputs as departures from its controls."""
+        self._refuse_calls()
         trim = self._trimmed(condition)
         dt = self._dt
         t = dt * np.arange(ceil(inputs.t[-1] / dt) + 1)
@@ -123,6 +127,29 @@ class Stepped:
         """Close the environment, where it can be closed."""
         getattr(self._environment, "close", lambda: None)()
 
+    def _refuse_calls(self) -> None:
+        """Refuse an environment whose ``step`` or ``reset`` has other arguments than those that are sent."""
+        increments = ("force", "moment") if self.takes_increments else ()
+        sent = {
+            "step": ("dt", "elevator", *self._controls, *increments),
+            "reset": ("speed", "height", "alpha", "theta", *(n for n in CONDITIONS if n in self.takes)),
+        }
+        for name, arguments in sent.items():
+            try:
+                wanted = signature(getattr(self._environment, name))
+            except ValueError:  # a compiled method tells no arguments
+                continue
+            try:
+                # The step is handed over by its place.
+                wanted.bind(*arguments[: name == "step"], **dict.fromkeys(arguments[name == "step" :]))
+            except TypeError as error:
+                raise UnusableInputError(
+                    "simulator_call",
+                    f"{self.description}: {name}() {error}; it is called with {', '.join(arguments)}.",
+                    f"Give {name}() these arguments, or name others in Stepped(controls=..., "
+                    "conditions=..., increments=...).",
+                ) from None
+
     def _begin(self, condition: Condition, trim: Mapping[str, float]) -> None:
         alpha = trim["alpha"]
         flown = {"mass": condition.mass_kg, "wind": condition.wind_m_s}
@@ -133,9 +160,9 @@ class Stepped:
         )  # fmt: skip
 
     def _with_trim(self, trim: Mapping[str, float], controls: Mapping[str, float]) -> dict[str, float]:
-        """Return the controls of one step; those that the flight did not log stay at the trim."""
+        """Return the controls of one step; those that the flight did not log stay at the trim, or at 0."""
         resting = {name: value for name, value in trim.items() if name != "alpha"}
-        return {**resting, **controls}
+        return {**dict.fromkeys(self._controls, 0.0), **resting, **controls}
 
     def _seen(self, condition: Condition) -> list[float]:
         """Return α, q, θ, a_z, air speed, height and the observed quantities of roll and yaw."""
@@ -146,6 +173,14 @@ class Stepped:
                 "simulator_observation",
                 f"{self.description} observes no {', '.join(missing)}.",
                 "Return alpha, q, theta and a_z from observe().",
+            )
+        broken = {name: value for name, value in seen.items() if not np.isfinite(float(value))}
+        if broken and not self._flew:
+            name, value = next(iter(broken.items()))
+            raise UnusableInputError(
+                "simulator_observation",
+                f"{self.description} observes {name} as {value} at the start of the flight.",
+                "Return a finite number from observe() after reset().",
             )
         kept = {"airspeed": condition.airspeed_m_s, "height": condition.height_m}
         self._side = [name for name in _SIDE if name in seen]
@@ -171,6 +206,7 @@ class Stepped:
         at[2:] = 0.5
         for _ in range(_ROUNDS):
             now = rates(at)
+            self._flew = True
             if np.max(np.abs(now)) < _STEADY:
                 return dict(zip(self._unknowns, at.tolist(), strict=True))
             steps = _DIFFERENCE * np.eye(len(at))

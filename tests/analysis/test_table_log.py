@@ -112,3 +112,11 @@ def test_the_section_columns_of_the_aircraft_file_is_read_and_checked():
         parse_aircraft({"columns": {**section, "scale": {"nz": 1.0}}})
     with pytest.raises(ConfigurationError, match=r"columns.q: field required"):
         parse_aircraft({"columns": {"time": "t", "elevator": "de"}})
+
+
+def test_a_table_in_degrees_that_is_declared_in_rad_is_refused(tmp_path):
+    path = tmp_path / "x.csv"
+    path.write_text("time,elevator,q\n0.0,-4.0,0.0\n0.1,2.0,1.0\n0.2,2.0,1.0\n")
+    declared = replace(Aircraft(), columns=TableColumns("time", "elevator", "q"))
+    with pytest.raises(UnusableInputError, match=r"elevator reaches 4; .*units: deg"):
+        table_maneuvers(path, declared)

@@ -1,6 +1,7 @@
 """The check of a simulator before its physics."""
 
 import json
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -9,6 +10,8 @@ from advisor.cli import group as cli
 from advisor.simulators.check import check
 from advisor.simulators.linear import LinearSimulator
 from advisor.simulators.protocol import Condition
+from advisor.words.problems import UnusableInputError
+from tests.simulators.makeshift import Level
 from tests.simulators.nonlinear import Nonlinear
 
 MODEL = {"Z_alpha": -2.7, "Z_q": 0.0, "Z_delta_e": -0.15, "M_alpha": -23.0, "M_q": -3.4, "M_delta_e": -29.0}
@@ -47,9 +50,52 @@ def test_a_linear_simulator_shows_its_own_numbers():
     assert found.a_z_m_s2 == pytest.approx(-9.80665, abs=0.01)
 
 
-def test_an_elevator_that_pitches_up_trailing_edge_down_is_said():
+def test_an_elevator_that_pitches_up_trailing_edge_down_is_a_fault():
     found = check(LinearSimulator(MODEL | {"M_delta_e": 29.0, "Z_delta_e": 0.15}), LEVEL)
-    assert any("the elevator is reversed, unless it is a canard" in note for note in found.notes)
+    assert found.fault is not None
+    assert "the wrong direction: it pitches up" in found.fault.found
+
+
+def test_an_elevator_in_degrees_is_a_fault():
+    weak = {name: value / np.degrees(1.0) for name, value in MODEL.items() if name.endswith("delta_e")}
+    found = check(LinearSimulator(MODEL | weak), LEVEL)
+    assert found.fault is not None
+    assert "It takes degrees" in found.fault.fix
+
+
+def test_a_simulator_that_stands_still_is_refused():
+    with pytest.raises(UnusableInputError, match="does not move: through a 3-2-1-1"):
+        check(Level(), LEVEL)
+
+
+@dataclass(frozen=True)
+class Rolls(Nonlinear):
+    """Flies pitch, and roll by the aileron with L_p = -4 and L_δa = -20; ``sense`` turns the aileron."""
+
+    takes: frozenset[str] = frozenset({"aileron"})
+    sense: float = 1.0
+
+    def replay(self, condition, inputs, increments=None):
+        flown = super().replay(condition, inputs, increments)
+        aileron = np.interp(flown.t, inputs.t, inputs.others.get("aileron", np.zeros(inputs.t.size)))
+        p, bank = np.zeros(flown.t.size), np.zeros(flown.t.size)
+        for k, h in enumerate(np.diff(flown.t)):
+            p[k + 1] = p[k] + h * (-4.0 * p[k] - 20.0 * self.sense * aileron[k])
+            bank[k + 1] = bank[k] + 0.5 * h * (p[k] + p[k + 1])
+        still = np.zeros(flown.t.size)
+        return replace(flown, p=p, bank=bank, r=still, beta=still)
+
+
+def test_the_aileron_is_flown_and_its_roll_is_known():
+    found = check(Rolls(), LEVEL)
+    assert found.fault is None
+    assert found.side["L_delta_a"] == pytest.approx(-20.0, rel=0.05)
+
+
+def test_an_aileron_that_rolls_to_the_other_side_is_a_fault():
+    found = check(Rolls(sense=-1.0), LEVEL)
+    assert found.fault is not None
+    assert "it rolls to the other side" in found.fault.found
 
 
 def said(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, *arguments: object) -> tuple:

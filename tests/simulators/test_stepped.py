@@ -111,3 +111,36 @@ def test_roll_and_yaw_are_handed_out_where_the_environment_observes_them():
     assert flown.p == pytest.approx(2.0 * flown.q)
     assert np.all(flown.a_y == 0.5)
     assert flown.r is None
+
+
+class OfThrottle(Glides):
+    """Steps with a throttle that has no default."""
+
+    def step(self, dt, elevator, throttle):
+        super().step(dt, elevator, throttle)
+
+
+def test_a_control_that_is_named_is_sent_also_where_the_flight_did_not_log_it():
+    flown = Stepped(OfThrottle(), controls=("throttle",)).replay(LEVEL, Inputs(T, DOUBLET))
+    assert np.ptp(flown.q) > 0.0
+
+
+@pytest.mark.parametrize(
+    ("environment", "controls", "words"),
+    [
+        (OfThrottle(), (), r"step\(\) missing a required argument: 'throttle'"),
+        (Glides(), ("aileron",), r"step\(\) got an unexpected keyword argument 'aileron'"),
+    ],
+)
+def test_arguments_that_step_does_not_take_are_named_before_the_flight(environment, controls, words):
+    with pytest.raises(UnusableInputError, match=words):
+        Stepped(environment, controls=controls).replay(LEVEL, Inputs(T, DOUBLET))
+
+
+def test_an_observation_that_is_no_number_is_named():
+    class Blind(Glides):
+        def observe(self):
+            return super().observe() | {"q": np.nan}
+
+    with pytest.raises(UnusableInputError, match="observes q as nan at the start of the flight"):
+        Stepped(Blind()).replay(LEVEL, Inputs(T, DOUBLET))
