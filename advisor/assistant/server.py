@@ -51,7 +51,10 @@ def server_of(folders: Folders, calls: Calls) -> MCPServer[Any]:
     logs = [str(path) for path in folders.logs()]
     named = ", ".join(logs[:_LISTED]) + (f" and {len(logs) - _LISTED} more" if len(logs) > _LISTED else "")
     told = _INSTRUCTIONS.format(folders=folders.listed, logs=named or "none yet")
-    server: MCPServer[Any] = MCPServer("inflight-advisor", instructions=told, version=__version__)
+    # The library logs the answer that a client no longer reads; refusals and faults are answers.
+    server: MCPServer[Any] = MCPServer(
+        "inflight-advisor", instructions=told, version=__version__, log_level="CRITICAL"
+    )
 
     async def doctor(
         log: str | None = None, logs: Names = None, aircraft: str | None = None, part: str = ""
