@@ -201,7 +201,9 @@ def command(
     as_given = replace(compared.aircraft, simulator=aircraft.simulator, elevator=aircraft.elevator)
     outcomes = write_exports(orders, partial(_improved, found, as_given, side))
     write_figure(figure, found)
-    steps = next_steps(found, list(map(str, asked.logs)), asked.aircraft_text, specification)
+    steps = next_steps(
+        found, list(map(str, asked.logs)), asked.aircraft_text, aircraft.simulator, asked.reading
+    )
     if as_json:
         document = gap_document(found, (), str(out) if out and improvable else None)
         more = {"exports": listed(outcomes), "next": plain(steps)}

@@ -49,6 +49,16 @@ class LogsAsked:
         """Every file that the command reads."""
         return [*self.logs, *([self.aircraft_file] if self.aircraft_file else [])]
 
+    @property
+    def reading(self) -> list[str]:
+        """Options other than the aircraft file that say how to read the logs, as words of a command line."""
+        words = [] if self.target_system is None else ["--target-system", str(self.target_system)]
+        words += ["--no-marks"] if self.no_marks else []
+        for mark in self.marks:
+            sign = "+" if mark.from_log_start else ""
+            words += ["--maneuver", f"{sign}{mark.start_s:.10g}:{sign}{mark.end_s:.10g}"]
+        return words
+
     def read_aircraft(self) -> Aircraft:
         """Read the aircraft file.
 

@@ -112,7 +112,9 @@ def _gap(flights: WholeFlights, aircraft: Aircraft, asked: LogsAsked, tell: Prog
             simulator.close()
     if isinstance(compared, FailedPart):
         return gap_document(None, failed=(compared,))
-    steps = next_steps(compared.diagnosis, list(map(str, logs)), asked.aircraft_text, aircraft.simulator)
+    steps = next_steps(
+        compared.diagnosis, list(map(str, logs)), asked.aircraft_text, aircraft.simulator, asked.reading
+    )
     return {**gap_document(compared.diagnosis), "next": plain(steps)}
 
 

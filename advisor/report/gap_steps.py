@@ -3,6 +3,7 @@
 import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from scipy.special import expit
 
@@ -31,7 +32,11 @@ class GapStep:
 
 
 def next_steps(
-    d: Diagnosis, logs: Sequence[str], aircraft_file: str | None, simulator: str | None = None
+    d: Diagnosis,
+    logs: Sequence[str],
+    aircraft_file: str | None,
+    simulator: str | None = None,
+    options: Sequence[str] = (),
 ) -> list[GapStep]:
     """Return what to put into the simulator, how to prove the change, and what excludes the rival.
 
@@ -42,23 +47,44 @@ def next_steps(
     aircraft_file
         Aircraft file, as given; None without one.
     simulator
-        Specification of the user's own simulator; None where the aircraft file is the simulator.
+        Specification of the simulator; None where the aircraft file's model is the simulator.
+    options
+        Options that say how the logs were read, as given.
     """
-    aircraft = ["--aircraft", aircraft_file] if aircraft_file else []
-    own = ["--simulator", simulator] if simulator else []
-    better = improved_name(d, aircraft_file)
     found = []
     answers = answers_of(d.evidence)
     if doubt_of(answers):
         return [to_decide(answers, _way_of(d), d.why)]
     if what := _to_put(d):
-        write = shlex.join(["advisor", "gap", *logs, *aircraft, *own, "--out", better])
-        prove = shlex.join(["advisor", "gap", *logs, *(own or ["--aircraft", better])])
-        found.append(GapStep(f"Put into the simulator: {what}. --export writes other formats.", write))
+        read = ["advisor", "gap", *logs, *options]
+        write, proved, formats = _improvement(improved_name(d, aircraft_file), aircraft_file, simulator)
+        command = shlex.join([*read, *write]) if write else ""
+        found.append(GapStep(f"Put into the simulator: {what}.{formats}", command))
+        prove = shlex.join([*read, *proved])
         found.append(GapStep("Prove the change: the gap must fall to what is printed above.", prove))
     if rival := _against_the_rival(d):
         found.append(GapStep(rival))
     return found
+
+
+def _improvement(
+    better: str, aircraft_file: str | None, simulator: str | None
+) -> tuple[list[str], list[str], str]:
+    """Return the options that write the improved simulator, those that fly it, and words on formats.
+
+    A simulator other than the aircraft file and JSBSim reads no file of ours: its owner changes it.
+    """
+    aircraft = ["--aircraft", aircraft_file] if aircraft_file else []
+    kind, _, _ = (simulator or "linear").partition(":")
+    if kind == "linear":
+        linear = ["--simulator", "linear"] if simulator else []
+        write = [*aircraft, *linear, "--out", better]
+        return write, ["--aircraft", better, *linear], " --export writes other formats."
+    own = [*aircraft, "--simulator", str(simulator)]
+    if kind != "jsbsim":
+        return [], own, ""
+    model = f"{Path(better).stem}.xml"
+    return [*own, "--export", f"jsbsim:{model}"], [*aircraft, "--simulator", f"jsbsim:{model}"], ""
 
 
 def to_decide(answers: Answers, way: str = "", why: Sequence[Contribution] = ()) -> GapStep:

@@ -94,11 +94,6 @@ def test_the_steps_say_what_to_put_how_to_prove_it_and_what_excludes_the_rival()
     assert rival.text == "To exclude actuator lag: log the measured surface position."
 
 
-def test_the_users_own_simulator_is_flown_again_as_the_proof():
-    _, prove, _ = next_steps(diagnosis(), LOGS, None, "jsbsim:c172p")
-    assert prove.command == "advisor gap flight.tlog --simulator jsbsim:c172p"
-
-
 def test_without_a_gap_there_is_nothing_to_put():
     steps = next_steps(diagnosis(verdict="none", causes=()), LOGS, None)
     assert [step.command for step in steps] == [""]

@@ -1,0 +1,25 @@
+"""Command lines that the program prints, taken as a shell and the program take them."""
+
+import shlex
+from collections.abc import Mapping
+from importlib import import_module
+from typing import Any
+
+import click
+
+
+def taken(line: str) -> Mapping[str, Any]:
+    """Return the parameters that ``advisor`` reads from a command line; nothing is run.
+
+    Raises
+    ------
+    click.UsageError
+        The program does not take the line.
+    """
+    program, name, *words = shlex.split(line.replace("\\\n", ""))
+    assert program == "advisor"
+    command = import_module(f"advisor.cli.{name}").command
+    if isinstance(command, click.Group):
+        command, words = command.commands[words[0]], words[1:]
+    parameters: Mapping[str, Any] = command.make_context(name, words, resilient_parsing=False).params
+    return parameters
