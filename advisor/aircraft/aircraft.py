@@ -156,8 +156,13 @@ class Aircraft:
     )] = None  # fmt: skip
     reference: Reference = field(default_factory=Reference)
     model: Annotated[Mapping[str, float], Key(
-        "Parameter name to its value in the simulator of today; any of ``PARAMETERS``.",
-        example="{M_alpha: -48.0, M_q: -4.2, M_delta_e: -100.0, Z_alpha: -8.0}",
+        "Parameter name to its value in the simulator of today, rad and s. Pitch: any of ``PARAMETERS``. "
+        "Roll and yaw: Y, L or N with _beta, _p, _r, _delta_a or _delta_r, such as ``L_p``; L and N hold the "
+        "products of inertia.",
+        example=(
+            "{M_alpha: -48.0, M_q: -4.2, M_delta_e: -100.0, Z_alpha: -8.0, L_p: -9.0, L_delta_a: -39.0, "
+            "N_beta: 9.0, N_r: -1.3, N_delta_r: -8.0}"
+        ),
         cost="advisor gap has no simulator to compare the flight with, unless --simulator names one.",
         mend="write the simulator's derivatives, or give simulator",
     )] = field(default_factory=dict)  # fmt: skip

@@ -108,10 +108,14 @@ class SideControl:
     )] = None  # fmt: skip
     lag_s: Annotated[float | None, Key(
         "First-order lag of the servo, s. None: unknown.",
+        example="0.05",
+        cost="The lag is estimated with the derivatives: L_p and the control's moments are less certain.",
+        mend="film a step of the servo on the ground; the lag is the time to 63 % of the step",
         within=(0.0, 2.0),
     )] = None  # fmt: skip
     delay_s: Annotated[float | None, Key(
         "Delay between command and servo, s. None: unknown.",
+        example="0.02",
         within=(0.0, 2.0),
     )] = None  # fmt: skip
 

@@ -48,6 +48,9 @@ class Reference:
     )] = None  # fmt: skip
     span_m: Annotated[float | None, Key(
         "Wing span, m, for the coefficients of roll and yaw.",
+        example="2.0",
+        cost="Roll and yaw are exported to no program that needs coefficients.",
+        mend="take the span from the drawing",
         positive=True,
     )] = None  # fmt: skip
     chord_m: Annotated[float | None, Key(
@@ -67,15 +70,18 @@ class Reference:
         positive=True,
     )] = None  # fmt: skip
     ixx_kg_m2: Annotated[float | None, Key(
-        "Rolling moment of inertia about the centre of gravity, kg m².",
+        "Rolling moment of inertia about the centre of gravity, kg m², for Gazebo's roll and yaw.",
+        example="0.5",
         positive=True,
     )] = None  # fmt: skip
     izz_kg_m2: Annotated[float | None, Key(
-        "Yawing moment of inertia about the centre of gravity, kg m².",
+        "Yawing moment of inertia about the centre of gravity, kg m², for Gazebo's roll and yaw.",
+        example="1.3",
         positive=True,
     )] = None  # fmt: skip
     ixz_kg_m2: Annotated[float | None, Key(
-        "Product of inertia in the plane of symmetry, kg m².",
+        "Product of inertia in the plane of symmetry, kg m². None: 0.",
+        example="0.0",
     )] = None  # fmt: skip
     cg_percent_chord: Annotated[float | None, Key(
         "Distance of the centre of gravity behind the leading edge of the mean aerodynamic chord, % of "

@@ -13,9 +13,11 @@ class Beta:
     source: Annotated[str, Key(
         "auto | aoa_ssa | named_value:NAME | none, positive with wind from the right. ``auto`` uses what "
         "a vane measures, and nothing that an autopilot derives.",
+        example="auto",
     )] = "auto"  # fmt: skip
     vane_arm_m: Annotated[float | None, Key(
         "Distance of the sideslip vane ahead of the centre of gravity, m. None: that of the angle of attack.",
+        example="0.0",
     )] = None  # fmt: skip
 
 

@@ -7,6 +7,7 @@ from operator import attrgetter
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft_file.keys import KEYS
 from advisor.aircraft_file.log_facts import LogFacts
+from advisor.flight.elevator.side_outputs import SIDES
 from advisor.flight.vehicle.surfaces import Surface
 
 BEYOND_US = 20.0
@@ -64,12 +65,15 @@ def _given(path: str, aircraft: Aircraft) -> bool:
 
 def _counts(path: str, aircraft: Aircraft, facts: LogFacts | None) -> bool:
     """Return whether a missing key costs anything on this aircraft."""
+    section, _, _ = path.partition(".")
+    if section in SIDES and facts is not None and facts.wiring.roles and section not in facts.sides:
+        # An aircraft whose parameters name other surfaces may have no rudder.
+        return False
     match path:
         case "elevator.output":
             return facts is None or not isinstance(facts.elevator, Surface)
         case "aileron.output" | "rudder.output":
-            # An aircraft whose parameters name other surfaces may have no rudder.
-            return facts is None or not facts.wiring.roles
+            return facts is None or section not in facts.sides
         case "airspeed_m_s":
             return facts is not None and facts.airspeed_m_s is None
         case "alpha.vane_arm_m":

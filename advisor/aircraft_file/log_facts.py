@@ -1,12 +1,13 @@
 """Facts of a log about its aircraft: outputs and their limits, air speed, pressure, angle of attack."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.elevator.elevator_guess import Guess
+from advisor.flight.elevator.side_outputs import SIDES, find_side_control
 from advisor.flight.maneuvers.events import ManeuverFlown
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import Columns, FloatArray
@@ -65,6 +66,8 @@ class LogFacts:
     """Mean air speed of every manoeuvre, m/s. NaN where a manoeuvre has none."""
     sides_unknown: Problem | None = None
     """Reason for which aileron or rudder cannot be followed; None where their outputs are known."""
+    sides: Mapping[str, Surface] = field(default_factory=dict)
+    """Aileron and rudder to their outputs, as far as parameters or the aircraft file state them."""
 
     @property
     def frame(self) -> str:
@@ -126,13 +129,15 @@ def facts_of(
         raise UnusableInputError.of(stream.problems())
     mine = (vehicle.system, vehicle.component)
     alpha = stream.channels.get("alpha")
+    wiring = parameters.wiring(
+        [(vehicle.system, _GROUND_STATIONS_COMPONENT), mine], autopilot=vehicle.autopilot
+    )
+    sides = {name: find_side_control(name, getattr(aircraft, name), wiring) for name in SIDES}
     return LogFacts(
         vehicle=vehicle,
         elevator=stream.elevator,
         guess=stream.guess,
-        wiring=parameters.wiring(
-            [(vehicle.system, _GROUND_STATIONS_COMPONENT), mine], autopilot=vehicle.autopilot
-        ),
+        wiring=wiring,
         pulses_us=pulses.get(vehicle.system, {}),
         airspeed_m_s=_in_flight(speeds.get(vehicle.system, [])),
         pressure_pa=_median(pressures.get(vehicle.system, [])),
@@ -140,6 +145,7 @@ def facts_of(
         alpha_provenance=alpha.provenance if alpha else "unknown",
         maneuvers_m_s=tuple(_mean_speed(e.maneuver) for e in events if isinstance(e, ManeuverFlown)),
         sides_unknown=stream.sides_unknown,
+        sides={name: surface for name, surface in sides.items() if surface is not None},
     )
 
 

@@ -7,7 +7,7 @@ from advisor.aircraft_file.log_facts import LogFacts
 from advisor.aircraft_file.text import Draft
 from advisor.flight.signals.derived_alpha import DERIVED_ALPHA
 from advisor.flight.signals.standard_atmosphere import standard_density
-from advisor.flight.vehicle.surfaces import Scale, joined_numbers
+from advisor.flight.vehicle.surfaces import Scale, Surface, joined_numbers
 from advisor.words.problems import Problem
 
 _FULL_STROKE_DEG = 25.0
@@ -28,6 +28,8 @@ def proposed(facts: LogFacts, log: str) -> Draft:
     _elevator(facts, draft)
     if facts.sides_unknown is not None:
         draft.unsure.append(str(facts.sides_unknown))
+    for name, surface in facts.sides.items():
+        _control(name, surface, facts, draft)
     _alpha(facts, draft)
     _airspeed(facts, log, draft)
     return draft
@@ -57,9 +59,7 @@ def _elevator(facts: LogFacts, draft: Draft) -> None:
         return
     surface = facts.elevator
     if len(surface.parts) > 1:
-        several = joined_numbers(surface.outputs)
-        draft.values["elevator.output"] = "auto"
-        draft.comments["elevator.output"] = f"finds outputs {several} by {facts.wiring.words.function}"
+        _found_by_function("elevator", surface, facts, draft)
         limits = " ".join(_limits(facts, n) for n in surface.outputs)
         listed = ", ".join(f"{{output: {n}, calibration: [[PWM, deg], ...]}}" for n in surface.outputs)
         draft.comments["elevator.calibration"] = (
@@ -71,6 +71,22 @@ def _elevator(facts: LogFacts, draft: Draft) -> None:
     why = facts.wiring.assumed or f"by {facts.wiring.words.elevator} in the log"
     draft.comments["elevator.output"] = why.rstrip(".")
     _calibration(facts, output, draft)
+
+
+def _control(name: str, surface: Surface, facts: LogFacts, draft: Draft) -> None:
+    """Write the outputs of the aileron or the rudder."""
+    if len(surface.parts) > 1:
+        _found_by_function(name, surface, facts, draft)
+        return
+    draft.values[f"{name}.output"] = surface.outputs[0]
+    draft.comments[f"{name}.output"] = f"by {facts.wiring.words.function} in the log"
+    _calibration(facts, surface.outputs[0], draft, name)
+
+
+def _found_by_function(name: str, surface: Surface, facts: LogFacts, draft: Draft) -> None:
+    several = joined_numbers(surface.outputs)
+    draft.values[f"{name}.output"] = "auto"
+    draft.comments[f"{name}.output"] = f"finds outputs {several} by {facts.wiring.words.function}"
 
 
 def _unknown_elevator(facts: LogFacts, problem: Problem, draft: Draft) -> None:
@@ -85,12 +101,12 @@ def _unknown_elevator(facts: LogFacts, problem: Problem, draft: Draft) -> None:
     draft.unsure.append(f"Check elevator.output: {facts.guess}.")
 
 
-def _calibration(facts: LogFacts, output: int, draft: Draft) -> None:
+def _calibration(facts: LogFacts, output: int, draft: Draft, name: str = "elevator") -> None:
     """Write the limits of one output in place of the usual example."""
-    draft.comments["elevator.calibration"] = _limits(facts, output)
+    draft.comments[f"{name}.calibration"] = _limits(facts, output)
     scale = facts.stated_scale(output)
     if scale is not None:
-        draft.examples["elevator.calibration"] = _as_calibration(scale)
+        draft.examples[f"{name}.calibration"] = _as_calibration(scale)
 
 
 def _limits(facts: LogFacts, output: int) -> str:

@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.key import REQUIRED, Key, keys_of, sections_of
-from advisor.aircraft.reference import PARAMETERS
+from advisor.aircraft.reference import PARAMETERS, SIDE_PARAMETERS
 
 _HEAD = """# Aircraft file
 
@@ -16,15 +16,16 @@ The aircraft file is YAML. Every key may be left out, unknown keys are refused b
 listed at once with their path. This page is made from `advisor/aircraft/aircraft.py`.
 [The how-to](../how-to/aircraft-file.md) says which keys to give first.
 
-`model`, `campaign.parameters` and `campaign.tolerance` know the parameters {parameters}. Their units are rad
-and s. The sizes in `effects` are those of [the effects](effects.md).
+`model`, `campaign.parameters` and `campaign.tolerance` know the parameters of pitch {parameters}.
+`model` also knows those of roll and yaw: {sides}. Units are rad and s. The sizes in `effects` are those of [the effects](effects.md).
 """
 
 
 def page() -> str:
     """The page as Markdown."""
     names = ", ".join(f"`{name}`" for name in PARAMETERS)
-    parts = [_HEAD.format(parameters=names)]
+    sides = ", ".join(f"`{name}`" for name in SIDE_PARAMETERS)
+    parts = [_HEAD.format(parameters=names, sides=sides)]
     for path, section in sections_of(Aircraft):
         keys = [key for key in keys_of(section, path) if key.path.rpartition(".")[0] == path]
         title, lead = (f"`{path}`", f"{_first_sentence(section)}\n\n") if path else ("The file", "")

@@ -84,3 +84,12 @@ def test_the_example_of_every_key_is_read(key) -> None:
     for name in reversed(key.path.split(".")):
         content = {name: content}
     parse_aircraft(content)
+
+
+def test_the_servos_of_aileron_and_rudder_are_missing_where_the_log_has_these_surfaces(
+    advisor: Advisor, tmp_path: Path
+) -> None:
+    lacking = _lacking(advisor, tmp_path, "", "--log", LOG.parent / "base.bin")
+    assert {"aileron.lag_s", "rudder.calibration"} <= lacking.keys()
+    given = "aileron: {output: 1, calibration: [[1000, 25], [2000, -25]], lag_s: 0.1}"
+    assert "aileron.lag_s" not in _lacking(advisor, tmp_path, given)

@@ -175,3 +175,21 @@ def test_the_next_commands_run_as_they_are_printed(advisor: Advisor, tmp_path: P
     for _, *words in printed:
         assert advisor(*words).returncode == 0
         assert words[-2:] == ["--target-system", "1"]
+
+
+def test_a_log_tells_the_outputs_of_aileron_and_rudder(advisor: Advisor, tmp_path: Path) -> None:
+    file = tmp_path / "a.yaml"
+    advisor("aircraft", "new", "--from", CASES / "base.bin", "-o", file)
+    aircraft = load_aircraft(file)
+    assert (aircraft.aileron.output, aircraft.rudder.output) == (1, 4)
+    assert "# Output 1 by SERVOn_MIN/TRIM/MAX: 1100/1500/1900 us." in file.read_text()
+
+
+def test_a_blank_file_names_the_keys_of_roll_and_yaw_and_their_signs(
+    advisor: Advisor, tmp_path: Path
+) -> None:
+    advisor("aircraft", "new", "--blank", "-o", tmp_path / "a.yaml")
+    text = " ".join((tmp_path / "a.yaml").read_text().replace("#", "").split())
+    for key in ("aileron: ", "rudder: ", "beta: ", "span_m: ", "ixx_kg_m2: ", "L_delta_a: "):
+        assert key in text
+    assert "A positive aileron rolls to the left, a positive rudder yaws to the left." in text

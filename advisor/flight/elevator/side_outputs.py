@@ -15,6 +15,7 @@ from advisor.flight.vehicle.surfaces import Calibration, Part, Surface, joined_n
 from advisor.flight.vehicle.wiring import Wiring
 
 Side = Literal["aileron", "rudder"]
+SIDES: tuple[Side, ...] = ("aileron", "rudder")
 
 
 def find_side_control(name: Side, stated: SideControl, wiring: Wiring) -> Surface | None:
