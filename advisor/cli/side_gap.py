@@ -20,6 +20,7 @@ from advisor.cli.stages import Stages
 from advisor.gap.candidates.distinguish import way_to_distinguish
 from advisor.gap.document import changed_document, gap_document
 from advisor.gap.inference.prior import FIELD, field_prior
+from advisor.gap.result import Value
 from advisor.gap.verdict.titles import title_of_verdict
 from advisor.process.parts import FailedPart, attempt
 from advisor.report.gap_reasons import how_sure, in_percent
@@ -29,6 +30,7 @@ from advisor.side_gap.comparison import SideGap
 from advisor.side_gap.diagnosis import SideDiagnosis
 from advisor.side_gap.stage import LIKELY
 from advisor.words.certainty import is_decided
+from advisor.words.digits import with_half
 from advisor.words.plain import picked, plain
 from advisor.words.printable import printable
 from advisor.words.problems import UnusableInputError
@@ -114,6 +116,8 @@ def side_gap_lines(found: SideGap) -> Iterator[str]:
     gap."""
     yield f"{_title(found)}: {found.sentence}"
     if found.diagnosis is not None:
+        if found.verdict is not None:
+            yield f"  {how_sure(found.diagnosis.answers)}"
         yield from _diagnosis_lines(found.diagnosis)
     for one in found.derivatives:
         differs = "  outside" if one.differs else ""
@@ -121,9 +125,11 @@ def side_gap_lines(found: SideGap) -> Iterator[str]:
             f"  {symbol(one.name):<6} simulator {one.given:8.4g}   flight {one.found.value:8.4g} ± "
             f"{one.half:.2g}{differs}"
         )
+    if found.instruments:
+        yield "Nuisance parameters of the fit, no part of the answer:"
     for name, told in found.instruments.items():
-        yield f"  {name}: {told.value:.3f} ± {NORMAL_95 * told.std:.3f}"
-    if found.holdout:
+        yield f"  {_in_units(name, told)}"
+    if found.holdout and found.verdict is not None:
         listed = ", ".join(map(str, found.holdout))
         yield f"Gap on the held-out manoeuvres {listed}, mean square over that of the noise, minus 1:"
         for name, before in found.before.items():
@@ -146,9 +152,19 @@ def _to_decide(found: SideDiagnosis | None) -> GapStep | None:
     return to_decide(found.answers, way_to_distinguish(ours, other) if ours and other else "")
 
 
+def _in_units(name: str, told: Value) -> str:
+    """Return a nuisance parameter with its 95 % interval, in its unit: ``rudder lag 60 ± 6 ms``."""
+    for ending, factor, unit in (("_s", 1e3, "ms"), ("_m", 1.0, "m")):
+        if name.endswith(ending):
+            half = NORMAL_95 * told.std * factor
+            return (
+                f"{name.removesuffix(ending).replace('_', ' ')} {with_half(told.value * factor, half)} {unit}"
+            )
+    return f"{name.replace('_', ' ')} {with_half(100.0 * told.value, 100.0 * NORMAL_95 * told.std)} %"
+
+
 def _diagnosis_lines(found: SideDiagnosis) -> Iterator[str]:
-    """Yield the probabilities, and each likely effect with its size and the errors that it removes."""
-    yield f"  {how_sure(found.answers)}"
+    """Yield each likely effect with its size and the errors that it removes."""
     for one in found.causes:
         if one.cause.probability >= LIKELY:
             sizes = "; ".join(sizes_of(one.cause.parameters))

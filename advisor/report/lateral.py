@@ -18,8 +18,10 @@ from advisor.report.lateral_qualities import (
     tests_document,
     tests_of,
 )
+from advisor.words.digits import with_half
 from advisor.words.plain import picked, plain
 from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import SIDE_PARAMETERS, symbol
 from advisor.words.vehicle_time import clock
 
 
@@ -150,13 +152,15 @@ def _model_lines(model: LateralEstimate) -> Iterator[str]:
     estimate = model.estimate
     for name, value, std in zip(estimate.names, estimate.theta, estimate.std, strict=True):
         if name not in estimate.not_identifiable:
-            yield f"  {name:<10} {value:10.4g} ± {NORMAL_95 * std:.2g}"
+            quantity = SIDE_PARAMETERS[name]
+            number = with_half(float(value), NORMAL_95 * float(std))
+            yield f"  {quantity.symbol:<6} {number:>20} {quantity.unit}".rstrip()
     for text, names in _by_reason(estimate.not_identifiable).items():
-        yield f"  not identifiable: {', '.join(names)} ({text})"
+        yield f"  not identifiable: {', '.join(map(symbol, names))} ({text})"
     for name, quality in modes_told(model.modes).items():
         words, unit = MODES[name]
         half = NORMAL_95 * quality.std
-        yield f"  {words:<21} {quality.value:8.3g} ± {half:.2g} {unit}".rstrip()
+        yield f"  {words:<18} {with_half(quality.value, half)} {unit}".rstrip()
     for mode, text in model.modes.left_out.items():
         yield f"  no {mode.replace('_', ' ')}: {text}"
 

@@ -60,6 +60,37 @@ def test_the_text_says_the_cause_with_its_size_and_the_errors_that_it_removes():
     assert "nothing to correct 20 %" in text
 
 
+def test_without_a_simulator_the_text_has_neither_its_probabilities_nor_a_table_of_its_gap():
+    alone = replace(
+        FOUND,
+        verdict=None,
+        holdout=(3,),
+        before={"p": 0.0},
+        after={"p": 0.0},
+        instruments={"rudder_lag_s": Value(0.06, 0.003), "airspeed_excess": Value(0.03, 0.01)},
+    )
+    text = "\n".join(side_gap_lines(alone))
+    assert text.startswith("NO SIMULATOR GIVEN: ")
+    assert "wrong numbers" not in text
+    assert "before" not in text
+    assert "Nuisance parameters of the fit, no part of the answer:" in text
+    assert "rudder lag 60.0 ± 5.9 ms" in text
+    assert "airspeed excess 3.0 ± 2.0 %" in text
+
+
+def test_an_undecided_answer_is_not_decided_in_the_document_and_has_the_flight_that_separates_the_two():
+    near = replace(DIAGNOSIS, none=0.5, parameters=0.05, effects={"aileron_actuator_backlash": 0.45})
+    document = side_gap_document(replace(FOUND, verdict="none", diagnosis=near))
+    assert document["decided"] is False
+    assert document["title"] == "NOT DECIDED BETWEEN NOTHING TO CORRECT AND AILERON ACTUATOR BACKLASH"
+    (step,) = document["next"]
+    assert step["text"].startswith(
+        "To separate nothing to correct from aileron actuator backlash: fly as many"
+    )
+    assert side_gap_document(FOUND)["decided"] is True
+    assert side_gap_document(FOUND)["next"] == []
+
+
 def test_the_document_has_probabilities_that_sum_to_one_and_the_gain_on_unseen_manoeuvres():
     document = side_gap_document(FOUND)
     told = document["probabilities"]

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
+from threading import Event
 from types import SimpleNamespace
 
 import pytest
@@ -34,6 +35,18 @@ DOCUMENT = {
     ),
     "next": [{"text": "Put it there.", "command": "advisor gap x"}],
 }
+
+
+async def test_a_running_diagnosis_says_for_how_long_it_runs(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    ended = Event()
+    monkeypatch.setattr(pane, "diagnose_elsewhere", lambda _: ended.wait(20.0) and DOCUMENT)
+    async with stage(flights.state(4), settings=ENGINEER, size=(140, 45), logs=[tmp_path / "a.tlog"]) as here:
+        await here.press("d")
+        await here.until(lambda: "The diagnosis of 4 manoeuvres runs for 1 s" in here.words("#gap-text"))
+        ended.set()
+        await here.until(lambda: "answers 30 ms too early" in here.words("#gap-text"))
 
 
 async def test_choosing_the_pane_diagnoses_the_flight_and_shows_the_worst_manoeuvre(

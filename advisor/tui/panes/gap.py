@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
+from time import monotonic
 from typing import Any
 
 import numpy as np
@@ -24,7 +25,7 @@ _SHOWN = ("alpha", "q", "a_z", "theta")
 _ROWS_FOR_ONE = 6
 _TEXT_SHARE = 0.45
 """Share of the pane's height that the text takes at most."""
-_ASKING = "The diagnosis is running; it takes some seconds for each manoeuvre."
+_ASKING = "The diagnosis of {count} manoeuvres runs for {seconds:.0f} s; each manoeuvre takes some seconds."
 _NO_LOG = "Nothing is recorded here, so there is no log to diagnose: run advisor gap on the log afterwards."
 _TOO_EARLY = "No manoeuvre has been flown yet, so there is nothing to compare with the simulator."
 
@@ -57,7 +58,13 @@ findings.
 
     _asked: tuple[int, ...] | None = None
     """Manoeuvres of the newest diagnosis that was asked for."""
+    _since_s: float | None = None
+    """Time at which the running diagnosis was started; None while none runs."""
     _view: View | None = None
+
+    def on_mount(self) -> None:
+        """Say every second how long a diagnosis has been running."""
+        self.set_interval(1.0, self._tick)
 
     def show(self, view: View) -> None:
         """Keep the moment. The pane itself changes only with a diagnosis."""
@@ -69,8 +76,8 @@ findings.
         if not numbers or not view.logs:
             self._say([("", _NO_LOG if numbers else _TOO_EARLY)])
         elif numbers != self._asked:
-            self._asked = numbers
-            self._say([("", _ASKING)])
+            self._asked, self._since_s = numbers, monotonic()
+            self._tick()
             task = GapTask(tuple(view.logs), view.aircraft, view.aircraft_file)
             self.run_worker(partial(self._work, task), thread=True, exclusive=True, exit_on_error=False)
 
@@ -78,8 +85,15 @@ findings.
         document = diagnose_elsewhere(task)
         self.app.call_from_thread(self._told, document)
 
+    def _tick(self) -> None:
+        """Say how long the diagnosis has been running."""
+        if self._since_s is not None and self._asked is not None:
+            seconds = monotonic() - self._since_s
+            self._say([("", _ASKING.format(count=len(self._asked), seconds=seconds))])
+
     def _told(self, document: Document) -> None:
         """Show a diagnosis."""
+        self._since_s = None
         self._say(list(answer_rows(document)))
         if document["gap"] is None:
             return
