@@ -17,7 +17,8 @@ listed at once with their path. This page is made from `advisor/aircraft/aircraf
 [The how-to](../how-to/aircraft-file.md) says which keys to give first.
 
 `model`, `campaign.parameters` and `campaign.tolerance` know the parameters of pitch {parameters}.
-`model` also knows those of roll and yaw: {sides}. Units are rad and s. The sizes in `effects` are those of [the effects](effects.md).
+`model` also knows those of roll and yaw: {sides}. Units are rad and s.
+The sizes in `effects` are those of [the effects](effects.md).
 """
 
 
