@@ -170,6 +170,24 @@ def compare_logs(
     """
     progress("reading", 0.0)
     flown = maneuvers_of(logs, aircraft, target_system, by_hand)
+    return compare_flown(flown, aircraft, simulator, holdout, progress, prior)
+
+
+def compare_flown(
+    flown: GapFlights,
+    aircraft: Aircraft,
+    simulator: Simulator | None,
+    holdout: int | None = None,
+    progress: Callable[[str, float], None] = lambda *_: None,
+    prior: FieldPrior = FIELD,
+) -> Compared:
+    """Diagnose the gap of manoeuvres to a simulator, or to the aircraft file's model where there is none.
+
+    Raises
+    ------
+    UnusableInputError
+        The manoeuvres cannot serve, or the simulator does not fly.
+    """
     chosen = without_refused(flown.maneuvers, aircraft)
     if simulator is not None and not isinstance(simulator, LinearSimulator):
         progress("comparing the air speed with the motion", 0.02)

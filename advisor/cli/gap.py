@@ -21,6 +21,8 @@ from advisor.cli.options import (
     refuse_unwritable,
     writing,
 )
+from advisor.cli.proving import document as proof_document
+from advisor.cli.proving import print_proof, proof_of, prove_option, refuse_proving
 from advisor.cli.stages import Stages
 from advisor.process.parts import FailedPart, attempt
 from advisor.words.printable import printable
@@ -36,9 +38,10 @@ IMPROVABLE = ("effect", "parameters")
 _OF_A_FLIGHT = {
     "holdout": "--holdout", "out": "--out", "target_system": "--target-system", "marks": "--maneuver",
     "no_marks": "--no-marks", "why": "--why", "everything": "--all", "prior": "--prior",
-    "exports": "--export", "specification": "--simulator", "figure": "--figure", "axis": "--axis",
+    "exports": "--export", "proving": "--prove", "specification": "--simulator", "figure": "--figure",
+    "axis": "--axis",
 }  # fmt: skip
-_OF_THE_PITCH = {name: _OF_A_FLIGHT[name] for name in ("holdout", "why", "everything", "figure")}
+_OF_THE_PITCH = {name: _OF_A_FLIGHT[name] for name in ("holdout", "why", "everything", "figure", "proving")}
 _OF_A_PLAN = {
     "plan": "--plan", "rate_hz": "--rate", "amplitude_deg": "--amplitude-deg", "without": "--without"
 }  # fmt: skip
@@ -81,6 +84,7 @@ _OF_A_PLAN = {
     is_flag=True,
     help="Print also the gap in time and by channel, the notes, and what the flight could not show.",
 )
+@prove_option
 @click.option("--why", is_flag=True, help="Print what speaks for the answer, and every decision on the way.")
 @click.option(
     "--prior",
@@ -113,6 +117,7 @@ def command(
     exports: tuple[str, ...],
     axis: str,
     everything: bool,
+    proving: tuple[str, ...],
     why: bool,
     prior: str | None,
     foresee: bool,
@@ -131,6 +136,7 @@ def command(
       advisor gap flight.tlog --maneuver +12:+24
       advisor gap flight.tlog --aircraft my-aircraft.yaml --export matlab:short-period.m
       advisor gap flight.tlog --simulator jsbsim:c172p
+      advisor gap flight.tlog --aircraft my-aircraft.yaml --prove
       advisor gap flight.tlog --aircraft my-aircraft.yaml --axis lateral
       advisor gap flight.tlog --axis lateral --simulator jsbsim:c172p
       advisor gap --foresee --aircraft my-aircraft.yaml --rate 20 --without a_z
@@ -163,6 +169,7 @@ def command(
     by_hand = [replace(before, marks=(*asked.marks, *before.marks)) for before in decided]
     if out is not None:
         _refuse_out(out, asked.aircraft_file)
+    refuse_proving(proving)
     refuse_figure(figure, [*asked.inputs, out])
     orders = orders_of(exports, aircraft, [*asked.inputs, out], "pitch")
     from advisor.analysis.gap import compare_logs, named_simulator
@@ -172,10 +179,10 @@ def command(
     from advisor.words.plain import plain
 
     simulator = None
+    shares = FIELD if prior is None else field_prior(prior)
     try:
         with Stages() as progress:
             simulator = named_simulator(aircraft, asked.target_system)
-            shares = FIELD if prior is None else field_prior(prior)
             compared = attempt(
                 "pitch, diagnosis",
                 lambda: compare_logs(
@@ -201,12 +208,13 @@ def command(
     as_given = replace(compared.aircraft, simulator=aircraft.simulator, elevator=aircraft.elevator)
     outcomes = write_exports(orders, partial(_improved, found, as_given, side))
     write_figure(figure, found)
+    proof = proof_of(proving, asked, by_hand, aircraft, shares)
     steps = next_steps(
         found, list(map(str, asked.logs)), asked.aircraft_text, aircraft.simulator, asked.reading
     )
     if as_json:
         document = gap_document(found, (), str(out) if out and improvable else None)
-        more = {"exports": listed(outcomes), "next": plain(steps)}
+        more = {"exports": listed(outcomes), "next": plain(steps), **proof_document(proof)}
         click.echo(json.dumps(document | more, allow_nan=False, indent=1))
     else:
         from advisor.report.console import PlainConsole
@@ -214,6 +222,7 @@ def command(
 
         written = printable(str(out)) if out and improvable else None
         PlainConsole().print(GapScreen(found, written, why, steps, everything))
+        print_proof(proof)
     return USAGE if any(one.problem for one in outcomes) else 0
 
 

@@ -1,0 +1,190 @@
+"""The improved simulator on manoeuvres that no fit has used: the gap before and after, and a second answer.
+
+Without logs of their own, the last third of the manoeuvres is kept apart. The simulator is improved by the
+others, as ``--out`` and ``--export`` improve it. Then the manoeuvres kept apart are compared with the
+simulator as given and with the improved one.
+"""
+
+import tempfile
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft_file.read import parse_aircraft
+from advisor.analysis.gap import GapFlights, compare_flown, named_simulator
+from advisor.exports.models.file_text import file_of
+from advisor.exports.models.flown import FlownModel, improved_model
+from advisor.exports.models.formats.jsbsim_format import FORMAT as JSBSIM
+from advisor.gap.candidates.known import less_of_the_servo, together
+from advisor.gap.inference.prior import FIELD, FieldPrior
+from advisor.gap.result import Diagnosis, spelled
+from advisor.simulators.compare import Compared
+from advisor.simulators.linear import LinearSimulator
+from advisor.words.problems import UnusableInputError
+
+Progress = Callable[[str, float], None]
+LEAST_KEPT, LEAST_FITTED = 2, 3
+"""Least number of manoeuvres that are kept apart, and that the improvement is fitted to: one names no
+effect, and a search holds one out."""
+IMPROVED = ("effect", "parameters")
+"""Verdicts after which there is an improvement."""
+
+
+@dataclass(frozen=True)
+class Proof:
+    """The gap of manoeuvres that no fit has used."""
+
+    maneuvers: tuple[int, ...]
+    before: float
+    """Gap of the simulator as given: mean square over the floor's square, minus 1."""
+    after: float
+    """Gap of the improved simulator."""
+    floor: Mapping[str, float]
+    """Standard deviation of the residual where nothing was flown, by channel, in the channel's SI unit."""
+    by_maneuver: tuple[tuple[int, float, float], ...]
+    """Manoeuvre number, gap before, gap after."""
+    first: Diagnosis
+    """Answer of the other manoeuvres, which improved the simulator."""
+    second: Diagnosis
+    """Answer to the improved simulator."""
+    not_carried: tuple[str, ...] = ()
+    """Parts of the improvement that the simulator cannot take."""
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether the second answer leaves nothing to add but numbers."""
+        return self.second.verdict in ("none", "parameters")
+
+
+def prove(
+    flown: GapFlights,
+    fresh: GapFlights | None,
+    aircraft: Aircraft,
+    target_system: int | None = None,
+    progress: Progress = lambda *_: None,
+    prior: FieldPrior = FIELD,
+) -> Proof:
+    """Improve the simulator by some manoeuvres, and fly others.
+
+    Parameters
+    ----------
+    flown
+        Manoeuvres of the diagnosis.
+    fresh
+        Manoeuvres of other logs; None keeps the last third of ``flown`` apart.
+
+    Raises
+    ------
+    UnusableInputError
+        There are too few manoeuvres, nothing was improved, or the simulator does not fly.
+    """
+    fitted, kept = (flown, fresh) if fresh is not None else _parted(flown)
+    first = _compared(fitted, aircraft, target_system, progress, prior)
+    if first.diagnosis.verdict not in IMPROVED:
+        raise UnusableInputError(
+            "nothing_to_prove",
+            f"The {len(fitted.maneuvers)} manoeuvres of the fit name no cause and find no number wrong: "
+            "there is no improved simulator to fly.",
+            "Leave out --prove, or name the manoeuvres' other half by --prove LOG.",
+        )
+    with tempfile.TemporaryDirectory() as folder:
+        better, left = _improved(first, aircraft, Path(folder))
+        before, after = (_compared(kept, one, target_system, progress, prior) for one in (aircraft, better))
+    was = {number: gap for number, gap, _ in before.diagnosis.gap.by_maneuver}
+    now = {number: gap for number, gap, _ in after.diagnosis.gap.by_maneuver}
+    return Proof(
+        maneuvers=tuple(m.number for m in kept.maneuvers),
+        before=before.diagnosis.gap.before,
+        after=after.diagnosis.gap.before,
+        floor=after.diagnosis.gap.floor,
+        by_maneuver=tuple((n, was[n], now[n]) for n in now if n in was),
+        first=first.diagnosis,
+        second=after.diagnosis,
+        not_carried=left,
+    )
+
+
+def lines_of(proof: Proof) -> Iterator[str]:
+    """Yield the proof for people."""
+    flown = ", ".join(map(str, proof.maneuvers))
+    yield f"Proof on manoeuvres {flown}, which no fit has used: gap {proof.before:.2f} → {proof.after:.2f}"
+    for number, before, after in proof.by_maneuver:
+        yield f"  manoeuvre {number}: {before:.2f} → {after:.2f}"
+    left = "nothing above the noise" if proof.second.verdict == "none" else proof.second.sentence
+    yield f"  asked again, the improved simulator lacks: {left}"
+    for one in proof.not_carried:
+        yield f"  the simulator does not take {one}"
+
+
+def _parted(flown: GapFlights) -> tuple[GapFlights, GapFlights]:
+    count = len(flown.maneuvers)
+    kept = max(count // 3, LEAST_KEPT)
+    if count - kept < LEAST_FITTED:
+        raise UnusableInputError(
+            "too_few",
+            f"--prove keeps {kept} of {count} manoeuvres apart, and {LEAST_FITTED} are needed for the fit.",
+            f"Fly {LEAST_KEPT + LEAST_FITTED} manoeuvres, or name another log: --prove LOG.",
+        )
+    return (
+        replace(flown, maneuvers=flown.maneuvers[:-kept]),
+        replace(flown, maneuvers=flown.maneuvers[-kept:]),
+    )
+
+
+def _compared(
+    flown: GapFlights, aircraft: Aircraft, target_system: int | None, progress: Progress, prior: FieldPrior
+) -> Compared:
+    with _opened(aircraft, target_system) as simulator:
+        return compare_flown(flown, aircraft, simulator, None, progress, prior)
+
+
+@contextmanager
+def _opened(aircraft: Aircraft, target_system: int | None) -> Iterator[LinearSimulator | None]:
+    simulator = named_simulator(aircraft, target_system)
+    try:
+        yield simulator  # type: ignore[misc]
+    finally:
+        if simulator is not None:
+            simulator.close()
+
+
+def _improved(first: Compared, aircraft: Aircraft, folder: Path) -> tuple[Aircraft, tuple[str, ...]]:
+    """Return the aircraft file with the improved simulator, and the parts that the simulator cannot take."""
+    found = first.diagnosis
+    kind, _, _ = (aircraft.simulator or "linear").partition(":")
+    if kind == "linear":
+        better = parse_aircraft(file_of(FlownModel(first.aircraft, None, None, found)))
+        return replace(better, simulator=aircraft.simulator), ()
+    flown, effects = less_of_the_servo(aircraft, together(aircraft.effects, found.effects))
+    if kind != "jsbsim":
+        numbers = [one.name for one in found.derivatives if one.differs]
+        return replace(flown, effects=effects), tuple(numbers)
+    given = replace(first.aircraft, simulator=aircraft.simulator, elevator=aircraft.elevator)
+    name = Path(str(aircraft.simulator).partition(":")[2]).stem
+    file = folder / name / f"{name}.xml"
+    file.parent.mkdir()
+    made = JSBSIM.made(improved_model(found, given, None), file)
+    file.write_text(made.text, encoding="utf-8")
+    around = {effect: sizes for effect, sizes in effects.items() if spelled(effect) in made.left_out}
+    own = replace(aircraft.elevator, lag_s=0.0, delay_s=0.0)
+    better = replace(aircraft, simulator=f"jsbsim:{file}", effects=around, elevator=own)
+    return better, tuple(x for x in made.left_out if x not in map(spelled, around))
+
+
+def document(proof: Proof) -> dict[str, object]:
+    """Return the value of ``proof`` in the document."""
+    return {
+        "maneuvers": list(proof.maneuvers),
+        "before": proof.before,
+        "after": proof.after,
+        "floor": dict(proof.floor),
+        "by_maneuver": [
+            {"number": number, "before": before, "after": after}
+            for number, before, after in proof.by_maneuver
+        ],
+        "second": {"verdict": proof.second.verdict, "sentence": proof.second.sentence},
+        "closed": proof.is_closed,
+        "not_carried": list(proof.not_carried),
+    }

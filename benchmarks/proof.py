@@ -1,0 +1,47 @@
+"""Is the gap gone on manoeuvres that no fit has used, once the simulator is improved?
+
+    python -m benchmarks.proof FLIGHT.tlog ...
+
+Each log has its aircraft file next to it, with the ending ``.yaml``. Printed are the gap of the kept
+manoeuvres before and after the improvement, the first answer, and the answer to the improved simulator.
+"""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import click
+
+from advisor.analysis.gap import maneuvers_of
+from advisor.cli.options import decided_on, read_aircraft
+from advisor.exports.models.proof import Proof, prove
+from advisor.gap.result import Diagnosis
+from advisor.words.problems import UnusableInputError
+
+
+@click.command
+@click.argument("logs", nargs=-1, required=True, type=click.Path(exists=True, path_type=Path))
+def main(logs: Sequence[Path]) -> None:
+    """Prove the improvement of every log, and count the second answers."""
+    proofs: list[Proof] = []
+    for log in logs:
+        aircraft = read_aircraft(log.with_suffix(".yaml"))
+        try:
+            found = prove(maneuvers_of([log], aircraft, None, [decided_on(log, False)]), None, aircraft)
+        except UnusableInputError as error:
+            click.echo(f"{log.stem:28} {error.problem.code}")
+            continue
+        proofs.append(found)
+        answers = f"{_said(found.first)} -> {_said(found.second)}"
+        click.echo(f"{log.stem:28} {found.before:10.2f} -> {found.after:8.2f}   {answers}")
+    closed = sum(proof.is_closed for proof in proofs)
+    less = sum(proof.after < proof.before for proof in proofs)
+    click.echo(f"none or numbers after {closed} of {len(proofs)} improvements; a smaller gap after {less}")
+
+
+def _said(found: Diagnosis) -> str:
+    named = [c.effect for c in found.causes if c.present]
+    return " + ".join(named) if named else str(found.verdict)
+
+
+if __name__ == "__main__":
+    main()
