@@ -14,7 +14,6 @@ import click
 from advisor.analysis.gap import maneuvers_of
 from advisor.cli.options import decided_on, read_aircraft
 from advisor.exports.models.proof import Proof, prove
-from advisor.gap.result import Diagnosis
 from advisor.words.problems import UnusableInputError
 
 
@@ -31,16 +30,11 @@ def main(logs: Sequence[Path]) -> None:
             click.echo(f"{log.stem:28} {error.problem.code}")
             continue
         proofs.append(found)
-        answers = f"{_said(found.first)} -> {_said(found.second)}"
+        answers = f"{found.first} -> {found.second}"
         click.echo(f"{log.stem:28} {found.before:10.2f} -> {found.after:8.2f}   {answers}")
     closed = sum(proof.is_closed for proof in proofs)
     less = sum(proof.after < proof.before for proof in proofs)
     click.echo(f"none or numbers after {closed} of {len(proofs)} improvements; a smaller gap after {less}")
-
-
-def _said(found: Diagnosis) -> str:
-    named = [c.effect for c in found.causes if c.present]
-    return " + ".join(named) if named else str(found.verdict)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 """From logs to the gap of the lateral axis, over the accepted manoeuvres of aileron and rudder."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TypeVar
 
@@ -30,6 +30,10 @@ class SideCompared:
     """Campaign at the end of the logs, both axes."""
     aircraft: Aircraft
     """The aircraft file."""
+    maneuvers: Sequence[Maneuver] = ()
+    """Accepted manoeuvres, without the difference of the user's simulator to its surrogate."""
+    against: Aircraft = field(default_factory=Aircraft)
+    """The aircraft file, or that of the surrogate."""
 
 
 def compare_side_logs(
@@ -63,7 +67,8 @@ def compare_side_logs(
         finally:
             simulator.close()
     progress("comparing", 1.0)
-    return SideCompared(_answered(compare_side(accepted, aircraft, prior)), state, given)
+    gap = _answered(compare_side(accepted, aircraft, prior))
+    return SideCompared(gap, state, given, accepted, aircraft)
 
 
 def accepted_of(state: CampaignState) -> list[Maneuver]:

@@ -41,7 +41,7 @@ _OF_A_FLIGHT = {
     "exports": "--export", "proving": "--prove", "specification": "--simulator", "figure": "--figure",
     "axis": "--axis",
 }  # fmt: skip
-_OF_THE_PITCH = {name: _OF_A_FLIGHT[name] for name in ("holdout", "why", "everything", "figure", "proving")}
+_OF_THE_PITCH = {name: _OF_A_FLIGHT[name] for name in ("holdout", "why", "everything", "figure")}
 _OF_A_PLAN = {
     "plan": "--plan", "rate_hz": "--rate", "amplitude_deg": "--amplitude-deg", "without": "--without"
 }  # fmt: skip
@@ -154,6 +154,7 @@ def command(
         from advisor.report.gap_plan import print_foresight
 
         return print_foresight(aircraft, plan, rate_hz, amplitude_deg, without, as_json)
+    refuse_proving(proving)
     if not asked.logs:
         raise ConfigurationError("advisor gap needs at least one log, or --foresee with an aircraft file.")
     if specification is not None:
@@ -164,12 +165,11 @@ def command(
         if out is not None:
             _refuse_out(out, asked.aircraft_file)
         orders = orders_of(exports, aircraft, [*asked.inputs, out], "lateral")
-        return compare_lateral(asked, aircraft, as_json, prior, out, orders)
+        return compare_lateral(asked, aircraft, as_json, prior, out, orders, proving)
     decided = [decided_on(log, asked.no_marks) for log in asked.logs]
     by_hand = [replace(before, marks=(*asked.marks, *before.marks)) for before in decided]
     if out is not None:
         _refuse_out(out, asked.aircraft_file)
-    refuse_proving(proving)
     refuse_figure(figure, [*asked.inputs, out])
     orders = orders_of(exports, aircraft, [*asked.inputs, out], "pitch")
     from advisor.analysis.gap import compare_logs, named_simulator

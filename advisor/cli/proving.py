@@ -14,6 +14,7 @@ from advisor.words.printable import printable
 from advisor.words.problems import ConfigurationError, UnusableInputError
 
 if TYPE_CHECKING:
+    from advisor.analysis.side_gap import SideCompared
     from advisor.campaign.hand_decisions import ByHand
     from advisor.exports.models.proof import Proof
     from advisor.gap.inference.prior import FieldPrior
@@ -66,6 +67,32 @@ def proof_of(
                 decided = [decided_on(log, asked.no_marks) for log in named]
                 fresh = maneuvers_of(named, aircraft, asked.target_system, decided)
             return prove(flown, fresh, aircraft, asked.target_system, tell, prior)
+    except UnusableInputError as error:
+        click.echo(printable(str(error)), err=True)
+        return None
+
+
+def side_proof_of(
+    proving: Sequence[str], asked: LogsAsked, compared: "SideCompared", prior: "FieldPrior"
+) -> "Proof | None":
+    """Return the proof of roll and yaw, as ``proof_of`` does."""
+    if not proving:
+        return None
+    from advisor.analysis.side_gap import accepted_of
+    from advisor.analysis.whole_flights import read_whole
+    from advisor.exports.models.side_proof import prove_side
+
+    named = [Path(log) for log in proving if log]
+    try:
+        with Stages() as tell:
+            tell("flying for the proof", 0.0)
+            fresh = None
+            if named:
+                read = read_whole(
+                    named, compared.aircraft, asked.target_system, no_marks=asked.no_marks, axis="lateral"
+                )
+                fresh = accepted_of(read.state)
+            return prove_side(compared, fresh, prior)
     except UnusableInputError as error:
         click.echo(printable(str(error)), err=True)
         return None

@@ -2,7 +2,7 @@
 
 import json
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -16,6 +16,8 @@ from advisor.analysis.side_gap import SideCompared, compare_side_logs
 from advisor.cli.improvement_export import listed, write_exports
 from advisor.cli.log_options import LogsAsked
 from advisor.cli.options import UNUSABLE, USAGE, writing
+from advisor.cli.proving import document as proof_document
+from advisor.cli.proving import print_proof, side_proof_of
 from advisor.cli.stages import Stages
 from advisor.gap.candidates.distinguish import way_to_distinguish
 from advisor.gap.document import changed_document, gap_document
@@ -49,12 +51,13 @@ def compare_lateral(
     prior: str | None,
     out: Path | None,
     orders: "list[ExportOrder]",
+    proving: Sequence[str] = (),
 ) -> int:
     """Compare roll and yaw of the aircraft file with the flight, print the result and write the files."""
+    shares = FIELD if prior is None else field_prior(prior)
     try:
         with Stages() as tell:
             tell("reading", 0.0)
-            shares = FIELD if prior is None else field_prior(prior)
             compared = attempt(
                 "lateral, diagnosis",
                 lambda: compare_side_logs(
@@ -80,12 +83,15 @@ def compare_lateral(
     found = compared.gap
     written = out is not None and _write_improved(compared, out)
     outcomes = write_exports(orders, partial(_improved, compared))
+    proof = side_proof_of(proving, asked, compared, shares)
     if as_json:
         lateral = side_gap_document(found) | {"improved_model": str(out) if written else None}
+        lateral |= proof_document(proof)
         document = gap_document(None) | {"usable": True, "lateral": lateral, "exports": listed(outcomes)}
         click.echo(json.dumps(document, allow_nan=False, indent=1))
     else:
         click.echo("\n".join(side_gap_lines(found)))
+        print_proof(proof)
         if written:
             click.echo(f"The improved simulator is in {printable(str(out))}.")
     return USAGE if any(one.problem for one in outcomes) else 0

@@ -134,12 +134,12 @@ def _held_out(
     )
     return (
         tuple(m.number for m in unseen),
-        _gap(unseen, model, aircraft, given),
-        _gap(unseen, model, aircraft, model.estimate.theta),
+        gap_on(unseen, model, aircraft, given),
+        gap_on(unseen, model, aircraft, model.estimate.theta),
     )
 
 
-def _gap(
+def gap_on(
     maneuvers: Sequence[Maneuver], model: LateralEstimate, aircraft: Aircraft, theta: FloatArray
 ) -> Mapping[str, float]:
     """Return by output the mean square of the error over that of the noise, minus 1 and at least 0."""

@@ -75,6 +75,27 @@ def test_an_option_of_the_other_half_of_the_command_is_refused_for_it_would_be_i
     assert option in error
 
 
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (("--out", "a.yaml"), "is the aircraft file itself"),
+        (("--export", "ardupilot:my-jet.json"), "takes -jet in my-jet.json for one of its frames"),
+        (("--export", "ardupilot:plane.json"), "give them under reference: in the aircraft file"),
+        (("--prove", "nowhere.tlog"), "there is no log nowhere.tlog"),
+    ],
+)
+def test_files_of_roll_and_yaw_are_ordered_as_those_of_pitch(
+    capsys, monkeypatch, tmp_path, arguments, sentence
+):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "a.yaml").write_text("name: mine\n")
+    code, error = said(
+        capsys, monkeypatch, "flight.tlog", "--aircraft", "a.yaml", "--axis", "lateral", *arguments
+    )
+    assert code == 2
+    assert sentence in error
+
+
 def test_the_improved_simulator_is_not_written_over_the_aircraft_file(capsys, monkeypatch, tmp_path):
     path = tmp_path / "aircraft.yaml"
     path.write_text("name: mine\n")

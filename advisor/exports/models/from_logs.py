@@ -45,16 +45,25 @@ def improved_side(compared: SideCompared) -> FlownModel:
     found = _servos_found(compared.gap.diagnosis, aircraft)
     if model.side is None or not found:
         return replace(model, unchanged=unchanged)
-    changed: dict[str, Any] = {
-        name: replace(getattr(aircraft, name), lag_s=servo.lag_s, delay_s=servo.delay_s)
-        for name, servo in found.items()
-    }
-    behind = replace(aircraft, **changed)
+    behind = _behind(found, aircraft)
     again = estimate_lateral(accepted_of(state), behind)
     side = model.side
     if not isinstance(again, NoEstimate):
         side = side_of(again, side.trim, side.air, behind)
     return replace(model, side=replace(side, servos={**side.servos, **found}), unchanged=unchanged)
+
+
+def behind_found(diagnosis: SideDiagnosis | None, aircraft: Aircraft) -> Aircraft:
+    """Return the aircraft with the lag and delay of each servo that a diagnosis found."""
+    return _behind(_servos_found(diagnosis, aircraft), aircraft)
+
+
+def _behind(found: Mapping[str, ExportedServo], aircraft: Aircraft) -> Aircraft:
+    changed: dict[str, Any] = {
+        name: replace(getattr(aircraft, name), lag_s=servo.lag_s, delay_s=servo.delay_s)
+        for name, servo in found.items()
+    }
+    return replace(aircraft, **changed)
 
 
 def _servos_found(diagnosis: SideDiagnosis | None, aircraft: Aircraft) -> Mapping[str, ExportedServo]:

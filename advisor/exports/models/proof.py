@@ -6,7 +6,7 @@ simulator as given and with the improved one.
 """
 
 import tempfile
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -17,6 +17,7 @@ from advisor.analysis.gap import GapFlights, compare_flown, named_simulator
 from advisor.exports.models.file_text import file_of
 from advisor.exports.models.flown import FlownModel, improved_model
 from advisor.exports.models.formats.jsbsim_format import FORMAT as JSBSIM
+from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.candidates.known import less_of_the_servo, together
 from advisor.gap.inference.prior import FIELD, FieldPrior
 from advisor.gap.result import Diagnosis, spelled
@@ -45,17 +46,19 @@ class Proof:
     """Standard deviation of the residual where nothing was flown, by channel, in the channel's SI unit."""
     by_maneuver: tuple[tuple[int, float, float], ...]
     """Manoeuvre number, gap before, gap after."""
-    first: Diagnosis
-    """Answer of the other manoeuvres, which improved the simulator."""
-    second: Diagnosis
-    """Answer to the improved simulator."""
+    first: str
+    """Answer of the other manoeuvres, which improved the simulator: a verdict, or the effects."""
+    second: str | None
+    """Verdict on the improved simulator."""
+    sentence: str
+    """Sentence of that verdict."""
     not_carried: tuple[str, ...] = ()
     """Parts of the improvement that the simulator cannot take."""
 
     @property
     def is_closed(self) -> bool:
         """Whether the second answer leaves nothing to add but numbers."""
-        return self.second.verdict in ("none", "parameters")
+        return self.second in ("none", "parameters")
 
 
 def prove(
@@ -80,15 +83,12 @@ def prove(
     UnusableInputError
         There are too few manoeuvres, nothing was improved, or the simulator does not fly.
     """
-    fitted, kept = (flown, fresh) if fresh is not None else _parted(flown)
+    fitted, kept = flown, fresh
+    if kept is None:
+        some, last = parted(flown.maneuvers)
+        fitted, kept = replace(flown, maneuvers=list(some)), replace(flown, maneuvers=list(last))
     first = _compared(fitted, aircraft, target_system, progress, prior)
-    if first.diagnosis.verdict not in IMPROVED:
-        raise UnusableInputError(
-            "nothing_to_prove",
-            f"The {len(fitted.maneuvers)} manoeuvres of the fit name no cause and find no number wrong: "
-            "there is no improved simulator to fly.",
-            "Leave out --prove, or name the manoeuvres' other half by --prove LOG.",
-        )
+    refuse_unimproved(first.diagnosis.verdict, len(fitted.maneuvers))
     with tempfile.TemporaryDirectory() as folder:
         better, left = _improved(first, aircraft, Path(folder))
         before, after = (_compared(kept, one, target_system, progress, prior) for one in (aircraft, better))
@@ -100,8 +100,9 @@ def prove(
         after=after.diagnosis.gap.before,
         floor=after.diagnosis.gap.floor,
         by_maneuver=tuple((n, was[n], now[n]) for n in now if n in was),
-        first=first.diagnosis,
-        second=after.diagnosis,
+        first=" + ".join(named(first.diagnosis)) or str(first.diagnosis.verdict),
+        second=after.diagnosis.verdict,
+        sentence=after.diagnosis.sentence,
         not_carried=left,
     )
 
@@ -112,14 +113,21 @@ def lines_of(proof: Proof) -> Iterator[str]:
     yield f"Proof on manoeuvres {flown}, which no fit has used: gap {proof.before:.2f} → {proof.after:.2f}"
     for number, before, after in proof.by_maneuver:
         yield f"  manoeuvre {number}: {before:.2f} → {after:.2f}"
-    left = "nothing above the noise" if proof.second.verdict == "none" else proof.second.sentence
+    left = "nothing above the noise" if proof.second == "none" else proof.sentence
     yield f"  asked again, the improved simulator lacks: {left}"
     for one in proof.not_carried:
         yield f"  the simulator does not take {one}"
 
 
-def _parted(flown: GapFlights) -> tuple[GapFlights, GapFlights]:
-    count = len(flown.maneuvers)
+def parted(maneuvers: Sequence[Maneuver]) -> tuple[Sequence[Maneuver], Sequence[Maneuver]]:
+    """Return the manoeuvres of the fit, and the last third.
+
+    Raises
+    ------
+    UnusableInputError
+        There are too few.
+    """
+    count = len(maneuvers)
     kept = max(count // 3, LEAST_KEPT)
     if count - kept < LEAST_FITTED:
         raise UnusableInputError(
@@ -127,10 +135,29 @@ def _parted(flown: GapFlights) -> tuple[GapFlights, GapFlights]:
             f"--prove keeps {kept} of {count} manoeuvres apart, and {LEAST_FITTED} are needed for the fit.",
             f"Fly {LEAST_KEPT + LEAST_FITTED} manoeuvres, or name another log: --prove LOG.",
         )
-    return (
-        replace(flown, maneuvers=flown.maneuvers[:-kept]),
-        replace(flown, maneuvers=flown.maneuvers[-kept:]),
-    )
+    return maneuvers[:-kept], maneuvers[-kept:]
+
+
+def refuse_unimproved(verdict: str | None, count: int) -> None:
+    """Refuse to prove what improves nothing.
+
+    Raises
+    ------
+    UnusableInputError
+        The verdict of the fit names no cause and no wrong number.
+    """
+    if verdict not in IMPROVED:
+        raise UnusableInputError(
+            "nothing_to_prove",
+            f"The {count} manoeuvres of the fit name no cause and find no number wrong: "
+            "there is no improved simulator to fly.",
+            "Leave out --prove, or name the manoeuvres' other half by --prove LOG.",
+        )
+
+
+def named(found: Diagnosis) -> list[str]:
+    """Return the names of the effects of an answer."""
+    return [cause.effect for cause in found.causes if cause.present]
 
 
 def _compared(
@@ -184,7 +211,7 @@ def document(proof: Proof) -> dict[str, object]:
             {"number": number, "before": before, "after": after}
             for number, before, after in proof.by_maneuver
         ],
-        "second": {"verdict": proof.second.verdict, "sentence": proof.second.sentence},
+        "second": {"verdict": proof.second, "sentence": proof.sentence},
         "closed": proof.is_closed,
         "not_carried": list(proof.not_carried),
     }

@@ -11,11 +11,15 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.decision.lateral_qualification import peak_roll_rate
 from advisor.exports.models.flown import FlownModel, side_of
+from advisor.exports.models.formats.jsbsim_format import FORMAT as JSBSIM
 from advisor.exports.models.improvement import STILL_AIR
-from advisor.exports.models.jsbsim.run import measure_side, model_of
+from advisor.exports.models.jsbsim.run import measure, measure_side, model_of
 from advisor.exports.models.jsbsim.side import side_text
 from advisor.exports.models.jsbsim.side_slopes import SideRequest
+from advisor.exports.models.jsbsim.slopes import Request
 from advisor.exports.models.matlab_side import both_axes_text, matrices
+from advisor.exports.models.servo import ExportedServo
+from advisor.gap.result import Value
 from advisor.model.lateral import Trim, state_matrix
 from advisor.words.problems import ConfigurationError
 from tests.campaign.side_builders import estimate
@@ -120,6 +124,26 @@ def _rolled(file: Path) -> tuple[float, float]:
         fdm.run()
         rates.append(fdm["velocities/p-rad_sec"] - before)
     return float(max(rates, key=abs)), float(fdm["fcs/left-aileron-pos-rad"]) - neutral
+
+
+def test_both_axes_are_corrected_in_one_aircraft(cessna, tmp_path):
+    side = believed(cessna, L_p=0.6)
+    own = measure_pitch(OWN)
+    pitch = improvement(
+        model={n: Value((0.6 if n == "M_alpha" else 1.0) * x, 1e-3 * abs(x) + 1e-6) for n, x in own.items()},
+        prior=own, airspeed_m_s=ASKED.airspeed_m_s, air=air_at(ASKED.height_m), servo=ExportedServo(),
+    )  # fmt: skip
+    aircraft = Aircraft("Cessna", simulator="jsbsim:c172p")
+    made = JSBSIM.made(FlownModel(aircraft, pitch, side), tmp_path / "x.xml").text.encode()
+    again = measure_side(made, CESSNA, ASKED).derivatives
+    assert again["L_p"] == pytest.approx(0.6 * cessna.derivatives["L_p"], rel=0.02)
+    assert measure_pitch(made)["M_alpha"] == pytest.approx(0.6 * own["M_alpha"], rel=0.02)
+
+
+def measure_pitch(content):
+    """Return the derivatives of pitch of a content, with an elevator in rad, and constants of zero."""
+    asked = Request([], "fcs/elevator-pos-rad", ASKED.airspeed_m_s, ASKED.height_m)
+    return {"Z_0": 0.0, "M_0": 0.0} | dict(measure(content, CESSNA, asked).derivatives)
 
 
 def test_what_the_interval_holds_is_left_as_the_aircraft_has_it(cessna):
