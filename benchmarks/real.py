@@ -5,7 +5,7 @@
 ``real_records.yaml`` holds what was flown and what is published; the records themselves stay where they
 are. Each record runs through ``advisor analyze --json`` with the aircraft file of the same name, as a user
 runs it. A figure holds when it lies within its tolerance, or when the stated 95 % interval contains the
-known value.
+known value. The interval must be narrower than the figure: a wider one does not tell even the sign.
 """
 
 import argparse
@@ -16,6 +16,7 @@ import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from datetime import date
+from math import inf
 from pathlib import Path
 from typing import Any
 
@@ -153,9 +154,12 @@ def _figures(record: Mapping[str, Any], document: Mapping[str, Any]) -> Iterator
         value, half = _figure(name, document)
         truth = _truth(name, known, record, document["model"]["reference_airspeed_m_s"])
         margin = known["within"] * abs(truth) if "within" in known else known["absolute"]
-        holds = value is not None and (abs(value - truth) <= margin or abs(value - truth) <= half)
+        off = inf if value is None else abs(value - truth)
         shown = "none" if value is None else f"{value:.3g} ± {half:.2g}"
-        yield f"{name} {truth:.3g} ± {margin:.2g}", f"{name} {shown}", holds
+        outside = " (published value outside)" if half < off <= margin else ""
+        # An interval as wide as the figure does not even tell its sign.
+        holds = off <= max(margin, half) and half < abs(truth)
+        yield f"{name} {truth:.3g} ± {margin:.2g}", f"{name} {shown}{outside}", bool(holds)
     for name, excluded in record.get("outside", {}).items():
         value, half = _figure(name, document)
         holds = value is not None and abs(value - excluded) > half
