@@ -5,8 +5,7 @@ import numpy as np
 from advisor.aircraft.reference import PARAMETERS
 from advisor.decision.information import Knowledge
 from advisor.decision.pooling import DERIVATIVES
-from advisor.words.digits import distinct_texts, with_half
-from advisor.words.quantiles import NORMAL_95
+from advisor.words.digits import distinct_texts
 from advisor.words.quantities import symbol
 
 SPOKEN = {"alpha": "angle of attack", "q": "pitch rate", "a_z": "normal acceleration"}
@@ -51,17 +50,12 @@ def _held_back(known: Knowledge) -> str:
 
 
 def evidence(known: Knowledge) -> tuple[str, ...]:
-    """Return the numbers of the decision, one line each: bands, named parameters, and parameters without a
-    tolerance."""
+    """Return the numbers of the decision, one line each: bands, shares of the tolerances, and the parameters
+    without one."""
     share = known.share
     bands = ", ".join(f"{SPOKEN[name]} {band:.1f} %" for name, band in known.prediction_percent.items())
     named = ", ".join(f"{symbol(name)} {100.0 * share[name]:.0f} %" for name in known.named)
-    weak = ", ".join(
-        f"{symbol(PARAMETERS[k])} "
-        + with_half(float(known.posterior.theta[k]), NORMAL_95 * float(known.posterior.std[k]))
-        for k in DERIVATIVES
-        if PARAMETERS[k] not in known.named
-    )
+    weak = ", ".join(symbol(PARAMETERS[k]) for k in DERIVATIVES if PARAMETERS[k] not in known.named)
     return tuple(
         f"{what}: {numbers}"
         for what, numbers in (

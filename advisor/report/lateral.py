@@ -18,10 +18,11 @@ from advisor.report.lateral_qualities import (
     tests_document,
     tests_of,
 )
+from advisor.report.result_rows import parameter_row
 from advisor.words.digits import with_half
 from advisor.words.plain import picked, plain
 from advisor.words.quantiles import NORMAL_95
-from advisor.words.quantities import SIDE_PARAMETERS, symbol
+from advisor.words.quantities import symbol
 from advisor.words.vehicle_time import clock
 
 
@@ -150,11 +151,9 @@ def lateral_results(state: LateralState, aircraft: Aircraft) -> Iterator[str]:
 
 def _model_lines(model: LateralEstimate) -> Iterator[str]:
     estimate = model.estimate
-    for name, value, std in zip(estimate.names, estimate.theta, estimate.std, strict=True):
-        if name not in estimate.not_identifiable:
-            quantity = SIDE_PARAMETERS[name]
-            number = with_half(float(value), NORMAL_95 * float(std))
-            yield f"  {quantity.symbol:<6} {number:>20} {quantity.unit}".rstrip()
+    for row in (parameter_row(name, estimate, {}) for name in estimate.names):
+        if not row.reason:
+            yield f"  {row.quantity.symbol:<6} {row.cell:>20} {row.quantity.unit}"
     for text, names in _by_reason(estimate.not_identifiable).items():
         yield f"  not identifiable: {', '.join(map(symbol, names))} ({text})"
     for name, quality in modes_told(model.modes).items():

@@ -9,6 +9,7 @@ from advisor.oem.estimate import Estimate
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section
 from advisor.report.page.content import Content
 from advisor.report.page.drawing import BLACK, BLUE, ORANGE, picture
+from advisor.report.qualities import reference_speed
 from advisor.report.result_rows import ParameterRow, instrument_rows, parameter_row
 from advisor.report.table import Table
 from advisor.words.quantities import PARAMETERS as QUANTITIES
@@ -62,7 +63,7 @@ def joint_table(content: Content) -> Table | None:
     if model is None:
         return None
     numbers = ", ".join(map(str, content.state.estimate_from))
-    at = "" if model.airspeed_m_s is None else f" at {model.airspeed_m_s:.1f} m/s"
+    at = reference_speed(content.state)
     rows = (parameter_row(name, model, content.aircraft.model) for name in PARAMETERS)
     return Table(
         "joint", f"Joint estimate from manoeuvres {numbers}{at}; ± is half the 95 % interval.",
