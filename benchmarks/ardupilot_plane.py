@@ -13,10 +13,10 @@ of ``gap`` or ``analyze``, and with the truth, where a file gives it. The last o
 import json
 import math
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import click
 import numpy as np
@@ -60,22 +60,45 @@ ALL_RATES = ("rollspeed", "pitchspeed", "yawspeed")
 RATES = {"pitch": ("pitchspeed",), "lateral": ("rollspeed", "yawspeed")}
 
 
+class Plane(Protocol):
+    """A plane of another program."""
+
+    def surfaces(self, pulses: np.ndarray) -> np.ndarray:
+        """Return the departures of aileron, elevator and rudder for those of the pulses, us, shape (3, n)."""
+
+    def accelerations(self, x: np.ndarray, u: tuple[float, float, float]) -> np.ndarray:
+        """Return the specific force without thrust (m/s²) and the angular acceleration, shape (6,).
+
+        ``x`` is (u, v, w, p, q, r) in m/s and rad/s, ``u`` the surfaces.
+        """
+
+
 @dataclass(frozen=True)
-class Files:
+class ArduPlane:
     """The plane and the servos as ArduPilot reads them."""
 
     plane: Mapping[str, float]
     servo: Mapping[str, float]
+    rho: float
+
+    def surfaces(self, pulses: np.ndarray) -> np.ndarray:
+        """Return the numbers from -1 to 1 behind the servos."""
+        return np.array([moved(self.servo, row / 500.0) for row in pulses])
+
+    def accelerations(self, x: np.ndarray, u: tuple[float, float, float]) -> np.ndarray:
+        """Return the accelerations of 2 kg and 1 kg m²."""
+        found = forces(self.plane, x, u, self.rho)
+        return np.concatenate([found[:3] / MASS_KG, found[3:]])
 
 
-def loaded(json_file: Path) -> Files:
+def loaded(json_file: Path, rho: float) -> ArduPlane:
     """Read both files: JSON from the first brace without comments, and lines of a name and a number."""
     text = json_file.read_text(encoding="utf-8")
     lines = (line.split("#")[0] for line in text[text.index("{") :].splitlines())
     plane = {k: v for k, v in json.loads("\n".join(lines)).items() if k != "CGOffset"}
     said = json_file.with_suffix(".parm").read_text(encoding="utf-8").splitlines()
     pairs = (line.split() for line in said if line and not line.startswith("#"))
-    return Files(SKYWALKER | plane, {name: float(value) for name, value in pairs})
+    return ArduPlane(SKYWALKER | plane, {name: float(value) for name, value in pairs}, rho)
 
 
 def forces(c: Mapping[str, float], x: np.ndarray, u: tuple[float, float, float], rho: float) -> np.ndarray:
@@ -134,35 +157,31 @@ def moved(servo: Mapping[str, float], command: np.ndarray) -> np.ndarray:
     return out
 
 
-def flown(
-    files: Files, t: np.ndarray, controls: np.ndarray, speed: float, rho: float, bank: float
-) -> np.ndarray:
-    """Return p, q and r at ``t``, shape (3, n): departures of the controls (3, n) from a trimmed flight."""
-    c = files.plane
+def flown(plane: Plane, t: np.ndarray, pulses: np.ndarray, speed: float, bank: float) -> np.ndarray:
+    """Return p, q and r at ``t``, shape (3, n), by departures of the pulses (3, n), us, from a trim."""
 
     def unbalanced(at: np.ndarray) -> list[float]:
         alpha, elevator, thrust = at
         x = np.array([speed * math.cos(alpha), 0.0, speed * math.sin(alpha), 0.0, 0.0, 0.0])
-        f = forces(c, x, (0.0, elevator, 0.0), rho)
-        weight = MASS_KG * GRAVITY
+        f = plane.accelerations(x, (0.0, elevator, 0.0))
         return [
-            f[0] + thrust - weight * math.sin(alpha), f[2] + weight * math.cos(alpha) * math.cos(bank), f[4]
-        ]  # fmt: skip
+            f[0] + thrust - GRAVITY * math.sin(alpha),
+            f[2] + GRAVITY * math.cos(alpha) * math.cos(bank),
+            f[4],
+        ]
 
-    alpha, elevator, thrust = fsolve(unbalanced, [0.03, 0.0, 5.0])
+    alpha, elevator, thrust = fsolve(unbalanced, [0.03, 0.0, 2.5])
     x = np.array([speed * math.cos(alpha), 0.0, speed * math.sin(alpha), 0.0, 0.0, 0.0])
     phi, theta = bank, float(alpha)
-    moves = [moved(files.servo, row) for row in controls]
+    moves = plane.surfaces(pulses)
     out = np.zeros((3, len(t)))
     for k in range(len(t)):
         out[:, k] = x[3:]
-        u = (moves[0][k], elevator + moves[1][k], moves[2][k])
-        f = forces(c, x, u, rho)
-        gravity = GRAVITY * np.array(
-            [-math.sin(theta), math.cos(theta) * math.sin(phi), math.cos(theta) * math.cos(phi)]
-        )
-        force = f[:3] + np.array([thrust, 0.0, 0.0])
-        rate = np.concatenate([force / MASS_KG + gravity - np.cross(x[3:], x[:3]), f[3:]])
+        rate = plane.accelerations(x, (moves[0][k], elevator + moves[1][k], moves[2][k]))
+        rate[0] += thrust - GRAVITY * math.sin(theta)
+        rate[1] += GRAVITY * math.cos(theta) * math.sin(phi)
+        rate[2] += GRAVITY * math.cos(theta) * math.cos(phi)
+        rate[:3] -= np.cross(x[3:], x[:3])
         turn = x[4] * math.sin(phi) + x[5] * math.cos(phi)
         phi += STEP_S * (x[3] + math.tan(theta) * turn)
         theta += STEP_S * (x[4] * math.cos(phi) - x[5] * math.sin(phi))
@@ -189,10 +208,9 @@ class Log:
 
 
 def errors(
-    files: Files,
+    plane: Plane,
     log: Log,
     flights: Sequence[tuple[Span, float]],
-    rho: float,
     outputs: Mapping[str, int],
     axis: str,
 ) -> dict[str, float]:
@@ -208,8 +226,8 @@ def errors(
         rows = []
         for name in ("aileron", "elevator", "rudder"):
             pulse = np.interp(t, log.t_out, log.pulses[outputs[name]])
-            rows.append((pulse - pulse[t < span.start_s].mean()) / 500.0)
-        told = flown(files, t, np.array(rows), speed, rho, float(log.bank[before].mean()))
+            rows.append(pulse - pulse[t < span.start_s].mean())
+        told = flown(plane, t, np.array(rows), speed, float(log.bank[before].mean()))
         inside = (log.t >= begin) & (log.t <= t[-1])
         for name in RATES[axis]:
             simulated = np.interp(log.t[inside], t, told[ALL_RATES.index(name)])
@@ -218,12 +236,12 @@ def errors(
     return {name: 100.0 * float(np.mean(values)) for name, values in found.items()}
 
 
-def exported(model: FlownModel, folder: Path, name: str) -> Files:
+def exported(model: FlownModel, folder: Path, name: str, rho: float) -> Plane:
     """Export a model for ArduPilot, and read the files back as ArduPilot does."""
     (outcome,) = carry_out([order_of(f"ardupilot:{folder / name}.json")], model)
     if outcome.problem:
         raise click.ClickException(outcome.problem)
-    return loaded(folder / f"{name}.json")
+    return loaded(folder / f"{name}.json", rho)
 
 
 def of_file(aircraft: Aircraft, air: AirData, read_m_s: float, axis: str) -> FlownModel:
@@ -281,6 +299,17 @@ def compared(log: Path, aircraft: Aircraft, truth: Path | None, axis: str) -> Co
 )
 def main(log: Path, axis: str, truth: Path | None, aircraft_file: Path | None) -> None:
     """Fly the exported files, and print the errors."""
+    print_errors(exported, log, axis, truth, aircraft_file)
+
+
+def print_errors(
+    export: Callable[[FlownModel, Path, str, float], Plane],
+    log: Path,
+    axis: str,
+    truth: Path | None,
+    aircraft_file: Path | None,
+) -> None:
+    """Fly the planes that an export makes of the file, of the finding and of the truth."""
     aircraft = read_aircraft(aircraft_file or log.with_suffix(".yaml"))
     if aircraft.reference.mass_kg is None:
         aircraft = replace(aircraft, reference=REFERENCE)
@@ -291,8 +320,8 @@ def main(log: Path, axis: str, truth: Path | None, aircraft_file: Path | None) -
     flights = list(zip([m.span for m in found.maneuvers], speeds, strict=True))
     with tempfile.TemporaryDirectory() as folder:
         for name, model in found.models.items():
-            files = exported(model, Path(folder), name)
-            told = errors(files, recorded, flights, found.air.density_kg_m3, outputs, axis)
+            plane = export(model, Path(folder), name, found.air.density_kg_m3)
+            told = errors(plane, recorded, flights, outputs, axis)
             click.echo(f"{name:8}" + "".join(f"  {rate} {value:6.1f} %" for rate, value in told.items()))
 
 
