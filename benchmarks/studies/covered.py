@@ -28,6 +28,7 @@ from advisor.oem.estimate import Estimate
 from advisor.oem.findings import findings_of
 from advisor.session.timeline import Timeline
 from advisor.words.quantiles import NORMAL_95
+from benchmarks.studies.forecast import Forecast
 from sim.effects.fitting import flight_of
 from sim.faults import Faults, Filters
 from sim.flight import Flight
@@ -151,6 +152,10 @@ class Outcome:
     """Codes of the contradictions that the truth confirms."""
     wrong: tuple[str, ...]
     """Codes of the other contradictions."""
+    flown: int = 0
+    """Number of manoeuvres in all."""
+    forecasts: tuple[Forecast, ...] = ()
+    """Forecasts until the first stop."""
 
     @property
     def far_off(self) -> bool:
@@ -177,6 +182,7 @@ class Outcome:
             "stop": stop,
             "right": list(self.right),
             "wrong": list(self.wrong),
+            "forecasts": [asdict(one) for one in self.forecasts],
         }
 
 
@@ -202,7 +208,7 @@ def fly(drawn: Drawn) -> Outcome:
     flight = flight_of(_scenario(drawn, errors))
     aircraft = Aircraft(elevator=Elevator(lag_s=errors.stated_lag_s))
     campaign = Campaign(aircraft)
-    stop = _heard(campaign, flight, errors)
+    stop, forecasts = _heard(campaign, flight, errors)
     state = campaign.state
     off: Mapping[str, float] = {}
     told = {f.code: f for f in state.instruments}
@@ -217,6 +223,8 @@ def fly(drawn: Drawn) -> Outcome:
         stop,
         tuple(f.code for f in contradictions if errors.confirms(f)),
         tuple(f.code for f in contradictions if not errors.confirms(f)),
+        len(state.maneuvers),
+        forecasts,
     )
 
 
@@ -239,19 +247,24 @@ def _scenario(drawn: Drawn, errors: Errors) -> Scenario:
     )
 
 
-def _heard(campaign: Campaign, flight: Flight, errors: Errors) -> Stop | None:
-    """Feed the flight's log to the end as a link delivers it, and return the first stop."""
+def _heard(campaign: Campaign, flight: Flight, errors: Errors) -> tuple[Stop | None, tuple[Forecast, ...]]:
+    """Feed the flight's log to the end as a link delivers it; return the first stop and the forecasts before
+    it."""
     with tempfile.TemporaryDirectory() as folder:
         log = Path(folder) / "flight.tlog"
         record(flight, log)
         timeline = Timeline([columns for batch in open_log(log) for columns in batch])
-    stop = None
+    stop, forecasts = None, list[Forecast]()
     for position_s in np.arange(0.0, timeline.duration_s + HEARD_EVERY_S, HEARD_EVERY_S):
         events = campaign.feed(timeline.up_to(float(position_s)))
         if stop is None and any(isinstance(event, ManeuverJudged) for event in events):
             stop = _stop(campaign.state, flight, errors)
+            following = campaign.state.flight_test.next
+            if stop is None and following is not None and following.remaining is not None:
+                remaining = following.remaining
+                forecasts.append(Forecast(len(campaign.state.maneuvers), remaining.median, remaining.p90))
     campaign.finish()
-    return stop or _stop(campaign.state, flight, errors)
+    return stop or _stop(campaign.state, flight, errors), tuple(forecasts)
 
 
 def _truth(flight: Flight, model: Estimate, errors: Errors) -> FloatArray:

@@ -10,6 +10,7 @@ from advisor.bundled.study.campaigns import RULES
 from advisor.bundled.study.plan import Study, StudyReport
 from advisor.bundled.study.text import count, wrapped
 from benchmarks.studies import advised, changed, covered, stops
+from benchmarks.studies.forecast import Score, score
 
 
 def advice(campaigns: int, seed: int) -> Study[advised.Pair, tuple[int, int]]:
@@ -80,6 +81,7 @@ def coverage(campaigns: int, seed: int) -> Study[covered.Drawn, covered.Outcome]
                 "right": dict(Counter(code for one in results for code in one.right)),
                 "wrong": dict(Counter(code for one in results for code in one.wrong)),
             },
+            "forecast": asdict(_forecast(results)),
         }
         document = {"schema": "advisor.study.coverage/1", "campaigns": campaigns, **counted}
         rows = [one.document for one in results]
@@ -175,6 +177,11 @@ def _stops(found: Sequence[stops.Stops], campaigns: int) -> list[str]:
     return lines
 
 
+def _forecast(found: Sequence[covered.Outcome]) -> Score:
+    """Return the score of all forecasts."""
+    return score([(one.forecasts, one.stop.after if one.stop else None, one.flown) for one in found])
+
+
 def _coverage(groups: Mapping[str, Sequence[covered.Outcome]]) -> list[str]:
     """Return lines on the intervals that hold, on false stops, and on findings that contradict."""
     everything = groups["all"]
@@ -201,4 +208,9 @@ def _coverage(groups: Mapping[str, Sequence[covered.Outcome]]) -> list[str]:
     ):
         each = ", ".join(f"{code} {number}" for code, number in sorted(Counter(codes).items()))
         lines += wrapped(f"Findings that contradict {told}: {len(codes)}{f' ({each})' if each else ''}.")
+    told_ahead = _forecast(everything)
+    lines += wrapped(
+        f"Forecasts: the stop came within the stated 90 % after {told_ahead.kept} of {told_ahead.checked} "
+        f"(goal 85 to 95 %); {told_ahead.jumped} of {told_ahead.followed} jumped by more than their band."
+    )
     return lines
