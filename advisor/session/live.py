@@ -11,6 +11,7 @@ from advisor.analysis.marks_file import keep_by_hand
 from advisor.campaign.hand_decisions import ByHand
 from advisor.flight.signals.messages import Columns
 from advisor.mavlink.link.health import LinkNotice, LinkStatistics
+from advisor.mavlink.logs.parameter_file import ParameterFiles
 from advisor.process.liveness import OLD_AFTER_S
 from advisor.session.behind import backlog_s
 from advisor.session.source import Condition, LinkHealth, LinkRequest
@@ -66,6 +67,7 @@ class LinkSource:
     ) -> None:
         self._connection, self._over = connection, over
         self._link: LinkLike | None = None
+        self._files = ParameterFiles()
         self._ended = False
 
     def read(self, timeout_s: float) -> Sequence[Columns] | None:
@@ -81,7 +83,7 @@ class LinkSource:
         over = self._over()
         columns = self._link.read(timeout_s)
         self._ended = over and not columns
-        return None if self._ended else columns
+        return None if self._ended else self._files.followed(columns)
 
     def health(self) -> LinkHealth:
         """Return the state of the data's arrival."""

@@ -7,6 +7,7 @@ of each parameter. A name leaves out the first letters that it shares with the n
 """
 
 import struct
+from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import groupby
 
@@ -24,6 +25,9 @@ _PLAIN, _WITH_DEFAULTS = 0x671B, 0x671C
 _KINDS = {1: "<b", 2: "<h", 3: "<i", 4: "<f"}
 """Kind of a parameter to the form of its value."""
 _HAS_DEFAULT = 1
+MOST_BATCHES = 500
+"""Number of batches with pieces of files that are kept. A download of parameters takes some seconds; one of a
+log may take an hour."""
 _REAL32 = 9
 """MAV_PARAM_TYPE_REAL32. A value from the file is a number already."""
 
@@ -38,6 +42,25 @@ def stated_by_file(batches: Iterable[Sequence[Columns]]) -> list[Columns]:
         for of_one in [list(one)]
         if (values := dict(_parameters_of(of_one)))
     ]
+
+
+class ParameterFiles:
+    """Parameter files of a stream: their values follow the pieces as PARAM_VALUE."""
+
+    def __init__(self) -> None:
+        self._sent: deque[Columns] = deque(maxlen=MOST_BATCHES)
+        self._told = 0
+
+    def followed(self, batch: Sequence[Columns]) -> list[Columns]:
+        """Return a batch, followed by the parameters known so far where its pieces have added some."""
+        sent = [columns for columns in batch if columns.name == MESSAGE]
+        self._sent += sent
+        stated = stated_by_file([self._sent]) if sent else []
+        count = sum(map(len, stated))
+        if count == self._told or not sent:
+            return list(batch)
+        self._told = count
+        return [*batch, *stated]
 
 
 def _as_messages(sent: Sequence[Columns], values: dict[str, float]) -> Columns:
