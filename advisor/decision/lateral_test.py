@@ -20,6 +20,7 @@ from advisor.decision.verdict import (
 from advisor.model.lateral import LATERAL
 from advisor.oem.lateral_estimate import LateralEstimate
 from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import symbol
 
 JUDGED: Mapping[str, str] = {
     "L_p": "aileron",
@@ -125,7 +126,7 @@ def _sentence(
         once = _flown_fewer_than(CHECKED, accepted)
         return f"CONTINUE: sure enough; one more input of the {' and the '.join(once)} to check the estimate."
     said = f"{shares[worst]:.0f} % of its tolerance" if math.isfinite(shares[worst]) else "unknown"
-    return f"CONTINUE: the error of {worst} is {said}."
+    return f"CONTINUE: the error of {symbol(worst)} is {said}."
 
 
 def _next(
