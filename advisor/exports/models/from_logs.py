@@ -10,8 +10,11 @@ from advisor.analysis.side_gap import SideCompared, accepted_of
 from advisor.analysis.whole_flights import read_whole
 from advisor.exports.models.flown import FlownModel, SideModel, flown_model, side_flown, side_of
 from advisor.exports.models.servo import ExportedServo, servo_of
+from advisor.flight.maneuvers.events import SideManeuverFlown
 from advisor.flight.maneuvers.marks import Mark
+from advisor.flight.stream.stream import FlightStream
 from advisor.gap.effects import EFFECTS
+from advisor.mavlink.logs.whole import read_whole_log
 from advisor.model.lateral import LATERAL
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.lateral_estimator import estimate_lateral
@@ -26,12 +29,25 @@ def side_of_logs(
     marks: Sequence[Mark] = (),
     no_marks: bool = False,
 ) -> SideModel | None:
-    """Return roll and yaw as the accepted manoeuvres of logs tell them; None where they tell none."""
+    """Return roll and yaw as the accepted manoeuvres of logs tell them; None where they tell none.
+
+    The whole campaign is judged only where aileron or rudder were flown.
+    """
     try:
+        if not any(_flies_roll_or_yaw(log, aircraft, target_system, marks) for log in logs):
+            return None
         flights = read_whole(logs, aircraft, target_system, marks, no_marks=no_marks, axis="lateral")
     except UnusableInputError:
         return None
     return side_flown(flights.state.lateral, aircraft)
+
+
+def _flies_roll_or_yaw(
+    log: Path, aircraft: Aircraft, target_system: int | None, marks: Sequence[Mark]
+) -> bool:
+    stream = FlightStream(aircraft, target_system, marks, lateral=True)
+    events = [event for columns in read_whole_log(log) for event in stream.feed(columns)]
+    return any(isinstance(event, SideManeuverFlown) for event in (*events, *stream.finish()))
 
 
 def improved_side(compared: SideCompared) -> FlownModel:
