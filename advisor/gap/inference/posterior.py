@@ -152,7 +152,8 @@ def _pairs(
             yield replace(
                 way, alternative=_unknown_in(one), terms={**way.terms, "second": more + float(np.log(left))}
             )
-        yield replace(way, terms={**way.terms, "second": more + float(np.log1p(-left))})
+        if left < 1.0:
+            yield replace(way, terms={**way.terms, "second": more + float(np.log1p(-left))})
 
 
 def _row(alternative: Alternative, one: Explanation, evidence: float, share: float) -> Row:
