@@ -163,7 +163,7 @@ def _respond_in(
             return False
         h = grid.step_s[e] / parts
         for part in range(parts):
-            _advance(grid, e, part * h, h, x, scratch)
+            _advance(grid, e, part * h, h, x, scratch, width > 0)
             if width:
                 _carry(grid, e, part * h, h, by, scratch)
         size_of_states = 0.0
@@ -175,11 +175,13 @@ def _respond_in(
 
 
 @kernel()
-def _advance(grid: AxisGrid, e: int, since_s: float, h: float, x: FloatArray, scratch: _Scratch) -> None:
+def _advance(
+    grid: AxisGrid, e: int, since_s: float, h: float, x: FloatArray, scratch: _Scratch, carries: bool
+) -> None:
     """Advance the states ``x`` (n,) by a step of length ``h`` that begins ``since_s`` after event ``e``.
 
-    ``scratch`` receives the states and inputs at three times of the step, and the exponentials of the matrix
-    in the middle.
+    ``scratch`` receives the states and inputs at three times of the step. Where sensitivities are carried,
+    it receives the exponentials of the matrix in the middle, too.
     """
     n = len(x)
     rate, total, trial = scratch.rate, scratch.total, scratch.trial
@@ -193,8 +195,9 @@ def _advance(grid: AxisGrid, e: int, since_s: float, h: float, x: FloatArray, sc
         _rates(grid, e, scratch.middle, scratch)
         for i in range(n):
             total[i] += 2.0 * rate[i]
-    _exponential(h, scratch.jacobian, scratch.whole, scratch.term)
-    _exponential(0.5 * h, scratch.jacobian, scratch.half, scratch.term)
+    if carries:
+        _exponential(h, scratch.jacobian, scratch.whole, scratch.term)
+        _exponential(0.5 * h, scratch.jacobian, scratch.half, scratch.term)
     for i in range(n):
         trial[i] = x[i] + h * rate[i]
     _feature(grid, e, trial, since_s + h, scratch.after)

@@ -7,7 +7,6 @@ of which only trims, initial states and biases are refitted.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 from scipy.stats import chi2
@@ -22,7 +21,7 @@ from advisor.oem.estimate import NoEstimate
 from advisor.oem.lateral_estimate import LateralEstimate
 from advisor.oem.lateral_estimator import estimate_lateral
 from advisor.oem.lateral_prediction import predicted_lateral
-from advisor.side_gap.diagnosis import SideDiagnosis, diagnose_side
+from advisor.side_gap.diagnosis import Kind, SideDiagnosis, diagnose_side
 from advisor.side_gap.models import case_of
 from advisor.words.certainty import as_sure
 
@@ -36,7 +35,7 @@ HELD_OUT = 3
 class SideGap:
     """Comparison of the aircraft file's lateral derivatives with the flight."""
 
-    verdict: Literal["none", "parameters", "effect"] | None
+    verdict: Kind | None
     """None: the file states no derivative that the flight tells, and no effect was found."""
     sentence: str
     derivatives: tuple[ComparedDerivative, ...]
@@ -108,9 +107,7 @@ def compare_side(
     )
 
 
-def _verdict(
-    diagnosis: SideDiagnosis | None, stated: bool, off: bool
-) -> Literal["none", "parameters", "effect"] | None:
+def _verdict(diagnosis: SideDiagnosis | None, stated: bool, off: bool) -> Kind | None:
     """Return the likeliest answer; by the joint region of the derivatives alone where no model fits."""
     likeliest = diagnosis.verdict if diagnosis else "parameters" if off else "none"
     return likeliest if stated or likeliest == "effect" else None

@@ -22,6 +22,7 @@ from advisor.words.certainty import Answers
 PEAKS = ("p", "r")
 """Outputs whose largest errors are reported."""
 AIR = "side gusts"
+Kind = Literal["none", "parameters", "effect", "unknown"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +55,8 @@ class SideDiagnosis:
     parameters: float
     effects: Mapping[str, float]
     """Name of every effect that was tried to the probability that it is the main cause."""
+    unknown: Mapping[str, float]
+    """Probability of a law that no effect describes, by block."""
     causes: tuple[SideCause, ...]
     """Effects of the model in the order in which they were found, then alternatives, likeliest first."""
     peaks: Mapping[str, float]
@@ -67,12 +70,20 @@ class SideDiagnosis:
     whole model, minus 1."""
 
     @property
-    def verdict(self) -> Literal["none", "parameters", "effect"]:
-        """Kind of the likeliest single explanation: ``none``, ``parameters`` or ``effect``."""
-        kinds: dict[Literal["none", "parameters", "effect"], float]
+    def verdict(self) -> Kind:
+        """Kind of the likeliest single explanation; the blocks of the unknown count together."""
+        return max(self._kinds, key=lambda kind: self._kinds[kind])
+
+    @property
+    def probability(self) -> float:
+        """Probability of the verdict."""
+        return self._kinds[self.verdict]
+
+    @property
+    def _kinds(self) -> Mapping[Kind, float]:
         likeliest = max(self.effects.values(), default=0.0)
-        kinds = {"none": self.none, "parameters": self.parameters, "effect": likeliest}
-        return max(kinds, key=lambda kind: kinds[kind])
+        unknown = sum(self.unknown.values())
+        return {"none": self.none, "parameters": self.parameters, "effect": likeliest, "unknown": unknown}
 
     @property
     def answers(self) -> Answers:
@@ -113,6 +124,7 @@ def diagnose_side(case: Case, prior: FieldPrior = FIELD, listed: int = 5) -> Sid
         stage.none,
         stage.parameters,
         effects,
+        stage.unknown,
         tuple(_causes(case, stages, as_given))[:listed],
         peaks_of(as_given),
         peaks_of(plain),

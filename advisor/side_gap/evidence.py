@@ -56,12 +56,20 @@ def share_of(fit: Fit) -> float:
 def log_evidence(fit: Fit, told: Information, known: Known, share: float) -> float:
     """Return the log of the marginal likelihood under a prior, up to a constant that all models share."""
     matrix, gradient = np.sum(told.matrix, axis=0), np.sum(told.gradient, axis=0)
-    off = fit.values - known.mean
+    return log_marginal(share**2 * fit.likelihood, matrix, gradient, fit.values, known)
+
+
+def log_marginal(
+    likelihood: float, matrix: FloatArray, gradient: FloatArray, values: FloatArray, known: Known
+) -> float:
+    """Return the log of the marginal likelihood from the log likelihood at ``values`` (k,), its gradient (k,)
+    and its information (k, k)."""
+    off = values - known.mean
     pull = gradient - known.precision * off
     posterior = matrix + np.diag(known.precision)
     volume = 0.5 * (np.sum(np.log(known.precision)) - np.linalg.slogdet(posterior)[1])
     height = 0.5 * pull @ np.linalg.solve(posterior, pull) - 0.5 * off @ (known.precision * off)
-    return float(share**2 * fit.likelihood + volume + height)
+    return float(likelihood + volume + height)
 
 
 def posterior_of(fit: Fit, told: Information, known: Known) -> tuple[FloatArray, FloatArray]:
@@ -118,8 +126,7 @@ def gain_of(before: FloatArray, after: FloatArray, counts: FloatArray, share: fl
     return Gain(total, float(np.sqrt(len(each)) * np.std(each, ddof=1)) if len(each) > 1 else np.inf)
 
 
-def probabilities(log_evidence: Sequence[float], shares: Sequence[float]) -> FloatArray:
-    """Return the probability of every explanation, shape (n,), given its share before the flight."""
-    told = np.asarray(log_evidence) + np.log(shares)
-    weights = np.exp(told - np.max(told))
+def probabilities(told: Sequence[float] | FloatArray) -> FloatArray:
+    """Return the probability of every explanation, shape (n,), from its log weight, nats."""
+    weights = np.exp(np.asarray(told) - np.max(told))
     return np.asarray(weights / np.sum(weights))

@@ -6,25 +6,22 @@ the flight path. Noise of an instrument, however coloured, enters its own output
 residuals distinguish the two.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import expm
 from scipy.optimize import minimize
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.noise.probes import KNOTS_S
-from advisor.model.lateral import LATERAL, Trim, state_matrix
+from advisor.model.lateral import LATERAL
 from advisor.oem.colour import Stretch, find_colour
 from advisor.oem.whitening import schedule, whiten
-from advisor.side_gap.fit import Fit, N
-from advisor.side_gap.setting import Flown
+from advisor.side_gap.disturbance import Course
+from advisor.side_gap.evidence import log_marginal
+from advisor.side_gap.fit import Fit, Known
 
-STEP_S = 0.02
-"""Step of the motion that a gust causes, s: a fifth of the distance of the knots."""
 _MEMORY_S = 1.0
 """Correlation time with which the search begins, s: 60 m at 25 m/s are 2.4 s."""
 _RANGE = (1e-3, 1e3)
@@ -33,16 +30,6 @@ _LONGEST_MEMORY_S = 60.0
 _MOST_STEPS = 400
 _BEND = 0.2
 """Step of the logarithm of the gust angle for the curvature of its likelihood."""
-_BETA, _P, _R, _BANK = range(len(LATERAL.states))
-
-
-class Course(NamedTuple):
-    """A gust angle in one manoeuvre."""
-
-    knots: FloatArray
-    """(k,) times of its knots, s."""
-    columns: FloatArray
-    """(n, k) change of the manoeuvre's rows by 1 rad at each knot, free of what its own parameters absorb."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,10 +44,31 @@ class Gusts:
     """Standard deviation of that number, with all other numbers at their values."""
     likelihood: float
     """Log likelihood of the residuals, on the scale of ``Fit.likelihood``."""
+    matrix: FloatArray
+    """(k, k) information about derivatives and numbers, where gusts colour the residuals."""
+    gradient: FloatArray
+    """(k,) gradient of the log likelihood at the fit."""
+
+    def evidence(self, fit: Fit, known: Known) -> float:
+        """Return the log marginal likelihood of a fit's model, with derivatives estimated in the gusts."""
+        return log_marginal(self.likelihood, self.matrix, self.gradient, fit.values, known)
+
+    def highest(self, known: Known) -> float:
+        """Return the log likelihood at the optimum in the gusts, where a prior keeps what is not seen."""
+        whole = self.matrix + np.diag(known.precision)
+        return self.likelihood + 0.5 * float(self.gradient @ np.linalg.solve(whole, self.gradient))
 
 
-def side_gusts(fit: Fit, courses: Sequence[Course]) -> Gusts:
-    """Return the likeliest white noise and gusts in the residuals of a fit."""
+def side_gusts(fit: Fit, courses: Sequence[Course], known: Known) -> Gusts:
+    """Return the likeliest white noise and gusts in the residuals of a fit.
+
+    Derivatives and numbers are integrated over: a fit under white noise has taken up a part of the gusts.
+
+    Parameters
+    ----------
+    known
+        Prior of derivatives and numbers.
+    """
     sums = [_Sums.of(fit, m, course) for m, course in enumerate(courses)]
     there = np.unique(fit.assembly.channel)
     reach = np.mean(
@@ -76,9 +84,15 @@ def side_gusts(fit: Fit, courses: Sequence[Course]) -> Gusts:
         noise[there] = np.exp(x[:-2])
         return noise, float(np.exp(x[-2])), float(np.exp(x[-1]))
 
-    def cost(x: FloatArray) -> float:
+    def told(x: FloatArray) -> tuple[float, FloatArray]:
         noise, angle, memory_s = model(x)
-        return sum(one.cost(noise, _root(one.knots, angle, memory_s)) for one in sums)
+        parts = [one.told(noise, _root(one.knots, angle, memory_s)) for one in sums]
+        return sum(cost for cost, _ in parts), np.sum([inner for _, inner in parts], axis=0)
+
+    def cost(x: FloatArray) -> float:
+        volume, inner = told(x)
+        likelihood = -0.5 * (volume + float(inner[0, 0]))
+        return -2.0 * log_marginal(likelihood, inner[1:, 1:], inner[1:, 0], fit.values, known)
 
     sizes = np.append(fit.noise[there], angle)
     bounds = [*((np.log(_RANGE[0] * s), np.log(_RANGE[1] * s)) for s in sizes),
@@ -93,7 +107,11 @@ def side_gusts(fit: Fit, courses: Sequence[Course]) -> Gusts:
     step = _BEND * (np.arange(len(found.x)) == len(found.x) - 2)
     bend = (cost(found.x + step) - 2.0 * float(found.fun) + cost(found.x - step)) / (2.0 * _BEND**2)
     noise, angle, _ = model(found.x)
-    return Gusts(noise, angle, angle / np.sqrt(max(bend, _BEND)), -0.5 * (float(found.fun) - len(fit.fitted)))
+    volume, inner = told(found.x)
+    return Gusts(
+        noise, angle, angle / np.sqrt(max(bend, _BEND)),
+        -0.5 * (volume + float(inner[0, 0]) - len(fit.fitted)), inner[1:, 1:], inner[1:, 0],
+    )  # fmt: skip
 
 
 def coloured_likelihood(fit: Fit) -> float:
@@ -113,61 +131,6 @@ def coloured_likelihood(fit: Fit) -> float:
     return -0.5 * cost
 
 
-def gust_courses(fit: Fit, flown: Flown) -> tuple[Course, ...]:
-    """Return what a gust angle changes in every manoeuvre, by the derivatives of a fit."""
-    return tuple(_course(fit, flown, m) for m in range(len(flown)))
-
-
-def _course(fit: Fit, flown: Flown, m: int) -> Course:
-    assembly = fit.assembly
-    own = np.flatnonzero(assembly.owner == m)
-    stamps = assembly.t[own]
-    knots = np.arange(np.min(stamps), np.max(stamps) + KNOTS_S, KNOTS_S)
-    t = np.arange(knots[0], knots[-1] + STEP_S, STEP_S)
-    seen = _outputs(fit.point.theta, flown, m, _hats(t, knots))
-    columns = np.zeros((len(own), len(knots)))
-    between = _hats(stamps, t, STEP_S)
-    for name, rows in assembly.rows[m].items():
-        mine = slice(rows.start - own[0], rows.stop - own[0])
-        columns[mine] = between[mine] @ seen[name]
-    weight = fit.weight[own][:, None]
-    local = fit.sensitivities[own][:, assembly.free[assembly.free >= N]] * weight
-    basis = np.linalg.svd(local, full_matrices=False)[0]
-    weighed = columns * weight
-    return Course(knots, (weighed - basis @ (basis.T @ weighed)) / weight)
-
-
-def _outputs(theta: FloatArray, flown: Flown, m: int, gust: FloatArray) -> Mapping[str, FloatArray]:
-    """Return by output what gust angles (n, k), one value a step, change (n, k)."""
-    problem, record = flown.problem, flown.problem.records[m]
-    speed = float(np.mean(record.airspeed.y))
-    ratio = speed / (problem.reference_airspeed_m_s or speed)
-    trim = Trim(speed, float(np.mean(record.alpha.y)), float(np.mean(record.theta.y)))
-    scaled = theta * np.array([ratio**term.power for term in LATERAL.shared])
-    a = state_matrix(scaled, trim)
-    aerodynamic = a - state_matrix(np.zeros(len(theta)), trim)
-    by_gust = aerodynamic[:, _BETA]
-    whole = np.zeros((6, 6))
-    whole[:4, :4], whole[:4, 4], whole[4, 5] = a, by_gust, 1.0 / STEP_S
-    step = expm(STEP_S * whole)
-    x = np.zeros((len(gust), 4, gust.shape[1]))
-    for i, (now, following) in enumerate(pairwise(gust)):
-        x[i + 1] = step[:4, :4] @ x[i] + np.outer(step[:4, 4], now) + np.outer(step[:4, 5], following - now)
-    force, turn = (np.einsum("s,nsk->nk", aerodynamic[k], x) + by_gust[k] * gust for k in (_BETA, _R))
-    return {
-        "p": x[:, _P],
-        "r": x[:, _R],
-        "bank": x[:, _BANK],
-        "a_y": speed * force + problem.accelerometer_arm_m * turn,
-        "beta": x[:, _BETA] + gust + problem.beta_arm_m / speed * x[:, _R],
-    }
-
-
-def _hats(t: FloatArray, knots: FloatArray, apart: float = KNOTS_S) -> FloatArray:
-    """Return the share (n, k) of every knot at times ``t``, linear between knots ``apart`` seconds apart."""
-    return np.maximum(0.0, 1.0 - np.abs(t[:, None] - knots) / apart)
-
-
 def _root(knots: FloatArray, angle: float, memory_s: float) -> FloatArray:
     """Return the Cholesky factor (k, k) of the covariance of a gust angle at its knots."""
     apart = np.abs(knots[:, None] - knots)
@@ -175,38 +138,42 @@ def _root(knots: FloatArray, angle: float, memory_s: float) -> FloatArray:
 
 
 class _Sums(NamedTuple):
-    """Sums of one manoeuvre from which the likelihood under any gusts follows."""
+    """Products of one manoeuvre from which the likelihood under any gusts follows.
+
+    The k columns are the residual, and the changes of the outputs by derivatives and numbers.
+    """
 
     knots: FloatArray
     counts: FloatArray
     """(outputs,) rows of each output."""
     squares: FloatArray
-    """(outputs,) sum of the squared residuals."""
-    pulls: FloatArray
-    """(outputs, k)"""
-    grams: FloatArray
     """(outputs, k, k)"""
+    pulls: FloatArray
+    """(outputs, knots, k)"""
+    grams: FloatArray
+    """(outputs, knots, knots)"""
 
     @classmethod
     def of(cls, fit: Fit, m: int, course: Course) -> "_Sums":
-        """Return the sums of manoeuvre ``m``."""
+        """Return the products of manoeuvre ``m``."""
         rows = fit.assembly.owner == m
-        channel, residual = fit.assembly.channel[rows], fit.residual[rows]
-        parts = [(residual[channel == c], course.columns[channel == c]) for c in range(len(fit.noise))]
+        channel = fit.assembly.channel[rows]
+        columns = np.column_stack([fit.residual[rows], fit.columns[rows]])
+        parts = [(columns[channel == c], course.columns[channel == c]) for c in range(len(fit.noise))]
         return cls(
             course.knots,
             np.array([float(len(left)) for left, _ in parts]),
-            np.array([left @ left for left, _ in parts]),
-            np.array([columns.T @ left for left, columns in parts]),
-            np.array([columns.T @ columns for _, columns in parts]),
+            np.array([left.T @ left for left, _ in parts]),
+            np.array([gust.T @ left for left, gust in parts]),
+            np.array([gust.T @ gust for _, gust in parts]),
         )
 
-    def cost(self, noise: FloatArray, root: FloatArray) -> float:
-        """Return -2 log likelihood under white noise (outputs,) and gusts with a covariance's factor (k,
-        k)."""
+    def told(self, noise: FloatArray, root: FloatArray) -> tuple[float, FloatArray]:
+        """Return the log determinant of the covariance of white noise (outputs,) and gusts with a factor
+        (knots, knots), and the products (k, k) that this covariance weighs."""
         weight = noise**-2.0
         inner = root.T @ np.tensordot(weight, self.grams, 1) @ root
         lower = np.linalg.cholesky(inner + np.eye(len(root)))
-        explained = np.linalg.solve(lower, root.T @ (weight @ self.pulls))
-        white = self.counts @ np.log(noise**2) + weight @ self.squares
-        return float(white + 2.0 * np.sum(np.log(np.diag(lower))) - explained @ explained)
+        explained = np.linalg.solve(lower, root.T @ np.tensordot(weight, self.pulls, 1))
+        volume = float(self.counts @ np.log(noise**2)) + 2.0 * float(np.sum(np.log(np.diag(lower))))
+        return volume, np.tensordot(weight, self.squares, 1) - explained.T @ explained

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG
-from advisor.gap.inference.model_error import form_error, most_nats
 from advisor.gap.inference.prior import FieldPrior
 from advisor.gap.search.air import NATURAL_GUST_ANGLE
 from advisor.side_gap.effects import SideEffect
@@ -25,8 +24,10 @@ from advisor.side_gap.evidence import (
     squares_of,
 )
 from advisor.side_gap.fit import Fit, Point
-from advisor.side_gap.gusts import Course, Gusts, coloured_likelihood, gust_courses, side_gusts
+from advisor.side_gap.gusts import Gusts, coloured_likelihood
+from advisor.side_gap.lacking import residuals_of, with_a_lacking_law
 from advisor.side_gap.models import Case, base_of, best_start, effect_fit
+from advisor.side_gap.moving_air import Model, for_model_error, in_moving_air
 
 FITTED = 5
 """Number of effects that are fitted in full: those that leave least after a linear refit. The others take
@@ -46,6 +47,9 @@ class Tried:
     """Log evidence with right derivatives, limited by the gain on unseen manoeuvres."""
     wrong: float
     gain: Gain
+    beyond: tuple[float, float]
+    """Parts of ``right`` and ``wrong`` beyond the marginal likelihood: sides of a prior, loss on unseen
+    manoeuvres."""
 
     @property
     def evidence(self) -> float:
@@ -74,6 +78,8 @@ class Stage:
     tried: tuple[Tried, ...]
     probability: Mapping[str, float]
     """Name of every effect that was tried to its probability."""
+    unknown: Mapping[str, float]
+    """Probability of a law that no effect describes, by block."""
 
     @property
     def ranked(self) -> tuple[Tried, ...]:
@@ -84,7 +90,7 @@ class Stage:
     def found(self) -> Tried | None:
         """The likeliest effect, where no other explanation is likelier."""
         first = next(iter(self.ranked), None)
-        others = (self.none, self.parameters, self.air)
+        others = (self.none, self.parameters, self.air, sum(self.unknown.values()))
         return first if first is not None and self.probability[first.effect.name] > max(others) else None
 
 
@@ -115,65 +121,25 @@ def stage_of(case: Case, plain: Fit, share: float, table: Sequence[SideEffect], 
         if one is not None
     ]
     each = prior.effect / max(len(table), 1)
-    shares = [prior.none, prior.parameters, *(each for _ in tried)]
-    evidence = [none, parameters, *(one.evidence for one in tried)]
-    names = [(), *(one.effect.variant.names for one in tried)]
-    made_up = for_model_error([plain, *(one.fit for one in tried)], names, share)
-    evidence = list(np.add(evidence, [made_up[0], *made_up]))
-    still = probabilities(evidence, shares)
-    courses = gust_courses(plain, case.flown)
-    gusts, gain = _in_gusts(plain, courses)
-    gains = [gain, gain]
-    gains += [
-        _in_gusts(t.fit, courses)[1] if p > LIKELY else -np.inf for t, p in zip(tried, still[2:], strict=True)
-    ]
+    models = [Model(plain, ()), *(Model(t.fit, t.effect.variant.names, t.beyond) for t in tried)]
+    made_up = for_model_error(models, [share**2 * one.fit.likelihood for one in models])
+    evidence = np.add([none, parameters, *(t.evidence for t in tried)], [made_up[0], *made_up])
+    log_share = np.log([prior.none, prior.parameters, *(each for _ in tried)])
+    likely = probabilities(evidence + log_share) > LIKELY
+    gusts, in_gusts = in_moving_air(case, models, [True, *likely[2:]])
+    gain = gusts.likelihood - coloured_likelihood(plain)
     # Moving air is as likely before the flight as any one effect.
     moving = each / (each + prior.none)
-    both = probabilities(
-        [*evidence, *np.add(evidence, gains)],
-        [*np.multiply(shares, 1.0 - moving), *np.multiply(shares, moving)],
-    ).reshape(2, -1)
-    found = np.sum(both, axis=0)
-    air = float(both[1, 0]) if gusts.angle > NATURAL_GUST_ANGLE else 0.0
+    still = evidence + log_share + np.log(1.0 - moving)
+    blown = none + gain + in_gusts + log_share + np.log(moving)
+    residuals = residuals_of(case, [models[0], *models], np.maximum(still, blown), share)
+    posterior = with_a_lacking_law(still, blown, residuals, prior.unknown)
+    found = np.sum(posterior.known, axis=0)
+    air = float(posterior.known[1, 0]) if gusts.angle > NATURAL_GUST_ANGLE else 0.0
     return Stage(
         plain, share, float(found[0]) - air, float(found[1]), air, gusts, gain, tuple(tried),
-        {one.effect.name: float(p) for one, p in zip(tried, found[2:], strict=True)},
+        {one.effect.name: float(p) for one, p in zip(tried, found[2:], strict=True)}, posterior.unknown,
     )  # fmt: skip
-
-
-def for_model_error(fits: Sequence[Fit], names: Sequence[Sequence[str]], share: float) -> list[float]:
-    """Return the nats of the likelihood that the error of every simulator makes up for, by fit.
-
-    Parameters
-    ----------
-    fits
-        The first one has no effect.
-    names
-        Numbers of the effect of each fit.
-    share
-        Share of white noise in the residuals.
-    """
-    likelihood = [share**2 * fit.likelihood for fit in fits]
-    best = int(np.argmax(likelihood))
-    form = form_error(names[best], change_of(fits[0], fits[best]))
-    least = [likelihood[best] - most_nats(change_of(fit, fits[best]), form) for fit in fits]
-    return [max(0.0, enough - one) for enough, one in zip(least, likelihood, strict=True)]
-
-
-def change_of(one: Fit, other: Fit) -> float:
-    """Return the largest difference between the outputs of two fits, as a share of each output's peak."""
-    shares = []
-    for channel in np.unique(one.assembly.channel):
-        rows = one.assembly.channel == channel
-        apart = one.fitted[rows] - other.fitted[rows]
-        shares.append(np.sqrt(np.mean(apart**2)) / max(float(np.ptp(one.assembly.z[rows])) / 2.0, 1e-12))
-    return float(max(shares))
-
-
-def _in_gusts(fit: Fit, courses: Sequence[Course]) -> tuple[Gusts, float]:
-    """Return the likeliest gusts, and their gain in log likelihood over coloured instruments."""
-    gusts = side_gusts(fit, courses)
-    return gusts, gusts.likelihood - coloured_likelihood(fit)
 
 
 def _tried(
@@ -192,13 +158,13 @@ def _tried(
     extra = np.log(2.0) if effect.is_one_sided else 0.0
     if effect.sides is not None:
         extra -= len(case.flown) * np.log(len(effect.sides[1]))
-    evidence, gains = [], []
+    evidence, gains, beyond = [], [], []
     for tolerance in (ERROR_IF_RIGHT, ERROR_IF_WRONG):
         known = case.known(tolerance, fit.free)
         own = squares_of(fit, told, known)
         in_fit = gain_of(left.in_fit, own.in_fit, counts, share)
         gains.append(gain_of(left.held_out, own.held_out, counts, share))
-        lost = min(gains[-1].total - in_fit.total, 0.0)
-        evidence.append(log_evidence(fit, told, known, share) + extra + lost)
+        beyond.append(extra + min(gains[-1].total - in_fit.total, 0.0))
+        evidence.append(log_evidence(fit, told, known, share) + beyond[-1])
     right, wrong = evidence
-    return Tried(effect, fit, right, wrong, gains[int(wrong > right)])
+    return Tried(effect, fit, right, wrong, gains[int(wrong > right)], (beyond[0], beyond[1]))

@@ -9,9 +9,10 @@ import pytest
 from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.gap.inference.prior import FIELD
 from advisor.side_gap import stage
+from advisor.side_gap.disturbance import courses_of
 from advisor.side_gap.evidence import Gain
 from advisor.side_gap.fit import fitted
-from advisor.side_gap.gusts import Gusts, coloured_likelihood, gust_courses, side_gusts
+from advisor.side_gap.gusts import Gusts, coloured_likelihood, side_gusts
 from advisor.side_gap.models import case_of
 from advisor.side_gap.stage import Tried, stage_of
 from tests.oem.lateral_builders import JET
@@ -32,7 +33,7 @@ def case():
 def flight(case):
     """Return a fit with the true derivatives, and what gusts change in its manoeuvres."""
     fit = fitted(case.flown, case.begin, case.natural, case.known(1e-6, case.natural), rounds=1)
-    return fit, gust_courses(fit, case.flown)
+    return fit, courses_of(fit, case.flown)
 
 
 def with_residual(fit, residual):
@@ -89,7 +90,7 @@ def staged(case, fit, monkeypatch, gains, evidence=(-5.0, -5.0)):
     monkeypatch.setattr(stage, "log_evidence", lambda *_: -10.0)
     monkeypatch.setattr(stage, "best_start", lambda *_: SimpleNamespace(squares=0.0, point=None))
     monkeypatch.setattr(stage, "_tried", lambda *_: tried)
-    monkeypatch.setattr(stage, "gust_courses", lambda *_: ())
+    monkeypatch.setattr(stage, "courses_of", lambda *_: ())
     monkeypatch.setattr(stage, "_in_gusts", lambda one, _: (GUSTS, gains[one is other]))
     return stage_of(case, fit, 1.0, [effect], FIELD)
 

@@ -10,16 +10,16 @@ from advisor.gap.effects import EFFECTS
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.inference.explanation import Explanation, Row
 from advisor.gap.inference.prior import FieldPrior
-from advisor.gap.inference.residual import Residual, residual_of
+from advisor.gap.inference.residual import (
+    Residual,
+    of_a_right_model,
+    of_one_that_lacks_a_law,
+    residual_of,
+)
 from advisor.gap.inference.stage import Stage
 
-_RIGHT, _LACKING = (0.0, 0.6), (np.log(3.0), 0.9)
-"""Prior: mean and standard deviation of the log of the residual's size (``Residual.size``), of a right model
-and of one that lacks a law."""
 _ALWAYS = frozenset({"air"})
 """Blocks with a disturbance in most flights: such a residual is no law that the simulator lacks."""
-_LEAST_MISFIT = 0.25
-"""Numerical: size of a residual below which it is not told from none."""
 _SEARCHED = 2
 """Numerical: number of models, the likeliest, whose residual is searched. Others count with the
 residual of the likeliest."""
@@ -170,20 +170,20 @@ def _with_residual(way: Row, residual: Residual, prior: FieldPrior) -> Iterator[
 
     Such a law leaves a residual that a disturbance of free course explains, in one block.
     """
-    yield replace(way, terms={**way.terms, "residual": _log_normal(residual.size, _RIGHT)})
+    yield replace(way, terms={**way.terms, "residual": of_a_right_model(residual.size)})
     lacking = float(np.log(0.5 * prior.unknown / (prior.none + prior.parameters + prior.effect)))
     for block, share in residual.blocks.items():
         if block in _ALWAYS:
             terms = {
                 **way.terms,
-                "residual": _log_normal(residual.size, _LACKING) + float(np.log(0.5 * share)),
+                "residual": of_one_that_lacks_a_law(residual.size) + float(np.log(0.5 * share)),
             }
             yield replace(way, terms=terms)
             continue
         terms = {
             **way.terms,
             "prior": way.terms["prior"] + lacking + float(np.log(share)),
-            "residual": _log_normal(residual.size, _LACKING),
+            "residual": of_one_that_lacks_a_law(residual.size),
         }
         yield replace(way, alternative=Alternative("unknown", "unknown", block), terms=terms)
 
@@ -194,11 +194,6 @@ def posterior_of(rows: Iterable[Row]) -> Posterior:
     weights = np.array([row.weight for row in ordered])
     shares = np.exp(weights - np.max(weights))
     return Posterior(tuple(ordered), tuple(map(float, shares / np.sum(shares))))
-
-
-def _log_normal(x: float, told: tuple[float, float]) -> float:
-    mean, std = told
-    return float(-0.5 * ((np.log(max(x, _LEAST_MISFIT)) - mean) / std) ** 2 - np.log(std))
 
 
 def relabelled(row: Row, alternative: Alternative) -> Row:

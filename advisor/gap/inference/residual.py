@@ -1,6 +1,6 @@
 """The residual of a model: the disturbance of free course that explains most of it, block by block."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,8 +14,13 @@ from advisor.gap.records.floor import tolerance_of
 
 _HARDLY = 1e-6
 """Numerical: share below which a block counts as excluded."""
-_NATURAL = 0.004
+NATURAL = 0.004
 """Prior: motion that a right simulator leaves unexplained, as a share of a channel's peak."""
+_RIGHT, _LACKING = (0.0, 0.6), (np.log(3.0), 0.9)
+"""Prior: mean and standard deviation of the log of the residual's size (``Residual.size``), of a right model
+and of one that lacks a law."""
+_LEAST_MISFIT = 0.25
+"""Numerical: size of a residual below which it is not told from none."""
 
 
 @dataclass(frozen=True)
@@ -41,17 +46,36 @@ def residual_of(problem: EffectProblem, fitted: EffectFit, heat: float) -> Resid
     probes = probe_blocks(problem, fitted, innovation_noise(problem))
     powers = np.mean(mean_squares(problem, fitted.innovations), axis=0) / innovation_noise(problem) ** 2
     share = np.sqrt(probes[0].explained * powers) * problem.instruments / problem.flights.peaks
-    natural = np.hypot(_NATURAL, tolerance_of(problem.flights) / problem.flights.peaks)
-    gains = np.array([probe.gain for probe in probes]) / heat
-    parts = np.exp(gains - np.max(gains))
-    parts /= np.sum(parts)
+    natural = np.hypot(NATURAL, tolerance_of(problem.flights) / problem.flights.peaks)
     return Residual(
         float(np.max((share / natural)[problem.flights.telling])),
-        {probe.block: float(p) for probe, p in zip(probes, parts, strict=True) if p > _HARDLY},
+        shares_of([probe.block for probe in probes], [probe.gain / heat for probe in probes]),
     )
+
+
+def shares_of(blocks: Sequence[str], nats: Sequence[float]) -> Mapping[str, float]:
+    """Return the probability of each block, given that a disturbance acts in one of them."""
+    parts = np.exp(np.array(nats) - np.max(nats))
+    parts /= np.sum(parts)
+    return {block: float(p) for block, p in zip(blocks, parts, strict=True) if p > _HARDLY}
 
 
 def innovation_noise(problem: EffectProblem) -> FloatArray:
     """Return the noise of the innovations, shape (channels,): 1 where the filter knows the noise."""
     assert problem.instruments is not None
     return np.ones(len(problem.channels)) if problem.knows_the_noise else problem.instruments
+
+
+def of_a_right_model(size: float) -> float:
+    """Return the log density, nats, of a residual's size where the model is right."""
+    return _log_normal(size, _RIGHT)
+
+
+def of_one_that_lacks_a_law(size: float) -> float:
+    """Return the log density, nats, of a residual's size where the model lacks a law."""
+    return _log_normal(size, _LACKING)
+
+
+def _log_normal(x: float, told: tuple[float, float]) -> float:
+    mean, std = told
+    return float(-0.5 * ((np.log(max(x, _LEAST_MISFIT)) - mean) / std) ** 2 - np.log(std))

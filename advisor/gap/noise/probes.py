@@ -95,11 +95,11 @@ def probe_blocks(
             value, vector = np.linalg.eigh((gram + gram.T) / 2.0)
             spectra[block].append(np.maximum(value, 0.0))
             powers[block].append((vector.T @ (colour.T @ (B.T @ unabsorbed)) / unit) ** 2)
-    found = (_likeliest(b, np.hstack(spectra[b]), np.hstack(powers[b]), units[b], total) for b in there)
+    found = (at_its_size(b, np.hstack(spectra[b]), np.hstack(powers[b]), units[b], total) for b in there)
     return sorted(found, key=lambda p: -p.gain)
 
 
-def _likeliest(block: str, value: FloatArray, power: FloatArray, unit: float, total: float) -> Probe:
+def at_its_size(block: str, value: FloatArray, power: FloatArray, unit: float, total: float) -> Probe:
     """Return the disturbance of a block at the likeliest of its sizes.
 
     Parameters
@@ -185,6 +185,10 @@ def disturbance_courses(
 
 def _colour(flight: PreparedManeuver) -> FloatArray:
     """Return the Cholesky factor of the correlation between the knots of a disturbance."""
-    knots = np.arange(0.0, flight.duration_s, KNOTS_S)[1:]
+    return coloured_between(np.arange(0.0, flight.duration_s, KNOTS_S)[1:])
+
+
+def coloured_between(knots: FloatArray) -> FloatArray:
+    """Return the Cholesky factor (k, k) of the correlation of a disturbance between knots (k,), s."""
     lags = np.abs(knots[:, None] - knots[None, :])
     return np.asarray(np.linalg.cholesky(np.exp(-lags / MEMORY_S) + 1e-9 * np.eye(len(knots))))

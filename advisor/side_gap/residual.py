@@ -1,0 +1,82 @@
+"""The residual of a lateral model: the disturbance that explains most of it, block by block."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from advisor.flight.signals.messages import FloatArray
+from advisor.gap.inference.residual import NATURAL, Residual, shares_of
+from advisor.gap.noise.probes import Probe, at_its_size, coloured_between
+from advisor.side_gap.disturbance import AIR, Course, blocks_of, courses_of
+from advisor.side_gap.fit import FLOOR, Fit
+from advisor.side_gap.setting import Flown
+
+
+@dataclass(frozen=True, slots=True)
+class Beside:
+    """The residual of a lateral model, with and without what side gusts explain."""
+
+    whole: Residual
+    beside_air: float
+    """Size of what side gusts leave."""
+
+    @property
+    def blocks_but_air(self) -> Mapping[str, float]:
+        """Probability of each block, given that something without a name acts in one that is not the air."""
+        others = {block: share for block, share in self.whole.blocks.items() if block != AIR}
+        total = sum(others.values())
+        return {block: share / total for block, share in others.items()}
+
+
+def residual_of(fit: Fit, flown: Flown, share: float) -> Beside:
+    """Return the disturbance that explains the residual of a fit.
+
+    Parameters
+    ----------
+    share
+        Share of white noise in the residuals: a nat of white noise counts as ``share``² nats.
+    """
+    noise = _white(fit)
+    probes = [_probe(fit, block, courses_of(fit, flown, block), noise) for block in blocks_of(fit, flown)]
+    probes.sort(key=lambda probe: -probe.gain)
+    sizes = []
+    for k in np.unique(fit.assembly.channel):
+        rows = fit.assembly.channel == k
+        power = float(np.mean(fit.residual[rows] ** 2))
+        peak = max(float(np.ptp(fit.assembly.z[rows])) / 2.0, 1e-12)
+        sizes.append(np.sqrt(max(power - noise[k] ** 2, 0.0)) / peak)
+    by_air = next(probe.explained for probe in probes if probe.block == AIR)
+    most = probes[0].explained
+    whole, beside = (float(np.sqrt(e) * max(sizes) / NATURAL) for e in (most, max(most - by_air, 0.0)))
+    blocks = shares_of([p.block for p in probes], [share**2 * p.gain for p in probes])
+    return Beside(Residual(whole, blocks), beside)
+
+
+def _probe(fit: Fit, block: str, courses: Sequence[Course], noise: FloatArray) -> Probe:
+    """Return the disturbance of a block at its likeliest size."""
+    weight = 1.0 / noise[fit.assembly.channel]
+    values, powers, total, unit = [], [], 0.0, 0.0
+    for m, course in enumerate(courses):
+        rows = fit.assembly.owner == m
+        coloured = course.columns @ coloured_between(course.knots) * weight[rows, None]
+        left = fit.residual[rows] * weight[rows]
+        gram = coloured.T @ coloured
+        unit = unit or float(np.sqrt(np.trace(gram) / len(left))) + 1e-300
+        value, vector = np.linalg.eigh(gram / unit**2)
+        values.append(np.maximum(value, 0.0))
+        powers.append((vector.T @ (coloured.T @ left) / unit) ** 2)
+        total += float(left @ left)
+    return at_its_size(block, np.hstack(values), np.hstack(powers), unit, total)
+
+
+def _white(fit: Fit) -> FloatArray:
+    """Return the white noise of every output, shape (outputs,), by the second differences of its residual."""
+    noise = FLOOR.copy()
+    for k in np.unique(fit.assembly.channel):
+        parts = [
+            np.diff(fit.residual[(fit.assembly.channel == k) & (fit.assembly.owner == m)], 2)
+            for m in range(fit.assembly.maneuvers)
+        ]
+        noise[k] = max(float(np.sqrt(np.mean(np.concatenate(parts) ** 2) / 6.0)), FLOOR[k])
+    return noise
