@@ -1,7 +1,7 @@
 """Blind flights of roll and yaw with one withheld effect each, and how many are diagnosed right.
 
     python -m benchmarks.lateral_gap SEED [--each 3] [--clean 6] [--only NAME ...] [--pairs 0] [--air 0]
-        [--jsbsim]
+        [--outside 0] [--jsbsim]
 
 The bundled aircraft flies ``--plan lateral`` with a drawn effect, and is recorded at 50 Hz. The diagnosis of
 ``advisor gap --axis lateral`` has the aircraft's true derivatives. With ``--jsbsim``, JSBSim's c172p flies
@@ -28,6 +28,7 @@ from advisor.side_gap.models import case_of
 from advisor.simulators.side import side_without_difference
 from advisor.simulators.specification import simulator_of
 from advisor.words.quantiles import NORMAL_95
+from benchmarks.lateral_laws import LAWS, flight_with
 from sim.effects.side import side_kit
 from sim.flight import Flight, Sample
 from sim.lateral import FULL_RAD, UAV, flown_laterally, lateral_flight
@@ -101,7 +102,11 @@ def scenario_of(seed: int, effects: Effects) -> Scenario:
 
 def diagnosed(seed: int, effects: Effects) -> SideDiagnosis | None:
     """Fly effects, and return the diagnosis."""
-    flight = recordings(lateral_flight(scenario_of(seed, effects)))
+    return diagnosis_of(recordings(lateral_flight(scenario_of(seed, effects))))
+
+
+def diagnosis_of(flight: Sequence[Maneuver]) -> SideDiagnosis | None:
+    """Return the diagnosis of manoeuvres with the aircraft's true derivatives."""
     case = case_of(flight, AIRCRAFT, np.array([UAV[name] for name in SIDE_PARAMETERS]))
     assert not isinstance(case, NoEstimate)
     return diagnose_side(case)
@@ -162,6 +167,8 @@ class Study:
     """Flights with two effects of different controls or outputs."""
     air: int
     """Flights in side gusts alone."""
+    outside: int = 0
+    """Flights with each law that no effect describes, of the bundled aircraft."""
     only: Sequence[str] = ()
     """Effects to fly; empty for all."""
 
@@ -188,6 +195,14 @@ def rows(seed: int, study: Study, fly: Fly) -> Iterator[str]:
         told, holds, _ = judged(fly(int(rng.integers(2**31)), {}), NOTHING, 0.0)
         false += not holds
         yield f"| nothing | | {told} | {'yes' if holds else 'NO'} | |"
+    unknown = 0
+    for law in [law for law in LAWS for _ in range(study.outside)]:
+        flight, size = flight_with(scenario_of(int(rng.integers(2**31)), {}), law, rng)
+        answer = diagnosis_of(recordings(flight))
+        holds = answer is not None and answer.verdict == "unknown"
+        unknown += holds
+        told = "no answer" if answer is None else f"{answer.answers[0][0]} ({answer.answers[0][1]:.2f})"
+        yield f"| {law} | {size:.3g} | {told} | {'yes' if holds else 'NO'} | |"
     both = one = 0
     able = [name for name, case in CASES.items() if case.is_named]
     for _ in range(study.pairs):
@@ -199,8 +214,8 @@ def rows(seed: int, study: Study, fly: Fly) -> Iterator[str]:
         listed = ", ".join(f"{size:.3g}" for size in sizes.values())
         yield f"| {' + '.join(names)} | {listed} | {told} | {found} of 2 | |"
     yield (
-        f"{right} of {named} effects named, {size_right} with the right size; {false} false alarms; of "
-        f"{study.pairs} pairs {both} named whole, {one} at least by half"
+        f"{right} of {named} effects named, {size_right} with the right size; {false} false alarms; "
+        f"{unknown} of {study.outside * len(LAWS)} laws without a name are unknown; of {study.pairs} pairs {both} named whole, {one} at least by half"
     )
 
 
@@ -250,11 +265,12 @@ def main() -> int:
     parser.add_argument("--only", nargs="*", default=[])
     parser.add_argument("--pairs", type=int, default=0)
     parser.add_argument("--air", type=int, default=0)
+    parser.add_argument("--outside", type=int, default=0)
     parser.add_argument("--jsbsim", action="store_true")
     asked = parser.parse_args()
     fly = diagnosed_in_jsbsim if asked.jsbsim else diagnosed
     print("| withheld | size | told | right | size |\n|---|---|---|---|---|")
-    study = Study(asked.each, asked.clean, asked.pairs, asked.air, asked.only)
+    study = Study(asked.each, asked.clean, asked.pairs, asked.air, asked.outside, asked.only)
     for row in rows(asked.seed, study, fly):
         print(row, flush=True)
     return 0

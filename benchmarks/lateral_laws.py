@@ -83,7 +83,9 @@ class Curved(LateralAircraft):
 
     def _per_speed(self, letter: str, x: NDArray[np.float64], u: NDArray[np.float64]) -> float:
         linear = super()._per_speed(letter, x, u)
-        return linear + (self.per_square * x[self.state] * abs(x[self.state]) if letter == self.letter else 0.0)
+        return linear + (
+            self.per_square * x[self.state] * abs(x[self.state]) if letter == self.letter else 0.0
+        )
 
 
 Fit = Callable[[SideKit, float], None]

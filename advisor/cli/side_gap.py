@@ -221,9 +221,18 @@ def _diagnosis_document(found: SideDiagnosis | None) -> dict[str, Any]:
     """Return the probabilities, the causes and the largest errors, rad/s; without a diagnosis only their
     keys."""
     if found is None:
-        return {"probabilities": None, "causes": [], "waterfall": [], "peaks": None, "cannot_see": {}}
+        return {
+            "probabilities": None, "where": None, "causes": [], "waterfall": [], "peaks": None,
+            "cannot_see": {},
+        }  # fmt: skip
+    where = found.where
     return {
-        "probabilities": picked(found, "none parameters effects"),
+        "probabilities": picked(found, "none parameters unknown effects"),
+        "where": where
+        and {
+            **picked(where, "block share"),
+            "ranking": [{"block": block, "score": score} for block, score in where.ranking],
+        },
         "causes": [
             {
                 **picked(one.cause, "effect block probability present parameters"),

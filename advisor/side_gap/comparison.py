@@ -89,7 +89,11 @@ def compare_side(
     case = case_of(maneuvers, aircraft, estimate.theta)
     diagnosis = None if isinstance(case, NoEstimate) else diagnose_side(case, prior)
     verdict = _verdict(diagnosis, bool(stated), statistic > limit)
-    sentence = diagnosis.sentence if verdict == "effect" and diagnosis else _sentence(verdict, derivatives)
+    sentence = (
+        diagnosis.sentence
+        if diagnosis and verdict in ("effect", "unknown")
+        else _sentence(verdict, derivatives)
+    )
     holdout, before, after = _held_out(maneuvers, aircraft, model)
     return SideGap(
         verdict,
@@ -110,7 +114,7 @@ def compare_side(
 def _verdict(diagnosis: SideDiagnosis | None, stated: bool, off: bool) -> Kind | None:
     """Return the likeliest answer; by the joint region of the derivatives alone where no model fits."""
     likeliest = diagnosis.verdict if diagnosis else "parameters" if off else "none"
-    return likeliest if stated or likeliest == "effect" else None
+    return likeliest if stated or likeliest in ("effect", "unknown") else None
 
 
 def _held_out(

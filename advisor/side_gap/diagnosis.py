@@ -6,12 +6,14 @@ from typing import Literal
 
 import numpy as np
 
+from advisor.gap.alternative import Alternative
 from advisor.gap.fitting.prior import ERROR_IF_WRONG
 from advisor.gap.inference.posterior import NONE, PARAMETERS
 from advisor.gap.inference.prior import FIELD, FieldPrior
-from advisor.gap.result import Cause, Value
+from advisor.gap.result import Cause, Value, Where
 from advisor.gap.verdict.statements import what
-from advisor.gap.verdict.text import in_words
+from advisor.gap.verdict.text import in_words, place
+from advisor.side_gap.disturbance import SENSORS
 from advisor.side_gap.effects import SideEffect, side_effects, unseen
 from advisor.side_gap.evidence import Gain, information_of, posterior_of, share_of
 from advisor.side_gap.fit import Fit, N
@@ -22,6 +24,8 @@ from advisor.words.certainty import Answers
 PEAKS = ("p", "r")
 """Outputs whose largest errors are reported."""
 AIR = "side gusts"
+_BLOCKS = {**{output: block for block, output in SENSORS.items()}, "throttle": "rolling_moment"}
+"""Output, or the throttle, to its block; a control and the air are blocks themselves."""
 Kind = Literal["none", "parameters", "effect", "unknown"]
 
 
@@ -45,6 +49,13 @@ class SideCause:
     def name(self) -> str:
         """Name of the effect in documents."""
         return self.named.replace(" ", "_")
+
+    @property
+    def block(self) -> str:
+        """Block of the simulator in which the effect acts."""
+        return next(
+            (block for block, output in SENSORS.items() if output == self.of), _BLOCKS.get(self.of, self.of)
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,15 +97,35 @@ class SideDiagnosis:
         return {"none": self.none, "parameters": self.parameters, "effect": likeliest, "unknown": unknown}
 
     @property
+    def where(self) -> Where | None:
+        """Block in which the gap arises: that of the named effect, or the likeliest of a law without a name;
+        None where neither has a probability."""
+        without = sum(self.unknown.values())
+        ranked = {block: p / without for block, p in self.unknown.items()} if without > 0.0 else {}
+        if self.verdict == "effect" and self.causes:
+            block = self.causes[0].block
+            ranked = {block: 1.0, **{other: p for other, p in ranked.items() if other != block}}
+        if not ranked:
+            return None
+        first = max(ranked, key=lambda block: ranked[block])
+        ranking = sorted(((b, p / ranked[first]) for b, p in ranked.items()), key=lambda one: -one[1])
+        return Where(first, ranked[first], tuple(ranking))
+
+    @property
     def answers(self) -> Answers:
         """Every answer in words with its probability, the likeliest first."""
         found = [(in_words(NONE), self.none), (in_words(PARAMETERS), self.parameters)]
         found += [(name.replace("_", " "), p) for name, p in self.effects.items()]
+        if self.unknown:
+            block = max(self.unknown, key=lambda one: self.unknown[one])
+            found.append((in_words(Alternative("unknown", "unknown", block)), sum(self.unknown.values())))
         return sorted(found, key=lambda answer: -answer[1])
 
     @property
     def sentence(self) -> str:
-        """Statements about all effects of the model."""
+        """Statements about all effects of the model, or about the place of a law without a name."""
+        if self.verdict == "unknown" and self.where is not None:
+            return f"Something acts {place(self.where.block)} that no known effect explains."
         return ". ".join(one.sentence for one in self.causes if one.cause.present)
 
 

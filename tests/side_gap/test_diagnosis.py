@@ -33,7 +33,7 @@ PLAY = SideCause(
     {"p": 0.05, "r": 0.04},
 )
 DIAGNOSIS = SideDiagnosis(
-    0.2, 0.05, {"aileron_actuator_backlash": 0.7, "aileron_actuator_lag": 0.05}, (PLAY,), PEAKS, PEAKS, {}
+    0.2, 0.05, {"aileron_actuator_backlash": 0.7, "aileron_actuator_lag": 0.05}, {}, (PLAY,), PEAKS, PEAKS, {}
 )
 FOUND = SideGap("effect", PLAY.sentence, (), 0.0, 0.0, {}, {}, (1, 2, 3), (), {}, {}, DIAGNOSIS)
 
@@ -50,6 +50,23 @@ FOUND = SideGap("effect", PLAY.sentence, (), 0.0, 0.0, {}, {}, (1, 2, 3), (), {}
 def test_the_verdict_is_the_likeliest_single_explanation(none, parameters, effects, verdict):
     named = {f"effect {k}": p for k, p in enumerate(effects)}
     assert replace(DIAGNOSIS, none=none, parameters=parameters, effects=named).verdict == verdict
+
+
+def test_the_blocks_of_the_unknown_count_together_and_the_likeliest_is_the_place():
+    unknown = {"rolling_moment": 0.35, "aileron": 0.2}
+    told = replace(
+        DIAGNOSIS, none=0.1, parameters=0.05, effects={"aileron_actuator_lag": 0.3}, unknown=unknown
+    )
+    assert told.verdict == "unknown"
+    assert told.probability == pytest.approx(0.55)
+    assert (told.where.block, told.where.share) == ("rolling_moment", pytest.approx(0.35 / 0.55))
+    assert told.sentence == "Something acts in the rolling moment that no known effect explains."
+
+
+def test_the_place_of_an_effect_is_that_of_its_control_or_sensor():
+    document = side_gap_document(FOUND)
+    assert document["where"]["block"] == "aileron"
+    assert replace(PLAY, of="p").block == "roll_rate_sensor"
 
 
 def test_the_text_says_the_cause_with_its_size_and_the_errors_that_it_removes():

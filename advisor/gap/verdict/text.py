@@ -18,6 +18,14 @@ BLOCKS = {
     "accelerometer": "in the accelerometer",
     "attitude_sensor": "in the attitude channel",
     "timing": "in the time stamps",
+    "aileron": "between the aileron's command and the aileron",
+    "rudder": "between the rudder's command and the rudder",
+    "side_force": "in the side force",
+    "rolling_moment": "in the rolling moment",
+    "yawing_moment": "in the yawing moment",
+    "roll_rate_sensor": "in the roll rate channel",
+    "yaw_rate_sensor": "in the yaw rate channel",
+    "sideslip_sensor": "in the sideslip channel",
 }
 
 
