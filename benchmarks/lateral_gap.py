@@ -215,7 +215,8 @@ def rows(seed: int, study: Study, fly: Fly) -> Iterator[str]:
         yield f"| {' + '.join(names)} | {listed} | {told} | {found} of 2 | |"
     yield (
         f"{right} of {named} effects named, {size_right} with the right size; {false} false alarms; "
-        f"{unknown} of {study.outside * len(LAWS)} laws without a name are unknown; of {study.pairs} pairs {both} named whole, {one} at least by half"
+        f"{unknown} of {study.outside * len(LAWS)} laws without a name are unknown; of "
+        f"{study.pairs} pairs {both} named whole, {one} at least by half"
     )
 
 
