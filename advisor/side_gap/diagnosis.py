@@ -98,8 +98,7 @@ class SideDiagnosis:
 
     @property
     def where(self) -> Where | None:
-        """Block in which the gap arises: that of the named effect, or the likeliest of a law without a name;
-        None where neither has a probability."""
+        """Block of the named effect, or else the likeliest one of a law without a name; None without both."""
         without = sum(self.unknown.values())
         ranked = {block: p / without for block, p in self.unknown.items()} if without > 0.0 else {}
         if self.verdict == "effect" and self.causes:

@@ -1,4 +1,4 @@
-"""What a disturbance in one block of the simulator changes in all outputs of roll and yaw.
+"""Response of all outputs of roll and yaw to a disturbance in one block of the simulator.
 
 A disturbance is added to a control's deflection, to one equation, to the air or to one sensor of the fitted
 model. A gust adds its angle to the sideslip that fin, wing and vane meet, so it enters side force, roll and

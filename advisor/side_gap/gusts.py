@@ -169,8 +169,10 @@ class _Sums(NamedTuple):
         )
 
     def told(self, noise: FloatArray, root: FloatArray) -> tuple[float, FloatArray]:
-        """Return the log determinant of the covariance of white noise (outputs,) and gusts with a factor
-        (knots, knots), and the products (k, k) that this covariance weighs."""
+        """Return the log determinant of the covariance, and the products (k, k) weighed by its inverse.
+
+        White noise has standard deviations (outputs,); the gusts' covariance has a factor (knots, knots).
+        """
         weight = noise**-2.0
         inner = root.T @ np.tensordot(weight, self.grams, 1) @ root
         lower = np.linalg.cholesky(inner + np.eye(len(root)))

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.inference.residual import of_a_right_model, of_one_that_lacks_a_law
+from advisor.gap.inference.residual import if_lacking, if_right
 from advisor.side_gap.evidence import probabilities
 from advisor.side_gap.models import Case
 from advisor.side_gap.moving_air import Model
@@ -63,9 +63,9 @@ def with_a_lacking_law(
         for air, (weight, size) in enumerate(
             ((still[k], residual.whole.size), (blown[k], residual.beside_air))
         ):
-            right[air, k] = weight + of_a_right_model(size)
+            right[air, k] = weight + if_right(size)
             for block, part in residual.blocks_but_air.items():
-                nats = weight + lacking + of_one_that_lacks_a_law(size) + np.log(part)
+                nats = weight + lacking + if_lacking(size) + np.log(part)
                 unknown[block] = float(np.logaddexp(unknown.get(block, -np.inf), nats))
     each = probabilities([*right.ravel(), *unknown.values()])
     blocks = zip(unknown, map(float, each[right.size :]), strict=True)

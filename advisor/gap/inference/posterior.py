@@ -10,12 +10,7 @@ from advisor.gap.effects import EFFECTS
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.inference.explanation import Explanation, Row
 from advisor.gap.inference.prior import FieldPrior
-from advisor.gap.inference.residual import (
-    Residual,
-    of_a_right_model,
-    of_one_that_lacks_a_law,
-    residual_of,
-)
+from advisor.gap.inference.residual import Residual, if_lacking, if_right, residual_of
 from advisor.gap.inference.stage import Stage
 
 _ALWAYS = frozenset({"air"})
@@ -170,22 +165,15 @@ def _with_residual(way: Row, residual: Residual, prior: FieldPrior) -> Iterator[
 
     Such a law leaves a residual that a disturbance of free course explains, in one block.
     """
-    yield replace(way, terms={**way.terms, "residual": of_a_right_model(residual.size)})
+    yield replace(way, terms={**way.terms, "residual": if_right(residual.size)})
     lacking = float(np.log(0.5 * prior.unknown / (prior.none + prior.parameters + prior.effect)))
+    as_lacking = if_lacking(residual.size)
     for block, share in residual.blocks.items():
         if block in _ALWAYS:
-            terms = {
-                **way.terms,
-                "residual": of_one_that_lacks_a_law(residual.size) + float(np.log(0.5 * share)),
-            }
-            yield replace(way, terms=terms)
+            yield replace(way, terms={**way.terms, "residual": as_lacking + float(np.log(0.5 * share))})
             continue
-        terms = {
-            **way.terms,
-            "prior": way.terms["prior"] + lacking + float(np.log(share)),
-            "residual": of_one_that_lacks_a_law(residual.size),
-        }
-        yield replace(way, alternative=Alternative("unknown", "unknown", block), terms=terms)
+        told = {"prior": way.terms["prior"] + lacking + float(np.log(share)), "residual": as_lacking}
+        yield replace(way, alternative=Alternative("unknown", "unknown", block), terms={**way.terms, **told})
 
 
 def posterior_of(rows: Iterable[Row]) -> Posterior:

@@ -55,9 +55,8 @@ def residual_of(problem: EffectProblem, fitted: EffectFit, heat: float) -> Resid
 
 def shares_of(blocks: Sequence[str], nats: Sequence[float]) -> Mapping[str, float]:
     """Return the probability of each block, given that a disturbance acts in one of them."""
-    parts = np.exp(np.array(nats) - np.max(nats))
-    parts /= np.sum(parts)
-    return {block: float(p) for block, p in zip(blocks, parts, strict=True) if p > _HARDLY}
+    shares = np.exp(np.array(nats) - np.logaddexp.reduce(nats))
+    return {block: float(p) for block, p in zip(blocks, shares, strict=True) if p > _HARDLY}
 
 
 def innovation_noise(problem: EffectProblem) -> FloatArray:
@@ -66,12 +65,12 @@ def innovation_noise(problem: EffectProblem) -> FloatArray:
     return np.ones(len(problem.channels)) if problem.knows_the_noise else problem.instruments
 
 
-def of_a_right_model(size: float) -> float:
+def if_right(size: float) -> float:
     """Return the log density, nats, of a residual's size where the model is right."""
     return _log_normal(size, _RIGHT)
 
 
-def of_one_that_lacks_a_law(size: float) -> float:
+def if_lacking(size: float) -> float:
     """Return the log density, nats, of a residual's size where the model lacks a law."""
     return _log_normal(size, _LACKING)
 
