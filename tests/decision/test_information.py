@@ -107,9 +107,8 @@ def test_the_band_of_the_response_must_be_within_the_tolerance() -> None:
 def test_a_weak_parameter_that_moves_no_prediction_holds_nobody_up() -> None:
     weak = estimate(THETA * [1, 1, 1, 1e-3, 1, 1, 1, 1], std_percent=1.0)
     verdict = flight_test(campaign([weak] * 3), PLAN)
-    interval = next(line for line in verdict.evidence if "Z_δe" in line)
     assert verdict.decision == "stop"
-    assert "Z_δe 0.0007 ± 0.0076" in interval  # eleven times its value
+    assert verdict.evidence[-1] == "judged by the response alone: Z_q, Z_δe"
 
 
 def test_a_named_parameter_must_be_within_its_own_tolerance() -> None:

@@ -19,12 +19,13 @@ from advisor.report.text import AnalysisText
 from advisor.tui.panes.gap import answer_rows
 from advisor.tui.settings import Settings
 from advisor.words.digits import with_half
-from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import PARAMETERS as QUANTITIES
 from tests.gap.test_report_screen import EVIDENCE, diagnosis
 from tests.report.conftest import Reported
 from tests.tui.stage import stage
 
+HALF = 1.959963984540054
+"""Half of a 95 % interval, in standard deviations."""
 pytestmark = pytest.mark.xdist_group("report")
 
 Named = Iterator[tuple[str, str]]
@@ -44,7 +45,7 @@ def of_the_document(reported: Reported) -> Named:
     for name in PARAMETERS:
         entry = reported.analysis["model"][name]
         factor = degrees(1.0) if name in ("Z_0", "M_0") else 1.0
-        yield QUANTITIES[name].symbol, with_half(factor * entry["value"], factor * NORMAL_95 * entry["std"])
+        yield QUANTITIES[name].symbol, with_half(factor * entry["value"], factor * HALF * entry["std"])
     speed = reported.analysis["model"]["reference_airspeed_m_s"]
     yield "air speed of the derivatives", f"{speed:.1f}"
     yield "decision", reported.analysis["flight_test"]["sentence"]
