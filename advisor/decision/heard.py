@@ -7,7 +7,7 @@ crew has heard stays. The faces also show the criterion by the newest estimates.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from advisor.decision.verdict import FlightTestVerdict, RuleProgress
+from advisor.decision.verdict import FlightTestVerdict, Remaining, RuleProgress
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,6 +20,8 @@ class Heard:
     """Rules whose criterion held."""
     usable: frozenset[int] = frozenset()
     """Positions of the usable manoeuvres among those flown."""
+    remaining: Remaining | None = None
+    """Forecast that was spoken."""
 
     @classmethod
     def of(cls, verdict: FlightTestVerdict, usable: Sequence[int] = ()) -> "Heard":
@@ -29,6 +31,7 @@ class Heard:
             {rule: one.now_percent for rule, one in rules},
             frozenset(rule for rule, one in rules if one.holds),
             frozenset(usable),
+            verdict.next.remaining if verdict.next is not None else None,
         )
 
 
@@ -55,3 +58,21 @@ def as_heard(found: RuleProgress, rule: str, heard: Sequence[Heard]) -> RuleProg
         stopped = flown if stopped is None and found.holds else stopped
     told = tuple(one.percent.get(rule) for one in heard)
     return replace(found, stopped_at=stopped, history_percent=(*told, *found.hindsight_percent[n:]))
+
+
+def spoken_after(before: Heard | None, found: Remaining | None) -> Remaining | None:
+    """Return a forecast; None where it is further from the last one than the last one's own band.
+
+    A forecast that jumps foretells nothing. The next one is spoken again.
+
+    Parameters
+    ----------
+    before
+        What was heard after the manoeuvre before the newest.
+    """
+    last = before.remaining if before is not None else None
+    if found is None or last is None or last.median is None or last.p90 is None:
+        return found
+    if found.median is None:
+        return None
+    return found if abs(found.median - (last.median - 1)) <= last.p90 - last.median else None

@@ -11,7 +11,7 @@ from advisor.decision.advice import next_input
 from advisor.decision.change import find_change
 from advisor.decision.course import CriterionCourse
 from advisor.decision.evidence import evidence, sentence
-from advisor.decision.heard import Heard, as_heard, first_stop
+from advisor.decision.heard import Heard, as_heard, first_stop, spoken_after
 from advisor.decision.history import CandidateManeuver, estimates_of, nothing_tested, usable_ones
 from advisor.decision.judge import accepted_estimates, results_of
 from advisor.decision.scatter import scatter_percent, scattered_most, window
@@ -66,6 +66,8 @@ def flight_test(
     elif known is not None:
         by_information = plan.rule == "information"
         said = sentence(known, stop) if by_information else _scatter_sentence(history, plan, criterion, stop)
+    following = next_input(history, replace(aircraft or Aircraft(), campaign=plan), stop, course)
+    before = next(iter(heard[len(history) - 2 : len(history) - 1]), None) if len(history) > 1 else None
     return FlightTestVerdict(
         rule=plan.rule,
         decision="stop" if stop else "continue",
@@ -74,7 +76,7 @@ def flight_test(
         limit_percent=chosen.limit_percent,
         stopped_at=chosen.stopped_at,
         by_rule=by_rule,
-        next=next_input(history, replace(aircraft or Aircraft(), campaign=plan), stop, course),
+        next=following and replace(following, remaining=spoken_after(before, following.remaining)),
         warnings=warnings(history, chosen, change, course),
         evidence=evidence(known) if known else (),
     )

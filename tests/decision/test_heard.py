@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import CampaignPlan
-from advisor.decision.heard import Heard
+from advisor.decision.heard import Heard, spoken_after
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.stopping import flight_test
-from advisor.decision.verdict import Reason
+from advisor.decision.verdict import Reason, Remaining
 from tests.decision.campaigns import THETA, estimate, with_change
 
 PLAN = CampaignPlan(rule="continuous")
@@ -72,3 +72,18 @@ def test_a_stop_does_not_rest_on_a_manoeuvre_that_no_longer_counts() -> None:
     refused = replace(AGREEING[2], reasons=(Reason("clock", "the clock leapt", 1.0, 0.0),))
     verdict = flight_test([*AGREEING[:2], refused], PLAN, heard=heard_so_far(AGREEING))
     assert verdict.decision == "continue"
+
+
+@pytest.mark.parametrize(
+    ("last", "now", "is_spoken"),
+    [((5, 8), (4, 6), True), ((5, 8), (7, 9), True), ((5, 8), (8, 12), False), ((5, 8), (None, None), False),
+     ((1, 1), (1, 2), False), ((None, None), (7, 9), True)],
+)  # fmt: skip
+def test_a_forecast_that_moves_by_more_than_its_band_is_not_spoken(last, now, is_spoken) -> None:
+    before = replace(NOTHING, remaining=Remaining(*last))
+    assert spoken_after(before, Remaining(*now)) == (Remaining(*now) if is_spoken else None)
+
+
+def test_the_first_forecast_is_spoken() -> None:
+    assert spoken_after(None, Remaining(14, 20)) == Remaining(14, 20)
+    assert spoken_after(NOTHING, Remaining(14, 20)) == Remaining(14, 20)
