@@ -218,6 +218,12 @@ def test_where_nothing_states_an_output_that_is_said_and_not_that_nothing_was_fl
     assert line.startswith(said)
 
 
-def test_outputs_of_the_file_need_no_parameters(both):
+@pytest.fixture(scope="module")
+def by_the_file(both):
+    """Return the lateral state of a log without parameters, by outputs of the aircraft file."""
     told = Aircraft(aileron=SideControl(output=1, lag_s=0.0, delay_s=0.0), rudder=SideControl(output=4))
-    assert len(without_parameters(both, told).maneuvers) == 2
+    return without_parameters(both, told)
+
+
+def test_outputs_of_the_file_need_no_parameters(by_the_file):
+    assert len(by_the_file.maneuvers) == 2
