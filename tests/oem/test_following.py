@@ -62,14 +62,19 @@ def test_errors_shrink_while_the_manoeuvre_is_flown():
     assert np.all(late.std_cr < early.std_cr)
 
 
-def test_an_overdamped_aircraft_with_unknown_servo_gets_a_reason_instead_of_numbers():
-    sluggish = np.array([0.05, -12.0, 0.0, 0.5, 0.3, -20.0, -25.0, -100.0])
-    flight = flown(sluggish, unit_s=0.4, noise=0.05, length_s=9.0)
-    unknown = estimate(flight, Aircraft())
+@pytest.fixture(scope="module")
+def sluggish():
+    """Return the estimates of an overdamped aircraft with an unknown and with a known servo."""
+    theta = np.array([0.05, -12.0, 0.0, 0.5, 0.3, -20.0, -25.0, -100.0])
+    flight = flown(theta, unit_s=0.4, noise=0.05, length_s=9.0)
+    return estimate(flight, Aircraft()), estimate(flight, AIRCRAFT)
+
+
+def test_an_overdamped_aircraft_with_unknown_servo_gets_a_reason_instead_of_numbers(sluggish):
+    unknown, known = sluggish
     assert {"M_alpha", "M_delta_e"} <= set(unknown.not_identifiable)
     assert "elevator.lag_s" in unknown.not_identifiable["M_alpha"]
     assert min(fit.r2 for fit in unknown.fits[0].values()) > 0.99
-    known = estimate(flight, AIRCRAFT)
     assert "M_delta_e" not in known.not_identifiable
 
 
