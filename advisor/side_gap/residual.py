@@ -78,5 +78,6 @@ def _white(fit: Fit) -> FloatArray:
             np.diff(fit.residual[(fit.assembly.channel == k) & (fit.assembly.owner == m)], 2)
             for m in range(fit.assembly.maneuvers)
         ]
-        noise[k] = max(float(np.sqrt(np.mean(np.concatenate(parts) ** 2) / 6.0)), FLOOR[k])
+        second = np.concatenate(parts)
+        noise[k] = max(float(np.sqrt(np.sum(second**2) / max(6.0 * len(second), 1.0))), FLOOR[k])
     return noise
