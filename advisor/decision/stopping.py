@@ -67,7 +67,7 @@ def flight_test(
         by_information = plan.rule == "information"
         said = sentence(known, stop) if by_information else _scatter_sentence(history, plan, criterion, stop)
     following = next_input(history, replace(aircraft or Aircraft(), campaign=plan), stop, course)
-    before = next(iter(heard[len(history) - 2 : len(history) - 1]), None) if len(history) > 1 else None
+    before = heard[len(history) - 2] if 1 < len(history) <= len(heard) + 1 else None
     return FlightTestVerdict(
         rule=plan.rule,
         decision="stop" if stop else "continue",

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import CampaignPlan
+from advisor.decision import stopping
 from advisor.decision.heard import Heard, spoken_after
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.stopping import flight_test
-from advisor.decision.verdict import Reason, Remaining
+from advisor.decision.verdict import NextInput, Reason, Remaining
 from tests.decision.campaigns import THETA, estimate, with_change
 
 PLAN = CampaignPlan(rule="continuous")
@@ -87,3 +88,15 @@ def test_a_forecast_that_moves_by_more_than_its_band_is_not_spoken(last, now, is
 def test_the_first_forecast_is_spoken() -> None:
     assert spoken_after(None, Remaining(14, 20)) == Remaining(14, 20)
     assert spoken_after(NOTHING, Remaining(14, 20)) == Remaining(14, 20)
+
+
+@pytest.mark.parametrize("again", [(), (replace(NOTHING, remaining=Remaining(1, 9)),)])
+def test_a_forecast_is_compared_with_that_after_the_manoeuvre_before(monkeypatch, again) -> None:
+    """What was heard after the newest manoeuvre is not the one before, where all is decided once more."""
+    monkeypatch.setattr(stopping, "next_input", lambda *_: NextInput("next: 3-2-1-1", Remaining(3, 5)))
+    spoken = []
+    for last in (Remaining(40, 41), Remaining(4, 6)):
+        heard = [replace(NOTHING, remaining=last), *again]
+        following = flight_test(AGREEING[:2], PLAN, heard=heard).next
+        spoken.append(following.remaining if following is not None else "no advice")
+    assert spoken == [None, Remaining(3, 5)]

@@ -94,7 +94,7 @@ def test_a_disturbance_is_found_in_its_block(case, flight, block):
 def test_white_noise_leaves_no_residual(case, flight):
     fit, _, _ = flight
     still = with_residual(fit, np.zeros(len(fit.fitted)))
-    assert residual_of(still, case.flown, 1.0).whole.size < 0.5
+    assert residual_of(still, case.flown, 1.0).whole.size < 0.05
 
 
 RIGHT = Beside(Residual(0.5, {"rolling_moment": 1.0}), 0.5)
