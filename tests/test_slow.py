@@ -22,13 +22,21 @@ def test_each_line_is_the_beginning_of_a_test_that_exists(line: str) -> None:
     assert not name or f"def {name}(" in (ROOT / path).read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize(("taken_s", "fails"), [(3.9, False), (4.1, True)])
-def test_a_test_that_takes_twice_as_long_fails(
-    taken_s: float, fails: bool, request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(
+    ("taken_s", "slowness", "fails"),
+    [(3.9, 1.0, False), (4.1, 1.0, True), (8.1, 2.1, False), (8.2, 2.0, True)],
+)
+def test_a_test_that_takes_twice_as_long_on_a_quiet_core_fails(
+    taken_s: float,
+    slowness: float,
+    fails: bool,
+    request: pytest.FixtureRequest,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     times = iter([10.0, 10.0 + taken_s])
     with monkeypatch.context() as patch:
         patch.setattr(conftest, "processor_time_s", lambda: next(times))
+        patch.setattr(conftest, "slowness", lambda: slowness)
         running = conftest.pytest_runtest_call(request.node)
         next(running)
         with pytest.raises(pytest.fail.Exception if fails else StopIteration) as ended:

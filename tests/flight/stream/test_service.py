@@ -1,6 +1,5 @@
 """NO DATA: what arrives at present is judged, at any time of the flight, and told once."""
 
-from functools import cache
 from itertools import pairwise
 
 import numpy as np
@@ -39,7 +38,7 @@ def send(wire, since_s, until_s, rate_hz, boot_s=50.0):
         heartbeat(wire, t + 4e-4)
 
 
-@cache
+@pytest.fixture(scope="module")
 def slow_for_twenty_seconds():
     """A flight that is slow for 20 s after its manoeuvre, and what was told of it."""
     wire = Wire()
@@ -65,8 +64,10 @@ def test_a_slow_link_without_parameters_is_told_within_5_s_with_all_that_is_wron
     assert all(problem.fix for problem in event.problems)
 
 
-def test_a_link_that_becomes_slow_after_a_manoeuvre_is_told_within_5_s_and_told_once_when_it_serves_again():
-    wire, ((slow_s, slow), (again_s, again)) = slow_for_twenty_seconds()
+def test_a_link_that_becomes_slow_after_a_manoeuvre_is_told_within_5_s_and_told_once_when_it_serves_again(
+    slow_for_twenty_seconds,
+):
+    wire, ((slow_s, slow), (again_s, again)) = slow_for_twenty_seconds
     assert isinstance(slow, NoData)
     assert slow_s - (START_S + 20.0) < SOON_S
     assert {problem.code for problem in slow.problems} == {"rate"}
@@ -146,8 +147,8 @@ def test_an_angle_that_only_flight_can_give_is_missed_in_flight_alone(over_groun
     assert found == codes
 
 
-def test_a_log_tells_the_same_as_a_link_however_its_messages_are_batched():
-    wire, by_message = slow_for_twenty_seconds()
+def test_a_log_tells_the_same_as_a_link_however_its_messages_are_batched(slow_for_twenty_seconds):
+    wire, by_message = slow_for_twenty_seconds
     rows = list(range(len(wire)))
     live = [event for _, event in by_message]
     for size in (37, 501, len(rows)):
