@@ -13,10 +13,11 @@ import advisor as library
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
 from advisor.aircraft.reference import PARAMETERS
+from advisor.campaign.state import CampaignState
 from advisor.gap.document import gap_document
 from advisor.oem.found import with_found
 from tests.conftest import Advisor
-from tests.flights import FOUR, SHIPPED, recorded
+from tests.flights import SHIPPED, TWO, recorded
 
 ROOT = Path(__file__).parents[1]
 KNOWN = Aircraft(elevator=Elevator(lag_s=0.02))
@@ -24,9 +25,10 @@ KNOWN = Aircraft(elevator=Elevator(lag_s=0.02))
 
 @pytest.fixture(scope="module")
 def flight() -> library.Flight:
-    return library.read(recorded("uav", 1.0, maneuvers=FOUR), KNOWN)
+    return library.read(recorded("uav", 1.0, maneuvers=TWO), KNOWN)
 
 
+@pytest.mark.study
 def test_the_example_of_the_page_runs_in_the_folder_of_the_project(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -63,32 +65,39 @@ def test_importing_the_library_loads_nothing_heavy() -> None:
     assert run.stdout == "[]\n"
 
 
+@pytest.fixture(scope="module")
+def judged(flight: library.Flight) -> CampaignState:
+    return library.judge(flight)
+
+
+@pytest.mark.usefixtures("recorded_analyses")
 def test_find_gives_the_manoeuvres_that_analyze_lists(flight: library.Flight, advisor: Advisor) -> None:
     told = json.loads(advisor("analyze", flight.log, "--json").stdout)["maneuvers"]
     assert [m.span.start_s for m in library.find(flight)] == [m["start_boot_s"] for m in told]
 
 
-def test_judge_gives_the_numbers_of_analyze(flight: library.Flight, advisor: Advisor, tmp_path: Path) -> None:
+@pytest.mark.usefixtures("recorded_analyses")
+def test_judge_gives_the_numbers_of_analyze(
+    flight: library.Flight, judged: CampaignState, advisor: Advisor, tmp_path: Path
+) -> None:
     aircraft = tmp_path / "aircraft.yaml"
     aircraft.write_text("elevator: {lag_s: 0.02}\n")
     told = json.loads(advisor("analyze", flight.log, "--aircraft", aircraft, "--json").stdout)
-    state = library.judge(flight)
-    assert [m.verdict.sentence for m in state.maneuvers] == [m["sentence"] for m in told["maneuvers"]]
-    assert state.flight_test.sentence == told["flight_test"]["sentence"]
-    assert state.model is not None
-    values = {name: state.model.value(name) for name in PARAMETERS}
+    assert [m.verdict.sentence for m in judged.maneuvers] == [m["sentence"] for m in told["maneuvers"]]
+    assert judged.flight_test.sentence == told["flight_test"]["sentence"]
+    assert judged.model is not None
+    values = {name: judged.model.value(name) for name in PARAMETERS}
     assert values == {name: told["model"][name]["value"] for name in PARAMETERS}
     assert library.read(flight.log, aircraft).aircraft == KNOWN
 
 
 def test_with_the_instruments_of_all_manoeuvres_estimate_gives_what_judge_has_for_each(
-    flight: library.Flight,
+    flight: library.Flight, judged: CampaignState
 ) -> None:
-    state = library.judge(flight)
-    assert state.model is not None
-    assert state.model.found is not None
-    as_told = with_found(flight.aircraft, state.model.found)
-    for maneuver, known in zip(library.find(flight), state.maneuvers, strict=True):
+    assert judged.model is not None
+    assert judged.model.found is not None
+    as_told = with_found(flight.aircraft, judged.model.found)
+    for maneuver, known in zip(library.find(flight), judged.maneuvers, strict=True):
         found = library.estimate(maneuver, as_told)
         assert isinstance(found, library.Estimate)
         assert isinstance(known.estimate, library.Estimate)
@@ -97,12 +106,13 @@ def test_with_the_instruments_of_all_manoeuvres_estimate_gives_what_judge_has_fo
 
 def test_estimate_takes_several_manoeuvres_together(flight: library.Flight) -> None:
     maneuvers = library.find(flight)
-    one, four = library.estimate(maneuvers[0], KNOWN), library.estimate(maneuvers, KNOWN)
+    one, both = library.estimate(maneuvers[0], KNOWN), library.estimate(maneuvers, KNOWN)
     assert isinstance(one, library.Estimate)
-    assert isinstance(four, library.Estimate)
-    assert (len(one.fits), len(four.fits)) == (1, 4)
+    assert isinstance(both, library.Estimate)
+    assert (len(one.fits), len(both.fits)) == (1, 2)
 
 
+@pytest.mark.study
 def test_diagnose_gives_the_verdict_of_gap(flight: library.Flight, advisor: Advisor, tmp_path: Path) -> None:
     aircraft = tmp_path / "aircraft.yaml"
     aircraft.write_text("elevator: {lag_s: 0.02}\n")

@@ -27,6 +27,16 @@ def analyzed(log: Path, *options: str) -> dict[str, Any]:
     return document
 
 
+@pytest.fixture(scope="module")
+def uav(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What is known of the aircraft that ArduPilot flew."""
+    aircraft = tmp_path_factory.mktemp("flown") / "uav.yaml"
+    aircraft.write_text(
+        "elevator: {output: 2, calibration: [[1000, 25.0], [1500, 0.0], [2000, -25.0]], lag_s: 0.14}\n"
+    )
+    return aircraft
+
+
 def test_without_noise_every_parameter_of_the_linear_aircraft_comes_back_within_a_thousandth() -> None:
     document = analyzed(recorded("linear", 0.0, maneuvers=TWO))
     for name, true in truth("linear").items():
@@ -63,8 +73,8 @@ def test_the_nonlinear_aircraft_gives_its_own_linearisation_within_5_percent(par
     assert model[parameter]["value"] == pytest.approx(truth("uav")[parameter], rel=0.05)
 
 
-def test_a_flight_that_nobody_here_simulated_gives_seven_judged_manoeuvres_and_a_model() -> None:
-    document = analyzed(SHIPPED / "arduplane-calm.tlog")
+def test_a_flight_that_nobody_here_simulated_gives_seven_judged_manoeuvres_and_a_model(uav: Path) -> None:
+    document = analyzed(SHIPPED / "arduplane-calm.tlog", "--aircraft", str(uav))
     flown = [82.28, 113.34, 136.86, 162.60, 188.08, 208.04, 236.32]
     assert [m["start_boot_s"] for m in document["maneuvers"]] == pytest.approx(flown, abs=1.0)
     assert document["log"]["channels"]["alpha"]["provenance"] == "derived"
@@ -72,12 +82,8 @@ def test_a_flight_that_nobody_here_simulated_gives_seven_judged_manoeuvres_and_a
     assert document["model"]["M_delta_e"]["value"] < 0.0 > document["model"]["M_alpha"]["value"]
 
 
-def test_on_a_real_autopilot_the_default_rule_says_stop_within_seven_manoeuvres(tmp_path: Path) -> None:
-    aircraft = tmp_path / "uav.yaml"
-    aircraft.write_text(
-        "elevator: {output: 2, calibration: [[1000, 25.0], [1500, 0.0], [2000, -25.0]], lag_s: 0.14}\n"
-    )
-    flight_test = analyzed(SHIPPED / "arduplane-calm.tlog", "--aircraft", str(aircraft))["flight_test"]
+def test_on_a_real_autopilot_the_default_rule_says_stop_within_seven_manoeuvres(uav: Path) -> None:
+    flight_test = analyzed(SHIPPED / "arduplane-calm.tlog", "--aircraft", str(uav))["flight_test"]
     assert flight_test["rule"] == "information"
     assert flight_test["decision"] == "stop"
     assert flight_test["stopped_at"] <= 7

@@ -2,6 +2,7 @@
 
 import json
 import shutil
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,7 @@ from advisor.analysis.marks_file import read_by_hand, write_by_hand
 from advisor.campaign.campaign import Campaign
 from advisor.campaign.hand_decisions import NOTHING, ByHand, Remark
 from advisor.campaign.state import JudgedManeuver
+from advisor.flight.maneuvers.maneuver import Span
 from advisor.flight.maneuvers.marks import Mark
 from advisor.mavlink.logs.logs import open_log
 from advisor.mavlink.logs.tlog import read_tlog
@@ -22,6 +24,8 @@ from sim.record import record
 from sim.scenario import Noise, Scenario
 from tests.conftest import Advisor
 from tests.flights import TWO, recorded
+
+pytestmark = pytest.mark.usefixtures("recorded_analyses")
 
 
 @pytest.fixture
@@ -119,9 +123,17 @@ def test_a_mark_in_one_of_several_logs_belongs_into_the_file_beside_it(advisor: 
     assert "LOG.maneuvers.yaml" in result.stderr
 
 
-def decisions(log: Path) -> ByHand:
+@cache
+def spans() -> tuple[Span, Span]:
+    """Where the two manoeuvres lie without marks."""
+    campaign = flown(recorded("linear", 1.0, maneuvers=TWO))
+    first, second = (judged.maneuver.span for judged in campaign.state.maneuvers)
+    return first, second
+
+
+def decisions() -> ByHand:
     """A mark, an exclusion and a note for the two manoeuvres."""
-    first, second = (judged.maneuver.span for judged in flown(log).state.maneuvers)
+    first, second = spans()
     return ByHand(
         marks=(Mark(first.start_s - 0.5, first.end_s, 0),),
         excluded=(Remark(second.start_s, "a gust"),),
@@ -131,7 +143,7 @@ def decisions(log: Path) -> ByHand:
 
 
 def test_analyze_reads_marks_exclusions_and_notes_beside_the_log(advisor: Advisor, log: Path) -> None:
-    write_by_hand(log, decisions(log))
+    write_by_hand(log, decisions())
     document = analyzed(advisor, log)
     first, second = document["maneuvers"]
     assert first["closed_by"] == "marked by hand"
@@ -143,21 +155,21 @@ def test_analyze_reads_marks_exclusions_and_notes_beside_the_log(advisor: Adviso
 
 
 def test_no_marks_leaves_them_out(advisor: Advisor, log: Path) -> None:
-    write_by_hand(log, decisions(log))
+    write_by_hand(log, decisions())
     first, second = analyzed(advisor, log, "--no-marks")["maneuvers"]
     assert (first["closed_by"], second["excluded_because"]) == ("mode change", None)
 
 
 def test_replay_reads_them(advisor: Advisor, log: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("HEADLESS", "1")
-    write_by_hand(log, decisions(log))
+    write_by_hand(log, decisions())
     told = advisor("replay", log, "--speed", "max").stdout
     assert "EXCLUDED" in told.upper()
     assert "a gust" in told
 
 
 def test_the_diagnosis_reads_them_and_says_what_is_left_out(log: Path) -> None:
-    write_by_hand(log, decisions(log))
+    write_by_hand(log, decisions())
     found = maneuvers_of([log], Aircraft(), by_hand=[read_by_hand(log)])
     assert [m.span.closed_by for m in found.maneuvers] == ["marked by hand"]
     assert "flight.tlog: manoeuvre 2 is excluded by hand: a gust." in found.notes
@@ -189,7 +201,7 @@ def numbers(judged: JudgedManeuver) -> list[object]:
 
 
 def test_decisions_made_in_flight_and_read_back_from_their_file_decide_the_same(log: Path) -> None:
-    begin_s, end_s = (s.span.start_s for s in (j.maneuver for j in flown(log).state.maneuvers))
+    begin_s, end_s = (span.start_s for span in spans())
     live, marked = Campaign(Aircraft(), settle=True), False
     for batch in read_tlog(log, chunk_bytes=20_000):
         live.feed(batch)

@@ -19,7 +19,7 @@ from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import estimate_jointly
 from advisor.oem.found import FoundInstruments, with_found
 from sim.scenario import Scenario
-from tests.flights import recorded
+from tests.flights import TWO, recorded
 
 NEWEST = 7
 """Manoeuvres that one estimate shares: those of a whole campaign of the paper."""
@@ -103,7 +103,7 @@ def test_the_newest_manoeuvres_alone_do_not_change_what_is_learnt() -> None:
 
 def test_reading_the_state_again_seeks_no_other_joint_estimate() -> None:
     campaign = Campaign(KNOWN)
-    for batch in open_log(recorded("linear", 1.0)):
+    for batch in open_log(recorded("linear", 1.0, maneuvers=TWO)):
         campaign.feed(batch)
     assert campaign.state.model is not None
     assert campaign.state.model is campaign.state.model

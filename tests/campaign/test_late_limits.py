@@ -18,6 +18,8 @@ from tests.flight.columns import Wire, fly, parameter
 
 ASSUMED, HEARD = Scale(), Scale(1000.0, 1520.0, 2000.0)
 PULSES = np.array([1500.0, 1600.0, 1950.0, 1050.0, 1500.0])
+STRETCH = 20
+"""Messages that arrive together: a tenth of a second."""
 TRIED = [("SERVO2_MIN", 1000.0), ("SERVO2_TRIM", 1510.0), ("SERVO2_MAX", 2000.0)]
 
 
@@ -75,8 +77,9 @@ def flown(late_s: Sequence[float], stated: Sequence[tuple[str, float]] = ()) -> 
     fly(wire, 1000.0, 50.0, [4.0, 16.0], 28.0)
     for at_s, (name, value) in zip(late_s, TRIED, strict=False):
         parameter(wire, 1000.0 + at_s, name, value)
-    for row in range(len(wire)):
-        campaign.feed(wire.columns([row]))
+    rows = range(len(wire))
+    for first in rows[::STRETCH]:
+        campaign.feed(wire.columns(list(rows[first : first + STRETCH])))
     campaign.finish()
     return campaign
 

@@ -41,7 +41,8 @@ def said(monkeypatch: pytest.MonkeyPatch) -> "Said":
     return call
 
 
-@pytest.mark.parametrize("encoding", ["ascii", "cp1252", "latin-1"])
+@pytest.mark.usefixtures("recorded_analyses")
+@pytest.mark.parametrize("encoding", ["ascii", "cp1252"])
 @pytest.mark.parametrize("command", COMMANDS)
 def test_a_command_prints_in_any_encoding(command: str, encoding: str, said: Said) -> None:
     code, out, err = said(encoding, *COMMANDS[command], flight())

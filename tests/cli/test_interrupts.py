@@ -110,7 +110,7 @@ def test_a_signal_that_the_shell_ignores_stays_ignored() -> None:
     code = (
         "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN); from advisor.start import main; main()"
     )
-    command = [sys.executable, "-c", code, "analyze", str(flight())]
+    command = [sys.executable, "-c", code, "doctor", str(flight())]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
         time.sleep(0.5)
         process.send_signal(signal.SIGINT)

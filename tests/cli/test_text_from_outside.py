@@ -36,6 +36,7 @@ def hostile(folder: Path) -> Path:
     return log
 
 
+@pytest.mark.usefixtures("recorded_analyses")
 @pytest.mark.parametrize("command", [["analyze"], ["analyze", "--all"], ["doctor"], ["replay"], ["gap"]])
 def test_no_control_character_of_a_log_reaches_the_terminal(
     command: list[str], advisor: Advisor, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

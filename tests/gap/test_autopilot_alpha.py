@@ -35,12 +35,14 @@ def alike():
     return diagnose(estimated(fly(Setup(maneuvers=6, seed=71))), Aircraft())
 
 
+@pytest.mark.study
 def test_the_lateness_of_an_autopilots_own_angle_of_attack_is_no_gap(alike):
     assert alike.kinematics.finding == "late"
     assert alike.verdict == "none"
     assert not any(c.present for c in alike.causes)
 
 
+@pytest.mark.study
 def test_what_one_imu_cannot_show_of_itself_is_said_to_be_unseen(alike):
     unseen = {u.effect: u.would_need for u in alike.cannot_see}
     hidden = [name for name, effect in EFFECTS.items() if effect.of_one_imu]

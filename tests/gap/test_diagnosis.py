@@ -38,12 +38,13 @@ def test_a_delay_is_named_sized_and_removed_on_manoeuvres_kept_out(delayed):
     assert "ms too early" in delayed.sentence
 
 
+@pytest.mark.study
 @pytest.mark.parametrize(
     ("effect", "changes"),
     [
-        pytest.param("alpha_lag", {"switches": {"vane_lag": 0.04}}, marks=pytest.mark.study),
-        pytest.param("accelerometer_skew", {"skew": {"a_z": 0.03}}, marks=pytest.mark.study),
-        pytest.param("nonlinear_pitching_moment", {"switches": {"cm_a2": -3.0}}, marks=pytest.mark.study),
+        ("alpha_lag", {"switches": {"vane_lag": 0.04}}),
+        ("accelerometer_skew", {"skew": {"a_z": 0.03}}),
+        ("nonlinear_pitching_moment", {"switches": {"cm_a2": -3.0}}),
         ("mass_change", {"mass_step": 0.15}),
     ],
 )
@@ -83,9 +84,7 @@ def booted_before(maneuver, seconds):
 
 
 @pytest.mark.study
-@pytest.mark.parametrize(
-    ("mass", "inertia_of_mass"), [(0.4, 0.6), pytest.param(-0.25, 0.4, marks=pytest.mark.study)]
-)
+@pytest.mark.parametrize(("mass", "inertia_of_mass"), [(0.4, 0.6), pytest.param(-0.25, 0.4)])
 def test_a_load_that_adds_less_to_the_inertia_than_to_the_mass_is_a_mass_and_no_ice(mass, inertia_of_mass):
     flown = Setup(maneuvers=6, mass_step=mass, inertia_of_mass=inertia_of_mass, noise=0.005, seed=11)
     found = diagnose(fly(flown), Aircraft())
@@ -106,7 +105,7 @@ def test_a_message_that_is_late_shifts_attitude_and_pitch_rate_together(late_s):
 
 
 @pytest.mark.study
-@pytest.mark.parametrize("scale", [0.12, pytest.param(-0.28, marks=pytest.mark.study)])
+@pytest.mark.parametrize("scale", [0.12, pytest.param(-0.28)])
 def test_a_scale_error_of_the_vane_is_not_taken_for_an_offset(scale):
     found = diagnose(fly(Setup(maneuvers=6, alpha_scale=scale, seed=5)), Aircraft())
     assert found.causes[0].effect == "alpha_scale"
@@ -114,6 +113,7 @@ def test_a_scale_error_of_the_vane_is_not_taken_for_an_offset(scale):
     assert not any(c.effect == "alpha_bias" for c in found.causes)
 
 
+@pytest.mark.study
 def test_nothing_is_named_when_nothing_is_there():
     found = diagnose(fly(Setup(maneuvers=6, coloured=0.8, seed=9, airframe=LIGHT_AIRCRAFT)), Aircraft())
     assert found.verdict == "none"
@@ -139,6 +139,7 @@ def test_a_name_that_explains_the_gap_with_the_files_own_numbers_is_likelier_tha
     assert found.causes[0].parameters["arm_m"].value == pytest.approx(-2.5, rel=0.05)
 
 
+@pytest.mark.study
 def test_wrong_numbers_in_the_file_are_told_from_missing_structure():
     wrong = Aircraft(model={**MODEL, "M_alpha": -25.0})
     found = diagnose(fly(Setup(maneuvers=6, seed=4)), wrong)
@@ -162,11 +163,11 @@ def test_what_fitted_numbers_do_does_not_pass_for_the_work_of_the_effect_beside_
     "wrong",
     [
         {"M_alpha": 37.0},
-        pytest.param({"M_delta_e": 52.0}, marks=pytest.mark.study),
-        pytest.param({"M_delta_e": 0.0}, marks=pytest.mark.study),
-        pytest.param({"M_delta_e": -0.9}, marks=pytest.mark.study),
-        pytest.param({"M_q": 9.0}, marks=pytest.mark.study),
-        pytest.param({"M_q": 40.0}, marks=pytest.mark.study),
+        pytest.param({"M_delta_e": 52.0}),
+        pytest.param({"M_delta_e": 0.0}),
+        pytest.param({"M_delta_e": -0.9}),
+        pytest.param({"M_q": 9.0}),
+        pytest.param({"M_q": 40.0}),
     ],
 )
 def test_a_sign_or_a_unit_that_is_wrong_in_the_file_does_not_hide_the_cause(wrong):
@@ -211,6 +212,7 @@ def test_a_faint_error_of_an_instrument_is_named_when_it_is_certain_in_still_air
     assert found.causes[0].parameters["scale"].value == pytest.approx(0.03, abs=0.01)
 
 
+@pytest.mark.study
 def test_of_two_effects_each_has_the_size_it_has_beside_the_other():
     setup = Setup(maneuvers=6, alpha_scale=0.19, skew={"a_z": 0.047}, seed=5)
     found = {c.effect: c.parameters for c in diagnose(fly(setup), Aircraft()).causes if c.present}

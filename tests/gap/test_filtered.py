@@ -31,6 +31,7 @@ def with_filter(setup, channel, late_s, shape):
     ]
 
 
+@pytest.mark.study
 @pytest.mark.parametrize("shape", [0.0, 0.25, 0.5])
 def test_a_filtered_output_is_what_another_code_makes_of_it_and_the_others_stay(shape):
     h, late = 0.005, 0.07
@@ -54,8 +55,8 @@ def test_without_a_lag_nothing_is_filtered():
     ("channel", "late_s", "shape", "block"),
     [
         ("q", 0.1, 0.5, "pitch_rate_sensor"),
-        pytest.param("theta", 0.16, 0.0, "attitude_sensor", marks=pytest.mark.study),
-        pytest.param("a_z", 0.1, 0.0, "accelerometer", marks=pytest.mark.study),
+        ("theta", 0.16, 0.0, "attitude_sensor"),
+        ("a_z", 0.1, 0.0, "accelerometer"),
     ],
 )
 def test_a_channel_behind_a_filter_is_unknown_in_its_instrument_and_not_merely_late(

@@ -55,6 +55,7 @@ def diagnosed(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path, Pat
     return flight, believed, improved
 
 
+@pytest.mark.study
 def test_the_improved_file_holds_the_effect_and_both_programs_read_it(
     diagnosed: tuple[Path, Path, Path],
 ) -> None:
@@ -63,6 +64,7 @@ def test_the_improved_file_holds_the_effect_and_both_programs_read_it(
     assert effects["transport_delay"]["delay_s"] == pytest.approx(0.06, abs=0.006)
 
 
+@pytest.mark.study
 def test_flying_the_recorded_inputs_through_the_improved_simulator_shrinks_the_gap(
     diagnosed: tuple[Path, Path, Path], tmp_path: Path
 ) -> None:

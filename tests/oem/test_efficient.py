@@ -77,6 +77,7 @@ def test_white_noise_is_weighed_as_output_error_does():
     assert weighing.misfit(found.residual, found.sensitivities) == pytest.approx(len(found.residual))
 
 
+@pytest.mark.study
 def test_coloured_noise_costs_a_third_less_than_with_output_error():
     errors = np.array(
         [

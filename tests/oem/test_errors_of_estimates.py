@@ -57,6 +57,7 @@ def test_the_coloured_product_is_that_with_the_full_matrix():
     np.testing.assert_allclose(product(rows, colour), rows.T @ gamma @ rows, rtol=1e-10)
 
 
+@pytest.mark.study
 def test_in_coloured_noise_errors_are_at_the_bound_and_only_corrected_intervals_hold_the_truth():
     row = study(60, 0.95, 1, seed=4)
     assert row.failed == 0

@@ -51,6 +51,7 @@ def campaign(flown: Campaign) -> Campaign:
     return deepcopy(flown)
 
 
+@pytest.mark.study
 def test_a_flight_followed_live_with_a_mark_and_its_recording_with_the_file_beside_it_give_one_result(
     tmp_path: Path,
 ) -> None:
@@ -97,13 +98,13 @@ def one_by_one(columns: list[Columns]) -> list[Columns]:
 
 
 def test_it_does_not_matter_how_the_stream_is_cut_into_batches() -> None:
-    log = recorded("linear", 1.0, maneuvers=TWO)
+    log = recorded("linear", 1.0, maneuvers=TWO[:1])
     columns = [piece for batch in open_log(log) for piece in batch]
     campaign = Campaign(Aircraft())
     for single in one_by_one(columns):
         campaign.feed([single])
     campaign.finish()
-    assert len(campaign.state.maneuvers) == 2
+    assert len(campaign.state.maneuvers) == 1
     assert facts(campaign.state) == facts(replayed(log).state)
 
 

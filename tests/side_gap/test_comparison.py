@@ -44,6 +44,7 @@ def flight():
     return maneuvers()
 
 
+@pytest.mark.study
 def test_the_flights_own_numbers_leave_no_gap(flight):
     found = compare_side(flight, replace(AIRCRAFT, model=TRUE))
     assert found.verdict == "none"

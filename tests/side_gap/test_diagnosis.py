@@ -118,6 +118,7 @@ def test_the_document_has_probabilities_that_sum_to_one_and_the_gain_on_unseen_m
     assert document["peaks"]["simulator"] == PEAKS
 
 
+@pytest.mark.study
 def test_a_gyro_that_reads_too_much_is_named_with_its_size():
     # About 8 s: the only whole diagnosis with an effect, from records to the answer.
     known = SideControl(lag_s=0.0, delay_s=0.0)

@@ -110,7 +110,9 @@ def test_a_key_of_an_earlier_version_is_refused_in_a_sentence(tmp_path):
         list(report(folder, answers, key_beside(folder)))
 
 
-@pytest.mark.parametrize("group", ["clean", "jsbsim", "outside", "two"])
+@pytest.mark.parametrize(
+    "group", ["outside", "two", *(pytest.param(g, marks=pytest.mark.study) for g in ("clean", "jsbsim"))]
+)
 def test_a_drawn_effect_is_visible_above_the_noise(group):
     case = drawn(group)
     assert case.gap >= SMALLEST_GAP

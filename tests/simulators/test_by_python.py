@@ -55,6 +55,7 @@ def test_a_module_that_does_not_exist_is_one_sentence_and_exit_code_2(capsys, mo
     assert "No module named 'nowhere_at_all'" in err
 
 
+@pytest.mark.study
 def test_the_command_writes_the_document_and_the_improved_aircraft_file(capsys, monkeypatch, tmp_path):
     out = tmp_path / "better.yaml"
     log: Path = recorded("uav", 1.0, maneuvers=FOUR)

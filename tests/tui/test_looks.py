@@ -18,7 +18,7 @@ from advisor.tui.themes import NAMES, THEMES
 from tests.tui import flights
 from tests.tui.stage import Stage, shown, stage
 
-SIZES = [(80, 24), (120, 40), (320, 90)]
+SIZES = [(80, 24), (320, 90)]
 NOTHING = replace(flights.state(0), vehicle=None, channels={}, notices=())
 
 

@@ -84,6 +84,7 @@ async def test_a_theme_that_was_changed_looks_as_one_that_was_there_from_the_sta
         assert await both_screens(here) == wanted
 
 
+@pytest.mark.study
 async def test_no_style_is_parsed_twice_for_a_theme(parsed: list[object]):
     async with stage(flights.state(3)) as here:
         everything = ("e", "question_mark", "escape", "ctrl+p", "escape", "p", "t")

@@ -1,5 +1,7 @@
 """The application on a real link: the bundled aircraft flies as a process of its own, over UDP."""
 
+import pytest
+
 from advisor.aircraft.aircraft import Aircraft
 from advisor.bundled.demo import Demonstration
 from advisor.campaign.campaign import Campaign
@@ -12,6 +14,7 @@ from advisor.tui.settings import Settings
 from tests.tui.stage import Stage
 
 
+@pytest.mark.study
 async def test_a_flight_over_a_real_link_is_followed_to_the_stop():
     flight = Demonstration("linear", speed=10.0, seed=1)
     source = LinkSource(flight, flight.over)

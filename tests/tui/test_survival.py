@@ -18,6 +18,7 @@ from tests.tui import elsewhere, flights
 from tests.tui.stage import stage
 
 
+@pytest.mark.study
 def test_a_process_that_is_killed_is_started_again_and_comes_to_the_same_manoeuvres():
     conductor = RemoteConductor(ConductorTask(elsewhere.traced, elsewhere.campaign, kept=ByHand))
     reports: list[SessionReport] = []

@@ -24,6 +24,7 @@ def browser() -> Iterator[Browser]:
         yield browser
 
 
+@pytest.mark.study
 def test_a_log_is_replayed_in_a_page_that_asks_nothing_of_another_host(
     browser: Browser, tmp_path: Path
 ) -> None:

@@ -173,6 +173,7 @@ def test_stored_ratio_is_the_difference_with_and_without_the_effect() -> None:
     assert stored.dynamic_ratios["q"] == pytest.approx(expected, rel=1e-6)
 
 
+@pytest.mark.study
 @pytest.mark.parametrize("name", EFFECTS)
 def test_every_effect_flies_and_is_seen(name: str, busy_flight: tuple[Experiment, Flown, Noise]) -> None:
     effect, (plain, flown, noise) = EFFECTS[name], busy_flight
@@ -235,6 +236,7 @@ def test_log_and_calibration_tell_the_command(quiet_case: Case) -> None:
     assert np.percentile(np.abs(told - true), 98.0) < 1.01 * case.experiment.link.resolution
 
 
+@pytest.mark.study
 def test_files_give_nothing_away(tmp_path: Path) -> None:
     folder = tmp_path / "set"
     write_set(folder, cases(2, 9))

@@ -14,6 +14,7 @@ ALONE = ("--workers", "1")
 """In this process."""
 
 
+@pytest.mark.study
 def test_following_the_advice_saves_manoeuvres() -> None:
     pairs = advised.pairs(5, seed=1, cases=[("twin jet", 10.0)])
     savings = advised.savings(pairs, [advised.fly(pair) for pair in pairs])

@@ -59,8 +59,8 @@ def test_the_generator_shares_only_records_and_protocol_with_anything_of_the_pro
 
 
 def test_a_seed_gives_the_same_bytes_again(quiet, tmp_path):
-    write_set(tmp_path / "cases", cases(2, 31, "none"))
-    for name in ("0001/flight.tlog", "0001/aircraft.yaml", "0002/flight.tlog"):
+    write_set(tmp_path / "cases", cases(1, 31, "none"))
+    for name in ("0001/flight.tlog", "0001/aircraft.yaml"):
         assert (tmp_path / "cases" / name).read_bytes() == (quiet / name).read_bytes()
 
 
@@ -104,12 +104,14 @@ def test_a_wrong_model_keeps_the_trim_of_the_first_manoeuvre():
     assert 2 <= len(set(off) - {"Z_0", "M_0"}) <= 4
 
 
+@pytest.mark.study
 def test_the_doctor_finds_the_telemetry_usable(quiet):
     case = quiet / "0001"
     answer = document("doctor", str(case / "flight.tlog"), "--aircraft", str(case / "aircraft.yaml"))
     assert answer["verdict"] in ("ready", "usable with limits")
 
 
+@pytest.mark.study
 def test_the_advisor_accepts_half_the_tests_and_finds_the_derivatives(quiet):
     for name, true in key(quiet).items():
         case = quiet / name
@@ -127,6 +129,7 @@ def test_the_aircraft_file_states_the_servo_that_is_flown(quiet):
         assert (stated["lag_s"] or 0.0) == pytest.approx(true["servo"]["lag_s"], rel=1e-4)
 
 
+@pytest.mark.study
 def test_the_truth_tells_that_an_autopilots_own_angle_of_attack_is_late():
     told = [truth(draw_case(Assignment("none", ()), 31, index)) for index in range(1, 9)]
     made = [one for one in told if "alpha_made_by_autopilot" in one["troubles"]]

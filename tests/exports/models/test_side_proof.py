@@ -21,12 +21,14 @@ def proof():
     return prove_side(compared, [replace(m, number=m.number + 3) for m in flown])
 
 
+@pytest.mark.study
 def test_wrong_numbers_that_some_manoeuvres_show_are_gone_on_the_others(proof):
     assert proof.maneuvers == (4, 5, 6)
     assert proof.before > 10.0
     assert proof.after < 0.5
 
 
+@pytest.mark.study
 def test_asked_again_the_improved_simulator_lacks_nothing(proof):
     assert proof.first == "parameters"
     assert proof.second == "none"

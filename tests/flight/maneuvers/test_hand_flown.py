@@ -108,10 +108,9 @@ def test_each_input_flown_in_fly_by_wire_is_told_of():
     assert spans(events), "a sharp input in a closed loop is identified"
 
 
-@pytest.mark.parametrize("aircraft", [pytest.param("uav", marks=pytest.mark.study), "light"])
-@pytest.mark.parametrize(
-    "gusts_m_s", [pytest.param(0.0, marks=pytest.mark.study), pytest.param(0.5, marks=pytest.mark.study), 1.0]
-)
+@pytest.mark.study
+@pytest.mark.parametrize("aircraft", ["uav", "light"])
+@pytest.mark.parametrize("gusts_m_s", [0.0, 0.5, 1.0])
 def test_twenty_minutes_of_ordinary_flying_hold_at_most_one_manoeuvre(aircraft, gusts_m_s):
     """Climbs, turns and changes of speed, all flown by the autopilot."""
     speeds = {"uav": (20.0, 24.0, 28.0), "light": (45.0, 55.0, 60.0)}[aircraft]

@@ -107,6 +107,7 @@ def frames_missing(advising: Advising, flight: Sequence[Record]) -> int:
     return sum(record.frame not in recorded for record in flight)
 
 
+@pytest.mark.study
 def test_each_process_may_die_once_and_no_verdict_is_missed(advising: Advising):
     flight = until(FLIGHT, 44.0)
     survives(advising, flight, 2, ["narrator", "screen", "keeper"], SPEED)
@@ -233,6 +234,7 @@ def test_a_full_disk_is_said_and_nothing_is_lost_when_there_is_room_again(advisi
     assert advising.end() == 130
 
 
+@pytest.mark.study
 def test_a_resumed_flight_test_keeps_its_connection_rule_and_decisions(advising: Advising):
     advising.start()
     fly(until(FLIGHT, 55.0), advising.port, 20.0, lambda now_s: None)

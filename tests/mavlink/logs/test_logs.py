@@ -29,7 +29,11 @@ def read(path: Path) -> list[object]:
     return list(one_by_one([column for columns in open_log(path) for column in columns]))
 
 
-@pytest.mark.parametrize("path", LOGS, ids=lambda path: path.name)
+@pytest.mark.parametrize(
+    "path",
+    [*LOGS[:2], *(pytest.param(p, marks=pytest.mark.study) for p in LOGS[2:])],
+    ids=lambda path: path.name,
+)
 def test_a_recorded_flight_reads_field_for_field_as_by_pymavlink(path: Path) -> None:
     columns = [column for batch in read_tlog(path) for column in batch]
     theirs = by_pymavlink(path)
