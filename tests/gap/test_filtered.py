@@ -31,7 +31,6 @@ def with_filter(setup, channel, late_s, shape):
     ]
 
 
-@pytest.mark.study
 @pytest.mark.parametrize("shape", [0.0, 0.25, 0.5])
 def test_a_filtered_output_is_what_another_code_makes_of_it_and_the_others_stay(shape):
     h, late = 0.005, 0.07
@@ -51,6 +50,7 @@ def test_without_a_lag_nothing_is_filtered():
     assert passed == pytest.approx(motion)
 
 
+@pytest.mark.study
 @pytest.mark.parametrize(
     ("channel", "late_s", "shape", "block"),
     [
