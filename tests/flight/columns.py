@@ -7,12 +7,16 @@ import numpy as np
 
 from advisor.flight.signals.messages import Columns
 
+Sent = tuple[float, int, str, int, int, Mapping[str, Any]]
+"""Arrival, place among the messages sent, name, system, component, fields."""
+
 
 class Wire:
     """Collects messages in their order of arrival and packs them into columns."""
 
     def __init__(self) -> None:
-        self._sent: list[tuple[float, int, str, int, int, Mapping[str, Any]]] = []
+        self._sent: list[Sent] = []
+        self._arrived: list[Sent] = []
 
     def send(self, message: str, at_s: float, /, system: int = 1, component: int = 1, **fields: Any) -> None:
         """Put one message on the wire; it arrives at ``at_s``."""
@@ -20,7 +24,7 @@ class Wire:
 
     def columns(self, rows: Sequence[int] | None = None) -> list[Columns]:
         """All messages, or the given places in the order of arrival, as one batch."""
-        arrived = sorted(self._sent, key=lambda message: message[:2])
+        arrived = self._in_order()
         chosen = range(len(arrived)) if rows is None else rows
         groups: dict[tuple[str, int, int], list[int]] = {}
         for i in chosen:
@@ -36,6 +40,12 @@ class Wire:
             )
             for (name, system, component), places in groups.items()
         ]
+
+    def _in_order(self) -> list[Sent]:
+        """All messages in the order of arrival, sorted once for the many pieces of one wire."""
+        if len(self._arrived) != len(self._sent):
+            self._arrived = sorted(self._sent, key=lambda message: message[:2])
+        return self._arrived
 
     def __len__(self) -> int:
         return len(self._sent)
