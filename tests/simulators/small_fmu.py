@@ -2,7 +2,9 @@
 
 import subprocess
 import zipfile
+from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import fmpy
 from fmpy.fmi2 import FMU2Model, FMU2Slave
@@ -30,21 +32,27 @@ def build(
 ) -> Path:
     """Return an FMU in ``folder``; ``platform`` names another folder of binaries than this computer's.
     Without its solver it ``exchanges`` its states."""
-    library = folder / f"ShortPeriod{fmpy.sharedLibraryExtension}"
-    source, rest = HERE / "short_period.c", folder / "rest.c"
-    rest.write_text(_rest(fmi, source.read_text()))
     flags = [*(["-DFMI3"] if fmi == 3 else []), *([] if fault is None else [f"-DFAULT={fault}"])]
     flags += [f"-D{name}={value}" for name, value in (("LAG", lag_s), ("RELAY", relay)) if value is not None]
-    subprocess.run(
-        ["cc", "-shared", "-fPIC", "-O1", *flags, f"-I{HEADERS}", source, rest, "-o", library], check=True
-    )
     file = folder / "short_period.fmu"
     place = platform or (fmpy.platform if fmi == 2 else fmpy.platform_tuple)
     with zipfile.ZipFile(file, "w") as archive:
         archive.writestr("modelDescription.xml", described(fmi, exchanges))
-        suffix = ".dylib" if "darwin" in place else library.suffix
-        archive.write(library, f"binaries/{place}/ShortPeriod{suffix}")
+        suffix = ".dylib" if "darwin" in place else fmpy.sharedLibraryExtension
+        archive.writestr(f"binaries/{place}/ShortPeriod{suffix}", _library(fmi, *flags))
     return file
+
+
+@cache
+def _library(fmi: int, *flags: str) -> bytes:
+    """The shared library that the C source makes with these flags, compiled once a process."""
+    with TemporaryDirectory() as folder:
+        library = Path(folder) / "library"
+        source, rest = HERE / "short_period.c", Path(folder) / "rest.c"
+        rest.write_text(_rest(fmi, source.read_text()))
+        made = ["cc", "-shared", "-fPIC", "-O1", *flags, f"-I{HEADERS}", source, rest, "-o", library]
+        subprocess.run(made, check=True)
+        return library.read_bytes()
 
 
 def described(fmi: int, exchanges: bool = False) -> str:
