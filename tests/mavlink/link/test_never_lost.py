@@ -156,6 +156,7 @@ def test_the_link_goes_on_recording_when_the_terminal_goes_away(advising: Advisi
     wait_until(lambda: len(records_of(advising.recording)) == len(flight), 5.0)
 
 
+@pytest.mark.study
 def test_what_a_power_cut_leaves_of_a_recording_ends_less_than_a_second_before_it(advising: Advising):
     flight = until(FLIGHT, 8.0)
     advising.start()
