@@ -27,7 +27,7 @@ os.environ["PYTHONPATH"] = os.pathsep.join(
     [str(Path(__file__).parents[1]), *filter(None, [os.environ.get("PYTHONPATH")])]
 )
 
-MOST_DIAGNOSES = 30
+MOST_DIAGNOSES = 10
 """Whole diagnoses of flights that all tests without the mark ``study`` may make, seconds each.
 
 A gap of several manoeuvres takes two: the second search leaves out the manoeuvres that measure the shrink."""
