@@ -22,6 +22,7 @@ from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.signals.messages import FloatArray
 from advisor.oem.colour import moved
 from advisor.oem.covariance import DIFFERENCE, Coloured, coloured, widening
+from advisor.oem.model_error import model_error
 from advisor.oem.solution import Solution
 from advisor.oem.weighing import Weighing
 
@@ -45,6 +46,8 @@ class Step:
     """(8,) change of the parameters."""
     covariance: FloatArray
     """(8, 8) covariance of the parameters after the step, widened for the uncertainty of the noise model."""
+    systematic: FloatArray
+    """(8, 8) covariance of the parameters after the step by dynamics that the model lacks."""
     gain: float
     """Largest relative decrease of a parameter's variance."""
     chances: FloatArray
@@ -63,7 +66,12 @@ def efficient(solution: Solution) -> Solution:
     step = efficient_step(solution)
     if step is None or step.gain < GAIN or np.min(step.chances) < CHANCE / len(step.chances):
         return solution
-    return replace(solution, theta=solution.theta + step.change, covariance=step.covariance)
+    return replace(
+        solution,
+        theta=solution.theta + step.change,
+        covariance=step.covariance,
+        systematic=step.systematic,
+    )
 
 
 def efficient_step(solution: Solution) -> Step | None:
@@ -83,10 +91,14 @@ def efficient_step(solution: Solution) -> Step | None:
     covariance = coloured(assembly, rows, wide) + best.prior_covariance
     pulled = best.prior_rows - usual.prior_rows
     apart = coloured(assembly, rows - plain, exact) + pulled.T @ pulled
+    systematic = model_error(
+        assembly, solution.fitted, solution.residual, solution.sensitivities, solution.extra, colours, rows
+    )
     long = _chance(change, apart, np.sqrt(np.diag(after)))
     return Step(
         change=change,
         covariance=covariance + 2.0 * _unsure(solution, change),
+        systematic=systematic,
         gain=float(np.max(1.0 - np.diag(after) / np.diag(before))),
         chances=np.array([*_remembering(solution, weighing), long]),
     )

@@ -231,7 +231,9 @@ def report(
     """
     best = filtered or (solution if quick else efficient(solution))
     source = filtered or solution
-    best = replace(best, covariance=replace(source, covariance=best.covariance).widened)
+    best = replace(
+        best, covariance=replace(source, covariance=best.covariance, systematic=best.systematic).widened
+    )
     airspeed_m_s = solution.problem.reference_airspeed_m_s or prepared.airspeed_m_s
     given = found_of(aircraft)
     common = np.zeros((N, N)) if given is None else given.covariance_at(airspeed_m_s)

@@ -18,6 +18,7 @@ from advisor.oem.covariance import (
 )
 from advisor.oem.extra import Extra
 from advisor.oem.gauss_newton import Optimum
+from advisor.oem.model_error import model_error
 from advisor.oem.rows import Laid
 
 
@@ -38,6 +39,8 @@ class Evaluated:
     contributions: FloatArray
     """(m, p + k) contribution of each manoeuvre's residuals to each parameter; the contributions sum to
     zero."""
+    systematic: FloatArray
+    """(p + k, p + k) covariance by dynamics that the model lacks, alike in all manoeuvres."""
     extra: Extra | None = None
     """The e >= k additional parameters, such as the times of edges."""
 
@@ -52,9 +55,16 @@ class Evaluated:
         return self.optimum.sensitivities
 
     @property
-    def widened(self) -> FloatArray:
+    def scattered(self) -> FloatArray:
         """(p + k, p + k) covariance that contains the scatter between the manoeuvres."""
         return widened_by_scatter(self.covariance, self.contributions[:, : len(self.covariance)])
+
+    @property
+    def widened(self) -> FloatArray:
+        """(p + k, p + k) covariance that also contains what the manoeuvres have in common and the model
+        lacks."""
+        size = len(self.covariance)
+        return np.asarray(self.scattered + self.systematic[:size, :size])
 
 
 def errors_of(
@@ -65,6 +75,7 @@ def errors_of(
     extra: Extra | None,
     prior: FloatArray,
     *,
+    fitted: FloatArray | None = None,
     prior_share: float | None = None,
     noise: Coloured | None = None,
     kept: int | None = None,
@@ -81,6 +92,8 @@ def errors_of(
         (outputs,) standard deviation of each output by which the fit weighs it.
     extra, prior
         Arguments of ``covariance.influence``.
+    fitted
+        (N,) outputs of the model. None: rows are innovations, in which common dynamics do not stand out.
     prior_share
         Share by which white noise weighs ``prior``, as in ``extra.Prior``, where its error is part of the
         covariance. None: the prior has no error.
@@ -101,12 +114,16 @@ def errors_of(
     if noise is None:
         colours = colours_of(assembly, residual, g)
         noise = Coloured(colours, widening(assembly, effect.rows, colours))
+    systematic = np.zeros((effect.rows.shape[1],) * 2)
+    if fitted is not None:
+        systematic = model_error(assembly, fitted, residual, g, extra, noise.colours, effect.rows)
     return {
         "influence": effect,
         "noise": noise,
         "covariance_cr": cramer_rao(assembly, effect.rows, weights) + from_priors,
         "covariance": coloured(assembly, effect.rows, noise) + from_priors,
         "contributions": contributions_of(assembly, effect.rows, residual),
+        "systematic": systematic,
     }
 
 

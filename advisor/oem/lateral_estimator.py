@@ -48,9 +48,8 @@ def _reported(solution: LateralSolution) -> LateralEstimate:
         prediction=prediction_band(solution.assembly, solution, solution.widened),
         names=LATERAL.names.reported,
     )
-    modes = lateral_modes(
-        solution.theta, Errors(solution.covariance[:N, :N], solution.contributions[:, :N]), _trim(solution)
-    )
+    errors = Errors(solution.covariance[:N, :N], solution.contributions[:, :N], solution.systematic[:N, :N])
+    modes = lateral_modes(solution.theta, errors, _trim(solution))
     flown = tuple(name for name in LATERAL.inputs if problem.flies(name))
     scales = problem.reference_airspeed_m_s is not None
     return LateralEstimate(estimate, modes, solution.nuisances, flown, scales)

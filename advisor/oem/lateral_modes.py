@@ -25,6 +25,8 @@ class Errors(NamedTuple):
     """(15, 15) from the noise within the manoeuvres."""
     contributions: FloatArray
     """(m, 15) contribution of each manoeuvre."""
+    systematic: FloatArray = np.zeros((len(LATERAL.shared), len(LATERAL.shared)))
+    """(15, 15) by dynamics that the model lacks."""
 
     def std(self, slope: FloatArray) -> float:
         """Return the standard deviation of a quantity with derivatives ``slope`` (15,).
@@ -36,7 +38,8 @@ class Errors(NamedTuple):
         """
         within = slope @ self.covariance @ slope
         own = widened_by_scatter(np.array([[within]]), (self.contributions @ slope)[:, None])[0, 0]
-        return float(max(own, within * self._growth, 0.0) ** 0.5)
+        common = slope @ self.systematic @ slope
+        return float((max(own, within * self._growth, 0.0) + common) ** 0.5)
 
     @property
     def _growth(self) -> float:

@@ -101,7 +101,7 @@ def _has_diverged(fit: LateralFit) -> bool:
 
 def _share(solution: LateralSolution) -> float:
     """Return the errors by white noise over those by the residuals' colour, the median of the derivatives."""
-    stated = np.diag(solution.widened)[:N]
+    stated = np.diag(solution.scattered)[:N]
     ratio = np.diag(solution.covariance_cr)[:N] / np.where(stated > 0.0, stated, np.nan)
     return float(np.clip(np.sqrt(np.nanmedian(ratio)), LEAST_SHARE, 1.0))
 
@@ -109,11 +109,21 @@ def _share(solution: LateralSolution) -> float:
 def _evaluated(fit: LateralFit, prior: Priors, nuisances: Sequence[Nuisance]) -> LateralSolution | NoEstimate:
     problem, assembly, optimum, extra, _ = fit
     g, residual = optimum.sensitivities, assembly.z - optimum.fitted
-    errors = errors_of(assembly, residual, g, optimum.noise, extra, prior.precision, prior_share=prior.share)
+    errors = errors_of(
+        assembly,
+        residual,
+        g,
+        optimum.noise,
+        extra,
+        prior.precision,
+        fitted=optimum.fitted,
+        prior_share=prior.share,
+    )
     if errors is None:
         return NoEstimate("singular", NOTHING_TO_TELL)
     errors["covariance"] = _at_least(errors["covariance_cr"], errors["covariance"])
-    std = np.sqrt(np.diag(widened_by_scatter(errors["covariance"], errors["contributions"])))[N:]
+    scattered = widened_by_scatter(errors["covariance"], errors["contributions"])
+    std = np.sqrt(np.diag(scattered + errors["systematic"]))[N:]
     return LateralSolution(
         problem=problem,
         assembly=assembly,

@@ -128,7 +128,15 @@ def evaluate(
     """
     residual, prior = assembly.z - optimum.fitted, precision(problem, optimum.shared)
     errors = errors_of(
-        assembly, residual, optimum.sensitivities, optimum.noise, extra, prior, noise=noise, kept=kept
+        assembly,
+        residual,
+        optimum.sensitivities,
+        optimum.noise,
+        extra,
+        prior,
+        fitted=optimum.fitted,
+        noise=noise,
+        kept=kept,
     )
     if errors is None:
         return NoEstimate("singular", NOTHING_TO_TELL)
