@@ -168,7 +168,7 @@ def _load(name: str, dt: float) -> Any:
         ) from error
     root = jsbsim.get_default_root_dir()
     if not os.path.isdir(os.path.join(root, "aircraft", name)):
-        raise ScenarioError([f"aircraft: JSBSim has no '{name}'; c172p is one it has"])
+        raise ScenarioError([f"aircraft: JSBSim has no '{name}'; it has c172p, among others"])
     fdm = jsbsim.FGFDMExec(root)
     fdm.set_debug_level(0)
     # A lag or filter computes its coefficients from the step at the time of loading.

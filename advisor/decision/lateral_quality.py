@@ -54,7 +54,7 @@ _DETERMINED = {"aileron": ("L_p", "L_delta_a"), "rudder": ("N_beta", "N_r", "N_d
 
 _TRIMMING = Reason(
     "information",
-    "the movement determines no derivative, as a pilot's trimming; fly a doublet, from rest",
+    "the movement determines no derivative, as a pilot's trimming; fly a doublet, from trim",
     math.nan,
     math.nan,
 )
@@ -189,7 +189,7 @@ def _badly_explained(estimate: LateralEstimate) -> list[Reason]:
         return []
     shown, most = distinct_texts(100.0 * shares[worst], 100.0 * least)
     rate = "roll rate" if worst == "aileron" else "yaw rate"
-    text = f"the model explains {shown} % of the {rate} (at least {most}); fly it in calm air, from rest"
+    text = f"the model explains {shown} % of the {rate} (at least {most}); fly it in calm air, from trim"
     return [Reason("fit", text, shares[worst], least)]
 
 

@@ -195,8 +195,10 @@ def _numbers(d: Diagnosis) -> Text:
         )
         if d.shrink.beyond_air_percent is not None:
             lines.append(f"without the air's own course: {d.shrink.beyond_air_percent:.0f} % less")
-    if any(has_grown(after, before) for _, before, after in d.gap.by_maneuver):
-        lines.append(f"{WORSE} worse than before")
+    grown = [number for number, before, after in d.gap.by_maneuver if has_grown(after, before)]
+    if grown:
+        than = "fitted numbers are worse" if d.verdict == "none" else "worse than before"
+        lines.append(f"{WORSE} {than} in manoeuvres: {_counted(grown)}")
     return Text("\n".join(lines))
 
 

@@ -39,8 +39,8 @@ def lines(found: CheckedSimulator) -> Iterator[str]:
     yield f"at rest     a_z {found.a_z_m_s2:+.2f} m/s², {turns}"
     if found.fault is not None:
         return
-    yield "signs       a_z down, α and q nose up: the motion agrees with itself"
-    yield "units       rad, rad/s, m/s²: the motion agrees with itself"
+    yield "signs       a_z down, α and q nose up: kinematically consistent"
+    yield "units       rad, rad/s, m/s²: kinematically consistent"
     yield f"elevator    dead time {1e3 * found.dead_time_s:.0f} ms, lag {1e3 * found.lag_s:.0f} ms"
     if isfinite(found.damping):
         hertz = found.omega_rad_s / tau

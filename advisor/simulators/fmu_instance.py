@@ -71,7 +71,7 @@ class Fmu:
             )
         if found.type not in _REAL or found.dimensions:
             raise self._unusable(
-                f"has {variable!r}, which {key} names, as {found.type}, not as one real number",
+                f"has {variable!r}, which {key} names, but that is {found.type}, not one real number",
                 f"Name a real variable in {key}.",
             )
         if not _allows(found, use):

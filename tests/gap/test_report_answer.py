@@ -77,7 +77,7 @@ def test_a_gap_that_has_grown_is_marked():
     gap = replace(diagnosis().gap, by_maneuver=((1, 2.0, 0.1), (2, 0.5, 0.7)))
     lines = printed(diagnosis(gap=gap), 80)
     assert any("0.5 → 0.7 ▲" in line for line in lines)
-    assert any("▲ worse than before" in line for line in lines)
+    assert any(line.strip() == "▲ worse than before in manoeuvres: 2" for line in lines)
 
 
 def test_a_gap_that_prints_alike_has_not_grown():

@@ -88,7 +88,7 @@ def prove(
         some, last = parted(flown.maneuvers)
         fitted, kept = replace(flown, maneuvers=list(some)), replace(flown, maneuvers=list(last))
     first = _compared(fitted, aircraft, target_system, progress, prior)
-    refuse_unimproved(first.diagnosis.verdict, len(fitted.maneuvers))
+    refuse_unimproved(first.diagnosis.verdict, first.diagnosis.sentence, len(fitted.maneuvers))
     with tempfile.TemporaryDirectory() as folder:
         better, left = _improved(first, aircraft, Path(folder))
         before, after = (_compared(kept, one, target_system, progress, prior) for one in (aircraft, better))
@@ -138,7 +138,7 @@ def parted(maneuvers: Sequence[Maneuver]) -> tuple[Sequence[Maneuver], Sequence[
     return maneuvers[:-kept], maneuvers[-kept:]
 
 
-def refuse_unimproved(verdict: str | None, count: int) -> None:
+def refuse_unimproved(verdict: str | None, sentence: str, count: int) -> None:
     """Refuse to prove what improves nothing.
 
     Raises
@@ -149,8 +149,7 @@ def refuse_unimproved(verdict: str | None, count: int) -> None:
     if verdict not in IMPROVED:
         raise UnusableInputError(
             "nothing_to_prove",
-            f"The {count} manoeuvres of the fit name no cause and find no number wrong: "
-            "there is no improved simulator to fly.",
+            f"--prove has no improved simulator to fly. The {count} manoeuvres of its fit say: {sentence}",
             "Leave out --prove, or name the manoeuvres' other half by --prove LOG.",
         )
 

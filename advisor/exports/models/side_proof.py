@@ -42,7 +42,7 @@ def prove_side(
     aircraft = compared.against
     fitted, kept = (compared.maneuvers, fresh) if fresh is not None else parted(compared.maneuvers)
     first = _answered(compare_side(fitted, aircraft, prior))
-    refuse_unimproved(first.verdict, len(fitted))
+    refuse_unimproved(first.verdict, first.sentence, len(fitted))
     behind = behind_found(first.diagnosis, aircraft)
     plain, found = (_answered(estimate_lateral(fitted, one)) for one in (aircraft, behind))
     given = np.array(

@@ -64,7 +64,9 @@ def test_too_few_manoeuvres_are_refused_with_the_way_out(asked):
 def test_without_an_improvement_there_is_nothing_to_fly(monkeypatch):
     nothing = Compared(answer(0.0, "none", (1, 2, 3)), FILE)
     monkeypatch.setattr(proof, "compare_flown", lambda *_: nothing)
-    with pytest.raises(UnusableInputError, match="name no cause and find no number wrong"):
+    with pytest.raises(
+        UnusableInputError, match=r"no improved simulator to fly. The 3 manoeuvres of its fit say: \S"
+    ):
         proof.prove(flights(1, 2, 3, 4, 5), None, FILE)
 
 
