@@ -24,7 +24,7 @@ from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.aircraft_file.read import load_aircraft
 from advisor.analysis.log_series import LogSeries
 from advisor.campaign.campaign import Campaign
-from advisor.campaign.lateral_state import LateralState
+from advisor.campaign.state import LateralState
 from advisor.model.lateral import LATERAL
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.lateral_estimate import LateralEstimate

@@ -3,8 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Literal
 
-from advisor.campaign.lateral_state import OF_ELEVATOR
-from advisor.campaign.state import CampaignState
+from advisor.campaign.state import OF_ELEVATOR, CampaignState
 from advisor.flight.stream.flights import FlightHeard
 from advisor.words.problems import Problem
 

@@ -10,8 +10,7 @@ from advisor.analysis.table_log import SUFFIXES, table_maneuvers
 from advisor.campaign.hand_decisions import ByHand
 from advisor.flight.instruments.atmosphere import air_flown
 from advisor.flight.maneuvers.events import READER_NOTICE, ManeuverFlown, Notice
-from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.maneuvers.repeated_maneuver import are_one, is_fuller
+from advisor.flight.maneuvers.maneuver import Maneuver, are_one, is_fuller
 from advisor.flight.stream.stream import FlightStream
 from advisor.flight.vehicle.one_aircraft import OneAircraft
 from advisor.flight.vehicle.surfaces import Surface

@@ -11,10 +11,8 @@ from advisor.campaign.instruments import side_signs, together, with_fit
 from advisor.campaign.journal import Journal
 from advisor.campaign.late_limits import recount
 from advisor.campaign.lateral import LateralCampaign
-from advisor.campaign.lateral_state import OF_ELEVATOR, JudgedLateral
 from advisor.campaign.running_estimate import Settled, Settling
-from advisor.campaign.state import CampaignState, JudgedManeuver
-from advisor.campaign.whole_flight import WholeFlights
+from advisor.campaign.state import OF_ELEVATOR, CampaignState, JudgedLateral, JudgedManeuver, WholeFlights
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.flight.maneuvers.events import (
     READER_NOTICE,

@@ -1,8 +1,9 @@
 """The event log of a campaign: sentences, each with the vehicle's time."""
 
+from collections import deque
+from collections.abc import Iterable
 from math import inf, isfinite, nan
 
-from advisor.campaign.event_log import EventLog
 from advisor.flight.maneuvers.events import (
     DataAgain,
     FlightBegan,
@@ -16,6 +17,29 @@ from advisor.flight.maneuvers.events import (
 )
 from advisor.flight.vehicle.vehicle import Vehicle
 from advisor.words.vehicle_time import CLOCK, clock
+
+
+class EventLog:
+    """Collects sentences and drops the oldest.
+
+    Parameters
+    ----------
+    kept
+        Number of sentences that are kept.
+    """
+
+    def __init__(self, kept: int) -> None:
+        self._lines: deque[str] = deque(maxlen=kept)
+        self.lines: tuple[str, ...] = ()
+        """Oldest first; the same object until something is added."""
+
+    def add(self, sentences: Iterable[str]) -> None:
+        """Take further sentences."""
+        further = list(sentences)
+        if further:
+            self._lines.extend(further)
+            self.lines = tuple(self._lines)
+
 
 KEPT = 1000
 """Number of sentences kept, 0.1 kB each: enough for some hundred manoeuvres."""

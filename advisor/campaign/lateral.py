@@ -3,13 +3,13 @@
 from dataclasses import replace
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.campaign.lateral_state import JudgedLateral, LateralState
 from advisor.campaign.single_maneuver import objection, untold
-from advisor.decision.acceptance import MANEUVER_RULES
+from advisor.campaign.state import JudgedLateral, LateralState
 from advisor.decision.heard import Heard
 from advisor.decision.lateral_advice import FlownInput
 from advisor.decision.lateral_quality import judge_lateral
 from advisor.decision.lateral_test import lateral_flight_test
+from advisor.decision.paper_rules import MANEUVER_RULES
 from advisor.decision.verdict import FlightTestVerdict, ManeuverVerdict, Reason
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.model.lateral import LATERAL

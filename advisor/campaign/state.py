@@ -1,22 +1,89 @@
-"""State of a campaign at one moment, frozen, for screens, texts and documents."""
+"""State of a campaign at one moment, frozen, for screens, texts and documents: both axes, whole flight."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from math import isfinite
 from statistics import median
 
-from advisor.campaign.lateral_state import LateralState
-from advisor.campaign.whole_flight import WholeFlight
 from advisor.decision.verdict import FlightTestVerdict, ManeuverVerdict
 from advisor.flight.elevator.elevator_guess import Guess
 from advisor.flight.maneuvers.events import Activity
 from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.extremes import Course
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.track import ChannelStatus
 from advisor.flight.stream.flights import FlightHeard
 from advisor.flight.vehicle.vehicle import Vehicle
 from advisor.oem.estimate import Estimate, NoEstimate
+from advisor.oem.lateral_estimate import LateralEstimate
 from advisor.process.parts import FailedPart
 from advisor.words.problems import Problem
+
+
+@dataclass(frozen=True, slots=True)
+class JudgedLateral:
+    """One lateral manoeuvre, its estimate and the verdict on it."""
+
+    maneuver: Maneuver
+    estimate: LateralEstimate | NoEstimate
+    verdict: ManeuverVerdict
+
+
+@dataclass(frozen=True, slots=True)
+class LateralState:
+    """State of the lateral half of a campaign."""
+
+    maneuvers: tuple[JudgedLateral, ...]
+    flight_test: FlightTestVerdict
+    model: LateralEstimate | None
+    """Joint estimate: over the newest accepted manoeuvres in flight, over all of them after the end."""
+    estimate_from: tuple[int, ...]
+    """Numbers of the manoeuvres that ``model`` is made from."""
+
+
+OF_ELEVATOR = frozenset({"no_maneuver", "no_elevator", "no_alpha"})
+"""Codes of problems that concern the elevator's axis alone."""
+
+
+_EVERY_S = 1.0
+"""Vehicle time between two pictures, s. A picture of many minutes does not change sooner."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class WholeFlight:
+    """Channels and modes of the power-on being heard."""
+
+    courses: Mapping[str, Course] = field(default_factory=dict)
+    modes: tuple[tuple[float, str], ...] = ()
+    """Vehicle time at which each mode began, s since boot, and its name."""
+
+
+class WholeFlights:
+    """Keeps the picture of the present power-on, and renews it from time to time."""
+
+    def __init__(self) -> None:
+        self._newest = WholeFlight()
+        self._at: tuple[tuple[int, int], float] | None = None
+        self._power_on = (0, 0)
+        self._modes: tuple[tuple[float, str], ...] = ()
+
+    def change_mode(self, power_on: tuple[int, int], at_s: float, mode: str) -> None:
+        """Take a change of the flight mode at a vehicle time, s; NaN before the clock is heard."""
+        if power_on != self._power_on:
+            self._power_on, self._modes = power_on, ()
+        self._modes = (*self._modes, (at_s if isfinite(at_s) else 0.0, mode))
+
+    def now(
+        self, power_on: tuple[int, int], now_s: float, courses: Callable[[], Mapping[str, Course]]
+    ) -> WholeFlight:
+        """Return the picture; the identical object while it is not renewed."""
+        if self._at is not None and self._at[0] == power_on and now_s < self._at[1] + _EVERY_S:
+            return self._newest
+        if isfinite(now_s):
+            self._at = power_on, now_s
+            modes = self._modes if power_on == self._power_on else ()
+            self._newest = WholeFlight(courses(), modes)
+        return self._newest
 
 
 @dataclass(frozen=True, slots=True)

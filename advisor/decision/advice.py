@@ -1,20 +1,20 @@
-"""Advice on the next manoeuvre: how many more, which parameter delays the stop, which input helps most."""
+"""Advice on the next manoeuvre: the best input, how many more, and which parameter delays the stop."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft, CampaignPlan
 from advisor.aircraft.reference import PARAMETERS
-from advisor.decision.choice import Choice, best_input
 from advisor.decision.conditions import Conditions, find_conditions, travel_of
 from advisor.decision.course import CriterionCourse
+from advisor.decision.foresight import expect
 from advisor.decision.history import CandidateManeuver, is_named, usable_ones
 from advisor.decision.information import Knowledge
-from advisor.decision.inputs import StepInput
+from advisor.decision.inputs import ORDERS, StepInput, units_to_try
 from advisor.decision.judge import accepted_estimates
+from advisor.decision.paper_rules import scattered_most, window
 from advisor.decision.remaining import by_information, by_scatter, errors_as_flown, odds_of, share_after
-from advisor.decision.scatter import scattered_most, window
 from advisor.decision.verdict import NO_CURE_BY_INPUT, NextInput, Remaining
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.short_period import ShortPeriod
@@ -24,6 +24,8 @@ GENTLE = 0.1
 Larger inputs follow step by step (``conditions.BOLDER``)."""
 ENOUGH = NextInput("no further manoeuvre needed", Remaining(0, 0))
 """Advice after the stop."""
+Choice = tuple[StepInput, FloatArray]
+"""An input, and the (8, 8) covariance of the errors expected from flying the input."""
 PASSING = {"separate": 0.5}
 """Share of equally good manoeuvres that pass the rule. Eq. (11) rejects half, Eq. (10) hardly any."""
 
@@ -137,3 +139,52 @@ def _mend(flown: CandidateManeuver) -> str:
 def _remedy(flown: CandidateManeuver) -> str:
     """Return the remedy that the first reason names; empty without a reason."""
     return flown.reasons[0].text.partition("; ")[2] if flown.reasons else ""
+
+
+def best_input(
+    conditions: Conditions, measured_std: FloatArray, distance_to_stop: Callable[[FloatArray], float]
+) -> Choice | None:
+    """Return the input whose expected errors leave the least ``distance_to_stop``; None without a prediction.
+
+    Parameters
+    ----------
+    measured_std
+        (8,) standard deviations of the last manoeuvre's estimate. Their causes (coloured residuals,
+        further outputs) persist in the next manoeuvre. The prediction supplies the ratio between inputs.
+    distance_to_stop
+        Covariance of the next manoeuvre's errors to a measure of the distance to the stop.
+    """
+    repeated = expect(conditions.theta, conditions.flown, conditions.instruments)
+    if repeated is None:
+        return None
+    ratio = measured_std / repeated.std
+    scale = np.outer(ratio, ratio)
+    expected = [(option, covariance * scale) for option, covariance in _options(conditions)]
+    return min(expected, key=lambda choice: distance_to_stop(choice[1])) if expected else None
+
+
+def _options(conditions: Conditions) -> Iterator[Choice]:
+    """Yield inputs in the direction that was not flown last, with their expected errors."""
+    frequency = ShortPeriod(conditions.theta).natural_frequency
+    if not np.isfinite(frequency) or frequency <= 0.0:
+        return
+    for order in ORDERS:
+        for unit in units_to_try(frequency):
+            option = StepInput(order, float(unit), conditions.largest_rad, not conditions.nose_up_first)
+            choice = _as_large_as_allowed(option, conditions)
+            if choice is not None:
+                yield choice
+
+
+def _as_large_as_allowed(option: StepInput, conditions: Conditions) -> Choice | None:
+    """Return the input scaled so that α stays within its limit; the model is linear, so scaling is exact."""
+    length = conditions.lead_s + option.duration_s + conditions.free_s
+    elevator = option.elevator(conditions.trim_rad, conditions.lead_s, length)
+    full = expect(conditions.theta, elevator, conditions.instruments)
+    if full is None or not full.alpha_excursion > 0.0:
+        return None
+    amplitude = min(1.0, conditions.alpha_rad / full.alpha_excursion) * option.amplitude_rad
+    allowed = StepInput(option.order, option.unit_s, amplitude, option.nose_up_first).rounded(
+        conditions.travel_rad
+    )
+    return allowed, full.covariance * (option.amplitude_rad / allowed.amplitude_rad) ** 2

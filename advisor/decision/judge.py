@@ -4,11 +4,11 @@ from collections.abc import Container, Mapping, Sequence
 from math import degrees, floor
 
 from advisor.aircraft.aircraft import CampaignPlan, Rule
-from advisor.decision.acceptance import MANEUVER_RULES
 from advisor.decision.consistency import Outlier, outliers
 from advisor.decision.course import CriterionCourse
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.larger import Larger, larger_and_agreeing
+from advisor.decision.paper_rules import MANEUVER_RULES
 from advisor.decision.pooling import posteriors_at_one_speed
 from advisor.decision.verdict import ManeuverVerdict, Reason, RuleResult
 from advisor.oem.estimate import Estimate, NoEstimate

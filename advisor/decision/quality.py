@@ -17,7 +17,6 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS
-from advisor.decision.coupling import coupled
 from advisor.decision.envelope import (
     changed_speed,
     flown,
@@ -28,6 +27,7 @@ from advisor.decision.envelope import (
     short_response,
     too_quick,
 )
+from advisor.decision.omitted import coupled
 from advisor.decision.verdict import NO_CURE_BY_INPUT, UNTRUSTED, Reason
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.purpose import LEAST_PITCH_RATE_DEG_S

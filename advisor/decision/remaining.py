@@ -10,8 +10,8 @@ from advisor.decision.course import CriterionCourse
 from advisor.decision.history import CandidateManeuver, estimates_of, usable_ones
 from advisor.decision.information import Knowledge
 from advisor.decision.inverses import covariance_of, information_of
+from advisor.decision.paper_rules import SCATTER_FACTOR
 from advisor.decision.pooling import DERIVATIVES, Posterior
-from advisor.decision.scatter import SCATTER_FACTOR
 from advisor.decision.verdict import Remaining
 from advisor.flight.signals.messages import FloatArray
 from advisor.words.quantiles import NORMAL_95

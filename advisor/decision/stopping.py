@@ -6,15 +6,14 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft, CampaignPlan, Rule
-from advisor.decision.acceptance import MANEUVER_RULES
 from advisor.decision.advice import next_input
 from advisor.decision.change import find_change
 from advisor.decision.course import CriterionCourse
-from advisor.decision.evidence import evidence, sentence
 from advisor.decision.heard import Heard, as_heard, first_stop, spoken_after
 from advisor.decision.history import CandidateManeuver, estimates_of, nothing_tested, usable_ones
+from advisor.decision.information import evidence, sentence
 from advisor.decision.judge import accepted_estimates, results_of
-from advisor.decision.scatter import scatter_percent, scattered_most, window
+from advisor.decision.paper_rules import MANEUVER_RULES, scatter_percent, scattered_most, window
 from advisor.decision.verdict import FlightTestVerdict, RuleProgress, limit_percent
 from advisor.decision.warnings import warnings
 from advisor.oem.estimate import Estimate

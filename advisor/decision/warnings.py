@@ -11,7 +11,7 @@ from advisor.decision.course import CriterionCourse
 from advisor.decision.history import CandidateManeuver, usable_ones
 from advisor.decision.judge import accepted_estimates, results_of
 from advisor.decision.larger import larger_and_agreeing
-from advisor.decision.scatter import SCATTER_FACTOR, window
+from advisor.decision.paper_rules import SCATTER_FACTOR, window
 from advisor.decision.verdict import RuleProgress
 from advisor.oem.estimate import Estimate
 from advisor.words.quantiles import NORMAL_95

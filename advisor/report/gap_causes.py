@@ -1,16 +1,17 @@
-"""Causes of the gap: the ranking with sizes, the confusions of each, and the effects that the flight cannot
-show."""
+"""Causes of the gap: ranking with sizes, confusions, effects that the flight cannot show, and reasons."""
 
 from collections.abc import Iterator, Sequence
 
 from rich import box
-from rich.console import RenderableType
+from rich.console import Group, RenderableType
 from rich.padding import Padding
+from rich.panel import Panel
 from rich.table import Table
 from rich.text import Text
 
-from advisor.gap.result import Cause, Unseen, spelled
-from advisor.report.gap_reasons import in_percent
+from advisor.gap.result import Cause, Diagnosis, Unseen, spelled
+from advisor.gap.verdict.text import in_words
+from advisor.report.gap_reasons import decision_in_words, heading, in_percent, weighed
 from advisor.report.gap_sizes import marked, sizes_of
 
 _LIKELY = 0.01
@@ -85,3 +86,17 @@ def _table(causes: Sequence[Cause], before: float) -> Table:
 
 def _capital(text: str) -> str:
     return text[:1].upper() + text[1:]
+
+
+def why_of(d: Diagnosis) -> Iterator[RenderableType]:
+    """Yield the answer against its strongest rival, then every statistic with its limit."""
+    if d.answer is not None:
+        *reasons, total = weighed((reason.nats, reason.sentence) for reason in d.why)
+        lines = [Text(f"{nats:>6s}  {said}") for nats, said in reasons]
+        lines.append(Text(f"{total[0]:>6s}  {total[1]}", style="bold"))
+        stated = {one.alternative.label: one.alternative for one in d.evidence}
+        title = heading(in_words(d.answer), in_words(stated[d.rival]))
+        yield Panel(Group(*lines), title=title, title_align="left")
+    if d.decisions:
+        decided = [Text(decision_in_words(decision)) for decision in d.decisions]
+        yield Panel(Group(*decided), title="every decision on the way", title_align="left")

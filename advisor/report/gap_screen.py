@@ -17,13 +17,11 @@ from advisor.gap.verdict.titles import answers_of, title_of
 from advisor.process.installed import SIMULATOR
 from advisor.report.gap_causes import PRESENT, ranking, unseen
 from advisor.report.gap_fidelity import errors, peaks, worst_maneuver, yardsticks
-from advisor.report.gap_parameters import changes
-from advisor.report.gap_reasons import how_sure
+from advisor.report.gap_reasons import how_sure, why_of
 from advisor.report.gap_simulator import simulated
-from advisor.report.gap_sizes import WORSE, before_after, has_grown, short
+from advisor.report.gap_sizes import WORSE, before_after, changes, has_grown, short
 from advisor.report.gap_steps import GapStep
 from advisor.report.gap_where import whereabouts
-from advisor.report.gap_why import why_of
 
 WIDEST = 120
 """Columns beyond which lines become harder to read."""

@@ -1,10 +1,10 @@
-"""Sizes of effects in units for people: milliseconds, degrees, per cent, metres."""
+"""Sizes of effects and derivatives in units for people: milliseconds, degrees, per cent, metres."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
-from advisor.gap.result import Value
-from advisor.words.digits import with_half
+from advisor.gap.result import ComparedDerivative, Value
+from advisor.words.digits import decimals_for, signed, with_half
 from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import PARAMETERS
 
@@ -119,3 +119,20 @@ def named(parameter: str) -> str:
         if parameter.endswith(ending):
             return parameter.removesuffix(ending).replace("_", " ")
     return parameter.replace("_", " ")
+
+
+def changed(one: ComparedDerivative) -> str:
+    """Return one derivative: the simulator's value, the flight's with half its 95 % interval, the change."""
+    quantity = PARAMETERS[one.name]
+    given, found, half = (quantity.factor * x for x in (one.given, one.found.value, one.half))
+    share = "" if one.percent is None else f" ({signed(one.percent, 0)} %)"
+    if one.percent is not None and one.percent > 0.0:
+        share = f" (+{signed(one.percent, 0)} %)"
+    return f"{quantity.symbol} {signed(given, decimals_for(half))} → {with_half(found, half)}{share}"
+
+
+def changes(derivatives: Sequence[ComparedDerivative]) -> list[str]:
+    """Return a line for each derivative that differs, then one with those that agree."""
+    agree = [PARAMETERS[one.name].symbol for one in derivatives if not one.differs]
+    lines = [changed(one) for one in derivatives if one.differs]
+    return [*lines, *([f"{', '.join(agree)} agree{'s' if len(agree) == 1 else ''}"] if agree else [])]

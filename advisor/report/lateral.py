@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.campaign.lateral_state import JudgedLateral, LateralState
+from advisor.campaign.state import JudgedLateral, LateralState
 from advisor.decision.lateral_levels import GROUPS, SOURCE
 from advisor.model.mil_f_8785c import CATEGORIES, MANNED
 from advisor.oem.estimate import Estimate

@@ -8,7 +8,7 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import SIDE_PARAMETERS
-from advisor.campaign.lateral_state import JudgedLateral, LateralState
+from advisor.campaign.state import JudgedLateral, LateralState
 from advisor.decision.lateral_levels import GROUPS, SOURCE, LateralLevels, lateral_levels
 from advisor.decision.lateral_qualification import LateralTest, lateral_qualification
 from advisor.flight.maneuvers.maneuver import Maneuver

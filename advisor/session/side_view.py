@@ -3,8 +3,7 @@
 from dataclasses import replace
 from typing import Any
 
-from advisor.campaign.lateral_state import OF_ELEVATOR, JudgedLateral, LateralState
-from advisor.campaign.state import JudgedManeuver
+from advisor.campaign.state import OF_ELEVATOR, JudgedLateral, JudgedManeuver, LateralState
 from advisor.oem.estimate import NoEstimate
 from advisor.session.view import View
 

@@ -17,8 +17,7 @@ from advisor.campaign.campaign import Campaign, CampaignEvent
 from advisor.campaign.hand_decisions import ByHand, Remark
 from advisor.cli.group import main
 from advisor.flight.maneuvers.events import ManeuverFlown
-from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.maneuvers.repeated_maneuver import are_one
+from advisor.flight.maneuvers.maneuver import Maneuver, are_one
 from advisor.flight.signals.messages import Columns
 from advisor.flight.stream.stream import FlightStream
 from tests.flights import TWO, recorded

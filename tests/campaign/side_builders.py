@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.campaign.lateral_state import JudgedLateral, LateralState
+from advisor.campaign.state import JudgedLateral, LateralState
 from advisor.decision.lateral_test import lateral_flight_test
 from advisor.decision.verdict import ManeuverVerdict, Reason
 from advisor.flight.maneuvers.maneuver import Maneuver, Span

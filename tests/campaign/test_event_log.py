@@ -1,6 +1,6 @@
 """An event log keeps its newest sentences."""
 
-from advisor.campaign.event_log import EventLog
+from advisor.campaign.journal import EventLog
 
 
 def test_an_event_log_forgets_the_oldest_sentences():

@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from advisor.decision.acceptance import continuous_improvement, every_usable, separate_computation
+from advisor.decision.paper_rules import continuous_improvement, every_usable, separate_computation
 from advisor.decision.verdict import RuleResult
 
 costs_strategy = st.lists(st.one_of(st.none(), st.floats(1e-12, 1e-3)), max_size=12)

@@ -6,8 +6,7 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS
-from advisor.decision.coupling import coupled
-from advisor.decision.omitted import bias_by
+from advisor.decision.omitted import bias_by, coupled
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.record import Channel
 from advisor.oem.estimator import estimate

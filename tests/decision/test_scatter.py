@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import CampaignPlan
-from advisor.decision.scatter import scatter_by_parameter, scatter_percent, window
+from advisor.decision.paper_rules import scatter_by_parameter, scatter_percent, window
 from tests.decision.campaigns import THETA, estimate
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from advisor.aircraft.aircraft import CampaignPlan
 from advisor.decision.history import CandidateManeuver
-from advisor.decision.scatter import scatter_percent
+from advisor.decision.paper_rules import scatter_percent
 from advisor.decision.stopping import flight_test
 from advisor.decision.verdict import Reason
 from tests.decision.campaigns import THETA, drawn, estimate, flown, with_change

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.instruments.delayed_fit import coloured_covariance
 from advisor.flight.instruments.kinematics import check_alpha, combine
-from advisor.flight.signals.coloured import coloured_covariance
 from advisor.gap.diagnose import diagnose
 from advisor.gap.uncatalogued.wind_shear import wind_shear
 from tests.gap.generator import LIGHT_AIRCRAFT, Setup, fly

@@ -3,7 +3,7 @@
 import numpy as np
 
 from advisor.flight.signals.record import Channel
-from advisor.report.page.thinned import thinned
+from advisor.report.page.flight_picture import thinned
 
 
 def test_a_thinned_line_keeps_its_peaks_and_breaks_in_a_gap() -> None:

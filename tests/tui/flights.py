@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 
 from advisor.aircraft.aircraft import Aircraft, CampaignPlan
 from advisor.aircraft.reference import PARAMETERS
-from advisor.campaign.state import CampaignState, ChannelStatus, JudgedManeuver
-from advisor.campaign.whole_flight import WholeFlight
+from advisor.campaign.state import CampaignState, ChannelStatus, JudgedManeuver, WholeFlight
 from advisor.decision.inputs import StepInput
 from advisor.decision.verdict import (
     FlightTestVerdict,

@@ -11,10 +11,9 @@ from advisor.bundled.study.estimating import estimate_copies
 from advisor.bundled.study.flying import NoiseReading, Scene, as_maneuver, fly_named, noise_scale
 from advisor.bundled.study.paper import ORDER
 from advisor.bundled.study.readings import needed_by_reading
-from advisor.decision.acceptance import MANEUVER_RULES
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.information import knowledge
-from advisor.decision.scatter import scatter_percent, window
+from advisor.decision.paper_rules import MANEUVER_RULES, scatter_percent, window
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import FloatArray
 from advisor.oem.estimate import Estimate

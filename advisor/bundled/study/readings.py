@@ -11,8 +11,13 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Rule
 from advisor.bundled.study.paper import TABLE_1
-from advisor.decision.acceptance import ALLOWED_INCREASE, Costs, continuous_improvement, separate_computation
-from advisor.decision.scatter import scatter_percent
+from advisor.decision.paper_rules import (
+    ALLOWED_INCREASE,
+    Costs,
+    continuous_improvement,
+    scatter_percent,
+    separate_computation,
+)
 from advisor.decision.verdict import RuleResult
 from advisor.flight.signals.messages import FloatArray
 from advisor.oem.estimate import Estimate

@@ -4,8 +4,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.whole_flights import WholeFlights
 from advisor.exports.flights.cut import cut_tlog
 from advisor.flight.maneuvers.events import ManeuverFlown
-from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.maneuvers.repeated_maneuver import are_one
+from advisor.flight.maneuvers.maneuver import Maneuver, are_one
 from advisor.flight.stream.stream import FlightStream
 from advisor.mavlink.wire.frames import FrameScanner
 from advisor.words.problems import ConfigurationError, UnusableInputError

@@ -7,8 +7,7 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import SIDE_PARAMETERS
-from advisor.campaign.lateral_state import LateralState
-from advisor.campaign.state import CampaignState
+from advisor.campaign.state import CampaignState, LateralState
 from advisor.exports.models.improvement import (
     STILL_AIR,
     Improvement,

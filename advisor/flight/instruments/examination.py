@@ -21,8 +21,7 @@ from advisor.flight.instruments.evidence import (
     rate_moves_alpha,
     speed_against_force,
 )
-from advisor.flight.instruments.hypotheses import ANY, Weighed, weigh
-from advisor.flight.instruments.measured import Evidence, Measured
+from advisor.flight.instruments.measured import ANY, Evidence, Measured, Weighed, weigh
 from advisor.flight.instruments.work import (
     ALLOWED,
     FILTER_S,

@@ -20,8 +20,8 @@ from advisor.flight.instruments.alpha_offset import (
     speed_at,
     weighted,
 )
+from advisor.flight.instruments.delayed_fit import coloured_covariance
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.coloured import coloured_covariance
 from advisor.flight.signals.inferred_alpha import alpha_rate
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.motion import integrated

@@ -1,7 +1,14 @@
-"""A measured value with its error, and the mean of several."""
+"""A measured value with its error, the mean of several, and hypotheses on the scale of an instrument.
+
+A reading is the true value times a factor: 1 as stated, −1 for a reversed sense, 57.3 for degrees that are
+read as radians. Around each factor the scale of an instrument of this kind scatters by a known share. Every
+hypothesis has equal prior probability, and the posterior follows from the likelihoods. One further hypothesis
+allows any scale, so that the nearest factor need not be true.
+"""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from math import exp, hypot, log, pi, sqrt
 
 import numpy as np
 
@@ -34,3 +41,70 @@ def pooled(several: Iterable[Evidence]) -> dict[str, Measured]:
         name: Measured(*weighted([m.value for m in found], [m.std for m in found]))
         for name, found in together.items()
     }
+
+
+AS_STATED = "as stated"
+ANY = "any other scale"
+_DECADES = 4.0
+"""Decades of scale, from 0.01 to 100 on both sides of zero, over which "any other scale" is spread evenly.
+The ratio of any two units in use lies within."""
+EXCLUDED = 0.01
+"""Largest posterior probability of an excluded hypothesis: the usual level of 99 %."""
+_RESOLVED_SIGMAS = 3.0
+"""Least distance of a measured scale from zero, in standard deviations. A smaller scale may be noise, which
+any unit of small readings explains."""
+
+
+@dataclass(frozen=True, slots=True)
+class Weighed:
+    """Posterior over the hypotheses on one scale."""
+
+    best: str
+    """Likeliest hypothesis."""
+    factor: float
+    """Factor of the likeliest hypothesis; the measured scale for ``ANY``."""
+    probability: float
+    """Posterior probability of ``best``."""
+    stated_probability: float
+    """Posterior probability of ``AS_STATED``."""
+    resolved: bool
+    """Whether the reading follows the motion at all, beyond its errors."""
+
+    @property
+    def contradicts(self) -> bool:
+        """Whether the measured scale excludes the stated one."""
+        return self.resolved and self.stated_probability < EXCLUDED
+
+
+def weigh(measured: Measured, factors: Mapping[str, float], width: float, stated: float = 1.0) -> Weighed:
+    """Return the posterior over hypotheses on a scale.
+
+    Parameters
+    ----------
+    measured
+        Scale of the reading relative to the motion.
+    factors
+        Hypothesis to the factor of its readings, relative to the stated reading; without ``AS_STATED``.
+    width
+        Standard deviation of an instrument's scale, as a share.
+    stated
+        Mean scale of an instrument that reads as stated.
+    """
+    candidates = {AS_STATED: 1.0, **factors}
+    likelihood = {
+        name: _normal(
+            measured.value - factor * stated, hypot(width * abs(factor * stated), measured.std)
+        )
+        for name, factor in candidates.items()
+    }  # fmt: skip
+    size = max(abs(measured.value), measured.std)
+    likelihood[ANY] = 1.0 / (2.0 * _DECADES * log(10.0) * size)
+    total = sum(likelihood.values())
+    best = max(likelihood, key=lambda name: likelihood[name])
+    factor = candidates.get(best, measured.value)
+    resolved = abs(measured.value) >= _RESOLVED_SIGMAS * measured.std
+    return Weighed(best, factor, likelihood[best] / total, likelihood[AS_STATED] / total, resolved)
+
+
+def _normal(distance: float, std: float) -> float:
+    return exp(-0.5 * (distance / std) ** 2) / (std * sqrt(2.0 * pi))

@@ -7,8 +7,7 @@ from collections.abc import Mapping
 from math import exp, log, pi
 
 from advisor.flight.instruments.examination import FORCE_UNITS_M_S2, hold_force_unit, stated_force_unit
-from advisor.flight.instruments.hypotheses import ANY, AS_STATED, EXCLUDED, weigh
-from advisor.flight.instruments.measured import Evidence, Measured
+from advisor.flight.instruments.measured import ANY, AS_STATED, EXCLUDED, Evidence, Measured, weigh
 from advisor.flight.instruments.side_evidence import (
     force_against_motion,
     rate_against_bank,

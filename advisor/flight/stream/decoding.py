@@ -12,7 +12,7 @@ from advisor.flight.signals.power_on import PowerOn
 from advisor.flight.signals.record import ALL_UNITS
 from advisor.flight.signals.tracks import Tracks
 from advisor.flight.stream.identity import Identity
-from advisor.flight.vehicle.boots import Master
+from advisor.flight.vehicle.pieces import Master
 
 _NAMED = "named_value:"
 """Beginning of a vane's ``source`` where a NAMED_VALUE_FLOAT brings its angle."""

@@ -16,9 +16,8 @@ from advisor.flight.maneuvers.events import (
     SideManeuverFlown,
     VehicleFound,
 )
-from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.maneuvers.maneuver import Maneuver, are_one, is_fuller
 from advisor.flight.maneuvers.marks import Mark
-from advisor.flight.maneuvers.repeated_maneuver import are_one, is_fuller
 from advisor.flight.signals.messages import Columns
 from advisor.flight.signals.track import ChannelStatus
 from advisor.flight.stream.stream import FlightStream

@@ -31,8 +31,8 @@ from advisor.flight.stream.service import Service
 from advisor.flight.stream.side_path import LOOPS, SidePath
 from advisor.flight.stream.suitability import problems, with_guess
 from advisor.flight.stream.vehicle_texts import VehicleTexts
-from advisor.flight.vehicle.boots import Master
 from advisor.flight.vehicle.breaks import Breaks
+from advisor.flight.vehicle.pieces import Master
 from advisor.flight.vehicle.senders import SenderWatch
 from advisor.flight.vehicle.surfaces import Surface
 from advisor.flight.vehicle.vehicle import Vehicle

@@ -19,9 +19,8 @@ from advisor.flight.signals.derived_alpha import DERIVED_ALPHA, promised
 from advisor.flight.signals.messages import Columns, FloatArray, IntArray, arrivals
 from advisor.flight.stream.decoding import decoded, power_on
 from advisor.flight.stream.state import StreamState
-from advisor.flight.vehicle.boots import Master, by_boot
 from advisor.flight.vehicle.modes import closes_pitch_loop
-from advisor.flight.vehicle.pieces import pieces
+from advisor.flight.vehicle.pieces import Master, by_boot, pieces
 from advisor.flight.vehicle.vehicle import Vehicle
 from advisor.words.problems import Problem
 from advisor.words.vehicle_time import clock

@@ -1,6 +1,7 @@
 """The flight in one picture: elevator, angle of attack, pitch rate, air speed, height; manoeuvres marked."""
 
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -8,12 +9,12 @@ from matplotlib.figure import Figure as Drawing
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from advisor.campaign.state import JudgedManeuver
+from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.power_on import PowerOn
 from advisor.flight.signals.record import Channel
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section
 from advisor.report.page.content import Content
 from advisor.report.page.drawing import BLUE, ORANGE, picture
-from advisor.report.page.thinned import thinned
 from advisor.words.quantities import CHANNELS
 from advisor.words.vehicle_time import CLOCK, clock
 
@@ -93,3 +94,25 @@ def _as_judged(channel: Channel, judged: Sequence[JudgedManeuver]) -> Channel:
     if alike >= 0.0:
         return channel
     return Channel(channel.name, channel.t, -channel.y, channel.source, channel.provenance)
+
+
+def thinned(channel: Channel, bins: int) -> tuple[FloatArray, FloatArray]:
+    """Return times and values that draw an equal line: lowest and highest of each bin, and a break in each
+    gap.
+
+    Parameters
+    ----------
+    bins
+        Stretches of equal numbers of samples.
+    """
+    t, y = channel.t, channel.y
+    if len(t) > 2 * bins:
+        edges = np.linspace(0, len(t), bins + 1).astype(int)
+        kept = sorted({i for a, b in pairwise(edges) for i in _extremes(y[a:b], int(a))})
+        t, y = t[kept], y[kept]
+    gaps = np.flatnonzero(np.diff(t) > max(2.0, 20.0 * float(np.median(np.diff(t))) if len(t) > 1 else 2.0))
+    return np.insert(t, gaps + 1, t[gaps]), np.insert(y, gaps + 1, np.nan)
+
+
+def _extremes(y: FloatArray, offset: int) -> tuple[int, int]:
+    return offset + int(np.argmin(y)), offset + int(np.argmax(y))

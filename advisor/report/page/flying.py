@@ -1,14 +1,24 @@
-"""Flying qualities and coefficients, with their air and conventions."""
+"""Flying qualities and coefficients, and the short period among the levels of MIL-F-8785C."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
+from math import inf
+from typing import Any, Literal
 
-from advisor.report.page.blocks import Block, Gallery, Paragraph, Section, listing
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure as Drawing
+from matplotlib.lines import Line2D
+from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
+
+from advisor.flight.signals.messages import FloatArray
+from advisor.model.mil_f_8785c import CATEGORIES, LIMITS, Range, ShortPeriodLimits
+from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, listing
 from advisor.report.page.content import Content, Document
-from advisor.report.page.flying_chart import flying_chart
+from advisor.report.page.drawing import BLACK, BLUE, GREY, log_ticks, picture
 from advisor.report.qualities import NAMES
 from advisor.report.table import Table
 from advisor.words.digits import with_half
-from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantiles import NORMAL_95, PAIR_95
 
 
 def flying(content: Content) -> Section:
@@ -56,3 +66,114 @@ def _blocks(content: Content) -> Iterator[Block]:
 
 def _with_interval(one: Document) -> str:
     return with_half(one["value"], NORMAL_95 * one["std"])
+
+
+_FILLS = ("#c6dbef", "#e1ecf7", "#f3f7fb")
+"""Colours of Levels 1 to 3, the best the darkest."""
+_LINES: tuple[Literal["-", "--", ":"], ...] = ("-", "--", ":")
+"""Styles of the bounds of Levels 1 to 3, so that a print without colour shows them."""
+_ROOM = 2.0
+"""Factor from the short period to the ends of the axes at least, so that bounds next to it are seen."""
+_WIDTH_IN, _HEIGHT_IN = 7.4, 2.6
+_PHONE_IN, _OF_A_PANEL_IN = 3.8, 2.4
+
+
+def flying_chart(found: Document) -> Figure | None:
+    """Return the chart; None where frequency, n/α, damping or their covariance are missing."""
+    if found["correlation"] is None or "damping" not in found:
+        return None
+    return Figure(
+        _drawn("levels-chart", found, across=True),
+        "Natural frequency against acceleration sensitivity n/α in the categories A, B and C, and damping. "
+        "Cross and ellipse: the estimate with its joint 95 % region; bar: the 95 % interval of the damping. "
+        "Solid, dashed and dotted lines bound the Levels 1, 2 and 3; the darkest field is Level 1.",
+        narrow=_drawn("levels-phone", found, across=False),
+    )
+
+
+def _drawn(name: str, found: Document, *, across: bool) -> Callable[[], str]:
+    """Return the chart with its panels in a row, or one above the other."""
+    panels = len(CATEGORIES) + 1
+    size = (_WIDTH_IN, _HEIGHT_IN) if across else (_PHONE_IN, _OF_A_PANEL_IN * panels)
+    return picture(name, *size, _paint, found, across)
+
+
+def ellipse(found: Document) -> tuple[FloatArray, FloatArray]:
+    """Return n/α and ω_n along the joint 95 % region, each of shape (n,).
+
+    The region is an ellipse in the logarithms, whose errors are the relative errors: both quantities stay
+    positive.
+    """
+    load, frequency = found["n_alpha"], found["natural_frequency"]
+    across, up = (one["std"] / one["value"] for one in (load, frequency))
+    angle = np.linspace(0.0, 2.0 * np.pi, 181)
+    first, second = PAIR_95 * np.cos(angle), PAIR_95 * np.sin(angle)
+    rho = found["correlation"]
+    along = rho * first + (1.0 - rho**2) ** 0.5 * second
+    return load["value"] * np.exp(across * first), frequency["value"] * np.exp(up * along)
+
+
+def _paint(drawing: Drawing, found: Document, across: bool) -> None:
+    panels = len(CATEGORIES) + 1
+    shape = (1, panels) if across else (panels, 1)
+    widths = [1.0] * len(CATEGORIES) + [0.8] if across else None
+    every = np.ravel(drawing.subplots(*shape, width_ratios=widths))
+    region = ellipse(found)
+    for axes, (category, limits) in zip(every, LIMITS.items(), strict=False):
+        _paint_frequency(axes, limits, found, region)
+        axes.set_title(f"Category {category}")
+        axes.set_xlabel("n/α [g/rad]")
+        if not across or category == "A":
+            axes.set_ylabel("ω_n [rad/s]")
+    _paint_damping(every[-1], found["damping"])
+    handles = [Line2D([], [], color=BLACK, linestyle=line, linewidth=0.8) for line in _LINES]
+    drawing.legend(handles, [f"Level {level}" for level in (1, 2, 3)], loc="outside upper center", ncols=3)
+
+
+def _paint_frequency(
+    axes: Axes, limits: tuple[ShortPeriodLimits, ...], found: Document, region: tuple[FloatArray, FloatArray]
+) -> None:
+    """Draw the levels of one category, the estimate and its region, on logarithmic axes."""
+    load, frequency = found["n_alpha"]["value"], found["natural_frequency"]["value"]
+    ends_x, ends_y = (
+        (min(centre / _ROOM, float(curve.min())), max(centre * _ROOM, float(curve.max())))
+        for centre, curve in ((load, region[0]), (frequency, region[1]))
+    )
+    for limit, fill, line in reversed(list(zip(limits, _FILLS, _LINES, strict=True))):
+        x = np.geomspace(max(ends_x[0], limit.load[0]), max(ends_x[1], limit.load[0]), 60)
+        low = np.maximum(np.sqrt(limit.cap[0] * x), limit.frequency[0])
+        high = np.full_like(x, ends_y[1]) if limit.cap[1] == inf else np.sqrt(limit.cap[1] * x)
+        axes.fill_between(x, low, np.maximum(low, high), facecolor=fill, linewidth=0.0)
+        bounds = [low] if limit.cap[1] == inf else [low, high]
+        for bound in bounds:
+            axes.plot(x, bound, color=BLACK, linestyle=line, linewidth=0.8)
+        if limit.load[0] > ends_x[0]:
+            axes.plot([limit.load[0]] * 2, [low[0], high[0]], color=BLACK, linestyle=line, linewidth=0.8)
+    axes.plot(*region, color=BLUE, linewidth=1.2)
+    axes.plot(load, frequency, marker="+", color=BLUE, markersize=7, markeredgewidth=1.4)
+    axes.set(xscale="log", yscale="log", xlim=ends_x, ylim=ends_y)
+    for axis, ends in ((axes.xaxis, ends_x), (axes.yaxis, ends_y)):
+        axis.set_major_locator(FixedLocator(log_ticks(*ends)))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        axis.set_minor_locator(NullLocator())
+
+
+def _paint_damping(axes: Axes, damping: Mapping[str, Any]) -> None:
+    """Draw the levels of damping in each category as bars, and the estimate with its interval across them."""
+    low, high = damping["ci95"]
+    top = max(2.2, 1.1 * high)
+    for column, limits in enumerate(LIMITS.values()):
+        for limit, fill, line in reversed(list(zip(limits, _FILLS, _LINES, strict=True))):
+            inside: Range = (limit.damping[0], min(limit.damping[1], top))
+            axes.fill_between([column - 0.4, column + 0.4], *inside, facecolor=fill, linewidth=0.0)
+            for bound in limit.damping:
+                if bound < top:
+                    axes.plot(
+                        [column - 0.4, column + 0.4], [bound] * 2, color=BLACK, linestyle=line, linewidth=0.8
+                    )
+    axes.axhspan(low, high, facecolor=BLUE, alpha=0.3, linewidth=0.0)
+    axes.axhline(damping["value"], color=BLUE, linewidth=1.2)
+    axes.axhline(0.0, color=GREY, linewidth=0.6)
+    axes.set_xticks(range(len(LIMITS)), list(LIMITS))
+    axes.set(ylim=(min(0.0, 1.1 * low), top), ylabel="ζ [1]", xlabel="category", title="Damping")
+    axes.grid(visible=False, axis="x")

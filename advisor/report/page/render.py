@@ -9,7 +9,7 @@ from jinja2 import Environment, FunctionLoader, StrictUndefined
 from markupsafe import Markup
 
 from advisor.process.parts import FailedPart, attempt
-from advisor.report.page.assumptions import assumptions
+from advisor.report.page.appendix import assumptions, provenance, telemetry
 from advisor.report.page.blocks import Block, Paragraph, Section
 from advisor.report.page.content import Content
 from advisor.report.page.criterion import criterion
@@ -22,8 +22,6 @@ from advisor.report.page.headline import headline
 from advisor.report.page.lateral import lateral
 from advisor.report.page.maneuvers import maneuvers
 from advisor.report.page.prediction import prediction
-from advisor.report.page.provenance import provenance
-from advisor.report.page.telemetry import telemetry
 
 PageFormat = Literal["html", "md"]
 _PARTS = (

@@ -2,8 +2,7 @@
 
 import pytest
 
-from advisor.flight.instruments.hypotheses import ANY, AS_STATED, weigh
-from advisor.flight.instruments.measured import Measured, pooled
+from advisor.flight.instruments.measured import ANY, AS_STATED, Measured, pooled, weigh
 
 FACTORS = {"reversed": -1.0, "in rad": 0.01745}
 

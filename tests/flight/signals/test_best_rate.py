@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from advisor.flight.signals.best_rate import BestRate
+from advisor.flight.signals.track import BestRate
 
 
 def rate(*batches: np.ndarray) -> float:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from advisor.flight.signals.coloured import inverse_information
+from advisor.flight.instruments.delayed_fit import inverse_information
 
 
 def nearly_equal_columns(seed: int) -> np.ndarray:

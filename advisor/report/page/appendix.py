@@ -1,0 +1,51 @@
+"""The end of the page: quality of the telemetry, assumptions, and the origin of everything."""
+
+from collections.abc import Iterator
+
+from advisor.report.page.blocks import Block, Paragraph, Section, Verbatim, listing
+from advisor.report.page.content import Content
+from advisor.report.result_rows import channel_table, message_table
+from advisor.report.table import Table
+
+
+def telemetry(content: Content) -> Section:
+    """Return the doctor's verdict, limits with their remedies, and rates of the messages, log by log."""
+    return Section("telemetry", "Telemetry", tuple(_by_log(content)))
+
+
+def _by_log(content: Content) -> Iterator[Block]:
+    for flight, (name, found) in enumerate(zip(content.names, content.doctor, strict=True)):
+        yield Paragraph(f"{name}: {found['verdict']}.")
+        yield from listing([f"{limit['text']}. Fix: {limit['fix']}." for limit in found["limits"]])
+        yield from listing(list(found.get("notes", ())))
+        if found["messages"]:
+            yield message_table(f"messages-{flight}", found["messages"])
+
+
+def assumptions(content: Content) -> Section:
+    """Return notes on reading and estimate, then the sources of the channels."""
+    return Section("assumptions", "What was assumed", tuple(_assumed(content)))
+
+
+def _assumed(content: Content) -> Iterator[Block]:
+    analysis = content.analysis
+    model = analysis["model"]
+    said = [*analysis.get("notes", ()), *analysis["log"]["notes"], *(model["notes"] if model else ())]
+    yield from listing(said) or (Paragraph("Neither the logs nor the joint estimate leave a note."),)
+    for flight, (name, heard) in enumerate(zip(content.names, content.state.flights, strict=True)):
+        yield channel_table(f"channels-{flight}", f"Channels of {name}.", heard.channels)
+
+
+def provenance(content: Content) -> Section:
+    """Return the section on hashes, versions and the command that repeats the page."""
+    origin = content.origin
+    return Section(
+        "origin",
+        "Where this comes from",
+        (
+            Table("files", "Input files.", ("file", "SHA-256"), tuple(origin.files.items())),
+            Table("versions", "Versions.", ("program", "version"), tuple(origin.versions.items())),
+            Paragraph("This command repeats the page:"),
+            Verbatim(origin.command),
+        ),
+    )
